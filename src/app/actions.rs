@@ -18,7 +18,7 @@ use stillbase_simulation::signals::signals;
 
 /// A command with a name.
 pub struct Action {
-    /// Its group.
+    /// The group in which it is listed.
     pub group: ActionGroup,
     /// Its name in lists.
     pub name: &'static str,
@@ -28,10 +28,10 @@ pub struct Action {
     pub keys: &'static [KeyboardShortcut],
     /// Its place in the window.
     pub place: &'static str,
-    /// The switch that it turns, if any.
+    /// The switch that it toggles, if any.
     pub turns: Option<Switch>,
-    /// Its command in the present state; `None` inside while it has no effect. Without this function the action turns
-    /// its switch.
+    /// Returns its command in the present state, or `None` while it has no effect. Without this function, the action
+    /// toggles its switch.
     command_fn: Option<fn(&Session, &ViewState) -> Option<Command>>,
 }
 
@@ -87,13 +87,14 @@ const CTRL: Modifiers = Modifiers::COMMAND;
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(SHIFT);
 const ALT: Modifiers = Modifiers::ALT;
 
-/// Displacement of the target by one key press, m; the second with Shift.
+/// Displacement of the target by one key press without and with Shift, m.
 const TARGET_STEP_M: f64 = 0.01;
 const FINE_TARGET_STEP_M: f64 = 0.001;
-/// Change of b by one key press, rad; the second with Shift.
+/// Change of b by one key press without and with Shift, rad.
 const B_STEP_RAD: f64 = 0.01;
 const FINE_B_STEP_RAD: f64 = 0.001;
-/// Rotation of the view by one key press, rad (in 2D a displacement, in heights of the view), and zoom factor.
+/// Rotation of the view by one key press, rad (in 2D its displacement, a fraction of the view's height), and zoom
+/// factor.
 const VIEW_TURN_RAD: f64 = 0.1;
 const ZOOM_FACTOR: f64 = 1.15;
 
@@ -104,6 +105,7 @@ fn nudge(session: &Session, [x, y]: [f64; 2]) -> Option<Command> {
     Some(Command::Session(SessionCommand::Edit(Edit::DragTarget { x: now.re + x, y: now.im + y })))
 }
 
+/// Changes b by an amount, rad.
 fn turn(session: &Session, view_state: &ViewState, by: f64) -> Option<Command> {
     session.run().pose_space().ok()?;
     Some(Command::Session(SessionCommand::Edit(set_b(session, view_state, session.b_aim() + by))))
@@ -139,7 +141,7 @@ fn charts(session: &Session, view_state: &ViewState, factor: Option<f64>) -> Opt
     Some(Command::View(ViewChange::Charts(PlotChange::Range(range))))
 }
 
-/// Shows the next view that the machine has.
+/// Shows the next view, or the 2D view if the machine lacks the next one.
 fn next_view(session: &Session, view_state: &ViewState) -> Option<Command> {
     let next = view_state.view.next();
     let has = Views::has(next, session.run()).is_ok();
@@ -159,16 +161,16 @@ fn of_machine(view_state: &ViewState, command: Command) -> Option<Command> {
 
 macro_rules! actions {
     ($($group:ident, $name:literal $(= $also:literal)?, [$($key:expr),*], $place:literal
-        $(turns $switch:ident)? $(, $asks:expr)?;)+) => {
+        $(turns $switch:ident)? $(, $command:expr)?;)+) => {
         &[$(Action {
             group: ActionGroup::$group, name: $name, also: concat!($($also)?), keys: &[$($key),*], place: $place,
-            turns: actions!(@of Switch $($switch)?), command_fn: actions!(@given $($asks)?),
+            turns: actions!(@of Switch $($switch)?), command_fn: actions!(@option $($command)?),
         }),+]
     };
     (@of $kind:ident) => { None };
     (@of $kind:ident $of:ident) => { Some($kind::$of) };
-    (@given) => { None };
-    (@given $given:expr) => { Some($given) };
+    (@option) => { None };
+    (@option $value:expr) => { Some($value) };
 }
 
 /// Every action.
@@ -310,7 +312,7 @@ pub const ACTIONS: &[Action] = actions![
     File, "Keys and gestures" = "shortcuts help keyboard", [on(PLAIN, Key::F1)], "top bar, ?" turns Help;
 ];
 
-/// The actions of keys with Shift, which move target and b by the finer steps.
+/// Actions of keys with Shift, which change the target and b by finer steps.
 pub const FINE_ACTIONS: &[Action] = actions![
     Task, "", [on(CTRL_SHIFT, Key::ArrowRight)], "", |s, _| nudge(s, [FINE_TARGET_STEP_M, 0.0]);
     Task, "", [on(CTRL_SHIFT, Key::ArrowLeft)], "", |s, _| nudge(s, [-FINE_TARGET_STEP_M, 0.0]);
@@ -370,12 +372,12 @@ pub fn key_of(action: &str) -> Option<String> {
     ACTIONS.iter().find(|known| known.name == action)?.keys.first().map(shown)
 }
 
-/// Returns the first key of the action that turns this switch, if it has one.
+/// Returns the first key of the action that toggles this switch, if it has one.
 pub fn key_of_switch(switch: Switch) -> Option<String> {
     ACTIONS.iter().find(|known| known.turns == Some(switch))?.keys.first().map(shown)
 }
 
-/// Returns the text of a key, as on the keyboard.
+/// Returns the label of a keyboard shortcut, such as `Ctrl K`.
 pub fn shown(key: &KeyboardShortcut) -> String {
     let m = key.modifiers;
     let held = [(m.command || m.ctrl, "Ctrl "), (m.alt, "Alt "), (m.shift, "Shift ")];

@@ -15,11 +15,11 @@ pub enum Activity {
     Table,
     /// Sampling machines for a study of tolerances.
     Study,
-    /// Running the task in its different ways.
+    /// Running the same task in several ways, for comparison.
     TaskVariants,
     /// Running one more scenario for the table of runs.
     ExtraRun,
-    /// Searching for lengths.
+    /// Searching for link lengths.
     Seeking,
     /// Computing the Pareto fronts of other machines.
     Fronts,
@@ -50,7 +50,7 @@ impl Activity {
         self.texts().0
     }
 
-    /// Whether it can be cancelled.
+    /// Whether the work can be cancelled.
     pub(super) fn can_stop(self) -> bool {
         self.texts().1.is_some()
     }

@@ -33,7 +33,7 @@ pub fn show(ui: &mut Ui, view_state: &ViewState, size: Vec2, commands: &mut Vec<
         };
         heading(ui, "LAYOUT");
         for layout in Layout::ALL {
-            // The name of its action.
+            // The name of the action that chooses the layout; its key is found by this name.
             let action = format!("{}: {}", layout.name(), layout.words());
             let what = (layout.name(), key_of(&action), layout.words());
             line(ui, what, view_state.arrangement.layout == layout, Command::View(ViewChange::Layout(layout)));

@@ -21,10 +21,10 @@ trait Pending<A> {
     /// Returns the fraction that is done, from 0 to 1.
     fn progress(&self) -> f64;
 
-    /// Whether it has ended.
+    /// Whether the work has ended.
     fn has_ended(&mut self) -> bool;
 
-    /// Waits until it has ended.
+    /// Waits until the work has ended.
     fn wait(&mut self);
 
     /// Runs the follow-up with the result.
@@ -62,7 +62,7 @@ impl<A, T: Send + 'static, F: FnOnce(&mut A, Option<T>)> Pending<A> for Running<
     }
 }
 
-/// What to do after a session has been opened.
+/// Actions and messages after a session has been opened.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Opening {
     /// Whether the run plays at once.
@@ -89,26 +89,26 @@ pub(super) enum SessionFile {
 /// The changed session, and the message or the reason of a refusal.
 pub(super) type SessionResult = (Session, Result<Option<String>, Refusal>);
 
-/// Sessions with more frames are freed in the background: that takes milliseconds.
+/// Sessions with more frames are freed in the background, because freeing them takes milliseconds.
 const MAX_FRAMES_FREED_AT_ONCE: usize = 20_000;
 
-/// Number of repaints before a change is reported in the status line: most are finished earlier.
+/// Number of repaints before a change is reported in the status line; most changes finish earlier.
 const SILENT_REPAINTS: u32 = 6;
 
-/// Work in the background, its worker threads, and the follow-up, which changes `A`.
+/// Work in the background, its worker threads, and its follow-ups, which change the program's state `A`.
 pub(super) struct Background<A> {
     workers: Arc<dyn Workers + Send + Sync>,
     /// Queue in which work waits until the window is drawn; `None` if work is done at once.
     waiting: Option<Arc<DeferredWorkers>>,
     /// Queries about the session.
     pub queries: Queries,
-    /// Repainted when a job has ended.
+    /// Context that is repainted when a job has ended.
     ctx: Option<egui::Context>,
     /// Work whose result changes the display, in the order of its start.
     running: Vec<(Activity, Box<dyn Pending<A>>)>,
     /// The change of the session under way, and the number of repaints since its start.
     pub change: Option<(SessionChange, u32)>,
-    /// Commands that wait for its end.
+    /// Session commands that wait until the change has ended.
     pub waiting_commands: VecDeque<SessionCommand>,
 }
 
@@ -146,7 +146,7 @@ impl<A> Background<A> {
         self.queries.set_workers(self.workers.clone());
     }
 
-    /// Returns a guard that holds new work back while the window is drawn.
+    /// Returns a guard that delays new work while the window is drawn.
     pub fn drawing(&self) -> DrawingGuard {
         DrawingGuard::begin(self.waiting.as_ref())
     }
@@ -160,7 +160,7 @@ impl<A> Background<A> {
         }
     }
 
-    /// Starts work in the background that nobody waits for.
+    /// Starts work in the background without a follow-up.
     fn start<T: Send + 'static>(&self, work: impl FnOnce(&Ticket) -> T + Send + 'static) -> Job<T> {
         self.start_by(&*self.workers, work)
     }
@@ -179,7 +179,7 @@ impl<A> Background<A> {
         Job::start(workers, wake, work)
     }
 
-    /// Runs work in the background, and then `then` with its result, or with `None` if it panicked.
+    /// Runs work in the background, then calls `then` with its result, or with `None` if the work panicked.
     pub fn run<T: Send + 'static>(
         &mut self,
         activity: Activity,
@@ -194,20 +194,20 @@ impl<A> Background<A> {
         self.running.push((activity, Box::new(Running { job: Some(job), result: None, then })));
     }
 
-    /// Takes out the follow-up of the first finished work whose turn it is. Changes of the session come before a
-    /// session is opened, and work of one activity ends in the order of its start.
+    /// Removes the first finished work whose turn has come, and returns its follow-up. An opening waits until changes
+    /// of the session have ended. Work of one activity is followed up in the order of its start.
     pub fn ended(&mut self) -> Option<impl FnOnce(&mut A) + use<A>> {
         let is_changing = self.is_changing();
-        let (mut place, mut before) = (None, Vec::new());
+        let (mut index, mut before) = (None, Vec::new());
         for (i, (activity, work)) in self.running.iter_mut().enumerate() {
             let waits = before.contains(activity) || (*activity == Activity::Opening && is_changing);
             if !waits && work.has_ended() {
-                place = Some(i);
+                index = Some(i);
                 break;
             }
             before.push(*activity);
         }
-        let (_, work) = self.running.remove(place?);
+        let (_, work) = self.running.remove(index?);
         Some(|app_state: &mut A| work.finish(app_state))
     }
 

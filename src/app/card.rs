@@ -1,4 +1,4 @@
-//! The card beside the pointer: name, values and units of the object under it, and how to edit it.
+//! The card beside the pointer: name, values and units of the object under the pointer, and how to edit the object.
 
 use egui::{RichText, Ui};
 
@@ -19,14 +19,14 @@ pub struct Card {
     pub title: String,
     /// Its values with their units.
     pub rows: Vec<String>,
-    /// What the pointer can do with it.
+    /// Actions of the pointer on the object.
     pub hint: String,
 }
 
 /// Hint on the target while the run waits.
 const RUN_WAITS: &str = "the run waits: nothing follows until its task can be done";
 
-/// Angles closer to their limit than this are shown as at the limit, rad.
+/// Tolerance within which an angle is reported to be at its limit, rad.
 const AT_LIMIT_RAD: f64 = 1e-3;
 
 impl Card {

@@ -91,7 +91,7 @@ pub(super) enum SessionSource {
     Journal(PathBuf),
 }
 
-/// Result of opening a [`Source`].
+/// Result of opening a [`SessionSource`].
 pub(super) enum Opened {
     Session(Box<OpenedSession>),
     /// A table of numbers to be assessed for the session on display.

@@ -51,7 +51,7 @@ impl From<WindowCommand> for Command {
 pub enum SessionCommand {
     /// Change the machine, the run or its parameters.
     Edit(Edit),
-    /// End the gesture: the next edit becomes an undo entry of its own.
+    /// End the gesture: the next edit gets a new undo entry.
     EndGesture,
     /// Play or pause.
     TogglePlay,
@@ -91,13 +91,13 @@ pub enum SessionCommand {
     Replace(PathBuf),
     /// Undo the last edit.
     Undo,
-    /// Undo the last change if there are more than this number of undo entries: that of a cancelled drag.
+    /// Undo the change of a cancelled drag: the last change, if there are more undo entries than this number.
     TakeBack(usize),
     /// Undo the changes of the drag under way.
     GiveUp,
     /// Redo the change undone last.
     Redo,
-    /// Undo or redo until there is this number of undo entries.
+    /// Undo or redo until the session has this number of undo entries.
     GoTo(usize),
     /// Put the machine back at the start of its planned path.
     BackToPath,
@@ -105,9 +105,10 @@ pub enum SessionCommand {
     TakeGiven(TableAction),
     /// Apply the counterweights of a point of the Pareto front, by its index.
     Take(usize),
-    /// Apply the lengths found, with their counterweights.
+    /// Apply the link lengths found, with their counterweights.
     TakeLengths,
-    /// Apply the counterweights and rotor ratios with which the drives give the base the least momentum.
+    /// Apply the counterweights and rotor ratios with the least Σ |D_k|, the momentum that the drives give to the
+    /// base.
     TakeStillest,
     /// Add the session's run to the table of runs.
     KeepRun,
@@ -115,7 +116,7 @@ pub enum SessionCommand {
     OpenRun(usize),
 }
 
-/// What can be turned on and off.
+/// A panel, a mode or a tool that can be turned on and off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Switch {
     /// The panel of settings.
@@ -150,7 +151,7 @@ pub enum Switch {
     Loop,
     /// Enlarge the drawn motion of the base so that it can be seen.
     Exaggeration,
-    /// Let b leave the interval feasible for the points of the task, and rotate the points with it.
+    /// Let b leave the interval that is feasible for the points of the task; the points then rotate with b.
     TurnTask,
     /// Shade the workspace by a measure of dexterity.
     Dexterity,
@@ -187,13 +188,13 @@ pub enum ViewChange {
     Drives([usize; 3]),
     /// Set the second cursor at a time, s, or remove it.
     Mark(Option<f64>),
-    /// Change what plots show.
+    /// Change the content of the plots.
     Charts(PlotChange),
-    /// Preview how A would be held on the plane of another b, rad.
+    /// Preview the posture at the start point A on the plane of another b, rad, or end the preview.
     Preview(Option<f64>),
     /// Show the counterweights of a point of the Pareto front, by its index, or hide them.
     Ghost(Option<usize>),
-    /// Colour the points of the Pareto front by this measure, or not.
+    /// Colour the points of the Pareto front by this measure, or by none.
     FrontBy(Option<FrontMeasure>),
     /// Show the rows of an object in the panel of settings.
     Reveal(Handle),
@@ -210,11 +211,11 @@ pub enum ViewChange {
 pub enum WindowCommand {
     /// Change the table of runs.
     Comparison(ComparisonCommand),
-    /// Assess the open table with these options.
+    /// Assess the open table of samples with these options.
     Ask(TableOptions),
-    /// Search for lengths that minimise this objective, within the bounds of the brief.
+    /// Search for link lengths that minimise this objective within the bounds of the design brief.
     Seek(Objective),
-    /// Change which Pareto fronts are drawn beside that of the machine being designed.
+    /// Add or remove Pareto fronts that are drawn beside that of the machine being designed.
     Fronts(FrontsCommand),
     /// Move the keyboard focus to the search for signals.
     LookFor,
@@ -232,29 +233,29 @@ pub enum WindowCommand {
     SkipHints,
     /// Begin or leave the tour.
     Tour(bool),
-    /// Go to its next step (`true`), or to the previous one.
+    /// Go to the next step of the tour (`true`), or to the previous one.
     TurnTour(bool),
 }
 
-/// Changes the Pareto fronts that are drawn beside that of the machine being designed.
+/// A change of the Pareto fronts that are drawn beside that of the machine being designed.
 #[derive(Clone, Debug)]
 pub enum FrontsCommand {
-    /// Keep the front of this machine in its present state.
+    /// Keep the Pareto front of this machine in its present state.
     Keep,
-    /// Add the front of another machine, with the same brief.
+    /// Add the Pareto front of another machine, with the same design brief.
     Add(Box<Machine>),
-    /// Remove a front, by its index.
+    /// Remove a Pareto front, by its index.
     Remove(usize),
 }
 
 /// Answers to the question about a session left by an earlier program run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Recovery {
-    /// Open it.
+    /// Open that session.
     Open,
-    /// Remove it.
+    /// Remove that session.
     Forget,
-    /// Offer it again at the next start.
+    /// Offer that session again at the next start.
     Later,
 }
 

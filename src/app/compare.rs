@@ -23,7 +23,7 @@ pub fn show(ui: &mut Ui, comparison: &Comparison, view_state: &ViewState, comman
             let words = "the same task done in several ways: tick a row to draw it in plots and scene, click a column title to sort";
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 buttons(ui, comparison, commands);
-                // The space between title and buttons.
+                // The explanation fills the space between title and buttons.
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     ui.add(Label::new(RichText::new(words).font(plain(11.5)).color(colour(p.dim))).truncate());
                 });
@@ -76,13 +76,14 @@ impl Head {
     }
 }
 
-/// Returns the columns that have a value in any row; those of designs only if there are several designs.
+/// Returns the columns that have a value in any row. Columns of base motion need a base that moves; columns of
+/// designs need different machines.
 fn columns(comparison: &Comparison) -> Vec<Head> {
     let runs = || comparison.entries().iter().filter_map(|e| e.outcome.as_ref().ok());
     let moves = runs().any(|r| r.summary.base_shift > 0.0 || r.summary.base_tilt > 0.0);
-    let stands = |c: &SummaryColumn| runs().any(|r| (c.value)(&r.summary).is_some());
+    let has_value = |c: &SummaryColumn| runs().any(|r| (c.value)(&r.summary).is_some());
     let all = SUMMARY_COLUMNS.iter().enumerate();
-    let of_runs = all.filter(|(_, c)| stands(c) && (moves || !matches!(c.key, "base_shift" | "base_tilt")));
+    let of_runs = all.filter(|(_, c)| has_value(c) && (moves || !matches!(c.key, "base_shift" | "base_tilt")));
     let designs = if comparison.has_designs() { &DESIGN_COLUMNS[..] } else { &[] };
     let of_designs = designs.iter().enumerate().map(|(i, c)| Head::of(SUMMARY_COLUMNS.len() + i, c));
     of_runs.map(|(i, c)| Head::of(i, c)).chain(of_designs).collect()

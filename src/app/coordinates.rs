@@ -10,7 +10,7 @@ use stillbase_picture::scene::joints::{JointSpace, SYMBOLS};
 use stillbase_picture::scene::views::{ViewKind, Views};
 use stillbase_session::Session;
 
-/// Returns the rectangle that it covers in a scene.
+/// Returns the rectangle of a scene that the choice of axes covers, if it is shown.
 pub fn covers(rect: Rect, views: &Views, view_state: &ViewState) -> Option<Rect> {
     chosen(views, view_state).map(|_| Rect::from_min_size(rect.min, vec2(rect.width().min(260.0), 56.0)))
 }
@@ -20,8 +20,8 @@ fn chosen<'a>(views: &'a Views, view_state: &ViewState) -> Option<&'a JointSpace
     views.joints().filter(|joints| view_state.view == ViewKind::Joints && joints.has_choice())
 }
 
-/// Draws it in the upper left corner of a scene. In the tower view, says that the tower is being computed while it is
-/// missing.
+/// Draws the choice of axes in the upper left corner of a scene. In the tower view, draws a message while the tower
+/// is being computed.
 pub fn show(
     ui: &egui::Ui,
     rect: Rect,

@@ -33,7 +33,7 @@ pub fn show(ui: &mut Ui, rect: Rect, view_state: &ViewState, views: &Views, comm
     let layout = egui::Layout::left_to_right(egui::Align::Center);
     let mut corner = ui.new_child(egui::UiBuilder::new().max_rect(room).layout(layout));
     match view_state.dexterity.filter(|_| view_state.view.shows_machine()) {
-        Some(measure) => key(&mut corner, &p, measure, views, commands),
+        Some(measure) => colour_scale(&mut corner, &p, measure, views, commands),
         None => {
             let joints = views.joints().filter(|_| view_state.view == ViewKind::Joints);
             let words = joints.map_or(view_state.view.invitation(), JointSpace::invitation);
@@ -43,7 +43,8 @@ pub fn show(ui: &mut Ui, rect: Rect, view_state: &ViewState, views: &Views, comm
     }
 }
 
-/// Draws the button *show everything* at the upper edge, for when a part of the machine or its target is out of view.
+/// Draws the button *show everything* at the upper edge. It is needed when a part of the machine or its target is out
+/// of view.
 pub fn recentre_button(ui: &mut Ui, rect: Rect, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let words = RichText::new("show everything (F)").font(plain(11.5)).color(colour(p.ink));
@@ -57,8 +58,8 @@ pub fn recentre_button(ui: &mut Ui, rect: Rect, view_state: &ViewState, commands
     }
 }
 
-/// Draws the colour scale of the workspace.
-fn key(ui: &mut Ui, p: &Palette, measure: Measure, views: &Views, commands: &mut Vec<Command>) {
+/// Draws the colour scale of the workspace; a click on its symbol chooses the next measure.
+fn colour_scale(ui: &mut Ui, p: &Palette, measure: Measure, views: &Views, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.x = 6.0;
     let [least, most] = views.stage().shaded(measure);
     let words = RichText::new(measure.symbol()).font(plain(11.5)).color(colour(p.ink));

@@ -1,4 +1,4 @@
-//! [`ScenarioFacts`]: values shown by the panels that have to be computed first, queried for each repaint.
+//! [`ScenarioFacts`]: computed values that the panels show, requested from the query cache at each repaint.
 
 use std::sync::Arc;
 
@@ -15,11 +15,11 @@ use stillbase_settings::key::{Key, KeyType};
 pub(super) struct Setting {
     pub path: String,
     pub key: &'static Key,
-    /// As it would be typed; empty if it is not set.
+    /// Its value as the user would type it; empty if it is not set.
     pub typed: String,
     /// Whether it has its default value.
     pub usual: bool,
-    /// The condition under which it has an effect, if it has none now.
+    /// If the setting has no effect now: the condition under which it has one.
     pub wants: Option<&'static str>,
     /// Path and explanation in lower case, to be searched.
     pub text: String,
@@ -52,7 +52,7 @@ impl QuickQuery for BalanceSummary {
     }
 }
 
-/// Whether machine and task setup of a scenario differ from the built-in ones of the same names.
+/// Differences of the machine and the task setup of a scenario from the built-in ones of the same names.
 struct Differs {
     machine: bool,
     work: bool,
@@ -71,8 +71,8 @@ impl QuickQuery for Differs {
     }
 }
 
-/// Number of poses on the plane b for a point of the end effector, m. Then the distance of the point from the boundary
-/// of the workspace, m, positive inside.
+/// Query about a position of the end effector, m, on the plane b, rad. Returns its number of poses and its distance
+/// from the boundary of the workspace, m, positive inside.
 struct Standing;
 
 impl QuickQuery for Standing {
@@ -85,7 +85,7 @@ impl QuickQuery for Standing {
     }
 }
 
-/// All settings of a scenario except tables of samples.
+/// Query for all settings of a scenario except tables of samples.
 struct Settings;
 
 impl QuickQuery for Settings {
@@ -93,13 +93,13 @@ impl QuickQuery for Settings {
     type Answer = Vec<Setting>;
 
     fn answer(Shared(scenario): &Self::Input) -> Vec<Setting> {
-        // Tables of samples come from files alone.
+        // Tables of samples cannot be typed: they come from files.
         let shown = scenario.settings().into_iter().filter(|(_, key, _)| key.holds != KeyType::Rows);
         let setting = |(path, key, value): (String, &'static Key, Value)| {
             let typed = Some(change::typed(&value)).filter(|typed| typed != DEFAULT_WORD).unwrap_or_default();
-            let normal = || change::same_value(&change::value(key.default), &value);
+            let is_default = || change::same_value(&change::value(key.default), &value);
             Setting {
-                usual: typed.is_empty() || key.default.is_empty() || normal(),
+                usual: typed.is_empty() || key.default.is_empty() || is_default(),
                 wants: scenario.condition_for_effect(&path),
                 text: format!("{path}\n{}", key.words).to_lowercase(),
                 typed,
@@ -120,10 +120,10 @@ pub(super) struct ScenarioFacts<'a> {
     /// Whether task, plant, base or control differ from those of the built-in scenario of its name.
     pub work_differs: bool,
     pub balance: Arc<BalanceSummary>,
-    /// Base moment of a change of b in motion, N m.
+    /// Base moment that a change of b causes while time runs, N m.
     pub price: f64,
-    /// Number of poses that put the end effector at its present point, and distance of the point from the boundary of
-    /// the workspace, m. `None` for a machine without planes.
+    /// Number of poses that put the end effector at its present point, and the point's distance from the workspace
+    /// boundary, m, positive inside. `None` for a machine without planes.
     pub standing: Option<(usize, f64)>,
 }
 

@@ -30,7 +30,7 @@ pub enum FilePurpose {
 /// File format of a plot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlotFile {
-    /// The samples of the time shown.
+    /// The samples within the time range on display.
     Csv,
     /// A vector drawing.
     Svg,
@@ -42,7 +42,7 @@ impl PlotFile {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Csv, Self::Svg, Self::Png];
 
-    /// Its name.
+    /// Returns its name.
     pub fn words(self) -> &'static str {
         match self {
             Self::Csv => "CSV",
@@ -82,7 +82,7 @@ impl FileDialog {
         Self { purpose: FilePurpose::Open, path: String::new() }
     }
 
-    /// Returns a dialog with an unused file name as its start.
+    /// Returns a dialog that suggests an unused file name; a dialog to open a file suggests none.
     pub fn suggest(session: &Session, purpose: FilePurpose) -> Self {
         let own = &session.scenario().name;
         let free = |name: &str, ending: &str| stillbase_files::free_name(name, ending).display().to_string();

@@ -24,7 +24,7 @@ struct Entry<'a> {
     /// Shown only if there is a search text.
     hides: bool,
     keys: String,
-    /// Built only for the line that is carried out.
+    /// Makes the command; called only for the line that the user picks.
     command: Box<dyn FnOnce() -> Command + 'a>,
 }
 
@@ -35,7 +35,7 @@ const MAX_ENTRIES: usize = 60;
 const VISIBLE_ROWS: f32 = 10.0;
 const ROW_HEIGHT_PT: f32 = 27.0;
 
-/// Returns the commands available now, in the order of the table of actions.
+/// Returns the entries available now: actions, recent files, scenarios, machines and settings.
 fn entries<'a>(
     session: &'a Session,
     settings: &'a [Setting],
@@ -99,12 +99,12 @@ fn found<'a>(entries: Vec<Entry<'a>>, sought: &str) -> Vec<Entry<'a>> {
         .filter(|entry| !(entry.hides && sought.trim().is_empty()))
         .filter_map(|entry| Some((score(&entry)? - i32::from(entry.hides), entry)))
         .collect();
-    // The sort is stable: equal scores keep the order of the table.
+    // The sort is stable: entries of equal scores keep their order.
     scored.sort_by_key(|(score, _)| -score);
     scored.into_iter().take(MAX_ENTRIES).map(|(_, entry)| entry).collect()
 }
 
-/// Draws the list and reads its keys.
+/// Draws the list and handles its keys.
 pub fn show(
     ctx: &egui::Context,
     session: &Session,
@@ -141,7 +141,7 @@ pub fn show(
             }
             ui.add_space(4.0);
             let room = (ctx.content_rect().height() - 180.0).clamp(4.0 * ROW_HEIGHT_PT, VISIBLE_ROWS * ROW_HEIGHT_PT);
-            // Otherwise the list would keep the height that it had with fewer lines.
+            // Without a minimum height, the list would keep the height that it had with fewer lines.
             let list_area = ScrollArea::vertical().max_height(room).min_scrolled_height(room);
             list_area.auto_shrink([false, true]).show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 1.0;
@@ -179,7 +179,7 @@ fn line(ui: &mut Ui, p: &Palette, entry: &Entry<'_>, chosen: bool) -> egui::Resp
     if chosen || response.hovered() {
         ui.painter().rect_filled(rect, 6.0, colour(p.line));
     }
-    // Painted, so that a screen reader announces the line as one, not its parts.
+    // The texts are painted instead of added as widgets, so that a screen reader announces the line as one item.
     let middle = rect.center().y;
     let write = |ui: &Ui, right: f32, text: &str, font, ink| {
         ui.painter().text(egui::pos2(right, middle), Align2::RIGHT_CENTER, text, font, colour(ink)).left()

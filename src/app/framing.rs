@@ -1,5 +1,5 @@
-//! "Show everything": stays in force until the user moves the view, and keeps the content clear of what covers the
-//! scene.
+//! Framing of the camera by *show everything*. It lasts until the user moves the view, and keeps the content clear of
+//! cards that cover the scene.
 
 use std::sync::Arc;
 
@@ -11,8 +11,8 @@ use stillbase_picture::scene::framing::PictureArea;
 use stillbase_picture::scene::views::Views;
 use stillbase_session::Session;
 
-/// Frames the camera of the present view, if it is to show everything. `rect` is the scene on the screen, `covered` its
-/// covered parts.
+/// Frames the camera of the present view, if the view must show everything. `rect` is the scene on the screen,
+/// `covered` its covered parts.
 pub fn keep_framed(
     rect: Rect,
     covered: &[Rect],

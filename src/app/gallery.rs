@@ -13,23 +13,23 @@ use stillbase_picture::scene::palette::Palette;
 /// Pictures of the built-in machines, in their order; drawn when the list is first opened.
 static PORTRAITS: LazyLock<Vec<Portrait>> = LazyLock::new(|| machine::builtins().iter().map(Portrait::of).collect());
 
-const CARD: egui::Vec2 = vec2(282.0, 222.0);
-const PICTURE: f32 = 112.0;
+const CARD_SIZE: egui::Vec2 = vec2(282.0, 222.0);
+const PICTURE_HEIGHT: f32 = 112.0;
 const GAP: f32 = 8.0;
 const MARGIN: f32 = 12.0;
 /// Maximum number of columns.
 const MAX_COLUMNS: f32 = 4.0;
 
-/// Returns the maximum height of the list, px.
+/// Returns the maximum height of the list, points.
 pub fn room(ui: &Ui) -> f32 {
-    (ui.ctx().content_rect().height() - 76.0).clamp(160.0, 3.0 * (CARD.y + GAP))
+    (ui.ctx().content_rect().height() - 76.0).clamp(160.0, 3.0 * (CARD_SIZE.y + GAP))
 }
 
-/// Draws the list; returns the chosen machine, if it is another one.
+/// Draws the list; returns the machine that the user has chosen, if it differs from the present one.
 pub fn show(ui: &mut Ui, present: &Machine, p: &Palette) -> Option<&'static Machine> {
     let wide = ui.ctx().content_rect().width() - 60.0;
-    let columns = ((wide + GAP) / (CARD.x + GAP)).floor().clamp(1.0, MAX_COLUMNS) as usize;
-    ui.set_width(columns as f32 * (CARD.x + GAP) - GAP);
+    let columns = ((wide + GAP) / (CARD_SIZE.x + GAP)).floor().clamp(1.0, MAX_COLUMNS) as usize;
+    ui.set_width(columns as f32 * (CARD_SIZE.x + GAP) - GAP);
     ui.spacing_mut().item_spacing = vec2(GAP, GAP);
     let opened = ui.ctx().memory(|memory| memory.focused()).is_none();
     let machines: Vec<_> = machine::builtins().iter().zip(PORTRAITS.iter()).collect();
@@ -78,7 +78,7 @@ fn move_focus(ui: &Ui, cards: &[egui::Response], at: usize, columns: usize) {
 }
 
 fn card(ui: &mut Ui, p: &Palette, machine: &Machine, portrait: &Portrait, present: bool) -> egui::Response {
-    let (rect, response) = ui.allocate_exact_size(CARD, Sense::click());
+    let (rect, response) = ui.allocate_exact_size(CARD_SIZE, Sense::click());
     let drives = format!("{} {}", machine.drives(), if machine.drives() == 1 { "drive" } else { "drives" });
     let summary = &machine.spec().summary;
     let words = format!("{}, {drives}{}. {summary}", machine.name(), if present { ", on display" } else { "" });
@@ -95,9 +95,9 @@ fn card(ui: &mut Ui, p: &Palette, machine: &Machine, portrait: &Portrait, presen
     let painter = ui.painter();
     painter.rect(rect, 8.0, colour(p.background), edge, egui::StrokeKind::Inside);
     let inner = rect.shrink(MARGIN);
-    let picture = egui::Rect::from_min_size(inner.min, vec2(inner.width(), PICTURE - MARGIN));
+    let picture = egui::Rect::from_min_size(inner.min, vec2(inner.width(), PICTURE_HEIGHT - MARGIN));
     portrait.paint(painter, picture.shrink2(vec2(8.0, 4.0)), p);
-    let line = inner.top() + PICTURE;
+    let line = inner.top() + PICTURE_HEIGHT;
     let at = |x| egui::pos2(x, line);
     let title = if present { colour(p.amber) } else { colour(p.ink) };
     painter.text(at(inner.left()), Align2::LEFT_TOP, machine.name(), bold(13.5), title);

@@ -3,14 +3,14 @@
 use stillbase_picture::scene::options::Handle;
 use stillbase_picture::scene::pick::Pick;
 
-/// What is under the pointer or has the keyboard focus.
+/// Objects under the pointer or with the keyboard focus.
 #[derive(Clone, Debug, Default)]
 pub struct HoverTarget {
     /// Object of the scene under the pointer.
     pub object: Option<Handle>,
     /// Object whose rows in the panel are under the pointer.
     pub panel_object: Option<Handle>,
-    /// Links that contribute to the term under the pointer.
+    /// Indices of the links that contribute to the term under the pointer.
     pub lit_links: Vec<usize>,
     /// b under the pointer in the chart *Which b?*, rad.
     pub preview: Option<f64>,
@@ -19,21 +19,22 @@ pub struct HoverTarget {
 /// A drag, from the press of the button to its release.
 #[derive(Clone, Debug, Default)]
 pub struct DragGesture {
-    /// Object under the pointer at the press of the button: it may have moved before the drag is noticed.
+    /// Object under the pointer when the button was pressed; either may have moved before the drag is recognised.
     pub pressed: Option<Pick>,
     /// The dragged object.
     pub grabbed: Option<Pick>,
     /// Last position of the pointer in this drag, points of the screen.
     pub last_pointer: egui::Vec2,
-    /// Offset of the dragged object behind the pointer since Shift was held, points of the screen.
+    /// Displacement from the dragged position to the pointer, which grows while Shift slows the drag, points of the
+    /// screen.
     pub pointer_offset: egui::Vec2,
-    /// Position to which the pointer drags the target or a point, m.
+    /// Position to which the pointer drags the target or a point of the path, m.
     pub position: Option<[f64; 2]>,
     /// The force at the end effector before the push, N.
     pub force: [f64; 2],
-    /// The drag has changed something.
+    /// Whether the drag has changed something.
     pub dragged: bool,
-    /// Number of undo entries at its start.
+    /// Number of undo entries at the start of the drag.
     pub undo_entries: usize,
 }
 
@@ -43,7 +44,7 @@ pub enum Tool {
     /// Drags objects.
     #[default]
     Hold,
-    /// Draws a path; holds the points drawn so far, m.
+    /// Draws a path; contains the points drawn so far, m.
     Draw(Vec<[f64; 2]>),
     /// Pushes the end effector.
     Push,

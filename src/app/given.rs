@@ -174,7 +174,7 @@ fn switch(ui: &mut Ui, label: &str, tip: &str, now: bool, to: impl FnOnce(bool))
     }
 }
 
-/// Draws an optional number: the program chooses it unless it is ticked.
+/// Draws a number with a check box; while the box is not ticked, the program chooses the number.
 fn optional(ui: &mut Ui, p: &Palette, row: &NumberRow<'_>, now: Option<f64>, usual: f64, to: impl FnOnce(Option<f64>)) {
     let (mut is_set, mut value) = (now.is_some(), now.unwrap_or(usual));
     let mut changed = false;

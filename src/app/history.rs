@@ -15,7 +15,7 @@ const MAX_HEIGHT_PT: f32 = 380.0;
 /// Height of a branch in its list, points.
 const BRANCH_HEIGHT_PT: f32 = 38.0;
 
-/// Draws its button, and the list while it is open.
+/// Draws the button of the list, and the list while it is open.
 pub fn show(
     ui: &mut Ui,
     session: &Session,
@@ -83,8 +83,8 @@ fn list(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
     }
 }
 
-/// Draws each branch with its first edit, the newest on top. A click shows the branch; the run on display becomes a
-/// branch.
+/// Draws each branch, titled by its first gesture that the run on display lacks; the newest branch is on top. A click
+/// shows the branch; the run on display becomes a branch.
 fn list_branches(ui: &mut Ui, branches: &[Fork], p: &Palette, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing = vec2(2.0, 1.0);
     for (i, branch) in branches.iter().enumerate().rev() {
@@ -117,7 +117,7 @@ fn list_branches(ui: &mut Ui, branches: &[Fork], p: &Palette, commands: &mut Vec
     }
 }
 
-/// Key of the entry to which the list was scrolled last.
+/// Identifier under which egui stores the index of the entry to which the list was scrolled last.
 fn seen_id() -> egui::Id {
     egui::Id::unique("history seen")
 }

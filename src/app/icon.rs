@@ -58,7 +58,7 @@ const HALF_SIZE_PT: f32 = 8.0;
 impl Icon {
     /// Draws it with its centre at a position.
     pub fn draw(self, painter: &Painter, at: Pos2, ink: Color32) {
-        // On whole pixels, so that vertical and horizontal lines are sharp.
+        // The centre is rounded to whole pixels, so that vertical and horizontal lines are sharp.
         let scale = painter.ctx().pixels_per_point();
         let at = (at * scale).round() / scale;
         let pen = Pen { painter, at, stroke: Stroke::new(1.5, ink) };
@@ -159,7 +159,7 @@ impl Icon {
     }
 }
 
-/// A painter with an origin; y points down.
+/// A painter of strokes relative to an origin, in points; y points down.
 struct Pen<'a> {
     painter: &'a Painter,
     at: Pos2,
@@ -217,7 +217,7 @@ fn sampled(point: impl Fn(f32) -> [f32; 2]) -> Vec<[f32; 2]> {
     (0..=32).map(|i| point(i as f32 / 32.0)).collect()
 }
 
-/// Returns a point on a circle at an angle, turns, clockwise from the right.
+/// Returns a point on a circle at an angle given in turns, clockwise from the right.
 fn on_circle([x, y]: [f32; 2], radius: f32, turns: f32) -> [f32; 2] {
     [x + radius * (TAU * turns).cos(), y + radius * (TAU * turns).sin()]
 }
@@ -252,7 +252,7 @@ impl<'a> IconButton<'a> {
         self.show_in(ui, p, colour(ink))
     }
 
-    /// Draws it in another colour.
+    /// Draws it in a given colour.
     pub fn show_in(&self, ui: &mut Ui, p: &Palette, ink: Color32) -> Response {
         let sense = if self.enabled { Sense::click() } else { Sense::hover() };
         let (rect, response) = ui.allocate_exact_size(self.size, sense);
@@ -282,7 +282,7 @@ fn accessible_info(label: &str, enabled: bool, on: Option<bool>) -> WidgetInfo {
     }
 }
 
-/// Draws the background of a button: whether it is on, under the pointer, or has the focus.
+/// Draws the background of a button, which shows whether the button is on, under the pointer, or focused.
 fn background(ui: &Ui, p: &Palette, response: &Response, on: bool) {
     let rect = response.rect;
     if on || response.hovered() {
@@ -297,7 +297,7 @@ fn background(ui: &Ui, p: &Palette, response: &Response, on: bool) {
     }
 }
 
-/// Draws a disabled button with a short word; its tooltip says why.
+/// Draws a disabled button with a short word; its tooltip says why it is disabled.
 pub fn word_without(ui: &mut Ui, p: &Palette, word: &str, tip: &str, size: Vec2) -> Response {
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, word, bold(11.0), colour(faded(p.dim, 0.45)));
@@ -310,7 +310,7 @@ pub fn dot(ui: &Ui, p: &Palette, line: &Response) {
     ui.painter().circle_filled(line.rect.left_center() + vec2(12.0, 0.0), 3.5, colour(p.amber));
 }
 
-/// Height of a rule with the space about it, points.
+/// Height of a rule with the space around it, points.
 pub const SEPARATOR_HEIGHT: f32 = 11.0;
 
 /// Draws a thin line between groups.

@@ -1,5 +1,5 @@
-//! The introduction: the same task along a straight line and reactionless, side by side in a loop until the user
-//! touches the machine. Hints follow one after the other, each shown until it has been done.
+//! The introduction: one task along a straight line and along a reactionless path. Both runs loop side by side until
+//! the user touches the machine. Hints appear one after the other, each until the user has followed it.
 
 use std::sync::Arc;
 
@@ -30,7 +30,7 @@ pub struct Intro {
     hint: usize,
     /// b at the start of the present hint, rad.
     b: f64,
-    /// Time for which the run has rested at its end, s, and number of restarts.
+    /// Wall time for which the run has rested at its end, s, and number of restarts.
     rested: f64,
     rounds: u32,
 }
@@ -44,10 +44,11 @@ struct Straight {
 /// Number of hints.
 const HINT_COUNT: usize = 3;
 
-/// Returns text and reason of a hint for a machine; `None` if there is nothing to drag or to turn, or no such hint.
+/// Returns the text and the explanation of a hint; `None` if the machine cannot be dragged, or if there is no such
+/// hint.
 fn hint(i: usize, session: &Session) -> Option<(String, String)> {
     let map = session.run().pose_space().ok().filter(|_| session.can_be_dragged())?;
-    // The amber set: two drives reach a curve, more drives an area.
+    // The amber set of reachable points is a curve for two drives, and an area for more drives.
     let (on, off, amber) = if map.reaches_area() { ("inside", "out of", "area") } else { ("on", "off", "curve") };
     let (title, why) = match i {
         0 => (
@@ -67,10 +68,10 @@ fn hint(i: usize, session: &Session) -> Option<(String, String)> {
     Some((title, why))
 }
 
-/// Rest of the run at its end before it starts over, s, and maximum number of restarts.
+/// Rest of the run at its end before it starts over, wall time, s, and maximum number of restarts.
 const REST_AT_END_S: f64 = 1.2;
 const MAX_RESTARTS: u32 = 20;
-/// Rotation of the drawn base under a moment, rad/(N m): a soft mount, so that it can be seen.
+/// Compliance of the drawn mount of the base, rad/(N m); it is soft, so that the rotation can be seen.
 const MOUNT_COMPLIANCE: f64 = 0.03;
 /// Minimum width of two scenes side by side, points.
 const MIN_WIDTH_OF_BOTH_PT: f32 = 680.0;
@@ -79,7 +80,7 @@ impl Intro {
     /// Creates the introduction for a session on the built-in reactionless case.
     ///
     /// # Errors
-    /// If the straight line cannot be run.
+    /// If the run along the straight line cannot be made.
     pub fn beside(session: &Session) -> Result<Self, Refusal> {
         let straight = match Scenario::builtin("case-1") {
             Some(case) => {
@@ -109,12 +110,12 @@ impl Intro {
         self.straight.as_ref().map(|straight| &straight.run)
     }
 
-    /// Whether the demonstration goes on: the machine has not been touched yet.
+    /// Whether the demonstration still runs, because the user has not touched the machine yet.
     pub fn demonstrates(&self) -> bool {
         self.straight.is_some()
     }
 
-    /// Advances the rest at the end by wall time, s; returns whether the run is to start over.
+    /// Adds wall time, s, to the rest at the end of the run; returns whether the run must start over.
     pub fn rests(&mut self, session: &Session, wall: f64) -> bool {
         let waits = self.straight.is_some()
             && session.is_playing()
@@ -129,12 +130,13 @@ impl Intro {
         over
     }
 
-    /// Whether it rests at the end of the run before it starts over.
+    /// Whether the run rests at its end before it starts over.
     pub fn is_resting(&self) -> bool {
         self.rested > 0.0
     }
 
-    /// Takes note of a command that was carried out; `held` says whether a drag is under way.
+    /// Observes a command that was carried out: it may end the demonstration or complete the hint. `held` is `true`
+    /// during a drag.
     pub fn sees(&mut self, command: &Command, session: &Session, held: bool) {
         let touches = match command {
             Command::Session(
@@ -174,7 +176,7 @@ impl Intro {
         }
     }
 
-    /// Whether the machine was touched and all hints were followed.
+    /// Whether the user has touched the machine and followed all hints.
     pub fn is_over(&self) -> bool {
         self.straight.is_none() && self.hint >= HINT_COUNT
     }
@@ -200,7 +202,7 @@ impl Intro {
         ui.painter().vline(rect.right(), rect.y_range(), egui::Stroke::new(1.0, colour(p.line)));
     }
 
-    /// Draws the caption of the right half.
+    /// Draws the caption of the reactionless run, on the right.
     pub fn caption(&self, ui: &Ui, rect: egui::Rect, now: &Instant, view_state: &ViewState) {
         let p = view_state.palette();
         let words = "From A to B on one plane of joint space. The base feels nothing.";
@@ -221,7 +223,7 @@ impl Intro {
         &self,
         ctx: &egui::Context,
         rect: egui::Rect,
-        spoken_of: &[egui::Rect],
+        mentioned: &[egui::Rect],
         session: &Session,
         view_state: &ViewState,
         commands: &mut Vec<Command>,
@@ -231,11 +233,11 @@ impl Intro {
         let width = 390.0_f32.min(rect.width() - 32.0);
         let id = Id::unique("hint");
         let size = ctx.memory(|m| m.area_rect(id)).map_or(vec2(width, 100.0), |last| last.size());
-        let stands = Id::unique("corner of the hint");
+        let corner_id = Id::unique("corner of the hint");
         // During a drag the hint stays in its corner.
-        let corner = view_state.gesture.grabbed.and_then(|_| ctx.data(|d| d.get_temp::<Corner>(stands)));
-        let corner = corner.unwrap_or_else(|| Corner::freest(rect, size, spoken_of));
-        ctx.data_mut(|d| d.insert_temp(stands, corner));
+        let corner = view_state.gesture.grabbed.and_then(|_| ctx.data(|d| d.get_temp::<Corner>(corner_id)));
+        let corner = corner.unwrap_or_else(|| Corner::freest(rect, size, mentioned));
+        ctx.data_mut(|d| d.insert_temp(corner_id, corner));
         let area = Area::new(id).pivot(Align2::LEFT_TOP);
         area.fixed_pos(corner.place(rect, size).min).show(ctx, |ui| {
             card(&p).show(ui, |ui| {
@@ -272,7 +274,7 @@ impl Corner {
 
     /// Returns the rectangle of a card of this size.
     fn place(self, rect: egui::Rect, size: egui::Vec2) -> egui::Rect {
-        // The numbers of the scene are above, its scale below.
+        // The card stays clear of the scene's numbers at the top and of its scale at the bottom.
         let (x, [top, bottom]) = ([16.0, rect.width() - 16.0 - size.x], [64.0, rect.height() - 40.0 - size.y]);
         let [x, y] = match self {
             Self::RightBottom => [x[1], bottom],
@@ -283,11 +285,11 @@ impl Corner {
         egui::Rect::from_min_size(rect.min + vec2(x, y), size)
     }
 
-    /// Returns the corner whose card covers the least area of these rectangles, the first of equals.
-    fn freest(rect: egui::Rect, size: egui::Vec2, spoken_of: &[egui::Rect]) -> Self {
+    /// Returns the corner whose card covers the least area of these rectangles; of equal corners, the first.
+    fn freest(rect: egui::Rect, size: egui::Vec2, mentioned: &[egui::Rect]) -> Self {
         let covered = |corner: &Self| {
             let card = corner.place(rect, size).expand(6.0);
-            let common = spoken_of.iter().map(|part| card.intersect(*part)).filter(|part| part.is_positive());
+            let common = mentioned.iter().map(|part| card.intersect(*part)).filter(|part| part.is_positive());
             common.map(|part| part.area()).sum::<f32>()
         };
         Self::ALL.into_iter().min_by(|a, b| covered(a).total_cmp(&covered(b))).unwrap_or(Self::RightBottom)
@@ -302,7 +304,7 @@ fn dots(ui: &mut Ui, p: &Palette, present: usize) {
     }
 }
 
-/// Draws a title over a scene, and the moment on its base below.
+/// Draws a title over a scene; below it, a text and the moment on the base, N m.
 fn caption(ui: &Ui, rect: egui::Rect, p: &Palette, title: &str, about: &str, moment: f64, tone: Rgba) {
     let painter = ui.painter().with_clip_rect(rect);
     let left = rect.left() + 22.0;

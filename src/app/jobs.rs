@@ -7,7 +7,8 @@ use std::time::Duration;
 use self::priority::{step_back, thread};
 use stillbase_query::{Work, Workers};
 
-/// Each running job has a thread of its own; if no thread can be started, it runs on the calling thread.
+/// Worker threads of one priority. Each running job has its own thread; if none can be started, the job runs on the
+/// calling thread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Threads {
     /// The job runs with lower priority than the window.
@@ -17,7 +18,7 @@ pub enum Threads {
     Prompt,
 }
 
-/// Maximum time for which the window waits for short work: repaints at 60 Hz stay possible.
+/// Maximum time for which the window waits for short work; it leaves enough time for repaints at 60 Hz.
 const SHORT_WORK_WAIT: Duration = Duration::from_millis(4);
 
 impl Workers for Threads {
@@ -32,7 +33,7 @@ impl Workers for Threads {
     fn start_short(&self, work: Work) {
         let (report, ended) = channel();
         let work = Box::new(move || {
-            // The receiver may be gone.
+            // Sending fails if the receiver has stopped waiting.
             let _ = report.send(thread());
             work();
             let _ = report.send(None);
@@ -45,23 +46,23 @@ impl Workers for Threads {
     }
 }
 
-/// Passes the work to `way` on a new thread; if no thread can be started, runs it on the calling thread.
-fn on_thread(work: Work, way: impl FnOnce(Work) + Send + 'static) {
+/// Passes the work to `run` on a new thread; if no thread can be started, runs the work on the calling thread.
+fn on_thread(work: Work, run: impl FnOnce(Work) + Send + 'static) {
     // A thread that cannot start drops its closure; the work is sent separately, so that it is not lost.
-    let (hand, take) = channel::<Work>();
+    let (sender, receiver) = channel::<Work>();
     let thread = std::thread::Builder::new().name("job".into()).spawn(move || {
-        if let Ok(work) = take.recv() {
-            way(work);
+        if let Ok(work) = receiver.recv() {
+            run(work);
         }
     });
     match thread {
-        Ok(_) => drop(hand.send(work)),
+        Ok(_) => drop(sender.send(work)),
         Err(_) => work(),
     }
 }
 
-/// Threads of lower priority. They are reused, because a new thread starts with the priority of the window. It would
-/// delay the window until its priority is lowered.
+/// Threads of lower priority. They are reused, because a new thread starts with the priority of the window. It delays
+/// the window until its priority has been lowered.
 static BACKGROUND_POOL: Pool = Pool { idle: Mutex::new(Vec::new()) };
 
 /// Idle threads, the most recently used last.
@@ -82,14 +83,14 @@ impl Pool {
         }
     }
 
-    /// Runs this work and all that follows. A panic ends this thread only.
+    /// Runs this work, then all work that the pool passes to this thread. A panic ends only this thread.
     fn run(&self, mut work: Work) {
         step_back(None);
         loop {
             work();
-            let (hand, take) = channel();
-            self.idle().push(hand);
-            match take.recv() {
+            let (sender, receiver) = channel();
+            self.idle().push(sender);
+            match receiver.recv() {
                 Ok(next) => work = next,
                 Err(_) => return,
             }
@@ -117,7 +118,7 @@ mod priority {
     }
 }
 
-/// Elsewhere a lower priority would apply to the whole program.
+/// Elsewhere, priorities stay unchanged, because a lower priority would apply to the whole program.
 #[cfg(not(all(target_os = "linux", feature = "window")))]
 mod priority {
     pub type Thread = ();

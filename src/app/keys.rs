@@ -1,4 +1,4 @@
-//! The keyboard, and the card that shows it.
+//! The keyboard, and the card that lists keys and gestures.
 
 use egui::{Context, Grid, Key, KeyboardShortcut, Modifiers, RichText, ScrollArea, TextEdit, Ui};
 
@@ -9,41 +9,42 @@ use super::{Command, Layout, OpenDialogs, SessionCommand, Switch, Tool, ViewChan
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Session;
 
-/// Turns keys into commands. In a text field, only keys that the field does not use count: shortcuts with Ctrl that a
-/// field does not know, and F1.
+/// Turns pressed keys into commands. While a text field has the focus, only keys that it does not use count: Ctrl S,
+/// Ctrl O, Ctrl K and F1.
 pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let typing =
         ctx.egui_wants_keyboard_input() || view_state.open.dialog.is_some() || view_state.open.finder.is_some();
-    let taken = |key: &KeyboardShortcut| ctx.input_mut(|i| i.consume_shortcut(key));
-    // During a drag or with a list open, Esc ends only that.
+    let pressed = |key: &KeyboardShortcut| ctx.input_mut(|i| i.consume_shortcut(key));
+    // During a drag or with a list open, Esc only ends the drag or closes the list.
     let busy = view_state.gesture.grabbed.is_some()
         || view_state.open.history
         || view_state.open.naming.is_some()
         || ctx.input(|i| i.pointer.any_down())
         || (view_state.open.finder.is_none() && egui::Popup::is_any_open(ctx))
         || super::plots::is_looking(ctx);
-    if !busy && taken(&KeyboardShortcut::new(Modifiers::NONE, Key::Escape)) {
+    if !busy && pressed(&KeyboardShortcut::new(Modifiers::NONE, Key::Escape)) {
         commands.push(escape(view_state));
     }
     let allowed = |key: &KeyboardShortcut| !typing || works_while_typing(key);
-    // Keys with Shift or Alt come first: a shortcut without them would match as well.
+    // Shortcuts with Shift or Alt come first, because a shortcut without them would match the same key.
     let mut all: Vec<(&Action, &KeyboardShortcut)> = ACTIONS
         .iter()
         .chain(FINE_ACTIONS)
         .flat_map(|action| action.keys.iter().map(move |key| (action, key)))
         .collect();
     all.sort_by_key(|(_, key)| !(key.modifiers.shift || key.modifiers.alt));
-    // A key that opens a text field takes the rest of a slow pass: what is typed after it is no shortcut.
-    if let Some((action, _)) = all.iter().find(|(_, key)| asks_for_text(key) && taken(key)) {
+    // After a key that opens a text field, no other key of this pass is a shortcut, since the user may already type
+    // text.
+    if let Some((action, _)) = all.iter().find(|(_, key)| asks_for_text(key) && pressed(key)) {
         commands.extend(action.command(session, view_state));
         return;
     }
     for (action, key) in all.into_iter().filter(|(_, key)| allowed(key)) {
-        if taken(key) {
+        if pressed(key) {
             commands.extend(action.command(session, view_state));
         }
     }
-    // The changes of a held key are one undo entry.
+    // While one of these keys is held, its changes form one undo entry.
     let moves = [Key::ArrowLeft, Key::ArrowRight, Key::ArrowUp, Key::ArrowDown, Key::OpenBracket, Key::CloseBracket];
     if !typing && view_state.gesture.grabbed.is_none() && ctx.input(|i| moves.iter().any(|key| i.key_released(*key))) {
         commands.push(SessionCommand::EndGesture.into());
@@ -131,15 +132,15 @@ pub fn help(ctx: &Context, view_state: &ViewState, commands: &mut Vec<Command>) 
 
 type Lines = Vec<(String, &'static str)>;
 
-/// Returns the titles of the card, with the keys below each title and their effects; filtered by the search text.
+/// Returns the groups of lines that match the search text: the title of each group, then keys and their effects.
 fn sheet(sought: &str) -> Vec<(&'static str, Lines)> {
-    let answers = |keys: &str, does: &str| search::score(sought, &format!("{does} {keys}")).is_some();
+    let matches = |keys: &str, does: &str| search::score(sought, &format!("{does} {keys}")).is_some();
     let of = |group: ActionGroup| -> Lines {
         let keyed = ACTIONS.iter().filter(|action| action.group == group && !action.keys.is_empty());
         let lines = keyed.map(|action| (all_keys(action), action.name));
-        lines.filter(|(keys, does)| answers(keys, does)).collect()
+        lines.filter(|(keys, does)| matches(keys, does)).collect()
     };
-    let pointer = GESTURES.iter().filter(|(keys, does)| answers(keys, does));
+    let pointer = GESTURES.iter().filter(|(keys, does)| matches(keys, does));
     let pointer = ("Pointer", pointer.map(|(keys, does)| ((*keys).to_owned(), *does)).collect::<Lines>());
     let all = ActionGroup::ALL.into_iter().map(|group| (group.title(), of(group))).chain([pointer]);
     all.filter(|(_, lines)| !lines.is_empty()).collect()

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use stillbase_picture::scene::palette::Theme;
 
-/// A layout of the window, for a purpose.
+/// A layout of the window that serves one purpose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Layout {
@@ -21,7 +21,7 @@ impl Layout {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Explore, Self::Compare, Self::Present];
 
-    /// Its name.
+    /// Returns its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Explore => "Explore",
@@ -30,7 +30,7 @@ impl Layout {
         }
     }
 
-    /// Its content in words.
+    /// Returns its content in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Explore => "settings, scene and plots",
@@ -55,7 +55,8 @@ impl Panel {
         Self { shown, width: None }
     }
 
-    /// Returns the width set by the user, from the present and the default width, points.
+    /// Returns the width to store, points: the present width `now`, if the user set one earlier or if it differs from
+    /// the default `usual`.
     pub(super) fn made(&self, now: f32, usual: f32) -> Option<f32> {
         if self.width.is_some() || (now - usual).abs() > 1.0 { Some(now) } else { None }
     }
@@ -78,7 +79,7 @@ impl Panels {
     }
 }
 
-/// Content of the panel below the scene: there is room for one.
+/// Content of the panel below the scene; there is room for only one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BottomPanel {
     /// The table of runs side by side.
@@ -121,7 +122,7 @@ impl WindowArrangement {
         &mut self.panels[self.layout as usize]
     }
 
-    /// Chooses a layout. `Present`, and the layout already chosen, return to their default panels.
+    /// Chooses a layout. Choosing `Present`, or the present layout again, restores its default panels.
     pub(super) fn lay_out(&mut self, layout: Layout) {
         if layout == self.layout || layout == Layout::Present {
             self.panels[layout as usize] = Panels::usual(layout);

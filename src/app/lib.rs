@@ -2,8 +2,8 @@
 //!
 //! This crate serves the workspace alone, and may change in any version.
 //!
-//! The panels read a [`Session`](stillbase_session::Session) and return [`Command`]s. The [`AppState`] carries them out at
-//! the end of the pass. Nothing is computed here.
+//! The panels read a [`Session`](stillbase_session::Session) and return [`Command`]s, which the [`AppState`] carries
+//! out at the end of the pass. Nothing is computed here.
 
 pub mod actions;
 mod activity;

@@ -58,10 +58,10 @@ const MAX_LINES: usize = 6;
 /// Number of frames read in one repaint, which takes a few milliseconds.
 const FRAMES_PER_REPAINT: usize = 20_000;
 
-/// Query for all marks, by time; of marks at one instant, the most important first.
+/// Query for all marks, sorted by time; of marks at one instant, the most important first.
 pub(super) struct MarksByTime;
 
-/// The input of the marks.
+/// Input of the query for marks.
 #[derive(Clone, PartialEq)]
 pub(super) struct MarksInput {
     /// Time step, s.
@@ -122,7 +122,7 @@ impl QuickQuery for Grouping {
     }
 }
 
-/// Returns the marks on a time line of this length, s: a bookmark may lie beyond it.
+/// Returns the marks on a time line of this length, s, without bookmarks beyond its end.
 fn within(marks: &[TimelineMark], length: f64) -> &[TimelineMark] {
     &marks[..marks.partition_point(|mark| mark.time <= length + 1e-9)]
 }
@@ -159,12 +159,13 @@ impl Marks {
     }
 }
 
-/// Returns the time, s, of the next mark after the instant on display if `on`, otherwise of the last mark before it.
-pub(super) fn beside(queries: &Queries, session: &Session, on: bool) -> Option<f64> {
+/// Returns the time, s, of the next mark after the instant on display if `forward`, otherwise of the last mark before
+/// it.
+pub(super) fn beside(queries: &Queries, session: &Session, forward: bool) -> Option<f64> {
     let (time, step) = (session.frame().time, session.scenario().step);
     let marks = queries.last::<QuickWork<MarksByTime>>()?;
     let mut times = within(&marks, session.length()).iter().map(|mark| mark.time);
-    match on {
+    match forward {
         true => times.find(|mark| *mark > time + 0.5 * step),
         false => times.rfind(|mark| *mark < time - 0.5 * step),
     }
@@ -184,7 +185,7 @@ fn worst(title: &str, run: &ComparedRun) -> Option<TimelineMark> {
     Some(TimelineMark { time: first.time, words, tone: Tone::Peak })
 }
 
-/// Groups marks, sorted by time, so that drawn marks are at least `min_separation` apart, s.
+/// Groups marks, which are sorted by time, so that the drawn marks are at least `min_separation`, s, apart.
 fn grouped(marks: &[TimelineMark], min_separation: f64) -> Vec<MarkGroup> {
     // First index and most important mark of each group, the earliest of equal ones. The group is drawn at this mark.
     let mut groups: Vec<(usize, &TimelineMark)> = Vec::new();

@@ -12,7 +12,7 @@ pub struct Finder {
     pub chosen: usize,
 }
 
-/// Which cards, lists and dialogs are open.
+/// The cards, lists and dialogs that are open.
 #[derive(Clone, Debug, Default)]
 pub struct OpenDialogs {
     /// The card of keys.

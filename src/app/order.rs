@@ -1,12 +1,12 @@
 //! Pointer events in the order in which they happened.
 //!
-//! egui reads the pointer once a frame, at its last position. On a slow or remote display one frame may contain a
-//! press, a drag, a release and later movements. A widget would then be released at the present position, not at that
-//! of the release. So a frame gets at most one change of a button, and no event after it.
+//! egui reads the pointer once for each frame, at its last position. On a slow or remote display one frame may
+//! contain a press, a drag, a release and later movements. A widget would then be released at the present position,
+//! not at that of the release. So each frame gets at most one press or release, and no event after it.
 
 use egui::{Context, Event, Plugin, RawInput, Ui};
 
-/// Plugin that holds back the events after a press or a release, for the next frame.
+/// Plugin that keeps the events after a press or a release for the next frame.
 #[derive(Debug, Default)]
 pub struct EventQueue {
     waiting: Vec<Event>,
@@ -29,9 +29,9 @@ impl Plugin for EventQueue {
     }
 }
 
-/// Removes and returns the first events: up to and with the first press, or up to but without the first release. A
-/// release without movement before it is passed with the events before it. Keys before a press are passed without it:
-/// an Esc that closed something must not cancel the drag after it.
+/// Removes and returns the events of this frame: those up to the first press or release, which is included except in
+/// two cases. A press waits if a key comes before it: an Esc that closes something must not cancel the drag after it.
+/// A release waits if a movement comes before it.
 fn first_part(events: &mut Vec<Event>) -> Vec<Event> {
     let pressed_in = |event: &Event| match event {
         Event::PointerButton { pressed, .. } => Some(*pressed),
@@ -41,7 +41,7 @@ fn first_part(events: &mut Vec<Event>) -> Vec<Event> {
         None => events.len(),
         Some((at, true)) if events[..at].iter().any(|event| matches!(event, Event::Key { .. })) => at,
         Some((at, true)) => at + 1,
-        // A drag has to be noticed before it ends.
+        // egui must notice a drag before it ends.
         Some((at, false)) if events[..at].iter().any(|event| matches!(event, Event::PointerMoved(_))) => at,
         Some((at, false)) => at + 1,
     };

@@ -1,5 +1,5 @@
-//! [`PlaybackRate`]: playback rate: whether it lags behind the requested rate, and how many steps a repaint may take so
-//! that the picture stays smooth.
+//! [`PlaybackRate`] measures whether playback lags behind the requested rate. It limits the number of steps in a
+//! repaint, so that the picture stays smooth.
 
 /// Measured playback rate and cost of a step.
 #[derive(Clone, Copy, Debug, Default)]
@@ -8,7 +8,7 @@ pub(super) struct PlaybackRate {
     rate: Option<f64>,
     /// Wall time in the average, s.
     counted_s: f64,
-    /// Whether playback counts as lagging.
+    /// Whether playback lags behind the requested rate.
     lags: bool,
     /// Wall time of a step, s; `None` until it has been measured.
     step_cost_s: Option<f64>,
@@ -20,8 +20,8 @@ pub(super) struct PlaybackRate {
 const AVERAGING_TIME_S: f64 = 0.5;
 /// Longer gaps between repaints, s, mean that the program was suspended, not that it is slow.
 const MAX_REPAINT_GAP_S: f64 = 2.0;
-/// Playback counts as lagging below this fraction of the requested rate, until it is back above the second
-/// (hysteresis).
+/// Hysteresis: playback lags once its rate is below the first fraction of the requested rate, until it reaches the
+/// second.
 const LAG_BELOW: f64 = 0.9;
 const LAG_ENDS_AT: f64 = 0.97;
 /// Wall time that the steps of one repaint may take, s.
@@ -29,7 +29,7 @@ const STEP_BUDGET_S: f64 = 0.012;
 /// Maximum number of steps in a repaint, while the cost of a step is unknown, and in any case.
 const MAX_STEPS_UNMEASURED: f64 = 2000.0;
 const MAX_STEPS: f64 = 20_000.0;
-/// Longer measured times of a repaint are limited to this, s.
+/// Upper bound of the measured wall time that the steps of a repaint take, s.
 const MAX_MEASURED_S: f64 = 0.2;
 /// Weight of the newest measurement in the cost of a step.
 const NEWEST_WEIGHT: f64 = 0.3;
@@ -62,7 +62,7 @@ impl PlaybackRate {
     /// Records the wall time that the steps of the last repaint took, s.
     pub fn record_cost(&mut self, seconds: f64) {
         if self.steps >= 1.0 {
-            // A suspension of the program says nothing about its steps.
+            // The bound limits the influence of a suspension of the program on the cost of a step.
             let now = seconds.min(MAX_MEASURED_S) / self.steps;
             self.step_cost_s = Some(self.step_cost_s.map_or(now, |cost| cost + NEWEST_WEIGHT * (now - cost)));
         }

@@ -38,7 +38,7 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     time(ui, session, p, commands);
     points(ui, session, task, p, commands);
     corners(ui, task, p, commands);
-    off_plane(ui, session, task, p, commands);
+    kind_settings(ui, session, task, p, commands);
     costs(ui, session, p);
 }
 
@@ -58,12 +58,12 @@ fn choose<T: Choice>(
             if ui.selectable_label(*choice == now, screen).on_hover_text(meaning).clicked() && *choice != now {
                 let mut change = TaskChange::from_iter([(key.to_owned(), Value::String(word.into()))]);
                 if word == "arc" && session.scenario().task.via.is_empty() {
-                    // The arc passes through the middle of the present path.
+                    // The via point of the new arc is the middle of the present path.
                     let p = session.run().end_effector_on_path(0.5);
                     change.insert("via".into(), vec![vec![p.re, p.im]].into());
                 }
                 if key == "kind" {
-                    // Keys that only the other kind has.
+                    // Keys that the new kind may lack return to their defaults.
                     change.extend(["b_to", "moment_limit"].map(|key| (key.into(), "default".into())));
                     let takes = ["given", "reactionless", "minimum-norm"].contains(&word);
                     if session.scenario().task.samples.as_ref().is_some_and(|s| s.columns() != 2 || !takes) {
@@ -80,7 +80,7 @@ fn choose<T: Choice>(
     name(&response.response.on_hover_text(now.words().meaning), label);
 }
 
-/// Sets one key of the task, as an undo entry of its own.
+/// Sets one key of the task, and ends the gesture, so that the edit is a separate undo entry.
 fn set(commands: &mut Vec<Command>, key: &str, value: impl Into<Value>) {
     commands.extend([
         Command::Session(SessionCommand::Edit(Edit::at(&["task", key], value))),
@@ -175,7 +175,7 @@ fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &m
     if response.clicked() {
         let last = all.len() - 1;
         let middle = 0.5 * (all[last - 1] + all[last]);
-        // The new point lies on the path if possible, so that the machine can reach it.
+        // Between A and B alone, the new point lies on the path, so that the machine can reach it.
         let at = if all.len() == 2 { session.run().end_effector_on_path(0.5) } else { middle };
         change(commands, task.adding(at), false);
     }
@@ -221,8 +221,8 @@ fn corners(ui: &mut Ui, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
     }
 }
 
-/// Draws the settings of particular kinds of task.
-fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
+/// Draws the settings that only some kinds of task have.
+fn kind_settings(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
     let plan = session.run().plan();
     match task.kind {
         TaskKind::Reactionless | TaskKind::Given
@@ -305,7 +305,7 @@ fn off_plane(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands:
     }
 }
 
-/// Draws the forecast of the planned motion, always in two lines, so that nothing below moves.
+/// Draws a limit that the planned motion exceeds, then its forecast: always two lines, so that nothing below moves.
 fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
     let forecast = &session.run().plan().forecast;
     let torque = forecast.torque.max_abs();

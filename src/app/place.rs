@@ -14,7 +14,7 @@ const MARK_DURATION_S: f64 = 1.6;
 /// State shared by the rows of all objects in a pass.
 #[derive(Clone, Copy, Default)]
 struct Places {
-    /// The object whose rows are marked, and the end of the mark, s; `None` until they are drawn.
+    /// The object whose rows are marked, and the time at which the mark ends, s; no time until the rows are drawn.
     marked: Option<(Handle, Option<f64>)>,
     /// The object whose rows are under the pointer or have the keyboard focus.
     panel_object: Option<Handle>,
@@ -73,7 +73,8 @@ pub fn open(ctx: &Context, thing: Handle, session: &Session) {
     });
 }
 
-/// Takes the object whose rows are under the pointer or have the focus; to be called after all rows have been drawn.
+/// Removes and returns the object whose rows are under the pointer or have the focus; to be called after all rows
+/// have been drawn.
 pub fn lit(ctx: &Context) -> Option<Handle> {
     ctx.data_mut(|data| data.get_temp_mut_or_default::<Places>(id()).panel_object.take())
 }
@@ -88,7 +89,7 @@ pub fn highlight_links(ctx: &Context, links: Vec<usize>) {
     ctx.data_mut(|data| data.insert_temp(links_id(), links));
 }
 
-/// Takes the links that the panels mention; to be called after all panels have been drawn.
+/// Removes and returns the links that the panels mention; to be called after all panels have been drawn.
 pub fn lit_links(ctx: &Context) -> Vec<usize> {
     ctx.data_mut(|data| data.remove_temp::<Vec<usize>>(links_id())).unwrap_or_default()
 }
@@ -104,7 +105,7 @@ pub fn place_of_thing<R>(ui: &mut Ui, thing: Handle, p: &Palette, add: impl FnOn
     let shown = ui.scope(add);
     let rect = shown.response.rect;
     let focused = ui.memory(egui::Memory::focused).and_then(|id| ui.ctx().read_response(id));
-    // The limits of all joints share one set of rows.
+    // The limits of all joints share one set of rows, so these rows light up no joint.
     let alone = !matches!(thing, Handle::Joint(_));
     let over = ui.rect_contains_pointer(rect) || focused.is_some_and(|r| r.has_focus() && rect.contains_rect(r.rect));
     if alone && over {

@@ -25,19 +25,19 @@ pub struct Preferences {
     pub learns: bool,
     /// Whether *Explore* shows the panel of settings.
     pub side: bool,
-    /// Width of this panel if set by the user, logical points.
+    /// Width of the panel of settings in *Explore*, if set by the user, logical points.
     pub side_width: Option<f32>,
     /// Whether *Explore* shows the panel of plots.
     pub plots: bool,
-    /// Width of this panel if set by the user, logical points.
+    /// Width of the panel of plots in *Explore*, if set by the user, logical points.
     pub plots_width: Option<f32>,
     /// Whether *Compare* shows the panel of settings.
     pub compare_side: bool,
-    /// Width of this panel if set by the user, logical points.
+    /// Width of the panel of settings in *Compare*, if set by the user, logical points.
     pub compare_side_width: Option<f32>,
     /// Whether *Compare* shows the panel of plots.
     pub compare_plots: bool,
-    /// Width of this panel if set by the user, logical points.
+    /// Width of the panel of plots in *Compare*, if set by the user, logical points.
     pub compare_plots_width: Option<f32>,
     /// Recently opened and saved files, newest first.
     pub recent: Vec<PathBuf>,

@@ -16,7 +16,7 @@ fn size(rect: Rect) -> f32 {
     (0.075 * rect.height()).clamp(38.0, 110.0)
 }
 
-/// Returns the rectangle that it covers in a scene.
+/// Returns the rectangle of a scene that the results cover.
 pub fn covers(rect: Rect) -> Rect {
     Rect::from_min_size(rect.min, vec2(6.2 * size(rect), 3.6 * size(rect)))
 }

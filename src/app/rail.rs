@@ -1,5 +1,5 @@
-//! The tool bar on the left: views, tools of the pointer, layers of the scene, and analyses. It is beside the scene and
-//! covers nothing of it.
+//! The tool bar on the left: views, tools of the pointer, layers of the scene, and analyses. It stands beside the
+//! scene and covers no part of it.
 
 use egui::{Frame, Margin, Panel, ScrollArea, Ui, vec2};
 
@@ -10,9 +10,9 @@ use stillbase_picture::scene::palette::Palette;
 use stillbase_picture::scene::views::{ViewKind, Views};
 use stillbase_session::{Fork, Session};
 
-/// Width, points.
+/// Width of the tool bar, points.
 const WIDTH_PT: f32 = 50.0;
-/// Size of a button, and its minimum height, so that in a low window all stay visible, points.
+/// Size of a button, and the minimum height to which it shrinks in a low window, points.
 const BUTTON_SIZE_PT: egui::Vec2 = vec2(42.0, 30.0);
 const MIN_BUTTON_HEIGHT_PT: f32 = 24.0;
 /// Height of the button of a view, points.
@@ -75,7 +75,7 @@ pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &View
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 4, right: 4, top: 8, bottom: 6 });
     Panel::left("tools").exact_size(WIDTH_PT).resizable(false).frame(frame).show(ui, |ui| {
-        // In a low window it scrolls.
+        // In a low window the tool bar scrolls.
         let room = ui.available_height();
         let bars = egui::scroll_area::ScrollBarVisibility::AlwaysHidden;
         ScrollArea::vertical().auto_shrink(false).scroll_bar_visibility(bars).show(ui, |ui| {
@@ -111,11 +111,11 @@ pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &View
     });
 }
 
-/// Returns the height of a button, if all have this space, points.
+/// Returns the height of a button at which all buttons fit into the height `room`, if possible, points.
 fn height(room: f32) -> f32 {
     let words = ViewKind::ALL.len() as f32 * (VIEW_BUTTON_HEIGHT_PT + GAP_PT);
     let rules = 4.0 * (SEPARATOR_HEIGHT + GAP_PT);
-    // Including those of *show everything*, the arrangement and the history.
+    // The three other buttons are *show everything*, the arrangement and the history.
     let buttons = (POINTER_TOOLS.len() + LAYERS.len() + ANALYSES.len() + 3) as f32;
     ((room - words - rules) / buttons - GAP_PT).floor().clamp(MIN_BUTTON_HEIGHT_PT, BUTTON_SIZE_PT.y)
 }

@@ -1,5 +1,5 @@
-//! [`ResumePoint`]: the state of the display that no edit contains: the instant, and the user's plots. A journal keeps
-//! it in comments before the session, so that a crash loses neither.
+//! [`ResumePoint`]: the state of the display that no edit contains: the instant, and the user's plots. A journal
+//! contains this state in comments before the session, so that a crash does not lose it.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +22,7 @@ impl ResumePoint {
         heading::under(self, session)
     }
 
-    /// Reads the state from the comments before a session, as far as they are valid.
+    /// Reads the state from the comments before a session; `None` if they contain no valid state.
     pub fn of(text: &str) -> Option<Self> {
         heading::of(text).filter(|left: &Self| left.time.is_finite() && left.time >= 0.0)
     }

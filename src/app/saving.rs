@@ -1,4 +1,4 @@
-//! [`Saving`]: which changes of a session are saved, and the questions about those that are not.
+//! [`Saving`]: the saved and unsaved changes of a session, and the questions about unsaved ones.
 
 use std::path::{Path, PathBuf};
 
@@ -9,20 +9,20 @@ use super::{Command, FileDialog, FilePurpose, Recovery, SessionCommand, ViewChan
 use stillbase_picture::scene::palette::faded;
 use stillbase_session::Session;
 
-/// Which changes of a session are saved.
+/// Record of the saved and unsaved changes of a session, and of its files.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Saving {
     /// Number of changes of the session.
     pub changes: u64,
-    /// That number when the session was opened or saved last.
+    /// The value of `changes` when the session was opened or saved last.
     pub saved: u64,
-    /// The question before closing is open.
+    /// Whether the question before closing is open.
     pub asks: bool,
-    /// The window is to close.
+    /// Whether the window must close.
     pub leaves: bool,
-    /// A session left by an earlier program run, and when, in words.
+    /// The file of a session left by an earlier program run, and the time of its writing in words.
     pub found: Option<(PathBuf, String)>,
-    /// The file of a recovered or discarded session; it is removed once a journal holds the present session.
+    /// The file of a recovered or discarded session; it is removed once a journal contains the present session.
     pub recovered: Option<PathBuf>,
     /// Recently opened and saved files, newest first.
     pub recent: Vec<PathBuf>,
@@ -34,7 +34,7 @@ pub(super) struct Saving {
 const MAX_RECENT_FILES: usize = 8;
 
 impl Saving {
-    /// Whether there are changes that are in no file of the user.
+    /// Whether some changes are in no file of the user.
     pub fn is_unsaved(&self) -> bool {
         self.changes != self.saved
     }
@@ -141,7 +141,7 @@ fn card<const N: usize>(
         });
         given
     });
-    // The last answer changes nothing; Esc gives it.
+    // Esc chooses the last answer, which changes nothing.
     let leaves_it = ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)).then_some(N - 1);
     commands
         .extend(shown.inner.or(leaves_it).and_then(|i| answers.into_iter().nth(i)).into_iter().flat_map(|(_, c)| c));

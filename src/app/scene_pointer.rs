@@ -29,12 +29,12 @@ pub struct ScenePointer<'a> {
     view: ViewKind,
     /// Whether any part of the arm can be grabbed: in the demonstration its tip moves and is hard to catch.
     catches_arm: bool,
-    /// Whether a drag pushes.
+    /// Whether a drag pushes the end effector.
     pushes: bool,
 }
 
 impl<'a> ScenePointer<'a> {
-    /// Creates the pointer over a scene of a session; `demonstrates` says whether the scene is the demonstration.
+    /// Creates the pointer over a scene of a session; `demonstrates` is `true` for the scene of the demonstration.
     pub fn over(
         ui: &'a Ui,
         response: &'a Response,
@@ -94,7 +94,7 @@ impl<'a> ScenePointer<'a> {
         view_state.pointed.object = self.response.hover_pos().and_then(seen);
     }
 
-    /// Grabs the object that was under the pointer at the press of the button: it may have moved since.
+    /// Grabs the object that was under the pointer when the button was pressed; either may have moved since.
     fn grab(&self, view_state: &mut ViewState, commands: &mut Vec<Command>) {
         let origin = || self.ui.input(|i| i.pointer.press_origin());
         if self.response.is_pointer_button_down_on() && self.ui.input(|i| i.pointer.primary_pressed()) {
@@ -156,7 +156,7 @@ impl<'a> ScenePointer<'a> {
         if response.drag_stopped() || gives_up {
             let DragGesture { dragged, undo_entries, force: [x, y], .. } = std::mem::take(&mut view_state.gesture);
             if pushes && dragged {
-                // Back to the force that acted before the push.
+                // The end of the push restores the force that acted before it.
                 commands.push(SessionCommand::Edit(Edit::Push { x, y }).into());
             }
             commands.push(SessionCommand::EndGesture.into());
@@ -166,7 +166,7 @@ impl<'a> ScenePointer<'a> {
         }
     }
 
-    /// Sets the cursor by what can be dragged.
+    /// Sets the cursor icon, which shows whether the object under the pointer can be dragged or clicked.
     fn set_cursor(&self, view_state: &ViewState) {
         let Some(hot) = view_state.pointed.object else { return };
         let turns = self.session.can_be_dragged()
@@ -175,8 +175,8 @@ impl<'a> ScenePointer<'a> {
         self.ui.ctx().set_cursor_icon(cursor(hot, false));
     }
 
-    /// Handles clicks: on a bar it chooses the b of the bar; on an object with rows in the panel it shows them.
-    /// A double click beside all handles adds a point to the path.
+    /// Handles clicks. A click on a bar chooses its b; a click on an object with rows in the panel shows them. A
+    /// double click where no object can be dragged adds a point to the path.
     fn handle_clicks(&self, view_state: &mut ViewState, commands: &mut Vec<Command>) {
         let clicked = self.response.clicked_by(PointerButton::Primary);
         let pos = self.response.interact_pointer_pos();
@@ -220,7 +220,7 @@ impl<'a> ScenePointer<'a> {
     }
 }
 
-/// Returns the edit for an aim; `None` if its object does not exist, or the pushing force is unchanged.
+/// Returns the edit for a drag action; `None` if its object does not exist, or if the pushing force hardly changes.
 fn edit_of(aim: DragAction, session: &Session, view_state: &ViewState) -> Option<Edit> {
     let machine = &session.scenario().machine;
     Some(match aim {

@@ -1,7 +1,8 @@
 //! Search for a name by a few of its letters.
 
-/// Returns the score of a name for a search text, more is better; `None` if a word is not found. Each word has to be
-/// found with its letters in order: contiguous, at the beginnings of words, or scattered.
+/// Returns the score of a name for a search text; a higher score is better. `None` if a word of the text is not
+/// found. The name must contain the letters of each word in order: contiguous, at the beginnings of words, or
+/// scattered.
 pub fn score(sought: &str, name: &str) -> Option<i32> {
     let name: Vec<char> = name.to_lowercase().chars().collect();
     sought.split_whitespace().map(|word| score_of(&word.to_lowercase(), &name)).sum()
@@ -22,23 +23,23 @@ fn score_of(word: &str, name: &[char]) -> Option<i32> {
     whole(&word, name).or_else(|| scattered(&word, name, &|i| starts(name, i)))
 }
 
-/// Whether a word begins at this letter.
+/// Whether a word of the name begins at letter `i`.
 fn starts(name: &[char], i: usize) -> bool {
     i == 0 || !name[i - 1].is_alphanumeric()
 }
 
-/// Score of a word found contiguously.
+/// Returns the score of a word whose letters are contiguous in the name.
 fn whole(word: &[char], name: &[char]) -> Option<i32> {
     let starts = |i: usize| starts(name, i);
     let whole = name.windows(word.len()).enumerate().filter(|(_, part)| **part == *word).map(|(i, _)| i);
-    // A whole word scores more than the beginning of a word, and that more than the middle of one.
+    // A whole word scores more than the beginning of a word, which scores more than the middle of one.
     let ends = |i: usize| name.get(i + word.len()).is_none_or(|c| !c.is_alphanumeric());
     let best = whole.map(|i| 60 + 40 * i32::from(starts(i)) + 10 * i32::from(starts(i) && ends(i)) - i.min(30) as i32);
     best.max()
 }
 
-/// Score of a word whose letters are found in order; letters at the beginning of a word, or next to the previous
-/// letter, count more.
+/// Returns the score of a word whose letters are found in order. Letters at the beginning of a word, or next to the
+/// previous letter, count more.
 fn scattered(word: &[char], name: &[char], starts: &dyn Fn(usize) -> bool) -> Option<i32> {
     let (mut score, mut next, mut last) = (0, 0, None);
     for letter in word {
@@ -49,6 +50,6 @@ fn scattered(word: &[char], name: &[char], starts: &dyn Fn(usize) -> bool) -> Op
         score += if beside.is_some() || starts(at) { 4 } else { 1 };
         (next, last) = (at + 1, Some(at));
     }
-    // A few letters scattered over a long name are not significant.
+    // A match with too many letters in the middle of words is not significant.
     (score >= 3 * word.len() as i32).then_some(score)
 }

@@ -24,7 +24,7 @@ use stillbase_session::{Edit, Session};
 use stillbase_settings::change::DEFAULT_WORD;
 use stillbase_settings::number::{significant, subscript};
 
-/// Default width: a fraction of the window width, within bounds, points.
+/// Default width of the panel: a fraction of the window width, within bounds, points.
 const WIDTH_FRACTION: f32 = 0.17;
 const MIN_WIDTH_PT: f32 = 262.0;
 const MAX_WIDTH_PT: f32 = 320.0;
@@ -32,7 +32,7 @@ const MAX_WIDTH_PT: f32 = 320.0;
 /// Space for the scroll bar, which grows when the pointer is near, points.
 pub(super) const SCROLL_BAR_WIDTH: f32 = 14.0;
 
-/// Draws this panel; returns the width set by the user, if any.
+/// Draws this panel; returns the width set by the user, points, if any.
 pub fn show(
     ui: &mut Ui,
     session: &Session,
@@ -92,7 +92,7 @@ fn pose_constant(
         note(ui, p, "its drives are coupled, so that holding b does not quite keep the moment from the base");
     }
     let period = map.period();
-    // The row shows b within one period; the number of whole periods is kept.
+    // The row shows b within one period; an edit keeps the number of whole periods.
     let b = session.b_aim();
     let turns = (b / period).floor() * period;
     let mut shown = b - turns;
@@ -109,7 +109,8 @@ fn pose_constant(
         range: 0.0..=period,
         slide: 0.0..=period,
     };
-    // The knob stops where b stops; it does not jump to the other end.
+    // The slider stops at the nearest feasible b of the period, so that it does not jump to the other end of its
+    // range.
     let allowed = |asked: f64| match set_b(session, view_state, turns + asked) {
         Edit::PoseB { b } if b != turns + asked => {
             session.nearest_feasible_b_within(turns + asked, [turns, turns + period]).unwrap_or(b) - turns
@@ -121,9 +122,9 @@ fn pose_constant(
     let edit = set_b(session, view_state, asked);
     let typed = responses[0].changed() && !responses[0].dragged();
     let stops = matches!(edit, Edit::PoseB { b } if b != asked);
-    let serving = session.run().feasible_b();
+    let feasible = session.run().feasible_b();
     if typed && stops {
-        let band = serving.map_or_else(String::new, |common| common.shifted_near(shown).in_words());
+        let band = feasible.map_or_else(String::new, |common| common.shifted_near(shown).in_words());
         let who = all_points(session);
         commands.push(
             WindowCommand::Refuse(format!(
@@ -148,7 +149,7 @@ fn pose_constant(
     } else {
         let who = all_points(session);
         let text = match session.run().feasible_b() {
-            // Two drives reach a point at single values of b.
+            // With two drives, the machine reaches a point only at single values of b.
             Some(common) if !map.reaches_area() => {
                 let all: Vec<String> =
                     common.intervals.iter().map(|[low, high]| format!("{:.3}", 0.5 * (low + high))).collect();
@@ -197,7 +198,8 @@ fn pose_constant(
 /// Draws the target of the end effector: two numbers to type or drag.
 fn target(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
     let frame = session.frame();
-    // After a drag of the machine, the requested target, so that a coordinate that is not typed keeps its value.
+    // After a drag of the machine, the row shows the requested target, so that a coordinate that is not typed keeps
+    // its value.
     let at = if session.is_dragged() { frame.target.at } else { target_handle(frame) };
     let mut place = [at.re, at.im];
     ui.horizontal(|ui| {
@@ -271,7 +273,7 @@ fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
     }
 }
 
-/// Returns a number with its sign as an operator.
+/// Returns a number with its sign as a separate operator, such as `− 0.500`.
 fn signed_by(x: f64) -> String {
     format!("{} {:.3}", if x < 0.0 { '−' } else { '+' }, x.abs())
 }

@@ -36,7 +36,7 @@ use stillbase_study::lengths::LengthsQuery;
 /// A session on display.
 pub struct AppState {
     session: Session,
-    /// The views on display. The framing is renewed when they are replaced.
+    /// The views on display; the framing may be renewed when they are replaced.
     views: Arc<Views>,
     /// The machine before the gesture under way in the design view.
     designed_from: Option<Machine>,
@@ -44,26 +44,26 @@ pub struct AppState {
     /// The introduction while it is shown, and whether to show it at the next start.
     intro: Option<Intro>,
     hints: bool,
-    /// Which changes are saved, and the questions about those that are not.
+    /// Record of saved and unsaved changes, with the questions about unsaved ones.
     saving: Saving,
     /// Runs side by side, while they are on display.
     comparison: Option<Comparison>,
     /// Machines whose Pareto fronts are drawn beside that of the machine being designed.
     fronts: Vec<FrontCase>,
-    /// Request of the search for lengths, under way or finished.
+    /// Request of the search for link lengths, under way or finished.
     seeking: Option<<LengthsQuery as Query>::Input>,
     /// The table opened last.
     given: Option<OpenedTable>,
     /// Work in the background.
     background: Background<Self>,
-    /// Simulated time that is due but not yet run, s.
+    /// Simulated time that is due but not simulated yet, s.
     due_s: f64,
     pace: PlaybackRate,
     /// Message about the branch that the current gesture has left.
     branch_message: Option<String>,
     applied_theme: Option<Theme>,
     has_fonts: bool,
-    /// The next pass moves the keyboard focus to the search for signals.
+    /// Whether the next pass moves the keyboard focus to the search for signals.
     focuses_search: bool,
 }
 
@@ -104,7 +104,7 @@ impl AppState {
         app_state
     }
 
-    /// Applies the user's preferences, and starts the introduction if it is still due.
+    /// Applies the user's preferences, and starts the introduction if the preferences and the scenario call for it.
     #[must_use]
     pub fn with_preferences(mut self, liked: &Preferences) -> Self {
         self.view_state.arrangement = liked.arrangement();
@@ -121,7 +121,8 @@ impl AppState {
         self
     }
 
-    /// Offers to recover a session left by an earlier program run: its file, and when it was written, in words.
+    /// Offers to recover a session left by an earlier program run; `left` is its file and the time of its writing in
+    /// words.
     #[must_use]
     pub fn offering_recovery(mut self, left: Option<(PathBuf, String)>) -> Self {
         self.saving.found = left;
@@ -224,12 +225,12 @@ impl AppState {
             || !self.background.waiting_commands.is_empty()
     }
 
-    /// Whether the window is to close.
+    /// Whether the window must close.
     pub fn wants_to_leave(&self) -> bool {
         self.saving.leaves
     }
 
-    /// Takes the file of a recovered session once it is not needed any more.
+    /// Removes and returns the file of a recovered session, once it is not needed any more.
     pub fn take_recovered(&mut self) -> Option<PathBuf> {
         self.saving.recovered.take()
     }
@@ -294,7 +295,8 @@ impl AppState {
         if Views::has(self.view_state.view, run).is_err() {
             self.view_state.view = ViewKind::Flat;
         }
-        // A camera that was not moved goes on showing everything. The view stays still while a joint limit is dragged.
+        // A camera that the user has not moved continues to show everything. The view stays still while a joint limit
+        // is dragged.
         let is_outlined = self.views.unoutlined().is_some() && views.unoutlined().is_none();
         if !views.looks_like(&self.views) || (is_outlined && self.view_state.gesture.grabbed.is_none()) {
             self.view_state.framing.iter_mut().for_each(Framing::renew);

@@ -14,7 +14,7 @@ use stillbase_session::verdict::{Statement, Statements, StatusLight, Verdict};
 use stillbase_session::{Edit, Session};
 use stillbase_simulation::frame::{Frame, Reach};
 
-/// Whether a problem is to be shown.
+/// Whether a problem message must be shown.
 pub fn has_bad_news(session: &Session, view_state: &ViewState) -> bool {
     let bad = matches!(view_state.said.message, Some((_, true))) || session.run().waiting().is_some();
     (bad || fault(session.frame()).is_some()) && view_state.open.dialog.is_none()
@@ -40,7 +40,7 @@ pub fn news(
         (Some((text, true)), _, _, None) | (_, Some(text), _, None) | (_, _, Some(text), None) => text,
         _ => return,
     };
-    // A refusal meanwhile does not hide why the run waits, nor the remedy.
+    // While the run waits, a refused edit hides neither the reason for the wait nor the remedy.
     let also = waits.zip(waiting.as_ref()).filter(|(waits, said)| text != *said && *text != waits.why.to_string());
     let text = match (&also, &waiting) {
         (None, Some(said)) if waits.is_some_and(|waits| *text == waits.why.to_string()) => said,
@@ -49,7 +49,7 @@ pub fn news(
     let p = view_state.palette();
     let frame =
         egui::Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.reaction))).corner_radius(8).inner_margin(10);
-    // It does not cover the panels.
+    // The message does not cover the panels.
     let width = (0.42 * ctx.content_rect().width()).clamp(320.0, (scene.width() - 40.0).max(320.0));
     let area = egui::Area::new(egui::Id::unique("news")).pivot(egui::Align2::CENTER_BOTTOM);
     area.fixed_pos(scene.center_bottom() - vec2(0.0, 34.0)).show(ctx, |ui| {
@@ -75,7 +75,7 @@ pub fn news(
     });
 }
 
-/// Draws a dot for each figure of the audit: dim within its limit, red beyond it.
+/// Draws a dot for each figure of the audit: small within its limit, large and red beyond it.
 fn audit_dots(ui: &mut Ui, frame: &Frame, p: &Palette) {
     ui.add_space(4.0);
     ui.spacing_mut().item_spacing.x = 1.0;
@@ -108,7 +108,7 @@ fn power(x: f64) -> String {
     if x == 0.0 { "0".into() } else { format!("{x:.1e}").replace("e-", "e−") }
 }
 
-/// Returns the warning of a failed audit.
+/// Returns the warning about a failed audit.
 fn fault(frame: &Frame) -> Option<String> {
     let figure = frame.first_violation()?;
     let limit = figure.limit.unwrap_or_default();
@@ -131,7 +131,8 @@ pub fn statements(session: &Session) -> Statements {
 pub fn lamp(ui: &mut Ui, (about, statement): (&str, &Statement), size: f32, p: &Palette) {
     let tone = tone_of(statement.lamp, p);
     let ink = if statement.lamp == StatusLight::Bad { tone } else { p.ink };
-    // Painted, so that a screen reader announces lamp and words as one.
+    // The words are painted instead of added as a widget, so that a screen reader announces lamp and words as one
+    // item.
     let words = format!("{about}: {}", statement.words);
     let words = ui.painter().layout_no_wrap(words, plain(size), colour(ink));
     let [disc, gap] = [0.8 * size, 0.4 * size];
@@ -152,7 +153,7 @@ fn tone_of(lamp: StatusLight, p: &Palette) -> Rgba {
     }
 }
 
-/// Draws a lamp; its shape tells the state without the colour.
+/// Draws a lamp whose shape shows the state without the colour.
 fn sign(painter: &egui::Painter, rect: egui::Rect, lamp: StatusLight, tone: egui::Color32) {
     let (middle, r) = (rect.center(), 0.5 * rect.height());
     match lamp {

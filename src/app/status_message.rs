@@ -20,7 +20,7 @@ pub struct StatusMessage {
 /// A refused edit.
 #[derive(Clone, Debug)]
 pub struct RefusedEdit {
-    /// The requested curve, and where it stops.
+    /// The requested curve, and the point from which it cannot be followed.
     pub curve: Option<Arc<RefusedCurve>>,
     /// The edit with a feasible b, rad, and this b as displayed.
     pub remedy: Option<(Edit, Decimal)>,

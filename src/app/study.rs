@@ -1,5 +1,5 @@
 //! The study of tolerances at the bottom: tolerances, base moment of many machines, contribution of each tolerance to
-//! its variance, and spectrum of the motion.
+//! its variance, spectrum of base reactions.
 
 use egui::{Align, Color32, Frame, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui, vec2};
 use egui_plot::{Bar, BarChart, FilledArea, GridMark, Line, LineStyle, Plot, PlotPoints, VLine};
@@ -94,7 +94,7 @@ fn columns(ui: &mut Ui, p: &Palette, study: &Study, time: f64, commands: &mut Ve
     column(ui, 236.0, &mut |ui| spreads(ui, p, study, commands));
     column(ui, rest, &mut |ui| band(ui, p, study, time));
     column(ui, rest, &mut |ui| peaks(ui, p, study));
-    column(ui, 220.0, &mut |ui| blame(ui, p, study));
+    column(ui, 220.0, &mut |ui| contributions(ui, p, study));
     column(ui, rest, &mut |ui| spectrum(ui, p, study));
 }
 
@@ -148,7 +148,7 @@ fn spreads(ui: &mut Ui, p: &Palette, study: &Study, commands: &mut Vec<Command>)
                     Amount::Percent(_) => Amount::Percent(value / times),
                     Amount::Absolute(_) => Amount::Absolute(value / times),
                 };
-                // The defaults are written out with the first change, so that the others stay.
+                // The edit contains all tolerances, so that the defaults of the others stay.
                 let mut change: TaskChange =
                     spreads.iter().map(|(key, spread)| (key.clone(), spread.to_value())).collect();
                 change.insert(key.clone(), spread.with_amount(amount).to_value());
@@ -180,13 +180,13 @@ fn row(ui: &mut Ui, p: &Palette, label: &str, unit: &str, tip: &str, value: &mut
     .inner
 }
 
-/// A plot that cannot be dragged or zoomed, with some space above and below.
+/// Returns a plot that cannot be dragged or zoomed, with some space above and below.
 pub(super) fn bare<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
     base_plot(id, p, height).sense(Sense::hover()).set_margin_fraction(vec2(0.0, 0.05))
 }
 
-/// Plots n_B over time minus that of the nominal machine: percentiles 5 to 95 and 25 to 75 over the machines, mean, and
-/// first-order standard deviation.
+/// Plots the deviation of n_B from that of the nominal machine, N m, over time, s. It shows percentiles 5 to 95 and
+/// 25 to 75 over the machines, mean, and first-order standard deviation.
 fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
     title(ui, p, "n_B off nominal", "N m; 5–95, 25–75 %; dashed σ");
     let (x, band) = (&study.bands.time, &study.bands.moment);
@@ -217,7 +217,7 @@ fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
     name(&response.response, "Band of the base moment over time, N m");
 }
 
-/// Plots the histogram of peak |n_B| over the machines.
+/// Plots the histogram of peak |n_B|, N m, over the machines.
 fn peaks(ui: &mut Ui, p: &Palette, study: &Study) {
     let [_, half, most, nearly] = study.moment.values[..] else { return };
     title(ui, p, "Peak |n_B|", &format!("N m; 95 % below {most:.4}"));
@@ -246,7 +246,7 @@ fn peaks(ui: &mut Ui, p: &Palette, study: &Study) {
 }
 
 /// Draws the contributions of the tolerances: fractions of the first-order variance of n_B, summed over the motion.
-fn blame(ui: &mut Ui, p: &Palette, study: &Study) {
+fn contributions(ui: &mut Ui, p: &Palette, study: &Study) {
     title(ui, p, "To blame", "share of variance of n_B");
     let width = ui.available_width();
     ScrollArea::vertical().id_salt("blame").auto_shrink([false, false]).show(ui, |ui| {
@@ -268,7 +268,8 @@ fn blame(ui: &mut Ui, p: &Palette, study: &Study) {
     });
 }
 
-/// Plots the amplitude spectral densities of the run, both axes logarithmic.
+/// Plots the amplitude spectral densities of base force, N/√Hz, and base moment, N m/√Hz, over frequency, Hz; both
+/// axes are logarithmic.
 fn spectrum(ui: &mut Ui, p: &Palette, study: &Study) {
     title(ui, p, "Spectrum", "N m/√Hz, grey N/√Hz; Hz");
     let Some([fx, fy, n]) = &study.spectra else {

@@ -1,4 +1,4 @@
-//! The palette as egui's visuals.
+//! Translation of the colour palette into egui's style.
 
 use egui::{Color32, CornerRadius, Frame, Margin, Stroke, TextStyle, vec2};
 
@@ -61,7 +61,7 @@ pub fn apply(ctx: &egui::Context, theme: Theme) {
     style.spacing.button_padding = vec2(9.0, 4.0);
     style.spacing.slider_rail_height = 3.0;
     style.spacing.interact_size = vec2(28.0, 22.0);
-    // A list has its own height where the window allows it.
+    // A list gets its full height where the window allows it.
     style.spacing.default_area_size.y = 1200.0;
     style.spacing.menu_margin = Margin::same(6);
     style.spacing.window_margin = Margin::same(14);

@@ -12,10 +12,10 @@ use super::{Command, SessionCommand, Switch, ViewChange, ViewState};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Session;
 
-/// Gap between a mark and its tooltip or card, points: clear of the bar.
+/// Gap between a mark and its tooltip or card, points, so that these do not cover the bar.
 const POPUP_GAP_PT: f32 = 32.0;
 
-/// Draws the time line, from the right; `behind` is the playback rate if it lags behind the requested one.
+/// Draws the time line, from right to left; `behind` is the playback rate if it lags behind the requested one.
 pub fn show(
     ui: &mut Ui,
     session: &Session,
@@ -39,21 +39,21 @@ pub fn show(
     if response.changed() {
         commands.push(SessionCommand::Seek(time).into());
     }
-    // The centre of the handle moves between the ends minus its radius.
+    // The centre of the slider's handle stays one radius of the handle away from both ends of the slider.
     let line = response.rect.shrink2(vec2(response.rect.height() / 2.5, 0.0));
-    let asked = view_state.open.naming.filter(|time| session.bookmark_at(*time).is_some());
+    let naming_time = view_state.open.naming.filter(|time| session.bookmark_at(*time).is_some());
     let mut named = false;
     for group in marks.on_line(length, f64::from(line.width())).iter() {
         let x = line.left() + line.width() * (group.time / length) as f32;
         let response = mark(ui, &p, group, [x, line.top()], commands);
         let near = 0.5 * session.scenario().step;
         let within = |time: &f64| (group.span[0] - near..=group.span[1] + near).contains(time);
-        if let Some(time) = asked.filter(within).filter(|_| !named) {
+        if let Some(time) = naming_time.filter(within).filter(|_| !named) {
             naming(&response, &p, session, time, commands);
             named = true;
         }
     }
-    // The bookmark does not exist any more.
+    // The field closes when its bookmark does not exist any more.
     if view_state.open.naming.is_some() && !named {
         commands.push(ViewChange::LeaveNaming.into());
     }
@@ -68,7 +68,7 @@ fn clock(ui: &mut Ui, p: &Palette, time: f64, length: f64, behind: Option<f64>) 
     };
     let clock = ui.label(RichText::new(text).font(plain(12.5)).color(colour(p.dim)));
     let Some(rate) = behind else { return };
-    // It takes no space, so that nothing beside it moves.
+    // The playback rate takes no space in the layout, so that nothing beside it moves.
     let below =
         Rect::from_min_max(clock.rect.left_bottom() - vec2(30.0, 1.0), clock.rect.right_bottom() + vec2(0.0, 12.0));
     let words = RichText::new(pace(rate)).font(plain(10.5)).color(colour(p.ink));
@@ -79,7 +79,7 @@ fn clock(ui: &mut Ui, p: &Palette, time: f64, length: f64, behind: Option<f64>) 
         .on_hover_text("The run takes longer to compute than it lasts: time passes so fast, and no frame is left out");
 }
 
-/// `0.6× real time`.
+/// Returns the text of a playback rate, such as `0.6× real time`.
 fn pace(rate: f64) -> String {
     match rate {
         rate if rate < 0.095 => format!("{rate:.2}× real time"),
@@ -138,7 +138,7 @@ fn descriptions(ui: &mut Ui, p: &Palette, group: &MarkGroup) {
     });
 }
 
-/// Draws a card below a bookmark, to rename or remove it.
+/// Draws a card below a bookmark, in which the user renames or removes it.
 fn naming(mark: &Response, p: &Palette, session: &Session, time: f64, commands: &mut Vec<Command>) {
     let Some(known) = session.bookmark_at(time) else { return };
     let id = egui::Id::unique(("bookmark name", (time * 1e6) as i64));

@@ -17,8 +17,8 @@ use stillbase_picture::scene::palette::Theme;
 use stillbase_session::Session;
 use stillbase_session::scenario::Scenario;
 
-/// Draws this panel; `line` holds the marks of the time line, and the playback rate if it lags behind the requested
-/// one.
+/// Draws this panel; `line` contains the marks of the time line, and the playback rate if it lags behind the
+/// requested one.
 pub fn show(
     ui: &mut Ui,
     session: &Session,
@@ -72,8 +72,8 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewStat
     name(&response.response.on_hover_text(tip), "Machine");
 }
 
-/// Returns the scenario to open for a chosen machine: its built-in scenario if there is one; otherwise the present
-/// scenario without its edits.
+/// Returns the scenario to open for a chosen machine: its built-in scenario, or else the present scenario with this
+/// machine and without edits.
 pub(super) fn with_machine(session: &Session, machine: &Machine) -> Scenario {
     let alike = || Scenario { machine: machine.clone(), edits: Vec::new(), ..session.scenario().clone() };
     Scenario::builtin(machine.name()).unwrap_or_else(alike)
@@ -96,7 +96,7 @@ fn scenarios(ui: &mut Ui, session: &Session, recent: &[PathBuf], changed: bool, 
             if ui.selectable_label(chosen, label).clicked() {
                 commands.push(match Scenario::cases().find(|name| *name == builtin.name) {
                     Some(name) => Command::Session(SessionCommand::Case(name)),
-                    // These scenarios bring their own machine.
+                    // All other built-in scenarios open with their own machine.
                     None => Command::Session(SessionCommand::Open(Box::new(builtin.clone()))),
                 });
             }
@@ -152,7 +152,7 @@ fn transport(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
     name(&response.response.on_hover_text("Simulated seconds a second"), "Speed");
 }
 
-/// Draws the right end of the bar, from the right.
+/// Draws the right part of the bar, from right to left.
 fn right_end(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let dim = |text: &str| RichText::new(text.to_owned()).color(colour(p.dim));

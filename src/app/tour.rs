@@ -1,4 +1,4 @@
-//! [`Tour`]: the idea of the paper in seven steps on the live scene; each step is an exercise.
+//! [`Tour`]: the idea of the paper in seven steps on the live scene; each step contains an exercise.
 
 pub mod card;
 
@@ -18,7 +18,7 @@ pub struct Tour {
     done: bool,
 }
 
-/// Observations of the session since a step began: a step is done by an action during it, not by the state at its
+/// Observations of the session since a step began: only an action during the step completes it, not the state at its
 /// start.
 #[derive(Clone, Debug, PartialEq)]
 struct Seen {
@@ -26,7 +26,7 @@ struct Seen {
     last: f64,
     /// Whether the run has been played from its start without a jump.
     plays: bool,
-    /// Whether it has been played to its end.
+    /// Whether the run has been played to its end.
     ran: bool,
     /// Whether the end effector has held a payload.
     held: bool,
@@ -53,7 +53,7 @@ impl Seen {
 
     fn observe(&mut self, session: &Session) {
         let (now, last) = (session.frame().time, std::mem::replace(&mut self.last, session.frame().time));
-        // Seeking pauses the run: while it plays, time advances or starts over.
+        // Seeking pauses the run. While the run plays, time only advances or starts over.
         let goes_on = self.plays && (0.0..=MAX_PLAYED_S).contains(&(now - last));
         let begins = now < last && now <= MAX_PLAYED_S;
         self.plays = now == 0.0 || (session.is_playing() && (goes_on || begins)) || (self.plays && now == last);
@@ -97,14 +97,16 @@ struct Step {
 /// Text and commands of a button.
 type StepButton = (&'static str, Vec<Command>);
 
-/// Above the first, a moment, N m, or a force, N, is felt; below the second, a moment is treated as zero.
+/// A moment, N m, or a force, N, above the first value disturbs the base; a moment below the second is treated as
+/// zero.
 const FELT_ABOVE: f64 = 0.05;
 const ZERO_BELOW_N_M: f64 = 1e-6;
 
 /// Payload of the exercises, kg.
 const LOAD_KG: f64 = 0.3;
 
-/// Minimum displacement of the target, m, and minimum change of b, rad: paused, and during a run.
+/// Minimum displacement of the target, m, and minimum change of b, rad, paused and during a run, that complete an
+/// exercise.
 const MIN_DRAG_M: f64 = 0.02;
 const MIN_B_CHANGE_PAUSED_RAD: f64 = 0.2;
 const MIN_B_CHANGE_RUNNING_RAD: f64 = 0.05;
@@ -121,7 +123,7 @@ fn case(name: &str) -> Vec<Command> {
     Scenario::builtin(name).into_iter().map(|case| Command::Session(SessionCommand::Open(Box::new(case)))).collect()
 }
 
-/// Returns the button that opens the paper's machine, if the present one has no plane to drag on.
+/// Returns the button that opens the paper's machine, if the present one has no planes or cannot be dragged.
 fn paper_machine(session: &Session) -> Option<StepButton> {
     let has_planes = session.run().planes().is_some() && session.can_be_dragged();
     (!has_planes).then(|| ("Take the paper's machine", case("case-3")))
@@ -235,7 +237,7 @@ impl Tour {
         (step < STEPS.len()).then(|| Self::at(step, session))
     }
 
-    /// Observes the session, and whether the step has been done.
+    /// Observes the session, and records whether the step has been done.
     pub fn follow(&mut self, session: &Session) {
         self.seen.observe(session);
         self.done |= (STEPS[self.step].done)(session, &self.seen);

@@ -44,7 +44,7 @@ impl ViewState {
         }
     }
 
-    /// Whether a switch can be turned in the present state.
+    /// Whether a switch can be toggled in the present state.
     pub fn has(&self, switch: Switch, session: &Session) -> bool {
         match switch {
             Switch::Exaggeration => session.scenario().base.moves(),
@@ -53,7 +53,7 @@ impl ViewState {
         }
     }
 
-    /// Returns the command that turns a switch to its other state.
+    /// Returns the command that toggles a switch.
     pub fn other(&self, switch: Switch) -> Command {
         ViewChange::Switch(switch, !self.is_on(switch)).into()
     }
@@ -78,7 +78,7 @@ impl ViewState {
             Switch::Finder => self.open.finder = on.then(Finder::default),
             Switch::Equations => {
                 self.arrangement.learns = on;
-                // The Pareto front is hidden.
+                // No point of the Pareto front is under the pointer any more.
                 self.ghost = None;
                 if on {
                     self.arrangement.now_mut().plots.shown = true;
@@ -97,7 +97,7 @@ impl ViewState {
         }
     }
 
-    /// Shows a panel below the scene in place of the present one, or closes it.
+    /// Shows a panel below the scene in place of the present one, or closes the panel if it is on display.
     fn put_below(&mut self, thing: BottomPanel, on: bool) {
         match on {
             true => self.below = Some(thing),

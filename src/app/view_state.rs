@@ -17,14 +17,14 @@ use stillbase_picture::scene::views::{ViewKind, Views};
 use stillbase_session::{Edit, Session};
 use stillbase_study::front_point::FrontMeasure;
 
-/// Whether a view shows everything.
+/// Framing of a view: whether it shows everything.
 #[derive(Clone, Debug, Default)]
 pub enum Framing {
     /// To be framed in the next pass.
     #[default]
     Pending,
-    /// Framed to this content, in a scene of this size. A scene of another size is framed anew; motion of the content
-    /// does not change the view.
+    /// Framed to this content, in a scene of this size, points. A scene of another size is framed anew; motion of the
+    /// content does not change the view.
     Framed(Arc<ViewContent>, [f32; 2]),
     /// Moved by the user.
     Manual,
@@ -40,8 +40,8 @@ impl Framing {
     }
 }
 
-/// The view state, which is not part of the session. Its parts live as long as a preference, a gesture, a dialog or a
-/// message; its own fields live as long as the window.
+/// The view state, which is not part of the session. Its parts last as long as a preference, a gesture, a dialog or a
+/// message; its other fields last as long as the window.
 #[derive(Clone, Debug)]
 pub struct ViewState {
     /// Arrangement of the window: a preference of the user.
@@ -50,7 +50,7 @@ pub struct ViewState {
     pub open: OpenDialogs,
     /// Messages.
     pub said: StatusMessage,
-    /// What is under the pointer.
+    /// Objects under the pointer.
     pub pointed: HoverTarget,
     /// The drag under way.
     pub gesture: DragGesture,
@@ -64,9 +64,9 @@ pub struct ViewState {
     pub framing: [Framing; ViewKind::ALL.len()],
     /// The panel below the scene.
     pub below: Option<BottomPanel>,
-    /// The object whose rows are to be shown in the panel of settings.
+    /// The object whose rows the panel of settings must show.
     pub revealed: Option<Handle>,
-    /// The setting that is to be shown in the list of all settings, by its path.
+    /// The path of the setting that the list of all settings must show.
     pub looked_up: Option<String>,
     /// The measure of dexterity that shades the workspace.
     pub dexterity: Option<Measure>,
@@ -82,9 +82,9 @@ pub struct ViewState {
     pub pins: bool,
     /// Whether snapshots along the motion are shown.
     pub snapshots: bool,
-    /// The drives along the axes of joint space, counted from 0, where there are more than three.
+    /// The drives along the axes of joint space, counted from 0, if the machine has more than three.
     pub drives: [usize; 3],
-    /// Whether b may leave the interval feasible for the points of the task; the points then rotate with it.
+    /// Whether b may leave the interval that is feasible for the points of the task; the points then rotate with b.
     pub turn_task: bool,
     /// Whether the drawn motion of the base is enlarged.
     pub exaggerates_base: bool,
@@ -156,15 +156,16 @@ impl ViewState {
         }
     }
 
-    /// Returns the camera for a movement by the user.
+    /// Returns the camera for a movement by the user, after which the view no longer shows everything by itself.
     pub(super) fn camera_mut(&mut self) -> &mut Camera {
         self.framing[self.view as usize] = Framing::Manual;
         &mut self.cameras[self.view as usize]
     }
 }
 
-/// Returns the edit for a new b, rad. While time runs, the machine moves to it. Paused, the machine is put on the plane
-/// b. If the points of the task may not rotate with the plane, it is put on the nearest plane feasible for them.
+/// Returns the edit for a new b, rad. While time runs, the machine moves to the plane b; otherwise the edit puts it
+/// there. If the points of the task may not rotate with the plane, the edit takes the nearest b that is feasible for
+/// them.
 pub(super) fn set_b(session: &Session, view_state: &ViewState, b: f64) -> Edit {
     if session.is_playing() && session.is_at_end() {
         return Edit::SlideB { b };

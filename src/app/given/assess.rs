@@ -1,4 +1,4 @@
-//! [`AssessmentQuery`]: the query that assesses a table: a motion, or a measured machine.
+//! [`AssessmentQuery`]: the query that assesses the motion or the measured machine in a table.
 
 use std::ffi::OsStr;
 use std::path::PathBuf;
@@ -36,15 +36,15 @@ pub enum TableContent {
 /// Options for reading and assessing a table.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TableOptions {
-    /// Type of content; by default that of the column names.
+    /// Type of content; by default, the column names decide it.
     pub content: Option<TableContent>,
     /// Whether gaps in time are bridged.
     pub gaps: bool,
-    /// Cut-off frequency of smoothing, Hz.
+    /// Frequency at which smoothing halves the amplitude, Hz; by default, samples are not smoothed.
     pub smoothing: Option<f64>,
-    /// What the proposed motion keeps of the given one.
+    /// The part of the given motion that the proposed motion preserves; by default, the nearest motion is proposed.
     pub keep: Option<PreservedPath>,
-    /// Pose constant b of the proposed motion, rad.
+    /// Pose constant b of the proposed motion, rad; by default, the program chooses it.
     pub b: Option<f64>,
     /// Whether measured rates and accelerations are ignored.
     pub angles_only: bool,
@@ -61,7 +61,7 @@ pub struct OpenedTable {
     pub table: Shared<TableText>,
     /// Its options.
     pub options: TableOptions,
-    /// The measured machine: the one on display when the table was opened.
+    /// The measured machine: the machine on display when the table, or later a session, was opened.
     pub measured: Shared<Machine>,
 }
 
@@ -79,8 +79,8 @@ pub enum TableAction {
 }
 
 impl OpenedTable {
-    /// Returns the request for a session's machine, plant, base, control, step and design; its task and its edits do
-    /// not matter.
+    /// Returns the request for the machine, plant, base, control, step and design of a scenario; its task and edits
+    /// are ignored.
     pub fn asked(&self, scenario: &Scenario) -> Option<TableRequest> {
         let Scenario { machine, plant, base, control, design, .. } = scenario;
         let part = |part: Option<&OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
@@ -106,7 +106,7 @@ impl OpenedTable {
 pub struct TableRequest {
     /// The table.
     pub table: Shared<TableText>,
-    /// The session's machine, plant, base and control.
+    /// A scenario with the session's machine, plant, base, control, step and design.
     pub scenario: Shared<Scenario>,
     /// The measured machine.
     pub measured: Shared<Machine>,
@@ -121,9 +121,9 @@ pub enum TableAssessment {
     Motion {
         /// The given motion.
         motion: Arc<GivenMotion>,
-        /// Number of places where a whole turn was removed, for each column.
+        /// Number of jumps by a whole turn that were removed, for each column.
         unwrapped: Vec<usize>,
-        /// Its base reactions, and the proposed motion.
+        /// The base reactions of the given motion, and the proposed motion.
         imported: Box<Result<ImportedMotion, MotionImportError>>,
     },
     /// Assessment of a measured machine.
@@ -142,12 +142,12 @@ enum Work {
     Measured(Box<TrimQuery>),
 }
 
-/// Fraction of the work that is reading the table.
+/// Fraction of the progress that is assigned to reading the table.
 const READING_SHARE: f64 = 0.02;
 
 impl Query for AssessmentQuery {
     type Input = TableRequest;
-    /// The assessment, or why the table cannot be read.
+    /// The assessment, or the reason why the table cannot be read.
     type Answer = Result<TableAssessment, Advice>;
 
     fn begin(asked: TableRequest) -> Self {

@@ -15,7 +15,8 @@ use stillbase_study::trim::{NoTrim, Number, ParameterChange, TrimOutcome, TrimRe
 /// Width of the table of numbers, points.
 const NUMBERS_WIDTH_PT: f32 = 470.0;
 
-/// Returns number and size of the measured data.
+/// Returns a text with the number of motions and rows, and the rms of the measured reactions and of their unexplained
+/// part.
 pub(super) fn summary(trimmed: &TrimOutcome) -> String {
     let Ok(TrimResult { report, .. }) = &trimmed.outcome else { return String::new() };
     let [motions, rows] = [counted(report.motions, "motion"), counted(report.rows, "row")];

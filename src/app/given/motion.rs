@@ -26,7 +26,7 @@ const MOMENT_PLOT_WIDTH_PT: f32 = 300.0;
 /// Maximum number of decimals.
 const MAX_DECIMALS: usize = 6;
 
-/// Returns a text of the number of samples, what they describe, and their duration.
+/// Returns a text with the number of samples, their subject and their duration.
 pub(super) fn summary(motion: &GivenMotion) -> String {
     let of = if motion.coordinates == Coordinates::Drives { "the drives" } else { "the end effector" };
     let (samples, time) = (counted(motion.samples.count(), "sample"), fixed(motion.samples.duration(), 3));
@@ -77,7 +77,7 @@ pub(super) fn show(
     }
 }
 
-/// Plots n_B over time of both motions.
+/// Plots the base moment n_B, N m, over time, s, for both motions.
 fn moments(ui: &mut Ui, p: &Palette, imported: &ImportedMotion) {
     title(ui, p, "Base moment n_B", "N m over s; dashed as given");
     let given = imported.given.as_ref().map(|given| &given.moment);

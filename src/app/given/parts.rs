@@ -56,7 +56,7 @@ pub(super) fn column(ui: &mut Ui, id: &str, width: f32, add: impl FnOnce(&mut Ui
     ui.allocate_ui_with_layout(vec2(width, height), Layout::top_down(Align::LEFT), |ui| {
         ui.set_width(width);
         ScrollArea::vertical().id_salt(id).auto_shrink([false, false]).show(ui, |ui| {
-            // Clear of the scroll bar.
+            // Leaves room for the scroll bar.
             ui.set_max_width(width - 10.0);
             add(ui);
         });
@@ -78,7 +78,7 @@ pub(super) fn title(ui: &mut Ui, p: &Palette, title: &str, rest: &str) {
     });
 }
 
-/// Returns the text of an advice, in which remedies are named by the controls of the window.
+/// Returns the text of a piece of advice, which names each remedy by its control in the window.
 pub(super) fn worded(advice: &Advice) -> String {
     let control = |remedy| match remedy {
         Remedy::Gaps => "“bridge gaps”",

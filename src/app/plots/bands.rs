@@ -1,4 +1,5 @@
-//! The chart *Which b?* of machines without planes in closed form: intervals of b that reach the points or the target.
+//! The chart *Which b?* for machines without planes in closed form: intervals of b at which the machine reaches each
+//! point or the target.
 
 use std::sync::Arc;
 
@@ -35,9 +36,9 @@ pub fn bars(
         points.drain(1..points.len() - 1);
     }
     let places: Vec<Vector> = points.iter().map(|(_, at)| *at).collect();
-    let serving = queries.ask_in_background::<QuickWork<CommonB>>(&(ByIdentity(space.clone()), places)).last;
+    let feasible = queries.ask_in_background::<QuickWork<CommonB>>(&(ByIdentity(space.clone()), places)).last;
     // While new intervals are computed, the last ones are shown, unless they belong to another number of points.
-    let sets = serving.as_ref().map(|serving| &serving.each[..]).filter(|sets| sets.len() == points.len());
+    let sets = feasible.as_ref().map(|feasible| &feasible.each[..]).filter(|sets| sets.len() == points.len());
     which_b_title(ui, p, "of each point, rad; click to choose");
     let b_now = now.b_reference;
     let half = 0.5 * space.period();

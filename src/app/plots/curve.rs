@@ -27,11 +27,11 @@ enum Hold {
     Mark,
     /// The plot, which pans.
     Plot,
-    /// A time range, from this time on, s.
+    /// The selection of a time range that begins at this time, s.
     Range(f64),
 }
 
-/// Draws a plot; returns the time under the pointer, if the pointer is over it.
+/// Draws a plot; returns the time under the pointer, s, if the pointer is over the plot.
 pub fn show(
     ui: &mut Ui,
     shown: &DisplayContext<'_>,
@@ -64,7 +64,7 @@ pub fn show(
             painter.rect_stroke(rect.shrink(0.5), 4.0, stroke, egui::StrokeKind::Inside);
         }
     }
-    // The axis numbers handle the value range; all else handles time.
+    // Gestures on the axis numbers change the value range; all others change the time.
     let on_values = held(ui, &response).is_none() && values::hands(ui, plot, drawn, &axes, &response, commands);
     if !on_values {
         if plot.against.is_none() {

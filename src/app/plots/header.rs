@@ -1,4 +1,5 @@
-//! The line above a plot: title, unit, and the symbols of its curves with their values; a symbol switches its curve.
+//! The line above a plot: title, unit, and the symbols of its curves with their values. A click on a symbol shows or
+//! hides its curve.
 
 use egui::accesskit::Role;
 use egui::{Align, Button, Color32, CursorIcon, Label, Layout, RichText, Ui, WidgetInfo};
@@ -19,11 +20,11 @@ pub const STATISTICS_HEIGHT: f32 = 14.0;
 /// Width of a symbol in a row of statistics, points.
 const SYMBOL_WIDTH_PT: f32 = 28.0;
 
-/// Number of digits omitted where space is short: none at first, then more, until only symbols remain.
+/// Number of digits omitted where space is short: from none to the number at which only symbols remain.
 const ALL_DIGITS: usize = 0;
 const SYMBOLS_ONLY: usize = 3;
 
-/// Draws the line.
+/// Draws the line above a plot.
 pub fn show(ui: &mut Ui, plot: &Plot<'_>, drawn: &PlotLines, look: &PlotContext<'_>, commands: &mut Vec<Command>) {
     let p = look.palette;
     ui.horizontal(|ui| {
@@ -34,7 +35,7 @@ pub fn show(ui: &mut Ui, plot: &Plot<'_>, drawn: &PlotLines, look: &PlotContext<
         let values = |ui: &Ui, fewer: usize| -> f32 {
             plot.curves.iter().map(|curve| wide(ui, &words(plot, curve, drawn, look, fewer), plain(11.5))).sum()
         };
-        // Where space is short, digits are omitted first, then the unit, which the values show under the pointer.
+        // Where space is short, digits are omitted first, then the unit, which the tooltips of the values still show.
         let (heading, unit) = (plot.heading(), plot.unit());
         let room = ui.available_width() - wide(ui, &heading, bold(12.5));
         let unit_wide = wide(ui, &unit, plain(11.5));
@@ -53,10 +54,11 @@ pub fn show(ui: &mut Ui, plot: &Plot<'_>, drawn: &PlotLines, look: &PlotContext<
     });
 }
 
-/// Returns a curve's symbol with its value at the cursor, or with the difference from the second cursor.
+/// Returns a curve's symbol with its value at the cursor, or with the difference from the second cursor; `fewer`
+/// digits are omitted.
 fn words(plot: &Plot<'_>, curve: &PlotCurve<'_>, drawn: &PlotLines, look: &PlotContext<'_>, fewer: usize) -> String {
     let (signal, thousandths) = (curve.signal, curve.scale != 1.0);
-    // Values in thousandths get two decimals; their index B is omitted, since the plot names it.
+    // Values in thousandths get two decimals; the index B of their symbols is omitted, since the plot names it.
     let symbol = if thousandths { signal.symbol.trim_end_matches("_B") } else { signal.symbol.as_str() };
     if fewer >= SYMBOLS_ONLY {
         return symbol.into();
@@ -71,7 +73,7 @@ fn words(plot: &Plot<'_>, curve: &PlotCurve<'_>, drawn: &PlotLines, look: &PlotC
     }
 }
 
-/// Draws the name of a curve, which switches the curve on and off.
+/// Draws the symbol and value of a curve; a click shows or hides the curve.
 fn switch(
     ui: &mut Ui,
     plot: &Plot<'_>,
@@ -103,7 +105,8 @@ fn switch(
     }
 }
 
-/// Draws the statistics of the curves over the time shown: a row each, in columns of equal width.
+/// Draws the statistics of the curves over the time range on display: one row for each curve, in columns of equal
+/// width.
 pub fn statistics(ui: &mut Ui, plot: &Plot<'_>, drawn: &PlotLines, look: &PlotContext<'_>) {
     let p = look.palette;
     let wide = (ui.available_width() - SYMBOL_WIDTH_PT) / 4.0;

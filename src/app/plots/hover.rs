@@ -1,4 +1,4 @@
-//! The values under the pointer, in all plots at once.
+//! The values at the time under the pointer, shown by all plots at once.
 
 use egui::{Grid, Id, RichText, Ui};
 
@@ -75,7 +75,7 @@ pub fn card(
     for (place, run) in others {
         let Some(there) = run.at(frame.time) else { continue };
         let each = plot.shown().filter_map(|curve| {
-            // Another machine may lack the drive.
+            // The machine of another run may lack this drive.
             let has = curve.signal.drive.is_none_or(|k| k < run.machine().drives());
             let value = curve.scale * curve.signal.value(there);
             has.then(|| format!("{} {}", curve.signal.symbol, number(value)))

@@ -26,7 +26,7 @@ pub fn show(
     let button = ui.interact(rect, response.id.with("menu"), Sense::click());
     let p = shown.view_state.palette();
     button.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("{}: menu", plot.title)));
-    // Hidden until the pointer is over the plot; the keyboard can focus it all the same.
+    // The button is hidden until the pointer is over the plot, but the keyboard can always focus it.
     let open = Popup::is_id_open(ui.ctx(), Popup::default_response_id(&button));
     if response.contains_pointer() || button.contains_pointer() || button.has_focus() || open {
         let lit = button.hovered() || button.has_focus() || open;

@@ -31,7 +31,7 @@ const WIDTH_FRACTION: f32 = 0.233;
 const MIN_WIDTH_PT: f32 = 272.0;
 const MAX_WIDTH_PT: f32 = 640.0;
 
-/// Fraction and upper bound in the layout that compares runs.
+/// Fraction and upper bound, points, in the layout that compares runs.
 const COMPARE_WIDTH_FRACTION: f32 = 0.38;
 const COMPARE_MAX_WIDTH_PT: f32 = 1100.0;
 
@@ -48,7 +48,7 @@ fn usual(ui: &Ui, layout: Layout) -> f32 {
     (share * ui.ctx().content_rect().width()).clamp(MIN_WIDTH_PT, widest).round()
 }
 
-/// Draws this panel; returns the width set by the user, if any.
+/// Draws this panel; returns the width set by the user, points, if any.
 pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, commands: &mut Vec<Command>) -> Option<f32> {
     let DisplayContext { session, queries, signals, view_state, .. } = *what;
     let p = view_state.palette();
@@ -56,8 +56,8 @@ pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, commands: &mut Vec<Command>)
     let usual = usual(ui, view_state.arrangement.layout);
     let most = (0.6 * ui.available_width()).max(usual);
     let width = view_state.arrangement.now().plots.width.unwrap_or(usual).min(most);
-    // The identifier contains the default width: when the window changes it, the width that egui remembers does not
-    // apply.
+    // The identifier contains the default width. When the size of the window changes the default, the width that egui
+    // remembers no longer applies.
     let salt = ("plots", usual as u32, view_state.arrangement.swapped);
     let panel = if view_state.arrangement.swapped { Panel::left(salt) } else { Panel::right(salt) };
     let panel = panel.default_size(width).size_range(260.0..=most).resizable(true);

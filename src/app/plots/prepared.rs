@@ -1,4 +1,4 @@
-//! The data of the plots: samples that grow with the runs on display, and the lines drawn of them.
+//! The data of the plots: samples that grow with the runs on display, and the lines drawn from these samples.
 
 use std::sync::Arc;
 
@@ -14,13 +14,13 @@ use stillbase_simulation::signals::Signal;
 use stillbase_study::comparison::Comparison;
 use stillbase_study::samples::SignalSamples;
 
-/// Number of frames sampled in one repaint: a few milliseconds for ten signals.
+/// Number of frames sampled in one repaint, which takes a few milliseconds for ten signals.
 const FRAMES_PER_REPAINT: usize = 4_000;
 
 /// Query for the drawn lines of each plot.
 pub struct PlotPreparation;
 
-/// The input of the drawn lines.
+/// Input of the query for drawn lines.
 #[derive(Clone, PartialEq)]
 pub struct PlotInput {
     scenario: Shared<Scenario>,
@@ -53,7 +53,7 @@ impl QuickQuery for PlotPreparation {
     }
 }
 
-/// Returns the time that the plots of a session can show.
+/// Returns the time range that the plots of a session can show.
 pub fn extent(session: &Session) -> TimeExtent {
     let (now, end) = (session.frame().time, session.frames().last().map_or(0.0, |f| f.time).max(session.length()));
     match session.is_dragged() {

@@ -25,7 +25,7 @@ pub enum SearchPurpose {
     Across(String),
 }
 
-/// Search text, and the selected result.
+/// State of the search: its purpose, its text, and the index of the selected result.
 #[derive(Clone, Debug, Default)]
 struct Typed {
     sought: SearchPurpose,
@@ -73,7 +73,7 @@ pub fn show(ui: &mut Ui, shown: &DisplayContext<'_>, plots: &[Plot<'_>], right: 
     });
 }
 
-/// Draws buttons that show all time, remove the second cursor, and reopen closed plots.
+/// Draws buttons that show the whole time range, remove the second cursor, and reopen closed plots.
 fn state(ui: &mut Ui, shown: &DisplayContext<'_>, commands: &mut Vec<Command>) {
     let (view_state, session) = (shown.view_state, shown.session);
     let p = view_state.palette();
@@ -174,7 +174,8 @@ fn field(ui: &mut Ui, shown: &DisplayContext<'_>, plots: &[Plot<'_>], commands: 
         typed = Typed::default();
         ui.memory_mut(|memory| memory.surrender_focus(id()));
     } else {
-        // A press on a result takes the focus away but is a click only when released; until then the results stay open.
+        // A press on a result takes the focus from the field. It is a click only when released, so the results stay
+        // open until then.
         let (pressing, pressed) =
             ui.input(|i| (i.pointer.any_down() || i.pointer.any_released(), i.pointer.any_pressed()));
         let here = response.contains_pointer() || answers.is_some_and(|answers| answers.response.contains_pointer());

@@ -1,4 +1,4 @@
-//! The subject of the plots.
+//! The data that the plots show, and the frame at a time.
 
 use std::sync::Arc;
 

@@ -45,12 +45,12 @@ pub fn small_axes(ui: &mut Ui) {
     ui.style_mut().text_styles.insert(TextStyle::Body, plain(AXIS_FONT_PT));
 }
 
-/// Returns axis marks at these values.
+/// Returns axis marks at these values; egui draws marks of a larger `step` more strongly.
 pub fn marks(values: &[f64], step: f64) -> Vec<GridMark> {
     values.iter().map(|v| GridMark { value: *v, step_size: step }).collect()
 }
 
-/// Returns round values between bounds, about three to five.
+/// Returns about three to five round, evenly spaced values between two bounds.
 pub fn spaced(low: f64, high: f64) -> Vec<f64> {
     let step = round_up((high - low) / 5.0);
     let first = (low / step).ceil() as i64;

@@ -1,4 +1,4 @@
-//! Gestures on the axis numbers beside a plot: zooming and panning of its values.
+//! Gestures on the axis numbers beside a plot, which zoom and pan its value range.
 
 use egui::{CursorIcon, Key, PointerButton, Pos2, Rect, Response, Sense, Ui, pos2};
 
@@ -32,7 +32,7 @@ pub fn hands(
     };
     let [low, high] = drawn.y;
     let [_, top, _, bottom] = axes.sides;
-    // The value range at the start of the drag.
+    // The value range at the start of the drag, if a drag is under way.
     let mut held: Option<Option<[f64; 2]>> = ui.data(|data| data.get_temp(id));
     let origin = ui.input(|i| i.pointer.press_origin());
     if response.drag_started_by(PointerButton::Primary) && origin.is_some_and(|at| numbers.contains(at)) {
@@ -45,11 +45,11 @@ pub fn hands(
         if by != 0.0 {
             ask(Some([low + by, high + by]));
         }
-        let let_go = ui.input(|i| i.key_pressed(Key::Escape));
-        if let_go {
+        let cancelled = ui.input(|i| i.key_pressed(Key::Escape));
+        if cancelled {
             ask(before);
         }
-        if let_go || response.drag_stopped() || !response.dragged() {
+        if cancelled || response.drag_stopped() || !response.dragged() {
             ui.data_mut(|data| data.remove::<Option<[f64; 2]>>(id));
         }
         return true;
@@ -70,7 +70,7 @@ pub fn hands(
     on
 }
 
-/// Returns the zoom factor of the wheel. The plain wheel scrolls the panel.
+/// Returns the factor by which the wheel zooms the values; 1 if it does not. The plain wheel scrolls the panel.
 fn wheel_zoom(ui: &Ui, on_numbers: bool) -> f64 {
     ui.input_mut(|i| {
         if on_numbers && i.zoom_delta() != 1.0 {

@@ -1,4 +1,4 @@
-//! The chart *Which b?*: values of b that reach a target, or the points of the task.
+//! The chart *Which b?*: values of b at which the machine reaches a target, or the points of the task.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use stillbase_planning::reactionless::PlanePoint;
 use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork};
 use stillbase_session::Session;
 
-/// Query for the branches of the self-motion on the planes, for each of some points.
+/// Query for the branches of the self-motion at each of the given points, sampled on the planes of joint space.
 pub struct Branches;
 
 impl QuickQuery for Branches {
@@ -35,7 +35,7 @@ impl QuickQuery for Branches {
 /// Context of the chart.
 #[derive(Clone, Copy)]
 pub struct WhichB<'a> {
-    /// The session whose b it shows.
+    /// The session whose b the chart shows.
     pub session: &'a Session,
     /// Queries about the session.
     pub queries: &'a Queries,
@@ -47,7 +47,8 @@ pub struct WhichB<'a> {
     pub height: f32,
 }
 
-/// Draws the chart: with planes, q_1 against b of each point; otherwise a bar of its feasible b. A click chooses b.
+/// Draws the chart. With planes in closed form, it plots q_1 against b for each point; otherwise it draws a bar of
+/// each point's feasible b. A click chooses b.
 pub fn show(ui: &mut Ui, chart: WhichB<'_>, commands: &mut Vec<Command>) {
     let WhichB { session, height, .. } = chart;
     let Ok(space) = session.run().pose_space() else { return };
@@ -66,7 +67,7 @@ pub fn show(ui: &mut Ui, chart: WhichB<'_>, commands: &mut Vec<Command>) {
     }
 }
 
-/// Draws Fig. 3: q_1 against b for A and B, or for the target.
+/// Draws Fig. 3 of the paper: q_1 against b, rad, for the points of the task, or for the target.
 fn lines(
     ui: &mut Ui,
     chart: WhichB<'_>,
@@ -79,17 +80,17 @@ fn lines(
     let now = session.frame();
     let places: Vec<Vector> = points.iter().map(|(_, x)| *x).collect();
     let branches = queries.ask::<QuickWork<Branches>>(&(ByIdentity(planes.clone()), places.clone()));
-    let serving = queries.ask::<QuickWork<CommonB>>(&(ByIdentity(space.clone()), places));
+    let feasible = queries.ask::<QuickWork<CommonB>>(&(ByIdentity(space.clone()), places));
     which_b_title(ui, p, "q₁ against b, rad; click to choose");
     let map = planes.map();
-    let common = serving.all.as_ref().map(|common| common.shifted_near(now.b_reference));
+    let common = feasible.all.as_ref().map(|common| common.shifted_near(now.b_reference));
     let mut bounds = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
     let lines: Vec<(&str, Vec<[f64; 2]>)> = points
         .iter()
         .zip(&*branches)
         .flat_map(|((name, _), branches)| branches.iter().map(move |branch| (name.as_str(), branch)))
         .map(|(name, branch)| {
-            // Shifted by whole periods to be nearest to the present b.
+            // Each branch is shifted by whole periods of b, so that its middle is nearest to the present b.
             let middle = branch.get(branch.len() / 2).map_or(0.0, |x| x.b);
             let lift = map.period() * ((now.b_reference - middle) / map.period()).round();
             let point = |x: &PlanePoint| {
@@ -127,7 +128,7 @@ fn lines(
             }
             let last = points.len() - 1;
             for (name, line) in lines {
-                // Of many points, only the first and the last are named.
+                // Of more than four points, only the first and the last are named.
                 let named = points.len() <= 4 || name == points[0].0 || name == points[last].0;
                 if let Some(end) = line.last().filter(|_| named) {
                     let text = RichText::new(name).font(plain(11.5));

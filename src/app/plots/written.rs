@@ -53,10 +53,10 @@ pub fn columns(plot: &Plot<'_>) -> Vec<Signal> {
 
 fn png(figure: &Figure) -> Result<Vec<u8>, String> {
     let mut canvas = Canvas::new(PICTURE_SIZE_PT.map(|side| 2 * side as u32), 2.0).map_err(|why| why.to_string())?;
-    let mut dressed = false;
+    let mut has_fonts = false;
     let picture = canvas.draw(|ui| {
         // Fonts are available from the second pass on.
-        if std::mem::replace(&mut dressed, true) {
+        if std::mem::replace(&mut has_fonts, true) {
             whole(ui.painter(), figure);
         } else {
             stillbase_picture::paint::install_fonts(ui.ctx());

@@ -19,7 +19,7 @@ use stillbase_settings::range::shortened;
 /// Title of the list.
 const TITLE: &str = "All settings";
 
-/// Prefixes of keys that the title of their part already names.
+/// Prefixes that are omitted from the names of settings, because a title above their rows contains them.
 const PREFIXES_IN_TITLES: [&str; 7] = ["task.", "control.", "plant.", "base.wheel.", "base.", "tolerance.", "design."];
 
 /// Maximum number of rows.
@@ -29,7 +29,7 @@ fn sought_id() -> egui::Id {
     egui::Id::unique("settings sought")
 }
 
-/// Key of the flag that is set for the pass in which the list is scrolled to.
+/// Key under which egui stores the request to scroll to the list in the next pass.
 fn wanted_id() -> egui::Id {
     egui::Id::unique("settings wanted")
 }
@@ -79,8 +79,8 @@ pub fn show(ui: &mut Ui, facts: &ScenarioFacts<'_>, p: &Palette, commands: &mut 
     });
 }
 
-/// Parses the text typed for a key: numbers with units and arithmetic in the unit of the key, anything else as in a
-/// file.
+/// Parses the text typed for a key. Numbers may have units and arithmetic, and are converted to the unit of the key.
+/// Anything else is read as in a file.
 fn typed(text: &str, key: &Key) -> Result<Value, QuantityError> {
     if text.trim().is_empty() {
         return Ok(DEFAULT_WORD.into());
@@ -90,7 +90,7 @@ fn typed(text: &str, key: &Key) -> Result<Value, QuantityError> {
         key.holds,
         KeyType::Number(_) | KeyType::Whole(_) | KeyType::PerDrive(_) | KeyType::List(..) | KeyType::Bounds(_)
     );
-    // Words, such as none, are checked by the key.
+    // Words such as *none* are returned unchanged; the edit checks them.
     if !numbers || key.holds.takes(&value) || !text.contains(|c: char| c.is_ascii_digit() || c == 'π') {
         return Ok(value);
     }

@@ -11,7 +11,7 @@ use stillbase_session::Session;
 use stillbase_settings::word::Choice;
 use stillbase_simulation::control::{Control, ControlLaw};
 
-/// Selectable sample periods, steps: a rate must fit the time step.
+/// Selectable sample periods, as numbers of time steps: a period must be a whole number of steps.
 const PERIODS: [u32; 11] = [1, 2, 4, 5, 8, 10, 20, 25, 40, 50, 100];
 
 /// Selectable encoder resolutions, counts.
@@ -52,7 +52,7 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
 }
 
 fn sampling(ui: &mut Ui, control: &Control, step: f64, p: &Palette, commands: &mut Vec<Command>) {
-    let offered = |all: &mut Vec<(f64, String)>, now: f64, words: String| {
+    let add_if_missing = |all: &mut Vec<(f64, String)>, now: f64, words: String| {
         if all.iter().all(|(x, _)| *x != now) {
             all.push((now, words));
         }
@@ -60,7 +60,7 @@ fn sampling(ui: &mut Ui, control: &Control, step: f64, p: &Palette, commands: &m
     let hertz = |x: f64| format!("{} Hz", (x * 1e3).round() / 1e3);
     let mut rates = vec![(0.0, "all the time".to_owned())];
     rates.extend(PERIODS.map(|n| 1.0 / (f64::from(n) * step)).map(|x| (x, hertz(x))));
-    offered(&mut rates, control.rate, hertz(control.rate));
+    add_if_missing(&mut rates, control.rate, hertz(control.rate));
     choose(ui, "rate", tip_of("control.rate"), &rates, &control.rate, commands, |x| {
         Some(PanelSection::Control.set(&["rate"], *x))
     });
@@ -74,7 +74,7 @@ fn sampling(ui: &mut Ui, control: &Control, step: f64, p: &Palette, commands: &m
     let words = |x: f64| format!("{x} counts");
     let mut counts = vec![(0.0, "exact".to_owned())];
     counts.extend(COUNTS.map(|x| (x, words(x))));
-    offered(&mut counts, control.encoder, words(control.encoder));
+    add_if_missing(&mut counts, control.encoder, words(control.encoder));
     choose(ui, "encoder", tip_of("control.encoder"), &counts, &control.encoder, commands, |x| {
         Some(PanelSection::Control.set(&["encoder"], *x))
     });

@@ -11,7 +11,7 @@ use stillbase_session::Edit;
 use stillbase_session::scenario::Value;
 use stillbase_settings::change::DEFAULT_WORD;
 
-/// The section of the panel, and of a scenario, that a setting belongs to.
+/// A section of the panel, and the part of a scenario that it edits.
 #[derive(Clone, Copy)]
 pub enum PanelSection {
     Plant,
@@ -28,7 +28,7 @@ impl PanelSection {
         }
     }
 
-    /// Returns the edit that sets a key, given by its parts; the word `default` removes the key.
+    /// Returns the edit that sets a key, given by the parts of its path; the word `default` removes the key.
     pub fn set(self, path: &[&str], value: impl Into<Value>) -> Edit {
         Edit::at(&[&[self.word()], path].concat(), value)
     }
@@ -44,7 +44,8 @@ impl PanelSection {
     }
 }
 
-/// Draws a section that folds; at first it is open if `back` is given, the edit that restores all its defaults.
+/// Draws a section that folds. `back` is the edit that restores all its defaults; with such an edit, the section is
+/// open at first.
 pub fn fold(
     ui: &mut Ui,
     p: &Palette,
@@ -94,7 +95,7 @@ pub fn undo(ui: &mut Ui, p: &Palette, label: &str, tip: &str) -> bool {
     response.on_hover_text(tip).clicked()
 }
 
-/// Draws a switch that sends an edit; returns whether it is on.
+/// Draws a switch that sends an edit; returns its state before the edit.
 pub fn switch(
     ui: &mut Ui,
     (label, tip): (&str, &str),
@@ -114,14 +115,14 @@ pub fn switch(
 pub fn switch_nonzero(
     ui: &mut Ui,
     words: (&str, &str),
-    there: bool,
+    nonzero: bool,
     commands: &mut Vec<Command>,
     to: impl FnOnce(bool) -> Edit,
 ) -> bool {
     let id = egui::Id::unique(("switch_nonzero", words.0));
     let was = ui.data(|d| d.get_temp::<bool>(id)).unwrap_or_default();
     let held = ui.input(|i| i.pointer.any_down() || i.pointer.any_released());
-    let on = there || (was && held);
+    let on = nonzero || (was && held);
     ui.data_mut(|d| d.insert_temp(id, on));
     switch(ui, words, on, commands, to)
 }
@@ -151,7 +152,7 @@ pub fn segments<T: Copy + PartialEq>(
     });
 }
 
-/// Draws a label and a list to choose from.
+/// Draws a label and a list to choose from; returns a newly chosen value.
 pub fn choose<T: Clone + PartialEq>(
     ui: &mut Ui,
     label: &str,
@@ -183,7 +184,7 @@ pub fn choose<T: Clone + PartialEq>(
     taken
 }
 
-/// Whether a number has a slider, and its scale.
+/// Scale of the slider of a number, or no slider.
 #[derive(Clone, Copy, PartialEq)]
 pub enum SliderScale {
     No,
@@ -196,9 +197,9 @@ pub struct NumberField<'a> {
     pub row: NumberRow<'a>,
     pub now: f64,
     pub normal: f64,
-    /// Whether the default value is shown beside it.
+    /// Whether the default value is shown beside the number.
     pub beside: bool,
-    /// The edit that restores the default; `None`: the edit that sets the default value.
+    /// The edit that restores the default; without it, the number is set to the default value.
     pub back: Option<Edit>,
     /// Its name for screen readers, if several fields have the same label.
     pub called: Option<String>,

@@ -1,5 +1,5 @@
-//! The section *Plant* of the panel on the left: differences of the simulated machine from the model, namely payload,
-//! friction, torque limits, links, lengths, a force.
+//! The section *Plant* of the panel on the left: differences of the simulated machine from the model. These are
+//! payload, friction, torque limits, links, lengths and a force.
 
 use egui::Ui;
 
@@ -127,10 +127,10 @@ fn friction(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette,
 #[derive(Clone, Copy)]
 pub struct PerDriveField<'a> {
     pub label: &'a str,
-    /// Path of its setting, by its parts.
+    /// Path of its setting, in parts.
     pub path: &'a [&'a str],
     pub decimals: usize,
-    /// Upper end of the slider.
+    /// Upper bound of the slider.
     pub most: f64,
     pub normal: f64,
 }
@@ -204,7 +204,8 @@ fn force(ui: &mut Ui, plant: &PlantDifferences, p: &Palette, commands: &mut Vec<
     });
 }
 
-/// Returns the link or length on display in a list: the one chosen last, or else the first that differs.
+/// Returns the link or length on display in a list: the one chosen last, or else the first that differs; empty if
+/// none does.
 fn chosen(ui: &Ui, what: &str, first: Option<&String>, exists: impl Fn(&str) -> bool) -> String {
     let taken = ui.data(|d| d.get_temp::<String>(place::chosen_id(what)));
     taken.filter(|name| name.is_empty() || exists(name)).or_else(|| first.cloned()).unwrap_or_default()

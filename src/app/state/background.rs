@@ -13,7 +13,7 @@ use stillbase_session::scenario::Scenario;
 use stillbase_study::comparison::{AlternativeRuns, ComparedRun, Comparison};
 use stillbase_study::tolerance::{StudiedRun, Study, StudyQuery};
 
-/// Maximum number of steps that are run ahead to find the motion of the base.
+/// Maximum number of planned steps of a run that is simulated ahead to find the motion of its base.
 const MAX_STEPS_AHEAD: f64 = 20_000.0;
 
 impl AppState {
@@ -27,7 +27,7 @@ impl AppState {
         any
     }
 
-    /// Takes over all finished background work; returns whether there was any.
+    /// Takes over the results of all finished background work; returns whether any follow-up ran.
     pub(super) fn collect(&mut self) -> bool {
         let any = self.finish();
         if let (Some(comparison), Some(ways)) =
@@ -54,7 +54,7 @@ impl AppState {
         true
     }
 
-    /// Runs ahead to the end of the planned motion in the background, to find how far the base will move.
+    /// Simulates the planned motion to its end in the background, to find how far the base will move.
     pub(super) fn run_ahead(&mut self) {
         let run = self.session.run();
         if run.scenario().base.moves() && !self.session.is_dragged() && run.planned_steps() <= MAX_STEPS_AHEAD {
@@ -64,7 +64,8 @@ impl AppState {
         }
     }
 
-    /// Requests the study of tolerances for the run on display; a newer request replaces an older one.
+    /// Requests the study of tolerances for the run on display, if its panel is open; a newer request replaces an
+    /// older one.
     pub(super) fn refresh_study(&mut self) {
         if self.view_state.below != Some(BottomPanel::Tolerances) {
             self.queries().forget::<StudyQuery>();
@@ -73,7 +74,7 @@ impl AppState {
         }
     }
 
-    /// Returns the study of tolerances, or why there is none.
+    /// Returns the study of tolerances, or the reason why there is none.
     pub(super) fn study(&self) -> Option<Arc<Result<Study, String>>> {
         let QueryResult { last, state } = self.queries().newest::<StudyQuery>()?;
         match state {
@@ -86,7 +87,8 @@ impl AppState {
         }
     }
 
-    /// Runs the task on display in its different ways, if the table shows another task. Does nothing during a drag.
+    /// Requests runs of the task on display in several ways, if the table of runs shows another task. During a drag,
+    /// only a new table requests them. While its panel is closed, there is no table.
     pub(super) fn refresh_comparison(&mut self) {
         if self.view_state.below != Some(BottomPanel::Runs) {
             self.comparison = None;
@@ -165,13 +167,13 @@ impl AppState {
         self.collect();
     }
 
-    /// Ends the background work: waits until a session under way is saved, and stops everything else.
+    /// Ends the background work: waits until a file that is being saved has been written, and stops everything else.
     pub(crate) fn close(&mut self) {
         self.background.wait_for(Activity::Saving);
         self.background = Background::default();
     }
 
-    /// Stops an activity and returns the message for it. The display stays as it is.
+    /// Stops an activity and returns the message about it. The display does not change.
     pub(super) fn cancel(&mut self, activity: Activity) -> String {
         if activity.can_stop() {
             self.background.stop(activity);

@@ -9,7 +9,7 @@ use crate::{Command, FileDialog, FilePurpose, SessionCommand, Switch, ViewChange
 use stillbase_picture::scene::views::ViewKind;
 
 impl AppState {
-    /// Carries out one command, after those before it. A command that fails changes nothing, and a message says why.
+    /// Carries out one command, after all earlier ones. A command that fails changes nothing, and a message says why.
     /// Session commands wait while the session is being changed in the background.
     pub fn carry_out(&mut self, command: impl Into<Command>) {
         self.collect();
@@ -42,7 +42,7 @@ impl AppState {
     fn attempt(&mut self, command: Command) -> Result<Option<String>, String> {
         match command {
             Command::Session(command) => self.do_to_session(command),
-            // Without an open table, the file dialog asks for one.
+            // Without an open table, the file dialog opens, so that the user can choose one.
             Command::View(ViewChange::Switch(Switch::Table, true)) if self.given.is_none() => {
                 self.view_state.open.dialog = Some(FileDialog::suggest(&self.session, FilePurpose::Open));
                 Ok(None)
@@ -153,7 +153,7 @@ impl AppState {
                 self.intro = None;
             }
             WindowCommand::Tour(begins) => {
-                // The tour replaces the hints; hints not yet followed may return.
+                // The tour replaces the hints. Hints that the user has not followed return at the next start.
                 self.intro = self.intro.take().filter(|_| !begins);
                 self.view_state.open.help &= !begins;
                 self.view_state.open.tour = begins.then(|| Tour::begin(&self.session));

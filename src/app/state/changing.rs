@@ -9,8 +9,8 @@ use stillbase_session::scenario::MAX_BRANCHES;
 use stillbase_session::{Edit, Refusal};
 
 impl AppState {
-    /// Changes a copy of the session in the background, and shows it once it is finished. The copy shares its frames;
-    /// most changes are finished by the next repaint.
+    /// Changes a copy of the session in the background, and shows the copy once the change is finished. The copy
+    /// shares the frames of the session. Most changes are finished by the next repaint.
     pub(super) fn change(&mut self, change: SessionChange) {
         let mut next = self.session.clone();
         self.background.change = Some((change.clone(), 0));
@@ -38,14 +38,14 @@ impl AppState {
         }
     }
 
-    /// Stores the message for a change that has left a branch. The tuple describes the state before: the number of
-    /// branches left so far, the time on display, s, and whether the machine was dragged.
-    pub(super) fn parts(&mut self, change: &SessionChange, branch_events: u64, shown: f64, led: bool) {
+    /// Stores the message about an edit that has left a branch. The other arguments describe the earlier state:
+    /// number of branches left so far, time on display, s, and whether the machine was dragged.
+    pub(super) fn parts(&mut self, change: &SessionChange, branch_events: u64, shown: f64, was_dragged: bool) {
         let (now, gone) = self.session.branch_events();
         if !matches!(change, SessionChange::Edit(_)) || now == branch_events {
             return;
         }
-        let kept = match led && !self.session.is_dragged() {
+        let kept = match was_dragged && !self.session.is_dragged() {
             true => "what you led by hand is kept as a branch".into(),
             false => format!("what came after {shown:.3} s is kept as a branch"),
         };
@@ -63,7 +63,7 @@ impl AppState {
         if done.is_ok() {
             self.saving.changes += u64::from(!matches!(change, SessionChange::Seek(_)));
             match change {
-                // A push sends many edits a second while it lasts: too many to run ahead after each.
+                // A push sends many edits a second, too many to simulate the run ahead after each.
                 SessionChange::Edit(Edit::Push { .. }) => self.view_state.said.refused = None,
                 SessionChange::Edit(edit) if edit.is_aside() => self.view_state.said.refused = None,
                 SessionChange::Edit(_) => {

@@ -14,8 +14,8 @@ use stillbase_study::fronts::{FrontCase, Fronts};
 use stillbase_study::lengths::{LengthSearch, LengthsQuery};
 
 impl AppState {
-    /// Extends an edit of the machine in the design view by the changes that keep the machine balanced, if that is
-    /// chosen.
+    /// Extends an edit of the machine in the design view by the changes that keep the machine balanced, if the user
+    /// has chosen that.
     pub(super) fn with_balance(&mut self, edit: Edit) -> Result<Edit, String> {
         let Edit::Set { change } = &edit else { return Ok(edit) };
         if self.view_state.view != ViewKind::Design {
@@ -29,7 +29,8 @@ impl AppState {
         if edit.part("design").is_some() { brief_edit(scenario, change) } else { Ok(edit) }
     }
 
-    /// Stops the search for Pareto fronts that are not on display any more. Known fronts stay cached.
+    /// Stops unfinished searches for Pareto fronts that are not on display any more. Without other machines, their
+    /// fronts are removed from the cache.
     pub(super) fn refresh_fronts(&mut self) {
         if self.view_state.view != ViewKind::Design || self.view_state.arrangement.learns {
             studio::leave(self.queries());
@@ -38,7 +39,7 @@ impl AppState {
         }
     }
 
-    /// Changes which Pareto fronts are drawn beside that of the machine being designed.
+    /// Adds or removes a Pareto front that is drawn beside that of the machine being designed.
     pub(super) fn change_fronts(&mut self, change: FrontsCommand) {
         let Scenario { machine, design, .. } = self.session.scenario();
         match change {
@@ -54,8 +55,8 @@ impl AppState {
         }
     }
 
-    /// Returns the request of a search for lengths with the present brief, or `None` if the machine is not valid
-    /// without its counterweights.
+    /// Returns the request of a search for link lengths with the present design brief; `None` if the machine is not
+    /// valid without its counterweights.
     fn sought(&self, objective: Objective) -> Option<<LengthsQuery as Query>::Input> {
         let Scenario { machine, design, .. } = self.session.scenario();
         let bare = machine.without_counterweights().ok()?;
@@ -63,13 +64,13 @@ impl AppState {
         Some((Shared(bare.into()), asked))
     }
 
-    /// Starts a new search for lengths.
+    /// Starts a new search for link lengths.
     pub(super) fn seek(&mut self, objective: Objective) {
         self.queries().forget::<LengthsQuery>();
         self.seeking = self.sought(objective);
     }
 
-    /// Continues the search for lengths, or drops it if its request has changed.
+    /// Continues the search for link lengths, or drops it if its request has changed.
     pub(super) fn refresh_seeking(&mut self) {
         let Some(seeking) = self.seeking.take() else { return };
         self.seeking = self.sought(seeking.1.weighing.objective.clone()).filter(|now| *now == seeking);
@@ -79,7 +80,7 @@ impl AppState {
         }
     }
 
-    /// Applies the lengths found to the machine.
+    /// Applies the link lengths found to the machine, with their counterweights.
     pub(super) fn take_lengths(&mut self) -> Result<(), String> {
         let found = self.seeking.as_ref().and_then(|seeking| self.queries().known::<LengthsQuery>(seeking));
         let found = found.as_deref().and_then(|found| found.as_ref().ok()).ok_or("no lengths were found yet")?;
@@ -96,7 +97,8 @@ impl AppState {
         }
     }
 
-    /// Applies the counterweights and rotor ratios with which the drives give the base the least momentum.
+    /// Applies the counterweights and rotor ratios with the least Σ |D_k|, the momentum that the drives give to the
+    /// base.
     pub(super) fn take_stillest(&mut self) -> Result<(), String> {
         let scenario = self.session.scenario();
         let placed = scenario.design.stillest(&scenario.machine).map_err(|why| why.to_string())?;

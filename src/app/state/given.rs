@@ -1,4 +1,4 @@
-//! The open table of numbers: its assessment for the session, and applying results to the session.
+//! The open table of numbers: its assessment for the session, and the application of its results to the session.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -49,7 +49,7 @@ impl AppState {
     /// Applies a result of the assessment to the session.
     ///
     /// # Errors
-    /// If there is no such result.
+    /// If there is no such result, or if it does not change the session.
     pub(super) fn take_given(&mut self, taking: TableAction) -> Result<(), String> {
         let found = self.assessed().filter(|(_, is_known)| *is_known).map(|(found, _)| found);
         let scenario = self.session.scenario();

@@ -54,7 +54,7 @@ impl AppState {
         self.saving.opened();
         match file {
             Some(SessionFile::Own(file)) => self.saving.uses(&file),
-            // The session is in no file of the user yet.
+            // A recovered session is in no file of the user yet.
             Some(SessionFile::LeftBehind(file)) => {
                 self.saving.changes += 1;
                 self.saving.recovered = Some(file);
@@ -63,7 +63,7 @@ impl AppState {
         }
         let old = self.session.clone();
         self.session.take_over(next);
-        // A measurement refers to the newly opened machine.
+        // The measurements of an open table now refer to the newly opened machine.
         if let Some(given) = &mut self.given {
             given.measured = Shared(Arc::new(self.session.scenario().machine.clone()));
         }
@@ -79,7 +79,8 @@ impl AppState {
         self.show_outcome(Ok(news));
     }
 
-    /// Opens one of the paper's cases, with the machine chosen in the window; the message names that machine.
+    /// Opens one of the paper's cases with the machine on display; the message names this machine if it is not the
+    /// paper's.
     pub(super) fn open_case(&mut self, name: &str) {
         let Some(case) = Scenario::builtin(name) else { return };
         let present = &self.session.scenario().machine;

@@ -14,17 +14,17 @@ use stillbase_picture::scene::views::ViewKind;
 const PROGRESS_INTERVAL_S: f32 = 0.1;
 
 impl AppState {
-    /// Returns a guard that lives while the window is drawn. Background work that nobody waits for starts after it is
-    /// dropped, so that it does not delay the drawing.
+    /// Returns a guard to be kept while the window is drawn. Background work other than short jobs starts only when
+    /// the guard is dropped, so that the work does not delay the drawing.
     #[must_use]
     pub fn drawing(&self) -> DrawingGuard {
         self.background.drawing()
     }
 
-    /// Runs one pass of the user interface; its commands are carried out at the end.
+    /// Runs one pass of the user interface; the commands of its panels are carried out at the end.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
-        self.dress(ui.ctx());
-        // Panels have no fill of their own; content that fades out at their edges needs the background colour.
+        self.apply_style(ui.ctx());
+        // Panels have no fill; content that fades out at their edges needs the background colour.
         let behind = egui::Frame::new().fill(ui.visuals().panel_fill);
         let info = egui::UiStackInfo::new(egui::UiKind::Frame).with_frame(behind);
         ui.scope_builder(egui::UiBuilder::new().ui_stack_info(info), |ui| self.panels(ui));
@@ -122,7 +122,7 @@ impl AppState {
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
         commands.extend(widgets::refused_entry(ui.ctx()).map(|it| Command::Window(WindowCommand::Refuse(it))));
         if widgets::drag_cancelled(ui.ctx()) {
-            // Cancelling comes before the end of the gesture.
+            // The cancelled drag is undone before its gesture ends.
             commands.insert(0, Command::Session(SessionCommand::GiveUp));
         }
         if commands
@@ -152,7 +152,7 @@ impl AppState {
         }
     }
 
-    fn dress(&mut self, ctx: &egui::Context) {
+    fn apply_style(&mut self, ctx: &egui::Context) {
         self.background.set_context(ctx);
         if !self.has_fonts {
             theme::install_fonts(ctx);

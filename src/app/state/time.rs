@@ -2,7 +2,7 @@
 
 use super::AppState;
 
-/// Maximum wall time that one repaint makes up for, s: after a pause of the program, time does not jump.
+/// Maximum wall time that one repaint simulates, s, so that time does not jump after a suspension of the program.
 const MAX_CATCH_UP_S: f64 = 0.1;
 
 impl AppState {
@@ -30,7 +30,7 @@ impl AppState {
         let (steps, before) = (wanted.min(self.pace.most_steps()), self.session.frame().step);
         self.session.tick(steps as u64);
         let done = self.session.frame().step.abs_diff(before) as f64;
-        // A run that has ended meanwhile is not slow.
+        // A run that has ended during these steps does not lag.
         if self.session.is_moving() {
             self.pace.record_repaint(wall, done * dt, done, self.view_state.speed);
         } else {
@@ -38,8 +38,8 @@ impl AppState {
         }
     }
 
-    /// Reports the time that the last [`pass`](Self::pass) took, s, measured by the caller. Slow steps are spread over
-    /// several repaints, so that the picture stays smooth.
+    /// Records the wall time that the last [`pass`](Self::pass) took, s, measured by the caller. Slow steps are
+    /// spread over several repaints, so that the picture stays smooth.
     pub fn record_cost(&mut self, seconds: f64) {
         self.pace.record_cost(seconds);
     }
@@ -49,8 +49,9 @@ impl AppState {
         self.pace.lagging_rate()
     }
 
-    /// Returns the time to start over from, s, if the run is to start over. In the introduction that is 0; in a loop it
-    /// is the start of the run or of the range chosen in the plots. `wall` is the wall time that has passed, s.
+    /// Returns the time from which the run starts over, s, if it must start over. In the introduction that is 0; in a
+    /// loop it is the start of the run or of the range chosen in the plots. `wall` is the wall time that has passed,
+    /// s.
     fn starts_over(&mut self, wall: f64) -> Option<f64> {
         if self.intro.as_mut().is_some_and(|intro| intro.rests(&self.session, wall)) {
             return Some(0.0);

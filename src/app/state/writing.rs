@@ -22,8 +22,8 @@ impl AppState {
         }
     }
 
-    /// Starts to write a file, if it does not exist or may be replaced, and no other of its kind is being written. If
-    /// the work ends at once, its message is shown at once, and the dialog stays open after a failure.
+    /// Starts to write a file, if it does not exist or may be replaced, and if no work of this activity is under way.
+    /// The dialog closes unless the work fails at once. `of` is as for `write_content`.
     fn write<W>(
         &mut self,
         path: &Path,
@@ -57,7 +57,7 @@ impl AppState {
         Ok(())
     }
 
-    /// Writes `content` to a file. For a session, `of` holds the number of changes that are then saved, and their file.
+    /// Writes `content` to a file. For a session, `of` is the number of changes that are then saved, and their file.
     fn write_content(
         &mut self,
         path: &Path,
@@ -69,7 +69,7 @@ impl AppState {
             let content = content(app_state)?;
             Ok(move |_: &Ticket, path: &Path, replaces: bool| {
                 stillbase_files::write_new(path, &content()?, replaces).map_err(|e| e.to_string())?;
-                Ok(format!("saved {}", whole(path)))
+                Ok(format!("saved {}", absolute(path)))
             })
         })
     }
@@ -122,7 +122,7 @@ impl AppState {
                 let done = stillbase_recording::record(&[scenario], path, &options, &mut report);
                 let done = done.map_err(|e| e.to_string())?;
                 let verdict = if done.iter().all(|r| r.reactionless) { "reactionless" } else { "with reactions" };
-                Ok(format!("recorded {} ({verdict}); open it with the Rerun viewer", whole(path)))
+                Ok(format!("recorded {} ({verdict}); open it with the Rerun viewer", absolute(path)))
             })
         })
     }
@@ -136,7 +136,7 @@ impl AppState {
 /// Message when another file is being saved.
 const FILE_BEING_SAVED: &str = "one file is being saved: want that to end first";
 
-/// Returns the absolute path of a file, so that the user can find it.
-fn whole(path: &Path) -> String {
+/// Returns the absolute path of a file as text, so that the user can find it.
+fn absolute(path: &Path) -> String {
     stillbase_files::absolute_path(path).unwrap_or_else(|| path.into()).display().to_string()
 }

@@ -1,4 +1,4 @@
-//! The imbalance: every line of (7) and (8) as a bar, composed of the contributions of the links.
+//! The imbalance: each line of Eqs. (7) and (8) as a bar, composed of the contributions of the links.
 
 use egui::{Align2, CornerRadius, Rect, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
@@ -79,18 +79,18 @@ fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &BalanceBars, hot: Opt
     let zero = bar.center().x;
     let greatest = term.greatest();
     if greatest > 0.0 {
-        let per = f64::from(0.5 * bar.width()) / greatest;
+        let scale = f64::from(0.5 * bar.width()) / greatest;
         let mut ends = [zero, zero];
         for (link, part) in &term.parts {
             let side = usize::from(*part > 0.0);
-            let next = ends[side] + (part * per) as f32;
+            let next = ends[side] + (part * scale) as f32;
             let segment = Rect::from_x_y_ranges(ends[side].min(next)..=ends[side].max(next), bar.y_range());
             ends[side] = next;
             draw(ui, p, session, segment, (*link, *part), (term, hot));
         }
         // The residual is drawn on the side that predominates.
         if !term.is_balanced {
-            let outweighed = zero - (term.left[0] * per) as f32;
+            let outweighed = zero - (term.left[0] * scale) as f32;
             let from = if term.left[0] > 0.0 { ends[1] + (outweighed - zero) } else { ends[0] + (outweighed - zero) };
             let to = if term.left[0] > 0.0 { ends[1] } else { ends[0] };
             let left = Rect::from_x_y_ranges(from.min(to)..=from.max(to), bar.bottom() + 2.0..=bar.bottom() + 5.0);

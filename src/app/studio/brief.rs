@@ -107,11 +107,11 @@ fn rotors(ui: &mut Ui, p: &Palette, drives: &[Drive], brief: &DesignBrief, comma
     }
 }
 
-/// Draws the interval of payloads that the balance is to cover; `held` is the present payload, kg.
-fn payloads(ui: &mut Ui, p: &Palette, ends: Option<[f64; 2]>, held: f64, commands: &mut Vec<Command>) {
+/// Draws the interval of payloads that the balance must cover; `present` is the present payload, kg.
+fn payloads(ui: &mut Ui, p: &Palette, ends: Option<[f64; 2]>, present: f64, commands: &mut Vec<Command>) {
     let path = "design.payload";
     ui.horizontal(|ui| {
-        let usual = || vec![0.0, if held > 0.0 { 2.0 * held } else { 0.2 }].into();
+        let usual = || vec![0.0, if present > 0.0 { 2.0 * present } else { 0.2 }].into();
         let words = ("payload from, to", tip_of(path));
         optional(ui, words, ends.is_some(), |value| Edit::set(path, value), usual, commands);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -205,7 +205,7 @@ pub(super) fn bounded(
     });
 }
 
-/// Draws the switch of an optional setting, which sets its usual value or removes it.
+/// Draws the check box of an optional setting, which sets it to the initial value `usual` or removes it.
 pub(super) fn optional(
     ui: &mut Ui,
     (label, tip): (&str, &str),

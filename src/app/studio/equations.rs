@@ -1,4 +1,4 @@
-//! The equations of the paper with present numbers.
+//! The equations of the paper with the present numbers of the machine.
 
 use egui::style::ScrollAnimation;
 use egui::{Align, Label, Rect, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
@@ -17,7 +17,7 @@ use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Session;
 use stillbase_study::equations::{Equality, Equation, InstantKind};
 
-/// Maximum width of the names of lines, points.
+/// Maximum width of the names of an equation's lines, points.
 const MAX_NAME_WIDTH_PT: f32 = 48.0;
 
 /// Draws the equations: an index of their numbers on top, and a scrolling list below.
@@ -34,7 +34,7 @@ pub fn show(ui: &mut Ui, session: &Session, lesson: &MachineEquations, view_stat
         let mut heights = Heights::of(ui);
         for (i, equation) in lesson.equations.iter().enumerate() {
             let top = ui.cursor().min;
-            // Equations out of sight only take their space.
+            // An equation out of sight is not drawn; it only takes up its space.
             let known = heights.known(i);
             let there = known.map(|height| Rect::from_min_size(top, vec2(ui.available_width(), height)));
             match there {
@@ -43,7 +43,7 @@ pub fn show(ui: &mut Ui, session: &Session, lesson: &MachineEquations, view_stat
                 }
                 _ => {
                     ui.push_id(equation.number, |ui| block(ui, equation, &pen));
-                    heights.is(i, ui.min_rect().bottom() - top.y);
+                    heights.record(i, ui.min_rect().bottom() - top.y);
                 }
             }
             if wanted == Some(i) {
@@ -51,8 +51,8 @@ pub fn show(ui: &mut Ui, session: &Session, lesson: &MachineEquations, view_stat
                 ui.scroll_to_rect_animation(rect, Some(Align::TOP), ScrollAnimation::none());
             }
         }
-        heights.keep(ui);
-        // Space, so that the last one can be scrolled to the top too.
+        heights.store(ui);
+        // Space below the last equation, so that it too can be scrolled up.
         ui.add_space(0.5 * ui.clip_rect().height());
     });
 }
@@ -79,7 +79,7 @@ impl Heights {
         self.all.get(i).copied()
     }
 
-    fn is(&mut self, i: usize, height: f32) {
+    fn record(&mut self, i: usize, height: f32) {
         if i == self.all.len() {
             self.all.push(height);
         } else if let Some(known) = self.all.get_mut(i) {
@@ -87,12 +87,12 @@ impl Heights {
         }
     }
 
-    fn keep(self, ui: &Ui) {
+    fn store(self, ui: &Ui) {
         ui.data_mut(|data| data.insert_temp(Self::id(), (self.width, self.all)));
     }
 }
 
-/// Returns the instant in words.
+/// Returns a sentence about the instant to which the numbers belong.
 fn when(lesson: &MachineEquations, session: &Session) -> String {
     let instant = match lesson.when {
         InstantKind::Plan(time) => format!("Numbers of the plan at {} s, because the machine rests.", signed(time, 3)),
@@ -105,7 +105,7 @@ fn when(lesson: &MachineEquations, session: &Session) -> String {
     }
 }
 
-/// Returns the colour for the state of an equation.
+/// Returns the colour that shows whether an equation holds.
 fn tone(equation: &Equation, p: &Palette) -> Rgba {
     match equation.holds() {
         Some(true) => p.zero,
@@ -133,7 +133,7 @@ fn index(ui: &mut Ui, p: &Palette, all: &[Equation]) -> Option<usize> {
     wanted
 }
 
-/// Returns in a few words whether both sides agree.
+/// Returns in a few words whether both sides of an equation agree.
 fn verdict(equation: &Equation) -> String {
     let Some(worst) = equation.worst() else { return "not for this machine".into() };
     match equation.holds() {

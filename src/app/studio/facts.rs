@@ -1,4 +1,4 @@
-//! [`DesignFacts`]: values shown by the panels of the design view, queried for each repaint.
+//! [`DesignFacts`]: values that the panels of the design view show, requested from the query cache at each repaint.
 
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ const PAYLOAD_POINTS: usize = 41;
 
 /// Values of the machine on display.
 pub struct DesignFacts {
-    /// The lines of (7) and (8).
+    /// The lines of Eqs. (7) and (8).
     pub(super) terms: Arc<Vec<BalanceBars>>,
     sums: Arc<Sums>,
     /// Cost of the balance, in comparison with the machine without its counterweights.
@@ -42,11 +42,11 @@ pub struct DesignFacts {
     beside: Option<QueryResult<Vec<MachineFront>>>,
     /// The measure that colours the points of the front.
     pub(super) told: Option<Arc<MeasureValues>>,
-    /// Its equations; `None` while the front is on display.
+    /// Equations of the machine; `None` while the front is on display.
     pub(super) lesson: Option<Arc<MachineEquations>>,
 }
 
-/// The points of a Pareto front, by increasing mass, or why there are none.
+/// The points of a Pareto front, by increasing mass, or the reason why there are none.
 type Points = Result<Vec<FrontMachine>, String>;
 
 /// Sums over a machine.
@@ -74,7 +74,7 @@ impl QuickQuery for Sums {
     }
 }
 
-/// Query for the lines of (7) and (8) of a machine.
+/// Query for the lines of Eqs. (7) and (8) of a machine.
 struct Terms;
 
 impl QuickQuery for Terms {
@@ -86,7 +86,8 @@ impl QuickQuery for Terms {
     }
 }
 
-/// Query for the cost of the balance of a machine in comparison with the bare one, in a motion of both.
+/// Query for the cost of balancing a machine, in comparison with the machine without counterweights in the same
+/// motion.
 struct Cost;
 
 impl QuickQuery for Cost {
@@ -168,18 +169,18 @@ pub(super) struct FrontMachine {
     pub inertia: f64,
 }
 
-/// One line of (7) or (8), shown as a bar.
+/// One line of Eq. (7) or (8), shown as a bar.
 pub(super) struct BalanceBars {
     /// Its symbol.
     pub symbol: String,
     /// Meaning of a zero residual.
     pub meaning: &'static str,
     pub unit: &'static str,
-    /// Residual along the axes, and across them.
+    /// Residual along the axes of the links, and across them, in `unit`.
     pub left: [f64; 2],
     pub is_balanced: bool,
-    /// Contributions of the links with all that they carry, by link index, the largest first; negligible ones are left
-    /// out.
+    /// Index and contribution of each link with all bodies that it carries, the largest contribution first.
+    /// Negligible contributions are omitted.
     pub parts: Vec<(usize, f64)>,
 }
 
@@ -206,7 +207,7 @@ impl DesignFacts {
         let Some(bare) = &facts.sums.bare else { return facts };
         let front = queries.ask_in_background::<FrontSearch>(&front_request(bare, &session.scenario().design));
         let points = front.last.map(|front| queries.ask::<QuickWork<FrontPoints>>(&ByIdentity(front)));
-        // A run that waits does not move.
+        // A run that waits has no motion.
         let motion = session.run().shared_motion().filter(|_| session.run().waiting().is_none());
         facts.told = by.zip(points.clone()).and_then(|(by, points)| {
             let told = queries.ask_in_background::<MeasureQuery>(&(ByIdentity(points.clone()), by, motion)).last?;
@@ -267,7 +268,7 @@ impl DesignFacts {
         self.beside.as_ref().and_then(|beside| beside.last.as_deref()).map_or(&[], Vec::as_slice)
     }
 
-    /// Returns the fraction of them that is computed, while the work is under way.
+    /// Returns the fraction of the fronts of other machines that is computed, while the work is under way.
     pub(super) fn beside_under_way(&self) -> Option<f64> {
         match self.beside.as_ref()?.state {
             QueryStatus::UnderWay(share) => Some(share),
@@ -283,7 +284,7 @@ impl DesignFacts {
         }
     }
 
-    /// Returns the counterweights of a point of the front, by its index.
+    /// Returns the counterweights of a point of the front, by the index of the point.
     pub fn weights(&self, i: usize) -> Vec<WeightOption> {
         let point = self.front().ok().and_then(|points| points.get(i));
         let spec = point.map(|point| point.placed.machine.spec());
@@ -304,7 +305,7 @@ pub fn of_front(queries: &Queries, session: &Session, i: usize) -> Option<Machin
     Some(front.as_ref().as_ref().ok()?.points.get(i)?.machine.clone())
 }
 
-/// Stops the queries of the design view.
+/// Stops the unfinished queries of the design view.
 pub fn leave(queries: &Queries) {
     queries.give_up::<FrontSearch>();
     queries.give_up::<Fronts>();

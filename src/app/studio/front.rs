@@ -1,4 +1,5 @@
-//! The Pareto front of added mass and inertia: counterweights to choose from, each the lightest for its inertia.
+//! The Pareto front of added mass and inertia: sets of counterweights to choose from, each the lightest for its
+//! inertia.
 
 use egui::{Id, Rect, RichText, Sense, Ui, vec2};
 use egui_plot::{HLine, Line, LineStyle, PlotPoint, PlotPoints, Points, VLine};
@@ -22,14 +23,14 @@ const SELECT_DISTANCE_PT: f32 = 14.0;
 /// Counterweights lighter than this are treated as absent, kg.
 const MIN_ADDED_MASS_KG: f64 = 1e-6;
 
-/// Draws the front.
+/// Draws the Pareto front.
 pub fn show(ui: &mut Ui, facts: &DesignFacts, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = &view_state.palette();
     ui.add_space(8.0);
     let under_way = facts.front_under_way();
     // Progress of a short search is not shown.
-    let lasts = ui.ctx().animate_bool_with_time(Id::unique("front under way"), under_way.is_some(), PROGRESS_DELAY_S);
-    match under_way.filter(|_| lasts >= 1.0) {
+    let delay = ui.ctx().animate_bool_with_time(Id::unique("front under way"), under_way.is_some(), PROGRESS_DELAY_S);
+    match under_way.filter(|_| delay >= 1.0) {
         Some(share) => heading(ui, p, "Counterweights", &format!("looking for them: {:.0} %", 100.0 * share)),
         None => heading(ui, p, "Counterweights", "hover shows, click takes"),
     }
@@ -43,7 +44,7 @@ pub fn show(ui: &mut Ui, facts: &DesignFacts, view_state: &ViewState, commands: 
     }
     let [mass, inertia] = facts.now();
     let all: Vec<[f64; 2]> = points.iter().map(|point| [point.placed.added_mass, point.inertia]).collect();
-    // Counterweights in use are shown among the others.
+    // The counterweights in use are marked in the plot.
     let shown = mass > MIN_ADDED_MASS_KG;
     let everything: Vec<[f64; 2]> = all.iter().copied().chain(other_fronts::places(facts)).collect();
     let of = |i: usize| everything.iter().map(move |at| at[i]);
@@ -54,7 +55,7 @@ pub fn show(ui: &mut Ui, facts: &DesignFacts, view_state: &ViewState, commands: 
         [low - room, high + room]
     };
     let ([left, right], [low, high]) = (ends(0, mass), ends(1, inertia));
-    let told = facts.told.as_ref().and_then(|told| ColourScale::of(told.by, &told.values));
+    let colours = facts.told.as_ref().and_then(|measure| ColourScale::of(measure.by, &measure.values));
     ui.horizontal(|ui| {
         ui.label(RichText::new("Σ D, kg m²").font(plain(11.0)).color(colour(p.dim)));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| measure_choice(ui, view_state, commands));
@@ -80,7 +81,8 @@ pub fn show(ui: &mut Ui, facts: &DesignFacts, view_state: &ViewState, commands: 
             let line = Line::new("front", PlotPoints::from(all.clone())).width(1.8).color(colour(p.zero));
             plot.line(line.allow_hover(false));
             for (i, at) in all.iter().enumerate() {
-                let (radius, tone) = told.as_ref().and_then(|told| told.tone(i, p)).map_or((3.5, p.zero), |t| (5.0, t));
+                let (radius, tone) =
+                    colours.as_ref().and_then(|colours| colours.tone(i, p)).map_or((3.5, p.zero), |t| (5.0, t));
                 let dot = Points::new("machines", PlotPoints::from(vec![*at])).radius(radius).color(colour(tone));
                 plot.points(dot.allow_hover(false));
             }
@@ -110,18 +112,18 @@ pub fn show(ui: &mut Ui, facts: &DesignFacts, view_state: &ViewState, commands: 
     }
     name(&response.response, &words(&all));
     ui.horizontal(|ui| {
-        if let Some(told) = &told {
-            told.scale(ui, p);
+        if let Some(colours) = &colours {
+            colours.scale(ui, p);
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.label(RichText::new("added mass, kg").font(plain(11.0)).color(colour(p.dim)));
         });
     });
-    if let (Some(by), None) = (view_state.front_by, &told) {
+    if let (Some(by), None) = (view_state.front_by, &colours) {
         let why = if by == FrontMeasure::Torque { "the run waits, or there is none" } else { "none of these has one" };
         note(ui, p, &format!("{}: {why}.", by.words()[0]));
     }
-    summary(ui, points, near, told.as_ref(), view_state, facts, commands);
+    summary(ui, points, near, colours.as_ref(), view_state, facts, commands);
     other_fronts::list(ui, facts, p, commands);
 }
 
@@ -139,16 +141,16 @@ fn words(all: &[[f64; 2]]) -> String {
     format!("Counterweights to choose from, added mass against Σ D: from {} to {}", end(all.first()), end(all.last()))
 }
 
-/// A measure of the machines beside mass and inertia, shown by colour.
+/// A measure of the machines in addition to mass and inertia, shown by colour.
 struct ColourScale<'a> {
     by: FrontMeasure,
     values: &'a [Option<f64>],
-    /// Minimum and maximum.
+    /// Minimum and maximum of the values.
     ends: [f64; 2],
 }
 
 impl<'a> ColourScale<'a> {
-    /// Returns `None` if no machine has a value.
+    /// Returns the colour scale of a measure; `None` if no machine has a value.
     fn of(by: FrontMeasure, values: &'a [Option<f64>]) -> Option<Self> {
         let least = values.iter().flatten().fold(f64::INFINITY, |least, x| least.min(*x));
         let most = values.iter().flatten().fold(f64::NEG_INFINITY, |most, x| most.max(*x));
@@ -205,12 +207,13 @@ fn measure_choice(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Comman
     }
 }
 
-/// Draws the values of the machine under the pointer, or on display, and the buttons for ends and middle of the front.
+/// Draws the values of the machine under the pointer, or on display, and buttons that apply the first, middle and
+/// last point of the front.
 fn summary(
     ui: &mut Ui,
     points: &[FrontMachine],
     near: Option<usize>,
-    told: Option<&ColourScale<'_>>,
+    colours: Option<&ColourScale<'_>>,
     view_state: &ViewState,
     facts: &DesignFacts,
     commands: &mut Vec<Command>,
@@ -225,8 +228,9 @@ fn summary(
         true => "no counterweights yet".to_owned(),
         false => format!("{} kg added, Σ D {} kg m²", signed(mass, 2), signed(inertia, 3)),
     };
-    if let Some((told, value)) = told.zip(at).and_then(|(told, i)| Some((told, (*told.values.get(i)?)?))) {
-        text.push_str(&format!(", {}", told.words(value)));
+    if let Some((colours, value)) = colours.zip(at).and_then(|(colours, i)| Some((colours, (*colours.values.get(i)?)?)))
+    {
+        text.push_str(&format!(", {}", colours.words(value)));
     }
     let tone = if at.is_some() { p.ink } else { p.amber };
     ui.label(RichText::new(text).font(bold(13.0)).color(colour(tone)));

@@ -1,4 +1,4 @@
-//! The search for lengths with the counterweights: bounds, required reach and workspace, and the result.
+//! The search for link lengths and their counterweights: bounds, required reach and workspace, and the result.
 
 use egui::{Align, CollapsingHeader, Layout, RichText, Ui};
 
@@ -16,7 +16,7 @@ use stillbase_session::scenario::Scenario;
 use stillbase_settings::number::counted;
 use stillbase_study::lengths::{FoundLengths, NoLengths};
 
-/// A search for lengths, and its result.
+/// A search for link lengths, and its result.
 pub type LengthsResult = QueryResult<Result<FoundLengths, NoLengths>>;
 
 /// Draws the search.
@@ -60,7 +60,7 @@ pub fn show(
     });
 }
 
-/// Draws whether a length may change, and its bounds.
+/// Draws the check box that lets a length change, and the bounds of the length, m.
 fn ends(ui: &mut Ui, p: &Palette, name: &str, metres: f64, ends: Option<[f64; 2]>, commands: &mut Vec<Command>) {
     let (path, tip) = (["design", "length", name], tip_of("design.length.*"));
     ui.horizontal(|ui| {

@@ -10,7 +10,7 @@ use stillbase_study::equations::{DriveState, Equation, InstantKind, equations};
 
 /// The equations of a machine at an instant.
 pub struct MachineEquations {
-    /// In the order of the paper.
+    /// The equations in the order of the paper.
     pub(super) equations: Vec<Equation>,
     /// The instant.
     pub(super) when: InstantKind,
@@ -30,7 +30,7 @@ impl MachineEquations {
     /// Queries the equations for the machine and the instant on display.
     pub fn of(queries: &Queries, session: &Session, penalties: Preset) -> Option<Arc<Self>> {
         let (machine, state) = (&session.scenario().machine, DriveState::of(session.run(), session.frame()));
-        // The frame of a waiting run may belong to a machine with fewer drives.
+        // The frame of a waiting run may belong to a machine with another number of drives.
         match state.q.len() == machine.drives() {
             true => Some(queries.ask::<QuickWork<Self>>(&(machine.clone(), state, penalties))),
             false => queries.last::<QuickWork<Self>>(),

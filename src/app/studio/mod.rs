@@ -1,5 +1,5 @@
-//! The panels of the design view: the table of links on the left; its balance, or the equations of the paper, on the
-//! right.
+//! The panels of the design view: on the left the table of links, on the right the balance of the machine or the
+//! equations.
 
 mod bars;
 mod brief;

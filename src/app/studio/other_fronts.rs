@@ -1,4 +1,4 @@
-//! Pareto fronts of other machines, drawn beside that on display: kept fronts and those of built-in machines.
+//! Pareto fronts of other machines, drawn beside the front on display: kept fronts and fronts of built-in machines.
 
 use egui::{Align, Button, Layout, RichText, Ui};
 use egui_plot::{Line, LineStyle, PlotPoint, PlotPoints, PlotUi, Points, Text};
@@ -14,14 +14,14 @@ use stillbase_study::fronts::MachineFront;
 
 /// Returns the points of all these fronts: added mass, kg, and Σ D_k, kg m².
 pub(super) fn places(facts: &DesignFacts) -> impl Iterator<Item = [f64; 2]> {
-    facts.beside().iter().filter_map(|front| front.outcome.as_ref().ok()).flat_map(|told| told.measures())
+    facts.beside().iter().filter_map(|front| front.outcome.as_ref().ok()).flat_map(|front| front.measures())
 }
 
 /// Draws the fronts, each with its number.
 pub(super) fn draw(plot: &mut PlotUi<'_>, facts: &DesignFacts, p: &Palette) {
     for (i, MachineFront { name, outcome }) in facts.beside().iter().enumerate() {
-        let Ok(told) = outcome else { continue };
-        let places = told.measures();
+        let Ok(front) = outcome else { continue };
+        let places = front.measures();
         let last = places.last().copied().unwrap_or_default();
         let tone = colour(faded(p.ink, 0.6));
         let ends = Points::new(name.clone(), PlotPoints::from(vec![last])).radius(2.5).color(tone);
@@ -59,8 +59,8 @@ pub(super) fn list(ui: &mut Ui, facts: &DesignFacts, p: &Palette, commands: &mut
                 commands.push(WindowCommand::Fronts(FrontsCommand::Remove(i)).into());
             }
             let words = match outcome {
-                Ok(told) => {
-                    let least = |i: usize| told.measures().iter().map(|at| at[i]).fold(f64::INFINITY, f64::min);
+                Ok(front) => {
+                    let least = |i: usize| front.measures().iter().map(|at| at[i]).fold(f64::INFINITY, f64::min);
                     format!("least {} kg, {} kg m²", signed(least(0), 2), signed(least(1), 3))
                 }
                 Err(_) => "has no front".into(),

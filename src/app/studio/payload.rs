@@ -1,4 +1,4 @@
-//! The residual of the balance over the payload.
+//! The plot of the residual of the balance against the payload.
 
 use egui::{RichText, Ui};
 use egui_plot::{Line, PlotPoints, VLine};
@@ -12,7 +12,7 @@ use stillbase_picture::scene::palette::{Palette, faded};
 
 const PLOT_HEIGHT_PT: f32 = 96.0;
 
-/// Draws the plot, if the brief has an interval of payloads; `held` is the present payload, kg.
+/// Draws the plot, if the design brief has an interval of payloads; `held` is the present payload, kg.
 pub fn show(ui: &mut Ui, facts: &DesignFacts, held: f64, p: &Palette) {
     let Some(payloads) = &facts.payloads else { return };
     let Some((first, last)) = payloads.first().zip(payloads.last()) else { return };

@@ -13,7 +13,7 @@ use stillbase_session::scenario::{TaskChange, Value, to_value};
 use stillbase_session::{Edit, Session};
 use stillbase_settings::change::DEFAULT_WORD;
 
-/// Widths of the columns for the link's name and for each number, gap, and height of a row, points.
+/// Width of the column of names, width of a column of numbers, gap between columns, and height of a row, points.
 const NAME_WIDTH_PT: f32 = 34.0;
 const NUMBER_WIDTH_PT: f32 = 58.0;
 const GAP_PT: f32 = 4.0;
@@ -81,7 +81,8 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
                     p,
                     commands,
                     |mass| {
-                        // A disc of the same thickness and density.
+                        // The disc keeps its thickness and density, so its radius is proportional to the square root
+                        // of its mass.
                         let radius = weight.radius * (mass / weight.mass).max(0.0).sqrt();
                         let both =
                             TaskChange::from_iter([("mass".into(), mass.into()), ("radius".into(), radius.into())]);
@@ -105,7 +106,7 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
     details(ui, session, p, commands);
 }
 
-/// Draws inertia and length of one link, and the choice of this link.
+/// Draws the choice of one link, with its inertia and length.
 fn details(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
     let links = &session.scenario().machine.spec().links;
     let id = ui.scope_id().with("link in detail");
@@ -194,8 +195,8 @@ fn number(
     });
 }
 
-/// Draws the state of a number as a line under it, and its menu: fixed, free, or free within bounds while the balance
-/// is kept.
+/// Draws a line under a number, which shows its state while the balance is kept. A menu sets this state: fixed, free,
+/// or free within bounds.
 fn holding(
     ui: &Ui,
     response: &Response,

@@ -10,13 +10,13 @@ use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::{Palette, faded};
 use stillbase_study::equations::{Equality, EquationCell, Term, cells, plain as written};
 
-/// Heights of symbols and of numbers, width of a sign before either, gaps between terms and below a row, points.
+/// Heights of symbols and of numbers, width of the sign before them, gaps between terms and below a row, points.
 const SYMBOL_HEIGHT_PT: f32 = 17.0;
 const NUMBER_HEIGHT_PT: f32 = 15.0;
 const SIGN_WIDTH_PT: f32 = 12.0;
 const TERM_GAP_PT: f32 = 5.0;
 const ROW_GAP_PT: f32 = 5.0;
-/// Text that sets the minimum width of a number, so that it does not move when it becomes longer.
+/// Text that sets the minimum width of a number, so that the terms do not move when a number becomes longer.
 const WIDEST_NUMBER: &str = "00.0000";
 /// Font sizes, points.
 const SYMBOL_FONT_PT: f32 = 13.0;
@@ -36,7 +36,7 @@ pub struct TermPainter<'a> {
     pub gutter: f32,
 }
 
-/// Draws a line of the equation with this number.
+/// Draws a line of the equation whose number in the paper is `number`.
 pub fn show(ui: &mut Ui, pen: &TermPainter<'_>, number: &str, line: &Equality) {
     let width = ui.available_width();
     let cells = cells(line, DECIMALS);
@@ -67,7 +67,7 @@ pub fn label(ui: &Ui, line: &Equality) -> f32 {
     words(ui, &line.name, SMALL_FONT_PT, egui::Color32::WHITE, f32::INFINITY).size().x
 }
 
-/// Returns the size of a term.
+/// Returns the size of a term, points.
 fn size(ui: &Ui, p: &Palette, cell: &EquationCell<'_>, most: f32, room: f32) -> Vec2 {
     if cell.symbol.is_empty() {
         return vec2(SIGN_WIDTH_PT + TERM_GAP_PT, SYMBOL_HEIGHT_PT + NUMBER_HEIGHT_PT);
@@ -76,16 +76,17 @@ fn size(ui: &Ui, p: &Palette, cell: &EquationCell<'_>, most: f32, room: f32) -> 
     let symbol = set(ui, cell.symbol, SYMBOL_FONT_PT, colour(p.dim), most).size();
     let number = words(ui, &cell.number, NUMBER_FONT_PT, colour(p.ink), f32::INFINITY).size().x;
     let wide = symbol.x.max(number).max(room);
-    vec2(before(cell) + wide + TERM_GAP_PT, SYMBOL_HEIGHT_PT.max(symbol.y) + NUMBER_HEIGHT_PT)
+    vec2(sign_width(cell) + wide + TERM_GAP_PT, SYMBOL_HEIGHT_PT.max(symbol.y) + NUMBER_HEIGHT_PT)
 }
 
-/// Returns the width for the sign before a term; the first term has it too, since it may become negative.
-fn before(cell: &EquationCell<'_>) -> f32 {
+/// Returns the width of the sign before a term, points. The first term reserves it too, since the term may become
+/// negative.
+fn sign_width(cell: &EquationCell<'_>) -> f32 {
     if cell.symbol.is_empty() { 0.0 } else { SIGN_WIDTH_PT }
 }
 
-/// Returns the positions of terms, broken into rows of this width, and the total height; the unit follows the last
-/// term.
+/// Returns the positions of terms, broken into rows of this width, and the total height, points. `unit` is the width
+/// of the unit after the last term.
 fn flow(sizes: &[Vec2], unit: f32, width: f32) -> (Vec<Vec2>, f32) {
     let (mut at, mut row) = (Vec2::ZERO, 0.0_f32);
     let mut places = Vec::with_capacity(sizes.len());
@@ -102,7 +103,7 @@ fn flow(sizes: &[Vec2], unit: f32, width: f32) -> (Vec<Vec2>, f32) {
     (places, at.y + row + ROW_GAP_PT)
 }
 
-/// Draws a term; returns the right end of its number.
+/// Draws a term; returns the x coordinate of the right edge of its number, points.
 fn draw(ui: &Ui, pen: &TermPainter<'_>, cell: &EquationCell<'_>, rect: Rect, room: f32, unit: &str) -> f32 {
     let p = pen.p;
     let (ink, dim) = (colour(p.ink), colour(p.dim));
@@ -116,7 +117,7 @@ fn draw(ui: &Ui, pen: &TermPainter<'_>, cell: &EquationCell<'_>, rect: Rect, roo
             colour(faded(p.amber, if is_under { 0.3 } else { 0.18 })),
         );
     }
-    let shift = before(cell);
+    let shift = sign_width(cell);
     let lower = rect.bottom() - NUMBER_HEIGHT_PT;
     let painter = ui.painter();
     let sign = |text: &str, y: f32, size: f32| {

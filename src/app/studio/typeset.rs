@@ -8,7 +8,7 @@ use egui::{Align, Color32, Galley, Ui};
 use crate::theme::plain;
 use stillbase_study::equations::{Level, pieces};
 
-/// Size of an index, as a fraction of its symbol.
+/// Size of an index, as a fraction of the size of its symbol.
 const INDEX_SCALE: f32 = 0.74;
 
 /// Lays out a symbol in a size and colour, wrapped at a width, points.

@@ -71,13 +71,13 @@ impl Tour {
                     (false, true) => "Next",
                     (false, false) => "Skip",
                 };
-                let mut on = Button::new(RichText::new(words).color(colour(p.ink)));
+                let mut next = Button::new(RichText::new(words).color(colour(p.ink)));
                 if self.done {
-                    on = Button::new(RichText::new(words).color(colour(p.background))).fill(colour(p.amber));
+                    next = Button::new(RichText::new(words).color(colour(p.background))).fill(colour(p.amber));
                 }
-                let on = ui.add(on);
-                name(&on, &format!("{words}: tour"));
-                if on.clicked() {
+                let next = ui.add(next);
+                name(&next, &format!("{words}: tour"));
+                if next.clicked() {
                     commands.push(WindowCommand::TurnTour(true).into());
                 }
                 let back = ui.add_enabled(self.step > 0, Button::new("Back"));
@@ -94,7 +94,7 @@ impl Tour {
         });
     }
 
-    /// Returns the rectangle that it covers in a scene.
+    /// Returns the rectangle of a scene that the card covers.
     pub fn covers(ctx: &egui::Context, rect: egui::Rect) -> egui::Rect {
         let usual = egui::Rect::from_min_size(rect.left_bottom() + vec2(0.0, -190.0), vec2(446.0, 190.0));
         ctx.memory(|m| m.area_rect(id())).unwrap_or(usual)
