@@ -25,7 +25,8 @@ Examples:
   stillbase headless case-1 my.toml -o both.rrd --fps 30      with pictures
   stillbase headless case-3 -o loaded.rrd --set payload.mass=0.1")]
 pub struct HeadlessArguments {
-    /// Built-in scenarios (case-1, spacecraft …; an unknown name lists them all) or TOML files; default: the three cases
+    /// Built-in scenarios (case-1, spacecraft …; an unknown name lists them all) or TOML files; default: the three
+    /// cases
     #[arg(value_name = "SCENARIO")]
     scenarios: Vec<String>,
     /// The recording to write

@@ -52,8 +52,8 @@ pub struct ImportArguments {
     /// Columns to use if a file has both kinds; default: the drives
     #[arg(long, value_enum)]
     columns: Option<Columns>,
-    /// Motion that the proposal keeps if drive angles are given: that of the end effector, or that of the relative joint
-    /// angles; default: the end effector's, if some plane reaches all of it
+    /// Motion that the proposal keeps if drive angles are given: that of the end effector, or that of the relative
+    /// joint angles; default: the end effector's, if some plane reaches all of it
     #[arg(long, value_enum)]
     keep: Option<Kept>,
     /// Let the spline bridge gaps in time

@@ -60,9 +60,9 @@ struct Answer {
     scenario: Option<String>,
     drives: Vec<String>,
     links: usize,
-    /// kg.
+    /// Mass of the machine, kg.
     mass: f64,
-    /// Drive angles where all joints of URDF are at 0, or in the keyframe of MJCF, rad.
+    /// Drive angles, rad, with all joints of the URDF at 0, or in the keyframe of the MJCF.
     pose: Vec<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     base: Option<OfBase>,

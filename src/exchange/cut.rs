@@ -101,7 +101,7 @@ impl Cut {
         (radius > 0.0).then(|| self.thickness.unwrap_or(mass / (self.density * disc_area(radius))))
     }
 
-    /// Returns the mass of a disc, kg: area times thickness times density.
+    /// Returns the mass of a disc, kg, for its radius and thickness, m.
     pub fn weighs(&self, radius: f64, thickness: f64) -> f64 {
         disc_area(radius) * thickness * self.density
     }

@@ -27,7 +27,7 @@ pub struct RebalanceArguments {
     /// kilogram or metre. A mass stays between 0.1 and 10 times its original value unless --bound sets other bounds
     #[arg(long, value_name = "KEY,…", requires = "keep", value_delimiter = ',')]
     free: Vec<String>,
-    /// Lower and upper bound of a parameter, m or kg
+    /// Let this parameter change within these bounds only, m or kg
     #[arg(long, value_name = "KEY=LO,HI", requires = "keep", value_parser = bound, allow_hyphen_values = true)]
     bound: Vec<(String, [f64; 2])>,
 }
