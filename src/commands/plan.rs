@@ -135,7 +135,8 @@ impl PlanArguments {
         Ok(())
     }
 
-    /// Refuses options that have no effect on the task. Prints a note if the plan leaves out properties of plant or base.
+    /// Refuses options that have no effect on the task. Prints a note if the plan leaves out properties of plant or
+    /// base.
     fn check_use(&self, scenario: &Scenario) -> Result<(), Failure> {
         let task = &scenario.task;
         for (given, key) in [

@@ -4,9 +4,9 @@
 //! along e(q_k) of its drive, so a link that runs against its drive lies along −x. Bodies and hinges have the same
 //! names as in URDF.
 //!
-//! Every rotor is a body of its own: behind a gear its contributions to the momentum (D) and to the inertia (H) differ,
-//! and an armature would only add to the latter. Inertias about axes in the plane do not affect a plane motion and are
-//! invented.
+//! Every rotor is a separate body: behind a gear, it adds different amounts to the momentum (D) and to the inertia (H),
+//! whereas an armature would add to the inertia only. Inertias about axes in the plane do not affect a plane motion;
+//! their values are made up.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -161,7 +161,7 @@ impl<'a> Model<'a> {
         (0..parts.len()).filter(|j| parts[*j].parent == parent).collect()
     }
 
-    /// Writes a link with all links that hang on it.
+    /// Writes a link with all links that it carries.
     fn body(&mut self, depth: usize, j: usize) {
         let (link, part) = (&self.machine.links()[j], &self.machine.resolved_links()[j]);
         let (name, colour) = (self.tree.name(TreePart::Link(j)), DRIVE_COLOURS[part.drive % DRIVE_COLOURS.len()]);
@@ -204,7 +204,7 @@ impl<'a> Model<'a> {
     }
 
     fn inertial(&mut self, depth: usize, [x, y, z]: [f64; 3], mass: f64, inertia: f64) {
-        // As for a thin bar; a plane motion depends only on the inertia about z.
+        // Any value of at least half the inertia is valid; a plane motion depends only on the inertia about z.
         let other = 0.6 * inertia;
         line!(self, depth, "<inertial pos=\"{x} {y} {z}\" mass=\"{mass}\" diaginertia=\"{other} {other} {inertia}\"/>");
     }
@@ -319,7 +319,7 @@ impl<'a> Model<'a> {
             return;
         }
         line!(self, 1, "<equality>");
-        // If each link is kept parallel, the loops stay closed without equalities of their own.
+        // If each link is kept parallel, the loops stay closed without further equalities.
         if parallel.is_empty() {
             for number in 1..=loops {
                 line!(self, 2, "<connect name=\"loop {number}\" site1=\"loop {number} a\" site2=\"loop {number} b\"/>");

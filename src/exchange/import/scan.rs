@@ -3,7 +3,7 @@
 
 use super::refusal::ImportError;
 
-/// Maximum depth of an element: one body in another for the maximum number of links, and some elements around them.
+/// Maximum depth of an element: nested bodies for the maximum number of links, and some elements around them.
 const MAX_DEPTH: usize = 250;
 /// Maximum number of attributes of one element: MJCF has elements with some 40.
 const MAX_ATTRIBUTES: usize = 100;
