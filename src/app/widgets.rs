@@ -244,7 +244,7 @@ fn given_up_id() -> egui::Id {
     egui::Id::unique("given up")
 }
 
-/// Whether the drag of a number was cancelled in this pass.
+/// Takes the flag for a cancelled drag, and returns whether it was set in this pass.
 pub(super) fn drag_cancelled(ctx: &egui::Context) -> bool {
     ctx.data_mut(|data| data.remove_temp::<bool>(given_up_id())).unwrap_or_default()
 }

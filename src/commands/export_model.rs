@@ -18,13 +18,13 @@ use super::failure::Failure;
 use super::input::MachineArgument;
 use super::output::{Format, TextTable, check_output};
 
-/// Export a machine as a model for MuJoCo (.xml) or for ROS and Pinocchio (.urdf), as drawings of its links for cutting
-/// (.svg, .dxf), or as a list of its parts (.csv, .md)
+/// Export a machine: a model for MuJoCo (.xml) or for ROS and Pinocchio (.urdf), drawings for cutting (.svg, .dxf), or
+/// a parts list (.csv, .md)
 ///
 /// MJCF: sensors at the base read the force and moment that hold the machine; the reaction has the opposite sign. The
-/// pose is the keyframe "start". URDF: the joints drive_… are the motors, and all other joints follow them; comments in
-/// the file state what URDF cannot express. Both: data that plane motion does not need, as inertias about other axes,
-/// are made up.
+/// pose is the keyframe "start". URDF: the joints drive_… are the motors, and all other joints follow them; the element
+/// `<stillbase>` contains what URDF cannot express. Both: data that plane motion does not need, as inertias about other
+/// axes, are made up.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -48,7 +48,7 @@ pub struct ExportModelArguments {
     /// Density of the counterweights, kg/m³, in drawings and lists; default: that of steel, 7850
     #[arg(long, value_name = "DENSITY")]
     material: Option<f64>,
-    /// Thickness of the counterweights, m: of drawings and lists; what the mass of each takes where it is left out
+    /// Thickness of the counterweights, m, in drawings and lists; default: the thickness that gives each its mass
     #[arg(long, value_name = "T")]
     thickness: Option<f64>,
     #[arg(short, long, value_name = "FILE", help = format!("Write it to this file; what is written goes by the ending: {}", form::endings().join(", ")))]

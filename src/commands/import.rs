@@ -26,7 +26,7 @@ use table::table;
 /// The file has a header: t,q1,q2,q3 for absolute drive angles, or t,x,y for the end effector, in any order. Headings
 /// may name units: "t (ms)", "q1 (deg)", "x (mm)"; default: s, rad, m. Other columns are ignored. A quintic spline
 /// interpolates the samples. The proposal keeps the timing, and b is constant. It keeps the path of the end effector if
-/// some plane reaches all of it; otherwise it keeps the relative angles and turns the arm as a whole. A simulation
+/// some plane reaches all of it. Otherwise it keeps the relative angles and turns the arm as a whole. A simulation
 /// checks the proposal before it is called reactionless.
 #[derive(Args)]
 #[command(after_help = "\
@@ -53,7 +53,7 @@ pub struct ImportArguments {
     #[arg(long, value_enum)]
     columns: Option<Columns>,
     /// Motion that the proposal keeps if drive angles are given: that of the end effector, or that of the relative
-    /// joint angles; default: the end effector's, if some plane reaches all of it
+    /// joint angles. Default: that of the end effector, if some plane reaches all of it
     #[arg(long, value_enum)]
     keep: Option<Kept>,
     /// Let the spline bridge gaps in time

@@ -33,8 +33,8 @@ pub fn choice<T: Choice>(all: impl IntoIterator<Item = T>) -> impl TypedValuePar
 #[derive(Args, Default)]
 pub struct Settings {
     /// Set a key of the machine, such as link.5.com=-0.02 (m), or of a scenario, such as task.time=2 (s),
-    /// plant.payload.mass=0.1 (kg) or base.kind=free; may be repeated. The word `default` removes a key. `stillbase keys`
-    /// lists all keys with units, ranges and defaults
+    /// plant.payload.mass=0.1 (kg) or base.kind=free; may be repeated. The word `default` removes a key.
+    /// `stillbase keys` lists all keys with units, ranges and defaults
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pairs: Vec<(String, String)>,
 }

@@ -27,8 +27,8 @@ pub struct JointsArguments {
     /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenario: String,
-    /// Write the force on every pin over time to this CSV file: x and y in base axes, exerted by the first link on the
-    /// second
+    /// Write the force on every pin over time to this CSV file. The first link exerts it on the second; x and y are in
+    /// base axes
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
     /// Replace the file if it exists

@@ -36,7 +36,7 @@ pub struct LearnArguments {
     /// Only this equation, 1 to 16 or A1 to A3; may be repeated
     #[arg(long, value_name = "N", value_parser = number)]
     equation: Vec<&'static str>,
-    /// The instant of the run, s
+    /// Time of the run, s
     #[arg(long, value_name = "T", value_parser = instant)]
     at: Option<f64>,
     /// Angles of all drives instead of a run, rad

@@ -26,7 +26,7 @@ use super::output::{Format, TextTable, check_output};
 use stillbase_settings::number::{counted, fixed};
 use stillbase_settings::word::Choice;
 
-/// Name of a plan for a machine without an output file, which would name it.
+/// Name of a plan for a machine, unless an output file gives it another.
 const DEFAULT_NAME: &str = "plan";
 
 /// Plan a motion through points: find a feasible b, the path, the timing and the cost
@@ -48,8 +48,8 @@ pub struct PlanArguments {
     /// Points of the end effector in base axes, m, in order; default: those of the scenario
     #[arg(value_name = "X,Y", value_parser = point)]
     points: Vec<Vector>,
-    /// Pose constant at the first point, rad; default: the middle of the interval feasible for all points, or else for
-    /// the first point; without points, that of the scenario
+    /// Pose constant at the first point, rad. Default: the middle of the interval feasible for all points, or else for
+    /// the first point. Without points, the default is that of the scenario
     #[arg(long, value_name = "B", value_parser = pose_constant)]
     b: Option<f64>,
     /// Method that resolves the redundancy
@@ -115,7 +115,7 @@ impl PlanArguments {
             check_output(file, self.force, &["toml"])?;
         }
         let mut scenario = self.scenario()?;
-        // A machine without a pose space can be planned, too.
+        // A motion can be planned for a machine without a pose space, too.
         let space = pose_space(&scenario.machine).ok();
         let run = Run::new(&scenario);
         let answer = PlanSummary::of(&scenario, space.as_ref(), run.as_ref(), self.base.as_ref());

@@ -144,7 +144,7 @@ impl<T: Serialize> Serialize for Columns<T> {
 }
 
 impl SimulateArguments {
-    /// Simulates the scenario and writes its signals as CSV, or the verdict.
+    /// Simulates the scenario, and writes its signals as CSV or prints the verdict.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = scenario(&self.scenario, &self.settings)?;
         let table = signals(&scenario.machine);

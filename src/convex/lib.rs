@@ -37,7 +37,7 @@ pub struct Program {
     pub equal: Vec<LinearRow>,
     /// Inequalities Σ value x_j ≤ right, where right is finite.
     pub at_most: Vec<LinearRow>,
-    /// Second-order cones: rows a, b, c with a ≥ |(b, c)|. Each row has the value Σ value x_j + right.
+    /// Second-order cones a ≥ |(b, c)|, where a row gives each of a, b and c as Σ value x_j + right.
     pub cones: Vec<[LinearRow; 3]>,
 }
 

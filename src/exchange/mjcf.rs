@@ -1,10 +1,9 @@
 //! A machine as MJCF, the format of MuJoCo. Links are bodies in the plane z = 0, pins are hinges, and pins that close
-//! loops are equalities. The model has motors with gears and rotors, and sensors of force and moment at the base, which
-//! measure force and moment of the base on the machine; f_B and n_B have the opposite sign. The frame of a link has x
-//! along e(q_k) of its drive, so a link that runs against its drive lies along −x. Bodies and hinges have the same
-//! names as in URDF.
+//! loops are equalities. The model has motors with gears and rotors. Sensors at the base measure the force and moment of
+//! the base on the machine; f_B and n_B have the opposite sign. The frame of a link has x along e(q_k) of its drive, so
+//! a link that runs against its drive lies along −x. Bodies and hinges have the same names as in URDF.
 //!
-//! Every rotor is a separate body: behind a gear, it adds different amounts to the momentum (D) and to the inertia (H),
+//! Every rotor is a separate body. Behind a gear, it adds different amounts to the momentum (D) and to the inertia (H),
 //! whereas an armature would add to the inertia only. Inertias about axes in the plane do not affect a plane motion;
 //! their values are made up.
 
@@ -408,7 +407,8 @@ fn parallel(machine: &Machine) -> Vec<(usize, PinAngleSum)> {
     (0..parts.len()).filter_map(of).collect()
 }
 
-/// Returns a pose, rad, with its first drive upright and each relative angle in the middle of its limits.
+/// Returns drive angles, rad, with each relative angle in the middle of its limits, or at 0 without limits. A drive
+/// that no relative angle determines points along y.
 pub fn middle(machine: &Machine) -> Vec<f64> {
     let mut q = vec![TAU / 4.0; machine.drives()];
     for angle in machine.angles() {

@@ -183,8 +183,8 @@ fn joints(machine: &Machine, turned: &[Option<usize>]) -> Vec<TreeJoint> {
     joints
 }
 
-/// Returns q_to − q_from as a sum of motor angles, each with sign 1 or −1: first from drive `from` along its carriers
-/// to the common carrier, then from there to drive `to`.
+/// Returns q_to − q_from as a sum of motor angles, each with sign 1 or −1. The sum goes from drive `from` along its
+/// carriers to the common carrier, then from there to drive `to`.
 fn turns(machine: &Machine, from: Option<usize>, to: Option<usize>) -> Vec<(usize, f64)> {
     let motors = machine.motors();
     let carriers = |k: Option<usize>| std::iter::successors(k, |k| motors.on(*k)).collect::<Vec<_>>();

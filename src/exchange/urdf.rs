@@ -138,7 +138,7 @@ impl<'a> Model<'a> {
         self.lines.add(1, format_args!("</stillbase>"));
     }
 
-    /// Returns the limits of a relative angle as limits of a motor's joint, rad; `None` if there are no limits, or no
+    /// Returns the limits of a relative angle as limits of a motor's joint, rad. `None` if there are no limits, or no
     /// motor turns this angle.
     fn limited(&self, angle: &RelativeAngle) -> Option<(usize, [f64; 2])> {
         let motors = self.machine.motors();

@@ -264,8 +264,8 @@ fn aside(part: &Path, file: &Path, copied: bool) -> Option<PathBuf> {
     .map(|()| aside)
 }
 
-/// Renames the previous content of a file from its temporary name to a lasting one, `FILE.before`, `FILE.before-1` and
-/// so on, because the next write would remove a temporary file.
+/// Renames the previous content of a file from its temporary name to a lasting one, because the next write would remove
+/// a temporary file. The name is `FILE.before`, `FILE.before-1` and so on.
 fn named_before(temporary: &Path, file: &Path) -> PathBuf {
     let mut name = file.as_os_str().to_owned();
     name.push(".before");

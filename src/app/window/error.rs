@@ -49,7 +49,7 @@ fn kept_in(kept: Option<&Path>) -> String {
 
 /// Returns the reason why nothing could be drawn on an existing display.
 pub(super) fn what_is_missing() -> String {
-    // SAFETY: this is the loader of the graphics drivers, which wgpu tried a moment ago in the same way; its
+    // SAFETY: this is the loader of the graphics drivers, which wgpu tried a moment ago in the same way. Its
     // initialisers only set up its own state.
     if cfg!(target_os = "linux") && unsafe { libloading::Library::new("libvulkan.so.1") }.is_err() {
         return "libvulkan.so.1 is missing: install it with `apt-get install libvulkan1`".into();
@@ -77,8 +77,8 @@ pub(super) fn check_libraries() -> Result<(), WindowError> {
         ("libXcursor.so.1", "apt-get install libxcursor1"),
         ("libXi.so.6", "apt-get install libxi6"),
     ] {
-        // SAFETY: these are system libraries that the window system loads a moment later in the same way; their
-        // initialisers do nothing but set up their own state.
+        // SAFETY: these are system libraries that the window system loads a moment later in the same way. Their
+        // initialisers only set up their own state.
         if unsafe { libloading::Library::new(library) }.is_err() {
             return Err(WindowError::MissingLibrary { library, install });
         }

@@ -49,8 +49,9 @@ const PREFERENCES_INTERVAL: Duration = Duration::from_secs(1);
 const JOURNAL_INTERVAL: Duration = Duration::from_millis(500);
 /// Maximum time added to [`JOURNAL_INTERVAL`] because a long session takes long to copy.
 const MAX_COPY_PAUSE: Duration = Duration::from_millis(250);
-/// Number and interval of the checks for the end of a write when the window closes.
+/// Maximum number of checks for the end of a write when the window closes.
 const MAX_CHECKS: u32 = 1000;
+/// Interval of these checks.
 const CHECK_INTERVAL: Duration = Duration::from_millis(2);
 /// Ratio of the added time to the time that copying the session took; [`MAX_COPY_PAUSE`] limits the result.
 const COPY_PAUSE_FACTOR: u32 = 50;

@@ -32,7 +32,7 @@ pub struct Screen {
 pub enum PaintOutcome {
     /// The picture was presented, or the window is hidden.
     Done,
-    /// The picture was not presented, because the surface has changed: draw again.
+    /// The picture was not presented, for example because the surface has changed: draw again.
     Again,
 }
 

@@ -28,14 +28,14 @@ use weighed::WeightArguments;
 
 /// Place the links' centres of mass so that the base feels no force and the mass matrix is invariant, Eq. (10)
 ///
-/// The result is the balanced design with minimum Σ (p_j l_cj)²: a link with a large penalty p_j keeps its centre of
+/// The result is the balanced design with minimum Σ (p_j l_cj)². A link with a large penalty p_j keeps its centre of
 /// mass near its attachment.
 ///
 /// With --keep the machine changes as little as possible instead: only free parameters change, within their bounds. If
-/// no balanced design lies within them, the answer names the bounds in conflict and how far each must be relaxed.
+/// no balanced design lies within them, the answer names the bounds in conflict and a relaxation that suffices.
 ///
-/// With --counterweights the links stay unchanged, and discs on them balance the machine: the lightest discs, or those
-/// of least inertia, certified by a cone program. "gap" is the maximum amount by which the optimum may be lower.
+/// With --counterweights the links stay unchanged, and discs on them balance the machine. A cone program finds the
+/// lightest discs, or those of least inertia. "gap" is the maximum amount by which the optimum may be lower.
 ///
 /// With --counterweights --front and several machines, the answer compares their Pareto fronts under the same bounds.
 /// For a machine that no counterweights within the bounds balance, it gives the reason.
@@ -71,8 +71,8 @@ pub struct DesignArguments {
     kept: RebalanceArguments,
     #[command(flatten)]
     weighing: Box<WeightArguments>,
-    /// A built-in scenario or a TOML file: its motion, planned for its own machine, determines the torque. The ratios β
-    /// compare force, moment and torque along this motion with those of the original machine
+    /// A built-in scenario or a TOML file: its motion, planned for its own machine, determines the torque. Each β is
+    /// the ratio of force, moment or torque (root mean squares along this motion) to its value before
     #[arg(long, value_name = "SCENARIO")]
     task: Option<String>,
     /// Write the new machine to this file

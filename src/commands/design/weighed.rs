@@ -62,9 +62,10 @@ pub struct WeightArguments {
     /// unchanged
     #[arg(long, value_name = "DRIVE=LO,HI", requires = "counterweights", value_parser = range, allow_hyphen_values = true)]
     rotor_ratio: Vec<(String, [f64; 2])>,
-    /// Objective to minimise: mass (added), inertia (seen by the drives, Σ D_k without gears), momentum (given to the
-    /// base, Σ |D_k|), torque, or a weighted sum as mass=1,inertia=5. Counter-rotating rotors reduce the momentum. The
-    /// torque is the maximum |τ| during --task, whereas the β of torque is a ratio of means
+    /// Objective to minimise: mass, inertia, momentum, torque, or a weighted sum as mass=1,inertia=5. The mass is the
+    /// added mass; the inertia is that seen by the drives, Σ D_k without gears. The momentum is that given to the base,
+    /// Σ |D_k|; counter-rotating rotors reduce it. The torque is the maximum |τ| during --task, whereas the β of torque
+    /// is a ratio of root mean squares
     #[arg(long, value_name = "mass|inertia|momentum|torque|WEIGHTS", requires = "counterweights", value_parser = objective)]
     objective: Option<Objective>,
     /// Maximum total mass of the counterweights, kg
@@ -77,7 +78,7 @@ pub struct WeightArguments {
     /// lengths are the best of several searches, not certified; the counterweights for these lengths are certified
     #[arg(long, value_name = "NAME=LO,HI", requires = "counterweights", value_parser = range)]
     length: Vec<(String, [f64; 2])>,
-    /// Minimum reach of all arms together, m
+    /// Minimum reach, the sum of the lengths of all arms, m
     #[arg(long, value_parser = number, value_name = "R", requires = "length")]
     min_reach: Option<f64>,
     /// Minimum area of the reactionless workspace, m²

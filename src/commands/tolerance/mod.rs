@@ -24,9 +24,9 @@ use stillbase_settings::number::counted;
 
 /// Sample machines within tolerances, and evaluate their reactions on the base
 ///
-/// The spreads come from [tolerance] of the scenario and from --spread. By default all are normal; the standard
-/// deviations are 0.5 mm for centres of mass, along and across the link, 0.5 % for masses, 2 % for inertias and 0.05 mm
-/// for lengths. Every machine tracks the planned motion perfectly, so its wrench is linear in g, C and H and fast to
+/// The spreads come from [tolerance] of the scenario and from --spread. By default all are normal. The standard
+/// deviations are 0.5 mm for both coordinates of a centre of mass, 0.5 % for masses, 2 % for inertias and 0.05 mm for
+/// lengths. Every machine tracks the planned motion perfectly, so its wrench is linear in g, C and H and fast to
 /// evaluate. With --simulate each machine is simulated, with control that knows only the nominal machine.
 #[derive(Args)]
 #[command(after_help = "\

@@ -27,15 +27,15 @@ use super::sites::{range, sites};
 
 /// Identify the unbalance of a built machine from measured base forces, and find the smallest change that corrects it
 ///
-/// Each file is CSV with a header: t, the absolute drive angles q1, q2 …, and the readings fx, fy, nz of a sensor under
-/// the machine: the force on the base and the moment about B. Units are s, rad, N, N m, or given as "q1 (deg)",
-/// "nz (mN m)". Rates qd1 … and accelerations qdd1 … are used if both exist. A column `motion`, a jump in time or a
-/// restart of time separates motions, which each have their own sensor offsets. Files that `simulate` and
+/// Each file is CSV with a header: t, the absolute drive angles q1, q2 …, and fx, fy, nz. These are the force on the
+/// base and the moment about B, as a sensor under the machine reads them. Units are s, rad, N, N m, or given as
+/// "q1 (deg)", "nz (mN m)". Rates qd1 … and accelerations qdd1 … are used if both exist. A column `motion`, a jump in
+/// time or a restart of time separates motions, which each have their own sensor offsets. Files that `simulate` and
 /// `export --what simulated` write can be read unchanged.
 ///
 /// Least squares estimate every component of Eqs (7) and (8) with its 95 % interval, and offset and drift of each
 /// sensor. Components that the data do not determine are named. Wrong signs, exchanged columns, relative angles and
-/// wrong units are fitted, too: if one of them explains the data far better, trim says so and stops. Components that
+/// wrong units are fitted, too. If one of them explains the data far better, trim says so and stops. Components that
 /// differ from the machine's file by more than their interval are corrected, if the data show that this helps. The
 /// correction changes mass and place of the counterweights, or adds some if there are none. The last table proposes the
 /// next motion: the one that best determines the most uncertain component.
@@ -63,7 +63,7 @@ pub struct TrimArguments {
     #[arg(long, value_name = "KEY=LO,HI", value_parser = bound, allow_hyphen_values = true)]
     bound: Vec<(String, [f64; 2])>,
     /// On a machine without counterweights: a link that may carry a new one, and the bounds of its place, m from the
-    /// root towards the tip; default: every link
+    /// root towards the tip. Default: every link
     #[arg(long, value_name = "LINK=LO,HI", value_parser = range, allow_hyphen_values = true)]
     range: Vec<(String, [f64; 2])>,
     /// Ignore measured rates and accelerations, and compute them from the angles

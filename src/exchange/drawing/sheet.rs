@@ -115,7 +115,7 @@ fn mm(metres: f64) -> String {
     fixed(1e3 * metres, 1)
 }
 
-/// Returns a length in mm with a true minus sign, as wide as a plus.
+/// Formats a length, m, in mm with the minus sign U+2212, which is as wide as a plus.
 fn signed(metres: f64) -> String {
     mm(metres).replace('-', "\u{2212}")
 }

@@ -28,7 +28,7 @@ pub struct MjcfBodies<'a> {
     pub parts: Vec<ImportedPart>,
     bodies: Vec<Node<'a, 'a>>,
     hinges: Hinges<'a>,
-    /// Frames of the parts as drawn, before the keyframe turns their hinges.
+    /// Frames of the parts as drawn, that is, as their elements state them, before the keyframe turns their hinges.
     drawn: Vec<Isometry3<f64>>,
     /// Sites: name and point.
     pub sites: Vec<(&'a str, AttachmentPoint)>,
@@ -135,8 +135,8 @@ impl<'a> MjcfBodies<'a> {
         Ok(())
     }
 
-    /// Returns mass, centre of mass and inertia of a body in the axes of the base. A body without mass has its centre
-    /// of mass where MuJoCo puts it: at the position of the body, applied once more in the frame of the body.
+    /// Returns mass, centre of mass and inertia of a body in the axes of the base. The centre of mass of a body without
+    /// mass is that of MuJoCo: the position of the body, applied once more in the frame of the body.
     fn weight(
         &mut self,
         open: &ListedBody<'a>,
@@ -234,8 +234,8 @@ impl<'a> MjcfBodies<'a> {
         self.hinges.of.get(i)?.as_ref()?.limits
     }
 
-    /// Finds the end effector: a site or body with a usual name of end effectors, or else the only site that is not a
-    /// pin, or else the end of the last shape.
+    /// Finds the end effector. It is a site or body with a usual name, or else the only site that is not a pin, or else
+    /// the end of the last shape.
     pub fn end(&mut self) -> Option<AttachmentPoint> {
         let sites = self.sites.iter().filter_map(|(name, end)| Some((end_rank(name)?, *end)));
         let bodies = self.parts.iter().enumerate();

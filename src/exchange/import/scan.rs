@@ -1,4 +1,4 @@
-//! Bounds on XML, checked in one pass before it is parsed: the parser's work grows with the square of the number of
+//! Bounds on XML, checked in one pass before it is parsed. The parser's work grows with the square of the number of
 //! attributes of one element, and with depth times number of namespaces.
 
 use super::refusal::ImportError;

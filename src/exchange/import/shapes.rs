@@ -54,7 +54,7 @@ fn of_point(at: Vector3<f64>) -> Matrix3<f64> {
     Matrix3::identity() * at.norm_squared() - at * at.transpose()
 }
 
-/// Returns the mass properties of a shape in the axes to which `frame` maps those of its body; `None` for a shape
+/// Returns the mass properties of a shape in the axes to which `frame` maps those of its body. `None` is for a shape
 /// without mass, or outside the groups whose shapes have mass.
 ///
 /// # Errors

@@ -13,8 +13,8 @@ use stillbase_settings::range::quote_clipped;
 
 /// Tolerance of an equality of a tendon in the pose of the file, rad.
 const EQUALITY_TOLERANCE_RAD: f64 = 1e-6;
-/// Tolerance for a centre of mass on an axis: its distance from the axis, relative to its distance from the hinge point
-/// or to 1 m, if that is larger.
+/// Tolerance for a centre of mass on an axis: the ratio of its distances from the axis and from the hinge point. A
+/// distance from the hinge point below 1 m counts as 1 m.
 const ON_AXIS_TOLERANCE: f64 = 1e-9;
 
 /// An equality of two sums of hinges: `one` is `ratio` times `other`.
@@ -71,8 +71,8 @@ impl<'a> CoupledBodies<'a> {
         Ok(())
     }
 
-    /// Joins the sets that couplings A − B = ±(C − D) keep parallel, and drops these couplings. In the form
-    /// A + D = B + C or A + C = B + D, if a term on the left turns with one on the right, so do the other two.
+    /// Joins the sets that couplings A − B = ±(C − D) keep parallel, and drops these couplings. Their other form is
+    /// A + D = B + C or A + C = B + D. If a term on the left turns with one on the right, so do the other two.
     fn join_parallel(&mut self, couplings: &mut Vec<Coupling<'a>>) {
         let mut count = usize::MAX;
         while couplings.len() < count {
@@ -98,8 +98,8 @@ impl<'a> CoupledBodies<'a> {
         same.is_some()
     }
 
-    /// Returns whether a coupling drives a rotor: a body without children or sites, balanced about its hinge, and
-    /// coupled to a sum that a motor turns.
+    /// Returns whether a coupling drives a rotor: a body without children or sites that is balanced about its hinge. The
+    /// coupling must be to a sum of hinges that a motor turns.
     fn is_rotor(&self, coupling: &Coupling<'a>, driven: &[HingeSum]) -> bool {
         let [(part, _)] = coupling.one[..] else { return false };
         let parts = &self.bodies.parts;
