@@ -1,7 +1,7 @@
 //! A machine as MJCF, the format of MuJoCo. Links are bodies in the plane z = 0, pins are hinges, and pins that close
-//! loops are equalities. The model has motors with gears and rotors. Sensors at the base measure the force and moment of
-//! the base on the machine; f_B and n_B have the opposite sign. The frame of a link has x along e(q_k) of its drive, so
-//! a link that runs against its drive lies along −x. Bodies and hinges have the same names as in URDF.
+//! loops are equalities. The model has motors with gears and rotors. Sensors at the base measure the force and moment
+//! of the base on the machine; f_B and n_B have the opposite sign. The frame of a link has x along e(q_k) of its drive,
+//! so a link that runs against its drive lies along −x. Bodies and hinges have the same names as in URDF.
 //!
 //! Every rotor is a separate body. Behind a gear, it adds different amounts to the momentum (D) and to the inertia (H),
 //! whereas an armature would add to the inertia only. Inertias about axes in the plane do not affect a plane motion;

@@ -1,8 +1,8 @@
 //! Import of machines from other programs: planar URDF and MJCF whose links each follow one drive.
 //!
 //! A reader for each format (`urdf`, `mjcf`) returns a `linkage` in space. It contains parts, their hinges in a
-//! reference pose, the sets of parts that turn together, motors and rotors. `family` projects the linkage onto the plane
-//! of motion and makes a machine of it. If that is impossible, the error names the reason.
+//! reference pose, the sets of parts that turn together, motors and rotors. `family` projects the linkage onto the
+//! plane of motion and makes a machine of it. If that is impossible, the error names the reason.
 
 mod bodies;
 mod compiler;

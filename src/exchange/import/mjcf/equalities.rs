@@ -98,8 +98,8 @@ impl<'a> CoupledBodies<'a> {
         same.is_some()
     }
 
-    /// Returns whether a coupling drives a rotor: a body without children or sites that is balanced about its hinge. The
-    /// coupling must be to a sum of hinges that a motor turns.
+    /// Returns whether a coupling drives a rotor: a body without children or sites that is balanced about its hinge.
+    /// The coupling must be to a sum of hinges that a motor turns.
     fn is_rotor(&self, coupling: &Coupling<'a>, driven: &[HingeSum]) -> bool {
         let [(part, _)] = coupling.one[..] else { return false };
         let parts = &self.bodies.parts;
