@@ -21,7 +21,7 @@ use stillbase_settings::text::sheet_cell;
 ///
 /// One scenario: its task runs in up to five ways. They are a reactionless path, a straight line (case 1), another pose
 /// at the end (case 2), a straight line with a reaction wheel, and slow motion. Several scenarios: each runs as given.
-/// If their machines differ, a second table gives mass and balance of each, with cost and benefit relative to the first.
+/// If their machines differ, a second table gives mass and balance of each, and cost and benefit relative to the first.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
