@@ -22,8 +22,8 @@ use stillbase_settings::number::{counted, fixed};
 ///
 /// Columns are t; q, qd, qdd, tau_ff of each drive; x, y of the end effector; and b. Numbers are in SI units and
 /// radians, with all digits. A simulation on a moving base adds base_x, base_y, theta and their rates base_xd, base_yd,
-/// thetad. Angles q are absolute: an encoder reads q - theta. The last columns of a simulation are fx, fy, nz. These are
-/// the force and moment that the machine transmits to its base, weight included. A force plate reads the same
+/// thetad. Angles q are absolute: an encoder reads q - theta. The last columns of a simulation are fx, fy, nz. These
+/// are the force and moment that the machine transmits to its base, weight included. A force plate reads the same
 /// (`stillbase trim`). The first row is the start and the last row the end, even if the rate does not divide the
 /// duration.
 #[derive(Args)]
