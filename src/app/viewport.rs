@@ -130,11 +130,11 @@ pub fn show(
     shown.inner
 }
 
-/// Returns the rectangles of the objects that hints mention: target, end effector and the ring of b, on the screen.
+/// Returns the screen rectangles of the objects that hints mention: the target, and the ring of b with its label.
 fn spoken_of(spot: &SceneViewport, stage: &Stage, shown: &DrawnFrame<'_>) -> Vec<Rect> {
     let ring = stage.handle(Handle::Ring, shown).and_then(|knob| {
         let middle = spot.screen([shown.base.at.re, shown.base.at.im, knob[2]])?;
-        // Its label lies outside.
+        // The factor makes room for the label, which lies outside the ring.
         let radius = 1.4 * (spot.screen(knob)? - middle).length();
         Some(Rect::from_center_size(middle, Vec2::splat(2.0 * radius)))
     });
@@ -149,7 +149,7 @@ const CARD_DELAY_S: f64 = 0.35;
 /// Number of snapshots along a motion, as in Fig. 5.
 const SNAPSHOT_COUNT: usize = 9;
 
-/// Returns poses of the motion that the view is to contain; none while the run waits.
+/// Returns the poses that the view must contain: samples of the motion, none while the run waits.
 fn motion(session: &Session) -> Vec<DriveAngles> {
     if session.run().waiting().is_some() { Vec::new() } else { snapshots(session) }
 }
@@ -166,7 +166,7 @@ fn snapshots(session: &Session) -> Vec<DriveAngles> {
     (0..SNAPSHOT_COUNT).map(|i| run.plan().motion.at(share(i) * run.planned_time()).q).collect()
 }
 
-/// Returns the frames of the runs shown in comparison, at a time, s.
+/// Returns the frames of the runs shown in comparison, at `time`, s.
 fn others(comparison: &Comparison, time: f64) -> Vec<OtherRun> {
     let other = |(i, run): (usize, &stillbase_study::comparison::ComparedRun)| {
         Some(OtherRun { name: (i + 1).to_string(), frame: *run.at(time)? })

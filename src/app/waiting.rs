@@ -9,11 +9,11 @@ use stillbase_query::{Work, Workers};
 /// by a time slice of the operating system.
 pub(super) struct DeferredWorkers {
     workers: Box<dyn Workers + Send + Sync>,
-    line: Mutex<Line>,
+    line: Mutex<Queue>,
 }
 
 #[derive(Default)]
-struct Line {
+struct Queue {
     is_closed: bool,
     work: Vec<Work>,
 }
@@ -25,33 +25,33 @@ impl DeferredWorkers {
 
     /// Holds new work back from now on.
     fn close(&self) {
-        self.line().is_closed = true;
+        self.queue().is_closed = true;
     }
 
     /// Starts the work that was held back.
     pub fn open(&self) {
         let work = {
-            let mut line = self.line();
-            line.is_closed = false;
-            take(&mut line.work)
+            let mut queue = self.queue();
+            queue.is_closed = false;
+            take(&mut queue.work)
         };
         for work in work {
             self.workers.start(work);
         }
     }
 
-    fn line(&self) -> MutexGuard<'_, Line> {
+    fn queue(&self) -> MutexGuard<'_, Queue> {
         self.line.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl Workers for DeferredWorkers {
     fn start(&self, work: Work) {
-        let mut line = self.line();
-        if line.is_closed {
-            line.work.push(work);
+        let mut queue = self.queue();
+        if queue.is_closed {
+            queue.work.push(work);
         } else {
-            drop(line);
+            drop(queue);
             self.workers.start(work);
         }
     }
@@ -66,7 +66,7 @@ impl Workers for DeferredWorkers {
 pub struct DrawingGuard(Option<Arc<DeferredWorkers>>);
 
 impl DrawingGuard {
-    /// Creates the guard; without a queue, work is done at once and nothing is held back.
+    /// Creates the guard; without a queue, no work is held back.
     pub(super) fn begin(waiting: Option<&Arc<DeferredWorkers>>) -> Self {
         if let Some(waiting) = waiting {
             waiting.close();

@@ -59,7 +59,7 @@ pub(super) fn tip_of(path: &str) -> &'static str {
 }
 
 impl<'a> NumberRow<'a> {
-    /// Returns the row of a setting, by its path; unit, range and tip are those of its key.
+    /// Creates the row of the setting at `path`, with the unit, range and tip of its key.
     pub fn of(label: &'a str, path: &str) -> Self {
         let key = key_of(path);
         let range = key.and_then(key::Key::range).map_or(f64::MIN..=f64::MAX, |range| range.low()..=range.high());
@@ -96,7 +96,7 @@ impl NumberRow<'_> {
         let before = *value;
         let refused = Cell::new(None);
         let read = |text: &str| {
-            // The text is unchanged: the value of the file stays exact.
+            // If the text is unchanged, the value keeps the digits that the text does not show.
             if text == shown {
                 return None;
             }
@@ -106,13 +106,13 @@ impl NumberRow<'_> {
             .custom_parser(read)
             .speed(self.speed)
             .range(self.range.clone())
-            // A value of a file stays as it is until it is edited.
+            // A value read from a file is clamped only when it is edited.
             .clamp_existing_to_range(false)
             .fixed_decimals(self.decimals)
             .update_while_editing(false);
         let mut response = ui.add(drag).on_hover_text(self.tip);
-        // egui handles Shift itself.
-        held(&mut response, value, before, &self.range, 1.0, self.round());
+        // The factor is 1, because egui itself slows the drag with Shift.
+        restrict(&mut response, value, before, &self.range, 1.0, self.round());
         if let Some(why) = refused.take() {
             ui.data_mut(|data| data.insert_temp(refused_id(), why));
         }
@@ -182,7 +182,7 @@ impl NumberRow<'_> {
         let slider = Slider::from_get_set(self.slide.clone(), turned);
         let slider = slider.clamping(SliderClamping::Edits).show_value(false);
         let mut slider = ui.add(slider.smart_aim(false).logarithmic(logarithmic));
-        held(&mut slider, value, before, &self.slide, f64::from(FINE_DRAG_FACTOR), self.round());
+        restrict(&mut slider, value, before, &self.slide, f64::from(FINE_DRAG_FACTOR), self.round());
         ui.spacing_mut().interact_size.y = 22.0;
         name(&slider, &format!("{} slider", self.label));
         // During a drag the tooltip would cover the scene.
@@ -190,31 +190,31 @@ impl NumberRow<'_> {
     }
 }
 
-/// Fraction of the movement that a drag with Shift makes.
+/// Factor by which Shift slows a drag.
 pub(super) const FINE_DRAG_FACTOR: f32 = 0.1;
 
 /// A number that is being dragged.
 #[derive(Clone, Copy)]
-struct Held {
-    /// Value at the pointer.
+struct DraggedNumber {
+    /// Value requested by the pointer.
     requested: f64,
-    /// Offset of the number behind the pointer since Shift was held.
+    /// Lag of the number behind the pointer, because Shift slows the drag.
     behind: f64,
     /// Cancelled with Esc: the number keeps its value until the release.
     given_up: bool,
 }
 
 /// Limits the drag of a number: slower with Shift, to round numbers with Ctrl, no change after Esc.
-fn held(response: &mut Response, value: &mut f64, before: f64, range: &RangeInclusive<f64>, fine: f64, round: f64) {
+fn restrict(response: &mut Response, value: &mut f64, before: f64, range: &RangeInclusive<f64>, fine: f64, round: f64) {
     let (ctx, id) = (response.ctx.clone(), response.id.with("held"));
     // On Esc egui itself ends a drag, but a slider goes on following the pointer.
     if !response.is_pointer_button_down_on() && !response.drag_stopped() {
-        ctx.data_mut(|data| data.remove_temp::<Option<Held>>(id));
+        ctx.data_mut(|data| data.remove_temp::<Option<DraggedNumber>>(id));
         return;
     }
     let requested = *value;
-    let now = ctx.data(|data| data.get_temp::<Option<Held>>(id)).flatten();
-    let mut now = now.unwrap_or(Held { requested, behind: 0.0, given_up: false });
+    let now = ctx.data(|data| data.get_temp::<Option<DraggedNumber>>(id)).flatten();
+    let mut now = now.unwrap_or(DraggedNumber { requested, behind: 0.0, given_up: false });
     let (shift, ctrl, esc) =
         ctx.input(|i| (i.modifiers.shift, i.modifiers.ctrl || i.modifiers.command, i.key_pressed(Key::Escape)));
     if shift {
@@ -234,22 +234,22 @@ fn held(response: &mut Response, value: &mut f64, before: f64, range: &RangeIncl
     if now.given_up {
         *value = before;
     }
-    // A slider requests its value in every frame.
+    // A slider sets its value in every frame, changed or not.
     response.flags.set(Flags::CHANGED, *value != before);
     ctx.data_mut(|data| data.insert_temp(id, Some(now)));
 }
 
-/// Key of the flag that a drag was cancelled, until the end of the pass.
+/// Key of the flag for a cancelled drag; the flag is kept until the end of the pass.
 fn given_up_id() -> egui::Id {
     egui::Id::unique("given up")
 }
 
-/// Whether the drag of a number was cancelled in this pass.
+/// Takes the flag for a cancelled drag, and returns whether it was set in this pass.
 pub(super) fn drag_cancelled(ctx: &egui::Context) -> bool {
     ctx.data_mut(|data| data.remove_temp::<bool>(given_up_id())).unwrap_or_default()
 }
 
-/// Key of the reason of a refused entry, until the end of the pass.
+/// Key of the reason why an entry was refused; the reason is kept until the end of the pass.
 fn refused_id() -> egui::Id {
     egui::Id::unique("refused entry")
 }
@@ -279,7 +279,7 @@ pub(super) fn send(commands: &mut Vec<Command>, responses: &[Response], edit: im
     }
 }
 
-/// Sends an edit that is an undo entry of its own.
+/// Sends an edit as a separate undo entry.
 pub(super) fn undoable_edit(commands: &mut Vec<Command>, edit: Edit) {
     commands.extend([Command::Session(SessionCommand::Edit(edit)), Command::Session(SessionCommand::EndGesture)]);
 }

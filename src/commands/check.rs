@@ -56,14 +56,14 @@ struct Answer {
     invariant: bool,
     /// Statement on the machine, as in window and recordings.
     machine: Statement,
-    /// Whether some b(q) is kept by all motions of zero angular momentum.
+    /// Whether some function b(q) is constant along all motions of zero angular momentum.
     integrable: bool,
-    /// `exact`, `nearly`, `unneeded` or `none`: whether holding b = Σ λ_k q_k keeps moments from the base.
+    /// How well a constant b = Σ λ_k q_k keeps moments from the base: `exact`, `nearly`, `unneeded` or `none`.
     pose_constant: &'static str,
 }
 
 impl CheckArguments {
-    /// Prints the verdict; a valid machine that is not balanced is an answer too.
+    /// Prints the verdict; a machine that is not balanced is no failure.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
         let (inertia, constant) = (Inertia::of(&machine), PoseConstant::of(&machine));

@@ -17,11 +17,11 @@ use super::output::{Format, TextTable, check_output};
 use stillbase_settings::number::{fixed, nine_digits};
 use stillbase_settings::text::sheet_cell;
 
-/// Compare runs: one task done in several ways, or any scenarios, by what reaches the base and what it costs
+/// Compare runs of one task done in several ways, or of several scenarios, by base reactions and cost
 ///
-/// One scenario: its task on a reactionless path, on a straight line (case 1), with another pose at the end (case 2),
-/// on a straight line with a reaction wheel, and slowly. Several: just these, and where their machines differ, what
-/// each weighs, how far it is balanced, and what that has cost and brought beside the first.
+/// One scenario: its task runs in up to five ways. They are a reactionless path, a straight line (case 1), another pose
+/// at the end (case 2), a straight line with a reaction wheel, and slow motion. Several scenarios: each runs as given.
+/// If their machines differ, a second table gives mass and balance of each, and cost and benefit relative to the first.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:

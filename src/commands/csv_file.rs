@@ -16,10 +16,10 @@ pub struct Csv {
 }
 
 impl Csv {
-    /// Begins a file, or standard output where there is none, with a head.
+    /// Begins a file with the heading row `head`; without a file, writes to standard output.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// If the file or standard output cannot be written.
     pub fn begin(file: Option<&Path>, force: bool, head: impl IntoIterator<Item = String>) -> Result<Self, Failure> {
         let sink = match file {
             Some(file) => Sink::File(NewFile::create(file, force)?),
@@ -35,7 +35,7 @@ impl Csv {
     /// Writes a row. Zero has no sign, and `None` gives an empty cell.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// If the file or standard output cannot be written.
     pub fn row<T: Into<Option<f64>>>(&mut self, values: impl IntoIterator<Item = T>) -> Result<(), Failure> {
         self.row.clear();
         self.row.extend(values.into_iter().map(|x| x.into().map(|x| x + 0.0)));
@@ -46,7 +46,7 @@ impl Csv {
     /// Completes the file and prints its name.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// If the file or standard output cannot be written.
     pub fn finish(mut self) -> Result<(), Failure> {
         let done = self.writer.flush();
         done.map_err(|e| self.writer.get_ref().failure(e))?;

@@ -15,10 +15,10 @@ use super::input::{MachineArgument, read};
 use super::output::{Format, TextTable};
 use stillbase_settings::number::{counted, fixed};
 
-/// Torques of the motors, and what the base feels, of given states of motion, Eqs (1) to (6)
+/// Compute the motor torques and the base reactions of given states of motion, Eqs (1) to (6)
 ///
-/// Force and moment are what the manipulator transmits to its base, weight included; the moment is about B, positive
-/// counter-clockwise.
+/// Force and moment are those that the manipulator transmits to its base, weight included; the moment is about B,
+/// positive counter-clockwise.
 #[derive(Args)]
 #[command(after_help = "\
 Example:
@@ -59,7 +59,7 @@ impl DynamicsArguments {
     }
 }
 
-/// Reads states, each as q, q̇, q̈.
+/// Reads states, each as q, q̇, q̈ in rad, rad/s, rad/s².
 fn states(file: &Path, machine: &Machine) -> Result<Vec<[PerDrive; 3]>, Failure> {
     states_in(&read(file)?, &file.display().to_string(), machine)
 }
@@ -74,7 +74,7 @@ pub fn states_in(text: &str, file: &str, machine: &Machine) -> Result<Vec<[PerDr
         wrong(e.line(), format!(r#"{what}: want [{{"q": [rad], "qd": [rad/s], "qdd": [rad/s²]}}, …]"#))
     })?;
     let n = machine.drives();
-    // States hold no strings or objects of their own, so the i-th brace opens the i-th state.
+    // States contain no string values or nested objects, so the i-th brace opens the i-th state.
     let mut line = 1;
     let starts = text.bytes().filter_map(|byte| {
         line += usize::from(byte == b'\n');

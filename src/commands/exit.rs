@@ -33,7 +33,7 @@ pub fn exit_code(done: Result<(), Failure>) -> ExitCode {
     }
 }
 
-/// Answers a command line that asks for help or cannot be read.
+/// Prints help, or the error of a command line that cannot be parsed; returns the exit status.
 pub fn usage(error: &clap::Error) -> ExitCode {
     if !error.use_stderr() {
         let printed = error.print().and_then(|()| io::stdout().flush());

@@ -20,11 +20,12 @@ use stillbase_settings::number::{counted, fixed};
 
 /// Write a motion as CSV at the rate of a controller: angles, rates, accelerations, feed-forward torques
 ///
-/// Columns are t, q, qd, qdd, tau_ff of each drive, x, y of the end effector, and b; SI and radians, every digit. What
-/// is simulated on a base that moves has base_x, base_y, theta and their rates base_xd, base_yd, thetad besides: q is
-/// absolute, an encoder reads q - theta. What is simulated ends with fx, fy, nz: what the machine transmits to its base,
-/// weight included, as a force plate would read it (`stillbase trim`). The first row is the start and the last one the end, also where the rate does
-/// not divide the duration.
+/// Columns are t; q, qd, qdd, tau_ff of each drive; x, y of the end effector; and b. Numbers are in SI units and
+/// radians, with all digits. A simulation on a moving base adds base_x, base_y, theta and their rates base_xd, base_yd,
+/// thetad. Angles q are absolute: an encoder reads q - theta. The last columns of a simulation are fx, fy, nz. These
+/// are the force and moment that the machine transmits to its base, weight included. A force plate reads the same
+/// (`stillbase trim`). The first row is the start and the last row the end, even if the rate does not divide the
+/// duration.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -34,10 +35,10 @@ pub struct ExportArguments {
     /// A built-in scenario or a TOML file
     #[arg(value_name = "SCENARIO")]
     scenario: String,
-    /// Rows a second
+    /// Rows per second
     #[arg(long, value_name = "HZ", default_value = "1000", value_parser = rate)]
     rate: f64,
-    /// The planned reference with the torques that the model needs for it, or what the simulated machine does (its
+    /// The planned reference with the feed-forward torques of the model, or the motion of the simulated machine (its
     /// torque columns are tau1, tau2 …)
     #[arg(long, value_enum, default_value = "reference")]
     what: What,
@@ -65,7 +66,7 @@ const OF_BASE: [&str; 6] = ["base_x", "base_y", "theta", "base_xd", "base_yd", "
 /// Columns of the force and the moment about B that reach the base.
 const TO_BASE: [&str; 3] = ["fx", "fy", "nz"];
 
-/// Maximum number of rows; more are asked for by mistake.
+/// Maximum number of rows; a request for more is probably a mistake.
 const MAX_ROWS: f64 = 2e6;
 
 fn rate(text: &str) -> Result<f64, String> {
@@ -156,7 +157,7 @@ impl ExportArguments {
         let (model, whole) = (Inertia::of(machine), motion.duration());
         let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
         self.check_rows(whole)?;
-        // The end is a row of its own unless a whole number of intervals comes to it.
+        // The end adds a row unless a whole number of intervals reaches it.
         let spaces = (whole * self.rate * (1.0 - 1e-9)).ceil() as usize;
         let lambda = model.lambda();
         let row = |i: usize| {
@@ -165,14 +166,14 @@ impl ExportArguments {
             let e = r.q.units();
             let torque = model.motors().motor_torques(&inverse(&model, &e, &r.qd, &r.qdd, &around));
             let p = run.end_effector_at(&r.q);
-            // Zeros without a sign.
+            // Adding zero removes the sign of -0.
             let all = r.q.iter().chain(r.qd.iter()).chain(r.qdd.iter()).chain(torque.iter()).map(|x| x + 0.0);
             std::iter::once(t).chain(all).chain([p.re, p.im, lambda.dot(&r.q)]).collect()
         };
         Ok(((0..=spaces).map(row).collect(), whole))
     }
 
-    /// Returns the rows of the simulated motion, its duration, s, and the audit that it fails, if it does.
+    /// Returns the rows of the simulated motion, its duration, s, and the audit that it failed, if any.
     fn simulated(&self, scenario: &Scenario) -> Result<(Rows, f64, Option<String>), Failure> {
         let steps = 1.0 / (scenario.step * self.rate);
         let every = steps.round();

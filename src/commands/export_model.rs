@@ -18,12 +18,13 @@ use super::failure::Failure;
 use super::input::MachineArgument;
 use super::output::{Format, TextTable, check_output};
 
-/// Take a machine elsewhere: a model for MuJoCo (.xml) or for ROS and Pinocchio (.urdf), its links drawn to be cut
-/// (.svg, .dxf), a list of its parts (.csv, .md)
+/// Export a machine: a model for MuJoCo (.xml) or for ROS and Pinocchio (.urdf), drawings for cutting (.svg, .dxf), or
+/// a parts list (.csv, .md)
 ///
-/// MJCF: sensors at the base read the force and moment that hold the machine, the reaction is the opposite; the pose is
-/// the keyframe "start". URDF: joints drive_… are the motors, all others follow them; what it cannot say stands in its
-/// remarks. Of both, what a plane motion does not ask, as inertias about other axes, is made up.
+/// MJCF: sensors at the base read the force and moment that hold the machine; the reaction has the opposite sign. The
+/// pose is the keyframe "start". URDF: the joints drive_… are the motors, and all other joints follow them; the element
+/// `<stillbase>` contains what URDF cannot express. Both: data that plane motion does not need, as inertias about other
+/// axes, are made up.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -35,19 +36,19 @@ Examples:
 pub struct ExportModelArguments {
     #[command(flatten)]
     machine: MachineArgument,
-    /// Angles of the drives in the keyframe of .xml, rad; amid the limits where it is left out
+    /// Angles of the drives in the keyframe of .xml, rad; default: the middle of the limits
     #[arg(long, value_name = "Q1,Q2,…", value_delimiter = ',', allow_hyphen_values = true)]
     pose: Vec<f64>,
-    /// How wide bars are, with round ends, m: of .svg and .dxf; 0.03 where it is left out
+    /// Width of the bars, m, in .svg and .dxf; default: 0.03
     #[arg(long, value_name = "W")]
     bar_width: Option<f64>,
-    /// Diameter of the holes for pins, m: of .svg and .dxf; 0.008 where it is left out
+    /// Diameter of the holes for pins, m, in .svg and .dxf; default: 0.008
     #[arg(long, value_name = "D")]
     pin_diameter: Option<f64>,
-    /// Density of the counterweights, kg/m³: of drawings and lists; that of steel, 7850, where it is left out
+    /// Density of the counterweights, kg/m³, in drawings and lists; default: that of steel, 7850
     #[arg(long, value_name = "DENSITY")]
     material: Option<f64>,
-    /// Thickness of the counterweights, m: of drawings and lists; what the mass of each takes where it is left out
+    /// Thickness of the counterweights, m, in drawings and lists; default: the thickness that gives each its mass
     #[arg(long, value_name = "T")]
     thickness: Option<f64>,
     #[arg(short, long, value_name = "FILE", help = format!("Write it to this file; what is written goes by the ending: {}", form::endings().join(", ")))]
@@ -59,7 +60,7 @@ pub struct ExportModelArguments {
     format: Format,
 }
 
-/// What was written.
+/// Description of the written file.
 #[derive(Serialize)]
 struct Answer {
     file: String,
@@ -124,7 +125,7 @@ impl ExportModelArguments {
 
     /// Refuses options that have no effect on the file.
     fn check_options(&self, form: Form) -> Result<(), Failure> {
-        let all: [Counting; 5] = [
+        let all: [OptionScope; 5] = [
             ("--pose", self.pose.is_empty(), |shows| shows == ModelContent::Pose),
             ("--bar-width", self.bar_width.is_none(), |shows| shows == ModelContent::Links),
             ("--pin-diameter", self.pin_diameter.is_none(), |shows| shows == ModelContent::Links),
@@ -145,9 +146,9 @@ impl ExportModelArguments {
 }
 
 /// An option, whether it is left out, and for which files it has an effect.
-type Counting = (&'static str, bool, fn(ModelContent) -> bool);
+type OptionScope = (&'static str, bool, fn(ModelContent) -> bool);
 
-/// Describes what was written.
+/// Describes the written file.
 fn described(machine: &Machine, form: Form, pose: Vec<f64>, cut: &Cut) -> Result<Written, Failure> {
     let links = machine.links().len();
     Ok(match form.shows {

@@ -21,9 +21,9 @@ use super::remedy::option;
 pub enum Failure {
     /// The reader of standard output has closed it, as `head` does: not an error.
     ReaderGone,
-    /// The question has no answer: why, and what would have one.
+    /// The question has no answer: the reason, and a similar question that has one.
     NoAnswer(String),
-    /// The input is wrong: where, and what was expected.
+    /// The input is wrong: the place of the error, and the expected input.
     WrongInput(String),
 }
 
@@ -38,7 +38,7 @@ impl Failure {
         Self::WrongInput(why.to_string())
     }
 
-    /// Returns the failure of a run whose audit has failed: its figures are no answer.
+    /// Returns the failure of a run whose audit has failed: its results cannot be trusted.
     pub fn untrusted(scenario: &str, why: impl Display) -> Self {
         Self::NoAnswer(format!("{scenario}: audit failed: {why}; want a smaller step, as --set step=0.0002"))
     }
@@ -51,7 +51,7 @@ impl Failure {
         }
     }
 
-    /// Returns the failure with the name of what has failed.
+    /// Returns the failure with `what` before its reason.
     #[must_use]
     pub fn of(self, what: impl Display) -> Self {
         match self {

@@ -22,7 +22,7 @@ use super::failure::Failure;
 #[derive(Args)]
 #[command(after_help = "Examples:\n  stillbase figures -o assets/pictures --force\n  stillbase figures window tower")]
 pub struct FiguresArguments {
-    /// Which pictures; none: all
+    /// Names of the pictures; default: all
     #[arg(value_name = "PICTURE", value_parser = PossibleValuesParser::new(PICTURES.map(|(name, ..)| name)))]
     pictures: Vec<String>,
     /// The folder to write to
@@ -33,7 +33,7 @@ pub struct FiguresArguments {
     force: bool,
 }
 
-/// What a picture shows.
+/// Content of a picture.
 enum Shown {
     /// The window after these commands.
     Window(fn() -> Vec<Command>),
@@ -41,7 +41,7 @@ enum Shown {
     Scene(ViewKind),
 }
 
-/// The pictures: name, scenario, instant, s, and what is shown.
+/// The pictures: name, scenario, time in s, and content.
 const PICTURES: [(&str, &str, f64, Shown); 7] = [
     ("window", "case-3", 0.62, Shown::Window(Vec::new)),
     ("spacecraft", "spacecraft", 0.75, Shown::Window(Vec::new)),
@@ -103,7 +103,7 @@ impl Shown {
     }
 }
 
-/// Opens the comparison with two alternatives in plots and scene, and snapshots along the motion.
+/// Returns commands that open the comparison, show two alternatives in plots and scene, and draw snapshots.
 fn side_by_side() -> Vec<Command> {
     let show = |row| Command::Window(WindowCommand::Comparison(ComparisonCommand::Show(row, true)));
     vec![
@@ -114,7 +114,7 @@ fn side_by_side() -> Vec<Command> {
     ]
 }
 
-/// Shows the bare bars with counterweights from within the Pareto front, between least mass and least inertia.
+/// Returns commands that show the bare machine with counterweights from the Pareto front, at neither of its ends.
 fn designed() -> Vec<Command> {
     vec![
         Command::View(ViewChange::Kind(ViewKind::Design)),
@@ -123,7 +123,7 @@ fn designed() -> Vec<Command> {
     ]
 }
 
-/// Shows a study of tolerances with a limit on |n_B| of 10 mN m.
+/// Returns commands that show a study of tolerances with a limit on |n_B| of 10 mN m.
 fn study() -> Vec<Command> {
     let limit: (String, Value) = ("moment_limit".into(), 0.01.into());
     vec![
@@ -132,7 +132,7 @@ fn study() -> Vec<Command> {
     ]
 }
 
-/// Opens a scenario, runs it to its end and shows an instant, s.
+/// Opens a scenario, runs it to its end and shows it at `time`, s.
 fn opened(scenario: &str, time: f64) -> Result<AppState, Failure> {
     let scenario = stillbase_files::scenario(scenario)?.scenario;
     let mut app_state = AppState::new(scenario, Theme::Dark)?;

@@ -25,19 +25,20 @@ Examples:
   stillbase headless case-1 my.toml -o both.rrd --fps 30      with pictures
   stillbase headless case-3 -o loaded.rrd --set payload.mass=0.1")]
 pub struct HeadlessArguments {
-    /// Built-in scenarios (case-1, spacecraft …; an unknown name lists them all) or TOML files; none: the three cases
+    /// Built-in scenarios (case-1, spacecraft …; an unknown name lists them all) or TOML files; default: the three
+    /// cases
     #[arg(value_name = "SCENARIO")]
     scenarios: Vec<String>,
     /// The recording to write
     #[arg(short, long, value_name = "FILE.rrd")]
     output: PathBuf,
-    /// Record offscreen pictures, so many per simulated second, if a graphics adapter exists
+    /// Record N offscreen pictures per simulated second, if a graphics adapter exists
     #[arg(long, value_name = "N", value_parser = frames_per_second)]
     fps: Option<f64>,
     /// Width and height of the pictures, pixels
     #[arg(long, value_name = "WxH", default_value = "1280x800", requires = "fps", value_parser = size)]
     size: [u32; 2],
-    /// Show in the pictures what the pins carry
+    /// Show the forces on the pins in the pictures
     #[arg(long, requires = "fps")]
     pin_forces: bool,
     /// Replace the file if it exists
@@ -113,7 +114,7 @@ impl From<Recording> for Row {
 }
 
 impl HeadlessArguments {
-    /// Records and prints the peaks.
+    /// Records the scenarios and prints the peaks of each.
     pub fn run(&self) -> Result<(), Failure> {
         let scenarios = self.scenarios()?;
         check_output(&self.output, self.force, &["rrd"])?;
@@ -151,7 +152,7 @@ pub fn unpictured() -> Options {
     Options { pictures: None, force: false }
 }
 
-/// Records with a progress bar on standard error, where that is a terminal.
+/// Records with a progress bar on standard error, if that is a terminal.
 pub fn record_with_bar(scenarios: &[Scenario], file: &Path, options: &Options) -> Result<Vec<Recording>, Failure> {
     let bar = ProgressBar::new(0);
     if let Ok(style) = ProgressStyle::with_template("{msg:12} {wide_bar} {percent:>3} %  {eta:>4}") {

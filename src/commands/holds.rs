@@ -1,4 +1,4 @@
-//! `--fix`, `--free` and `--bound`: numbers that may change to achieve balance, and their bounds.
+//! `--fix`, `--free` and `--bound`: parameters that may change to achieve balance, and their bounds.
 
 use stillbase_mechanics::balance::{Parameter, ParameterBounds, RebalanceRequest};
 use stillbase_mechanics::machine::Machine;
@@ -11,10 +11,10 @@ pub fn bound(text: &str) -> Result<(String, [f64; 2]), String> {
     named(text).ok_or_else(|| "want KEY=LO,HI in m or kg, as 2.com=-0.3,0.1".to_owned())
 }
 
-/// Enters in `asked` which numbers are fixed, free or bounded.
+/// Sets in the request `asked` which parameters are fixed, free or bounded.
 ///
 /// # Errors
-/// If there is no such number, or one is held in two ways.
+/// If a key names no parameter, or a parameter is named twice.
 pub fn hold(
     asked: &mut RebalanceRequest,
     machine: &Machine,

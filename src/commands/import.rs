@@ -21,13 +21,13 @@ use super::output::{Format, check_output};
 use super::remedy::option;
 use table::table;
 
-/// Read a motion of your own from CSV, report what it does to the base, and propose the nearest reactionless one
+/// Read your own motion from CSV, report its reactions on the base, and propose the nearest reactionless motion
 ///
-/// The file has a header: t,q1,q2,q3 for absolute drive angles, or t,x,y for the end effector, in any order, with units
-/// if wanted: "t (ms)", "q1 (deg)", "x (mm)"; without them s, rad, m. Other columns are left alone. A quintic spline
-/// goes through every sample. The proposal keeps the timing and holds b: with the end effector where it was if some
-/// plane reaches all of its path, else with the arm turned as a whole. It is simulated before it is called
-/// reactionless.
+/// The file has a header: t,q1,q2,q3 for absolute drive angles, or t,x,y for the end effector, in any order. Headings
+/// may name units: "t (ms)", "q1 (deg)", "x (mm)"; default: s, rad, m. Other columns are ignored. A quintic spline
+/// interpolates the samples. The proposal keeps the timing, and b is constant. It keeps the path of the end effector if
+/// some plane reaches all of it. Otherwise it keeps the relative angles and turns the arm as a whole. A simulation
+/// checks the proposal before it is called reactionless.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -42,18 +42,18 @@ pub struct ImportArguments {
     /// A built-in machine or a TOML file
     #[arg(long, value_name = "MACHINE", default_value = "nine-link")]
     machine: String,
-    /// Pose constant of the proposal, rad; by default the one that moves the drives least, or the middle of what serves
-    /// x and y
+    /// Pose constant of the proposal, rad; default: the one that moves the drives least, or for x and y the middle of
+    /// the feasible interval
     #[arg(long, value_name = "B", value_parser = pose_constant)]
     b: Option<f64>,
-    /// Smooth the samples without delay: half of the amplitude is left at this frequency, Hz
+    /// Smooth the samples without delay; this is the frequency, Hz, at which the amplitude is halved
     #[arg(long, value_name = "HZ", value_parser = above_zero)]
     smooth: Option<f64>,
-    /// Which columns to take, where a file has both; by default the drives
+    /// Columns to use if a file has both kinds; default: the drives
     #[arg(long, value_enum)]
     columns: Option<Columns>,
-    /// What the proposal keeps of given drive angles: the end effector's motion, or the relative joint angles; by
-    /// default the end effector's, if some plane reaches all of it
+    /// Motion that the proposal keeps if drive angles are given: that of the end effector, or that of the relative
+    /// joint angles. Default: that of the end effector, if some plane reaches all of it
     #[arg(long, value_enum)]
     keep: Option<Kept>,
     /// Let the spline bridge gaps in time
@@ -71,7 +71,7 @@ pub struct ImportArguments {
     format: Format,
 }
 
-/// What the columns are of.
+/// Kind of coordinates in the columns.
 #[derive(Clone, Copy, ValueEnum)]
 enum Columns {
     /// Absolute drive angles q1, q2 …
@@ -80,7 +80,7 @@ enum Columns {
     Tip,
 }
 
-/// What the proposal keeps of given drive angles.
+/// Motion that the proposal keeps if drive angles are given.
 #[derive(Clone, Copy, ValueEnum)]
 enum Kept {
     Tip,
@@ -105,7 +105,7 @@ impl From<MotionImportError> for Failure {
 }
 
 impl ImportArguments {
-    /// Reads the samples, prints what they do to the base, and writes the proposal if asked.
+    /// Reads the samples, prints the base reactions of their motion, and writes the proposal if requested.
     pub fn run(&self) -> Result<(), Failure> {
         let files = self.output.as_deref().map(|file| [file.to_owned(), given_path(file)]);
         for file in files.iter().flatten() {
@@ -152,7 +152,7 @@ impl ImportArguments {
             return Err(Failure::no_answer(imported.reason.unwrap_or_default()));
         };
         if let Some([file, given_file]) = &files {
-            // The given motion first, so that it exists whenever the proposal does.
+            // The given motion is written first, so that it exists whenever the proposal does.
             let given_first = [(given_file, given.to_toml()), (file, proposed.to_toml())];
             let [given_made, made] = given_first.map(|(file, text)| made(file, text.as_bytes(), self.force));
             finish_all([given_made?, made?])?;

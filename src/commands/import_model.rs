@@ -19,10 +19,10 @@ use super::output::{Format, TextTable, check_output, yes};
 
 /// Read a machine from a model of another program: planar URDF or MJCF whose links each follow one drive
 ///
-/// All axes have to be parallel and all links bars. What turns together is read from mimic joints (URDF), from loops that
-/// are parallelograms and from equalities (MJCF); motors, gears with their rotors, masses, limits and the end effector
-/// come along. What lies outside of the family is refused with its element and line. Mass, inertia and mount of the base
-/// are of a scenario: --scenario writes one around the machine, on a base that floats.
+/// All axes must be parallel, and all links must be bars. Bodies that turn together are found from mimic joints (URDF),
+/// or from parallelogram loops and equalities (MJCF). Motors, gears with their rotors, masses, limits and the end
+/// effector are read, too. Other models are refused; the error names the element and its line. Mass, inertia and mount
+/// of the base belong to a scenario: --scenario writes one for the machine, on a floating base.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -60,9 +60,9 @@ struct Answer {
     scenario: Option<String>,
     drives: Vec<String>,
     links: usize,
-    /// kg.
+    /// Mass of the machine, kg.
     mass: f64,
-    /// Drive angles where all joints of URDF are at 0, or in the keyframe of MJCF, rad.
+    /// Drive angles, rad, with all joints of the URDF at 0, or in the keyframe of the MJCF.
     pose: Vec<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     base: Option<OfBase>,
@@ -74,9 +74,9 @@ struct Answer {
 /// Base on which the machine stands.
 #[derive(Serialize)]
 struct OfBase {
-    /// kg.
+    /// Mass, kg.
     mass: f64,
-    /// About its centre of mass, kg m².
+    /// Moment of inertia about its centre of mass, kg m².
     inertia: f64,
     /// Centre of mass relative to the axis of the drives, m.
     com: [f64; 2],

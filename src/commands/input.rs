@@ -29,12 +29,12 @@ pub fn choice<T: Choice>(all: impl IntoIterator<Item = T>) -> impl TypedValuePar
     PossibleValuesParser::new(values.collect::<Vec<_>>()).try_map(|word| T::of_word(&word).ok_or("no such choice"))
 }
 
-/// Settings that the command line lays over a machine or a scenario.
+/// Settings of the command line, which override those of a machine or a scenario.
 #[derive(Args, Default)]
 pub struct Settings {
-    /// Set a key, as often as needed: of the machine, such as link.5.com=-0.02 (m), or of a scenario, such as task.time=2
-    /// (s), plant.payload.mass=0.1 (kg) or base.kind=free; the word `default` takes a key out, and `stillbase keys` lists
-    /// all of them with units, ranges and defaults
+    /// Set a key of the machine, such as link.5.com=-0.02 (m), or of a scenario, such as task.time=2 (s),
+    /// plant.payload.mass=0.1 (kg) or base.kind=free; may be repeated. The word `default` removes a key.
+    /// `stillbase keys` lists all keys with units, ranges and defaults
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pairs: Vec<(String, String)>,
 }
@@ -44,7 +44,7 @@ const MAX_KEY_PARTS: usize = 16;
 
 fn setting(text: &str) -> Result<(String, String), String> {
     let (key, value) = text.split_once('=').ok_or("want KEY=VALUE, such as link.5.com=-0.02")?;
-    // Each part of a key is nested in the one before, so their number is bounded.
+    // Each part of a key is one level of nesting, so the number of parts is bounded.
     if key.split('.').count() > MAX_KEY_PARTS {
         return Err(format!("the key has more than {MAX_KEY_PARTS} parts: want one such as plant.payload.mass"));
     }
@@ -68,7 +68,7 @@ impl Settings {
         }
     }
 
-    /// Refuses settings of tolerances, which have no effect in a command that draws no machines.
+    /// Refuses settings of tolerances, which have no effect in a command that samples no machines.
     ///
     /// # Errors
     /// If there is such a setting.
@@ -84,14 +84,14 @@ impl Settings {
         self.pairs.iter().any(|(given, _)| given == key)
     }
 
-    /// Returns all settings as a file would state them; the last value of a key counts.
+    /// Returns all settings as a file would state them, with the last value of each key.
     fn change(&self) -> TaskChange {
         let one = |(key, value): &(String, String)| change::single_change(key, change::value(value));
         self.pairs.iter().map(one).fold(TaskChange::new(), |all, one| change::join(all, &one))
     }
 }
 
-/// The machine that a command is about.
+/// The machine on which a command operates.
 #[derive(Args)]
 pub struct MachineArgument {
     /// A built-in machine (`stillbase machines` lists them) or a TOML file
@@ -110,10 +110,10 @@ impl MachineArgument {
         self.settings.apply(stillbase_files::machine(&self.name, None)?)
     }
 
-    /// Returns the machine and others, with the same settings changed, each under a name of its own.
+    /// Returns the machine and others, each with the same settings changed and with a distinct name.
     ///
     /// # Errors
-    /// As [`load`](Self::load), with the name of the machine on the command line.
+    /// As [`load`](Self::load); the error names the machine as the command line does.
     pub fn load_with(&self, others: &[String]) -> Result<Vec<(String, Machine)>, Failure> {
         let mut all: Vec<(String, Machine)> = Vec::new();
         for called in std::iter::once(&self.name).chain(others) {
@@ -135,11 +135,11 @@ pub fn distinct_name(own: &str, taken: impl Fn(&str) -> bool) -> String {
     name
 }
 
-/// Returns a scenario by name or file, with settings changed before anything is planned, for a command that draws no
+/// Returns a scenario by name or file, with settings changed before anything is planned, for a command that samples no
 /// machines. Prints a note if the scenario has tolerances.
 ///
 /// # Errors
-/// As [`overlay_for_study`], or if a setting is of tolerances.
+/// As [`overlay_for_study`], or if a setting is a tolerance.
 pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     let scenario = overlay_for_study(name, settings)?;
     settings.none_of_tolerance()?;
@@ -147,14 +147,14 @@ pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     Ok(scenario)
 }
 
-/// Prints a note if a scenario has tolerances, which have no effect in a command that draws no machines.
+/// Prints a note if a scenario has tolerances, which have no effect in a command that samples no machines.
 pub fn report_tolerance(scenario: &Scenario) {
     if !scenario.tolerance.is_empty() {
         say(format!("note: {}: tolerance has no use here: want {STUDY}", scenario.name));
     }
 }
 
-/// Where tolerances have an effect.
+/// The uses that tolerances have, for messages.
 const STUDY: &str = "the command tolerance, or the window";
 
 /// Returns a scenario by name or file, with settings changed before anything is planned. Refuses settings without an
@@ -169,7 +169,7 @@ pub fn overlay_for_study(name: &str, settings: &Settings) -> Result<Scenario, Fa
     Ok(scenario)
 }
 
-/// Does the same as [`overlay_for_study`], but accepts settings without an effect, because other arguments may give them one.
+/// Does the same as [`overlay_for_study`], but accepts settings without an effect: other arguments may give them one.
 ///
 /// # Errors
 /// As [`overlay_for_study`], except for settings without an effect.
@@ -208,10 +208,10 @@ pub fn overlay_settings(scenario: Scenario, settings: &Settings) -> Result<Scena
     Ok(scenario)
 }
 
-/// Refuses settings that have no effect on a scenario as it is.
+/// Refuses settings that have no effect on the scenario.
 ///
 /// # Errors
-/// If there is one, with the condition for an effect.
+/// If there is such a setting; the error names the condition for an effect.
 pub fn none_idle(scenario: &Scenario, settings: &Settings) -> Result<(), Failure> {
     for (path, value) in change::leaves(&settings.change()) {
         let freed = value.as_str().is_some_and(|word| [change::DEFAULT_WORD, Key::NONE].contains(&word));
@@ -243,7 +243,7 @@ pub fn change_task(scenario: &mut Scenario, change: &TaskChange) -> Result<(), F
 /// Returns the pose space of a machine. Prints a note if b is only nearly constant.
 ///
 /// # Errors
-/// If it has none.
+/// If the machine has none.
 pub fn pose_space(machine: &Machine) -> Result<PoseSpace, Failure> {
     let space = PoseSpace::of(machine)?;
     if let nearly @ PoseConstant::Nearly { .. } = PoseConstant::of(machine) {

@@ -10,9 +10,9 @@ pub fn watch() {
     let ignored = ignored();
     let ends = [SIGINT, SIGHUP, SIGTERM, SIGQUIT, SIGXCPU, SIGALRM, SIGUSR1, SIGUSR2];
     let heard = ends.into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
-    // A file beyond the size limit is then an error of its writing, which is reported with its name.
+    // With this signal handled, writing beyond the size limit returns an error, which is reported with the file name.
     let _ = signal_hook::flag::register(SIGXFSZ, std::sync::Arc::default());
-    // Without it, half-written files stay until the next run that writes to their folder.
+    // Without the handler, half-written files stay until the next run that writes to their folder.
     let Ok(mut signals) = Signals::new(heard) else { return };
     let wait = move || {
         if let Some(signal) = signals.forever().next() {
@@ -31,6 +31,7 @@ fn ignored() -> u64 {
     mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
-/// There are no signals elsewhere: half-written files stay until the next run that writes to their folder.
+/// Does nothing, because other systems have no signals: half-written files stay until the next run that writes to their
+/// folder.
 #[cfg(not(unix))]
 pub fn watch() {}

@@ -16,7 +16,7 @@ use super::output::{Format, TextTable, check_output, check_size};
 use super::simulate::require_audit;
 use stillbase_settings::number::{counted, fixed, shown};
 
-/// Say what every pin and bearing carries over a run, how near change points come, and what tilts the base
+/// Print the forces on all pins and bearings over a run, how near it comes to change points, and the tilting moment
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -27,8 +27,8 @@ pub struct JointsArguments {
     /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenario: String,
-    /// Write the force of every pin over time to this file, as CSV: x and y in base axes, of the first link on the
-    /// second
+    /// Write the force on every pin over time to this CSV file. The first link exerts it on the second; x and y are in
+    /// base axes
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
     /// Replace the file if it exists

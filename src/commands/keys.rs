@@ -10,20 +10,20 @@ use stillbase_settings::key::Key;
 use super::failure::Failure;
 use super::output::Format;
 
-/// List the settings: what each means, its unit, range and default, and when it has an effect
+/// List the settings with their meaning, unit, range and default, and the condition for an effect
 ///
-/// Each key is the same in a scenario's file, after `--set`, in an edit and in the window. `*` stands for a name: of a
-/// link, a length, a drive or a relative angle of the machine.
+/// Each key is the same in a scenario's file, after `--set`, in an edit and in the window. `*` is a placeholder for the
+/// name of a link, a length, a drive or a relative angle of the machine.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   stillbase keys friction
   stillbase keys base. --json")]
 pub struct KeysArguments {
-    /// Only the keys with all of these in their name, such as link.5.com, or in what is said of them, such as Hz
+    /// Only keys with all of these words in their name, such as link.5.com, or in their description, such as Hz
     #[arg(value_name = "WORD")]
     words: Vec<String>,
-    /// As a page of documentation
+    /// Print a page of documentation in Markdown
     #[arg(long, conflicts_with = "json")]
     markdown: bool,
     #[command(flatten)]

@@ -18,11 +18,10 @@ use super::input::{DEFAULT_SCENARIO, Settings, no_use, overlay_used};
 use super::output::Format;
 use stillbase_settings::number::{counted, fixed, shown};
 
-/// Say every equation of the paper, and below it the same with today's numbers
+/// Print every equation of the paper, and below it the same equation with the numbers of a machine
 ///
-/// Both sides of an equation are found on ways of their own: one link by link, the other by the closed forms that the
-/// program computes with. Numbers are of an instant of the run, of a quarter of its planned time unless another is given;
-/// or of a pose.
+/// Both sides of an equation are computed independently: one link by link, the other by the closed forms that the
+/// program uses. The numbers belong to an instant of the run, by default a quarter of its planned time, or to a pose.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -34,19 +33,19 @@ pub struct LearnArguments {
     /// A built-in scenario or machine (case-1, four-drive …), or a TOML file of either
     #[arg(value_name = "SCENARIO|MACHINE", default_value = DEFAULT_SCENARIO)]
     what: String,
-    /// Only this equation, as often as needed: 1 to 16, A1 to A3
+    /// Only this equation, 1 to 16 or A1 to A3; may be repeated
     #[arg(long, value_name = "N", value_parser = number)]
     equation: Vec<&'static str>,
-    /// The instant of the run, s
+    /// Time of the run, s
     #[arg(long, value_name = "T", value_parser = instant)]
     at: Option<f64>,
     /// Angles of all drives instead of a run, rad
     #[arg(long, value_name = "Q1,Q2,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = figure, conflicts_with = "at")]
     pose: Vec<f64>,
-    /// Their rates, rad/s; 0 without
+    /// Rates of all drives, rad/s; default: 0
     #[arg(long, value_name = "QD1,QD2,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = figure, requires = "pose")]
     rates: Vec<f64>,
-    /// Their accelerations, rad/s²; 0 without
+    /// Accelerations of all drives, rad/s²; default: 0
     #[arg(long, value_name = "QDD1,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = figure, requires = "pose")]
     accelerations: Vec<f64>,
     #[command(flatten)]
@@ -122,11 +121,11 @@ impl LearnArguments {
         Ok((machine, DriveState::given(Reference { q, qd, qdd })))
     }
 
-    /// Returns the scenario or the machine of the name.
+    /// Returns the scenario or the machine that the command line names.
     fn find(&self) -> Result<Subject, Failure> {
         let machine = || self.settings.apply(stillbase_files::machine(&self.what, None)?);
         match stillbase_files::scenario(&self.what) {
-            // For a machine, no scenario made around it is used.
+            // For the name of a machine, the scenario made for it is not used.
             Ok(found) if found.made.is_some() => Ok(Subject::Machine(Box::new(machine()?))),
             Ok(found) => {
                 let scenario = overlay_used(found.scenario, &self.settings)?;

@@ -51,7 +51,7 @@ use failure::Failure;
 /// Declares the subcommands from one list: the name of each, and the type that reads its arguments and runs it.
 macro_rules! subcommands {
     ($($(#[$gate:meta])? $name:ident: $file:ident::$command:ident,)*) => {
-        /// What the program can be asked to do.
+        /// The subcommands of the program.
         #[derive(clap::Subcommand)]
         #[expect(missing_docs, reason = "a line of documentation would replace the help of the arguments")]
         pub enum Subcommand {

@@ -10,7 +10,7 @@ use stillbase_session::scenario::Scenario;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, overlay_for_study};
 
-/// What to open.
+/// Arguments of the program without a subcommand.
 #[derive(Args)]
 pub struct OpenArguments {
     /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file to open in a window
@@ -45,7 +45,7 @@ impl OpenArguments {
     /// Shows the scenario in a window, or records it if there is no window.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = overlay_for_study(&self.scenario, &self.settings).map_err(|failure| match failure {
-            // Most likely a mistyped command.
+            // The name is most likely a mistyped command.
             Failure::WrongInput(why) if !self.scenario.ends_with(".toml") => {
                 Failure::WrongInput(format!("{why}; `stillbase --help` lists the commands"))
             }
@@ -56,7 +56,7 @@ impl OpenArguments {
             Ok(()) => return Ok(()),
             Err(WindowError::Refused(refusal)) => return Err(Failure::from(refusal).of(&scenario.name)),
             Err(lost @ WindowError::DeviceLost { .. }) => return Err(Failure::no_answer(lost)),
-            // The window system says where in its source it gave up before it says why.
+            // Without a window, the scenario is recorded.
             Err(error) => error.to_string(),
         };
         #[cfg(not(feature = "window"))]

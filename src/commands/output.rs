@@ -13,7 +13,7 @@ use stillbase_settings::text::plain;
 
 use super::failure::Failure;
 
-/// How a command answers.
+/// Output format of a command.
 #[derive(clap::Args)]
 pub struct Format {
     /// Print one JSON object, in SI units and radians, instead of a table
@@ -22,12 +22,12 @@ pub struct Format {
 }
 
 impl Format {
-    /// Prints an answer as JSON or as the text that `human` makes of it.
+    /// Prints an answer as JSON, or as the text that `human` returns for it.
     ///
     /// # Errors
-    /// If it cannot be written, or holds a number that is not finite.
+    /// If the answer cannot be written, or contains a number that is not finite.
     pub fn print<T: Serialize>(&self, answer: &T, human: impl FnOnce(&T) -> String) -> Result<(), Failure> {
-        // Made in both cases, because it finds numbers that are not finite.
+        // The JSON is made in both cases, because that detects numbers that are not finite.
         let json = json(answer)?;
         let text = if self.json { json } else { plain(&human(answer)).into_owned() };
         let mut out = io::stdout().lock();
@@ -50,14 +50,14 @@ fn json(answer: &impl Serialize) -> Result<String, Failure> {
     answer.serialize(&mut serializer).map_err(Failure::wrong_input)?;
     let mut text = String::from_utf8(text).map_err(Failure::wrong_input)?;
     text.push('\n');
-    // JSON escapes most characters that steer a terminal; the others can only be in strings.
+    // JSON escapes most characters that control a terminal; the others can only be in strings.
     Ok(match plain(&text) {
         Cow::Borrowed(_) => text,
         Cow::Owned(_) => text.chars().map(spelled).collect(),
     })
 }
 
-/// Escapes a character for JSON if it steers a terminal.
+/// Escapes a character for JSON if it controls a terminal.
 fn spelled(c: char) -> String {
     let mut own = [0; 4];
     match plain(c.encode_utf8(&mut own)) {
@@ -130,17 +130,17 @@ pub fn check_output(file: &Path, force: bool, endings: &[&'static str]) -> Resul
     })
 }
 
-/// Maximum size of an output, bytes; a larger one is asked for by mistake.
+/// Maximum size of an output, bytes; a request for a larger one is probably a mistake.
 const MAX_BYTES: f64 = 4e9;
 /// Maximum size of an output that is held in memory as a whole, bytes.
 const MAX_HELD_BYTES: f64 = 1e9;
 /// Maximum size of a number, bytes.
 const MAX_BYTES_PER_NUMBER: f64 = 20.0;
 
-/// Refuses a table of numbers that would be too large. `held`: all of it is held in memory.
+/// Refuses a table of numbers that would be too large. `held` says whether the whole table is held in memory.
 ///
 /// # Errors
-/// If it would be too large.
+/// If the table would be too large.
 pub fn check_size(rows: u64, columns: usize, held: bool) -> Result<(), Refusal> {
     let bytes = rows as f64 * columns as f64 * MAX_BYTES_PER_NUMBER;
     let most = if held { MAX_HELD_BYTES } else { MAX_BYTES };

@@ -26,14 +26,14 @@ use super::output::{Format, TextTable, check_output};
 use stillbase_settings::number::{counted, fixed};
 use stillbase_settings::word::Choice;
 
-/// Name of a plan of a machine until a file gives it one.
+/// Name of a plan for a machine, unless an output file gives it another.
 const DEFAULT_NAME: &str = "plan";
 
-/// Plan a motion through points: which b serves them, along what, how fast, at what cost
+/// Plan a motion through points: find a feasible b, the path, the timing and the cost
 ///
-/// What cannot be followed is refused before anything moves, with the first point of failure, its reason, the nearest b
-/// that would do and the longest part that can be followed. The plan can be written as a scenario, to be simulated,
-/// recorded, or opened in the window.
+/// A path that cannot be followed is refused before anything moves. The message names the first infeasible point, the
+/// reason, the nearest feasible b and the longest feasible part. The plan can be written as a scenario, to be
+/// simulated, recorded, or opened in the window.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -45,42 +45,42 @@ pub struct PlanArguments {
     /// A built-in machine or scenario, or a TOML file of either
     #[arg(value_name = "MACHINE|SCENARIO")]
     name: String,
-    /// Points of the end effector in base axes, m: from the first to the last; none keeps a scenario's own
+    /// Points of the end effector in base axes, m, in order; default: those of the scenario
     #[arg(value_name = "X,Y", value_parser = point)]
     points: Vec<Vector>,
-    /// Pose constant at the first point, rad; by default the middle of what serves all points, or else the first point;
-    /// without points the scenario's
+    /// Pose constant at the first point, rad. Default: the middle of the interval feasible for all points, or else for
+    /// the first point. Without points, the default is that of the scenario
     #[arg(long, value_name = "B", value_parser = pose_constant)]
     b: Option<f64>,
-    /// How the redundancy is resolved
+    /// Method that resolves the redundancy
     #[arg(long, value_parser = choice(kinds()))]
     kind: Option<TaskKind>,
-    /// What joins the points
+    /// Shape of the path between the points
     #[arg(long, value_parser = choice(PathShape::ALL.iter().copied()))]
     shape: Option<PathShape>,
     /// Return to the first point
     #[arg(long)]
     closed: bool,
-    /// Round corners off, from this far before them, m (rad for joint lines); otherwise the motion rests there
+    /// Round corners off, from this distance before them, m (rad for joint lines); by default the motion rests there
     #[arg(long, value_name = "DISTANCE", value_parser = above_zero)]
     blend: Option<f64>,
     /// Time law
     #[arg(long, value_name = "LAW", value_parser = choice(TimeLaw::ALL.iter().copied()))]
     law: Option<TimeLaw>,
-    /// Time, s, for the laws that do not find it themselves
+    /// Duration, s, for time laws that do not determine it themselves
     #[arg(long, value_name = "T", value_parser = above_zero)]
     time: Option<f64>,
-    /// How often a closed path is run through, for zero-momentum
+    /// Number of cycles along a closed path, for zero-momentum
     #[arg(long, value_name = "N")]
     cycles: Option<u32>,
-    /// Pose constant at the last point, rad: for change-b by default the nearest that serves it, for least-reaction
-    /// free
+    /// Pose constant at the last point, rad; default: for change-b the nearest that is feasible there, for
+    /// least-reaction free
     #[arg(long, value_name = "B", value_parser = pose_constant)]
     b_to: Option<f64>,
-    /// Bound on |n_B| while b changes, N m, for change-b: it sets the time
+    /// Upper bound on |n_B| while b changes, N m, for change-b; it determines the time
     #[arg(long, value_name = "N_B", value_parser = above_zero)]
     moment_limit: Option<f64>,
-    /// A base that floats freely, with its mass, kg, and inertia, kg m²: by how much would change-b turn it
+    /// Mass, kg, and inertia, kg m², of a freely floating base, to compute by how much change-b would turn it
     #[arg(long, value_name = "MASS,INERTIA", value_parser = floating_base)]
     base: Option<FloatingBase>,
     /// Write the plan as a scenario
@@ -103,19 +103,19 @@ fn floating_base(text: &str) -> Result<FloatingBase, String> {
     }
 }
 
-/// Returns the kinds of tasks that can be planned by points alone.
+/// Returns the kinds of tasks that can be planned from points alone.
 fn kinds() -> impl Iterator<Item = TaskKind> {
     TaskKind::ALL.iter().copied().filter(|kind| !matches!(kind, TaskKind::SameTip | TaskKind::Given))
 }
 
 impl PlanArguments {
-    /// Plans, prints, and writes the scenario if asked.
+    /// Plans, prints, and writes the scenario if requested.
     pub fn run(&self) -> Result<(), Failure> {
         if let Some(file) = &self.output {
             check_output(file, self.force, &["toml"])?;
         }
         let mut scenario = self.scenario()?;
-        // The plan says what a machine without a b can do.
+        // A motion can be planned for a machine without a pose space, too.
         let space = pose_space(&scenario.machine).ok();
         let run = Run::new(&scenario);
         let answer = PlanSummary::of(&scenario, space.as_ref(), run.as_ref(), self.base.as_ref());
@@ -135,7 +135,8 @@ impl PlanArguments {
         Ok(())
     }
 
-    /// Refuses options that have no effect on the task, and prints what the plan leaves out.
+    /// Refuses options that have no effect on the task. Prints a note if the plan leaves out properties of plant or
+    /// base.
     fn check_use(&self, scenario: &Scenario) -> Result<(), Failure> {
         let task = &scenario.task;
         for (given, key) in [
@@ -180,8 +181,8 @@ impl PlanArguments {
                     Scenario { machine, name: DEFAULT_NAME.into(), title: String::new(), compare_b: None, ..own };
                 overlay_settings(with, &self.settings)?
             }
-            // A wrong file that is meant as a machine gives the error of a machine, any other that of a scenario.
-            Err(wrong) if meant(&self.name) == Some(FileContent::Machine) => return Err(wrong.into()),
+            // An invalid file of a machine gives the error of a machine; any other name, that of a scenario.
+            Err(wrong) if content_of(&self.name) == Some(FileContent::Machine) => return Err(wrong.into()),
             _ => {
                 let found = overlay_unchecked(&self.name, &self.settings)?;
                 // A written scenario keeps its tolerances for other commands.
@@ -229,7 +230,7 @@ impl PlanArguments {
         change_task(&mut scenario, &change)?;
         let points = scenario.task.points();
         let chosen = self.kind.is_some() || self.settings.sets("task.kind") || known;
-        // A machine without a b moves with least rates.
+        // A machine without a pose constant moves with minimum-norm rates.
         if !chosen
             && !self.points.is_empty()
             && let none @ PoseConstant::None(_) = PoseConstant::of(&scenario.machine)
@@ -255,8 +256,8 @@ impl PlanArguments {
     }
 }
 
-/// Returns whether a file is meant as a machine or as a scenario, if there is one of that name.
-fn meant(name: &str) -> Option<FileContent> {
+/// Returns the kind of content of a file; `None` for a built-in scenario, or if there is no such file.
+fn content_of(name: &str) -> Option<FileContent> {
     if Scenario::builtin(name).is_some() { None } else { content(&text::read(Path::new(name)).ok()?) }
 }
 

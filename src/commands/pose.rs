@@ -12,14 +12,14 @@ use super::input::{MachineArgument, point, pose_constant, pose_space};
 use super::output::{Format, TextTable};
 use stillbase_settings::number::fixed;
 
-/// The poses that put the end effector on a point without leaving the plane b = const, and what each is good for
+/// List the poses on the plane b = const that put the end effector on a point, with measures of each
 ///
-/// Drive angles q are absolute and unwrapped: Σ λ_k q_k is b exactly as given. With --json each pose also has
-/// det = |det ∂(x, y)/∂(a_1, a_2)| (m²), 0 on a fold; manipulability = √det(J Jᵀ) of the Jacobian in absolute drive
-/// angles (m²); worst_torque_per_force, the largest singular value of J (N m/N); transmission = min |sin(q_k − q_l)|,
-/// 0 at a change point; and side, the signs of sin(q_2 − q_1), sin(q_3 − q_2) and sin(q_3 − q_1). det and side are of three
-/// drives. Four and more can take a point in many ways: of these it is the pose with the least Σ (a_i − middle_i)², the
-/// relative angles' distances from the middle of their limits, rad.
+/// Drive angles q are absolute and unwrapped: Σ λ_k q_k is b exactly as given. With --json each pose also has measures.
+/// det is |det ∂(x, y)/∂(a_1, a_2)| (m²), 0 on a fold. manipulability is √det(J Jᵀ) of the Jacobian in absolute drive
+/// angles (m²). worst_torque_per_force is the largest singular value of J (N m/N). transmission is
+/// min |sin(q_k − q_l)|, 0 at a change point. side is the signs of sin(q_2 − q_1), sin(q_3 − q_2) and sin(q_3 − q_1).
+/// det and side exist for three drives only. With four or more drives, many poses reach a point; the answer is the one
+/// with minimum Σ (a_i − middle_i)². There middle_i is the middle of the limits of the relative angle a_i, rad.
 #[derive(Args)]
 #[command(after_help = "\
 Example:

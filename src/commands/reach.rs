@@ -12,10 +12,11 @@ use super::input::{MachineArgument, point, pose_space};
 use super::output::{Format, TextTable};
 use stillbase_settings::number::fixed;
 
-/// The pose constants b whose reactionless workspace holds a point, and those that hold all points
+/// Find the pose constants b whose reactionless workspace contains each point, and those common to all points
 ///
-/// Two points are joined by a reactionless path if and only if some b holds both. b counts on a circle: turning every
-/// drive once adds the period. b_min lies in [0, period), b_max may exceed it, [0, period] is the whole circle.
+/// A reactionless path joins two points if and only if the workspace of some b contains both. b lies on a circle:
+/// turning every drive once adds the period. b_min lies in [0, period), and b_max may exceed the period; [0, period] is
+/// the whole circle.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -36,7 +37,7 @@ struct Answer {
     points: Vec<OfPoint>,
     overlap: Vec<[f64; 2]>,
     period: f64,
-    /// The least move of one point after which all have a b in common, if they have none.
+    /// The smallest move of one point that gives all points a common b, if they have none.
     #[serde(skip_serializing_if = "Option::is_none")]
     mend: Option<PointCorrection>,
 }
@@ -48,7 +49,7 @@ struct OfPoint {
 }
 
 impl ReachArguments {
-    /// Prints the b of each point and of all. Fails if the points have no b in common.
+    /// Prints the intervals of b of each point and of all points. Fails if the points have no b in common.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
         let space = pose_space(&machine)?;
@@ -73,8 +74,8 @@ impl ReachArguments {
     }
 }
 
-/// Rounds the bounds of an interval of b, rad, to a number of decimals, inwards, so that each is still feasible. Bounds
-/// of a single b and of a whole period are rounded to the nearest decimal.
+/// Rounds the bounds of an interval of b, rad, inwards to a number of decimals, so that both stay feasible. The bounds
+/// of a single b, or of a whole period, are rounded to the nearest decimal.
 fn inward([from, to]: [f64; 2], decimals: usize, period: f64) -> [String; 2] {
     let last = 10f64.powi(-(decimals as i32));
     let printed = |x: f64| fixed(x, decimals);

@@ -29,14 +29,13 @@ pub struct SimulateArguments {
     /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenario: String,
-    /// Write the CSV to this file; without it the CSV goes to standard output, unless that is a terminal, which gets a
-    /// summary
+    /// Write the CSV to this file; by default it goes to standard output, but a terminal gets a summary instead
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
-    /// Print every N-th step only, and the last
+    /// Print only every N-th step, and the last one
     #[arg(long, value_name = "N", default_value = "1", value_parser = every)]
     every: NonZeroU64,
     #[command(flatten)]
@@ -145,14 +144,14 @@ impl<T: Serialize> Serialize for Columns<T> {
 }
 
 impl SimulateArguments {
-    /// Simulates the scenario and writes its signals as CSV, or the verdict.
+    /// Simulates the scenario, and writes its signals as CSV or prints the verdict.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = scenario(&self.scenario, &self.settings)?;
         let table = signals(&scenario.machine);
         if let Some(file) = &self.output {
             check_output(file, self.force, &["csv"])?;
         }
-        // Opened at the first step, so that a run that cannot start prints nothing.
+        // The CSV is begun at the first step, so that a run that cannot start prints nothing.
         let mut csv = None;
         let (mut time, mut columns) = (Vec::new(), vec![Vec::new(); table.len()]);
         // The run cannot be stopped; after a failure to write, no more rows are written.
@@ -255,7 +254,7 @@ fn summary(outcome: &Outcome, name: &str, signals: &[Signal]) -> String {
     format!("{}\n{}\n{shown}", lines.concat(), table.to_string().trim_start())
 }
 
-/// Fails if an audit has failed: the figures are printed, but they are no answer.
+/// Fails if an audit has failed: the results are printed, but cannot be trusted.
 pub fn require_audit(scenario: &str, fault: Option<String>) -> Result<(), Failure> {
     match fault {
         Some(why) => Err(Failure::untrusted(scenario, why)),

@@ -1,4 +1,4 @@
-//! `--range`: links that may carry a counterweight, and where.
+//! `--range`: links that may carry a counterweight, and the bounds of its place.
 
 use stillbase_mechanics::counterweights::Sites;
 use stillbase_mechanics::machine::Machine;
@@ -23,7 +23,8 @@ pub fn link(machine: &Machine, name: &str) -> Result<usize, Failure> {
     })
 }
 
-/// Returns the sites on the named links, or on every link from its length behind the root to the tip, if none is named.
+/// Returns the sites on the named links. By default, these are all links, each from one link length behind its root to
+/// its tip.
 ///
 /// # Errors
 /// If there is no such link.

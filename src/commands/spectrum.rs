@@ -15,12 +15,12 @@ use super::output::{Format, TextTable, check_output, yes};
 use super::simulate::require_audit;
 use stillbase_settings::number::{counted, fixed, shown};
 
-/// Say at which frequencies a run shakes its base, and whether that keeps within jitter limits
+/// Compute the spectra of the base reactions of a run, and compare them with jitter limits
 ///
 /// The scenario is simulated; dynamic f_Bx and f_By and the whole n_B of every step are transformed. Amplitude spectral
-/// densities are one-sided; the cumulative RMS adds them up from 0 Hz. It ends at the RMS of the samples without a
-/// window; with one at the weighted RMS, in which samples count as the window weighs them: Hann counts the middle of
-/// the record most.
+/// densities are one-sided; the cumulative RMS adds up their power from 0 Hz. With a rectangular window, its last value
+/// is the RMS of the samples. With a Hann window, it is the RMS weighted by the window, which emphasises the middle of
+/// the record.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -37,13 +37,13 @@ pub struct SpectrumArguments {
     /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenario: String,
-    /// The greatest density of n_B that will do, N m/√Hz: one number, or pairs FREQUENCY:LIMIT
+    /// Maximum permitted density of n_B, N m/√Hz: one number, or pairs FREQUENCY:LIMIT
     #[arg(long, value_name = "f:v,…")]
     limit_moment: Option<JitterLimit>,
-    /// The greatest density of f_Bx and of f_By that will do, N/√Hz: one number, or pairs FREQUENCY:LIMIT
+    /// Maximum permitted density of f_Bx and of f_By, N/√Hz: one number, or pairs FREQUENCY:LIMIT
     #[arg(long, value_name = "f:v,…")]
     limit_force: Option<JitterLimit>,
-    /// How samples are weighted: hann, or rectangular
+    /// Window that weights the samples: hann or rectangular
     #[arg(long, value_name = "WINDOW", default_value = "hann")]
     window: WindowFunction,
     /// Write the spectra to this CSV file
@@ -68,7 +68,7 @@ struct Answer {
     audit_failed: Option<String>,
 }
 
-/// Converts an error into a failure; that of a run names its scenario.
+/// Converts an error into a failure; the failure of a run names its scenario.
 fn failed(why: NoBaseSpectrum, scenario: &str) -> Failure {
     match why {
         NoBaseSpectrum::Run(why) => Failure::from(why).of(scenario),
@@ -78,7 +78,7 @@ fn failed(why: NoBaseSpectrum, scenario: &str) -> Failure {
 }
 
 impl SpectrumArguments {
-    /// Prints the spectra, and whether they keep within limits.
+    /// Prints the spectra and their comparison with the limits.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = scenario(&self.scenario, &self.settings)?;
         if let Some(file) = &self.output {

@@ -9,13 +9,13 @@ use super::input::{MachineArgument, point, pose_constant, pose_space};
 use super::output::{Format, TextTable, yes};
 use stillbase_settings::number::fixed;
 
-/// The reactionless workspace of b: its exact boundary and area, what lies inside, Eqs (15), (16)
+/// Compute the reactionless workspace of b: exact boundary, area, and curves inside, Eqs (15), (16)
 ///
-/// It is the region that the end effector reaches while b is held; b only turns it. Vertices lie on the boundary to
-/// 1e-9 m and chords to 1e-5 m; outer loops run counter-clockwise. The area of all sheets, ∫|det|, exceeds the region's
-/// where several poses reach one point. With two drives it is a curve, and --json has `curve` and `length`; --at tells how
-/// far a point is from it. Folds, where two poses meet, turn back at cusps; at change points sin(q_k −
-/// q_l) = 0 and the linkage goes flat.
+/// The workspace is the region that the end effector reaches with constant b; a change of b only turns it. Vertices lie
+/// on the boundary to 1e-9 m and chords to 1e-5 m; outer loops run counter-clockwise. The area of all sheets, ∫|det|,
+/// exceeds that of the region if several poses reach one point. With two drives the workspace is a curve: --json has
+/// `curve` and `length`, and --at gives the distance of a point from it. Folds are curves where two poses meet; they
+/// turn back at cusps. At change points sin(q_k − q_l) = 0 and the linkage is flat.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -28,8 +28,8 @@ pub struct WorkspaceArguments {
     /// Pose constant b, rad
     #[arg(long, value_name = "B", value_parser = pose_constant)]
     b: f64,
-    /// Also tell of a point, m, as often as needed: its poses, its distance from the boundary (negative outside), the
-    /// dexterity of each pose
+    /// Also print the poses of a point, m, its distance from the boundary (negative outside), and the dexterity of each
+    /// pose; may be repeated
     #[arg(long, value_name = "X,Y", value_parser = point)]
     at: Vec<Vector>,
     #[command(flatten)]
@@ -37,7 +37,7 @@ pub struct WorkspaceArguments {
 }
 
 impl WorkspaceArguments {
-    /// Prints area, extent and boundary of the workspace, what lies inside, and the measures of given points.
+    /// Prints area, extent and boundary of the workspace, the curves inside, and the measures of given points.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
         let space = pose_space(&machine)?;
@@ -158,7 +158,7 @@ fn points(a: &WorkspaceReport, angles: &[String]) -> TextTable {
     table
 }
 
-/// Adds the rows of a point, one for each pose; the first states its place.
+/// Adds the rows of a point, one for each pose; the first row states the point.
 fn add_point(table: &mut TextTable, [x, y]: [f64; 2], distance: f64, poses: Vec<Vec<f64>>) {
     let mut first = [format!("{x}, {y}"), fixed(distance, 9)];
     if poses.is_empty() {

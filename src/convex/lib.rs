@@ -37,7 +37,7 @@ pub struct Program {
     pub equal: Vec<LinearRow>,
     /// Inequalities Σ value x_j ≤ right, where right is finite.
     pub at_most: Vec<LinearRow>,
-    /// Second-order cones: rows a, b, c with a ≥ |(b, c)|. The right side of a row is added to its sum.
+    /// Second-order cones a ≥ |(b, c)|, where a row gives each of a, b and c as Σ value x_j + right.
     pub cones: Vec<[LinearRow; 3]>,
 }
 
@@ -48,14 +48,14 @@ pub struct Optimum {
     pub x: Vec<f64>,
     /// Value of the objective at `x`.
     pub value: f64,
-    /// Duality gap: upper bound on how far the optimum lies below `value`.
+    /// Duality gap: upper bound on `value` minus the optimum.
     pub gap: f64,
 }
 
 /// Why a program has no solution.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoOptimum {
-    /// The program is infeasible. The multiplier of each inequality in the proof of infeasibility.
+    /// The program is infeasible; the numbers are the multipliers of the inequalities in the proof of infeasibility.
     #[error("what is wanted contradicts itself")]
     Contradiction(Vec<f64>),
     /// The solver failed; its status in words.
@@ -109,7 +109,7 @@ impl Program {
         cones.extend(self.cones.iter().map(|_| SecondOrderConeT(3)));
         let (a, p) = (sparse(right.len(), n, &entries), sparse(n, n, &self.quadratic));
         let mut failed = String::new();
-        // Close to the boundary of feasibility, a second attempt with larger tolerances may still decide.
+        // Close to the boundary of feasibility, a second attempt with larger tolerances may still succeed.
         for [gap_tolerance, feasibility_tolerance] in [[1e-10, 1e-11], [1e-8, 1e-9]] {
             let settings = DefaultSettings {
                 verbose: false,

@@ -101,7 +101,7 @@ impl Cut {
         (radius > 0.0).then(|| self.thickness.unwrap_or(mass / (self.density * disc_area(radius))))
     }
 
-    /// Returns the mass of a disc, kg: area times thickness times density.
+    /// Returns the mass of a disc, kg, for its radius and thickness, m.
     pub fn weighs(&self, radius: f64, thickness: f64) -> f64 {
         disc_area(radius) * thickness * self.density
     }
@@ -130,7 +130,7 @@ pub fn holes(machine: &Machine, j: usize) -> Vec<f64> {
     holes
 }
 
-/// Returns the interval that a bar covers, m from its root: its length, all its pins, and the discs that it carries.
+/// Returns the interval that a bar covers, m from its root: its length, all its pins, and the centres of its discs.
 pub fn ends(machine: &Machine, j: usize) -> [f64; 2] {
     let (link, part) = (&machine.links()[j], &machine.resolved_links()[j]);
     let discs = machine.spec().counterweights.iter().filter(|weight| weight.link == link.name).map(|weight| weight.at);

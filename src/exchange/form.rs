@@ -36,13 +36,13 @@ pub const FORMS: [Form; 6] = [
     Form { ending: "xml", shows: ModelContent::Pose, write: |machine, pose, _| Ok(mjcf(machine, pose)?) },
     // For ROS, Pinocchio and others.
     Form { ending: "urdf", shows: ModelContent::Joints, write: |machine, _, _| Ok(urdf(machine)) },
-    // To look at.
+    // For viewing.
     Form { ending: "svg", shows: ModelContent::Links, write: |machine, _, cut| Ok(svg(&Sheet::of(machine, cut)?)) },
     // For cutting.
     Form { ending: "dxf", shows: ModelContent::Links, write: |machine, _, cut| Ok(dxf(&Sheet::of(machine, cut)?)) },
     // For a spreadsheet.
     Form { ending: "csv", shows: ModelContent::Parts, write: |machine, _, cut| Ok(PartsList::of(machine, cut)?.csv()) },
-    // To read.
+    // For reading.
     Form {
         ending: "md",
         shows: ModelContent::Parts,

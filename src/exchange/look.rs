@@ -2,7 +2,7 @@
 
 /// Half the drawn width of a bar, m.
 pub const DRAWN_BAR_RADIUS: f64 = 0.012;
-/// Colours of the drives: sky blue, vermilion and bluish green, and so on (Okabe and Ito).
+/// Colours of the drives as RGBA, from the palette of Okabe and Ito.
 pub const DRIVE_COLOURS: [&str; 8] = [
     "0.34 0.71 0.91 1",
     "0.84 0.37 0 1",

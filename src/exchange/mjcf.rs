@@ -1,12 +1,11 @@
 //! A machine as MJCF, the format of MuJoCo. Links are bodies in the plane z = 0, pins are hinges, and pins that close
-//! loops are equalities. The model has motors with gears and rotors, and sensors of force and moment at the base, which
-//! measure force and moment of the base on the machine; f_B and n_B have the opposite sign. The frame of a link has x
-//! along e(q_k) of its drive, so a link that runs against its drive lies along −x. Bodies and hinges have the same
-//! names as in URDF.
+//! loops are equalities. The model has motors with gears and rotors. Sensors at the base measure the force and moment
+//! of the base on the machine; f_B and n_B have the opposite sign. The frame of a link has x along e(q_k) of its drive,
+//! so a link that runs against its drive lies along −x. Bodies and hinges have the same names as in URDF.
 //!
-//! Every rotor is a body of its own: behind a gear its contributions to the momentum (D) and to the inertia (H) differ,
-//! and an armature would only add to the latter. Inertias about axes in the plane do not affect a plane motion and are
-//! invented.
+//! Every rotor is a separate body. Behind a gear, it adds different amounts to the momentum (D) and to the inertia (H),
+//! whereas an armature would add to the inertia only. Inertias about axes in the plane do not affect a plane motion;
+//! their values are made up.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -161,7 +160,7 @@ impl<'a> Model<'a> {
         (0..parts.len()).filter(|j| parts[*j].parent == parent).collect()
     }
 
-    /// Writes a link with all links that hang on it.
+    /// Writes a link with all links that it carries.
     fn body(&mut self, depth: usize, j: usize) {
         let (link, part) = (&self.machine.links()[j], &self.machine.resolved_links()[j]);
         let (name, colour) = (self.tree.name(TreePart::Link(j)), DRIVE_COLOURS[part.drive % DRIVE_COLOURS.len()]);
@@ -204,7 +203,7 @@ impl<'a> Model<'a> {
     }
 
     fn inertial(&mut self, depth: usize, [x, y, z]: [f64; 3], mass: f64, inertia: f64) {
-        // As for a thin bar; a plane motion depends only on the inertia about z.
+        // Any value of at least half the inertia is valid; a plane motion depends only on the inertia about z.
         let other = 0.6 * inertia;
         line!(self, depth, "<inertial pos=\"{x} {y} {z}\" mass=\"{mass}\" diaginertia=\"{other} {other} {inertia}\"/>");
     }
@@ -319,7 +318,7 @@ impl<'a> Model<'a> {
             return;
         }
         line!(self, 1, "<equality>");
-        // If each link is kept parallel, the loops stay closed without equalities of their own.
+        // If each link is kept parallel, the loops stay closed without further equalities.
         if parallel.is_empty() {
             for number in 1..=loops {
                 line!(self, 2, "<connect name=\"loop {number}\" site1=\"loop {number} a\" site2=\"loop {number} b\"/>");
@@ -408,7 +407,8 @@ fn parallel(machine: &Machine) -> Vec<(usize, PinAngleSum)> {
     (0..parts.len()).filter_map(of).collect()
 }
 
-/// Returns a pose, rad, with its first drive upright and each relative angle in the middle of its limits.
+/// Returns drive angles, rad, with each relative angle in the middle of its limits, or at 0 without limits. A drive
+/// that no relative angle determines points along y.
 pub fn middle(machine: &Machine) -> Vec<f64> {
     let mut q = vec![TAU / 4.0; machine.drives()];
     for angle in machine.angles() {

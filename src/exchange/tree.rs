@@ -1,4 +1,4 @@
-//! [`Tree`]: a machine as a tree of parts and joints, as URDF requires it, and the names of these in URDF and MJCF.
+//! [`Tree`]: a machine as a tree of parts and joints, as URDF requires it, and their names in URDF and MJCF.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -7,8 +7,9 @@
 //!
 //! A pin between links of two drives turns by a sum of motor angles, but a joint of URDF can mimic only one other
 //! joint. So a sum becomes several joints in series, with auxiliary parts of negligible mass between them. Programs
-//! that read a tree from its root need a joint before the joints that mimic it. In a serial arm this holds if the
-//! motors turn the links directly. In other machines each motor turns a shaft, and all links follow shafts.
+//! that read a tree from its root need a joint before the joints that mimic it. In a serial arm the joints have this
+//! order if the motors turn the links directly. In other machines each motor turns a shaft, and all links follow
+//! shafts.
 
 use std::collections::BTreeMap;
 
@@ -182,8 +183,8 @@ fn joints(machine: &Machine, turned: &[Option<usize>]) -> Vec<TreeJoint> {
     joints
 }
 
-/// Returns q_to − q_from as a sum of motor angles, each with sign 1 or −1: first from drive `from` along its carriers
-/// to the common carrier, then from there to drive `to`.
+/// Returns q_to − q_from as a sum of motor angles, each with sign 1 or −1. The sum goes from drive `from` along its
+/// carriers to the common carrier, then from there to drive `to`.
 fn turns(machine: &Machine, from: Option<usize>, to: Option<usize>) -> Vec<(usize, f64)> {
     let motors = machine.motors();
     let carriers = |k: Option<usize>| std::iter::successors(k, |k| motors.on(*k)).collect::<Vec<_>>();

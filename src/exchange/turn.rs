@@ -11,7 +11,7 @@ pub struct PinAngleSum {
 }
 
 impl PinAngleSum {
-    /// Returns the angle from the drive of link `from` to that of link `to`; `None` stands for the x axis of the base.
+    /// Returns the angle from the drive of link `from` to that of link `to`; `None` is the x axis of the base.
     pub fn between(machine: &Machine, from: Option<usize>, to: usize) -> Self {
         let (down, up) = (pins(machine, Some(to)), pins(machine, from));
         // Pins that both chains share cancel.
@@ -37,7 +37,7 @@ impl PinAngleSum {
         Some(Self::between(machine, from, to))
     }
 
-    /// Returns the pin whose angle this is, if the sum is one pin with sign 1.
+    /// Returns the pin whose angle equals the sum, if the sum is a single pin with sign 1.
     pub fn pin(&self) -> Option<usize> {
         match self.pins[..] {
             [(pin, 1.0)] => Some(pin),
@@ -46,7 +46,7 @@ impl PinAngleSum {
     }
 }
 
-/// Returns the pins from the root of a link down to the base.
+/// Returns the pins from the root of a link down to the base, each as the index of the link at whose root it is.
 fn pins(machine: &Machine, link: Option<usize>) -> Vec<usize> {
     std::iter::successors(link, |j| machine.resolved_links()[*j].parent).collect()
 }

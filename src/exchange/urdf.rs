@@ -13,9 +13,10 @@
 //!
 //! # What URDF cannot express
 //! URDF has no elements for gravity, for pins that close loops, and for limits of acceleration and jerk. It has none
-//! for limits of an angle that is not a motor's. (Mimic joints keep the loops closed.) All these stand in an element
-//! `<stillbase>`, which other programs ignore and [`import`](super::import) reads. Friction, springs and the base's own
-//! motion belong to a scenario. Inertias about axes in the plane do not affect a plane motion and are invented.
+//! for limits of an angle that is not a motor's. (Mimic joints keep the loops closed.) The element `<stillbase>`
+//! contains all these; other programs ignore it, and [`import`](super::import) reads it. Friction, springs and the
+//! motion of the base belong to a scenario. Inertias about axes in the plane do not affect a plane motion; their values
+//! are made up.
 
 use super::look::{DRAWN_BAR_RADIUS, DRIVE_COLOURS};
 use super::tree::{Tree, TreeJoint, TreePart, Turns};
@@ -56,7 +57,7 @@ struct Body {
     at: [f64; 3],
     /// Mass, kg.
     mass: f64,
-    /// Inertia about its centre of mass, around z, kg m².
+    /// Moment of inertia about the axis through its centre of mass parallel to z, kg m².
     inertia: f64,
 }
 
@@ -137,7 +138,8 @@ impl<'a> Model<'a> {
         self.lines.add(1, format_args!("</stillbase>"));
     }
 
-    /// Returns the limits of a relative angle as limits of a motor's joint, rad; `None` without limits or such a motor.
+    /// Returns the limits of a relative angle as limits of a motor's joint, rad. `None` if there are no limits, or no
+    /// motor turns this angle.
     fn limited(&self, angle: &RelativeAngle) -> Option<(usize, [f64; 2])> {
         let motors = self.machine.motors();
         let (least, most) = (angle.limits.start() - angle.offset, angle.limits.end() - angle.offset);
@@ -157,7 +159,7 @@ impl<'a> Model<'a> {
         let (kind, more) = match joint.turns {
             Turns::Not => ("fixed", String::new()),
             Turns::Motor(k) => self.limits(k, 1.0),
-            // Some programs require that a follower has the same type as the joint that it follows.
+            // Some programs require that a mimic joint has the same type as the joint that it mimics.
             Turns::Follows(k, times) => {
                 let drive = quoted(&self.machine.spec().drives[k].name);
                 let (kind, limits) = self.limits(k, times);
@@ -221,7 +223,7 @@ impl<'a> Model<'a> {
 
     fn inertial(&mut self, body: &Body) {
         let Body { at: [x, y, z], mass, inertia } = body;
-        // Any values with ixx + iyy ≥ izz will do: a plane motion depends only on the inertia about z.
+        // Any values with ixx + iyy ≥ izz are valid: a plane motion depends only on the inertia about z.
         let other = 0.6 * inertia;
         self.lines.add(2, format_args!("<inertial>"));
         self.lines.add(3, format_args!("<origin xyz=\"{x} {y} {z}\"/>"));

@@ -1,8 +1,10 @@
-//! [`TemporaryFile`]: a temporary file in the folder of the file that it will become, and its removal if the program ends.
+//! [`TemporaryFile`]: a temporary file in the folder of the file that it will become. It is removed if the program ends
+//! before.
 //!
 //! The crate `tempfile` makes temporary files too, but does not do three things that this module does. Temporary files
-//! of killed programs are found by their names and released locks, and removed. A signal handler can remove all drafts
-//! without dropping their owners, while no draft can take its final name. Tests can inject a fault at each step.
+//! of killed programs are found by their names and released locks, and removed. A signal handler can remove all
+//! temporary files without dropping their owners, while none can take its final name. Tests can inject a fault at each
+//! step.
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
@@ -17,14 +19,14 @@ pub(super) fn folder_of(file: &Path) -> &Path {
     file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Paths of this program's temporary files. While the lock is held, no draft can begin or take its final name.
+/// Paths of this program's temporary files. While the lock is held, none can be created or take its final name.
 static MAKING: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 pub(super) fn making() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     MAKING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Guard after [`abandon`]: while it lives, no draft can begin or take its final name.
+/// Guard after [`abandon`]: while it lives, no temporary file can be created or take its final name.
 #[derive(Debug)]
 pub struct WriteBlock(#[expect(dead_code, reason = "held, not read")] MutexGuard<'static, BTreeSet<PathBuf>>);
 
@@ -32,7 +34,7 @@ pub struct WriteBlock(#[expect(dead_code, reason = "held, not read")] MutexGuard
 pub fn abandon() -> WriteBlock {
     let parts = making();
     for part in parts.iter() {
-        // Errors cannot be reported any more.
+        // The program ends, so errors cannot be reported.
         let _ = fs::remove_file(part);
     }
     WriteBlock(parts)
@@ -88,7 +90,8 @@ impl TemporaryFile {
                 Err(e) if e.kind() == ErrorKind::AlreadyExists => continue,
                 out => out?,
             };
-            // Another program may have removed it before it was locked. Without file locks no program removes any.
+            // Another program may have removed the file before it was locked. On systems without file locks, no program
+            // removes temporary files of others.
             let swept = matches!(out.try_lock(), Err(TryLockError::WouldBlock)) || part.symlink_metadata().is_err();
             if !swept {
                 parts.insert(part.clone());

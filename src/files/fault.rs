@@ -1,5 +1,5 @@
-//! Fault injection for tests of file writing: the n-th step fails, or that and all later ones, or the program ends at
-//! once there. Only in debug builds.
+//! Fault injection for tests of file writing: the n-th step fails, or it and all later steps fail, or it ends the
+//! program. Only in debug builds.
 
 use std::io;
 #[cfg(debug_assertions)]
@@ -10,8 +10,7 @@ use std::sync::atomic::{AtomicBool, AtomicI64, Ordering::Relaxed};
 pub(super) enum WriteStep {
     /// Creating, writing, syncing or renaming: each can fail.
     Fallible,
-    /// Cleaning up, where a single failure does no harm: an injected fault can only end the program there, or go on from
-    /// an earlier step.
+    /// Cleaning up, where a single failure does no harm: faults that fail a single step do not count it.
     Tidy,
 }
 
@@ -22,11 +21,12 @@ static STEPS_TO_FAULT: AtomicI64 = AtomicI64::new(0);
 #[cfg(debug_assertions)]
 static ENDS_PROGRAM: AtomicBool = AtomicBool::new(false);
 
-/// Whether all later steps fail, too, also those that clean up.
+/// Whether all later steps fail, too, including those that clean up.
 #[cfg(debug_assertions)]
 static GOES_ON: AtomicBool = AtomicBool::new(false);
 
-/// Sets the fault: `fail:3` fails at the third step, `from:3` at that and all later ones, `end:3` ends the program there.
+/// Sets the fault: with `fail:3` the third step fails, with `from:3` it and all later steps fail, with `end:3` it ends
+/// the program.
 #[cfg(debug_assertions)]
 pub fn arm_fault(wanted: &str) {
     if let Some((how, n)) = wanted.split_once(':') {

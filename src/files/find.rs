@@ -17,7 +17,7 @@ const IS_SCENARIO: &str = "this is a scenario, not a machine: want the machine t
 /// Returns a machine by built-in name or by file; a relative path is resolved in `folder`, if given.
 ///
 /// # Errors
-/// If it is neither, or if the file is not a machine.
+/// If there is no such machine or file, or if the file is not a machine.
 pub fn machine(name: &str, folder: Option<&Path>) -> Result<Machine, FileError> {
     if let Some(machine) = machine::builtin(name) {
         return Ok(machine.clone());
@@ -47,15 +47,15 @@ pub fn machine(name: &str, folder: Option<&Path>) -> Result<Machine, FileError> 
 pub struct FoundScenario {
     /// The scenario.
     pub scenario: Scenario,
-    /// Note that it was made for a machine, if so.
+    /// Note that the scenario was made for a machine; `None` otherwise.
     pub made: Option<String>,
 }
 
-/// Returns a scenario by built-in name or by file; a machine file that it names is resolved in its folder. For a
-/// machine instead of a scenario, makes a scenario with a task.
+/// Returns a scenario by built-in name or by file. A machine file that the scenario names is resolved in the folder of
+/// the scenario. For the name or file of a machine, makes a scenario with a task.
 ///
 /// # Errors
-/// If it is neither, or if the file is neither a scenario nor a machine.
+/// If there is no such scenario, machine or file, or if the file is neither a scenario nor a machine.
 pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
     if let Some(scenario) = Scenario::builtin(name) {
         return Ok(FoundScenario { scenario, made: None });
@@ -75,7 +75,7 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
         }
         Err(source) => return Err(ScenarioError::Unreadable { file: shortened(name, 300), source }),
     };
-    // A model of another program: TOML cannot begin with this character.
+    // This is a model of another program, because TOML cannot begin with this character.
     if text.trim_start().starts_with('<') {
         let ImportedMachine { machine, notes, .. } = import(&text).map_err(|why| said(why.to_string()))?;
         let FoundScenario { scenario, made } = made(name, &machine)?;

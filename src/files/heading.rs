@@ -1,9 +1,9 @@
-//! A heading before the session in a file, which TOML reads as comments.
+//! A heading before the session in a file; TOML reads its lines as comments.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Beginning of each of its lines.
+/// Beginning of each line of a heading.
 const MARK: &str = "#| ";
 
 /// Maximum size of a heading that is read, bytes.

@@ -14,7 +14,7 @@ pub fn folder() -> Option<PathBuf> {
     Some(own.state_dir().unwrap_or_else(|| own.data_local_dir()).join("sessions"))
 }
 
-/// Maximum number of journals, so of programs that run at once with a journal each.
+/// Maximum number of journals, that is, of programs that run at once with a journal each.
 const MAX_JOURNALS: usize = 64;
 
 /// The journal of a running program, which holds a lock on it.
@@ -53,7 +53,7 @@ impl Journal {
         (0..MAX_JOURNALS).find_map(|number| {
             let [file, name] = names(folder, number);
             let lock = locked(&name)?;
-            // Checked while the lock is held, because another program may have begun in between.
+            // Checked while the lock is held, because another program may have begun this journal in between.
             file.symlink_metadata().is_err().then_some(Self { file, lock: (name, lock) })
         })
     }
@@ -63,7 +63,7 @@ impl Journal {
         &self.file
     }
 
-    /// Removes it, so that no recovery is offered at the next start.
+    /// Removes the journal, so that no recovery is offered at the next start.
     pub fn end(self) {
         remove_journal(&self.file);
         let (name, lock) = self.lock;
@@ -76,7 +76,7 @@ impl Journal {
 /// Writes a session, whole or not at all, and syncs it to the disk.
 ///
 /// # Errors
-/// If it cannot be written.
+/// If the session cannot be written.
 pub fn write(file: &Path, text: &str) -> Result<(), WriteError> {
     write_new(file, text.as_bytes(), true)
 }

@@ -84,7 +84,7 @@ pub struct NewFile {
     /// The requested path, which errors name.
     requested: PathBuf,
     force: bool,
-    /// Whether the file that it replaces has further hard links, which are to have the new content too.
+    /// Whether the file that it replaces has further hard links, which must get the new content, too.
     has_other_names: bool,
     out: BufWriter<FallibleFile>,
     draft: TemporaryFile,
@@ -106,8 +106,8 @@ impl Before {
         Some(Self { metadata, has_other_names })
     }
 
-    /// Copies the old owner, as far as the system allows, and the permissions to a file. Only those who could read
-    /// the old content can read the new one.
+    /// Copies the permissions of the old file, and its owner as far as the system allows, to a new file. So only those
+    /// who could read the old content can read the new one.
     fn lend_access(&self, file: &File) -> io::Result<()> {
         #[cfg(unix)]
         {
@@ -160,7 +160,7 @@ impl NewFile {
     /// Overwrites the bytes at an offset.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// If the bytes cannot be written.
     pub fn replace(&mut self, at: u64, bytes: &[u8]) -> io::Result<()> {
         self.out.seek(SeekFrom::Start(at))?;
         self.out.write_all(bytes)?;
@@ -189,7 +189,7 @@ impl NewFile {
         synced.map_err(|source| self.failed(source))
     }
 
-    /// Gives the file its final name. If `keep`, a file that it replaces is kept under another name.
+    /// Gives the file its final name. With `keep`, the file that it replaces is kept under a temporary name.
     fn take_name(&self, keep: bool) -> Result<Taken, WriteError> {
         let TemporaryFile { part, file } = &self.draft;
         check_new(&self.requested, self.force)?;
@@ -226,7 +226,7 @@ fn link(part: &Path, file: &Path) -> io::Result<()> {
     match fs::hard_link(part, file) {
         Ok(()) => {
             if super::fault::fail_if_due(WriteStep::Tidy).is_ok() {
-                // If this fails, the temporary file is removed when the draft is dropped.
+                // If this fails, dropping the [`TemporaryFile`] removes the file.
                 let _ = fs::remove_file(part);
             }
             Ok(())
@@ -264,8 +264,8 @@ fn aside(part: &Path, file: &Path, copied: bool) -> Option<PathBuf> {
     .map(|()| aside)
 }
 
-/// Gives the previous content of a file a lasting name, `FILE.before`, `FILE.before-1` and so on: the next file that is
-/// written would remove its temporary one.
+/// Renames the previous content of a file from its temporary name to a lasting one, because the next write would remove
+/// a temporary file. The name is `FILE.before`, `FILE.before-1` and so on.
 fn named_before(temporary: &Path, file: &Path) -> PathBuf {
     let mut name = file.as_os_str().to_owned();
     name.push(".before");
@@ -369,7 +369,7 @@ pub fn made(file: &Path, bytes: &[u8], force: bool) -> Result<NewFile, WriteErro
     Ok(out)
 }
 
-/// Returns whether two paths name the same file, which need not exist, in folders that do.
+/// Returns whether two paths name the same file. The file need not exist, but its folder must.
 pub fn is_same_place(a: &Path, b: &Path) -> bool {
     let place = |file: &Path| {
         let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));

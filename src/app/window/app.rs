@@ -100,7 +100,7 @@ impl App {
         &self.app_state
     }
 
-    /// The state of the user interface, to change.
+    /// The mutable state of the user interface.
     pub fn app_state_mut(&mut self) -> &mut AppState {
         &mut self.app_state
     }

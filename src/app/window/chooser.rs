@@ -33,8 +33,8 @@ enum Answer {
 }
 
 impl Chooser {
-    /// Shows the system's dialog in place of the window's own. The own dialog is shown if the system has none, or if a
-    /// file is requested again while the system's dialog is open.
+    /// Shows the system's dialog in place of the window's. The window shows its own dialog if the system has none, or
+    /// if a file is requested again while the system's dialog is open.
     pub fn follow(&mut self, ctx: &egui::Context, window: &Window, app_state: &mut AppState) {
         let Some((dialog, job)) = self.pending.take() else {
             if let Some(dialog) = app_state.view_state().open.dialog.clone().filter(|_| !self.is_unavailable) {

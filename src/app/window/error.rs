@@ -33,7 +33,7 @@ pub enum WindowError {
     /// The graphics device was lost while the window was open, and could not be replaced.
     #[error("the graphics device was lost: {why}; {}", kept_in(.kept.as_deref()))]
     DeviceLost {
-        /// Why it could not be replaced.
+        /// Why the device could not be replaced.
         why: String,
         /// File of the journal of the session, if there were changes.
         kept: Option<PathBuf>,
@@ -47,10 +47,10 @@ fn kept_in(kept: Option<&Path>) -> String {
     }
 }
 
-/// Returns why nothing could be drawn on an existing display.
+/// Returns the reason why nothing could be drawn on an existing display.
 pub(super) fn what_is_missing() -> String {
-    // SAFETY: the loader of the graphics drivers, which has been tried a moment ago in the same way; its initialisers
-    // do nothing but set up its own state.
+    // SAFETY: this is the loader of the graphics drivers, which wgpu tried a moment ago in the same way. Its
+    // initialisers only set up its own state.
     if cfg!(target_os = "linux") && unsafe { libloading::Library::new("libvulkan.so.1") }.is_err() {
         return "libvulkan.so.1 is missing: install it with `apt-get install libvulkan1`".into();
     }
@@ -77,8 +77,8 @@ pub(super) fn check_libraries() -> Result<(), WindowError> {
         ("libXcursor.so.1", "apt-get install libxcursor1"),
         ("libXi.so.6", "apt-get install libxi6"),
     ] {
-        // SAFETY: these are system libraries that the window system loads a moment later in the same way; their
-        // initialisers do nothing but set up their own state.
+        // SAFETY: these are system libraries that the window system loads a moment later in the same way. Their
+        // initialisers only set up their own state.
         if unsafe { libloading::Library::new(library) }.is_err() {
             return Err(WindowError::MissingLibrary { library, install });
         }

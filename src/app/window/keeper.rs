@@ -13,15 +13,16 @@ use stillbase_query::{Job, Poll};
 pub struct Keeper {
     liked: Liked,
     journal: Option<Journal>,
-    /// State that the journal contains, and state that is being written.
+    /// State that the journal contains.
     held: Kept,
+    /// State that is being written, and the job that writes it.
     writing: Option<(Kept, Job<bool>)>,
     next: Instant,
     /// File of a recovered session; it is removed once the journal contains the session.
     going: Option<PathBuf>,
 }
 
-/// Preferences: present ones, those in the file, and the time of their writing.
+/// Preferences: the present ones, those in the file, and the time of the last write.
 struct Liked {
     now: Preferences,
     written: Preferences,
@@ -29,7 +30,7 @@ struct Liked {
 }
 
 impl Liked {
-    /// Updates the file.
+    /// Writes the preferences if they have changed.
     fn write(&mut self) {
         if self.written != self.now {
             preferences::save(&self.now);
@@ -39,23 +40,24 @@ impl Liked {
     }
 }
 
-/// Number of changes of a session, and the state of the display that no edit contains.
+/// Number of changes of a session, and the state of the display that edits do not contain.
 type Kept = (u64, ResumePoint);
 
 /// Minimum time between two writes of preferences.
 const PREFERENCES_INTERVAL: Duration = Duration::from_secs(1);
-/// Minimum time between two writes of the journal: half of the second within which it contains a change.
+/// Minimum time between two writes of the journal: half a second, because it must contain each change within a second.
 const JOURNAL_INTERVAL: Duration = Duration::from_millis(500);
-/// Maximum extension of this time by the copying of a long session.
+/// Maximum time added to [`JOURNAL_INTERVAL`] because a long session takes long to copy.
 const MAX_COPY_PAUSE: Duration = Duration::from_millis(250);
-/// Number and interval of the checks for the end of a write when the window closes.
+/// Maximum number of checks for the end of a write when the window closes.
 const MAX_CHECKS: u32 = 1000;
+/// Interval of these checks.
 const CHECK_INTERVAL: Duration = Duration::from_millis(2);
-/// Copying a session takes at most this fraction of the time between two copies, as far as `MAX_COPY_PAUSE` allows.
-const COPY_SHARE: u32 = 50;
+/// Ratio of the added time to the time that copying the session took; [`MAX_COPY_PAUSE`] limits the result.
+const COPY_PAUSE_FACTOR: u32 = 50;
 
 impl Keeper {
-    /// Creates the keeper; preferences and session count as stored.
+    /// Creates the keeper; it takes preferences and session as already stored.
     pub fn new(liked: Preferences, app_state: &AppState) -> Self {
         let now = Instant::now();
         let held = (app_state.changes().0, app_state.left_off());
@@ -65,11 +67,11 @@ impl Keeper {
 
     /// Writes preferences and journal after a repaint, if they are due.
     pub fn keep(&mut self, ctx: &egui::Context, app_state: &mut AppState) {
-        self.like(ctx, app_state);
+        self.keep_preferences(ctx, app_state);
         self.write(ctx, app_state);
     }
 
-    fn like(&mut self, ctx: &egui::Context, app_state: &AppState) {
+    fn keep_preferences(&mut self, ctx: &egui::Context, app_state: &AppState) {
         let size = ctx.content_rect().size();
         let liked = &mut self.liked;
         liked.now = app_state.preferences([size.x, size.y]);
@@ -94,10 +96,10 @@ impl Keeper {
         self.going = app_state.take_recovered().or(self.going.take());
         let now_is = (app_state.changes().0, app_state.left_off());
         let (changes, left_off) = &now_is;
-        // A new instant alone does not begin a journal, and is not written while the run plays.
-        let elsewhere =
+        // A change of the displayed time alone does not begin a journal, and is not written while the run plays.
+        let time_changed =
             self.journal.is_some() && !app_state.session().is_playing() && left_off.time != self.held.1.time;
-        if *changes == self.held.0 && left_off.plots == self.held.1.plots && !elsewhere {
+        if *changes == self.held.0 && left_off.plots == self.held.1.plots && !time_changed {
             self.going.take().iter().for_each(|file| journal::remove_journal(file));
             return;
         }
@@ -116,7 +118,7 @@ impl Keeper {
         self.next = now + JOURNAL_INTERVAL;
         let Some(file) = self.journal.as_ref().map(|journal| journal.file().to_owned()) else { return };
         let (scenario, left_off) = (app_state.session().to_scenario(), left_off.clone());
-        self.next += (COPY_SHARE * now.elapsed()).min(MAX_COPY_PAUSE);
+        self.next += (COPY_PAUSE_FACTOR * now.elapsed()).min(MAX_COPY_PAUSE);
         let wake = ctx.clone();
         let job = Job::start(
             &Threads::Prompt,
@@ -137,7 +139,8 @@ impl Keeper {
         }
     }
 
-    /// Writes everything at once because the window ends abnormally, to be offered at the next start; returns the file.
+    /// Writes preferences and journal at once, before an abnormal end; returns the file of the journal. The next start
+    /// offers this session.
     pub fn keep_now(&mut self, app_state: &AppState) -> Option<PathBuf> {
         self.liked.write();
         self.settle();
@@ -150,7 +153,7 @@ impl Keeper {
         Some(file.to_owned())
     }
 
-    /// Removes the journal because the window closes normally: nothing is to be offered at the next start.
+    /// Writes the preferences and removes the journal: after a normal end, the next start offers no session.
     pub fn end(&mut self) {
         self.liked.write();
         // A write under way would create the journal again after its removal.
@@ -161,7 +164,7 @@ impl Keeper {
     }
 }
 
-/// Returns the newest session left by an earlier program run, and its age in words.
+/// Returns the file of the newest session that an earlier program run left, and its age in words.
 pub fn found() -> Option<(PathBuf, String)> {
     let LeftoverJournal { file, when } = journal::leftover_journals(&journal::folder()?).into_iter().next()?;
     let ago = when.elapsed().unwrap_or_default().as_secs();

@@ -32,7 +32,7 @@ pub struct Screen {
 pub enum PaintOutcome {
     /// The picture was presented, or the window is hidden.
     Done,
-    /// The picture was not presented, because the surface has changed: draw again.
+    /// The picture was not presented, for example because the surface has changed: draw again.
     Again,
 }
 
@@ -195,7 +195,7 @@ impl Screen {
 
 impl Drop for Screen {
     fn drop(&mut self) {
-        // egui asserts that no texture changes are dropped; here it is intended.
+        // egui asserts that no texture changes are dropped, but a dropped screen needs none.
         self.textures.clear();
     }
 }

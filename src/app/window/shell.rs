@@ -96,7 +96,7 @@ impl OpenWindow {
         ctx.set_request_repaint_callback(move |asked| {
             // An infinite delay requests no pass.
             if let Some(when) = Instant::now().checked_add(asked.delay) {
-                // After the end of the loop nothing is left to paint.
+                // Sending fails only after the end of the loop, when there is nothing to draw.
                 let _ = wake.send_event(Wake::Pass(when, asked.current_cumulative_pass_nr));
             }
         });
@@ -199,7 +199,7 @@ impl Shell<'_> {
         let again = root.as_ref().and_then(|root| passed.checked_add(root.repaint_delay));
         let commands = root.map(|root| root.commands).unwrap_or_default();
         let stays = commands.contains(&ViewportCommand::CancelClose);
-        // No command of the interface needs an answer: it copies text itself, and takes no screenshots.
+        // No command of the interface needs an answer: the interface copies text itself, and takes no screenshots.
         egui_winit::process_viewport_commands(ctx, info, commands, window, &mut Vec::new());
         if closes && !stays {
             return self.end(events, Ok(()));
@@ -209,7 +209,7 @@ impl Shell<'_> {
         }
         if !is_unseen {
             let shapes = ctx.tessellate(shapes, pixels_per_point);
-            // Presenting may wait for the screen: the work held back starts before.
+            // Presenting may wait for the screen, so the work held back starts before that.
             drop(drawing);
             let behind = ctx.global_style().visuals.panel_fill;
             if screen.draw(window, &shapes, pixels_per_point, behind) == PaintOutcome::Again {
@@ -249,7 +249,7 @@ impl ApplicationHandler<Wake> for Shell<'_> {
     fn user_event(&mut self, _: &ActiveEventLoop, wake: Wake) {
         let Some(open) = &mut self.open else { return };
         match wake {
-            // A request of an older pass has been met since.
+            // A later pass may already have met the request.
             Wake::Pass(when, asked) => {
                 let passes = open.ctx.cumulative_pass_nr_for(ViewportId::ROOT);
                 if passes <= asked + 1 {

@@ -10,7 +10,7 @@ use stillbase_picture::scene::palette::Palette;
 /// Times of repaints, averaged over the last few.
 #[derive(Default)]
 pub struct Times {
-    /// Time from one repaint to the next, while they follow each other, s.
+    /// Time from one repaint to the next, without pauses, s.
     interval: f64,
     /// Time that the program takes to determine what to draw, s.
     interface: f64,
@@ -28,7 +28,7 @@ const MIN_TEXT_DURATION: Duration = Duration::from_millis(300);
 const NEWEST_WEIGHT: f64 = 0.1;
 
 impl Times {
-    /// Records the begin of a repaint.
+    /// Records the beginning of a repaint.
     pub fn begin(&mut self, now: Instant) {
         let interval = self.begun.map(|begun| now - begun).filter(|interval| *interval < MIN_PAUSE);
         if let Some(interval) = interval {
@@ -40,7 +40,7 @@ impl Times {
 
     /// Records that the shapes of a repaint are complete.
     pub fn end(&mut self, now: Instant) {
-        // The first repaint loads the fonts.
+        // The first repaint is left out, because it loads the fonts.
         if let Some(begun) = self.begun.filter(|_| self.follows) {
             blend(&mut self.interface, (now - begun).as_secs_f64());
         }

@@ -17,12 +17,12 @@ struct Answer {
 }
 
 impl DesignArguments {
-    /// Prints the Pareto front of each machine, or why it has none.
+    /// Prints the Pareto front of each machine, or the reason why it has none.
     pub fn fronts(&self) -> Result<(), Failure> {
         let machines = self.machine.load_with(&self.beside)?;
         let task = self.task(&machines.iter().map(|(_, machine)| machine).collect::<Vec<_>>())?;
         let of = |(name, machine)| {
-            // The Pareto front is of mass and inertia, so no motion is given.
+            // The Pareto front trades mass against inertia, neither of which depends on a motion.
             let asked = self.weighing.asked(&machine, None).map_err(|why| why.of(&name))?;
             report_removed(&machine, &format!("{name}: "));
             Ok(FrontCase { name, machine, asked })
@@ -43,8 +43,7 @@ impl DesignArguments {
     }
 }
 
-/// Formats the machines of the fronts, each from the least mass to the least inertia, and below them machines without a
-/// front.
+/// Formats the fronts as a table, each from minimum mass to minimum inertia; machines without a front follow below.
 fn text(answer: &Answer) -> String {
     let mut table = TextTable::new(["machine"].into_iter().chain(FRONT_HEADINGS));
     let mut refused = String::new();

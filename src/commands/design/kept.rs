@@ -13,21 +13,21 @@ use super::super::holds::{bound, hold};
 use super::super::output::TextTable;
 use super::measures;
 
-/// What may change, and how far.
+/// Parameters that may change, and their bounds.
 #[derive(Args)]
 pub struct RebalanceArguments {
-    /// Change as little as possible instead: the least Σ (p Δ)², Δ in m or kg. Centres of mass along the links are free,
-    /// from where they are; everything else stays
+    /// Change the machine as little as possible: minimise Σ (p Δ)², with the changes Δ in m or kg. Centres of mass may
+    /// move along their links; everything else stays fixed
     #[arg(long)]
     pub keep: bool,
-    /// Leave these where they are: 3.com is link.3.com
+    /// Keep these parameters fixed; 3.com is short for link.3.com
     #[arg(long, value_name = "KEY,…", requires = "keep", value_delimiter = ',')]
     fix: Vec<String>,
-    /// Change these, too: 4.mass, 4.com_normal, counterweight.1.mass, counterweight.1.at, each with penalty 1 on a
-    /// kilogram or a metre; a mass goes from a tenth to ten times of what it is unless --bound says otherwise
+    /// Let these change, too: 4.mass, 4.com_normal, counterweight.1.mass, counterweight.1.at, with a penalty of 1 per
+    /// kilogram or metre. A mass stays between 0.1 and 10 times its original value unless --bound sets other bounds
     #[arg(long, value_name = "KEY,…", requires = "keep", value_delimiter = ',')]
     free: Vec<String>,
-    /// Change this one only from one value to another, m or kg
+    /// Let this parameter change within these bounds only, m or kg
     #[arg(long, value_name = "KEY=LO,HI", requires = "keep", value_parser = bound, allow_hyphen_values = true)]
     bound: Vec<(String, [f64; 2])>,
 }

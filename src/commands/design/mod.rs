@@ -28,17 +28,17 @@ use weighed::WeightArguments;
 
 /// Place the links' centres of mass so that the base feels no force and the mass matrix is invariant, Eq. (10)
 ///
-/// Of all balanced designs, the one with the least Σ (p_j l_cj)² is taken: a link with a large penalty p_j keeps its
-/// centre of mass near its attachment.
+/// The result is the balanced design with minimum Σ (p_j l_cj)². A link with a large penalty p_j keeps its centre of
+/// mass near its attachment.
 ///
-/// With --keep the machine changes as little as it can instead: only what may, within bounds. Where that is too little,
-/// the answer names what stands in the way, and how far it would have to give.
+/// With --keep the machine changes as little as possible instead: only free parameters change, within their bounds. If
+/// no balanced design lies within them, the answer names the bounds in conflict and a relaxation that suffices.
 ///
-/// With --counterweights the links stay as they are, and discs on them do it: the lightest, or those of the least
-/// inertia, as a cone program proves. "gap" is the most by which the best may lie below what was found.
+/// With --counterweights the links stay unchanged, and discs on them balance the machine. A cone program finds the
+/// lightest discs, or those of least inertia. "gap" is the maximum amount by which the optimum may be lower.
 ///
-/// With --counterweights --front and several machines the front of each stands beside those of the others, under the same
-/// bounds; a machine that nothing balances within them says why in its place.
+/// With --counterweights --front and several machines, the answer compares their Pareto fronts under the same bounds.
+/// For a machine that no counterweights within the bounds balance, it gives the reason.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -58,21 +58,21 @@ Examples:
 pub struct DesignArguments {
     #[command(flatten)]
     machine: MachineArgument,
-    /// More machines, for their fronts beside that of the first: the same bounds and settings are for all
+    /// More machines, to compare their Pareto fronts with that of the first under the same bounds and settings
     #[arg(value_name = "MACHINE", requires = "front", conflicts_with_all = ["objective", "length", "output"])]
     beside: Vec<String>,
     /// Penalty p_j on the centre of mass of each link, 1e-6 to 1e6
     #[arg(long, value_name = "P1,P2,…", value_delimiter = ',', value_parser = penalty)]
     penalty: Vec<f64>,
-    /// Penalties by name; without, table-1 for nine links, minimum-norm for others
+    /// Penalties by name; default: table-1 for nine links, minimum-norm for others
     #[arg(long, value_parser = choice(Preset::ALL.iter().copied()), conflicts_with = "penalty")]
     preset: Option<Preset>,
     #[command(flatten)]
     kept: RebalanceArguments,
     #[command(flatten)]
     weighing: Box<WeightArguments>,
-    /// A scenario or a TOML file of one: its motion, as planned for its own machine, counts for torque, and β says what
-    /// is left of force, moment and torque on it
+    /// A built-in scenario or a TOML file: its motion, planned for its own machine, determines the torque. Each β is
+    /// the ratio of force, moment or torque (root mean squares along this motion) to its value before
     #[arg(long, value_name = "SCENARIO")]
     task: Option<String>,
     /// Write the new machine to this file
@@ -85,7 +85,7 @@ pub struct DesignArguments {
     format: Format,
 }
 
-/// Parses a penalty; a larger ratio of penalties would be lost in rounding.
+/// Parses a penalty; beyond these limits, rounding would hide the smallest penalties.
 fn penalty(text: &str) -> Result<f64, String> {
     let within = text.trim().parse().ok().filter(|p| (1e-6..=1e6).contains(p));
     within.ok_or_else(|| "want a number from 1e-6 to 1e6".into())
@@ -136,8 +136,8 @@ impl DesignArguments {
         self.format.print(&answer, |answer| kept::text(answer, machine, by))
     }
 
-    /// Returns a run of the task whose motion is used, if there is one. Fails unless one of the machines has as many
-    /// drives.
+    /// Returns a run of the scenario of `--task`, if one is given. Fails unless at least one of the machines has as
+    /// many drives as that scenario.
     fn task(&self, machines: &[&Machine]) -> Result<Option<Run>, Failure> {
         let Some(name) = &self.task else { return Ok(None) };
         let run = Run::new(&with_start_edits(&scenario(name, &Settings::default())?)?.0)?;
@@ -176,7 +176,7 @@ impl DesignArguments {
     }
 }
 
-/// Writes a machine under the name of its file, because it differs from the machine that it was made from.
+/// Writes a machine, named after its file because it differs from the original machine.
 fn save(machine: &Machine, file: &Path, force: bool, summary: String) -> Result<(), Failure> {
     let mut spec = machine.spec().clone();
     spec.name = file.file_stem().unwrap_or(OsStr::new("machine")).to_string_lossy().into_owned();

@@ -24,74 +24,77 @@ use super::super::output::TextTable;
 use super::super::sites::{link, range, sites};
 use super::measures;
 
-/// What counterweights may be, and what is to be least.
+/// Constraints on the counterweights, and the objective to minimise.
 #[derive(Args)]
 pub struct WeightArguments {
-    /// Balance it by counterweights, discs on the axes of the links; those that it has are taken off first, but for those
-    /// with fixed = true
+    /// Balance the machine by counterweights, discs on the axes of the links; existing ones are removed first unless
+    /// they have fixed = true
     #[arg(long, conflicts_with_all = ["penalty", "preset", "keep"])]
     pub counterweights: bool,
-    /// A link that may carry one, and where, m from its root towards its tip; every link, from its length behind the
-    /// root to the tip, where none is given
+    /// A link that may carry a counterweight, and the bounds of its place, m from the root towards the tip. Default:
+    /// every link, from one link length behind the root to the tip
     #[arg(long, value_name = "LINK=LO,HI", requires = "counterweights", value_parser = range, allow_hyphen_values = true)]
     range: Vec<(String, [f64; 2])>,
-    /// What the discs are made of: aluminium, steel, brass, lead, tungsten, or a density, kg/m³
+    /// Material of the discs: aluminium, steel, brass, lead, tungsten, or a density, kg/m³
     #[arg(long, value_parser = density, value_name = "MATERIAL", requires = "counterweights", default_value = "steel")]
     material: f64,
     /// Thickness of the discs, m
     #[arg(long, value_parser = number, value_name = "T", requires = "counterweights", default_value_t = Disc::STEEL.thickness)]
     thickness: f64,
-    /// The most that a counterweight may weigh, kg: of every link, or LINK=M of one
+    /// Maximum mass of a counterweight, kg: M for every link, or LINK=M for one
     #[arg(long, value_name = "[LINK=]M", requires = "counterweights")]
     max_mass: Vec<String>,
-    /// The largest radius of a disc, m
+    /// Maximum radius of a disc, m
     #[arg(long, value_parser = number, value_name = "R", requires = "counterweights")]
     max_radius: Option<f64>,
-    /// How far the edge of a disc stays from the middle of every pin of its link, m; without it discs may cover pins
+    /// Minimum distance from the edge of a disc to the centre of every pin of its link, m; by default discs may cover
+    /// pins
     #[arg(long, value_parser = number, value_name = "C", requires = "counterweights")]
     clearance: Option<f64>,
-    /// What the end effector holds, at least and at most, kg: the worst residual of (7) and (8) over all between, |g_k| or
-    /// |C_kl| divided by the reach, is made least, then the objective
+    /// Minimum and maximum payload, kg. First the largest residual of Eqs (7) and (8) over this interval is minimised,
+    /// |g_k| or |C_kl| divided by the reach; then the objective
     #[arg(long, value_name = "LO,HI", requires = "counterweights", value_parser = payload)]
     payload: Option<[f64; 2]>,
-    /// Choose the inertia of the rotor of a drive, kg m², at the ratio that the machine has
+    /// Optimise the inertia of a drive's rotor within these bounds, kg m²; its ratio stays unchanged
     #[arg(long, value_name = "DRIVE=LO,HI", requires = "counterweights", value_parser = range)]
     rotor_inertia: Vec<(String, [f64; 2])>,
-    /// Choose the ratio of the rotor of a drive, below 0 to counter-rotate, at the inertia that the machine has
+    /// Optimise the ratio of a drive's rotor within these bounds, negative to counter-rotate; its inertia stays
+    /// unchanged
     #[arg(long, value_name = "DRIVE=LO,HI", requires = "counterweights", value_parser = range, allow_hyphen_values = true)]
     rotor_ratio: Vec<(String, [f64; 2])>,
-    /// What is to be least: mass (added), inertia (what the drives turn: Σ D_k where there are no gears), momentum (what
-    /// they give to the base, Σ |D_k|; counter-rotating rotors take from it), torque (the greatest |τ| of a --task at its
-    /// worst instant, where β of torque is a mean), or a mixture as mass=1,inertia=5
+    /// Objective to minimise: mass, inertia, momentum, torque, or a weighted sum as mass=1,inertia=5. The mass is the
+    /// added mass; the inertia is that seen by the drives, Σ D_k without gears. The momentum is that given to the base,
+    /// Σ |D_k|; counter-rotating rotors reduce it. The torque is the maximum |τ| during --task, whereas the β of torque
+    /// is a ratio of root mean squares
     #[arg(long, value_name = "mass|inertia|momentum|torque|WEIGHTS", requires = "counterweights", value_parser = objective)]
     objective: Option<Objective>,
-    /// The most that all may weigh together, kg
+    /// Maximum total mass of the counterweights, kg
     #[arg(long, value_parser = number, value_name = "M", requires = "counterweights")]
     max_added: Option<f64>,
-    /// The most that Σ D_k may be, kg m²
+    /// Maximum Σ D_k, kg m²
     #[arg(long, value_parser = number, value_name = "D", requires = "counterweights")]
     max_inertia: Option<f64>,
-    /// Seek a length, too, m: a name under [lengths] or a link. Links keep their mass per metre. Not certified: the best
-    /// of several searches, each with certified counterweights
+    /// Optimise a length within these bounds, m: a name under [lengths] or a link. Links keep their mass per metre. The
+    /// lengths are the best of several searches, not certified; the counterweights for these lengths are certified
     #[arg(long, value_name = "NAME=LO,HI", requires = "counterweights", value_parser = range)]
     length: Vec<(String, [f64; 2])>,
-    /// How far the arms have to reach together at least, m
+    /// Minimum reach, the sum of the lengths of all arms, m
     #[arg(long, value_parser = number, value_name = "R", requires = "length")]
     min_reach: Option<f64>,
-    /// How large the reactionless workspace has to be at least, m²
+    /// Minimum area of the reactionless workspace, m²
     #[arg(long, value_parser = number, value_name = "A", requires = "length")]
     min_workspace: Option<f64>,
-    /// From how many places lengths are sought
+    /// Number of starting points of the search for lengths
     #[arg(long, value_name = "N", requires = "length", default_value_t = 6, value_parser = clap::value_parser!(u16).range(1..=1000))]
     starts: u16,
-    /// Where these are drawn from: the same seed finds the same lengths
+    /// Seed of the random starting points: the same seed finds the same lengths
     #[arg(long, value_name = "S", requires = "length", default_value_t = 1)]
     seed: u64,
-    /// Stop seeking lengths after so many seconds, with the best so far
+    /// Stop the search for lengths after this time, s, and use the best lengths so far
     #[arg(long, value_name = "S", requires = "length", value_parser = number)]
     seconds: Option<f64>,
-    /// Show what less inertia costs in mass, in so many machines from the least mass to the least inertia, and what each
-    /// comes to: torque (with --task), workspace, and the greatest |g_k| if masses are 1 % and places 0.5 mm off
+    /// Show the Pareto front of mass and inertia as N machines, from minimum mass to minimum inertia. Each row also
+    /// gives torque (with --task), workspace, and the maximum |g_k| if masses are 1 % and places 0.5 mm off
     #[arg(long, value_name = "N", requires = "counterweights", value_parser = clap::value_parser!(u16).range(2..=1000))]
     front: Option<u16>,
 }
@@ -136,7 +139,7 @@ impl WeightArguments {
         })
     }
 
-    /// Returns the number of machines of a Pareto front; two if none is asked for.
+    /// Returns the number of machines of a Pareto front; two by default.
     pub fn front_count(&self) -> usize {
         self.front.map_or(2, usize::from)
     }
@@ -172,7 +175,7 @@ impl WeightArguments {
         Failure::no_answer(said)
     }
 
-    /// Returns the search for lengths, if any are sought.
+    /// Returns the search for lengths, if lengths are free.
     fn lengths(&self, weighing: &CounterweightSpec) -> Option<LengthSearch> {
         let lengths = self.length.iter().map(|(name, ends)| FreeLength { name: name.clone(), ends: *ends });
         (!self.length.is_empty()).then(|| LengthSearch {
@@ -210,7 +213,7 @@ impl WeightArguments {
     }
 }
 
-/// Prints which counterweights of a machine are taken off, after the name of the machine in `of`.
+/// Prints which counterweights are removed from a machine; the message begins with `of`, the name of the machine.
 pub fn report_removed(machine: &Machine, of: &str) {
     let taken_off = removed_weights(machine);
     if taken_off.is_empty() {

@@ -22,12 +22,12 @@ use crate::input::{DEFAULT_SCENARIO, Settings, overlay_for_study};
 use crate::output::{Format, check_output};
 use stillbase_settings::number::counted;
 
-/// Vary a machine within its tolerances and see what its base feels
+/// Sample machines within tolerances, and evaluate their reactions on the base
 ///
-/// The spreads come from the scenario's [tolerance] and from --spread; where there are none, centres of mass vary by
-/// 0.5 mm both ways, masses by 0.5 %, inertias by 2 %, lengths by 0.05 mm, all normal. Every machine tracks the planned
-/// motion perfectly, so its wrench is linear in g, C and H and costs next to nothing. With --simulate each one is
-/// simulated, with control that knows only the nominal machine.
+/// The spreads come from [tolerance] of the scenario and from --spread. By default all are normal. The standard
+/// deviations are 0.5 mm for both coordinates of a centre of mass, 0.5 % for masses, 2 % for inertias and 0.05 mm for
+/// lengths. Every machine tracks the planned motion perfectly, so its wrench is linear in g, C and H and fast to
+/// evaluate. With --simulate each machine is simulated, with control that knows only the nominal machine.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -52,24 +52,24 @@ pub struct ToleranceArguments {
     /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file; by default case-3
     #[arg(value_name = "SCENARIO")]
     scenario: Option<String>,
-    /// How many machines; by default the scenario's number, or 100000, or 1000 with --simulate
+    /// Number of machines; default: that of the scenario, or else 100000, or 1000 with --simulate
     #[arg(long, value_name = "N", value_parser = samples)]
     samples: Option<u64>,
-    /// Which random machines; by default the scenario's number, or 1
+    /// Seed of the random machines; default: that of the scenario, or else 1
     #[arg(long, value_name = "S")]
     seed: Option<u64>,
-    /// What varies and how much, as often as needed: link.*.com=normal:0.0005 (standard deviation, in the setting's
-    /// unit), link.*.mass=uniform:1% (half-width, of the nominal value); link.NAME.com, com_normal, mass, inertia,
-    /// length.NAME, payload.mass, payload.inertia; a name goes before *
+    /// A parameter and its spread; may be repeated: link.*.com=normal:0.0005 (standard deviation, in the setting's
+    /// unit), link.*.mass=uniform:1% (half-width, relative to the nominal value). Parameters are link.NAME.com,
+    /// com_normal, mass, inertia, length.NAME, payload.mass, payload.inertia; a name overrides *
     #[arg(long = "spread", value_name = "KEY=SPREAD", value_parser = spread)]
     spreads: Vec<(String, Spread)>,
-    /// The greatest peak |n_B| that will do, N m
+    /// Maximum permitted peak |n_B|, N m
     #[arg(long, value_name = "X", value_parser = limit)]
     limit_moment: Option<f64>,
-    /// The greatest peak dynamic |f_B| that will do, N
+    /// Maximum permitted peak dynamic |f_B|, N
     #[arg(long, value_name = "X", value_parser = limit)]
     limit_force: Option<f64>,
-    /// Instants of the motion that are looked at: peaks between them go unseen, so take more for long motions
+    /// Number of instants of the motion to evaluate; peaks between them are missed, so take more for long motions
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     instants: u32,
     /// Only the i-th of n equal parts of the samples, i from 1
@@ -78,7 +78,7 @@ pub struct ToleranceArguments {
     /// Simulate each machine under control instead of perfect tracking
     #[arg(long)]
     simulate: bool,
-    /// Put these parts together into -o, in any order
+    /// Merge these parts, in any order, into the file of -o
     #[arg(
         long, value_name = "PART", num_args = 1.., requires = "output",
         conflicts_with_all = ["scenario", "samples", "seed", "spreads", "instants", "shard", "simulate", "pairs"]
@@ -132,15 +132,15 @@ impl From<ShardError> for Failure {
 }
 
 impl ToleranceArguments {
-    /// Draws and evaluates the machines, or merges parts.
+    /// Samples and evaluates the machines, or merges parts.
     pub fn run(&self) -> Result<(), Failure> {
         match self.merge.is_empty() {
             true => self.study(),
-            false => self.put_together(),
+            false => self.merge_parts(),
         }
     }
 
-    fn put_together(&self) -> Result<(), Failure> {
+    fn merge_parts(&self) -> Result<(), Failure> {
         let Some(whole) = &self.output else { return Err(Failure::wrong_input("--merge: want -o FILE")) };
         check_output(whole, self.force, &["parquet", "csv"])?;
         let (study, outcomes) = merge(&self.merge, whole, self.force)?;
@@ -158,7 +158,7 @@ impl ToleranceArguments {
         self.format.print(&answer, MergedParts::text)
     }
 
-    /// Returns the tolerances of the scenario; those of the command line replace its own.
+    /// Returns the tolerances of the scenario, overridden by those of the command line.
     fn section(&self, scenario: &Scenario) -> Section {
         let mut section = scenario.tolerance.clone();
         section.spreads.extend(self.spreads.iter().cloned());
@@ -231,8 +231,8 @@ impl ToleranceArguments {
         self.format.print(&answer, |answer| report::text(&answer.report))
     }
 
-    /// Evaluates the machines of a range and writes them if asked. Returns their outcomes and, if these are simulated,
-    /// those of perfect tracking.
+    /// Evaluates the machines of a range and writes them if requested. Returns their outcomes and, if these are
+    /// simulated, those of perfect tracking.
     fn evaluate(
         &self,
         ensemble: &Ensemble,

@@ -7,13 +7,14 @@ use std::thread;
 use stillbase_session::Refusal;
 use stillbase_study::tolerance::{Batch, CHUNK, Ensemble, Mode, Sampler};
 
-/// Number of chunks of a wave for each thread, enough that no thread waits long for the slowest.
+/// Number of chunks per thread that are evaluated before their results are passed on. Between two such waves, threads
+/// wait for the slowest; with many chunks, they wait for a small part of the time.
 const CHUNKS_PER_THREAD: usize = 32;
 
 /// Evaluates every sample of a range, and calls `see` with the batches in order.
 ///
 /// # Errors
-/// If a simulation fails, or the error of `see`.
+/// If a simulation fails, or `see` returns an error.
 pub fn evaluate<E: From<Refusal>>(
     ensemble: &Ensemble,
     mode: Mode,

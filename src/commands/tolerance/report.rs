@@ -26,7 +26,7 @@ fn distributions_table(all: &Distributions, nominal: Option<&SampleOutcome>) -> 
     table
 }
 
-/// Formats how many machines keep within limits; `None` if there are no limits.
+/// Formats the numbers of machines within the limits; `None` if there are no limits.
 fn yields_table(yields: &Yields) -> Option<TextTable> {
     let mut table = TextTable::new(["yield", "limit", "machines", "share %", "95 % between %"]);
     let rows = [("|n_B| N m", &yields.moment), ("|f_B| N", &yields.force), ("both", &yields.both)];
@@ -122,7 +122,7 @@ pub fn text(report: &PartReport) -> String {
     text
 }
 
-/// Returns the table of the parameters that cause the most variance, by the larger of their two shares.
+/// Returns the table of the parameters that cause the most variance, sorted by the larger of the two shares of each.
 fn shares_table(report: &PartReport) -> TextTable {
     let mut shares: Vec<_> = report.shares.parameters.iter().collect();
     let rank = |s: &Share| s.moment_share.max(s.force_share);
@@ -150,7 +150,7 @@ fn shares_table(report: &PartReport) -> TextTable {
     table
 }
 
-/// Formats where first order agrees with all samples, and where it does not.
+/// Formats the comparison of the first-order approximation with all samples.
 fn orders(report: &PartReport) -> String {
     let a = &report.agreement;
     let mut table =

@@ -25,19 +25,20 @@ use super::input::{Settings, read};
 use super::output::{Format, check_output};
 use super::sites::{range, sites};
 
-/// Find from measured base forces what a built machine lacks of balance, and the least change that mends it
+/// Identify the unbalance of a built machine from measured base forces, and find the smallest change that corrects it
 ///
-/// Each file is CSV with a header: t, the absolute drive angles q1, q2 …, and what a sensor under the machine reads of
-/// the force and the moment on the base about B: fx, fy, nz (s, rad, N, N m, or with units as "q1 (deg)", "nz (mN m)").
-/// Rates qd1 … and accelerations qdd1 … are used where both are there. A column `motion`, a leap in time or a time that
-/// begins anew parts motions; each motion has sensor offsets of its own. What `simulate` and `export --what simulated`
-/// write is read as it is.
+/// Each file is CSV with a header: t, the absolute drive angles q1, q2 …, and fx, fy, nz. These are the force on the
+/// base and the moment about B, as a sensor under the machine reads them. Units are s, rad, N, N m, or given as
+/// "q1 (deg)", "nz (mN m)". Rates qd1 … and accelerations qdd1 … are used if both exist. A column `motion`, a jump in
+/// time or a restart of time separates motions, which each have their own sensor offsets. Files that `simulate` and
+/// `export --what simulated` write can be read unchanged.
 ///
-/// Least squares give every line of (7) and (8) with its interval of 95 %; offset and drift of each sensor are fitted, too.
-/// What the data cannot tell is named. A wrong sign, exchanged columns, relative angles and wrong units are fitted as
-/// well: where one of them explains the data far better, trim says so and stops. Lines that differ from the machine's file
-/// by more than their interval are mended, if that is shown to help: by its counterweights, mass and place, or by new ones
-/// where it has none. Last comes the motion that would tell most of what is least known.
+/// Least squares estimate every component of Eqs (7) and (8) with its 95 % interval, and offset and drift of each
+/// sensor. Components that the data do not determine are named. Wrong signs, exchanged columns, relative angles and
+/// wrong units are fitted, too. If one of them explains the data far better, trim says so and stops. Components that
+/// differ from the machine's file by more than their interval are corrected, if the data show that this helps. The
+/// correction changes mass and place of the counterweights, or adds some if there are none. The last table proposes the
+/// next motion: the one that best determines the most uncertain component.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -52,31 +53,32 @@ pub struct TrimArguments {
     words: Vec<String>,
     #[command(flatten)]
     settings: Settings,
-    /// Leave these as they are: counterweight.1.mass, counterweight.2.at, 3.com
+    /// Keep these parameters fixed: counterweight.1.mass, counterweight.2.at, 3.com
     #[arg(long, value_name = "KEY,…", value_delimiter = ',')]
     fix: Vec<String>,
-    /// Change these, too: 4.com, 4.mass; a gram weighs as much as a millimetre
+    /// Let these parameters change, too: 4.com, 4.mass; a gram has the same penalty as a millimetre
     #[arg(long, value_name = "KEY,…", value_delimiter = ',')]
     free: Vec<String>,
-    /// Change this one only from one value to another, m or kg
+    /// Let this parameter change within these bounds only, m or kg
     #[arg(long, value_name = "KEY=LO,HI", value_parser = bound, allow_hyphen_values = true)]
     bound: Vec<(String, [f64; 2])>,
-    /// On a machine without counterweights: a link that may carry a new one, and where, m from its root towards its tip; every link where none is given
+    /// On a machine without counterweights: a link that may carry a new one, and the bounds of its place, m from the
+    /// root towards the tip. Default: every link
     #[arg(long, value_name = "LINK=LO,HI", value_parser = range, allow_hyphen_values = true)]
     range: Vec<(String, [f64; 2])>,
-    /// Leave measured rates and accelerations alone, and find them from the angles
+    /// Ignore measured rates and accelerations, and compute them from the angles
     #[arg(long)]
     angles_only: bool,
-    /// Take the columns as they are, even where another sign, order or unit explains them far better
+    /// Use the columns as given, even if another sign, order or unit explains them far better
     #[arg(long)]
     as_given: bool,
-    /// How fast a next motion may accelerate each drive, rad/s²; by default as fast as seen in the files
+    /// Maximum acceleration of each drive in the proposed motion, rad/s²; default: the maximum in the files
     #[arg(long, value_name = "A1,A2,…", value_delimiter = ',', value_parser = super::input::above_zero)]
     accelerations: Vec<f64>,
-    /// Write the machine as trimmed to this file: as measured, with what was changed
+    /// Write the trimmed machine to this file: the measured machine with the changes
     #[arg(short, long, value_name = "NEW.toml")]
     output: Option<PathBuf>,
-    /// Write the machine as measured, before anything is changed: its links' centres of mass explain what was found
+    /// Write the measured machine without the changes; the centres of mass of its links explain the measurements
     #[arg(long, value_name = "FILE.toml")]
     identified: Option<PathBuf>,
     /// Replace files that exist
@@ -87,7 +89,7 @@ pub struct TrimArguments {
 }
 
 impl TrimArguments {
-    /// Reads the measurements, prints what was identified, and writes the machines.
+    /// Reads the measurements, prints the identified components, and writes the machines.
     pub fn run(&self) -> Result<(), Failure> {
         for file in self.output.iter().chain(&self.identified) {
             check_output(file, self.force, &["toml"])?;
@@ -161,8 +163,8 @@ impl TrimArguments {
         Ok(())
     }
 
-    /// Returns what may change: the present counterweights, new ones if there are none, or numbers of links that are
-    /// named.
+    /// Returns the permitted changes: of the present counterweights and the named parameters, or by new counterweights
+    /// if there are neither.
     fn way(&self, machine: &Machine) -> Result<TrimMethod, Failure> {
         let weights = machine.spec().counterweights.len();
         let named = !(self.fix.is_empty() && self.free.is_empty() && self.bound.is_empty());
@@ -175,7 +177,8 @@ impl TrimArguments {
                 "--range is for new counterweights on a machine that has none: want --fix, --free or --bound alone";
             return Err(Failure::wrong_input(why));
         }
-        // Only named numbers may change. If only numbers that stay are named, all other centres of mass may change.
+        // Only counterweights and named parameters may change. Without counterweights, if only fixed parameters are
+        // named, all other centres of mass may change.
         let mut asked = match weights {
             0 if self.free.is_empty() && self.bound.is_empty() => {
                 RebalanceRequest::coms(machine, &vec![1.0; machine.links().len()])
@@ -200,7 +203,7 @@ fn as_failure(why: NoTrim) -> Failure {
     }
 }
 
-/// Returns a machine as TOML, under the name of its file.
+/// Returns a machine as TOML, named after its file.
 fn named(machine: &Machine, file: &Path, summary: String) -> Result<String, Failure> {
     let mut spec = machine.spec().clone();
     spec.name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();

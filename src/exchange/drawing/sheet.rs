@@ -65,7 +65,7 @@ pub enum SheetShape {
         at: [f64; 2],
         /// Approximate height of its capitals.
         height: f64,
-        /// The point of the text at this position.
+        /// The point of the text that lies at this position.
         anchor: TextAlign,
         /// Its emphasis.
         paint: TextEmphasis,
@@ -115,7 +115,7 @@ fn mm(metres: f64) -> String {
     fixed(1e3 * metres, 1)
 }
 
-/// Returns a length in mm with a true minus sign, as wide as a plus.
+/// Formats a length, m, in mm with the minus sign U+2212, which is as wide as a plus.
 fn signed(metres: f64) -> String {
     mm(metres).replace('-', "\u{2212}")
 }
@@ -141,7 +141,7 @@ impl Piece {
         piece.bar(cut, part.drive, ends(machine, j));
         for weight in weights.iter().filter(|weight| weight.radius > 0.0) {
             let (at, radius) = ([1e3 * weight.at, 0.0], 1e3 * weight.radius);
-            piece.covers([at[0] - radius, -radius, at[0] + radius, radius]);
+            piece.include([at[0] - radius, -radius, at[0] + radius, radius]);
             piece.shapes.push(SheetShape::Disc { at, radius, drive: part.drive });
         }
         for at in &holes {
@@ -149,7 +149,7 @@ impl Piece {
         }
         let com = [1e3 * link.com, 1e3 * link.com_normal];
         let radius = 0.55 * height;
-        piece.covers([com[0] - radius, com[1] - radius, com[0] + radius, com[1] + radius]);
+        piece.include([com[0] - radius, com[1] - radius, com[0] + radius, com[1] + radius]);
         if piece.shapes.first().is_some_and(|bar| !bar.is_around(com)) {
             // A line shows to which link the mark belongs.
             piece.shapes.push(SheetShape::Line([[0.0, 0.0], com]));
@@ -160,14 +160,14 @@ impl Piece {
         piece
     }
 
-    fn covers(&mut self, [left, down, right, up]: [f64; 4]) {
+    fn include(&mut self, [left, down, right, up]: [f64; 4]) {
         let [l, d, r, u] = self.reach;
         self.reach = [l.min(left), d.min(down), r.max(right), u.max(up)];
     }
 
     fn bar(&mut self, cut: &Cut, drive: usize, [from, to]: [f64; 2]) {
         let radius = 500.0 * cut.bar_width;
-        self.covers([1e3 * from - radius, -radius, 1e3 * to + radius, radius]);
+        self.include([1e3 * from - radius, -radius, 1e3 * to + radius, radius]);
         self.shapes.push(SheetShape::Bar { from: [1e3 * from, 0.0], length: 1e3 * (to - from), radius, drive });
     }
 
@@ -197,7 +197,7 @@ impl Piece {
                 );
             }
         }
-        self.covers([0.0, line - 0.5 * height, 0.0, 0.0]);
+        self.include([0.0, line - 0.5 * height, 0.0, 0.0]);
     }
 
     fn words(&mut self, at: [f64; 2], height: f64, anchor: TextAlign, paint: TextEmphasis, text: String) {
@@ -214,10 +214,10 @@ impl Piece {
         let shift = width_of(&name, 1.3 * height) + height;
         self.words([left, top], 1.3 * height, TextAlign::Start, TextEmphasis::Strong, name);
         self.words([left + shift, top], height, TextAlign::Start, TextEmphasis::Plain, about.clone());
-        self.covers([left, 0.0, left + shift + width_of(&about, height), top + 1.3 * height]);
+        self.include([left, 0.0, left + shift + width_of(&about, height), top + 1.3 * height]);
         for line in below(machine, cut, j, weights) {
             let at = [left, self.reach[1] - LINE_SPACING * height];
-            self.covers([left, at[1] - 0.3 * height, left + width_of(&line, height), 0.0]);
+            self.include([left, at[1] - 0.3 * height, left + width_of(&line, height), 0.0]);
             self.words(at, height, TextAlign::Start, TextEmphasis::Plain, line);
         }
     }
@@ -347,7 +347,7 @@ fn put(shapes: &mut Vec<SheetShape>, row: Vec<(f64, Piece)>, top: f64) -> f64 {
 }
 
 impl SheetShape {
-    /// Returns whether it is a bar whose straight part contains a point.
+    /// Returns whether the shape is a bar whose straight part contains a point.
     fn is_around(&self, [x, y]: [f64; 2]) -> bool {
         match self {
             Self::Bar { from, length, radius, .. } => {

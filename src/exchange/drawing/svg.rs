@@ -30,7 +30,7 @@ pub fn svg(sheet: &Sheet) -> String {
     lines.into_text()
 }
 
-/// Writes a length in mm with three decimals, so to a micrometre.
+/// Writes a length in mm with three decimals, that is, to a micrometre.
 fn n(x: f64) -> String {
     fixed(x, 3)
 }

@@ -28,7 +28,7 @@ pub struct MjcfBodies<'a> {
     pub parts: Vec<ImportedPart>,
     bodies: Vec<Node<'a, 'a>>,
     hinges: Hinges<'a>,
-    /// Frames of the parts as drawn, before the keyframe turns their hinges.
+    /// Frames of the parts as drawn, that is, as their elements state them, before the keyframe turns their hinges.
     drawn: Vec<Isometry3<f64>>,
     /// Sites: name and point.
     pub sites: Vec<(&'a str, AttachmentPoint)>,
@@ -55,7 +55,7 @@ struct Hinge<'a> {
 }
 
 /// A body, with the part that carries it and the default class of elements in it.
-struct Open<'a> {
+struct ListedBody<'a> {
     body: Node<'a, 'a>,
     parent: Option<usize>,
     class: Class<'a>,
@@ -91,7 +91,7 @@ impl<'a> MjcfBodies<'a> {
         Ok(bodies)
     }
 
-    fn body(&mut self, own: usize, open: &Open<'a>) -> Result<(), ImportError> {
+    fn body(&mut self, own: usize, open: &ListedBody<'a>) -> Result<(), ImportError> {
         let (body, parent) = (open.body, open.parent);
         let own_place = self.compiler.place(&body)?;
         let on = |frames: &dyn Fn(usize) -> Isometry3<f64>| parent.map_or(Isometry3::identity(), frames) * own_place;
@@ -135,11 +135,11 @@ impl<'a> MjcfBodies<'a> {
         Ok(())
     }
 
-    /// Returns mass, centre of mass and inertia of a body in the axes of the base. A body without mass has its centre
-    /// of mass where MuJoCo puts it: at its own position, applied once more in its own frame.
+    /// Returns mass, centre of mass and inertia of a body in the axes of the base. The centre of mass of a body without
+    /// mass is that of MuJoCo: the position of the body, applied once more in the frame of the body.
     fn weight(
         &mut self,
-        open: &Open<'a>,
+        open: &ListedBody<'a>,
         frame: &Isometry3<f64>,
         own_place: &Isometry3<f64>,
     ) -> Result<MassProperties, ImportError> {
@@ -161,7 +161,7 @@ impl<'a> MjcfBodies<'a> {
                 shapes = shapes.and(one);
             }
         }
-        // If no shape has a mass, `<inertial>` counts in any case.
+        // If no shape has a mass, `<inertial>` is used in any case.
         let written = inertial.filter(|_| shapes.mass <= 0.0);
         let mut all = shapes;
         if let Some(node) = written {
@@ -234,8 +234,8 @@ impl<'a> MjcfBodies<'a> {
         self.hinges.of.get(i)?.as_ref()?.limits
     }
 
-    /// Finds the end effector: a site or body with a usual name of one, or else the only site that is not a pin, or
-    /// else the end of the last shape.
+    /// Finds the end effector. It is a site or body with a usual name, or else the only site that is not a pin, or else
+    /// the end of the last shape.
     pub fn end(&mut self) -> Option<AttachmentPoint> {
         let sites = self.sites.iter().filter_map(|(name, end)| Some((end_rank(name)?, *end)));
         let bodies = self.parts.iter().enumerate();
@@ -295,14 +295,14 @@ impl<'a> MjcfBodies<'a> {
 }
 
 /// Lists the bodies depth first, which is the order of the angles of a pose.
-fn listed<'a>(model: Node<'a, 'a>, defaults: &Defaults<'a>) -> Result<Vec<Open<'a>>, ImportError> {
+fn listed<'a>(model: Node<'a, 'a>, defaults: &Defaults<'a>) -> Result<Vec<ListedBody<'a>>, ImportError> {
     if child(model, "worldbody").is_none() {
         return Err(element_error(model, "it has no <worldbody>", "one, with the machine in it"));
     }
     let below = |node: Node<'a, 'a>, parent: Option<usize>, class: &Class<'a>| {
         let open = |body| {
             let class = defaults.class(body, "childclass", class)?;
-            Ok::<_, ImportError>(Open { body, parent, class })
+            Ok::<_, ImportError>(ListedBody { body, parent, class })
         };
         each(node, "body").map(open).collect::<Result<Vec<_>, _>>()
     };
@@ -326,7 +326,7 @@ fn listed<'a>(model: Node<'a, 'a>, defaults: &Defaults<'a>) -> Result<Vec<Open<'
 impl<'a> Hinges<'a> {
     fn of(
         model: Node<'a, 'a>,
-        bodies: &[Open<'a>],
+        bodies: &[ListedBody<'a>],
         compiler: &Compiler,
         defaults: &Defaults<'a>,
     ) -> Result<Self, ImportError> {
@@ -406,7 +406,7 @@ impl<'a> Hinges<'a> {
 }
 
 /// Returns the hinge of a body, if it has one.
-fn hinge<'a>(open: &Open<'a>, defaults: &Defaults<'a>) -> Result<Option<Element<'a>>, ImportError> {
+fn hinge<'a>(open: &ListedBody<'a>, defaults: &Defaults<'a>) -> Result<Option<Element<'a>>, ImportError> {
     if let Some(node) = child(open.body, "freejoint") {
         return Err(element_error(node, "a body that floats", "a machine on a base: let the base move in a scenario"));
     }

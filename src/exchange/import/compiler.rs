@@ -23,12 +23,13 @@ pub enum MassSource {
 pub struct Compiler {
     /// Unit of angles, rad: a degree or 1.
     pub unit: f64,
-    /// Axes of Euler angles in their order, each with whether it is intrinsic, that is, turns with those before it.
+    /// Axes of the Euler angles in order. The flag says whether an axis is intrinsic, that is, turned by the rotations
+    /// before it.
     sequence: [(Unit<Vector3<f64>>, bool); 3],
     /// Whether a range is a limit unless stated otherwise.
     pub are_ranges_limits: bool,
     pub weighing: MassSource,
-    /// Groups whose shapes have mass.
+    /// First and last of the groups whose shapes have mass.
     pub groups: [f64; 2],
     /// Lower bounds of the mass of bodies, kg, and of their principal inertias, kg m².
     least: [f64; 2],
@@ -37,7 +38,7 @@ pub struct Compiler {
 }
 
 impl Compiler {
-    /// Reads the settings of a `<mujoco>`; of several values of a setting the last counts.
+    /// Reads the settings of a `<mujoco>`, each with its last value.
     ///
     /// # Errors
     /// If a setting has an unknown value.
@@ -81,7 +82,7 @@ impl Compiler {
         }
     }
 
-    /// Returns position and orientation of an element.
+    /// Returns position, m, and orientation of an element in the frame of its parent.
     ///
     /// # Errors
     /// If a vector or quaternion of its orientation is zero.

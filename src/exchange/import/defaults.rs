@@ -9,7 +9,7 @@ use super::read::{AttributeSource, each};
 use super::refusal::{ImportError, element_error};
 use stillbase_settings::range::quote_clipped;
 
-/// Maximum number of classes of a file: each holds all attributes that it inherits.
+/// Maximum number of classes of a file, because each stores all attributes that it inherits.
 const MAX_CLASSES: usize = 200;
 
 /// Maximum number of sizes of a shape.
@@ -56,16 +56,16 @@ impl<'a> AttributeSource<'a> for Element<'a> {
 }
 
 impl<'a> Element<'a> {
-    /// Returns the sizes of a shape as text: its own, and after them those of its class.
+    /// Returns the sizes of a shape as text: its own first, and missing ones from its class.
     pub fn sizes(&self) -> Vec<&'a str> {
         let mut sizes = self.class.0.sizes.clone();
-        over(&mut sizes, self.node.attribute("size"));
+        override_sizes(&mut sizes, self.node.attribute("size"));
         sizes
     }
 }
 
-/// Replaces the first of the sizes by those given.
-fn over<'a>(sizes: &mut Vec<&'a str>, own: Option<&'a str>) {
+/// Replaces the first sizes by those of `own`.
+fn override_sizes<'a>(sizes: &mut Vec<&'a str>, own: Option<&'a str>) {
     let own: Vec<&str> = own.unwrap_or_default().split_whitespace().take(MAX_SIZES).collect();
     let rest = sizes.split_off(own.len().min(sizes.len()));
     *sizes = own.into_iter().chain(rest).collect();
@@ -152,7 +152,7 @@ fn take<'a>(node: Node<'a, 'a>, values: &mut Values<'a>) -> Result<(), ImportErr
     for child in node.children().filter(|child| child.is_element() && !child.has_tag_name("default")) {
         values.words.extend(child.attributes().map(|attribute| ((kind(child), attribute.name()), attribute.value())));
         if child.has_tag_name("geom") {
-            over(&mut values.sizes, child.attribute("size"));
+            override_sizes(&mut values.sizes, child.attribute("size"));
         }
         if values.words.len() > MAX_VALUES {
             return Err(element_error(node, "too many attributes in a class", format!("at most {MAX_VALUES}")));

@@ -4,7 +4,7 @@
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | n | common direction of all hinge axes; x and y of the plane derive from the axes of the file's base | |
-//! | ψ_k | direction of drive k, its q_k, in the reference pose: that of its first link with length | rad |
+//! | ψ_k | q_k of drive k in the reference pose: the direction of its first link with length | rad |
 //! | s | position on a link's axis, from its root | m |
 
 use nalgebra::{Matrix3, Vector3};
@@ -35,7 +35,7 @@ const MIN_LENGTH_M: f64 = 0.01;
 pub struct ImportedMachine {
     /// The machine.
     pub machine: Machine,
-    /// Angles of its drives in the pose of the file, rad: where all joints of URDF are at 0, in the keyframe of MJCF.
+    /// Angles of its drives in the pose of the file, rad: with all joints of URDF at 0, or in the keyframe of MJCF.
     pub pose: Vec<f64>,
     /// Mass properties of the base, if the file has them; a scenario may use them for a moving base.
     pub base: Option<BaseBody>,
@@ -48,7 +48,7 @@ pub struct ImportedMachine {
 pub struct BaseBody {
     /// Mass, kg.
     pub mass: f64,
-    /// Inertia about its centre of mass, around the direction of the drives' axis, kg m².
+    /// Moment of inertia about the axis through its centre of mass parallel to that of the drives, kg m².
     pub inertia: f64,
     /// Position of its centre of mass relative to the axis of the drives, m.
     pub com: Vector,
@@ -98,7 +98,7 @@ impl Body {
 /// The linkage projected onto its plane, in the reference pose.
 struct Flat {
     axes: [Vector3<f64>; 3],
-    /// Body of each part that turns, with all that is fixed to it.
+    /// Body of each part that turns, with all parts that are fixed to it.
     bodies: Vec<Body>,
     /// Position of each part's hinge, m.
     roots: Vec<Vector>,
@@ -167,7 +167,7 @@ impl Flat {
         Vector::new(self.axes[0].dot(p), self.axes[1].dot(p))
     }
 
-    /// Returns the axis of the drives, m: the hinge of the first link on the base.
+    /// Returns the position of the drives' axis in the plane, m: the hinge of the first link on the base.
     fn base(&self, parts: &[ImportedPart]) -> Result<Vector, ImportError> {
         for i in &self.links {
             if self.carrier(parts, *i)?.is_none() {
@@ -398,7 +398,7 @@ impl Builder<'_> {
         let body = flat.bodies[i];
         let com = axis.sign * (body.com - flat.roots[i]) * Vector::from_polar(1.0, -psi[k]);
         let reach = axis.places.iter().fold(0.0_f64, |most, s| most.max(*s));
-        // The length of a link without pins beyond its root is not known.
+        // The length of a link without pins beyond its root is unknown; its centre of mass gives an estimate.
         let length =
             if reach > ZERO_LENGTH_FRACTION * flat.size { reach } else { (2.0 * com.re.abs()).max(MIN_LENGTH_M) };
         let rounded = |x: f64| if x.abs() <= 1e-15 * flat.size { 0.0 } else { x };
@@ -476,7 +476,7 @@ impl Builder<'_> {
         motors.map(drive).collect()
     }
 
-    /// Returns the limits as those of angles between drives.
+    /// Converts the joint limits to limits of angles between drives.
     fn angles(&mut self, psi: &[f64]) -> Vec<Angle> {
         let mut angles: Vec<Angle> = Vec::new();
         for JointLimit { name, to, from, now, range } in &self.linkage.limits {

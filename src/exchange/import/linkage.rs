@@ -1,4 +1,5 @@
-//! [`ImportedLinkage`]: the common result of both readers: parts in space with their hinges, and the sets that turn together.
+//! [`ImportedLinkage`]: the common result of both readers, with parts in space, their hinges, and the sets of parts
+//! that turn together.
 
 use nalgebra::{Isometry3, Matrix3, Unit, Vector3};
 
@@ -6,7 +7,7 @@ use super::refusal::ImportError;
 
 /// Two directions are parallel up to this sine of the angle between them.
 const PARALLEL_UP_TO_SINE: f64 = 1e-9;
-/// Maximum number of parts: files with more are not machines of the family, and would take long.
+/// Maximum number of parts: files with more are not machines of the family, and would take long to read.
 pub const MAX_PARTS: usize = 400;
 
 /// Usual names of an end effector, in lower case without separators; the most specific first.
@@ -44,7 +45,7 @@ pub struct ImportedLinkage {
     pub gravity: Vector3<f64>,
     /// Its parts, each after the part that carries it.
     pub parts: Vec<ImportedPart>,
-    /// For each part, the set of parts that turn together to which it belongs; `None` for parts that do not turn.
+    /// For each part, the index of the set of parts with which it turns; `None` for parts that do not turn.
     pub sets: Vec<Option<usize>>,
     /// The motor that turns each set, in the order of the sets.
     pub motors: Vec<ImportedMotor>,
@@ -170,8 +171,8 @@ pub fn common_axis(parts: &[ImportedPart]) -> Result<(Unit<Vector3<f64>>, Vec<f6
     Ok((axis, signs))
 }
 
-/// Returns for each part the turning part with which it moves: itself if it has a hinge, or else the part to which it
-/// is fixed; `None` for the base.
+/// Returns for each part the turning part with which it moves; `None` for the base. This is the part itself if it has a
+/// hinge, or else the part to which it is fixed.
 pub fn owners(parts: &[ImportedPart]) -> Vec<Option<usize>> {
     let mut owners: Vec<Option<usize>> = Vec::with_capacity(parts.len());
     for (i, part) in parts.iter().enumerate() {

@@ -1,8 +1,8 @@
 //! Import of machines from other programs: planar URDF and MJCF whose links each follow one drive.
 //!
-//! A reader for each format (`urdf`, `mjcf`) returns a `linkage` in space: parts, their hinges in a reference pose, the
-//! sets of parts that turn together, motors and rotors. `family` projects the linkage onto the plane of motion and
-//! makes a machine of it, or returns the reason why it is outside the family of machines.
+//! A reader for each format (`urdf`, `mjcf`) returns a `linkage` in space. It contains parts, their hinges in a
+//! reference pose, the sets of parts that turn together, motors and rotors. `family` projects the linkage onto the
+//! plane of motion and makes a machine of it. If that is impossible, the error names the reason.
 
 mod bodies;
 mod compiler;
@@ -27,7 +27,8 @@ const MAX_NODES: u32 = 400_000;
 /// Reads a machine from the text of a URDF or MJCF file.
 ///
 /// # Errors
-/// If the file is not a machine of the family; names the first wrong element, its line, and what would be right.
+/// If the file is not a machine of the family. The error names the first wrong element, its line, and the expected
+/// input.
 pub fn import(text: &str) -> Result<ImportedMachine, ImportError> {
     let options = ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, ..ParsingOptions::default() };
     scan::check_bounds(text).map_err(|error| error.located(text))?;

@@ -7,7 +7,7 @@ use super::refusal::{ImportError, element_error};
 use stillbase_settings::number::ShortNumber;
 use stillbase_settings::range::quote_clipped;
 
-/// Largest magnitude of a number that is read: products of larger numbers could overflow.
+/// Maximum magnitude of a number in a file: products of larger numbers could overflow.
 const MAX_MAGNITUDE: f64 = 1e9;
 
 /// Maximum number of numbers in an attribute: a pose has one for each hinge.
@@ -41,12 +41,12 @@ impl<'a, S: AttributeSource<'a>> AttributeSource<'a> for &S {
     }
 }
 
-/// Returns the child elements of a name.
+/// Returns the child elements with a name.
 pub fn each<'a>(node: Node<'a, 'a>, name: &'static str) -> impl Iterator<Item = Node<'a, 'a>> {
     node.children().filter(move |child| child.has_tag_name(name))
 }
 
-/// Returns the first child element of a name.
+/// Returns the first child element with a name.
 pub fn child<'a>(node: Node<'a, 'a>, name: &'static str) -> Option<Node<'a, 'a>> {
     each(node, name).next()
 }
@@ -114,7 +114,7 @@ pub fn mass<'a>(node: impl AttributeSource<'a>, name: &'static str) -> Result<f6
     }
 }
 
-/// Returns the inertia matrix, rotated by `axes`, from moments about x, y, z and products xy, xz, yz.
+/// Returns the inertia matrix, kg m², rotated by `axes`, from moments about x, y, z and products xy, xz, yz.
 pub fn inertia([xx, yy, zz, xy, xz, yz]: [f64; 6], axes: &Rotation3<f64>) -> Matrix3<f64> {
     let own = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
     axes * own * axes.transpose()

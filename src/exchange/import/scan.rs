@@ -1,9 +1,9 @@
-//! Bounds on XML, checked in one pass before it is parsed: the parser's work grows with the square of the number of
+//! Bounds on XML, checked in one pass before it is parsed. The parser's work grows with the square of the number of
 //! attributes of one element, and with depth times number of namespaces.
 
 use super::refusal::ImportError;
 
-/// Maximum depth of an element: one body in another for the maximum number of links, and some elements around them.
+/// Maximum depth of an element: nested bodies for the maximum number of links, and some elements around them.
 const MAX_DEPTH: usize = 250;
 /// Maximum number of attributes of one element: MJCF has elements with some 40.
 const MAX_ATTRIBUTES: usize = 100;

@@ -54,8 +54,8 @@ fn of_point(at: Vector3<f64>) -> Matrix3<f64> {
     Matrix3::identity() * at.norm_squared() - at * at.transpose()
 }
 
-/// Returns the mass properties of a shape in the axes to which `frame` maps those of its body; `None` if its mass does
-/// not count.
+/// Returns the mass properties of a shape in the axes to which `frame` maps those of its body. `None` is for a shape
+/// without mass, or outside the groups whose shapes have mass.
 ///
 /// # Errors
 /// If its mass or inertia cannot be computed.
@@ -99,7 +99,7 @@ pub fn solid(
 
 /// Returns position and orientation of a shape on its body, and the sizes of its kind, m.
 fn placed(shape: &Element<'_>, kind: &str, compiler: &Compiler) -> Result<(Isometry3<f64>, Vec<f64>), ImportError> {
-    // Reports words that are not numbers.
+    // This call reports words that are not numbers.
     numbers(shape, "size")?;
     let mut size: Vec<f64> = shape.sizes().into_iter().map_while(|word| word.parse().ok()).collect();
     let count = match kind {
@@ -118,7 +118,7 @@ fn placed(shape: &Element<'_>, kind: &str, compiler: &Compiler) -> Result<(Isome
         size.truncate(count);
         return Ok((compiler.place(shape)?, size));
     };
-    // Along z from the first point to the second, with the same width along x and y.
+    // The z axis of the shape points from the first point to the second; its widths along x and y are equal.
     let [from, to] = [0, 3].map(|i| Vector3::new(ends[i], ends[i + 1], ends[i + 2]));
     let axis = Unit::try_new(to - from, 1e-12)
         .ok_or_else(|| element_error(shape.node(), "its ends are one point", "fromto with two points"))?;

@@ -17,13 +17,13 @@ use stillbase_settings::range::{quote_clipped, shortened};
 
 /// Tolerance within which rate ratios are equal; also the relative tolerance of limits.
 const RATE_TOLERANCE: f64 = 1e-9;
-/// A limit of 0, or of at least this, is treated as no limit.
+/// A limit of at least this, or not above 0, is treated as no limit.
 const UNLIMITED: f64 = 1e9;
 
 /// Maximum number of joints: the export of the largest machine has fewer.
 const MAX_JOINTS: usize = 4000;
 
-/// Maximum number of joints in a row of which each mimics the next.
+/// Maximum number of joints in a chain in which each mimics the next.
 const MAX_FOLLOWED: usize = 100;
 
 /// Reads the linkage of a `<robot>`.
@@ -95,7 +95,7 @@ impl<'a> Extension<'a> {
         Ok(Vector3::new(number(node, "x")?.unwrap_or(0.0), number(node, "y")?.unwrap_or(0.0), 0.0))
     }
 
-    /// Adds the limits of relative angles. Limits of a joint that they already imply are removed.
+    /// Adds the limits of relative angles, and removes limits of joints that these already imply.
     fn limits(&self, limits: &mut Vec<JointLimit>) -> Result<(), ImportError> {
         let mut own = Vec::new();
         for node in self.each("angle").take(MAX_JOINTS) {
@@ -269,7 +269,7 @@ impl<'a> File<'a> {
             let want = format!("at most {MAX_DRIVES}");
             return Err(ImportError::whole(format!("{} joints that move by themselves", free.len()), want));
         }
-        // In the order in which the file has them.
+        // The independent joints have the order of the file.
         free.sort_by_key(|i| joints[*i].range().start);
         let named = joints.iter().enumerate().rev();
         let named = named.filter_map(|(i, joint)| Some((joint.attribute("name")?, i))).collect();
@@ -293,7 +293,7 @@ impl<'a> File<'a> {
 /// `i` itself if it mimics none.
 fn followed(joints: &[Node<'_, '_>], named: &BTreeMap<&str, usize>, i: usize) -> Result<(usize, f64), ImportError> {
     let (mut at, mut times) = (i, 1.0);
-    // Bounds the number of joints followed, so that a cycle ends.
+    // The number of joints followed is bounded, so that a cycle ends.
     for _ in 0..=joints.len().min(MAX_FOLLOWED) {
         let Some(mimic) = child(joints[at], "mimic") else { return Ok((at, times)) };
         times *= number(mimic, "multiplier")?.unwrap_or(1.0);
@@ -421,7 +421,7 @@ fn turning(
     }
     let carriers: BTreeSet<usize> = parts.iter().filter_map(|part| part.parent).collect();
     let (mut rotors, mut sets) = (Vec::new(), Vec::new());
-    let light = light(parts);
+    let negligible_mass = negligible_mass(parts);
     for (i, part) in parts.iter().enumerate() {
         let own = if is_still(&rates[i]) { None } else { set(&rates[i]) };
         if !carriers.contains(&i) && part.hinge.is_some() && child(joints[i], "mimic").is_some() {
@@ -430,7 +430,7 @@ fn turning(
             let k = only.filter(|k| relative.iter().enumerate().all(|(l, x)| l == *k || x.abs() <= RATE_TOLERANCE));
             // A rotor sits on the same body as its motor.
             let k = k.filter(|k| is_same(of_parent(i), of_parent(free[*k])));
-            if let Some(k) = k.filter(|_| own.is_none() || part.mass <= light) {
+            if let Some(k) = k.filter(|_| own.is_none() || part.mass <= negligible_mass) {
                 rotors.push((i, k, relative[k]));
             }
         }
@@ -438,7 +438,7 @@ fn turning(
     }
     for (i, part) in parts.iter().enumerate() {
         let is_rotor = || rotors.iter().any(|(rotor, ..)| *rotor == i);
-        if sets[i].is_none() && !is_still(&rates[i]) && !is_rotor() && part.mass > light {
+        if sets[i].is_none() && !is_still(&rates[i]) && !is_rotor() && part.mass > negligible_mass {
             let all: Vec<String> = rates[i].iter().map(|x| fixed(*x, 3)).collect();
             let what = format!("it turns by {} times the driven joints", shortened(&all.join(", "), 100));
             return Err(part.wrong(what, "links that each turn as one motor's drive does"));
@@ -448,7 +448,7 @@ fn turning(
 }
 
 /// Returns the mass, kg, up to which a part is treated as massless.
-fn light(parts: &[ImportedPart]) -> f64 {
+fn negligible_mass(parts: &[ImportedPart]) -> f64 {
     super::family::NEGLIGIBLE_MASS * parts.iter().map(|part| part.mass).sum::<f64>()
 }
 
@@ -490,7 +490,8 @@ fn range(joint: Node<'_, '_>, sign: f64) -> Result<Option<[f64; 2]>, ImportError
     }
 }
 
-/// Finds the end effector: a part with a usual name of one, or else the only fixed part without mass and children.
+/// Finds the end effector: a part with a usual name of end effectors, or else the only fixed part without mass and
+/// children.
 fn end(parts: &[ImportedPart], owners: &[Option<usize>]) -> Option<(usize, Vector3<f64>)> {
     let ranked = parts.iter().enumerate().filter_map(|(i, part)| Some((end_rank(&part.name)?, i)));
     let named = ranked.min().map(|(_, i)| i);

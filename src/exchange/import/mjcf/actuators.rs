@@ -12,8 +12,8 @@ use stillbase_settings::number::ShortNumber;
 use stillbase_settings::range::quote_clipped;
 
 impl<'a> CoupledBodies<'a> {
-    /// Returns the actuators as motors. Several that turn the same sum of hinges become one, with the sum of their
-    /// torque limits.
+    /// Returns the actuators as motors. Several actuators that turn the same sum of hinges become one motor, with the
+    /// sum of their torque limits.
     pub(super) fn actuators(&self) -> Result<Vec<(Element<'a>, ImportedMotor)>, ImportError> {
         let all = each(self.bodies.model, "actuator").flat_map(|node| node.children()).filter(Node::is_element);
         let mut found: Vec<(Element, ImportedMotor)> = Vec::new();
@@ -65,7 +65,7 @@ impl<'a> CoupledBodies<'a> {
         }
     }
 
-    /// Returns the motors, each with the set that it turns and the set against which it turns it.
+    /// Returns the motors, each with the set that it turns and the set relative to which that set turns.
     pub(super) fn motors(&self) -> Result<Vec<(ImportedMotor, RelativeSet)>, ImportError> {
         let mut motors = Vec::new();
         for (element, motor) in self.actuators()? {
@@ -144,7 +144,7 @@ impl<'a> CoupledBodies<'a> {
         Ok(())
     }
 
-    /// Reads a motor; without a name of its own it has that of the joint or tendon that it turns.
+    /// Reads a motor; without a name, it gets the name of the joint or tendon that it turns.
     fn motor(&self, element: &Element<'a>) -> Result<ImportedMotor, ImportError> {
         let own = ["name", "joint", "jointinparent", "tendon"].into_iter().find_map(|name| element.get(name));
         let name = own.unwrap_or("motor").to_owned();
@@ -165,7 +165,7 @@ impl<'a> CoupledBodies<'a> {
         })
     }
 
-    /// Returns the largest magnitude of a range that is a limit.
+    /// Returns the largest magnitude in a range; `None` if the range is no limit.
     fn largest(
         &self,
         element: &Element<'a>,

@@ -16,7 +16,7 @@ use stillbase_settings::range::quote_clipped;
 pub(super) const PARALLEL_WANTED: &str = "a rotor on what carries its motor, coupled to what that turns, or hinges whose \
                                           coupling by 1 or -1 keeps two bodies parallel";
 
-/// A set, and another against which it turns.
+/// A set, and another relative to which it turns.
 pub(super) type RelativeSet = (usize, usize);
 /// A weighted sum of hinge angles about the common axis: parts with coefficients.
 pub(super) type HingeSum = Vec<(usize, f64)>;
@@ -36,7 +36,7 @@ pub(super) struct CoupledBodies<'a> {
     /// Two axes of the plane, and its normal.
     pub plane: [Vector3<f64>; 3],
     pub owners: Vec<Option<usize>>,
-    /// Index that stands for the base among the parts.
+    /// Index of the base, which follows those of the parts.
     pub base: usize,
     pub tendons: BTreeMap<&'a str, HingeSum>,
     pub together: CoupledSets,
@@ -88,7 +88,7 @@ impl<'a> CoupledBodies<'a> {
         self.together.root(part)
     }
 
-    /// Returns the two parts whose relative angle a sum of hinges is; `None` if it is not such an angle.
+    /// Returns the two parts whose relative angle equals a sum of hinge angles; `None` if there are none.
     pub fn against(&self, sum: &[(usize, f64)]) -> Option<RelativeSet> {
         let mut turns: BTreeMap<usize, f64> = BTreeMap::new();
         for (part, times) in sum {

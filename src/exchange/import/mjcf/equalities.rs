@@ -1,4 +1,4 @@
-//! Equalities: bodies that they keep parallel, and gears.
+//! Bodies that equalities keep parallel, and gears.
 
 use roxmltree::Node;
 
@@ -13,7 +13,8 @@ use stillbase_settings::range::quote_clipped;
 
 /// Tolerance of an equality of a tendon in the pose of the file, rad.
 const EQUALITY_TOLERANCE_RAD: f64 = 1e-6;
-/// A centre of mass is on an axis up to this distance, relative to its distance from the hinge point, at least 1 m.
+/// Tolerance for a centre of mass on an axis: the ratio of its distances from the axis and from the hinge point. A
+/// distance from the hinge point below 1 m counts as 1 m.
 const ON_AXIS_TOLERANCE: f64 = 1e-9;
 
 /// An equality of two sums of hinges: `one` is `ratio` times `other`.
@@ -70,8 +71,8 @@ impl<'a> CoupledBodies<'a> {
         Ok(())
     }
 
-    /// Joins the sets that couplings A − B = ±(C − D) keep parallel, and drops these couplings: if one term of each
-    /// side is known to be equal, the other two are equal as well.
+    /// Joins the sets that couplings A − B = ±(C − D) keep parallel, and drops these couplings. Their other form is
+    /// A + D = B + C or A + C = B + D. If a term on the left turns with one on the right, so do the other two.
     fn join_parallel(&mut self, couplings: &mut Vec<Coupling<'a>>) {
         let mut count = usize::MAX;
         while couplings.len() < count {
@@ -97,8 +98,8 @@ impl<'a> CoupledBodies<'a> {
         same.is_some()
     }
 
-    /// Returns whether a coupling drives a rotor: a body without children, balanced about its hinge, and coupled to a
-    /// sum that a motor turns.
+    /// Returns whether a coupling drives a rotor: a body without children or sites that is balanced about its hinge.
+    /// The coupling must be to a sum of hinges that a motor turns.
     fn is_rotor(&self, coupling: &Coupling<'a>, driven: &[HingeSum]) -> bool {
         let [(part, _)] = coupling.one[..] else { return false };
         let parts = &self.bodies.parts;

@@ -1,4 +1,4 @@
-//! Loops: bodies that they keep parallel.
+//! Bodies that loops keep parallel.
 
 use nalgebra::Vector3;
 use roxmltree::Node;
@@ -16,7 +16,7 @@ impl CoupledBodies<'_> {
     /// Joins the sets that a loop keeps parallel: opposite sides of parallelograms.
     ///
     /// # Errors
-    /// If the loop is not closed in the pose of the file, or if its sides do not pair.
+    /// If the loop is not closed in the pose of the file, or if its sides do not form pairs.
     pub(super) fn close(&mut self, node: Node<'_, '_>, ends: &[AttachmentPoint; 2]) -> Result<(), ImportError> {
         let sides = self.sides(ends);
         let largest = sides.iter().fold(0.0_f64, |most, (_, v)| most.max(v.norm()));
@@ -60,7 +60,7 @@ impl CoupledBodies<'_> {
         Ok(())
     }
 
-    /// Returns the vector of each part from its hinge to the next, around the loop.
+    /// Returns the vector of each part in the plane, m, from its hinge to the next, around the loop.
     fn sides(&self, ends: &[AttachmentPoint; 2]) -> Vec<(usize, Vector)> {
         let flat = |p: Vector3<f64>| Vector::new(self.plane[0].dot(&p), self.plane[1].dot(&p));
         let mut sides: Vec<(usize, Vector)> = Vec::new();

@@ -6,7 +6,7 @@ pub(super) struct CoupledSets {
 }
 
 impl CoupledSets {
-    /// Begins with each part in a set of its own.
+    /// Begins with each part in a separate set.
     pub fn new(parts: usize) -> Self {
         Self { of: (0..=parts).collect() }
     }
@@ -26,8 +26,8 @@ impl CoupledSets {
     /// Joins two sets; the base, or else the lower index, represents both.
     pub fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(a), self.root(b));
-        let (stands, follows) = if b == self.base() { (b, a) } else { (a.min(b), a.max(b)) };
-        let (stands, follows) = if a == self.base() { (a, b) } else { (stands, follows) };
-        self.of[follows] = stands;
+        let (root, child) = if b == self.base() { (b, a) } else { (a.min(b), a.max(b)) };
+        let (root, child) = if a == self.base() { (a, b) } else { (root, child) };
+        self.of[child] = root;
     }
 }
