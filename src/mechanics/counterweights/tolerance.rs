@@ -29,7 +29,7 @@ pub struct WorstResidual {
 }
 
 /// Returns the largest residuals of a balanced machine if all counterweights deviate by their tolerances with the worst
-/// signs. To first order: products of deviations are neglected.
+/// signs. Products of deviations are neglected.
 pub fn worst_residual(machine: &Machine, tolerance: &PlacementTolerance) -> WorstResidual {
     let mut worst = WorstResidual { force: 0.0, coupling: 0.0 };
     for condition in Condition::all(machine.drives()) {
