@@ -1,4 +1,4 @@
-//! Preferences of a user, which are kept from one start to the next.
+//! Preferences of a user, which are saved from one start of the program to the next.
 
 use std::path::PathBuf;
 

@@ -21,7 +21,7 @@ pub(super) const RADIUS: Range = Range::new(0.0, MAX_NUMBER, "m");
 /// Range of a moment of inertia.
 pub const INERTIA: Range = Range::new(0.0, MAX_NUMBER, "kg m²");
 pub(super) const TORQUE_LIMIT: Range = Range::new(MIN_POSITIVE, MAX_NUMBER, "N m");
-/// Gear ratios are limited either way; a ratio of 0 is refused by its own check.
+/// Range of a gear ratio; a separate check rejects a ratio of 0.
 pub const RATIO: Range = Range::either_way(1e4, "");
 pub(super) const SPEED_LIMIT: Range = Range::new(MIN_POSITIVE, MAX_NUMBER, "rad/s");
 pub(super) const ACCELERATION_LIMIT: Range = Range::new(MIN_POSITIVE, MAX_NUMBER, "rad/s²");
