@@ -144,9 +144,9 @@
 //! ```
 //!
 //! # Use as a dependency
-//! Other programs depend on `stillbase` alone, by path or by git: `stillbase = { git = "…", default-features = false
-//! }`. The crates below it are not published (`publish = false`): they read `assets` and `shaders` of this repository,
-//! and may change in any version.
+//! Programs depend on `stillbase` alone, by path or git: `stillbase = { git = "…", default-features = false }`. The
+//! crates below it are not published (`publish = false`): they read `assets` and `shaders` of this repository, and may
+//! change in any version.
 //!
 //! The interface consists of the items that this documentation shows, and follows semantic versioning. Until version
 //! 1.0, a minor version, such as 0.2.0, may break the interface and says so; a patch, such as 0.1.1, does not. Hidden
@@ -273,7 +273,7 @@
 //!   `app/rail.rs`, its icon is in `app/icon.rs`, and its words and its key are a row of `app/actions.rs`.
 //! * **Background work**: a row of `app/activity.rs` with its words. Work that derives data is a query and a row of
 //!   `REPORTED_QUERIES` in `app/background.rs`. `AppState::refresh` calls a function `refresh_…`, which requests the
-//!   query, and stops it when its result is no longer visible. Work that changes the display is passed to
+//!   query while its result is visible and stops it otherwise. Work that changes the display is passed to
 //!   `Background::run`, with a function that receives its result.
 //! * **A query**: a type that implements [`query::QuickQuery`], or [`query::Query`] if it takes longer than a few
 //!   milliseconds, or [`query::IncrementalQuery`] if its answer grows with a run. Code that shows the answer requests

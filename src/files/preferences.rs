@@ -1,4 +1,4 @@
-//! Preferences of a user, which are saved from one start of the program to the next.
+//! Preferences of the user, saved between runs of the program.
 
 use std::path::PathBuf;
 

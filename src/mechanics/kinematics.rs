@@ -1,4 +1,4 @@
-//! Kinematics of the end effector: its position, (14), its Jacobian, and inverses of two-drive sub-chains.
+//! Kinematics of the end effector: its position, (14), its Jacobian, and drive rates for a given velocity.
 //!
 //! # Symbols
 //! | letter | meaning | unit |

@@ -160,8 +160,8 @@ struct Unchanged {
     since: f64,
 }
 
-/// Returns the scene to draw and its quality. If the scene looks the same as in the previous pass, that of the previous
-/// pass is returned.
+/// Returns the scene to draw and its quality. If the scene looks the same as in the previous pass, the previous scene
+/// is returned.
 fn settle(ctx: &egui::Context, number: usize, scene: &Arc<Scene>, view: &View) -> (Arc<Scene>, Quality) {
     let id = egui::Id::unique("what a scene looked like").with(number);
     let (now, before) = (ctx.input(|i| i.time), ctx.data(|data| data.get_temp::<Unchanged>(id)));

@@ -51,7 +51,7 @@ struct Columns {
     qdd: Vec<TableColumn>,
     force: [TableColumn; 2],
     moment: TableColumn,
-    /// Those of the columns for position and angle of the base that the file has.
+    /// Columns for position and angle of the base; only those that the file has.
     base: Vec<TableColumn>,
     /// Index of the column with the name of the motion.
     motion: Option<usize>,
@@ -157,7 +157,7 @@ impl Split {
         Ok(())
     }
 
-    /// Returns the motions, also split at gaps in time, which are long compared with the median time step.
+    /// Returns the motions, split further at time steps that are long compared with the median time step.
     fn parts(self) -> Vec<Part> {
         let mut parts = Vec::new();
         for part in self.named {
@@ -232,7 +232,8 @@ impl Columns {
         [&self.time].into_iter().chain(angles).chain(&self.force).chain([&self.moment]).chain(&self.base).collect()
     }
 
-    /// Returns the name of a column in which the base moves, and the first line that differs from its start.
+    /// Returns the name of a column in which the base moves, and the line of the first row that differs from the
+    /// initial row.
     fn moving(&self, parts: &[Part]) -> Option<(String, u64)> {
         let from = self.all().len() - self.base.len();
         let rows = || parts.iter().flat_map(|part| part.rows.iter().zip(&part.lines));

@@ -75,7 +75,7 @@ impl Condition {
         }
     }
 
-    /// Returns the contribution per kg of mass at the root of a link.
+    /// Returns the contribution per kg of mass at the root of a link: m for (7), m² for (8).
     pub fn by_mass(self, part: &ResolvedLink) -> f64 {
         match self {
             Self::Force(k) => part.root[k],
@@ -83,7 +83,7 @@ impl Condition {
         }
     }
 
-    /// Returns the contribution per kg m of a link's first moment along its axis.
+    /// Returns the contribution per kg m of a link's first moment along its axis: a number for (7), m for (8).
     pub fn by_moment(self, part: &ResolvedLink) -> f64 {
         match self {
             Self::Force(k) if k == part.drive => part.sign,

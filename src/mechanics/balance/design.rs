@@ -1,4 +1,4 @@
-//! Balance as a linear problem: where the links' centres of mass must lie, (7)–(10).
+//! Balance as a linear problem for the positions of the links' centres of mass, (7)–(10).
 //!
 //! The conditions are linear in the l_cj, so for any machine they are A l_c = k with n + n(n−1)/2 rows. [`design`]
 //! finds the solution that minimises Σ (p_j l_cj)².

@@ -6,7 +6,7 @@
 //! |---|---|
 //! | M z ≤ c | the half spaces, rows of equal norm |
 //! | u | multiplier of each half space, u ≥ 0 |
-//! | E, f | E has columns (−M_i, −c_i), f = (0, 1); at the minimum of |E u − f|, E u − f is a multiple of (z, −1) |
+//! | E, f | E has columns (−M_i, −c_i), f = (0, 1); at the least squares solution, E u − f is a multiple of (z, −1) |
 //!
 //! # Source
 //! Lawson and Hanson, *Solving Least Squares Problems*, chapter 23: least distance programming by least squares with u

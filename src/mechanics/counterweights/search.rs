@@ -1,7 +1,7 @@
 //! [`search`]: branch and bound over cone programs, for two kinds of problems that are not convex. If discs must stay
-//! clear of the pins of their links, each needs a choice of the interval between pins. If D_k is negative, more inertia
-//! reduces |D_k|. The subproblem with the lowest bound is split first, so the first solution whose relaxation is exact
-//! is the optimum.
+//! clear of the pins of their links, an interval between pins must be chosen for each disc. If D_k is negative, more
+//! inertia reduces |D_k|. The subproblem with the lowest bound is split first, so the first solution whose relaxation
+//! is exact is the optimum.
 
 use super::cell::SearchCell;
 use super::free_span::FreeSpan;
@@ -32,7 +32,7 @@ const MAX_LINEARISATIONS: usize = 25;
 /// limit, returns the best solution found, with the remaining gap.
 ///
 /// # Errors
-/// If there are too many choices, or if the solver fails; the inner error says that there is no solution.
+/// If there are too many choices, or if the solver fails. If there is no solution, the inner result is an error.
 pub(super) fn search(
     problem: &CounterweightProblem,
     machine: &Machine,

@@ -15,7 +15,7 @@ pub struct PlacementTolerance {
 }
 
 impl PlacementTolerance {
-    /// One per cent, and half a millimetre.
+    /// Tolerances of one per cent and of half a millimetre.
     pub const USUAL: Self = Self { mass: 0.01, place: 5e-4 };
 }
 

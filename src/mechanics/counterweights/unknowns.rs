@@ -1,4 +1,4 @@
-//! [`UnknownIndices`]: indices of the unknowns of the cone program, and D_k and H_kk as linear functions of them.
+//! [`UnknownIndices`]: indices of the unknowns of the cone program, and D_k and H_kk as affine functions of them.
 
 use super::problem::CounterweightProblem;
 use super::spec::{CounterweightSpec, RotorFreedom};

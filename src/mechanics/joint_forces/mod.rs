@@ -2,7 +2,7 @@
 //! base.
 //!
 //! The base wrench is a sum over all links, in which the forces between links cancel. This module computes these forces
-//! one by one: [`Joints`] holds where each link is pinned, and returns the force of each pin for a state of motion.
+//! one by one: [`Joints`] holds the pins of all links, and returns the force of each pin for a state of motion.
 //!
 //! # Symbols
 //! | letter | meaning | shape, unit |
@@ -32,8 +32,8 @@
 //! carrying drive turns. A drive on the base without a link at B turns its only link by a belt. The couple of the motor
 //! then acts between that link and the base. Part of the couple accelerates the rotor. The rotor's weight belongs to
 //! the link that carries the motor. Where several links share an axle, each attachment and each closure in the file is
-//! a separate pin. All pins have the same friction; the torque that keeps the pins between two drives stuck is shared
-//! equally among them. Friction in the bearing of a drive acts between the base and the link that the drive turns. This
+//! a separate pin. All pins have the same friction; static friction between two drives is shared equally among the pins
+//! between them. Friction in the bearing of a drive acts between the base and the link that the drive turns. This
 //! friction is a couple and changes no pin force.
 //!
 //! # Near change points

@@ -37,7 +37,7 @@ pub struct ChangePointDistance {
     pub drives: (usize, usize),
     /// |q_k − q_l − mπ|, rad.
     pub distance: f64,
-    /// Time to the change point at the present rates, s; `None` if they are equal or lead away from it.
+    /// Time to the change point at the present rates, s; `None` if the rates are equal or lead away from it.
     pub time: Option<f64>,
 }
 
@@ -60,8 +60,8 @@ pub fn nearest_change_point(q: &[f64], qd: &PerDrive) -> Option<ChangePointDista
     all.min_by(|a, b| a.distance.total_cmp(&b.distance))
 }
 
-/// Returns the change point that the present rates reach first, with the angle that the pair has to turn until then;
-/// `None` if all drives turn at the same rate.
+/// Returns the change point that is reached first at the present rates; its distance is measured in the direction of
+/// motion. `None` if all drives turn at the same rate.
 pub fn next_change_point(q: &[f64], qd: &PerDrive) -> Option<ChangePointDistance> {
     let all = Inertia::pairs(q.len()).filter_map(|(k, l)| {
         let (past, rate) = (from_multiple_of_pi(q[k] - q[l]), qd[k] - qd[l]);

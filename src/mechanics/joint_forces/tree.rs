@@ -3,7 +3,7 @@
 use crate::machine::RotorCoupling;
 use crate::planar::Vector;
 
-/// A link of the tree, with the payload if it carries it.
+/// A link of the tree; the link at the end effector includes the payload.
 #[derive(Clone, Debug)]
 pub struct TreeLink {
     /// Index of the link in the machine, and of the pin that attaches it.
@@ -33,7 +33,7 @@ pub struct Stator {
     pub drive: usize,
     /// The link that carries it; `None` for the base.
     pub link: Option<usize>,
-    /// Its rotor: inertia, kg m², and the ratios of its rate to those of the drives.
+    /// Its rotor, with inertia, kg m², and rate ratios.
     pub rotor: RotorCoupling,
     /// Whether the moment of its drive is known before the closures are solved.
     pub before: bool,

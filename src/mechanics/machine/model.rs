@@ -135,7 +135,7 @@ impl Machine {
         &self.0.end_effector
     }
 
-    /// Returns an upper bound of the end effector's distance from B, m: the sum of the magnitudes in its chain.
+    /// Returns an upper bound of the end effector's distance from B, m: the sum of the magnitudes of its weights.
     pub fn reach(&self) -> f64 {
         self.0.end_effector.iter().map(|length| length.abs()).sum()
     }

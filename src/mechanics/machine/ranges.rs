@@ -13,7 +13,7 @@ pub(super) const GRAVITY: Range = Range::either_way(MAX_NUMBER, "m/s²");
 pub const LENGTH: Range = Range::new(1e-6, MAX_NUMBER, "m");
 /// Range of a coordinate.
 pub const PLACE: Range = Range::either_way(MAX_NUMBER, "m");
-/// The mass of a link may be nearly zero, but not zero.
+/// Range of a mass that must be positive; it may be nearly zero.
 pub const MASS: Range = Range::new(1e-15, MAX_NUMBER, "kg");
 /// Range of a mass that may be zero.
 pub const LOAD: Range = Range::new(0.0, MAX_NUMBER, "kg");

@@ -54,7 +54,7 @@ pub struct Picture {
     pub width: u32,
     /// Number of rows.
     pub height: u32,
-    /// `4 width height` bytes.
+    /// `4 · width · height` bytes.
     pub rgba: Vec<u8>,
 }
 
@@ -66,7 +66,7 @@ impl Picture {
         pixel.try_into().ok()
     }
 
-    /// Encodes as PNG. Fails if `rgba` is not `4 width height` bytes or the picture is empty.
+    /// Encodes as PNG. Fails if `rgba` does not have `4 · width · height` bytes or the picture is empty.
     pub fn to_png(&self) -> io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
         self.encode(&mut bytes)?;

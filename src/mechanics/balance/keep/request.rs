@@ -9,8 +9,8 @@ use stillbase_settings::number::ShortNumber;
 /// Bounds of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ParameterBounds {
-    /// The parameter keeps its value in the machine. If there is no solution, the error may name this as a cause,
-    /// unlike a parameter that is not listed.
+    /// The parameter keeps its value in the machine. If there is no solution, the error may name this parameter as a
+    /// cause; it never names one that is not listed.
     Fixed,
     /// Default bounds about the reference value. A mass may change by a factor of ten either way; a position by ten
     /// times the machine's reach, or 10 m if that is more.
@@ -61,8 +61,7 @@ impl ListedParameter {
         })
     }
 
-    /// Returns the interval within which its bounds may be relaxed, kg or m: its bounds, extended to the default
-    /// bounds.
+    /// Returns the bounds to which its limits may be relaxed, kg or m: the union of its bounds and the default bounds.
     pub(super) fn widest(&self, machine: &Machine) -> Option<[f64; 2]> {
         let ([low, high], usual) = (self.ends(machine)?, Self { hold: ParameterBounds::Free, ..*self }.ends(machine)?);
         Some([low.min(usual[0]), high.max(usual[1])])
