@@ -2,7 +2,7 @@
 //! robot arms, plan and simulate their motions, and see and record the reactions on their bases.
 //!
 //! An arm exerts no force on its base if it is balanced, so that its centre of mass never moves. It exerts no moment
-//! either if its mass matrix is constant, and it moves only on the planes q₁ + λ₂ q₂ + λ₃ q₃ = b of joint space. Each
+//! either if its mass matrix is constant and its motion stays on a plane q₁ + λ₂ q₂ + λ₃ q₃ = b of joint space. Each
 //! *pose constant* b has a *reactionless workspace*; changing b only turns this workspace.
 //!
 //! The [`guide`] describes how to use the program, its window and its commands.
@@ -168,8 +168,8 @@
 //!
 //! # Features
 //! The core builds without any feature: it needs no GPU, no window and no Rerun, and reads no clock. The last column
-//! counts all crates that are then built, including those of Stillbase, as `cargo tree -e normal --no-default-features
-//! --features …` lists them on Linux in version 0.1.0.
+//! counts all crates that are then built, including those of Stillbase. `cargo tree -e normal --no-default-features
+//! --features …` lists them; the numbers are those on Linux in version 0.1.0.
 //!
 //! | feature | what it adds | crates |
 //! |---|---|---|
@@ -281,7 +281,8 @@
 //! * **An error**: a variant of the nearest error type that says what is wrong, where, and which values are allowed. A
 //!   new type needs a row in `../tests/layers/errors.rs`; a field that holds another error is marked `#[source]`.
 //! * **A crate**: a folder with a `Cargo.toml` and a `lib.rs`, a row of `members` and one of `[workspace.dependencies]`
-//!   in `../Cargo.toml`, a row of the map above, and a line at the end of `lib.rs` if other programs may use it.
+//!   in `../Cargo.toml`, and a row of the map above. A crate that other programs may use also needs a line at the end
+//!   of `lib.rs`.
 //! * **A dependency**: its version and features in `[workspace.dependencies]`, and its name in the `Cargo.toml` of the
 //!   crate that uses it. The dependencies that the core may have are listed in `../tests/layers/mod.rs`.
 //! * **A public item** appears in the documentation and is kept stable. If an item serves only other crates of the

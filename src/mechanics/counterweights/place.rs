@@ -76,9 +76,9 @@ pub fn place_weights_with(
     one.found()?.map_err(|weights| one.refusal(&weights))
 }
 
-/// Returns the residual of each condition of (7) and (8), kg m or kg m², that no counterweights on the listed links
-/// remove, even of negative mass. It is the residual of the least squares solution, with all equations scaled to unit
-/// norm. Residuals across the axes of the links always remain.
+/// Returns the part of each residual of (7) and (8), kg m or kg m², that no counterweights on the listed links remove,
+/// even of negative mass. This is the residual of the least squares solution, with all equations scaled to unit norm.
+/// Residuals across the axes of the links always remain.
 ///
 /// # Errors
 /// If the request is not valid.

@@ -64,7 +64,7 @@ impl CounterweightProblem {
         Ok(())
     }
 
-    /// Returns the residual of each condition that no masses at the sites remove, even negative ones, kg m or kg m². It
+    /// Returns the part of each residual, kg m or kg m², that no masses at the sites remove, even negative ones. This
     /// is the residual of the least squares solution, with all equations scaled to unit norm.
     pub fn unreachable(&self, sites: usize) -> Vec<Vector> {
         let equation = |condition: &ConditionResidual| LinearEquation {

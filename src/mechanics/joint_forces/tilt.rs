@@ -46,7 +46,7 @@ pub struct AxialMoments {
 pub struct TiltMoment {
     /// Part from motion.
     pub motion: Vector,
-    /// Part from weight and from a force held at the end effector.
+    /// Part from weight and from a force on the end effector.
     pub weight: Vector,
 }
 

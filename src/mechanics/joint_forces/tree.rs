@@ -52,7 +52,7 @@ pub struct CutClosure {
     pub reaches: u32,
 }
 
-/// One step of the solution: closures that are solved at once.
+/// One step of the solution: closures that are solved simultaneously.
 #[derive(Clone, Debug)]
 pub enum SolveStep {
     /// One closure from the equations of two links.

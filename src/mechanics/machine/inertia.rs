@@ -200,8 +200,8 @@ impl Inertia {
         (0..self.drives).map(|k| self.momentum(k)).find(|d| *d != 0.0).unwrap_or(0.0)
     }
 
-    /// Returns λ_k = D_k / D_1 of an invariant machine, (12). If D_1 is 0, the first D_k that is not 0 takes its place;
-    /// if all are 0, every λ_k is 0.
+    /// Returns λ_k = D_k / D_1 of an invariant machine, (12). If D_1 is 0, the first D_k that is not 0 replaces it; if
+    /// all are 0, every λ_k is 0.
     pub fn lambda(&self) -> PerDrive {
         let first = self.pose_inertia();
         PerDrive::from_fn(self.drives, |k| if first == 0.0 { 0.0 } else { self.momentum(k) / first })

@@ -80,7 +80,7 @@ pub fn rebalance_with(
     }
 }
 
-/// Returns the residual of each condition, kg m or kg m², that no values of the listed parameters remove. It is the
+/// Returns the part of each residual, kg m or kg m², that no values of the listed parameters remove. This is the
 /// residual of the least squares solution, with all equations scaled to unit norm. `beyond`: see [`rebalance_with`].
 ///
 /// # Errors
