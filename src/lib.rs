@@ -1,22 +1,22 @@
-//! Zero reaction manipulators, from Papadopoulos & Abu-Abed, *On the Design of Zero Reaction Manipulators*: design,
-//! plan, simulate, see and record what a robot arm does to the base it stands on.
+//! Zero reaction manipulators, after Papadopoulos & Abu-Abed, *On the Design of Zero Reaction Manipulators*: design
+//! robot arms, plan and simulate their motions, and see and record the reactions on their bases.
 //!
-//! Balance the arm so that its centre of mass never moves, and no force reaches the base. Make its mass matrix
-//! constant, and move only on the planes q₁ + λ₂ q₂ + λ₃ q₃ = b of joint space, and no moment does either. Each *pose
-//! constant* b has its *reactionless workspace*; changing b only turns it.
+//! An arm exerts no force on its base if it is balanced, so that its centre of mass never moves. It exerts no moment
+//! either if its mass matrix is constant and its motion stays on a plane q₁ + λ₂ q₂ + λ₃ q₃ = b of joint space. Each
+//! *pose constant* b has a *reactionless workspace*; changing b only turns this workspace.
 //!
-//! How the program is used, its window and its commands, stands in the [`guide`].
+//! The [`guide`] describes how to use the program, its window and its commands.
 //!
 //! # A tour
-//! A [`Machine`](mechanics::machine::Machine) is data, checked. It collapses into a few constants, its
-//! [`Inertia`](mechanics::machine::Inertia), and these say whether it is balanced:
+//! A [`Machine`](mechanics::machine::Machine) is a checked specification. Its [`Inertia`](mechanics::machine::Inertia)
+//! reduces it to a few constants, which show whether it is balanced:
 //! ```
 //! use stillbase::mechanics::machine::{self, Inertia};
 //! let machine = machine::builtin("nine-link").expect("built in");
 //! let inertia = Inertia::of(machine);
 //! assert!(inertia.is_force_balanced() && inertia.is_invariant());
 //! ```
-//! [`design`](mechanics::balance::design) finds the centres of mass that make a machine so, Eqs (7)–(10):
+//! [`design`](mechanics::balance::design) finds centres of mass with which a machine is balanced, Eqs (7)–(10):
 //! ```
 //! # use stillbase::mechanics::balance::{design, Preset};
 //! # use stillbase::mechanics::machine;
@@ -25,8 +25,8 @@
 //! assert!((exact.links()[0].com - -0.2214384).abs() < 1e-7);
 //! # Ok::<(), stillbase::mechanics::balance::DesignError>(())
 //! ```
-//! Its pose space ([`PoseSpace`](planning::pose_space::PoseSpace)) knows which b reach a point, where, and how far the
-//! workspace goes, for any number of drives:
+//! The pose space of a machine is a [`PoseSpace`](planning::pose_space::PoseSpace), for any number of drives. It
+//! returns the intervals of b that reach a point, and the outline of the workspace of a given b:
 //! ```
 //! # use stillbase::mechanics::machine;
 //! # use stillbase::mechanics::planar::Vector;
@@ -37,8 +37,9 @@
 //! assert!((a.intervals[0][0] - 1.6495370969).abs() < 1e-9);
 //! assert!((space.outline(2.4).area - 0.8451448471).abs() < 1e-9);
 //! ```
-//! What only some machines have it gives out by name, or says why not. On planes a curve of the end effector is followed
-//! exactly, or refused with where, why, and which b would do:
+//! Some of its methods apply only to some machines; on others, they return an error with the reason. On planes, a curve
+//! of the end effector is followed exactly. If that is impossible, the error says where and why, and names a feasible
+//! b:
 //! ```
 //! # use stillbase::mechanics::machine;
 //! # use stillbase::mechanics::planar::Vector;
@@ -53,8 +54,8 @@
 //! let blocked = trace::follow(planes.map(), &line, 2.9, None, Rule::default()).expect_err("B is on other planes");
 //! assert!((blocked.nearest_b.expect("2.4 and others") - 2.6610727).abs() < 1e-4);
 //! ```
-//! A [`Scenario`](session::scenario::Scenario) sets a task; a [`Run`](session::Run) carries it out step by step and
-//! gives a [`Frame`](simulation::frame::Frame) of everything true at each instant:
+//! A [`Scenario`](session::scenario::Scenario) describes a task. A [`Run`](session::Run) simulates it step by step; a
+//! [`Frame`](simulation::frame::Frame) holds all results at one instant:
 //! ```
 //! # use stillbase::session::scenario::Scenario;
 //! # use stillbase::session::replay;
@@ -63,13 +64,13 @@
 //! assert!(run.frame().peaks.is_reactionless());
 //! # Ok::<(), stillbase::session::Refusal>(())
 //! ```
-//! A [`Session`](session::Session) is a run that a person changes while it goes on: every change is an
-//! [`Edit`](session::Edit), so it can be saved, undone and replayed to the very same frames. Bookmarks, and branches that it
-//! left, are kept beside the edits, saved and undone with them.
+//! A [`Session`](session::Session) is a run that a user changes while it is in progress. Every change is an
+//! [`Edit`](session::Edit), so a session can be saved, undone, and replayed to identical frames. Bookmarks and
+//! abandoned branches are stored with the edits; they are saved and undone together.
 //!
 //! # From a program of your own
-//! A machine comes from a TOML file, by [`files::machine`], or from text. An error says which line and which key is
-//! wrong, and what would be right:
+//! [`files::machine`] reads a machine from a TOML file; `parse` reads one from text. An error names the line, the key
+//! and the allowed values:
 //! ```
 //! use stillbase::mechanics::machine::{Inertia, parse};
 //! let text = r#"
@@ -93,9 +94,9 @@
 //! assert_eq!(error.to_string(), "bar.toml:10: link.bar.mass is -2: want 1e-15 to 1000000 kg");
 //! # Ok::<(), stillbase::mechanics::machine::FileError>(())
 //! ```
-//! [`place_weights`](mechanics::counterweights::place_weights) finds counterweights, and proves that they are the best:
-//! the duality gap bounds how far they are from the optimum. Here m l_c = 2 kg · 0.2 m, and a weight 0.4 m behind the
-//! pin balances that with 1 kg:
+//! [`place_weights`](mechanics::counterweights::place_weights) finds counterweights and proves that they are optimal:
+//! the duality gap bounds the distance of their objective from the optimum. Here m l_c = 2 kg · 0.2 m, so a
+//! counterweight of 1 kg balances the bar from 0.4 m behind the pin:
 //! ```
 //! # use stillbase::mechanics::machine::{Inertia, parse};
 //! use stillbase::mechanics::counterweights::{CounterweightSpec, Disc, Objective, Sites, place_weights};
@@ -108,9 +109,9 @@
 //! assert!(placed.is_certified() && placed.gap < 1e-6);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//! The [`signals`](simulation::signals::signals) of a run are a table: a column for each, with name and unit, and a row
-//! for each step. Case 1 of the paper moves along a straight line, from rest to rest. A moment reaches the base, and its
-//! impulse is zero in the end:
+//! The [`signals`](simulation::signals::signals) of a run form a table. It has a column for each signal, with name and
+//! unit, and a row for each step. In case 1 of the paper, the end effector moves along a straight line, from rest to
+//! rest. A moment reaches the base, but its total impulse is zero:
 //! ```
 //! # use stillbase::session::{replay, scenario::Scenario};
 //! # use stillbase::simulation::signals::signals;
@@ -125,8 +126,8 @@
 //! assert!((peak - 1.089).abs() < 1e-3 && impulse.abs() < 1e-5);
 //! # Ok::<(), stillbase::session::Refusal>(())
 //! ```
-//! A [`Run`](session::Run) has planned its task, or is refused; the refusal names the way out. Point B is reached on the
-//! planes from b = 2.216 rad to b = 2.661 rad:
+//! [`Run::new`](session::Run::new) plans the task. If that is impossible, it returns a refusal that names feasible
+//! values. Here the point B of the task can be reached from b = 2.216 rad to b = 2.661 rad:
 //! ```
 //! # use stillbase::mechanics::machine::Inertia;
 //! # use stillbase::session::{Run, scenario::Scenario};
@@ -142,32 +143,33 @@
 //! # Ok::<(), stillbase::session::Refusal>(())
 //! ```
 //!
-//! # What others may build on
-//! Others depend on `stillbase` alone, by path or by git: `stillbase = { git = "…", default-features = false }`. The
-//! crates under it are not published (`publish = false`): they read `assets` and `shaders` of this repository, and may
+//! # Use as a dependency
+//! Programs depend on `stillbase` alone, by path or git: `stillbase = { git = "…", default-features = false }`. The
+//! crates below it are not published (`publish = false`): they read `assets` and `shaders` of this repository, and may
 //! change in any version.
 //!
-//! What the documentation of `stillbase` shows is its interface, and follows semantic versioning. Until version 1.0 a
-//! minor version, such as 0.2.0, may break it and says so; a patch, such as 0.1.1, does not. What is public but not shown
-//! serves other crates of the workspace, and may change in any version. `app` and the subcommands are not shown at all.
-//! * To compute with: [`mechanics`], [`planning`], [`simulation`] and [`session`]. They change least.
-//! * To read and write: [`settings`], [`files`], [`exchange`], and `recording` with feature `record`.
-//! * To report: [`study`]. Its answers gain fields, so take them as they come and do not build them. Work that takes long
-//!   is a [`query::Query`]; [`query::answer_now`] does it.
-//! * To draw: [`picture`], of which scenes are plain data, and feature `render` makes pictures.
+//! The interface consists of the items that this documentation shows, and follows semantic versioning. Until version
+//! 1.0, a minor version, such as 0.2.0, may break the interface and says so; a patch, such as 0.1.1, does not. Hidden
+//! public items serve other crates of the workspace, and may change in any version. `app` and the subcommands are
+//! hidden entirely.
+//! * For computing: [`mechanics`], [`planning`], [`simulation`] and [`session`]. These crates change least.
+//! * For reading and writing: [`settings`], [`files`], [`exchange`], and `recording` with feature `record`.
+//! * For reports: [`study`]. Its result types gain fields, so programs should read but not construct them. A long
+//!   computation is a [`query::Query`], which [`query::answer_now`] runs.
+//! * For drawing: [`picture`]. Its scenes are plain data; feature `render` draws pictures of them.
 //!
-//! **Errors** implement [`std::error::Error`], `Send` and `Sync`. The message of one is whole: it holds that of the error
-//! which caused it. `source` gives that error itself, to a program that asks for its type. Enums are not
-//! `#[non_exhaustive]`: the workspace matches them across crates, and the compiler is to name each place that a new
-//! variant concerns. A new variant therefore comes with a minor version.
+//! **Errors** implement [`std::error::Error`], `Send` and `Sync`. The message of an error includes the message of its
+//! cause. `source` returns the cause itself, so that a program can examine its type. Enums are not `#[non_exhaustive]`:
+//! crates of the workspace match them, and the compiler must find each match that a new variant affects. A new variant
+//! therefore requires a minor version.
 //!
 //! **Rust**: 1.95 or newer, the `rust-version` of `Cargo.toml`. It is raised with a minor version only, and the commit
-//! says which feature of the language or which dependency asks for it.
+//! names the language feature or the dependency that requires it.
 //!
 //! # Features
-//! The core builds without any feature: no GPU, no window, no Rerun, and it reads no clock. The last column counts all
-//! crates that are built then, `stillbase` and its own among them, as `cargo tree -e normal --no-default-features
-//! --features …` lists them on Linux in version 0.1.0.
+//! The core builds without any feature: it needs no GPU, no window and no Rerun, and reads no clock. The last column
+//! counts all crates that are then built, including those of Stillbase. `cargo tree -e normal --no-default-features
+//! --features …` lists them; the numbers are those on Linux in version 0.1.0.
 //!
 //! | feature | what it adds | crates |
 //! |---|---|---|
@@ -179,22 +181,21 @@
 //! | `window` | the window around them | 271 |
 //! | `record` | recordings for the Rerun viewer | 296 |
 //!
-//! `window`, `record` and `cli` are on by default, 468 crates together. `tables`, `render` and `ui` come with what needs
-//! them.
+//! `window`, `record` and `cli` are enabled by default, 468 crates together. `tables`, `render` and `ui` are enabled by
+//! the features that need them.
 //!
-//! # How the interface is watched
+//! # Checking the interface
 //! `cargo semver-checks` (`cargo install cargo-semver-checks --locked`) compares the interface with that of an earlier
-//! commit, and names what broke. It does not look behind a re-export, nor at crates that are not published, unless each
-//! is named:
+//! commit, and lists breaking changes. It checks re-exported and unpublished crates only if each is named:
 //! ```sh
 //! cargo semver-checks --baseline-rev COMMIT -p stillbase-settings -p stillbase-query -p stillbase-mechanics \
 //!     -p stillbase-exchange -p stillbase-planning -p stillbase-simulation -p stillbase-session -p stillbase-study \
 //!     -p stillbase-picture -p stillbase-files -p stillbase-recording
 //! ```
-//! It passes over what is not shown. Where it names a break, the version of `[workspace.package]` becomes the next minor
-//! one.
+//! It ignores hidden items. If it lists a breaking change, the version of `[workspace.package]` becomes the next minor
+//! version.
 //!
-//! # What flows
+//! # Data flow
 //! ```text
 //! assets/*.toml ─→ Machine ─→ Inertia (g, C, J) ─┐
 //! slider · drag · key · script ─→ Edit ─→ Session ┴─→ Motion ─→ Simulation ─→ Frame
@@ -205,88 +206,95 @@
 //! ```
 //!
 //! # Source map
-//! The folders of `src/` from the bottom up. Each but the guide is a crate, `stillbase-…`, and uses those before it only:
-//! what its `Cargo.toml` does not name it cannot reach, and a test holds the order.
+//! The table lists the folders of `src/` from the bottom up. Each except the guide is a crate, `stillbase-…`, which
+//! uses only crates listed before it. Its `Cargo.toml` names the crates that it uses, and a test checks the order.
 //!
-//! | folder | what stands there |
+//! | folder | content |
 //! |---|---|
-//! | [`guide`] | how the program is used, page by page; no code |
-//! | [`settings`] | how a value is named, bounded and shown: keys, changes by key, ranges, text from outside |
-//! | [`query`] | what is derived: made when its input changes, kept until then, worked on beside the window |
-//! | `convex` | convex programs, and how far from the best an answer may be |
-//! | [`mechanics`] | what a machine is: planar algebra, links and drives, kinematics, dynamics, pin forces, balance |
-//! | [`exchange`] | machines for other programs and for who builds them: models, drawings, lists of parts; and from them |
-//! | [`planning`] | where it may go, and when: reactionless planes and workspaces, curves, timing, ways off the plane |
-//! | [`simulation`] | what then happens: plant, control, the step, frames, the audit, signals |
-//! | [`session`] | what a person did: scenarios, edits, runs, undo, replay, the verdict |
-//! | [`study`] | many runs side by side and around a nominal machine; what plans, designs, imports and measurements say |
-//! | [`picture`] | scenes as plain data, the table of charts, and what paints them (features `render`, `ui`) |
-//! | [`files`] | files that appear whole or not at all; tables of numbers from others; shards of a study |
-//! | `recording` | the same picture for Rerun (feature `record`) |
+//! | [`guide`] | how to use the program, page by page; no code |
+//! | [`settings`] | names, bounds and display of values: keys, changes by key, ranges, text from outside |
+//! | [`query`] | derived data: computed when its input changes, cached until then; background work |
+//! | `convex` | convex programs, with bounds of the distance to the optimum |
+//! | [`mechanics`] | machines: planar algebra, links and drives, kinematics, dynamics, pin forces, balance |
+//! | [`exchange`] | export for other programs and workshops: models, drawings, lists of parts; import of machines |
+//! | [`planning`] | motions: reactionless planes and workspaces, curves, timing, motions off the planes |
+//! | [`simulation`] | simulation of motions: plant, control, time steps, frames, audit, signals |
+//! | [`session`] | work of a user: scenarios, edits, runs, undo, replay, verdict |
+//! | [`study`] | comparisons of runs, tolerance studies; reports on plans, designs, imports and measurements |
+//! | [`picture`] | scenes as plain data, the table of charts, and the code that draws both (features `render`, `ui`) |
+//! | [`files`] | atomic writing of files; tables of numbers from other programs; shards of a study |
+//! | `recording` | recordings for the Rerun viewer (feature `record`) |
 //! | `app` | the window (features `ui`, `window`) |
 //! | `commands` | the program's subcommands, one file each |
 //!
 //! # Where to add something
-//! * **A signal**: a field of `simulation/frame.rs` if it is new, filled in `simulation/simulator/simulation.rs`, and a row
-//!   of the table in `simulation/signals.rs`. Recordings and CSV have it then; a chart of its own is a row of
-//!   `picture/charts.rs`. Name it in the table of `guide/command_line.md`.
-//! * **A setting**: a row in the struct of the part that it sets, which `keyed!` declares (`settings/keyed.rs`):
-//!   `simulation/control.rs`, `simulation/plant/`, `session/scenario/task.rs`, of a design `session/scenario/design.rs`, of
-//!   a scenario itself `session/scenario/own.rs`. The row is the field, with type, default, range, meaning, when it has an
-//!   effect, and what frames depend on it. Of a machine the field stands in `mechanics/machine/spec.rs`, its row in
-//!   `mechanics/machine/keys.rs`. Where the machine decides whether a key has an effect,
-//!   `Scenario::condition_for_effect` says so; a key with `*` wants its names in `Scenario::settings`. Files, `--set`, edits, *All settings* in the window and
-//!   `stillbase keys` follow; `stillbase keys --markdown` writes the page of the guide. A row in a panel of the window
-//!   stands in `app/side/`, of the design view in `app/studio/`.
-//! * **A choice**: a row in its enum, which `words!` declares (`settings/word.rs`), with its word in files, its words on the
-//!   screen and what it means. Files, keys, the command line and the menus of the window follow, and the page of keys when
-//!   it is written again.
-//! * **Something to see**: an item of the scene, in `picture/scene/stage/`, drawn by `Stage::scene` (joint space and tower
-//!   are scenes of their own). Window, figures and recordings show it then. What can be switched on is an option in
-//!   `picture/scene/options.rs`, a field of `app/view_state.rs`, a `Switch`, and a line of `app/viewport.rs`.
-//! * **What is asked of a machine's poses**: a method of [`PoseSpace`](planning::pose_space::PoseSpace), for any number of
-//!   drives. If only some machines have it, it gives a `Result` with the reason in words; if three drives have a closed
-//!   form, the method takes it, and a test lays it beside [`general`](planning::pose_space::PoseSpace::general).
-//! * **A kind of task**: a row of `TaskKind` in `session/scenario/choices.rs`, and its function in `session/planner/`, listed
-//!   in `choose.rs` there.
-//! * **A time law**: a row of the enum in `planning/timing/law.rs`: its words, its formula, and where s̈ jumps or bends.
-//!   All else follows; write a line of `guide/planning.md`.
-//! * **An export format**: a row in `exchange/form.rs`. `export-model`, the window's dialog and all messages name its ending
-//!   then; write a section of `guide/elsewhere.md`.
-//! * **A subcommand**: a file in `commands/`, its `mod` and a line of the list in `commands/lib.rs`. Help and exit status
-//!   follow; write a line of `guide/command_line.md`. Its help has an example, `--set` and `--json`, which a test reads. It
-//!   reads arguments, asks and prints: what is computed is a query or an answer of the library (most in `study/`), which
-//!   the command serialises and the window can show.
-//! * **An edit**: a variant in `session/edit.rs`, with its check and its title, and what it does and what undoes it in
-//!   `session/run.rs`. Look at all `matches!` on edits. Saving and replay follow; a row in `../tests/session/sitting.rs` has it
-//!   drawn at random.
-//! * **Something that the window can be asked for**: of the session a variant of `SessionCommand`, of how it is shown one
-//!   of `ViewChange`, of what is on or off one of `Switch` (`app/command.rs`; `app/view_change.rs` says what it does). Its
-//!   words and its keys are one row of `app/actions.rs`: keyboard, list of commands, card of keys and menus follow.
-//! * **A panel**: a file in `app/` that shows an answer and pushes commands, called in `app/state/pass.rs`. One below the
-//!   scene is a variant of `BottomPanel` (`app/layout.rs`) and of `Switch`, with its button a row of `app/rail.rs`, its
-//!   icon in `app/icon.rs`, its words and its key a row of `app/actions.rs`.
-//! * **Work beside the window**: a row of `app/activity.rs` with its words. A query is asked for in a `refresh_…` that
-//!   `AppState::refresh` calls, and stopped there once it is out of sight. If it derives something it is a query and a row
-//!   of `REPORTED_QUERIES` in `app/background.rs`; if it changes what is on display, `Background::run` takes it with what is done then.
-//! * **A query**: a type that implements [`query::QuickQuery`], or [`query::Query`] if it takes longer than a few milliseconds,
-//!   or [`query::IncrementalQuery`] if it takes up what is new in a run, beside what it is about. Whoever shows it asks
-//!   [`query::Queries`] for it; nothing else keeps what is derived, and a test holds that.
-//! * **An error**: a variant of the nearest error type that says what is wrong, where, and what would be right. A new type
-//!   is a row in `../tests/layers/errors.rs`; a field that holds another error is marked `#[source]`.
-//! * **A crate**: a folder with a `Cargo.toml` and a `lib.rs`, a row of `members` and one of `[workspace.dependencies]` in
-//!   `../Cargo.toml`, a row of the map above, and a line at the end of `lib.rs` if others may use it.
-//! * **A dependency**: its version and features in `[workspace.dependencies]`, and its name in the `Cargo.toml` of the crate
-//!   that uses it. What the core may be built on is a list in `../tests/layers/mod.rs`.
-//! * **What others may use**: a public item is shown and kept stable. One that serves other crates of the workspace only
-//!   is `#[doc(hidden)]`, or its module is.
-//! * **What a command prints** is kept in `../tests/net/answers.json`: `STILLBASE_NET=keep` writes it anew. `../.ci/run` is what
-//!   has to pass.
-//! * **A long test** takes more than three seconds: it is `#[ignore]`d, with the reason, and a short one beside it runs
-//!   always. `../.ci/run` names those that end within seconds; `STILLBASE_LONG=1 ../.ci/run` runs all of them, and
-//!   `cargo test --test suite -- --ignored NAME` one.
-//! * **A reference from outside**: a script of `../tests/outside/` and what asks it, a row of `../tests/outside.rs`.
-//!   `STILLBASE_OUTSIDE_SEED`, `_WEIGHTS`, `_DRAGS` and `_POSTURES` ask for other cases, and more of them.
+//! * **A signal**: a row of the table in `simulation/signals.rs`. A new quantity also needs a field in
+//!   `simulation/frame.rs`, which `simulation/simulator/simulation.rs` fills. Recordings and CSV then contain the
+//!   signal; a chart for it is a row of `picture/charts.rs`. Name it in the table of `guide/command_line.md`.
+//! * **A setting**: a row in a struct that `keyed!` declares (`settings/keyed.rs`). These structs are in
+//!   `simulation/control.rs`, `simulation/plant/`, `session/scenario/task.rs`, for a design
+//!   `session/scenario/design.rs`, and for a scenario itself `session/scenario/own.rs`. The row is the field, with its
+//!   type, default, range, meaning, the condition for its effect, and the results that it affects. For a setting of a
+//!   machine, the field is in `mechanics/machine/spec.rs`, and its row in `mechanics/machine/keys.rs`. If the effect of
+//!   a key depends on the machine, add its condition to `Scenario::condition_for_effect`. If a key contains `*`, add
+//!   its names to `Scenario::settings`. Files, `--set`, edits, *All settings* in the window and `stillbase keys` then
+//!   know the setting; `stillbase keys --markdown` writes the page of the guide. Rows in panels of the window are in
+//!   `app/side/`, those of the design view in `app/studio/`.
+//! * **A choice**: a row in its enum, which `words!` declares (`settings/word.rs`), with its word in files, its words
+//!   on the screen and its meaning. Files, keys, the command line and the menus of the window then include it. Write
+//!   the page of keys again.
+//! * **An item of the scene**: a function in `picture/scene/stage/`, called by `Stage::scene` (joint space and tower
+//!   are separate scenes). The window, figures and recordings then show the item. If it can be switched off, it needs
+//!   an option in `picture/scene/options.rs`, a field in `app/view_state.rs`, a `Switch`, and a line in
+//!   `app/viewport.rs`.
+//! * **A question about the poses of a machine**: a method of [`PoseSpace`](planning::pose_space::PoseSpace), for any
+//!   number of drives. If it applies only to some machines, it returns a `Result` with the reason in words. If three
+//!   drives have a closed form, the method uses it, and a test compares it with
+//!   [`general`](planning::pose_space::PoseSpace::general).
+//! * **A kind of task**: a row of `TaskKind` in `session/scenario/choices.rs`, and its function in `session/planner/`,
+//!   listed in the file `choose.rs` of that folder.
+//! * **A time law**: a row of the enum in `planning/timing/law.rs`: its words, its formula, and the times at which s̈
+//!   or its derivative jumps. Nothing else needs a change; add a line to `guide/planning.md`.
+//! * **An export format**: a row in `exchange/form.rs`. `export-model`, the window's dialog and all messages then name
+//!   its file extension; add a section to `guide/elsewhere.md`.
+//! * **A subcommand**: a file in `commands/`, its `mod` and a line of the list in `commands/lib.rs`. Help and exit
+//!   status need no further code; add a line to `guide/command_line.md`. Its help has an example, `--set` and `--json`,
+//!   which a test checks. The command only reads arguments, calls the library (mostly `study/`) and prints. The library
+//!   returns the answer as data, which the command serialises and the window can show.
+//! * **An edit**: a variant in `session/edit.rs`, with its check and its title; its effect and its inverse are in
+//!   `session/run.rs`. Review all `matches!` on edits. Saving and replay need no further code; a row in
+//!   `../tests/session/sitting.rs` includes the edit in random tests.
+//! * **A command of the window**: a variant in `app/command.rs`. Changes of the session are a `SessionCommand`, changes
+//!   of the view a `ViewChange` (`app/view_change.rs` applies it), and things that are on or off a `Switch`. Its words
+//!   and its keys are one row of `app/actions.rs`, which the keyboard, the list of commands, the card of keys and the
+//!   menus use.
+//! * **A panel**: a file in `app/` that shows an answer and pushes commands, called in `app/state/pass.rs`. A panel
+//!   below the scene is also a variant of `BottomPanel` (`app/layout.rs`) and of `Switch`. Its button is a row of
+//!   `app/rail.rs`, its icon is in `app/icon.rs`, and its words and its key are a row of `app/actions.rs`.
+//! * **Background work**: a row of `app/activity.rs` with its words. Work that derives data is a query and a row of
+//!   `REPORTED_QUERIES` in `app/background.rs`. `AppState::refresh` calls a function `refresh_…`, which requests the
+//!   query while its result is visible and stops it otherwise. Work that changes the display is passed to
+//!   `Background::run`, with a function that receives its result.
+//! * **A query**: a type that implements [`query::QuickQuery`], or [`query::Query`] if it takes longer than a few
+//!   milliseconds, or [`query::IncrementalQuery`] if its answer grows with a run. Code that shows the answer requests
+//!   it from [`query::Queries`]. This is the only cache of derived data, which a test checks.
+//! * **An error**: a variant of the nearest error type that says what is wrong, where, and which values are allowed. A
+//!   new type needs a row in `../tests/layers/errors.rs`; a field that holds another error is marked `#[source]`.
+//! * **A crate**: a folder with a `Cargo.toml` and a `lib.rs`, a row of `members` and one of `[workspace.dependencies]`
+//!   in `../Cargo.toml`, and a row of the map above. A crate that other programs may use also needs a line at the end
+//!   of `lib.rs`.
+//! * **A dependency**: its version and features in `[workspace.dependencies]`, and its name in the `Cargo.toml` of the
+//!   crate that uses it. The dependencies that the core may have are listed in `../tests/layers/mod.rs`.
+//! * **A public item** appears in the documentation and is kept stable. If an item serves only other crates of the
+//!   workspace, the item or its module is `#[doc(hidden)]`.
+//! * **The output of a command** is stored in `../tests/net/answers.json`; `STILLBASE_NET=keep` writes this file again.
+//!   All checks that must pass are in `../.ci/run`.
+//! * **A long test** takes more than three seconds: it is `#[ignore]`d, with the reason, and a shorter variant always
+//!   runs. `../.ci/run` runs those long tests that end within seconds each; `STILLBASE_LONG=1 ../.ci/run` runs all, and
+//!   `cargo test --test suite -- --ignored NAME` runs one.
+//! * **A comparison with another program**: a script in `../tests/outside/`, and a row of `../tests/outside.rs` for the
+//!   test that calls it. `STILLBASE_OUTSIDE_SEED`, `_WEIGHTS`, `_DRAGS` and `_POSTURES` select other cases, and more of
+//!   them.
 //! * **A page of the guide**: a file in `guide/`, its name in `guide/mod.rs`, and a line of `guide/README.md`. Its
 //!   commands are run as tests.
 #[cfg(feature = "ui")]

@@ -1,4 +1,4 @@
-//! Preferences of a user, which are kept from one start to the next.
+//! Preferences of the user, saved between runs of the program.
 
 use std::path::PathBuf;
 

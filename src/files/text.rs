@@ -16,7 +16,7 @@ pub fn read(file: &Path) -> io::Result<String> {
     let opened = File::open(file)?;
     check(&opened.metadata()?, MAX_TEXT_BYTES)?;
     let mut text = String::new();
-    // The file may grow, and some files report no length.
+    // The length is limited again here, because the file may grow, and some files report no length.
     opened.take(MAX_TEXT_BYTES + 1).read_to_string(&mut text)?;
     let length = text.len() as u64;
     if length > MAX_TEXT_BYTES { Err(too_long(length)) } else { Ok(text) }

@@ -2,11 +2,12 @@
 #![doc = include_str!("README.md")]
 //!
 //! # How the guide is built
-//! Each page is a Markdown file beside this one, so it can be read on a code host too. Pages link by labels, which they
-//! define at their end with paths between files. Before each page stands `links.txt`, which gives the same labels the
-//! addresses that hold here: the first definition counts. Files of the repository, pictures among them, are addressed
-//! from `target/doc`, where `cargo doc` writes. Tests hold that every label has both addresses and that both lead
-//! somewhere, run the commands of every page, and read every TOML block.
+//! Each page is a Markdown file in the folder of this module, so it can be read on a code host too. Pages link by
+//! labels, which they define at their end with relative paths of files. The file `links.txt` is included before each
+//! page and defines the same labels with addresses in this documentation; the first definition takes precedence. Files
+//! of the repository, such as pictures, are addressed relative to `target/doc`, where `cargo doc` writes. Tests check
+//! that every label has both addresses and that the targets of both exist. They also run the commands of every page and
+//! parse every TOML block.
 
 macro_rules! pages {
     ($($name:ident: $file:literal,)*) => {$(

@@ -8,8 +8,8 @@
 //! | V_k | velocity terms, −Σ_l Im Z_kl q̇_l² | N m |
 //! | τ | H q̈ + V − γᵀ g − Jᵀ F; motors in joints give A⁻ᵀ τ ([`Motors`](crate::machine::Motors)) | N m |
 //! | D_k | Σ_l H_lk, and J r_k (1 − Σ_l r_l) of every rotor; angular momentum about B is D q̇ | kg m² |
-//! | f_B | force on the base: dynamic −Σ g_k (i q̈_k − q̇_k²) e_k, static M g | N |
-//! | n_B | moment on the base about B: dynamic −d/dt(D q̇), static r_CM × M g | N m |
+//! | f_B | force on the base: dynamic −Σ g_k (i q̈_k − q̇_k²) e_k, static M g + F | N |
+//! | n_B | moment on the base about B: dynamic −d/dt(D q̇), static r_CM × M g + p × F, end effector p | N m |
 //!
 //! # Source
 //! (4) with the sign of gravity corrected: with g the acceleration of (1), the torque is H q̈ + V − γᵀ g.
@@ -23,7 +23,7 @@ macro_rules! by_drives {
     ($n:expr, $f:ident($($arg:expr),*)) => {
         $crate::by_drives!(@ $n, $f, [], ($($arg),*))
     };
-    // The same, with a second constant: whether the base moves.
+    // The same with a second constant, which says whether the base moves.
     ($n:expr, $moves:expr, $f:ident($($arg:expr),*)) => {
         match $moves {
             false => $crate::by_drives!(@ $n, $f, [false], ($($arg),*)),
@@ -54,7 +54,7 @@ pub struct Surroundings {
     pub force: Vector,
 }
 
-/// Mass matrix and velocity terms at a pose.
+/// Mass matrix H at a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MassMatrix {
     n: usize,
@@ -63,12 +63,12 @@ pub struct MassMatrix {
 }
 
 impl MassMatrix {
-    /// H_kl, kg m².
+    /// Returns H_kl, kg m².
     pub fn get(&self, k: usize, l: usize) -> f64 {
         self.h[k][l]
     }
 
-    /// Returns D_k, kg m²: Σ_l H_lk, (A3), and the part of rotors with stators on the base.
+    /// Returns D_k, kg m²: Σ_l H_lk, (A3), plus the contribution of rotors whose stators are on the base.
     pub fn momentum_row(&self, k: usize) -> f64 {
         (0..self.n).map(|l| self.h[l][k]).sum::<f64>() + self.taken_up[k]
     }
@@ -90,8 +90,8 @@ impl MassMatrix {
     }
 }
 
-// The functions below work on arrays of the machine's own size: padding to MAX_DRIVES at every step would cost more
-// than the arithmetic.
+// The functions below work on arrays with one element for each drive: padding them to MAX_DRIVES at every step would
+// cost more than the arithmetic.
 pub(crate) type Square<const N: usize> = [[f64; N]; N];
 
 /// Returns the first N elements of a padded array.
@@ -207,7 +207,8 @@ fn hold<const N: usize>(inertia: &Inertia, e: &[Vector; N], around: &Surrounding
     })
 }
 
-/// Returns the generalised torques for given accelerations, (4), N m: those of the motors if all sit on the base.
+/// Returns the generalised torques for given accelerations, (4), N m. If all motors sit on the base, these are the
+/// motor torques.
 #[inline]
 pub fn inverse(inertia: &Inertia, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> PerDrive {
     by_drives!(inertia.drives, inverse_of(inertia, e, qd, qdd, around))
@@ -225,7 +226,7 @@ fn inverse_of<const N: usize>(
         .into()
 }
 
-/// Returns the torques of [`inverse`] at the machine's own size.
+/// Returns the torques of [`inverse`], N m, for a number of drives N known at compile time.
 #[inline(always)]
 pub fn torques<const N: usize>(
     inertia: &Inertia,
@@ -300,7 +301,8 @@ pub fn angular_rate<const N: usize>(inertia: &Inertia, inertial: &[f64; N], v: &
     (0..N).map(|k| inertial[k] + v[k] + inertia.stator_reaction[k] * qdd[k]).sum()
 }
 
-/// Returns what the base feels, force in N and moment about B in N m, at one state of motion.
+/// Returns the base wrench at one state of motion, force in N and moment about B in N m. `momentum_rate` is d/dt (D
+/// q̇), N m.
 #[inline(always)]
 pub fn wrench_with<const N: usize>(
     inertia: &Inertia,
@@ -354,8 +356,8 @@ fn inverse_with_wrench_of<const N: usize>(
     (PerDrive::from(std::array::from_fn::<_, N, _>(|k| inertial[k] + v[k] + holding[k])), wrench)
 }
 
-/// Returns Σ_j m_j |r̈_cj|, N: the sum of the magnitudes of the links' inertial forces, which do not cancel in it.
-/// `moments` holds m_j a_jk, kg m, of all drives of a link side by side.
+/// Returns Σ_j m_j |r̈_cj|, N: the sum of the magnitudes of the links' inertial forces. In such a sum, forces cannot
+/// cancel. `moments` holds m_j a_jk, kg m, link by link, with one element for each drive.
 #[inline]
 pub fn inertial_pull(moments: &[Vector], e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive) -> f64 {
     by_drives!(qd.len(), inertial_pull_of(moments, e, qd, qdd))

@@ -1,4 +1,4 @@
-//! Kinematics of the end effector: its position, (14), its Jacobian, and inverses of two-drive sub-chains.
+//! Kinematics of the end effector: its position, (14), its Jacobian, and drive rates for a given velocity.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -33,8 +33,8 @@ pub fn acceleration(tip: &Chain, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive)
     (0..qd.len()).map(|k| Vector::new(-qd[k] * qd[k], qdd[k]) * e[k] * tip[k]).sum()
 }
 
-/// Returns the minimum-norm solution q̇ = J⁺ v = Jᵀ (J Jᵀ)⁻¹ v, rad/s, and its exact time derivative for v̇, with J̇ in
-/// both factors. `None` where J is rank deficient.
+/// Returns the minimum-norm solution q̇ = J⁺ v = Jᵀ (J Jᵀ)⁻¹ v, rad/s, and its exact time derivative q̈, rad/s², for
+/// v̇. `None` where J is rank deficient.
 pub fn minimum_norm(tip: &Chain, e: &UnitVectors, n: usize, v: Vector, vd: Vector) -> Option<(PerDrive, PerDrive)> {
     let j = |k: usize| column(tip, e, k);
     let gram = |a: &dyn Fn(usize) -> Vector, b: &dyn Fn(usize) -> Vector| {
@@ -61,9 +61,9 @@ pub fn minimum_norm(tip: &Chain, e: &UnitVectors, n: usize, v: Vector, vd: Vecto
     Some((qd, qdd))
 }
 
-/// Returns the minimum-norm rates, rad/s, that give the end effector the velocity v, m/s, at constant Σ λ_k q_k, and
-/// their exact time derivative for v̇: q̇ = Aᵀ (A Aᵀ)⁻¹ (v, 0) with A = [J; λ]. `None` where A is rank deficient, as it
-/// always is for fewer than three drives.
+/// Returns the minimum-norm rates, rad/s, that give the end effector the velocity v, m/s, at constant Σ λ_k q_k: q̇ =
+/// Aᵀ (A Aᵀ)⁻¹ (v, 0) with A = [J; λ]. Also returns their exact time derivative for v̇. `None` where A is rank
+/// deficient, as it always is for fewer than three drives.
 pub fn minimum_norm_held(
     tip: &Chain,
     lambda: &PerDrive,
@@ -75,8 +75,9 @@ pub fn minimum_norm_held(
 }
 
 /// Returns the minimum-norm rates, rad/s, that give the end effector the velocity v, m/s, and satisfy `extra` · q̇ =
-/// `rate`, a constant; and their exact time derivative for v̇. The row `extra` joins the Jacobian; `extra_rate` returns
-/// its time derivative for given rates. `None` where the matrix is rank deficient.
+/// `rate`, a constant. Also returns their exact time derivative for v̇. The row `extra` is appended to the Jacobian;
+/// `extra_rate` returns the time derivative of this row at given rates. `None` where the extended Jacobian is rank
+/// deficient.
 pub fn minimum_norm_with(
     tip: &Chain,
     extra: &PerDrive,
@@ -90,7 +91,7 @@ pub fn minimum_norm_with(
     if n < 3 {
         return None;
     }
-    // The extra row is scaled to the reach, so that all rows are of one size.
+    // The extra row is scaled to the reach, so that all rows have similar magnitudes.
     let reach = tip.iter().map(|c| c.abs()).sum::<f64>();
     let scale = reach / extra.max_abs();
     let row = |j: Vector, k: usize| Vector3::new(j.re, j.im, scale * extra[k]);
@@ -99,10 +100,10 @@ pub fn minimum_norm_with(
     let inverse = gram.try_inverse().filter(|_| gram.determinant() > 1e-14 * gram.trace().powi(3))?;
     let y = inverse * Vector3::new(v.re, v.im, scale * rate);
     let qd = PerDrive::from_fn(n, |k| a(k).dot(&y));
-    let changed = extra_rate(&qd);
+    let row_rate = extra_rate(&qd);
     let ad = |k: usize| {
         let jd = I * column(tip, e, k) * qd[k];
-        Vector3::new(jd.re, jd.im, scale * changed[k])
+        Vector3::new(jd.re, jd.im, scale * row_rate[k])
     };
     let change = (0..n).fold(Matrix3::zeros(), |m, k| m + ad(k) * a(k).transpose());
     let yd = inverse * (Vector3::new(vd.re, vd.im, 0.0) - (change + change.transpose()) * y);

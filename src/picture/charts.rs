@@ -26,19 +26,20 @@ pub struct Chart {
     pub unit: &'static str,
     /// Paths of signals, or of groups of signals.
     pub signals: &'static [&'static str],
-    /// Smallest range; half of it if the range is centred on zero. In the unit of the values given to [`Chart::range`].
+    /// Smallest length of the range, or half of it if the range is centred on zero, in the unit of the values given to
+    /// [`Chart::range`].
     pub min_range: f64,
     /// Whether the range is symmetric about zero.
     pub centred: bool,
     /// Factor from SI values to the unit of the window.
     pub scale: f64,
-    /// Where the chart is shown.
+    /// Place of the chart.
     pub place: ChartPlace,
     /// Whether a recording overlays all its cases in this chart.
     pub is_overlaid: bool,
 }
 
-/// Where a chart is shown.
+/// Place of a chart in the window and in recordings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChartPlace {
     /// Beside the scene, in the window and in recordings.
@@ -70,7 +71,7 @@ const MOMENT: Chart = Chart {
     is_overlaid: true,
     ..EMPTY_CHART
 };
-/// Moment that the machine transmits, and the moment that reaches the base after its reaction wheel.
+/// The moment that the machine transmits, and the moment on the base after compensation by its reaction wheel.
 const MOMENT_PAST_WHEEL: Chart = Chart { signals: &["moment/total", "moment/felt"], ..MOMENT };
 const FORCE: Chart =
     Chart { title: "Base force", unit: "N, from motion", signals: &["force/dynamic"], min_range: 0.5, ..EMPTY_CHART };
@@ -114,12 +115,12 @@ const CHANGE_POINT: Chart =
 /// Returns the charts that apply to a scenario, in order of display.
 pub fn charts(scenario: &Scenario) -> Vec<Chart> {
     let wheel = scenario.base.wheel.is_some();
-    let rubs = scenario.plant.friction != Default::default();
+    let has_friction = scenario.plant.friction != Default::default();
     let mut list = vec![TORQUE, if wheel { MOMENT_PAST_WHEEL } else { MOMENT }, FORCE];
     list.extend(Some(BASE).filter(|_| scenario.base.moves()));
-    list.extend(Some(FRICTION).filter(|_| rubs));
+    list.extend(Some(FRICTION).filter(|_| has_friction));
     list.extend([PINS, ANGLES]);
-    // There is no pose constant b if no drive turns the base, or if λ depends strongly on the pose.
+    // There is no pose constant b if no drive exerts a moment on the base, or if λ depends strongly on the pose.
     list.extend(Some(POSE).filter(|_| constant_inertia(&scenario.machine).is_ok()));
     list.extend([EACH_PIN, TILT, TRANSMISSION, CHANGE_POINT]);
     list
@@ -145,14 +146,14 @@ impl Chart {
         match (self.scale == 1.0, self.unit) {
             (_, "1") => String::new(),
             (true, unit) => unit.into(),
-            // Every scaled chart is in thousandths.
+            // The units of every scaled chart have the prefix milli.
             (false, unit) => unit.split(", ").map(|u| u.strip_prefix('m').unwrap_or(u)).collect::<Vec<_>>().join(", "),
         }
     }
 
-    /// Returns bounds of the axis, rounded outwards about the values from `low` to `high`. Rounded bounds seldom change
-    /// as values arrive. The range is never smaller than `min_range`, so that rounding noise does not look like a
-    /// signal.
+    /// Returns bounds of the axis that contain the values from `low` to `high`, rounded outwards. Rounded bounds seldom
+    /// change as values arrive. The range is never smaller than `min_range`, so that rounding noise does not look like
+    /// a signal.
     pub fn range(&self, low: f64, high: f64) -> [f64; 2] {
         if self.centred {
             let most = round_up(low.abs().max(high.abs()).max(self.min_range));

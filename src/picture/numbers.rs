@@ -1,4 +1,4 @@
-//! Formatting of numbers: round values, signs, and significant digits only.
+//! Formatting of numbers: round values, signs and significant digits.
 
 /// Rounds up to 1, 2 or 5 times a power of ten.
 pub fn round_up(x: f64) -> f64 {
@@ -28,7 +28,7 @@ pub fn round_number(x: f64) -> String {
     format!("{x:.6}").trim_end_matches('0').trim_end_matches('.').into()
 }
 
-/// Formats an angle, rad, in degrees with one decimal, or without if that is zero.
+/// Formats an angle, rad, in degrees with one decimal; a zero decimal is omitted.
 pub fn degrees(angle: f64) -> String {
     let text = signed(angle.to_degrees(), 1);
     text.strip_suffix(".0").map_or_else(|| text.clone(), Into::into)

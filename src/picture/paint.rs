@@ -93,7 +93,7 @@ impl Renderers {
         Self { device: device.clone(), format, all: Vec::new() }
     }
 
-    /// Draws the requested scene unless it was drawn last. Renderers are created on first use.
+    /// Draws the requested scene, unless it is the last one that was drawn. Renderers are created on first use.
     pub(super) fn prepare(&mut self, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder, request: &PaintedScene) {
         while self.all.len() <= request.number {
             self.all.push(Place::default());
@@ -140,7 +140,7 @@ pub(super) struct PaintedScene {
     quality: Quality,
 }
 
-/// Switches to draft quality while a scene changes, and fine quality once it rests; for software rendering.
+/// Makes all scenes appear in draft quality while they change; for software rendering.
 pub fn draw_drafts(ctx: &egui::Context) {
     ctx.data_mut(|data| data.insert_temp(drafts_id(), true));
 }
@@ -152,7 +152,7 @@ fn drafts_id() -> egui::Id {
 /// Time without change after which a scene is drawn in fine quality, s.
 const REST_TIME_S: f64 = 0.12;
 
-/// Scene and view of the previous pass, and the time, s, since when they have not changed.
+/// Scene and view of the previous pass, and the time, s, of their last change.
 #[derive(Clone)]
 struct Unchanged {
     scene: Arc<Scene>,
@@ -160,7 +160,8 @@ struct Unchanged {
     since: f64,
 }
 
-/// Returns the scene to draw and its quality. The scene is that of the previous pass if this one looks the same.
+/// Returns the scene to draw and its quality. If the scene looks the same as in the previous pass, the previous scene
+/// is returned.
 fn settle(ctx: &egui::Context, number: usize, scene: &Arc<Scene>, view: &View) -> (Arc<Scene>, Quality) {
     let id = egui::Id::unique("what a scene looked like").with(number);
     let (now, before) = (ctx.input(|i| i.time), ctx.data(|data| data.get_temp::<Unchanged>(id)));

@@ -1,5 +1,5 @@
-//! The checksum of a file of samples, over all its bytes. It is part of the text that identifies the study; while it is
-//! computed, zeros take its place.
+//! The checksum of a file of samples, over all its bytes. It is part of the text that identifies the study. While it is
+//! computed, zeros replace its digits.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -25,7 +25,7 @@ pub enum ChecksumPlace {
     Tail,
 }
 
-/// The checksum is within this number of bytes of that end.
+/// The checksum is within this number of bytes of its end of the file.
 const SEARCHED_BYTES: u64 = 1 << 16;
 
 /// Finds the checksum among the bytes at an end, and returns the offset of its digits and its value. Names of columns
@@ -34,7 +34,7 @@ fn find(bytes: &[u8], end: ChecksumPlace) -> Option<(u64, u64)> {
     let before = CHECKSUM_PREFIX.as_bytes();
     let digits = |at: usize| {
         let text = bytes.get(at..at + CHECKSUM_BLANK.len())?;
-        // Only lower case digits count, so that each value has one spelling and every changed bit is noticed.
+        // Only lower-case digits are accepted, so that each value has one spelling and every changed bit is noticed.
         let spelled = text.iter().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'));
         u64::from_str_radix(std::str::from_utf8(text).ok().filter(|_| spelled)?, 16).ok()
     };
@@ -46,7 +46,7 @@ fn find(bytes: &[u8], end: ChecksumPlace) -> Option<(u64, u64)> {
     if end == ChecksumPlace::Head { windows.find_map(found) } else { windows.rev().find_map(found) }
 }
 
-/// A file that is being written and receives its checksum at the end.
+/// A file that is being written; its checksum is filled in when it is finished.
 pub struct CheckedFile {
     out: NewFile,
     sum: Checksum,
@@ -55,7 +55,7 @@ pub struct CheckedFile {
 }
 
 impl CheckedFile {
-    /// Begins with a file to which nothing is written yet.
+    /// Starts with a file to which nothing has been written.
     pub fn new(out: NewFile) -> Self {
         Self { out, sum: Checksum::new(), head: Vec::new() }
     }
@@ -109,13 +109,13 @@ pub fn holds(file: &mut File, end: ChecksumPlace) -> io::Result<Option<bool>> {
     file.seek(SeekFrom::Start(from))?;
     let mut near = Vec::new();
     file.take(SEARCHED_BYTES).read_to_end(&mut near)?;
-    let Some((place, said)) = find(&near, end) else { return Ok(None) };
+    let Some((place, stored)) = find(&near, end) else { return Ok(None) };
     let place = from + place;
     file.seek(SeekFrom::Start(0))?;
     let (mut sum, mut block, mut at) = (Checksum::new(), vec![0; 1 << 18], 0_u64);
     loop {
         let count = match file.read(&mut block) {
-            Ok(0) => return Ok(Some(sum.total() == said)),
+            Ok(0) => return Ok(Some(sum.total() == stored)),
             Ok(count) => count,
             Err(e) if e.kind() == io::ErrorKind::Interrupted => continue,
             Err(e) => return Err(e),

@@ -10,7 +10,7 @@ use crate::WriteError;
 /// The reason why a shard cannot be read or written, or why shards do not form one study.
 #[derive(Debug, Error)]
 pub enum ShardError {
-    /// A file is wrong; the text says what was expected.
+    /// A file has unexpected content; the text says what was expected.
     #[error("{0}")]
     Wrong(String),
     /// A file cannot be written.
@@ -18,7 +18,7 @@ pub enum ShardError {
     Write(#[from] WriteError),
 }
 
-/// Makes the error of a file.
+/// Makes the error for a file; its message begins with the path.
 pub(super) fn shard_error(file: &Path, why: impl Display) -> ShardError {
     ShardError::Wrong(format!("{}: {why}", file.display()))
 }

@@ -1,6 +1,6 @@
-//! The two 64-bit hashes in files of samples. They guard against accidents, not against attacks, so they are short and
-//! fast; their values must never change, because files hold them. Identifiers of recordings, which must never coincide,
-//! are truncated SHA-256 hashes instead.
+//! The two 64-bit hashes in files of samples. They detect accidental changes, not attacks, so they are short and fast.
+//! The algorithms must never change, because files store their values. Identifiers of recordings, which must never
+//! coincide, are truncated SHA-256 hashes instead.
 
 /// The offset basis of FNV-1a, 64 bits.
 const OFFSET_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
@@ -20,7 +20,7 @@ pub struct Checksum {
 }
 
 impl Checksum {
-    /// Begins with no bytes.
+    /// Starts the checksum of an empty sequence of bytes.
     pub fn new() -> Self {
         Self { sum: OFFSET_BASIS, rest: Vec::with_capacity(8) }
     }

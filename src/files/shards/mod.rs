@@ -1,5 +1,5 @@
-//! Tolerance studies in files, CSV or Parquet: one row a machine, each file a shard of the machines of one study, and
-//! the merging of shards. A header identifies the study, and a checksum covers every byte.
+//! Tolerance studies in files, CSV or Parquet, with one row for each machine. Each file is a shard of the machines of
+//! one study; shards can be merged. A header identifies the study, and a checksum covers every byte.
 
 mod checksum;
 mod error;

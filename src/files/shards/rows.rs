@@ -1,4 +1,4 @@
-//! Files of samples, CSV or Parquet: one row a machine, and a header that identifies the study.
+//! Files of samples, CSV or Parquet, with one row for each machine and a header that identifies the study.
 
 use std::fmt;
 use std::fs::File;
@@ -25,7 +25,7 @@ use crate::{NewFile, WriteError};
 use stillbase_session::scenario::{Scenario, Tolerance};
 use stillbase_study::tolerance::SampleOutcome;
 
-/// Identifier of a study. In a CSV file its text is the title of the column of samples.
+/// Identifier of a study. In a CSV file, its text is the header of the column of sample numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StudyId {
     /// Number of machines of the whole study.
@@ -84,18 +84,18 @@ impl StudyId {
 pub struct ShardHeader {
     /// The study to which the file belongs.
     pub study: StudyId,
-    /// Names of the columns after that of the sample, with units.
+    /// Names of all columns except that of the sample numbers, with units.
     pub columns: Vec<String>,
 }
 
 impl ShardHeader {
-    /// Makes the header of machines that vary in the named numbers, with units.
+    /// Makes the header for machines in which the numbers named in `numbers`, with units, vary.
     pub fn new(study: StudyId, numbers: impl IntoIterator<Item = String>) -> Self {
         Self { study, columns: numbers.into_iter().chain(OUTCOME_COLUMNS.map(str::to_owned)).collect() }
     }
 }
 
-/// Returns the outcome of a machine, the last numbers of its row.
+/// Returns the outcome of a machine from the last numbers of its row.
 pub fn outcome_of(row: &[f64]) -> SampleOutcome {
     let last = row.last_chunk().copied().unwrap_or([f64::NAN; OUTCOME_COUNT]);
     let [peak_moment, peak_force, rms_moment, rms_force] = last;
@@ -105,10 +105,10 @@ pub fn outcome_of(row: &[f64]) -> SampleOutcome {
 /// Number of columns of the outcome of a machine.
 pub const OUTCOME_COUNT: usize = 4;
 
-/// Names of the last columns, the outcome of each machine.
+/// Names of the last columns, which hold the outcome of each machine.
 pub const OUTCOME_COLUMNS: [&str; OUTCOME_COUNT] = ["peak moment N m", "peak force N", "rms moment N m", "rms force N"];
 
-/// The kinds of file.
+/// The file formats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
     Csv,
@@ -147,7 +147,7 @@ const STUDY_KEY: &str = "stillbase.study";
 
 /// Writes rows.
 pub enum Writer {
-    /// Writes one line a row.
+    /// Writes one line for each row.
     Csv(Box<csv::Writer<CheckedFile>>),
     /// Writes columns, one row group at a time.
     Parquet(Box<Groups>),
@@ -162,7 +162,7 @@ pub struct Groups {
 }
 
 impl Writer {
-    /// Begins a file.
+    /// Creates a file with its header.
     ///
     /// # Errors
     /// If it cannot be created.
@@ -374,7 +374,7 @@ impl StudyPart {
         Ok(Self { file: file.into(), head, reader })
     }
 
-    /// Calls `see` with each row, its sample and its finite numbers, until `see` breaks.
+    /// Calls `see` with the sample number and the finite numbers of each row, until `see` returns a break.
     ///
     /// # Errors
     /// If a row cannot be read or is not plausible, or if `see` fails.
@@ -445,14 +445,14 @@ fn plain_file(file: &Path) -> Result<(Kind, File), ShardError> {
     Ok((kind, File::open(file).map_err(unreadable)?))
 }
 
-/// Returns the next line with its end, empty after the last; `None` if it cannot be read or is too long.
+/// Returns the next line with its line ending, empty after the last line; `None` if it cannot be read or is too long.
 fn line(reader: &mut BufReader<File>) -> Option<Vec<u8>> {
     let mut line = Vec::new();
     reader.by_ref().take(MAX_LINE_BYTES).read_until(b'\n', &mut line).ok()?;
     ((line.len() as u64) < MAX_LINE_BYTES).then_some(line)
 }
 
-/// Opens a Parquet file after checks that its footer and its row groups are plausible.
+/// Opens a Parquet file, and checks that its footer and its row groups are plausible.
 fn parquet_reader(file: &Path, mut opened: File) -> Result<SerializedFileReader<File>, ShardError> {
     let mut contents = || {
         let length = opened.metadata().ok()?.len();
@@ -516,22 +516,22 @@ fn guarded<T>(file: &Path, read: impl FnOnce() -> Result<T, ShardError>) -> Resu
     done.unwrap_or_else(|_| Err(foreign(file)))
 }
 
-/// Returns the number of rows of a row group, if it is one that this program could have written.
+/// Returns the number of rows of a row group; `None` if this program could not have written the group.
 fn rows_of(group: &RowGroupMetaData) -> Option<usize> {
     usize::try_from(group.num_rows()).ok().filter(|rows| (1..=GROUP_ROWS).contains(rows))
 }
 
-/// Checks that a row could be that of a machine.
+/// Checks that a row is possible for a machine of the study.
 fn plausible(study: &StudyId, names: &[String], sample: u64, row: &[f64]) -> Result<(), String> {
     if sample >= study.samples {
         return Err(format!("sample {sample} of a study of {}: want numbers below it", study.samples));
     }
-    let outcomes = row.len().saturating_sub(OUTCOME_COUNT);
-    let wrong = |(i, x): (usize, &f64)| !x.is_finite() || (i >= outcomes && *x < 0.0);
+    let first_outcome = row.len().saturating_sub(OUTCOME_COUNT);
+    let wrong = |(i, x): (usize, &f64)| !x.is_finite() || (i >= first_outcome && *x < 0.0);
     match row.iter().enumerate().position(wrong) {
         None => Ok(()),
         Some(i) => {
-            let want = if i >= outcomes { "a finite number, 0 or more" } else { "a finite number" };
+            let want = if i >= first_outcome { "a finite number, 0 or more" } else { "a finite number" };
             Err(format!("sample {sample}: {} is {}: want {want}", names[i], row[i]))
         }
     }

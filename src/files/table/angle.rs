@@ -1,10 +1,10 @@
-//! Columns of continuous motions: angles are unwrapped, and jumps are refused.
+//! Columns of continuous motions: angles are unwrapped, and jumps are errors.
 
 use std::f64::consts::{PI, TAU};
 
 use stillbase_settings::number::ShortNumber;
 
-/// Largest magnitude of an angle without unit, rad: a larger one is probably in degrees and is refused.
+/// Largest magnitude of an angle without unit, rad: a larger one is probably in degrees and is rejected.
 const MAX_PLAIN_ANGLE_RAD: f64 = 2.0 * TAU;
 /// Largest step of an angle from one sample to the next, rad.
 const MAX_STEP_RAD: f64 = 0.5 * PI;

@@ -59,7 +59,7 @@ pub(super) fn no_column(name: &str, head: &csv::StringRecord, want: &str) -> Str
     format!("no column {name} among {}: want {want}", shortened(&have.join(", "), 300))
 }
 
-/// Splits a lower case `q1 (deg)` or `q1 [deg]` into name and unit; `None` without brackets.
+/// Splits a lower-case header cell such as `q1 (deg)` or `q1 [deg]` into name and unit; `None` without brackets.
 pub(super) fn unit_in_brackets(cell: &str) -> Option<(String, Option<String>)> {
     let bracketed = |open: char, close: char| {
         let (name, rest) = cell.split_once(open)?;
@@ -69,7 +69,7 @@ pub(super) fn unit_in_brackets(cell: &str) -> Option<(String, Option<String>)> {
     Some((name, Some(unit).filter(|unit| !unit.is_empty())))
 }
 
-/// Returns the header of the columns of a machine's drive angles.
+/// Returns the header cells of a machine's drive angles, joined by commas.
 pub(super) fn angles(machine: &Machine) -> String {
     (1..=machine.drives()).map(|k| format!("q{k}")).collect::<Vec<_>>().join(",")
 }

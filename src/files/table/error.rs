@@ -11,7 +11,7 @@ pub struct TableError {
     pub file: String,
     /// Line, counted from 1; `None` if the whole text is wrong.
     pub line: Option<u64>,
-    /// The error, with its column if it has one, and what was expected.
+    /// The reason, with the column if there is one, and with the expected content.
     pub why: Advice,
 }
 

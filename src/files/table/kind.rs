@@ -25,7 +25,7 @@ impl TableData {
     /// Reads a file that is either a motion or a measurement of a machine: see [`TableData::of`].
     ///
     /// # Errors
-    /// If it cannot be read, or is neither.
+    /// If it cannot be read, or is neither a motion nor a measurement.
     pub fn open(file: &Path, machine: &Machine, gaps: bool) -> Result<Self, TableError> {
         let name = file.display().to_string();
         let text = read(file).map_err(|e| {
@@ -35,12 +35,13 @@ impl TableData {
         Self::of(&text, &name, machine, gaps)
     }
 
-    /// Reads text that is either. With a column of a force or a moment on the base it is a measurement, which
-    /// [`motions`](super::motions) reads, otherwise a motion, which [`samples`](super::samples()) reads. `file` is the
-    /// name used in errors; `gaps` allows gaps in the time of a motion.
+    /// Reads text that is a motion or a measurement. If it has a column of a force or a moment on the base, it is a
+    /// measurement, which [`motions`](super::motions) reads. Otherwise it is a motion, which
+    /// [`samples`](super::samples()) reads. `file` is the name used in errors; `gaps` allows gaps in the time of a
+    /// motion.
     ///
     /// # Errors
-    /// If the text is neither; the error has its place and the expected columns of both.
+    /// If the text is neither; the error has its place and the expected columns of both kinds.
     pub fn of(text: &str, file: &str, machine: &Machine, gaps: bool) -> Result<Self, TableError> {
         let want = head_wanted(machine);
         match feels(TableReader::new(text, file, &want)?.head()) {

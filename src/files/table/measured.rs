@@ -40,7 +40,7 @@ const LENGTH: UnitNames = &[("m", 1.0)];
 const FORCE_X: &[&str] = &["fx", "f_x", "force/x", "force/dynamic_x"];
 const FORCE_Y: &[&str] = &["fy", "f_y", "force/y", "force/dynamic_y"];
 const MOMENT_Z: &[&str] = &["nz", "n_z", "mz", "m_z", "moment/total"];
-/// Largest motion of a base that counts as fixed, m or rad.
+/// Largest motion of a base that is treated as fixed, m or rad.
 const MAX_BASE_MOTION: f64 = 1e-9;
 
 /// The columns of a measurement.
@@ -51,7 +51,7 @@ struct Columns {
     qdd: Vec<TableColumn>,
     force: [TableColumn; 2],
     moment: TableColumn,
-    /// Position and angle of the base, as far as the file has them.
+    /// Columns for position and angle of the base; only those that the file has.
     base: Vec<TableColumn>,
     /// Index of the column with the name of the motion.
     motion: Option<usize>,
@@ -59,10 +59,10 @@ struct Columns {
 
 /// Reads motions from CSV with a header: `t,q1,q2 …,fx,fy,nz`, in any order, optionally with units. Columns of rates
 /// `qd1 …` and accelerations `qdd1 …` are read if present. A new motion begins where the column `motion` changes, after
-/// a gap in time, and where time begins again. `file` is the name used in errors.
+/// a gap in time, and where time restarts. `file` is the name used in errors.
 ///
 /// # Errors
-/// If the text is not such a table; the error has its place and what was expected.
+/// If the text is not such a table; the error has its place and the expected content.
 pub fn motions(text: &str, file: &str, machine: &Machine) -> Result<Vec<MeasuredMotion>, TableError> {
     motions_or(text, file, machine, &head_wanted(machine))
 }
@@ -138,7 +138,7 @@ impl Split {
     /// before.
     ///
     /// # Errors
-    /// If the time does not increase otherwise.
+    /// If the time does not increase within a motion.
     fn take(&mut self, row: Vec<f64>, line: u64, fresh: bool) -> Result<(), String> {
         let now = self.named.last().filter(|_| !fresh);
         let (first, last) = (now.and_then(|part| part.rows.first()), now.and_then(|part| part.rows.last()));
@@ -157,16 +157,16 @@ impl Split {
         Ok(())
     }
 
-    /// Returns the motions, also split at gaps in time.
+    /// Returns the motions, split further at time steps that are long compared with the median time step.
     fn parts(self) -> Vec<Part> {
         let mut parts = Vec::new();
         for part in self.named {
             let mut steps: Vec<f64> = part.rows.windows(2).map(|w| w[1][0] - w[0][0]).collect();
             steps.sort_by(f64::total_cmp);
-            let usual = steps.get(steps.len() / 2).copied().unwrap_or(f64::INFINITY);
+            let median = steps.get(steps.len() / 2).copied().unwrap_or(f64::INFINITY);
             let mut own = Part::default();
             for (row, line) in part.rows.into_iter().zip(part.lines) {
-                if own.rows.last().is_some_and(|last| row[0] - last[0] > GAP_FACTOR * usual) {
+                if own.rows.last().is_some_and(|last| row[0] - last[0] > GAP_FACTOR * median) {
                     parts.push(std::mem::take(&mut own));
                 }
                 own.rows.push(row);
@@ -232,7 +232,8 @@ impl Columns {
         [&self.time].into_iter().chain(angles).chain(&self.force).chain([&self.moment]).chain(&self.base).collect()
     }
 
-    /// Returns the name of a column in which the base moves, and the line of the first motion.
+    /// Returns the name of a column in which the base moves, and the line of the first row that differs from the
+    /// initial row.
     fn moving(&self, parts: &[Part]) -> Option<(String, u64)> {
         let from = self.all().len() - self.base.len();
         let rows = || parts.iter().flat_map(|part| part.rows.iter().zip(&part.lines));
@@ -262,7 +263,7 @@ impl Columns {
 }
 
 /// Splits a header cell into name and unit: `fx (N)`, `fx [N]`, `force/dynamic_x N`, `q1_deg` or a name alone. Without
-/// brackets only one of `units` counts as a unit.
+/// brackets, only `units` are recognised as units.
 fn name_and_unit(cell: &str, units: UnitNames) -> (String, Option<String>) {
     let cell = cell.trim().to_lowercase();
     if let Some(both) = unit_in_brackets(&cell) {
@@ -272,6 +273,6 @@ fn name_and_unit(cell: &str, units: UnitNames) -> (String, Option<String>) {
         let name = cell.strip_suffix(unit)?.strip_suffix([' ', '_', '/'])?;
         Some((name.trim().to_owned(), (*unit).to_owned()))
     });
-    // The longest unit counts, so that `n m` is not read as `m`.
+    // The longest matching unit is taken, so that `n m` is not read as `m`.
     ends.max_by_key(|(_, unit)| unit.len()).map_or((cell.clone(), None), |(name, unit)| (name, Some(unit)))
 }

@@ -1,11 +1,11 @@
 //! Reads motions from CSV tables of other programs. Columns are found by name and unit, and errors name file, line and
 //! column.
 //!
-//! | what | where |
+//! | content | reader |
 //! |---|---|
 //! | a motion given by samples of the drive angles or of the end effector | [`samples()`] |
 //! | measured motions of a built machine, with forces and moments on its base | [`motions`] |
-//! | either, distinguished by the columns | [`TableData`] |
+//! | a motion or a measurement, distinguished by the columns | [`TableData`] |
 
 mod angle;
 mod column;

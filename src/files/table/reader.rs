@@ -25,11 +25,11 @@ pub(super) struct TableRow<'a> {
 }
 
 impl<'a> TableReader<'a> {
-    /// Reads the header; errors describe the expected one by `want`. The delimiter is the semicolon or the tab if the
-    /// first line that is not a comment has one, otherwise the comma.
+    /// Reads the header; `want` describes the expected header in errors. The delimiter is the semicolon or the tab if
+    /// the first line that is not a comment has one, otherwise the comma.
     ///
     /// # Errors
-    /// If there is no header. If a row has too many columns, which is checked before memory is taken.
+    /// If there is no header, or if a row has too many columns. Columns are counted before memory is allocated.
     pub fn new(text: &'a str, file: &'a str, want: &str) -> Result<Self, TableError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let first = text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#')).unwrap_or_default();
@@ -79,7 +79,7 @@ impl<'a> TableReader<'a> {
 }
 
 impl TableRow<'_> {
-    /// Returns the text of a column.
+    /// Returns the text in a column; `None` if the row is too short.
     pub fn cell(&self, place: usize) -> Option<&str> {
         self.cells.get(place)
     }
@@ -116,7 +116,7 @@ fn line_of(record: &csv::StringRecord) -> u64 {
 /// State of the scanner within a cell.
 #[derive(Clone, Copy, PartialEq)]
 enum Cell {
-    /// Before its first byte; `of_row`: whether the cell begins a row.
+    /// Before its first byte; `of_row` says whether the cell begins a row.
     Fresh {
         of_row: bool,
     },

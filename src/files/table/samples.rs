@@ -16,7 +16,7 @@ const LENGTH: UnitNames = &[("m", 1.0), ("cm", 1e-2), ("mm", 1e-3)];
 /// Samples that were read.
 #[derive(Debug)]
 pub struct SampleTable {
-    /// Whether they are drive angles or positions of the end effector.
+    /// Kind of the coordinates: drive angles or positions of the end effector.
     pub coordinates: Coordinates,
     /// Times, s, and angles, rad, or coordinates, m.
     pub samples: Samples,
@@ -31,7 +31,7 @@ pub struct SampleTable {
 /// coordinates, by default the drives. `gaps` allows gaps in time.
 ///
 /// # Errors
-/// If the text is not such a table; the error has its place and what was expected.
+/// If the text is not such a table; the error has its place and the expected content.
 pub fn samples(
     text: &str,
     file: &str,

@@ -3,8 +3,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Extends an orthonormal basis by the components of `others` orthogonal to it, the longest first, as long as these are
-/// longer than `tolerance`.
+/// Extends an orthonormal basis by the vectors `others`, made orthogonal to it, the longest first. Vectors whose
+/// orthogonal part is at most `tolerance` long are omitted.
 pub(super) fn extended(mut basis: Vec<DVector<f64>>, others: Vec<DVector<f64>>, tolerance: f64) -> Vec<DVector<f64>> {
     let mut rest = others;
     let orthogonalise = |v: &mut DVector<f64>, unit: &DVector<f64>| {
@@ -14,7 +14,7 @@ pub(super) fn extended(mut basis: Vec<DVector<f64>>, others: Vec<DVector<f64>>, 
     rest.iter_mut().for_each(|v| basis.iter().for_each(|unit| orthogonalise(v, unit)));
     while let Some(longest) = (0..rest.len()).max_by(|a, b| rest[*a].norm().total_cmp(&rest[*b].norm())) {
         let mut next = rest.swap_remove(longest);
-        // Orthogonalised once more against rounding errors.
+        // A second orthogonalisation removes rounding errors.
         basis.iter().for_each(|unit| orthogonalise(&mut next, unit));
         let size = next.norm();
         if size <= tolerance {

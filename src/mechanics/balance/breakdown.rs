@@ -4,10 +4,10 @@ use super::condition::Condition;
 use crate::machine::{Inertia, Machine};
 use crate::planar::{MAX_DRIVES, Vector};
 
-/// A part of a machine that has a mass of its own.
+/// A body with mass: a link, a counterweight or the payload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Body {
-    /// A link without the counterweights that it carries, counted from 0.
+    /// A link, counted from 0, without the counterweights on it.
     Link(usize),
     /// A counterweight of the machine, counted from 0.
     Counterweight(usize),
@@ -20,7 +20,7 @@ pub enum Body {
 pub struct CarriedBody {
     /// The body.
     pub body: Body,
-    /// The link that it is, or that carries it.
+    /// The link itself, or the link that carries the body.
     pub link: usize,
 }
 
@@ -29,28 +29,29 @@ pub struct CarriedBody {
 pub struct BalanceTerm {
     /// The condition.
     pub condition: Condition,
-    /// Its residual, computed from [`Inertia`]: kg m for (7), kg m² for (8).
+    /// Residual of the condition, computed from [`Inertia`]: kg m for (7), kg m² for (8).
     pub residual: Vector,
-    /// Contribution of each source; their sum is the residual.
+    /// Contributions of the bodies in [`Breakdown::sources`], kg m or kg m²; their sum is the residual.
     pub parts: Vec<Vector>,
-    /// Whether the residual is within the tolerance, that is, only rounding error.
+    /// Whether the residual is within the tolerance, that is, zero to rounding.
     pub balanced: bool,
 }
 
 impl BalanceTerm {
-    /// Returns the sum of the magnitudes of all contributions: the residual if all had the same direction.
+    /// Returns the sum of the magnitudes of all contributions, kg m or kg m², against which the residual can be
+    /// compared.
     pub fn gross(&self) -> f64 {
         self.parts.iter().map(|part| part.norm()).sum()
     }
 }
 
-/// Residuals of the balance conditions of a machine, and the bodies that contribute to them. Rotors do not appear: they
-/// are balanced about their axes, and the masses of the links that carry them include theirs.
+/// Residuals of the balance conditions of a machine, and the bodies that contribute to them. Rotors are omitted: they
+/// are balanced about their axes, and the mass of a link includes the rotors on it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Breakdown {
     /// The links, the counterweights, and the payload if there is one.
     pub sources: Vec<CarriedBody>,
-    /// The conditions: first (7) by drives, then (8) by pairs of drives.
+    /// The conditions: (7) of each drive, then (8) of each pair of drives.
     pub terms: Vec<BalanceTerm>,
 }
 
@@ -68,7 +69,7 @@ impl Breakdown {
         Self { terms: terms.collect(), sources: masses.iter().map(|(source, ..)| *source).collect() }
     }
 
-    /// Returns the contribution of a link to a term, with all bodies that it carries.
+    /// Returns the contribution to a term of a link together with all bodies on it, kg m or kg m².
     pub fn of_link(&self, term: &BalanceTerm, link: usize) -> Vector {
         let both = self.sources.iter().zip(&term.parts);
         both.filter(|(source, _)| source.link == link).map(|(_, part)| *part).sum()
@@ -77,7 +78,7 @@ impl Breakdown {
 
 type Mass = (CarriedBody, f64, [Vector; MAX_DRIVES]);
 
-/// Returns each body, its mass, kg, and its CM as a sum of unit vectors, m.
+/// Returns each body, its mass, kg, and the coefficients a_k, m, of its CM Σ_k a_k e(q_k).
 fn masses(machine: &Machine) -> Vec<Mass> {
     let (spec, parts) = (machine.spec(), machine.resolved_links());
     let on = |link: usize, along: f64, across: f64| {

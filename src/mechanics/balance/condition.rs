@@ -3,7 +3,7 @@
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | a_k | the mass sits at Σ_k a_k e(q_k) | complex, m |
+//! | a_k | coefficient in the position Σ_k a_k e(q_k) of the mass; e(q) is the unit vector at angle q | complex, m |
 //! | m a_k | contribution of the mass to g_k | complex, kg m |
 //! | m conj(a_k) a_l | contribution of the mass to C_kl | complex, kg m² |
 
@@ -21,7 +21,7 @@ pub enum Condition {
 }
 
 impl Condition {
-    /// Returns the conditions of n drives: first all of (7), then (8) by pairs.
+    /// Returns the conditions of n drives: (7) of each drive, then (8) of each pair.
     pub fn all(n: usize) -> impl Iterator<Item = Self> {
         (0..n).map(Self::Force).chain(Inertia::pairs(n).map(|(k, l)| Self::Coupling(k, l)))
     }
@@ -59,7 +59,7 @@ impl Condition {
         }
     }
 
-    /// Returns the tolerance of the residual: up to this it is treated as zero.
+    /// Returns the tolerance, kg m or kg m²: a residual up to this is treated as zero.
     pub fn tolerance(self, inertia: &Inertia) -> f64 {
         match self {
             Self::Force(_) => inertia.first_moment_tolerance(),
@@ -67,7 +67,7 @@ impl Condition {
         }
     }
 
-    /// Returns the contribution of a mass, kg, at Σ_k a_k e(q_k), m.
+    /// Returns the contribution, kg m or kg m², of a mass, kg, at Σ_k a_k e(q_k), m.
     pub fn of(self, mass: f64, a: &[Vector; MAX_DRIVES]) -> Vector {
         match self {
             Self::Force(k) => mass * a[k],
@@ -75,7 +75,7 @@ impl Condition {
         }
     }
 
-    /// Returns the contribution of each kilogram at the root of a link.
+    /// Returns the contribution per kg of mass at the root of a link: m for (7), m² for (8).
     pub fn by_mass(self, part: &ResolvedLink) -> f64 {
         match self {
             Self::Force(k) => part.root[k],
@@ -83,7 +83,7 @@ impl Condition {
         }
     }
 
-    /// Returns the contribution of each kg m of first moment along a link.
+    /// Returns the contribution per kg m of a link's first moment along its axis: a number for (7), m for (8).
     pub fn by_moment(self, part: &ResolvedLink) -> f64 {
         match self {
             Self::Force(k) if k == part.drive => part.sign,
@@ -93,10 +93,10 @@ impl Condition {
         }
     }
 
-    /// Returns the contribution of each kg m of first moment to the left of a link's axis, to the imaginary part.
+    /// Returns the contribution to the imaginary part per kg m of a link's first moment to the left of its axis.
     pub fn by_cross_moment(self, part: &ResolvedLink) -> f64 {
         match self {
-            // conj(a_k)
+            // C_kl depends on conj(a_k), which reverses the sign.
             Self::Coupling(k, _) if k == part.drive => -self.by_moment(part),
             _ => self.by_moment(part),
         }

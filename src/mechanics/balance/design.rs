@@ -1,4 +1,4 @@
-//! Balance as a linear problem: where the links' centres of mass must lie, (7)–(10).
+//! Balance as a linear problem for the positions of the links' centres of mass, (7)–(10).
 //!
 //! The conditions are linear in the l_cj, so for any machine they are A l_c = k with n + n(n−1)/2 rows. [`design`]
 //! finds the solution that minimises Σ (p_j l_cj)².
@@ -23,11 +23,11 @@ use stillbase_settings::number::counted;
 use stillbase_settings::word::{Choice, words};
 
 words! {
-    /// Penalties by name, for machines of nine links.
+    /// Named penalties. All but the minimum norm are for machines of nine links.
     pub enum Preset {
-        /// Their W^(−1/2).
+        /// They are W^(−1/2), with the W printed beside (10).
         Table1 = "table-1", "those of Table I", "Those that give Table I to its last digit";
-        /// They leave it by up to 0.17 m.
+        /// The resulting l_c differ from Table I by up to 0.17 m.
         AsPrinted = "as-printed", "as printed", "Those printed beside (10), W";
         MinimumNorm = "minimum-norm", "all alike", "1 for every link";
     }
@@ -37,7 +37,7 @@ words! {
 const W: [f64; 9] = [1.0, 0.2, 1.0, 1.2, 1.0, 1.0, 1.0, 1.2, 1.0];
 
 impl Preset {
-    /// Its name.
+    /// Returns its name in files and commands.
     pub fn name(self) -> &'static str {
         self.words().file
     }
@@ -45,7 +45,7 @@ impl Preset {
     /// Returns the penalty on each of `links` links.
     ///
     /// # Errors
-    /// If the preset is for nine links and there are not nine.
+    /// If the preset is for nine links and the machine has another number.
     pub fn penalty(self, links: usize) -> Result<Vec<f64>, DesignError> {
         match self {
             Self::MinimumNorm => Ok(vec![1.0; links]),
@@ -56,7 +56,7 @@ impl Preset {
     }
 }
 
-/// Why there is no balanced design.
+/// Reason why there is no balanced design.
 #[derive(Debug, Error)]
 pub enum DesignError {
     /// The number of penalties is not the number of links.
@@ -75,7 +75,7 @@ pub enum DesignError {
         /// The link.
         link: String,
     },
-    /// The conditions contradict each other, or one that is not met does not depend on any l_c.
+    /// The conditions contradict each other, or an unsatisfied condition does not depend on any l_c.
     #[error(
         "no centres of mass along the links balance this machine: {residual} remain at best in {condition}; \
              counterweights need a link that follows that drive and hangs on the base"
@@ -106,7 +106,7 @@ pub fn conditions(machine: &Machine) -> (DMatrix<f64>, DVector<f64>) {
 /// Returns the balanced, invariant machine with the least Σ (p_j l_cj)², (10).
 ///
 /// # Errors
-/// If the penalties are not positive or not one a link, or if no l_c satisfies (7) and (8) together.
+/// If a penalty is not positive, if there is not one penalty for each link, or if no l_c satisfies (7) and (8).
 pub fn design(machine: &Machine, penalty: &[f64]) -> Result<Machine, DesignError> {
     let links = machine.links();
     if penalty.len() != links.len() {
@@ -116,7 +116,7 @@ pub fn design(machine: &Machine, penalty: &[f64]) -> Result<Machine, DesignError
         return Err(DesignError::Penalty { value: penalty[j], link: links[j].name.clone() });
     }
     let (a, k) = conditions(machine);
-    // The residual is checked on the finished machine.
+    // The tolerance is infinite, because the residual of the finished machine is checked instead.
     let equation = |row: usize| LinearEquation {
         a: penalty.iter().enumerate().map(|(j, p)| a[(row, j)] / p).collect(),
         right: k[row],
@@ -141,8 +141,8 @@ pub fn design(machine: &Machine, penalty: &[f64]) -> Result<Machine, DesignError
     Err(DesignError::Inconsistent { condition, residual: left })
 }
 
-/// Returns the condition with the largest residual, and the residual with its unit: a condition of (7), unless all of
-/// these are met.
+/// Returns the name of the condition with the largest residual, and the residual with its unit. Conditions (8) are
+/// considered only if all of (7) are satisfied.
 fn largest_residual(machine: &Machine) -> (String, String) {
     let inertia = Inertia::of(machine);
     let force = !inertia.is_force_balanced();

@@ -6,11 +6,11 @@
 //! |---|---|
 //! | M z ≤ c | the half spaces, rows of equal norm |
 //! | u | multiplier of each half space, u ≥ 0 |
-//! | E, f | E u − f = (z, −1) times a positive number; E has a column (−M_i, −c_i) for each half space, f = (0, 1) |
+//! | E, f | E has columns (−M_i, −c_i), f = (0, 1); at the least squares solution, E u − f is a multiple of (z, −1) |
 //!
 //! # Source
-//! Lawson and Hanson, *Solving Least Squares Problems*, chapter 23: least distance programming by least squares with
-//! u ≥ 0. If E u = f, the half spaces do not intersect, and u is the certificate of that.
+//! Lawson and Hanson, *Solving Least Squares Problems*, chapter 23: least distance programming by least squares with u
+//! ≥ 0. If E u = f, the half spaces have no common point, and u is the certificate of infeasibility.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -20,19 +20,19 @@ use super::basis;
 const FEASIBILITY_TOLERANCE: f64 = 1e-11;
 /// Rows shorter than this fraction of the longest do not constrain z.
 const MIN_ROW_FRACTION: f64 = 1e-10;
-/// |E u − f| up to this is treated as zero, and the half spaces as disjoint: z would be further from 0 than the
-/// reciprocal of this, in the scale of c.
+/// If |E u − f| is at most this, there is no z. Any z would be further from 0 than the reciprocal of this, in units of
+/// the scale of c.
 const INFEASIBLE_UP_TO: f64 = 1e-7;
 
 /// Returns the z nearest to 0 with M z ≤ c.
 ///
 /// # Errors
-/// If there is no such z; returns the weight of each row in the certificate of infeasibility.
+/// If there is no such z; the error holds the weight of each row in the certificate of infeasibility.
 pub(super) fn nearest(m: &DMatrix<f64>, c: &DVector<f64>) -> Result<DVector<f64>, Vec<f64>> {
     let (rows, k) = m.shape();
     let longest = m.row_iter().fold(0.0_f64, |most, row| most.max(row.norm()));
     let size = |i: usize| Some(m.row(i).norm()).filter(|size| *size > MIN_ROW_FRACTION * longest);
-    // Violation at z = 0, of rows of unit norm.
+    // Violation of each row at z = 0, with rows scaled to unit norm.
     let violation = DVector::from_fn(rows, |i, _| -c[i] / size(i).unwrap_or(1.0));
     let scale = violation.amax();
     if rows == 0 || violation.max() <= FEASIBILITY_TOLERANCE * scale {
@@ -61,20 +61,21 @@ fn nonnegative_least_squares(e: &DMatrix<f64>) -> DVector<f64> {
     let mut f = DVector::zeros(k + 1);
     f[k] = 1.0;
     let mut u = DVector::zeros(rows);
-    // Indices of positive components, and of components that may not become positive for now.
+    // Indices of the positive components, and of those that are temporarily excluded.
     let (mut used, mut barred): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
     for _ in 0..10 * (rows + 1) {
         let descent = e.tr_mul(&(&f - e * &u));
         let others = (0..rows).filter(|i| !used.contains(i) && !barred.contains(i) && descent[*i] > 1e-14);
         let Some(next) = others.max_by(|a, b| descent[*a].total_cmp(&descent[*b])) else { break };
         used.push(next);
-        // Steps towards the least squares solution of the components in use, until the first of them becomes 0.
+        // Steps towards the least squares solution in the components in use; a step ends where the first of them
+        // becomes 0.
         while !used.is_empty() {
             let some = e.select_columns(&used);
             let best = basis::least_squares(&some, &f);
             let fresh = used.last() == Some(&next) && u[next] == 0.0;
             let Some(best) = best.filter(|best| !(fresh && best[used.len() - 1] <= 0.0)) else {
-                // Only rounding errors made this component seem to help.
+                // The descent along this component was only rounding error.
                 let last = used.pop().unwrap_or(next);
                 u[last] = 0.0;
                 barred.push(last);
@@ -95,7 +96,7 @@ fn nonnegative_least_squares(e: &DMatrix<f64>) -> DVector<f64> {
     u
 }
 
-/// Returns the shortest z on the boundaries of the active half spaces, exact to rounding; `None` if it violates others.
+/// Returns the shortest z on the boundaries of the active half spaces, exact to rounding; `None` if z violates others.
 fn refined(m: &DMatrix<f64>, c: &DVector<f64>, active: &[usize], scale: f64) -> Option<DVector<f64>> {
     if active.is_empty() {
         return None;

@@ -1,4 +1,4 @@
-//! [`Parameter`]: a number of a machine on which its balance depends and that may be changed to balance it.
+//! [`Parameter`]: a mass or a position of a body that may be changed to balance its machine.
 
 use super::breakdown::Body;
 use crate::machine::{Machine, MachineSpec, ranges};
@@ -15,7 +15,7 @@ pub enum BodyQuantity {
     Across,
 }
 
-/// One number of a link or a counterweight.
+/// One quantity of a link or a counterweight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Parameter {
     /// The body.
@@ -63,7 +63,8 @@ impl Parameter {
         }
     }
 
-    /// Returns its value, kg or m. `None` if the machine has no such parameter, and for the payload, which is given.
+    /// Returns its value, kg or m. `None` if the machine has no such parameter, and for the payload, which never
+    /// changes.
     pub fn value(self, spec: &MachineSpec) -> Option<f64> {
         match self.body {
             Body::Link(j) => {
@@ -86,7 +87,7 @@ impl Parameter {
         }
     }
 
-    /// Returns its range.
+    /// Returns the range of valid values, kg or m.
     pub const fn range(self) -> Range {
         match self.quantity {
             BodyQuantity::Mass => ranges::MASS,
@@ -95,7 +96,7 @@ impl Parameter {
     }
 
     /// Sets its value, kg or m. The disc of a counterweight keeps its thickness, so its radius follows its mass. The
-    /// inertia of a link about its own centre of mass stays.
+    /// inertia of a link about its own centre of mass does not change.
     pub fn set(self, spec: &mut MachineSpec, value: f64) {
         match (self.body, self.quantity) {
             (Body::Link(j), BodyQuantity::Mass) => spec.links[j].mass = value,

@@ -1,4 +1,4 @@
-//! [`SolutionSpace`]: the solution set of linear equations, and its point nearest to the start within bounds.
+//! [`SolutionSpace`]: the solution set of linear equations, and the solution within bounds that is nearest to 0.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -30,14 +30,14 @@ pub(crate) struct SolutionSpace {
 }
 
 impl SolutionSpace {
-    /// Solves equations over `n` unknowns; the least squares solution if they contradict each other.
+    /// Solves equations in `n` unknowns, in the least squares sense if they contradict each other.
     pub fn of(equations: &[LinearEquation], n: usize) -> Self {
         if n == 0 {
             let residuals: Vec<f64> = equations.iter().map(|row| -row.right).collect();
             let exists = equations.iter().all(|row| row.right.abs() <= row.tolerance);
             return Self { particular: DVector::zeros(0), null_space: DMatrix::zeros(0, 0), residuals, exists };
         }
-        // Rows are scaled to unit norm, so that kg m and kg m² count alike.
+        // Rows are scaled to unit norm, so that rows in kg m and in kg m² have equal weight.
         let size = |row: &LinearEquation| row.a.iter().map(|a| a * a).sum::<f64>().sqrt();
         let sized: Vec<_> = equations.iter().map(|row| (row, size(row))).filter(|(_, size)| *size > 0.0).collect();
         let rows: Vec<DVector<f64>> =
@@ -46,7 +46,7 @@ impl SolutionSpace {
         let rank = span.len();
         let units = (0..n).map(|i| DVector::from_fn(n, |j, _| f64::from(u8::from(i == j)))).collect();
         let all = extended(span, units, RANK_TOLERANCE);
-        // In the row space the solution is unique: the one nearest to 0.
+        // The solution in the row space is unique; of all solutions it is nearest to 0.
         let within = DMatrix::from_fn(rows.len(), rank, |i, j| rows[i].dot(&all[j]));
         let right = DVector::from_fn(rows.len(), |i, _| sized[i].0.right / sized[i].1);
         let by = least_squares(&within, &right).unwrap_or_else(|| DVector::zeros(rank));
@@ -59,10 +59,10 @@ impl SolutionSpace {
         Self { particular, null_space, residuals, exists }
     }
 
-    /// Returns its point nearest to `particular` with every a · y ≤ right.
+    /// Returns the solution nearest to `particular` that satisfies every bound a · y ≤ right.
     ///
     /// # Errors
-    /// If there is no such point; returns the weight of each bound in the certificate of infeasibility.
+    /// If there is no such solution; the error holds the weight of each bound in the certificate of infeasibility.
     pub fn nearest(&self, bounds: &[LinearRow]) -> Result<DVector<f64>, Vec<f64>> {
         let (m, c) = self.reduced_bounds(bounds);
         Ok(&self.particular + &self.null_space * nearest(&m, &c)?)

@@ -17,12 +17,13 @@ pub(super) struct SearchCell {
 const MIN_WIDTH: f64 = 1e-6;
 
 impl SearchCell {
-    /// Returns the whole range of a site.
+    /// Returns the cell of all masses and positions that a site allows.
     pub fn of(asked: &CounterweightSpec, site: &Sites) -> Self {
         Self { mass: [0.0, site.most.min(asked.most_mass.unwrap_or(f64::INFINITY))], at: [site.from, site.to] }
     }
 
-    /// Adds rows that keep w and s in the cell, and upper bounds of the inertias u and v.
+    /// Adds rows that keep w and s in the cell, and upper bounds of u, which represents s²/w, and of v, the disc's own
+    /// inertia.
     pub fn enter(&self, asked: &CounterweightSpec, [w, s, u, v]: [usize; 4], program: &mut Program) {
         let ([light, heavy], [from, to]) = (self.mass, self.at);
         let mut most = |terms: &[(usize, f64)], right: f64| program.at_most.push(LinearRow::new(terms, right));
@@ -39,7 +40,7 @@ impl SearchCell {
         }
     }
 
-    /// Splits the cell by position or by mass near the given point, which is moved away from the bounds of the cell.
+    /// Splits the cell by position or by mass at the given point, clamped to the middle three fifths of the cell.
     /// `None` if the cell is too narrow.
     pub fn halves(&self, by_place: bool, [mass, at]: [f64; 2]) -> Option<[Self; 2]> {
         let halve = |[low, high]: [f64; 2], near: f64| {

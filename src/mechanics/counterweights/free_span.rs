@@ -38,7 +38,7 @@ impl FreeSpan {
         }
     }
 
-    /// Returns how far a disc violates the clearance, m; at most 0 if it does not.
+    /// Returns the length by which a disc violates the clearance, m; zero or negative if it does not.
     pub fn violation(&self, clearance: f64, radius: f64, at: f64) -> f64 {
         (self.from + clearance + radius - at).max(at + radius + clearance - self.to)
     }

@@ -29,8 +29,8 @@ fn measures(placed: &Placed) -> [f64; 2] {
 const RELATIVE_TOLERANCE: f64 = 1e-9;
 
 /// Returns `count` points of the Pareto front, at least two, or one if a single machine is best in both measures. The
-/// first two have the least inertia and the least mass. Each further point bisects the widest gap, in the measure in
-/// which its neighbours differ most.
+/// search begins with the points of least inertia and of least mass. Each further point bisects the widest gap, in the
+/// measure in which its neighbours differ most.
 ///
 /// # Errors
 /// As [`place_weights`].
@@ -38,7 +38,7 @@ pub fn front(machine: &Machine, asked: &CounterweightSpec, count: usize) -> Resu
     answer_now::<FrontSearch>((machine.clone(), asked.clone(), count))
 }
 
-/// The search for the Pareto front of a machine, as [`front`] returns it: one machine a portion.
+/// The search for the Pareto front that [`front`] returns; each portion of work finds one point.
 #[derive(Clone, Debug)]
 pub struct FrontSearch {
     machine: Machine,
@@ -77,11 +77,11 @@ fn alike(a: f64, b: f64) -> bool {
 }
 
 impl FrontSearch {
-    /// Adds one more point; returns whether there was one to add.
+    /// Adds one more point; returns false if the Pareto front is complete.
     fn one_more(&mut self) -> Result<bool, CounterweightError> {
         let Self { machine, mass, inertia, count, points } = self;
         let (i, asked) = match points.len() {
-            // The point of least inertia first: errors in requirements of both are reported by it.
+            // Least inertia comes first, so that it reports the errors that both objectives share.
             0 => (0, inertia.clone()),
             1 => (0, mass.clone()),
             known if known >= *count => return Ok(false),

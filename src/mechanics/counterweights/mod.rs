@@ -1,15 +1,16 @@
-//! Counterweights as discs: those of least mass or least inertia that balance a machine, with a certificate.
+//! Counterweights as discs: finds those of least mass or least inertia that balance a machine, with a certificate.
 //!
-//! A disc of mass w on link j at x along its axis enters balance (7), (8) linearly through w and s = w x; bounds on its
-//! position are lo w ≤ s ≤ hi w. It adds s²/w to the inertia about the root, and w²/(2 π ρ t) of its own: both are
-//! convex. So the problem is a cone program with one optimum, which the solver certifies.
+//! A disc of mass w on a link, at x along its axis, enters balance (7), (8) linearly through w and s = w x. Bounds lo
+//! and hi of its position are lo w ≤ s ≤ hi w. To the inertia about the root it adds s²/w from its position and w²/(2 π
+//! ρ t) about its centre; both are convex. So the problem is a cone program with one optimum, which the solver
+//! certifies.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | w, s | mass of a counterweight; w x | kg, kg m |
 //! | ρ, t | density and thickness of the discs | kg/m³, m |
-//! | D_k | momentum of a drive, (6) | kg m² |
+//! | D_k | coefficient of q̇_k in the angular momentum about B, (6) | kg m² |
 
 mod cell;
 mod free_span;

@@ -27,9 +27,9 @@ pub fn over_payloads(machine: &Machine, [low, high]: [f64; 2], count: usize) -> 
         spec.payload.mass = low + (high - low) * i as f64 / steps as f64;
         let payload = spec.payload.mass;
         let inertia = Inertia::of(&Machine::new(spec)?);
-        let greatest = |of_moments: bool| {
+        let greatest = |of_force: bool| {
             let all = Condition::all(machine.drives());
-            let alike = all.filter(|condition| matches!(condition, Condition::Force(_)) == of_moments);
+            let alike = all.filter(|condition| matches!(condition, Condition::Force(_)) == of_force);
             alike.map(|condition| condition.residual(&inertia).norm()).fold(0.0, f64::max)
         };
         Ok(Residual { payload, force: greatest(true), coupling: greatest(false) })

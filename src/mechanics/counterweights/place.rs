@@ -14,7 +14,7 @@ use stillbase_convex::{NoOptimum, Optimum};
 /// Counterweights, and the machine that carries them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placed {
-    /// The machine, balanced to rounding. Over a range of payloads it is balanced as nearly as possible, and holds the
+    /// The machine, balanced to rounding. Over a range of payloads, its largest residual is minimal, and it carries the
     /// mean payload.
     pub machine: Machine,
     /// Total mass of the counterweights, kg.
@@ -26,17 +26,17 @@ pub struct Placed {
 }
 
 impl Placed {
-    /// Returns whether the value is certified as the optimum, to rounding. A search may stop before it has proved that.
+    /// Returns whether the value is certified as the optimum, to rounding. A search may stop before it has proved
+    /// optimality.
     pub fn is_certified(&self) -> bool {
         self.gap <= 2.0 * MAX_GAP * self.value.abs().max(1.0)
     }
 }
 
-/// Weight of inertia, 1/(kg m²), against that of mass, 1/kg, if only mass is minimised: breaks ties between equal
-/// masses.
+/// Ratio of the weight of inertia to the weight of mass, 1/m². It breaks ties between solutions of equal mass.
 const TIE_BREAK_WEIGHT: f64 = 1e-7;
 
-/// A counterweight lighter than this fraction of their total mass is omitted if balance is possible without it.
+/// A counterweight lighter than this fraction of the added mass is omitted if balance is possible without it.
 const NEGLIGIBLE_MASS_FRACTION: f64 = 1e-4;
 
 /// Largest gap to the optimum, in units of the objective, that is accepted for a simpler answer.
@@ -46,7 +46,7 @@ const MAX_GAP: f64 = 5e-7;
 /// Existing counterweights are removed first, except fixed ones.
 ///
 /// Over a range of payloads the largest residual, |g_k| or |C_kl| divided by the reach, is minimised first, then the
-/// objective. Balance with the mean payload has the least largest residual, but other solutions may share it.
+/// objective. Exact balance with the mean payload attains this minimum, but other solutions may attain it as well.
 ///
 /// # Errors
 /// If the request is not valid, or if its requirements contradict each other.
@@ -54,8 +54,9 @@ pub fn place_weights(machine: &Machine, asked: &CounterweightSpec) -> Result<Pla
     place_weights_with(machine, asked, &[])
 }
 
-/// As [`place_weights`], for a machine with known additional residuals `beyond` of the conditions (7) and (8), in their
-/// order: the sums of computed and additional residuals are to vanish. `beyond` excludes the present counterweights.
+/// As [`place_weights`], but each condition has a known additional residual in `beyond`, kg m or kg m², in the order of
+/// (7) and (8). The sums of computed and additional residuals must vanish. `beyond` excludes the present
+/// counterweights.
 ///
 /// # Errors
 /// As [`place_weights`].
@@ -75,9 +76,9 @@ pub fn place_weights_with(
     one.found()?.map_err(|weights| one.refusal(&weights))
 }
 
-/// Returns the residual of each condition of (7) and (8), kg m or kg m², that no counterweights on the listed links
-/// remove, even of negative mass: the least squares residual, with all equations scaled to unit norm. Residuals across
-/// the axes of the links always remain.
+/// Returns the part of each residual of (7) and (8), kg m or kg m², that no counterweights on the listed links remove,
+/// even of negative mass. This is the residual of the least squares solution, with all equations scaled to unit norm.
+/// Residuals across the axes of the links always remain.
 ///
 /// # Errors
 /// If the request is not valid.
@@ -91,7 +92,7 @@ pub fn unreachable_by_weights(
 
 impl CounterweightTask<'_> {
     /// Finds the counterweights. If there are none, returns the weights of the bounds in the certificate of
-    /// infeasibility without clearance, empty if only the clearance of pins makes it infeasible.
+    /// infeasibility without clearance. These are empty if only the clearance of pins makes the problem infeasible.
     fn found(&self) -> Result<Result<Placed, Vec<f64>>, CounterweightError> {
         if self.balance() == BalanceGoal::Nearest {
             return self.nearest();
@@ -118,10 +119,10 @@ impl CounterweightTask<'_> {
         let one = CounterweightTask { spec: &tied, ..*self };
         let found = one.least(BalanceGoal::Exact).ok().and_then(Result::ok);
         let found = found.and_then(|tied| one.placed(&tied, BalanceGoal::Exact).ok());
-        found.and_then(|found| self.as_good(found, least.value - least.gap)).unwrap_or(best)
+        found.and_then(|found| self.within_max_gap(found, least.value - least.gap)).unwrap_or(best)
     }
 
-    /// Returns a solution without the counterweights of negligible mass, if there is one as good.
+    /// Returns a solution without the counterweights of negligible mass, if one is optimal within [`MAX_GAP`].
     fn simpler(&self, best: Placed) -> Placed {
         let weights = || best.machine.spec().counterweights.iter().filter(|weight| !weight.fixed);
         let is_light = |mass: f64| mass < NEGLIGIBLE_MASS_FRACTION * best.added_mass;
@@ -134,7 +135,7 @@ impl CounterweightTask<'_> {
         };
         let sites: Vec<Sites> = self.spec.sites.iter().copied().filter(carries).collect();
         let fewer = CounterweightSpec { sites, ..self.spec.clone() };
-        self.exact(&fewer).and_then(|found| self.as_good(found, best.value - best.gap)).unwrap_or(best)
+        self.exact(&fewer).and_then(|found| self.within_max_gap(found, best.value - best.gap)).unwrap_or(best)
     }
 
     /// Returns the optimum of another request with exact balance, if there is one.
@@ -148,14 +149,14 @@ impl CounterweightTask<'_> {
     }
 
     /// Returns a solution with its gap to `bound`, a lower bound of the objective; `None` if the gap is too large.
-    fn as_good(&self, found: Placed, bound: f64) -> Option<Placed> {
+    fn within_max_gap(&self, found: Placed, bound: f64) -> Option<Placed> {
         let value = self.spec.objective.of(found.added_mass, &Inertia::of(&found.machine));
         let gap = (value - bound).max(found.gap);
         (gap < MAX_GAP).then_some(Placed { value, gap, ..found })
     }
 
-    /// Minimises the largest residual over all payloads, then the objective. If exact balance with the mean payload has
-    /// the same objective, returns that.
+    /// Minimises the largest residual over all payloads, then the objective. Prefers exact balance with the mean
+    /// payload if its objective is no larger, within [`MAX_GAP`].
     fn nearest(&self) -> Result<Result<Placed, Vec<f64>>, CounterweightError> {
         let found = |balance| match self.least(balance)? {
             Ok(least) => Ok(Ok(least)),
@@ -186,7 +187,7 @@ impl CounterweightTask<'_> {
         Ok(Placed { machine, added_mass, value, gap: (value - (least.value - least.gap)).max(least.gap) })
     }
 
-    /// Returns the reason why there are no counterweights; `weights` as [`found`](Self::found) returns them.
+    /// Returns the reason why there are no counterweights; `weights` come from [`found`](Self::found).
     fn refusal(&self, weights: &[f64]) -> CounterweightError {
         let is_feasible =
             |spec: &CounterweightSpec| CounterweightTask { spec, ..*self }.found().is_ok_and(|found| found.is_ok());

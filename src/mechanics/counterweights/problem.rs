@@ -1,5 +1,5 @@
 //! [`CounterweightProblem`]: a machine without counterweights, except fixed ones, and the conditions that
-//! counterweights must meet.
+//! counterweights must satisfy.
 
 use super::refusal::CounterweightError;
 use super::residual::{ConditionResidual, conditions};
@@ -13,13 +13,12 @@ pub(super) struct CounterweightProblem {
     pub bare: Machine,
     pub inertia: Inertia,
     pub conditions: Vec<ConditionResidual>,
-    /// Upper bound of the end effector's distance from B, m.
+    /// Upper bound of the end effector's distance from the base point B, m.
     pub reach: f64,
 }
 
 impl CounterweightProblem {
-    /// Derives the problem of a request. `beyond`: known additional residuals of the conditions (7) and (8), in their
-    /// order.
+    /// Derives the problem of a request. `beyond` lists known additional residuals of (7), then of (8).
     ///
     /// # Errors
     /// If the request is not valid.
@@ -41,10 +40,10 @@ impl CounterweightProblem {
         Ok(Self { bare, inertia, conditions, reach })
     }
 
-    /// Checks that counterweights on the axes of these links can change every condition that is not met.
+    /// Checks that counterweights on the axes of these links can change every condition that is not satisfied.
     ///
     /// # Errors
-    /// If they cannot.
+    /// If they cannot change one of these conditions.
     pub fn check(&self) -> Result<(), CounterweightError> {
         for ConditionResidual { of, residual, .. } in &self.conditions {
             if residual.im.abs() > 1e-9 {
@@ -65,8 +64,8 @@ impl CounterweightProblem {
         Ok(())
     }
 
-    /// Returns the residual of each condition that no masses at the sites remove, even negative ones: the least squares
-    /// residual, with all equations scaled to unit norm.
+    /// Returns the part of each residual, kg m or kg m², that no masses at the sites remove, even negative ones. This
+    /// is the residual of the least squares solution, with all equations scaled to unit norm.
     pub fn unreachable(&self, sites: usize) -> Vec<Vector> {
         let equation = |condition: &ConditionResidual| LinearEquation {
             a: condition.changes.iter().flatten().copied().collect(),
@@ -78,8 +77,8 @@ impl CounterweightProblem {
         along.iter().zip(&self.conditions).map(|(along, of)| Vector::new(*along, of.residual.im)).collect()
     }
 
-    /// Returns whether no counterweights are needed. Counterweights only add mass and inertia, so none are then
-    /// optimal.
+    /// Returns whether no counterweights are needed. Counterweights only add mass and inertia, so the optimum then has
+    /// none.
     pub fn needs_nothing(&self, asked: &CounterweightSpec) -> bool {
         let total: f64 = self.inertia.total_momentum();
         asked.rotors.is_empty()

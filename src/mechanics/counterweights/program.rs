@@ -16,21 +16,21 @@ pub(super) const SOLVER_ROUNDING: [f64; 2] = [1e-7, 1e-10];
 
 impl CounterweightProblem {
     /// Solves the cone program of one subproblem.
-    pub fn least(&self, machine: &Machine, asked: &CounterweightSpec, way: &SearchNode) -> Result<Optimum, NoOptimum> {
-        let solve = |way: &SearchNode| self.program(machine, asked, &self.bounds(machine, asked), way).solve();
-        let first = solve(way)?;
-        if asked.objective.momentum == 0.0 || way.balance == BalanceGoal::Nearest || way.least.is_some() {
+    pub fn least(&self, machine: &Machine, asked: &CounterweightSpec, node: &SearchNode) -> Result<Optimum, NoOptimum> {
+        let solve = |node: &SearchNode| self.program(machine, asked, &self.bounds(machine, asked), node).solve();
+        let first = solve(node)?;
+        if asked.objective.momentum == 0.0 || node.balance == BalanceGoal::Nearest || node.least.is_some() {
             return Ok(first);
         }
-        // The relaxation may overestimate inertia, so that a rotor seems to cancel more momentum than there is. So the
-        // solution of least mass and Σ H_kk among the optima is taken: its inertias are exact where that is possible.
+        // The relaxation may overestimate inertia, so that a rotor seems to cancel more momentum than there is.
+        // Therefore the optimum of least mass and Σ H_kk is taken: its inertias are exact where that is possible.
         let most = first.value + SOLVER_ROUNDING[0] * first.value.abs() + SOLVER_ROUNDING[1];
-        let second = solve(&SearchNode { most: Some(most), ..way.clone() });
+        let second = solve(&SearchNode { most: Some(most), ..node.clone() });
         Ok(second.map_or(first.clone(), |second| Optimum { x: second.x, ..first }))
     }
 
-    /// Returns a minimal set of bounds that contradict each other without clearance: those in the solver's certificate
-    /// of infeasibility, less all that are not necessary. Empty if there is no solution without bounds either.
+    /// Returns a minimal set of bounds that contradict each other without clearance. It is a subset of the bounds in
+    /// the solver's certificate of infeasibility. Empty if the problem is infeasible even without bounds.
     pub fn conflict(
         &self,
         machine: &Machine,
@@ -38,10 +38,10 @@ impl CounterweightProblem {
         balance: BalanceGoal,
         weights: &[f64],
     ) -> Vec<Bound> {
-        let (bounds, way) = (self.bounds(machine, asked), SearchNode::unconstrained(asked, balance));
+        let (bounds, node) = (self.bounds(machine, asked), SearchNode::unconstrained(asked, balance));
         let any = CounterweightSpec { objective: Objective::mass(), ..asked.clone() };
         let contradicts = |bounds: &[(Bound, LinearRow)]| {
-            matches!(self.program(machine, &any, bounds, &way).solve(), Err(NoOptimum::Contradiction(_)))
+            matches!(self.program(machine, &any, bounds, &node).solve(), Err(NoOptimum::Contradiction(_)))
         };
         let of_bounds = &weights[weights.len() - bounds.len()..];
         infeasible_bounds(bounds, of_bounds, contradicts)
@@ -53,7 +53,7 @@ impl CounterweightProblem {
         machine: &Machine,
         asked: &CounterweightSpec,
         bounds: &[(Bound, LinearRow)],
-        way: &SearchNode,
+        node: &SearchNode,
     ) -> Program {
         let unknowns = UnknownIndices::of(asked, self.drives());
         let mut program = Program::over(unknowns.torque() + usize::from(asked.objective.torque > 0.0));
@@ -65,31 +65,31 @@ impl CounterweightProblem {
         if unknowns.inertia {
             self.enter_inertia(asked, &unknowns, &mut program);
             self.cost(machine, asked, &unknowns, &mut program);
-            self.enter_motion(machine, asked, &unknowns, way, &mut program);
+            self.enter_motion(machine, asked, &unknowns, node, &mut program);
         }
         if unknowns.momentum {
-            for (j, cell) in way.cells.iter().enumerate() {
+            for (j, cell) in node.cells.iter().enumerate() {
                 let [w, s, u, v] = [unknowns.w(j), unknowns.s(j), unknowns.u(j), unknowns.v(j)];
                 cell.enter(asked, [w, s, u, v], &mut program);
             }
         }
-        if let Some(most) = way.most {
+        if let Some(most) = node.most {
             let terms: Vec<_> = program.linear.iter().copied().enumerate().filter(|(_, by)| *by != 0.0).collect();
             program.at_most.push(LinearRow::new(terms, most));
             program.linear.fill(0.0);
-            let turned = CounterweightSpec { objective: Objective::inertia(), ..asked.clone() };
+            let tie_break = CounterweightSpec { objective: Objective::inertia(), ..asked.clone() };
             (0..asked.sites.len()).for_each(|j| program.linear[unknowns.w(j)] = 1.0);
-            self.cost(machine, &turned, &unknowns, &mut program);
+            self.cost(machine, &tie_break, &unknowns, &mut program);
         }
-        self.enter_balance(&unknowns, way.balance, &mut program);
-        for (j, room) in way.rooms.iter().enumerate() {
+        self.enter_balance(&unknowns, node.balance, &mut program);
+        for (j, room) in node.rooms.iter().enumerate() {
             if let Some(room) = room {
                 room.enter(asked, [unknowns.w(j), unknowns.s(j)], &mut program);
             }
         }
-        let firm = bounds.iter().filter(|(bound, _)| !bound.kind().is_some_and(|kind| way.loose.contains(&kind)));
+        let firm = bounds.iter().filter(|(bound, _)| !bound.kind().is_some_and(|kind| node.loose.contains(&kind)));
         program.at_most.extend(firm.clone().map(|(_, row)| row.clone()));
-        if let Some(kind) = way.least {
+        if let Some(kind) = node.least {
             // The value of the bound becomes an unknown, which is minimised.
             program.linear.fill(0.0);
             let (most, start) = (program.linear.len(), program.at_most.len() - firm.clone().count());
@@ -159,7 +159,7 @@ impl CounterweightProblem {
         }
     }
 
-    /// Adds the diagonal of H without free rotors.
+    /// Adds the equations for the diagonal H_kk of the mass matrix without free rotors.
     fn enter_inertia(&self, asked: &CounterweightSpec, unknowns: &UnknownIndices, program: &mut Program) {
         let parts = self.bare.resolved_links();
         for j in 0..asked.sites.len() {
@@ -197,7 +197,7 @@ impl CounterweightProblem {
         machine: &Machine,
         asked: &CounterweightSpec,
         unknowns: &UnknownIndices,
-        way: &SearchNode,
+        node: &SearchNode,
         program: &mut Program,
     ) {
         let objective = &asked.objective;
@@ -214,7 +214,7 @@ impl CounterweightProblem {
                 for sign in [1.0, -1.0] {
                     let mut row = LinearRow::new(with(&momentum, sign), -sign * constant);
                     row.terms.push((unknowns.momentum(k), -1.0));
-                    if let (true, Some(tangents)) = (sign < 0.0, &way.tangents) {
+                    if let (true, Some(tangents)) = (sign < 0.0, &node.tangents) {
                         let linear = self.linear_diagonal(asked, unknowns, k, tangents);
                         row.terms.retain(|(x, _)| *x != unknowns.h(k));
                         row.terms.extend(linear.terms.iter().map(|(x, by)| (*x, -by)));
@@ -263,7 +263,7 @@ impl CounterweightProblem {
 }
 
 impl Bound {
-    /// Returns its kind if it may be relaxed; bounds of positions may not.
+    /// Returns its kind; `None` for bounds of positions, which may not be relaxed.
     fn kind(&self) -> Option<BoundKind> {
         match self {
             Self::From(_) | Self::To(_) => None,

@@ -19,7 +19,7 @@ pub(super) struct CounterweightTask<'a> {
 }
 
 impl CounterweightTask<'_> {
-    /// Returns whether balance is to be exact, or as near as possible over a range of payloads.
+    /// Returns the goal: exact balance, or the smallest residual over a range of payloads.
     pub fn balance(&self) -> BalanceGoal {
         match self.spec.payload {
             Some([low, high]) if low < high => BalanceGoal::Nearest,
@@ -27,7 +27,7 @@ impl CounterweightTask<'_> {
         }
     }
 
-    /// Returns whether counterweights exist that meet the request; an error counts as no.
+    /// Returns whether counterweights exist that satisfy the request; false if the solver fails.
     pub fn is_possible(&self) -> bool {
         matches!(self.on(&SearchNode::unconstrained(self.spec, self.balance())), Ok(Ok(_)))
     }
@@ -38,11 +38,11 @@ impl CounterweightTask<'_> {
     }
 
     /// Finds the optimum of the subproblem at a node of the search.
-    pub fn on(&self, way: &SearchNode) -> Result<Result<Optimum, NoOptimum>, CounterweightError> {
+    pub fn on(&self, node: &SearchNode) -> Result<Result<Optimum, NoOptimum>, CounterweightError> {
         let is_convex = self.spec.clearance.is_none() && self.spec.objective.momentum == 0.0;
         match is_convex {
-            true => Ok(self.problem.least(self.machine, self.spec, way)),
-            false => search(self.problem, self.machine, self.spec, way),
+            true => Ok(self.problem.least(self.machine, self.spec, node)),
+            false => search(self.problem, self.machine, self.spec, node),
         }
     }
 }

@@ -75,7 +75,7 @@ impl fmt::Display for BoundRelaxation {
     }
 }
 
-/// Returns the sets of relaxed bounds in words, each of which is sufficient.
+/// Describes sets of relaxed bounds in words; each set is sufficient.
 fn sufficient_relief(would: &[Vec<BoundRelaxation>]) -> String {
     let one = |together: &Vec<BoundRelaxation>| {
         let all: Vec<String> = together.iter().map(BoundRelaxation::to_string).collect();
@@ -84,7 +84,7 @@ fn sufficient_relief(would: &[Vec<BoundRelaxation>]) -> String {
     would.iter().map(one).collect()
 }
 
-/// Why there are no counterweights.
+/// Reason why there are no counterweights.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum CounterweightError {
     /// A number that is out of range.
@@ -94,7 +94,7 @@ pub enum CounterweightError {
         what: String,
         /// The number.
         value: f64,
-        /// The range that would be right.
+        /// The allowed range.
         want: String,
     },
     /// One link is named twice.
@@ -114,7 +114,7 @@ pub enum CounterweightError {
         /// Its residual, with unit.
         residual: String,
     },
-    /// No counterweight on these links changes a condition that is not met.
+    /// A condition is not satisfied, and no counterweight on these links changes it.
     #[error("{condition}, stays at {residual}: want a counterweight on another link, too: {want}")]
     Untouched {
         /// The condition.
@@ -131,10 +131,10 @@ pub enum CounterweightError {
         sufficient_relief(.would)
     )]
     Conflict {
-        /// The bounds; without any one of them the others do not contradict each other.
+        /// The bounds; if any one of them is removed, the others are feasible together.
         bounds: Vec<Bound>,
-        /// Sets of relaxed bounds, each sufficient with all other bounds unchanged; of one bound each, or of more if no
-        /// single one is sufficient.
+        /// Sets of relaxed bounds. Each set is sufficient with all other bounds unchanged, and contains as few kinds of
+        /// bounds as possible.
         would: Vec<Vec<BoundRelaxation>>,
     },
     /// No masses and positions on these links balance the machine.
@@ -148,16 +148,16 @@ pub enum CounterweightError {
     Reaches {
         /// The clearance requested, m.
         asked: f64,
-        /// Sets of relaxed bounds, each sufficient with all other bounds unchanged; of one bound each, or of more if no
-        /// single one is sufficient.
+        /// Sets of relaxed bounds. Each set is sufficient with all other bounds unchanged, and contains as few kinds of
+        /// bounds as possible.
         would: Vec<Vec<BoundRelaxation>>,
     },
-    /// Too many choices between pins to search all.
+    /// There are too many choices of intervals between pins to search all.
     #[error(
         "after {0} ways round the pins it is still not known whether there are counterweights: want fewer links that may carry one"
     )]
     TooMany(usize),
-    /// The torque is D_k q̈_k only if each motor turns its drive alone.
+    /// The objective contains torque, which is D_k q̈_k only if each motor turns its drive alone.
     #[error(
         "the torque of a motor in a joint or behind a gear depends on more than its drive: want mass or inertia to be least"
     )]

@@ -1,14 +1,16 @@
-//! [`sufficient_reliefs`]: relaxed bounds with which there would be counterweights, all others unchanged.
+//! [`sufficient_reliefs`]: relaxed bounds that make a request for counterweights feasible, with all other bounds
+//! unchanged.
 
 use super::question::CounterweightTask;
 use super::refusal::{BoundKind, BoundRelaxation};
 use super::search_node::SearchNode;
 use super::spec::CounterweightSpec;
 
-/// Factor by which the first of several bounds is relaxed beyond its minimum, so that the others need less relaxation.
+/// Factor by which all but the last of several bounds are relaxed beyond their minimum, so that the last needs less
+/// relaxation.
 const FIRST_BOUND_FACTOR: f64 = 1.1;
 
-/// Fractions by which a relaxed bound is relaxed further until there is a solution: the solver's rounding.
+/// Fractions by which a relaxed bound is relaxed further, against the solver's rounding, until there is a solution.
 const EXTRA_FRACTIONS: [f64; 6] = [0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
 /// Number of bisection steps for a clearance.
@@ -19,8 +21,8 @@ const CLEARANCE_STEPS_PER_M: f64 = 1e4;
 /// Other relaxed bounds are multiples of 1/this, kg or kg m².
 const STEPS_PER_UNIT: f64 = 1e6;
 
-/// Returns each kind of bound that it is enough to relax alone, with its relaxed value; if no single kind is enough,
-/// the sets of two that are, or more. `is_feasible` returns whether another request has a solution.
+/// Returns each kind of bound whose relaxation alone is sufficient, with its relaxed value. If there is none, returns
+/// the sufficient sets of the smallest size. `is_feasible` returns whether another request has a solution.
 pub(super) fn sufficient_reliefs(
     one: &CounterweightTask,
     is_feasible: &dyn Fn(&CounterweightSpec) -> bool,
@@ -92,7 +94,7 @@ fn greatest_clearance(one: &CounterweightTask, asked: &CounterweightSpec) -> Opt
     Some((0..BISECTIONS).fold([0.0, asked.clearance?], bisected)[0])
 }
 
-/// Rounds a number as printing it with `decimals` decimals does.
+/// Returns the value of a number printed with `decimals` decimals.
 fn rounded_as_printed(x: f64, decimals: usize) -> f64 {
     format!("{x:.decimals$}").parse().unwrap_or(x)
 }

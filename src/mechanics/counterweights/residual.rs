@@ -9,7 +9,8 @@ use crate::planar::Vector;
 /// The residual of one condition of (7) or (8).
 pub(super) struct ConditionResidual {
     pub of: Condition,
-    /// Residual of the bare machine along and across the axes, kg m or kg m², with the mean payload.
+    /// Residual of the bare machine with the mean payload, kg m or kg m²: the real part along the axes, the imaginary
+    /// part across them.
     pub residual: Vector,
     /// Residual along the axes with the smallest and with the largest payload.
     pub ends: [f64; 2],

@@ -1,7 +1,7 @@
-//! [`search`]: branch and bound over cone programs, for two kinds of problems that are not convex. Discs that stay
-//! clear of the pins of their links have to choose between which pins they sit. Momenta D_k below zero become smaller
-//! in magnitude with more inertia. The subproblem with the lowest bound is split first, so the first solution whose
-//! relaxation is exact is the optimum.
+//! [`search`]: branch and bound over cone programs, for two kinds of problems that are not convex. If discs must stay
+//! clear of the pins of their links, an interval between pins must be chosen for each disc. If D_k is negative, more
+//! inertia reduces |D_k|. The subproblem with the lowest bound is split first, so the first solution whose relaxation
+//! is exact is the optimum.
 
 use super::cell::SearchCell;
 use super::free_span::FreeSpan;
@@ -13,7 +13,7 @@ use super::spec::CounterweightSpec;
 use crate::machine::Machine;
 use stillbase_convex::{NoOptimum, Optimum};
 
-/// Maximum number of subproblems from choices between pins.
+/// Maximum number of subproblems from choices of intervals between pins.
 const MAX_CHOICES: usize = 4000;
 
 /// Maximum number of cells.
@@ -22,55 +22,55 @@ const MAX_CELLS: usize = 300;
 /// Tolerance of the clearance, m: the solver's rounding.
 const CLEARANCE_TOLERANCE_M: f64 = 1e-7;
 
-/// Tolerance of the objective: a solution worse by this is treated as equally good.
+/// Tolerance of the objective: a solution worse by at most this is treated as optimal.
 const VALUE_TOLERANCE: f64 = 2e-7;
 
 /// Maximum number of linearisations in one descent.
 const MAX_LINEARISATIONS: usize = 25;
 
-/// Finds the optimum over all choices between pins and over all cells. If the number of cells exceeds its limit,
-/// returns the best solution found, with the remaining gap.
+/// Finds the optimum over all choices of intervals between pins and over all cells. If the number of cells exceeds its
+/// limit, returns the best solution found, with the remaining gap.
 ///
 /// # Errors
-/// If there are too many choices, or if the solver fails; the inner error says that there is no solution.
+/// If there are too many choices, or if the solver fails. If there is no solution, the inner result is an error.
 pub(super) fn search(
     problem: &CounterweightProblem,
     machine: &Machine,
     asked: &CounterweightSpec,
-    way: &SearchNode,
+    node: &SearchNode,
 ) -> Result<Result<Optimum, NoOptimum>, CounterweightError> {
     let search = Search { problem, machine, asked };
     let rooms: Vec<Vec<FreeSpan>> =
         asked.sites.iter().map(|site| FreeSpan::all(&problem.bare.resolved_links()[site.link].pins)).collect();
     // Open subproblems, each with the optimum of its relaxation.
-    let mut open = match problem.least(machine, asked, way) {
-        Ok(least) => vec![(least, way.clone())],
+    let mut open = match problem.least(machine, asked, node) {
+        Ok(least) => vec![(least, node.clone())],
         Err(why) => return Ok(Err(why)),
     };
     let (mut best, mut choices, mut cells): (Option<Optimum>, usize, usize) = (None, 1, 1);
     while let Some(next) = (0..open.len()).min_by(|a, b| open[*a].0.value.total_cmp(&open[*b].0.value)) {
-        let (least, way) = open.swap_remove(next);
+        let (least, node) = open.swap_remove(next);
         let bound = least.value - least.gap;
         if let Some(best) =
             best.as_ref().filter(|best| best.value <= least.value + VALUE_TOLERANCE || cells > MAX_CELLS)
         {
             return Ok(Ok(Optimum { gap: best.value - bound, ..best.clone() }));
         }
-        let ways = match search.worst_site(&least, &rooms, &way) {
+        let children = match search.worst_site(&least, &rooms, &node) {
             Some(j) => {
                 choices += rooms[j].len();
                 if choices > MAX_CHOICES {
                     return Err(CounterweightError::TooMany(MAX_CHOICES));
                 }
                 let enter = |room: &FreeSpan| {
-                    let mut next = way.clone();
+                    let mut next = node.clone();
                     next.rooms[j] = Some(*room);
                     next
                 };
                 rooms[j].iter().map(enter).collect()
             }
             // Only the objective depends on the exact inertias: a residual or a bound that is minimised does not.
-            None if asked.objective.momentum == 0.0 || way.least.is_some() || way.balance == BalanceGoal::Nearest => {
+            None if asked.objective.momentum == 0.0 || node.least.is_some() || node.balance == BalanceGoal::Nearest => {
                 return Ok(Ok(least));
             }
             None => {
@@ -78,23 +78,23 @@ pub(super) fn search(
                 if found.value <= least.value + VALUE_TOLERANCE {
                     return Ok(Ok(least));
                 }
-                // A disc whose room is not chosen may cover a pin in what the descent finds.
-                let descended = search.descend(&found, &way, cells == 1).into_iter();
-                for found in descended.filter(|found| search.worst_site(found, &rooms, &way).is_none()) {
+                // A descent may move a disc without a chosen interval onto a pin; such solutions are discarded.
+                let descended = search.descend(&found, &node, cells == 1).into_iter();
+                for found in descended.filter(|found| search.worst_site(found, &rooms, &node).is_none()) {
                     if best.as_ref().is_none_or(|best| found.value < best.value) {
                         best = Some(found);
                     }
                 }
-                let halves = search.halves(&least, &way, best.as_ref());
+                let halves = search.halves(&least, &node, best.as_ref());
                 cells += halves.len();
                 if halves.is_empty() {
-                    // Too narrow to be split: its exact value counts.
-                    open.push((Optimum { value: found.value, ..found }, way));
+                    // All cells are too narrow to be split, so the subproblem is assigned its exact value.
+                    open.push((Optimum { value: found.value, ..found }, node));
                 }
                 halves
             }
         };
-        for next in ways {
+        for next in children {
             match problem.least(machine, asked, &next) {
                 Ok(least) => open.push((least, next)),
                 Err(NoOptimum::Contradiction(_)) => {}
@@ -117,8 +117,8 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// Returns the site whose disc violates the clearance of a pin most; `None` if all discs are clear or may cover
-    /// pins. Sites whose room is chosen are clear.
-    fn worst_site(&self, least: &Optimum, rooms: &[Vec<FreeSpan>], way: &SearchNode) -> Option<usize> {
+    /// pins. A disc whose interval is chosen is clear.
+    fn worst_site(&self, least: &Optimum, rooms: &[Vec<FreeSpan>], node: &SearchNode) -> Option<usize> {
         let clearance = self.asked.clearance?;
         let missed = |j: usize| {
             let [w, s] = self.problem.at(self.asked, &least.x, j);
@@ -127,7 +127,7 @@ impl Search<'_> {
                 rooms[j].iter().map(|room| room.violation(clearance, radius, at)).fold(f64::INFINITY, f64::min);
             if w > MIN_MASS_KG { nearest } else { 0.0 }
         };
-        let free = (0..rooms.len()).filter(|j| way.rooms[*j].is_none());
+        let free = (0..rooms.len()).filter(|j| node.rooms[*j].is_none());
         let worst = free.map(|j| (j, missed(j))).max_by(|a, b| a.1.total_cmp(&b.1));
         worst.filter(|(_, missed)| *missed > CLEARANCE_TOLERANCE_M).map(|(j, _)| j)
     }
@@ -138,12 +138,13 @@ impl Search<'_> {
         Optimum { value: self.problem.value(self.machine, self.asked, &x), x, gap: 0.0 }
     }
 
-    /// Descends from a solution, and also from the bounds of all cells if `from_bounds`: each iteration solves the cone
-    /// program with the inertias linearised about the previous solution. Returns the results and the solution itself.
-    fn descend(&self, from: &Optimum, way: &SearchNode, from_bounds: bool) -> Vec<Optimum> {
+    /// Descends from a solution, and also from the bounds of all cells if `from_bounds`. Each iteration solves the cone
+    /// program with the inertias linearised about the previous solution. Returns the results, and the given solution
+    /// last.
+    fn descend(&self, from: &Optimum, node: &SearchNode, from_bounds: bool) -> Vec<Optimum> {
         let about = |least: &Optimum| {
             let one = |j: usize| {
-                let ([w, s], [from, to]) = (self.problem.at(self.asked, &least.x, j), way.cells[j].at);
+                let ([w, s], [from, to]) = (self.problem.at(self.asked, &least.x, j), node.cells[j].at);
                 let far = if from.abs() > to.abs() { from } else { to };
                 if w > MIN_MASS_KG { [w, s / w] } else { [0.0, far] }
             };
@@ -154,14 +155,14 @@ impl Search<'_> {
         let mut starts = vec![here.clone()];
         if from_bounds {
             let heavy = 3.0 * mean(&here) + 1.0;
-            let end = |i: usize, mass: f64| way.cells.iter().map(|cell| [mass, cell.at[i]]).collect::<Vec<_>>();
+            let end = |i: usize, mass: f64| node.cells.iter().map(|cell| [mass, cell.at[i]]).collect::<Vec<_>>();
             starts.extend([end(0, 0.0), end(1, 0.0), end(0, heavy), end(1, heavy)]);
         }
         let down = |mut tangents: Vec<[f64; 2]>| {
             let mut best: Option<Optimum> = None;
             for _ in 0..MAX_LINEARISATIONS {
-                let way = SearchNode { tangents: Some(tangents), ..way.clone() };
-                let Ok(next) = self.problem.least(self.machine, self.asked, &way) else { break };
+                let node = SearchNode { tangents: Some(tangents), ..node.clone() };
+                let Ok(next) = self.problem.least(self.machine, self.asked, &node) else { break };
                 let next = self.with_exact_inertia(&next);
                 tangents = about(&next);
                 let gain = best.as_ref().map_or(f64::INFINITY, |best| best.value - next.value);
@@ -178,23 +179,23 @@ impl Search<'_> {
     }
 
     /// Splits the cell in which an inertia differs most from its exact value; empty if all cells are too narrow.
-    fn halves(&self, least: &Optimum, way: &SearchNode, best: Option<&Optimum>) -> Vec<SearchNode> {
+    fn halves(&self, least: &Optimum, node: &SearchNode, best: Option<&Optimum>) -> Vec<SearchNode> {
         let excess = self.problem.excess(self.machine, self.asked, &least.x);
         let each = excess.iter().enumerate().flat_map(|(j, [place, own])| [(j, true, *place), (j, false, *own)]);
         let mut order: Vec<(usize, bool, f64)> = each.collect();
         order.sort_by(|a, b| b.2.total_cmp(&a.2));
-        // No counterweight is heavier than the best objective over the weight of mass.
+        // No counterweight is heavier than the best objective divided by the weight of mass.
         let heaviest = best.map(|best| best.value / self.asked.objective.mass).filter(|mass| mass.is_finite());
         let halved = order.into_iter().find_map(|(j, by_place, _)| {
             let [w, s] = self.problem.at(self.asked, &least.x, j);
-            let mut cell = way.cells[j];
+            let mut cell = node.cells[j];
             cell.mass[1] = cell.mass[1].min(heaviest.unwrap_or(f64::INFINITY)).max(cell.mass[0]);
             let halves = cell.halves(by_place, [w.max(0.0), if w > MIN_MASS_KG { s / w } else { 0.0 }])?;
             Some((j, halves))
         });
         let Some((j, halves)) = halved else { return Vec::new() };
         let with = |cell: SearchCell| {
-            let mut next = way.clone();
+            let mut next = node.clone();
             next.cells[j] = cell;
             next
         };

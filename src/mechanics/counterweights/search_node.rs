@@ -8,27 +8,27 @@ use super::spec::CounterweightSpec;
 /// Form of the balance conditions (7) and (8).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum BalanceGoal {
-    /// They hold exactly.
+    /// The conditions hold exactly.
     Exact,
-    /// Their largest residual over a range of payloads is the objective.
+    /// The largest residual over a range of payloads is the objective.
     Nearest,
-    /// Their largest residual over a range of payloads is at most this, kg m.
+    /// The largest residual over a range of payloads is at most this, kg m.
     Within(f64),
 }
 
-/// One subproblem of the search for counterweights: the room between pins in which the disc of each site must stay, if
-/// chosen, and the form of the balance conditions. If `most` bounds the objective, added mass and Σ H_kk are minimised
-/// instead, to choose among its optima.
+/// One subproblem of the search for counterweights.
 #[derive(Clone, Debug)]
 pub(super) struct SearchNode {
+    /// Interval between pins in which the disc of each site must stay, if one is chosen.
     pub rooms: Vec<Option<FreeSpan>>,
     pub balance: BalanceGoal,
+    /// Upper bound of the objective. If set, added mass and Σ H_kk are minimised instead, to choose among optima.
     pub most: Option<f64>,
     /// Kinds of bounds that are dropped.
     pub loose: Vec<BoundKind>,
     /// A kind of bound whose value is minimised instead of the objective.
     pub least: Option<BoundKind>,
-    /// Ranges of mass and position of each counterweight; they apply if |D_k| counts.
+    /// Ranges of mass and position of each counterweight; they apply only if the objective contains |D_k|.
     pub cells: Vec<SearchCell>,
     /// Masses, kg, and positions, m, about which inertias are linearised where they raise a negative D_k. The
     /// linearised inertia is a lower bound, so |D_k| is not underestimated.

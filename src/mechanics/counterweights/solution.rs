@@ -66,7 +66,7 @@ impl CounterweightProblem {
         costs.iter().zip(x).map(|(cost, x)| cost * x).sum()
     }
 
-    /// Returns for each site how much u and v of a solution exceed the exact inertias, kg m².
+    /// Returns the excess of u and v over the exact inertias at each site, kg m².
     pub fn excess(&self, machine: &Machine, asked: &CounterweightSpec, x: &[f64]) -> Vec<[f64; 2]> {
         let (unknowns, settled) = (UnknownIndices::of(asked, self.drives()), self.settled(machine, asked, x));
         let excess = |i: usize| x[i] - settled[i];

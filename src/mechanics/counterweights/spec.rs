@@ -20,7 +20,7 @@ pub struct Sites {
 }
 
 impl Sites {
-    /// Allows a counterweight of any mass on every link, from its length behind the root to its tip.
+    /// Allows a counterweight of any mass on every link, from one link length behind the root to the tip.
     pub fn anywhere(machine: &Machine) -> Vec<Self> {
         let parts = machine.resolved_links().iter().enumerate();
         parts.map(|(link, part)| Self { link, from: -part.length, to: part.length, most: f64::INFINITY }).collect()
@@ -75,13 +75,14 @@ impl Disc {
 pub struct Objective {
     /// Weight of the added mass, 1/kg.
     pub mass: f64,
-    /// Weight of Σ H_kk, 1/(kg m²): without gears and rotors the same as Σ D_k.
+    /// Weight of Σ H_kk, 1/(kg m²). Without gears and rotors, Σ H_kk is Σ D_k.
     pub inertia: f64,
-    /// Weight of Σ |D_k|, 1/(kg m²), which measures the moment on the base. Rotors that turn the other way reduce it.
+    /// Weight of Σ |D_k|, 1/(kg m²), which measures the moment on the base. Rotors that turn against their drives
+    /// reduce the moment.
     pub momentum: f64,
     /// Weight of the greatest torque, 1/(N m).
     pub torque: f64,
-    /// Greatest |q̈_k| of the motion, rad/s², from which the torque follows.
+    /// Greatest |q̈_k| of each drive in the motion, rad/s², from which the torque is computed.
     pub accelerations: Vec<f64>,
 }
 
@@ -102,19 +103,19 @@ impl Objective {
     }
 }
 
-/// The free parameter of a motor's rotor. The other of the two keeps its value in the machine.
+/// The free parameter of a motor's rotor. The other parameter keeps its value in the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RotorFreedom {
     /// Inertia, kg m², with lower and upper bound.
     Inertia([f64; 2]),
-    /// Gear ratio, with lower and upper bound: turns for one turn of its drive, negative if it reverses.
+    /// Gear ratio, with lower and upper bound: rotor turns for one turn of the drive, negative if the gear reverses.
     Ratio([f64; 2]),
 }
 
 /// A rotor with a free parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeRotor {
-    /// The drive to whose motor it belongs, counted from 0.
+    /// The drive whose motor has the rotor, counted from 0.
     pub drive: usize,
     /// The free parameter.
     pub parameter: RotorFreedom,
@@ -145,7 +146,7 @@ pub struct CounterweightSpec {
 const CLEARANCE: Range = Range::new(0.0, 1e3, "m");
 
 impl CounterweightSpec {
-    /// Minimises an objective, without other bounds.
+    /// Makes a request that minimises an objective, without bounds other than those of the sites.
     pub fn least(objective: Objective, sites: Vec<Sites>, disc: Disc) -> Self {
         let (most_mass, most_inertia, clearance, payload) = (None, None, None, None);
         Self { sites, disc, objective, most_mass, most_inertia, clearance, rotors: Vec::new(), payload }

@@ -15,7 +15,7 @@ pub struct PlacementTolerance {
 }
 
 impl PlacementTolerance {
-    /// One per cent, and half a millimetre.
+    /// Tolerances of one per cent and of half a millimetre.
     pub const USUAL: Self = Self { mass: 0.01, place: 5e-4 };
 }
 
@@ -29,7 +29,7 @@ pub struct WorstResidual {
 }
 
 /// Returns the largest residuals of a balanced machine if all counterweights deviate by their tolerances with the worst
-/// signs. To first order: products of deviations are neglected.
+/// signs. Products of deviations are neglected.
 pub fn worst_residual(machine: &Machine, tolerance: &PlacementTolerance) -> WorstResidual {
     let mut worst = WorstResidual { force: 0.0, coupling: 0.0 };
     for condition in Condition::all(machine.drives()) {

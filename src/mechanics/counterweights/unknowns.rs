@@ -1,20 +1,20 @@
-//! [`UnknownIndices`]: indices of the unknowns of the cone program, and D_k and H_kk as linear functions of them.
+//! [`UnknownIndices`]: indices of the unknowns of the cone program, and D_k and H_kk as affine functions of them.
 
 use super::problem::CounterweightProblem;
 use super::spec::{CounterweightSpec, RotorFreedom};
 use crate::machine::Machine;
 
 /// Indices of the unknowns, in this order: w and s of each site; u and v of each site and H_kk of each drive without
-/// free rotors, if the inertia counts; two for each free rotor; |D_k| of each drive, if it counts; and the greatest
-/// torque.
+/// free rotors, if the objective or a bound depends on inertia; two for each free rotor; |D_k| of each drive, if the
+/// objective contains it; and the greatest torque.
 #[derive(Clone, Copy)]
 pub(super) struct UnknownIndices {
     sites: usize,
-    /// Whether the inertia counts.
+    /// Whether the objective or a bound depends on inertia.
     pub inertia: bool,
     drives: usize,
     rotors: usize,
-    /// Whether |D_k| counts.
+    /// Whether the objective contains |D_k|.
     pub momentum: bool,
 }
 
@@ -53,7 +53,7 @@ impl UnknownIndices {
         before + 2 * i
     }
 
-    /// Index of an upper bound of J N² of a rotor with free ratio N; 0 for one with free inertia.
+    /// Index of an upper bound of J N² of a rotor with free ratio N. The unknown is 0 if the inertia is free instead.
     pub fn turned(self, i: usize) -> usize {
         self.rotor(i) + 1
     }
@@ -68,7 +68,7 @@ impl UnknownIndices {
     }
 }
 
-/// A linear function of the unknowns.
+/// An affine function of the unknowns.
 pub(super) struct AffineForm {
     pub terms: Vec<(usize, f64)>,
     pub constant: f64,
@@ -114,7 +114,7 @@ impl CounterweightProblem {
         self.inertia.momentum(k) - self.inertia.diagonal(k)
     }
 
-    /// Returns a linear lower bound of H_kk without free rotors, tangent at masses, kg, and positions, m, of
+    /// Returns an affine lower bound of H_kk without free rotors, tangent at the masses, kg, and positions, m, in
     /// `tangents`.
     pub fn linear_diagonal(
         &self,

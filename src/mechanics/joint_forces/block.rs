@@ -4,7 +4,7 @@ use super::pins::{FLAT_SINE, MAX_PINS};
 use super::tree::{CutClosure, TreeLink, lever};
 use crate::planar::{UnitVectors, Vector};
 
-/// Maximum number of closures solved together: each closure comes with two undriven links, so with three pins.
+/// Maximum number of closures solved together: each closure has two undriven links, and therefore three pins.
 pub(super) const MAX_BLOCK_CLOSURES: usize = MAX_PINS / 3;
 
 /// Forces of the cut closures of a block, N, in the order of the block.
@@ -24,7 +24,7 @@ pub(super) fn together(
     let mut a = [[0.0; 2 * MAX_BLOCK_CLOSURES + 1]; 2 * MAX_BLOCK_CLOSURES];
     for (row, &j) in a.iter_mut().zip(rows) {
         let ej = e[links[j].drive];
-        // Rows are scaled to unit size, so that pivots compare with 1.
+        // Each row is scaled so that its largest lever is 1; pivots are then comparable to sines.
         let size = open.iter().fold(0.0_f64, |m, &c| m.max(lever(&closures[c], j).abs()));
         let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
         for (i, &c) in open.iter().enumerate() {

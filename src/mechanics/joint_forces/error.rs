@@ -1,11 +1,11 @@
-//! Why the forces of pins cannot be computed.
+//! [`JointsError`]: the reason why the forces of pins cannot be computed.
 
 use thiserror::Error;
 
 use super::pins::MAX_PINS;
 use stillbase_settings::number::counted;
 
-/// Why statics does not determine the forces in a machine.
+/// Reason why statics does not determine the forces in a machine.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum JointsError {
     /// More than [`MAX_PINS`] pins.
@@ -25,7 +25,7 @@ pub enum JointsError {
         /// The links that follow it.
         links: String,
     },
-    /// A motor on an undriven link of a loop turns links of a loop.
+    /// A motor on an undriven link of a loop turns a link of another loop.
     #[error(
         "the motor of drive {drive} sits on a link of a loop and turns another loop: want it on a link that a drive \
          turns, for forces of pins to be computed one loop after another"
@@ -48,10 +48,10 @@ pub enum JointsError {
         closures: usize,
         /// The links that are in no loop; if all are in loops, the links among which a closure is missing.
         loose: String,
-        /// Number of closures that would be right, in words.
+        /// Required number of closures, in words.
         wanted: String,
     },
-    /// More closures than determine the orientation of the links.
+    /// There are more closures than are needed to determine the orientation of all links.
     #[error(
         "{}, which hold the orientation of two links each, and {} that no drive turns: want {}, as redundant ones \
          share their force in a way that only the links' elasticity decides",
@@ -64,7 +64,7 @@ pub enum JointsError {
         closures: usize,
         /// Number of links that no drive turns.
         links: usize,
-        /// Number of closures that would be right, in words.
+        /// Required number of closures, in words.
         wanted: String,
     },
     /// Closures are redundant in one place and missing in another.

@@ -17,14 +17,15 @@ pub struct PinForces {
 }
 
 impl PinForces {
-    /// Returns the force of pin i, N, in base axes, which its first link exerts on its second. `None` while a
-    /// parallelogram that the force depends on is flat.
+    /// Returns the force that the first link of pin i exerts on its second link, N, in base axes. `None` while a
+    /// parallelogram on which the force depends is flat.
     #[inline]
     pub fn get(&self, i: usize) -> Option<Vector> {
         (i < self.len && self.undefined & 1 << i == 0).then(|| self.forces[i])
     }
 
-    /// Returns the forces of all pins, N, always finite: at a change point those at |sin(q_k − q_l)| = [`FLAT_SINE`].
+    /// Returns the forces of all pins, N. They stay finite: at a change point, |sin(q_k − q_l)| is replaced by
+    /// [`FLAT_SINE`].
     #[inline]
     pub fn bounded(&self) -> &[Vector] {
         &self.forces[..self.len]
@@ -40,7 +41,7 @@ impl PinForces {
         let mut worst = (0.0, 0);
         for (i, force) in self.bounded().iter().enumerate() {
             let square = force.norm_sqr();
-            // NaN counts as the largest, so that a run that has diverged shows.
+            // NaN is treated as the largest, so that a diverged run is visible.
             if square > worst.0 || square.is_nan() {
                 worst = (square, i);
             }
@@ -48,9 +49,9 @@ impl PinForces {
         (worst.0.sqrt(), worst.1)
     }
 
-    /// Returns the torques of the motors less the friction of the drives' bearings, N m, from the moments that the
-    /// driven links need. `None` at a change point; without pin friction
-    /// [`inverse`](crate::dynamics::inverse) gives them there.
+    /// Returns the torques of the motors without the friction in the drives' bearings, N m, from the moments that the
+    /// driven links need. `None` at a change point; if pins have no friction, [`inverse`](crate::dynamics::inverse)
+    /// returns these torques even there.
     pub fn torque(&self) -> Option<PerDrive> {
         (self.undefined == 0).then_some(self.torque)
     }
@@ -81,7 +82,8 @@ impl Joints {
             turn[k] = Vector::new(-qd[k] * qd[k], qdd[k]) * e[k];
         }
         let links = &self.links[..];
-        // From B outwards: acceleration of each root less gravity, and the force and moment that each link alone needs.
+        // From B outwards: the acceleration of each root minus gravity, and the force and moment that each link alone
+        // needs.
         let (mut root, mut force, mut moment) = ([zero; MAX_PINS], [zero; MAX_PINS], [0.0; MAX_PINS]);
         for (j, link) in links.iter().enumerate() {
             let (drive, arm) = link.arm;
@@ -102,7 +104,7 @@ impl Joints {
             moment[from] -= f;
             moment[to] += f;
         }
-        // And inwards: each link adds its force and moment to those of its parent.
+        // From the tips inwards: each link adds its force and moment to those of its parent.
         for (j, link) in links.iter().enumerate().rev() {
             if let Some(p) = link.parent {
                 let (drive, arm) = link.arm;
@@ -110,8 +112,8 @@ impl Joints {
                 force[p] += force[j];
             }
         }
-        // A motor in a joint reacts on the link that carries it: with the moment of the links that it turns, and with
-        // the torque that accelerates its rotor.
+        // The link that carries a motor bears the reaction: the moment of the links that the motor turns, and the
+        // torque that accelerates its rotor.
         let react = |stator: &Stator, moment: &mut [f64]| {
             let turned = links.iter().zip(&*moment).filter(|(l, _)| l.driven && l.drive == stator.drive);
             let rotor: f64 = stator.rotor.rates.iter().zip(qdd.iter()).map(|(r, qdd)| r * qdd).sum();
@@ -174,7 +176,7 @@ impl Joints {
         out
     }
 
-    /// Returns f_B, N, the force that the links at B exert on the base.
+    /// Returns f_B, the force that the links at B exert on the base, N.
     pub fn on_base(&self, forces: &PinForces) -> Vector {
         let at_base = self.pins.iter().zip(forces.bounded()).filter(|(pin, _)| pin.from.is_none());
         -at_base.map(|(_, f)| f).sum::<Vector>()

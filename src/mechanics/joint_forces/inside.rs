@@ -1,12 +1,12 @@
-//! The pin forces that a frame keeps, and their peaks and means over a run.
+//! Pin forces at one instant, as a frame stores them, and their peaks and means over a run.
 
 use super::{AxialMoments, Joints, PinForces, TiltMoment};
 use crate::dynamics::Surroundings;
 use crate::machine::Machine;
 use crate::planar::{PerDrive, UnitVectors, Vector};
 
-/// Number of pins whose forces a frame keeps. A session holds many frames, so a frame does not keep every pin; the
-/// largest force over all pins is kept in any case.
+/// Maximum number of pins whose forces a frame stores, which limits the memory of a session with many frames. A frame
+/// always stores the largest force over all pins.
 pub const MAX_FRAME_PINS: usize = 16;
 
 /// Pin forces and tilting moment at one instant.
@@ -18,7 +18,7 @@ pub struct InternalLoads {
     worst_pin: u8,
     /// The largest force of a pin, N; 0 if statics does not determine the forces.
     pub worst: f64,
-    /// The moment that tilts the base.
+    /// The moment that tilts the base, N m.
     pub tilt: TiltMoment,
 }
 
@@ -31,24 +31,25 @@ impl InternalLoads {
         Self { pins, known: known as u8, undefined: forces.undefined() as u16, worst_pin: worst_pin as u8, worst, tilt }
     }
 
-    /// Returns the force of pin i, N, in the order of [`Joints::pins`], which its first link exerts on its second.
-    /// `None` at a change point, for pins beyond [`MAX_FRAME_PINS`], and if statics does not determine the force.
+    /// Returns the force that the first link of pin i exerts on its second link, N; i is an index into
+    /// [`Joints::pins`]. `None` at a change point, for pins beyond [`MAX_FRAME_PINS`], and if statics does not
+    /// determine the force.
     pub fn pin(&self, i: usize) -> Option<Vector> {
         (i < usize::from(self.known) && self.undefined & 1 << i == 0).then(|| self.pins[i])
     }
 
-    /// Returns the magnitude of the force of pin i, N, always finite: at a change point its value at
-    /// |sin(q_k − q_l)| = [`FLAT_SINE`](super::FLAT_SINE); 0 for pins that are not kept.
+    /// Returns the magnitude of the force of pin i, N. It stays finite: at a change point, |sin(q_k − q_l)| is replaced
+    /// by [`FLAT_SINE`](super::FLAT_SINE). For pins that are not stored it is 0.
     pub fn size(&self, i: usize) -> f64 {
         self.pins.get(i).map_or(0.0, |f| f.norm())
     }
 
-    /// Returns the number of pins whose forces are kept.
+    /// Returns the number of pins whose forces are stored.
     pub fn pins(&self) -> usize {
         self.known.into()
     }
 
-    /// Returns the pin of the largest force; `None` if statics does not determine the forces.
+    /// Returns the pin with the largest force; `None` if statics does not determine the forces.
     pub fn worst_pin(&self) -> Option<usize> {
         (self.known > 0).then_some(self.worst_pin.into())
     }
@@ -107,7 +108,7 @@ pub struct PinPeak {
 }
 
 impl PinPeak {
-    /// Includes one more instant.
+    /// Includes one more instant, s, with its force, N; `None` if the force is undefined.
     pub fn include(&mut self, time: f64, force: Option<Vector>) {
         let Some(force) = force.map(|f| f.norm()) else {
             self.undefined += 1;

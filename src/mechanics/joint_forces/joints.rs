@@ -14,7 +14,7 @@ pub struct Joints {
     pub(super) pins: Vec<Pin>,
     pub(super) links: Vec<TreeLink>,
     pub(super) closures: Vec<CutClosure>,
-    /// The two links of each pin between links that follow different drives: only such pins have friction.
+    /// The two links of each pin that has friction; these links follow different drives.
     pub(super) rubbing: Vec<(usize, usize)>,
     pub(super) steps: Vec<SolveStep>,
     pub(super) parallelograms: Vec<Parallelogram>,

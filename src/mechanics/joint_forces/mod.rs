@@ -2,38 +2,39 @@
 //! base.
 //!
 //! The base wrench is a sum over all links, in which the forces between links cancel. This module computes these forces
-//! one by one: [`Joints`] holds where each link is pinned, and returns the force of each pin for a state of motion.
+//! one by one: [`Joints`] holds the pins of all links, and returns the force of each pin for a state of motion.
 //!
 //! # Symbols
 //! | letter | meaning | shape, unit |
 //! |---|---|---|
 //! | i | index of a pin: first the attachments of the links, in the order of links, then the closures | |
-//! | e_k | unit vector of drive k; e_j that of the drive whose orientation link j has | |
+//! | e_k | unit vector of drive k; e_j is that of the drive that link j follows | |
 //! | ä_k | second derivative of e_k, (i q̈_k − q̇_k²) e_k | rad/s² |
-//! | F_i | force of pin i in base axes, which its first link exerts on its second | N |
+//! | F_i | force that the first link of pin i exerts on its second, in base axes | N |
 //! | λ_c | force of closure c, a pin that is cut open | N |
 //! | w_jc | lever of λ_c about the root of link j: its moment there is w_jc e_j × λ_c | m |
-//! | μ_j | moment about its root that link j needs, with all links that it carries, once closures are cut | N m |
+//! | μ_j | moment about the root of link j that this link and its descendants need, with all closures cut | N m |
 //! | f_i | friction torque of pin i: −f_i on its second link, +f_i on its first | N m |
 //! | τ_k | torque of drive k | N m |
 //!
 //! # Method
-//! Cutting every closure leaves a tree, in which each link's root carries the link and all that hangs on it. A drive
-//! with links at B turns these; any other drive turns one link. No couple acts on the other links but the friction of
-//! their pins, which is known. So their moments determine the closure forces: Σ_c w_jc e_j × λ_c = μ_j. The levers w
-//! are constants of the machine. In the nine-link machine six links and three closures give six equations in six
-//! unknowns, which fall into three pairs. Each parallelogram has two links that no drive turns, of drives k and l:
-//! λ = (x_k e_l − x_l e_k) / sin(q_l − q_k) with x = μ/w. Loops whose equations do not fall into such pairs are solved
-//! together. The torques of the drives follow from the same equations.
+//! Cutting every closure leaves a tree, in which the root of each link carries the link and its descendants. A drive
+//! with links at B turns these; any other drive turns one link. On all other, undriven links, the only couple is the
+//! friction of their pins, which is known. So the moments of the undriven links determine the closure forces: Σ_c w_jc
+//! e_j × λ_c = μ_j. The levers w are constants of the machine. In the nine-link machine six links and three closures
+//! give six equations in six unknowns, which fall into three pairs. Each parallelogram has two undriven links, which
+//! follow drives k and l: λ = (x_k e_l − x_l e_k) / sin(q_l − q_k) with x = μ/w. Loops whose equations do not fall into
+//! such pairs are solved together. The torques of the drives follow from the same equations.
 //!
-//! # What is assumed
-//! A motor sits on the base or in a joint. In a joint, its stator is on the parent of the link it turns, or else on
-//! the link turned by the drive that carries it. A drive on the base without a link at B turns its only link by a belt.
-//! Its couple then acts between that link and the base. Part of the couple accelerates the rotor;
-//! the rotor's weight belongs to the link that carries it. Where several links share an axle, each attachment and each
-//! closure in the file is a pin of its own. All pins have the same friction; the torque that keeps the pins between two
-//! drives stuck is shared equally among them. Friction in the bearing of a drive acts between the base and the link
-//! that the drive turns. It is a couple in the pin between these two and changes no pin force.
+//! # Assumptions
+//! A motor sits on the base or in a joint. A motor in a joint is carried by another drive. Its stator is on the parent
+//! of the link that the motor turns, if that parent follows the carrying drive. Otherwise it is on the link that the
+//! carrying drive turns. A drive on the base without a link at B turns its only link by a belt. The couple of the motor
+//! then acts between that link and the base. Part of the couple accelerates the rotor. The rotor's weight belongs to
+//! the link that carries the motor. Where several links share an axle, each attachment and each closure in the file is
+//! a separate pin. All pins have the same friction; static friction between two drives is shared equally among the pins
+//! between them. Friction in the bearing of a drive acts between the base and the link that the drive turns. This
+//! friction is a couple and changes no pin force.
 //!
 //! # Near change points
 //! Where sin(q_k − q_l) → 0 the parallelogram is flat and its forces grow like 1/|sin|, while τ stays finite. Where

@@ -1,12 +1,12 @@
-//! The pins of a machine with their names. Statics need not determine their forces.
+//! The pins of a machine with their names. They are listed even if statics does not determine their forces.
 
 use crate::machine::{Chain, Machine};
 
 /// Maximum number of pins of a machine whose forces are computed.
 pub const MAX_PINS: usize = 32;
 
-/// Smallest |sin(q_k − q_l)| at which the forces of a parallelogram are defined. At this value rounding alone changes
-/// them by 1e-7.
+/// Smallest |sin(q_k − q_l)| at which the forces of a parallelogram are defined. At this value, rounding alone causes
+/// relative errors of 1e-7.
 pub const FLAT_SINE: f64 = 1e-9;
 
 /// A pin or bearing.
@@ -18,7 +18,7 @@ pub struct Pin {
     pub from: Option<usize>,
     /// The link that the force acts on.
     pub to: usize,
-    /// Position of the pin, m.
+    /// Position of the pin, m, as weights of the drives' unit vectors.
     pub at: Chain,
     /// Whether it closes a loop; otherwise it attaches a link.
     pub closes: bool,

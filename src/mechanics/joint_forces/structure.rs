@@ -12,7 +12,7 @@ pub fn links(machine: &Machine) -> Result<Vec<TreeLink>, JointsError> {
     let driven = driven(machine)?;
     let mut order: Vec<usize> = Vec::with_capacity(driven.len());
     while order.len() < driven.len() {
-        // Machines have no cycles, so each round finds at least one.
+        // Machines have no cycles, so each round finds at least one link.
         let ready = |j: usize| machine.resolved_links()[j].parent.is_none_or(|p| order.contains(&p));
         let next: Vec<usize> = (0..driven.len()).filter(|j| !order.contains(j) && ready(*j)).collect();
         order.extend(next);
@@ -48,8 +48,8 @@ pub fn links(machine: &Machine) -> Result<Vec<TreeLink>, JointsError> {
     Ok(order.iter().map(held_by).collect())
 }
 
-/// Returns for each link whether a drive turns it. A drive turns the links at B that follow it; without one, the only
-/// link that follows it, or the only one of these that hangs on the drive carrying its motor.
+/// Returns for each link whether a drive turns it. A drive turns the links at B that follow it. If there are none, it
+/// turns its only follower, or its only follower whose parent follows the drive that carries the motor.
 fn driven(machine: &Machine) -> Result<Vec<bool>, JointsError> {
     let parts = machine.resolved_links();
     let mut driven: Vec<bool> = parts.iter().map(|p| p.parent.is_none()).collect();
@@ -71,8 +71,9 @@ fn driven(machine: &Machine) -> Result<Vec<bool>, JointsError> {
     Ok(driven)
 }
 
-/// Returns the motors that have rotors or whose stators sit on links. A stator sits on the parent of the link that its
-/// motor turns, or else on the link that is turned by the drive which carries the motor.
+/// Returns the motors that have rotors or whose stators sit on links. A stator sits on the parent of the link that the
+/// motor turns, if this parent follows the drive that carries the motor. Otherwise it sits on the link that the
+/// carrying drive turns.
 ///
 /// # Errors
 /// If a motor on an undriven link turns links whose moments depend on closure forces.
@@ -111,7 +112,7 @@ pub fn closures(machine: &Machine, links: &[TreeLink]) -> Vec<CutClosure> {
     for (i, closure) in machine.loops().iter().enumerate() {
         let (mut levers, mut carried) = (vec![0.0; links.len()], vec![0.0; links.len()]);
         for (link, s, sense) in [(closure.a, closure.at_a, -1.0), (closure.b, closure.at_b, 1.0)] {
-            // Along each link down to the base: from the point where the force acts to the root.
+            // Walks down to the base; along each link, from the point where the force acts to the root.
             let (mut at, mut along) = (place(link), machine.resolved_links()[link].sign * s);
             while let Some(j) = at {
                 levers[j] += sense * along;
@@ -119,7 +120,7 @@ pub fn closures(machine: &Machine, links: &[TreeLink]) -> Vec<CutClosure> {
                 (at, along) = (links[j].parent, links[j].arm.1);
             }
         }
-        // Levers of links that both sides share cancel.
+        // On links that carry both ends of the closure, the levers cancel.
         let kept = |values: Vec<f64>, least: f64| -> Vec<(usize, f64)> {
             values.into_iter().enumerate().filter(|(_, x)| x.abs() > least).collect()
         };
@@ -173,8 +174,8 @@ pub fn steps(machine: &Machine, links: &[TreeLink], closures: &[CutClosure]) -> 
     Ok(steps)
 }
 
-/// Returns two links of different drives, with their levers, on which closure `c` alone of all `open` ones has a
-/// moment.
+/// Returns two links of different drives, with their levers, on which closure `c` is the only one of the `open`
+/// closures that has a moment.
 fn pair(
     links: &[TreeLink],
     closures: &[CutClosure],
@@ -200,8 +201,8 @@ fn is_regular(links: &[TreeLink], closures: &[CutClosure], block: &SolveStep) ->
     })
 }
 
-/// Marks for each closure the pins that depend on it: those that carry its force, and those that depend on closures
-/// solved after it.
+/// Marks for each closure the pins that depend on its force. These are the pins that carry it, and the pins that depend
+/// on later closures whose equations contain it.
 pub fn spread(links: &[TreeLink], closures: &mut [CutClosure], steps: &[SolveStep]) {
     for (at, step) in steps.iter().enumerate().rev() {
         let mut reaches = 0;

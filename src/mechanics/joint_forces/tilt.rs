@@ -1,13 +1,13 @@
 //! Moments that tilt the base out of the plane of motion, which arise from the heights of the links.
 //!
-//! The motion is planar, but the links lie at different heights. A force f in the plane at height z has the moment
-//! (−z f_y, z f_x, …) about B; as complex number x + iy it is i z f. So a force balanced machine, whose forces cancel,
-//! may still transmit a couple.
+//! The motion is planar, but the links lie at different heights. A force f in the plane at height z has the moment (−z
+//! f_y, z f_x, …) about B; written as a complex number x + iy it is i z f. So a force balanced machine, whose forces
+//! cancel, may still transmit a couple.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | z_j | height of the CM of link j, or of the payload, along the drives' axis from the plane of reference through B | m |
+//! | z_j | height of the CM of link j, or of the payload, above the reference plane through B | m |
 //! | S | Σ_j m_j z_j | kg m |
 //! | s_k | Σ_j m_j z_j a_jk: first moments weighted with z; the CM of link j is at Σ_k a_jk e_k | complex, kg m² |
 //! | n_t | moment about B that tilts the base, n_x + i n_y | N m |
@@ -15,9 +15,10 @@
 //!
 //! # Closed form
 //! n_t = i [S g + z_e F − Σ_k s_k (i q̈_k − q̇_k²) e_k], with gravity g and a force F at the payload's height z_e. The
-//! couple of the motion has s_k − z̄ g_k, g_k = Σ_j m_j a_jk, in place of s_k: it is the moment about height z̄.
+//! couple from motion is the moment about height z̄. Its formula has s_k − z̄ g_k in place of s_k, with g_k = Σ_j m_j
+//! a_jk.
 //!
-//! # What is assumed
+//! # Assumptions
 //! Products of inertia I_xz, I_yz of each link about its own CM are zero. Each link is symmetric about a plane normal
 //! to the drives' axis. With all z_j = 0, the default, n_t = 0.
 
@@ -25,7 +26,7 @@ use crate::dynamics::Surroundings;
 use crate::machine::Machine;
 use crate::planar::{MAX_DRIVES, PerDrive, UnitVectors, Vector};
 
-/// Constants of a machine from which its tilting moment follows.
+/// Constants of a machine from which its tilting moment is computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxialMoments {
     drives: usize,
@@ -45,7 +46,7 @@ pub struct AxialMoments {
 pub struct TiltMoment {
     /// Part from motion.
     pub motion: Vector,
-    /// Part from weight and from a force held at the end effector.
+    /// Part from weight and from a force on the end effector.
     pub weight: Vector,
 }
 
@@ -57,7 +58,7 @@ impl TiltMoment {
 }
 
 impl AxialMoments {
-    /// Sums over the links and the payload.
+    /// Computes the constants as sums over the links and the payload.
     pub fn of(machine: &Machine) -> Self {
         let zero = Vector::default();
         let payload = machine.spec().payload;
@@ -88,12 +89,13 @@ impl AxialMoments {
         self.flat
     }
 
-    /// Returns the largest |s_k − z̄ g_k|, kg m²: 0 if motion transmits no tilting couple, even with forces unbalanced.
+    /// Returns the largest |s_k − z̄ g_k|, kg m²: 0 if motion transmits no tilting couple, even if forces are not
+    /// balanced.
     pub fn residual(&self) -> f64 {
         self.couple[..self.drives].iter().fold(0.0, |m, s| m.max(s.norm()))
     }
 
-    /// Returns the tilting moment about B at the plane of reference.
+    /// Returns the tilting moment about B in the reference plane, N m.
     #[inline]
     pub fn tilt(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> TiltMoment {
         let i = Vector::new(0.0, 1.0);
@@ -109,7 +111,7 @@ impl AxialMoments {
         Vector::new(0.0, 1.0) * self.pull(&self.couple, e, qd, qdd)
     }
 
-    /// Returns −Σ_k s_k ä_k.
+    /// Returns −Σ_k s_k ä_k, N m.
     #[inline]
     fn pull(&self, s: &[Vector; MAX_DRIVES], e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive) -> Vector {
         let mut sum = Vector::default();

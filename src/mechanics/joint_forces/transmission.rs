@@ -14,7 +14,7 @@ use super::tree::{CutClosure, TreeLink};
 use crate::machine::Inertia;
 use crate::planar::{PerDrive, UnitVectors, cross};
 
-/// A loop of two drives.
+/// A parallelogram: a loop whose links follow two drives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parallelogram {
     /// Name of the pin that closes it.
@@ -37,7 +37,7 @@ pub struct ChangePointDistance {
     pub drives: (usize, usize),
     /// |q_k − q_l − mπ|, rad.
     pub distance: f64,
-    /// Time to the change point at the present rates, s; `None` if they are equal or lead away from it.
+    /// Time to the change point at the present rates, s; `None` if the rates are equal or lead away from it.
     pub time: Option<f64>,
 }
 
@@ -46,7 +46,7 @@ pub fn pair_transmission(e: &UnitVectors, k: usize, l: usize) -> f64 {
     cross(e[k], e[l]).abs()
 }
 
-/// Returns an angle less the nearest multiple of π, −π/2 to π/2, rad.
+/// Returns an angle minus the nearest multiple of π, −π/2 to π/2, rad.
 fn from_multiple_of_pi(angle: f64) -> f64 {
     angle - PI * (angle / PI).round()
 }
@@ -60,12 +60,12 @@ pub fn nearest_change_point(q: &[f64], qd: &PerDrive) -> Option<ChangePointDista
     all.min_by(|a, b| a.distance.total_cmp(&b.distance))
 }
 
-/// Returns the change point that the present rates reach first, with the angle that the pair has to turn until then;
-/// `None` if all drives turn at the same rate.
+/// Returns the change point that is reached first at the present rates; its distance is measured in the direction of
+/// motion. `None` if all drives turn at the same rate.
 pub fn next_change_point(q: &[f64], qd: &PerDrive) -> Option<ChangePointDistance> {
     let all = Inertia::pairs(q.len()).filter_map(|(k, l)| {
         let (past, rate) = (from_multiple_of_pi(q[k] - q[l]), qd[k] - qd[l]);
-        // Towards the nearest multiple of π, or from it to the next.
+        // The pair turns towards the nearest multiple of π, or away from it to the next one.
         let way = if past * rate <= 0.0 { -past } else { PI.copysign(rate) - past };
         let time = arrival(way, rate)?;
         Some(ChangePointDistance { drives: (k, l), distance: way.abs(), time: Some(time) })
@@ -73,13 +73,13 @@ pub fn next_change_point(q: &[f64], qd: &PerDrive) -> Option<ChangePointDistance
     all.min_by(|a, b| a.time.unwrap_or(0.0).total_cmp(&b.time.unwrap_or(0.0)))
 }
 
-/// Returns the time in which a rate, rad/s, covers an angle `way`, rad, s; `None` if it does not.
+/// Returns the time, s, in which a rate, rad/s, covers the angle `way`, rad; `None` if it never does.
 fn arrival(way: f64, rate: f64) -> Option<f64> {
     let time = way / rate;
     (rate != 0.0 && time >= 0.0 && time.is_finite()).then_some(time)
 }
 
-/// Returns the closures that close a loop of two drives.
+/// Returns the closures of loops whose links follow two drives.
 pub(super) fn parallelograms(pins: &[Pin], links: &[TreeLink], closures: &[CutClosure]) -> Vec<Parallelogram> {
     let of = |(pin, closure): (&Pin, &CutClosure)| {
         let mut drives: Vec<usize> = closure.levers.iter().map(|(j, _)| links[*j].drive).collect();

@@ -3,22 +3,22 @@
 use crate::machine::RotorCoupling;
 use crate::planar::Vector;
 
-/// A link of the tree with the payload that it holds.
+/// A link of the tree; the link at the end effector includes the payload.
 #[derive(Clone, Debug)]
 pub struct TreeLink {
     /// Index of the link in the machine, and of the pin that attaches it.
     pub link: usize,
     /// Index of its parent in the tree; `None` for the base.
     pub parent: Option<usize>,
-    /// Drive whose orientation it has.
+    /// Drive whose orientation the link has.
     pub drive: usize,
     /// Drive of its parent, and the signed distance of its root along the parent, m.
     pub arm: (usize, f64),
-    /// Σ m, kg.
+    /// Mass Σ m, kg.
     pub mass: f64,
-    /// Σ m c about the root, kg m, c complex along the link.
+    /// First moment Σ m c about the root, kg m, with complex c relative to the drive's direction.
     pub first: Vector,
-    /// Σ I + m |c|² about the root, kg m².
+    /// Moment of inertia Σ (I + m |c|²) about the root, kg m².
     pub second: f64,
     /// Signed distance of the end effector along the link, m; `None` if another link carries it.
     pub end_effector: Option<f64>,
@@ -33,7 +33,7 @@ pub struct Stator {
     pub drive: usize,
     /// The link that carries it; `None` for the base.
     pub link: Option<usize>,
-    /// Its rotor: inertia, kg m², and the ratios of its rate to those of the drives.
+    /// Its rotor, with inertia, kg m², and rate ratios.
     pub rotor: RotorCoupling,
     /// Whether the moment of its drive is known before the closures are solved.
     pub before: bool,
@@ -46,13 +46,13 @@ pub struct CutClosure {
     pub pin: usize,
     /// Links about whose roots λ has a moment, each with the lever w of λ, m.
     pub levers: Vec<(usize, f64)>,
-    /// Links whose roots carry ±λ, with the sign.
+    /// Links whose roots carry λ or −λ, with the sign.
     pub carried: Vec<(usize, f64)>,
     /// Pins whose forces depend on λ, one bit each.
     pub reaches: u32,
 }
 
-/// One step of the solution: closures that are solved at once.
+/// One step of the solution: closures that are solved simultaneously.
 #[derive(Clone, Debug)]
 pub enum SolveStep {
     /// One closure from the equations of two links.

@@ -1,4 +1,4 @@
-//! Makes a [`Machine`] of a specification: checks it, looks up names, and resolves roots and loops.
+//! Makes a [`Machine`] from a specification: checks it, looks up names, and resolves roots and loops.
 
 use super::Chain;
 use super::caps::{MAX_IN_A_ROW, check_counts};
@@ -18,12 +18,12 @@ use stillbase_settings::text::control_character;
 pub const CLOSURE_TOLERANCE: f64 = 1e-9;
 
 impl Machine {
-    /// Makes a machine of a specification.
+    /// Makes a machine from a specification.
     ///
     /// # Errors
-    /// If the specification is not a valid machine; reports the first error.
+    /// If the specification is not a valid machine; returns the first error.
     pub fn new(mut spec: MachineSpec) -> Result<Self, MachineError> {
-        // A rotor with the default values, without inertia, is stored as no rotor.
+        // A rotor with the default values has no inertia and is removed.
         for drive in &mut spec.drives {
             drive.rotor = drive.rotor.filter(|rotor| *rotor != Rotor::default());
         }
@@ -186,7 +186,7 @@ fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<ResolvedLink>, Machi
     }
     let mut parts = Vec::with_capacity(spec.links.len());
     for (i, link) in spec.links.iter().enumerate() {
-        // Walk from the link to the base; a walk longer than the number of links runs in a cycle.
+        // Walks from the link to the base; a walk longer than the number of links runs in a cycle.
         let (mut root, mut at, mut chain) = ([0.0; MAX_DRIVES], i, vec![spec.links[i].name.as_str()]);
         while let Some((parent, s)) = parents[at] {
             chain.push(&spec.links[parent].name);
@@ -271,7 +271,8 @@ fn bodies(spec: &MachineSpec, names: &Names) -> Result<Vec<Link>, MachineError> 
     Ok(bodies)
 }
 
-/// Resolves where each motor's stator sits; refuses a cycle, in which a walk towards the base meets a drive again.
+/// Looks up the drive that carries each motor. A cycle, in which a walk towards the base meets a drive again, is an
+/// error.
 fn resolve_motors(spec: &MachineSpec, names: &Names) -> Result<Motors, MachineError> {
     let mut on = Vec::with_capacity(spec.drives.len());
     for (i, drive) in spec.drives.iter().enumerate() {
@@ -296,7 +297,7 @@ fn resolve_motors(spec: &MachineSpec, names: &Names) -> Result<Motors, MachineEr
     Ok(Motors::new(&on))
 }
 
-/// Collects the pins along each link, so that the link can be drawn long enough to reach all of them.
+/// Collects the positions of the pins along each link, in ascending order.
 fn add_pins(spec: &MachineSpec, names: &Names, parts: &mut [ResolvedLink]) -> Result<(), MachineError> {
     let nowhere = || KeyPath::default();
     for part in parts.iter_mut() {

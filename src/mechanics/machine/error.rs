@@ -1,4 +1,4 @@
-//! Errors of a machine specification: what is wrong, where, and what would be right.
+//! [`MachineError`]: an error in a machine specification, with its place and the allowed values.
 
 use std::fmt;
 
@@ -8,7 +8,8 @@ use super::spec::MachineSpec;
 use stillbase_settings::number::ShortNumber;
 use stillbase_settings::range::{Requirement, quote_clipped};
 
-/// A place in a machine file: a path of keys and positions. It is shown as `--set` takes it, such as `link.5.mass`.
+/// A place in a machine file: a path of keys and positions. It is printed in the syntax of `--set`, such as
+/// `link.5.mass`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct KeyPath(pub Vec<KeyStep>);
 
@@ -19,17 +20,18 @@ pub enum KeyStep {
     Key(String),
     /// A position in an array, counted from 0.
     At(usize),
-    /// A position in an array, counted from 0, with the name of the element, which keys use.
+    /// A position in an array, counted from 0, with the name of the element, which is printed instead.
     Named(usize, String),
 }
 
 impl KeyPath {
-    /// A place from its keys; numbers become positions.
+    /// Makes a place from its steps; numbers become positions.
     pub fn new(path: &[&dyn AsKeyStep]) -> Self {
         Self(path.iter().map(|s| s.step()).collect())
     }
 
-    /// The place of a key as `--set` names it, its parts joined by dots, positions in brackets: `task.via[3]`.
+    /// Makes a place from a key in the syntax of `--set`: parts joined by dots, positions in brackets, such as
+    /// `task.via[3]`.
     pub fn of_key(key: &str) -> Self {
         let steps = key.split('.').flat_map(|part| {
             let (name, position) = part.split_once('[').unwrap_or((part, ""));
@@ -39,7 +41,7 @@ impl KeyPath {
         Self(steps.collect())
     }
 
-    /// Returns the same place seen from a table that holds this one under a key.
+    /// Returns the same place relative to an outer table, in which the present table has the key `key`.
     #[must_use]
     pub fn under(self, key: &str) -> Self {
         Self(std::iter::once(KeyStep::Key(key.into())).chain(self.0).collect())
@@ -94,7 +96,7 @@ pub enum MachineError {
     /// A number that is not finite.
     #[error("{place} is {}: want a finite number, {unit}", ShortNumber(*value))]
     NotFinite {
-        /// Where in the machine file.
+        /// Place in the machine file.
         place: KeyPath,
         /// The number.
         value: f64,
@@ -104,17 +106,17 @@ pub enum MachineError {
     /// A number that is out of its range.
     #[error("{place} is {}: want {want}", ShortNumber(*value))]
     OutOfRange {
-        /// Where in the machine file.
+        /// Place in the machine file.
         place: KeyPath,
         /// The number.
         value: f64,
-        /// What would be right.
+        /// The allowed values.
         want: Requirement,
     },
     /// A name that does not exist.
     #[error("{place} names the {what} {:?}, which does not exist: want one of {known}", quote_clipped(name))]
     Unknown {
-        /// Where in the machine file.
+        /// Place in the machine file.
         place: KeyPath,
         /// Kind of the part: drive, link, length …
         what: &'static str,
@@ -126,7 +128,7 @@ pub enum MachineError {
     /// Two parts have the same name.
     #[error("{place} is {:?}, which is taken: want a name of its own", quote_clipped(name))]
     Duplicate {
-        /// Where in the machine file.
+        /// Place in the machine file.
         place: KeyPath,
         /// The name.
         name: String,
@@ -134,7 +136,7 @@ pub enum MachineError {
     /// A name with a control character, which could change a terminal's state.
     #[error("{place} holds the control character U+{:04X}: want a name of printable characters", u32::from(*character))]
     Unprintable {
-        /// Where in the machine file.
+        /// Place in the machine file.
         place: KeyPath,
         /// The first such character.
         character: char,
@@ -146,13 +148,13 @@ pub enum MachineError {
         what: &'static str,
         /// Their number.
         count: usize,
-        /// The number that would be right, in words.
+        /// The allowed number, in words.
         want: String,
     },
     /// A text that is too long.
     #[error("{place} is {:?}: want at most {most} characters", quote_clipped(text))]
     TooLong {
-        /// Where in the machine file.
+        /// Place in the machine file.
         place: KeyPath,
         /// The text.
         text: String,
@@ -162,7 +164,7 @@ pub enum MachineError {
     /// Links that are attached to each other in a cycle.
     #[error("{place}: link {link:?} hangs on itself ({chain}): want a chain that ends at \"base\"")]
     Cycle {
-        /// Where in the machine file.
+        /// Place in the machine file.
         place: KeyPath,
         /// A link of the cycle.
         link: String,
@@ -174,7 +176,7 @@ pub enum MachineError {
         "{place}: {a} and {b} are not one point in every pose, they differ by {gap}: want a parallelogram that closes"
     )]
     OpenLoop {
-        /// Where in the machine file.
+        /// Place in the machine file.
         place: KeyPath,
         /// The point on the first link.
         a: String,
@@ -197,7 +199,7 @@ pub enum MachineError {
         "{place}: the motor of drive {drive:?} sits on itself ({chain}): want a chain that ends on the base, without \"on\""
     )]
     StatorCycle {
-        /// Where in the machine file.
+        /// Place in the machine file.
         place: KeyPath,
         /// A drive of the cycle.
         drive: String,
@@ -219,7 +221,7 @@ pub enum MachineError {
         /// The drive.
         drive: String,
     },
-    /// A new length for one link of several that share it.
+    /// A new length for one of several links that share their length.
     #[error(
         "link {link} shares its length {length} with {sharers}: changing it alone would break a parallelogram; set length.{length} instead"
     )]
@@ -246,10 +248,10 @@ pub enum MachineError {
         key: String,
         /// The value that was given.
         value: String,
-        /// What would be right.
+        /// The allowed values.
         want: &'static str,
     },
-    /// Not TOML, or not the TOML of a machine.
+    /// The text is not TOML, or not the TOML of a machine.
     #[error("{0}")]
     Syntax(String),
 }
@@ -299,7 +301,7 @@ impl MachineError {
     }
 }
 
-/// Returns names as a message lists them: quoted, at most 20.
+/// Returns a list of names for messages: quoted, at most 20.
 pub(super) fn quoted<'a>(names: impl Iterator<Item = &'a str>) -> String {
     let mut known: Vec<String> = names.take(21).map(|n| format!("{:?}", quote_clipped(n))).collect();
     if known.len() > 20 {

@@ -8,7 +8,7 @@
 //! | g_k | first moment Σ_j m_j a_jk; γ_k = i g_k e^{i q_k}, (3), (A1) | complex, kg m |
 //! | C_kl | coupling Σ_j m_j conj(a_jk) a_jl | Hermitian, kg m² |
 //! | J_k | spin: inertia of all links that follow drive k | kg m² |
-//! | r | a rotor of inertia J turns at r·q̇: r = N e_k on the base, N e_k + (1 − N) e_on on links of a drive | |
+//! | r | a rotor of inertia J turns at r·q̇: r_k = N, and r_l = 1 − N if its stator is on links of drive l | |
 //! | H | mass matrix: C, J_k on its diagonal, and J r rᵀ of every rotor | kg m² |
 //! | D | angular momentum about B is D q̇: C_kk + J_k + J r_k where all C_kl vanish | kg m² |
 
@@ -28,19 +28,19 @@ pub struct Inertia {
     pub g: [Vector; MAX_DRIVES],
     /// Couplings C_kl of the drives, kg m²; the real part of C_kk is a moment of inertia.
     pub c: [[Vector; MAX_DRIVES]; MAX_DRIVES],
-    /// J_k and the contribution J r_k² of the rotors to H_kk, kg m².
+    /// J_k plus the contribution J r_k² of the rotors to H_kk, kg m².
     pub spin: [f64; MAX_DRIVES],
     /// Contribution J r_k r_l of the rotors to H_kl, k ≠ l, kg m².
     pub rotor_coupling: [[f64; MAX_DRIVES]; MAX_DRIVES],
     /// D_k − Σ_l H_lk, kg m²: J r_k (1 − Σ_l r_l) of the rotors, from the reaction of gears on stators on the base.
     pub stator_reaction: [f64; MAX_DRIVES],
-    /// The rotors, one a drive.
+    /// The rotor of each drive.
     pub rotors: [RotorCoupling; MAX_DRIVES],
     /// Coefficients of the end-effector position, m.
     pub end_effector: Chain,
 }
 
-/// A rotor, with the ratios of its rate to those of the drives and, after these, of a base that turns.
+/// A rotor with its rate ratios: those for the drives, then that for a base that turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RotorCoupling {
     /// Inertia J about its axis, kg m².
@@ -107,8 +107,8 @@ impl Inertia {
         }
     }
 
-    /// Adds the rotors' inertia for a base that turns, as one more drive after the others. The ratios of each rotor
-    /// then sum to 1, so that the columns of the mass matrix sum to D.
+    /// Adds the rotors' inertia for a base that turns; the base is treated as one more drive after the others. The
+    /// ratios of each rotor then sum to 1, so that the columns of the mass matrix sum to D.
     pub fn turn_base(&mut self) {
         let n = self.drives;
         self.stator_reaction = [0.0; MAX_DRIVES];
@@ -127,8 +127,8 @@ impl Inertia {
         }
     }
 
-    /// Adds a body that follows a drive, with its mass, kg, its inertia about its CM, kg m², and its CM Σ_k a_k e^{i
-    /// q_k}.
+    /// Adds a body that follows a drive: its mass, kg, its inertia about its CM, kg m², and the coefficients a_k, m, of
+    /// its CM Σ_k a_k e^{i q_k}.
     pub fn add(&mut self, mass: f64, inertia: f64, drive: usize, a: &[Vector; MAX_DRIVES]) {
         self.mass += mass;
         self.spin[drive] += inertia;
@@ -150,37 +150,37 @@ impl Inertia {
         self.mass
     }
 
-    /// First moment g_k, kg m: the bracket of (A1).
+    /// First moment g_k, kg m: the expression in brackets in (A1).
     pub fn first_moment(&self, k: usize) -> Vector {
         self.g[k]
     }
 
-    /// Coupling C_kl, kg m²; for k ≠ l the bracket of (8).
+    /// Coupling C_kl, kg m²; for k ≠ l the expression in brackets in (8).
     pub fn coupling(&self, k: usize, l: usize) -> Vector {
         self.c[k][l]
     }
 
-    /// H_kk = C_kk + J_k, kg m²: the same in every pose.
+    /// H_kk, kg m²: C_kk + J_k plus J r_k² of the rotors, the same in every pose.
     pub fn diagonal(&self, k: usize) -> f64 {
         self.c[k][k].re + self.spin[k]
     }
 
-    /// H_kl where all C_kl, k ≠ l, vanish, kg m².
+    /// H_kl, kg m², of a machine in which all C_kl, k ≠ l, vanish.
     pub fn constant(&self, k: usize, l: usize) -> f64 {
         if k == l { self.diagonal(k) } else { self.rotor_coupling[k][l] }
     }
 
-    /// Every H_kk; where all C_kl vanish and there are no rotors these are D_k, (11).
+    /// Every H_kk, kg m². If all C_kl vanish and there are no rotors, these are D_k, (11).
     pub fn diagonals(&self) -> PerDrive {
         PerDrive::from_fn(self.drives, |k| self.diagonal(k))
     }
 
     /// Returns D_k where all C_kl vanish, kg m²: the coefficient of q̇_k in the angular momentum about B. A rotor adds
-    /// J r_k² to H_kk but J r_k to D_k, so a rotor that turns the other way reduces D_k.
+    /// J r_k² to H_kk but J r_k to D_k, so a rotor that turns against its drive reduces D_k.
     pub fn momentum(&self, k: usize) -> f64 {
         let gears: f64 = (0..self.drives).map(|l| self.rotor_coupling[k][l]).sum();
         let own = self.diagonal(k) + gears + self.stator_reaction[k];
-        // Where gears cancel, only rounding error remains.
+        // If the rotors cancel D_k, only rounding error remains.
         if own.abs() <= BALANCE_TOLERANCE * self.diagonal(k) { 0.0 } else { own }
     }
 
@@ -200,15 +200,15 @@ impl Inertia {
         (0..self.drives).map(|k| self.momentum(k)).find(|d| *d != 0.0).unwrap_or(0.0)
     }
 
-    /// Returns λ_k = D_k / D_1 of an invariant machine, (12). If D_1 is 0, the first D_k that is not 0 takes its place;
-    /// if all are 0, every λ_k is 0.
+    /// Returns λ_k = D_k / D_1 of an invariant machine, (12). If D_1 is 0, the first D_k that is not 0 replaces it; if
+    /// all are 0, every λ_k is 0.
     pub fn lambda(&self) -> PerDrive {
         let first = self.pose_inertia();
         PerDrive::from_fn(self.drives, |k| if first == 0.0 { 0.0 } else { self.momentum(k) / first })
     }
 
-    /// Returns the inertia if drives and base turn together as one body, kg m², where all C_kl vanish: gear ratios then
-    /// have no effect.
+    /// Returns the inertia of the machine when drives and base turn together as one body, kg m², where all C_kl vanish.
+    /// Gear ratios then have no effect.
     pub fn locked(&self) -> f64 {
         let gears = |t: &RotorCoupling| {
             let turn = t.rates[..self.drives].iter().sum::<f64>();
@@ -218,8 +218,8 @@ impl Inertia {
         self.diagonals().iter().sum::<f64>() + all + self.rotors.iter().map(gears).sum::<f64>()
     }
 
-    /// Returns the angular momentum of the rotors, kg m²/s, less the part in the mass matrix of the drives alone. `qd`
-    /// holds the rates of the drives and, after these, of a base that turns.
+    /// Returns the angular momentum of the rotors, kg m²/s, minus the part that the mass matrix of the drives contains.
+    /// `qd` holds the rates of the drives, rad/s, followed by the rate of a base that turns.
     pub fn excess_rotor_momentum(&self, qd: &[f64]) -> f64 {
         let of = |t: &RotorCoupling| {
             let turn = |n: usize| t.rates.iter().zip(&qd[..n]).map(|(r, qd)| r * qd).sum::<f64>();
@@ -234,8 +234,8 @@ impl Inertia {
         &self.motors
     }
 
-    /// Returns the inertia that motor k turns if it turns alone, kg m², where all C_kl vanish: that of its drive and of
-    /// all drives which this carries.
+    /// Returns the inertia that motor k turns if no other motor turns, kg m², where all C_kl vanish. It includes all
+    /// drives that drive k carries.
     pub fn inertia_at_motor(&self, k: usize) -> f64 {
         if !self.motors.in_joints() {
             return self.diagonal(k);
@@ -244,7 +244,7 @@ impl Inertia {
         all().map(|i| all().map(|j| self.constant(i, j)).sum::<f64>()).sum()
     }
 
-    /// Returns whether H is diagonal where all C_kl vanish, and all motors sit on the base: τ_k = H_kk q̈_k.
+    /// Returns whether all motors sit on the base and no rotor couples drives. If all C_kl vanish, τ_k = H_kk q̈_k.
     pub fn is_decoupled(&self) -> bool {
         !self.motors.in_joints() && self.rotor_coupling.iter().flatten().all(|g| *g == 0.0)
     }
@@ -303,5 +303,5 @@ impl Inertia {
     }
 }
 
-/// Relative tolerance of balance: residuals up to this fraction of the machine's own scale are treated as zero.
+/// Relative tolerance of balance: residuals up to this fraction of the machine's scale are treated as zero.
 pub const BALANCE_TOLERANCE: f64 = 1e-9;

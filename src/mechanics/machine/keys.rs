@@ -17,12 +17,12 @@ use stillbase_settings::key::{Key, KeyType};
 pub(super) struct KeyRow {
     pub key: Key,
     pub at: FieldAccess,
-    /// Returns whether the key has an effect on a machine; the flag: whether a force acts on its end effector. `None`:
-    /// always.
+    /// Returns whether the key has an effect on a machine; the flag says whether a force acts on the end effector.
+    /// `None` if the key always has an effect.
     pub uses: Option<fn(&MachineSpec, bool) -> bool>,
 }
 
-/// Functions that read and write the value of the i-th body of its kind.
+/// Functions that read and write the value of a key in the i-th body of a kind, such as the i-th link.
 pub(super) enum FieldAccess {
     Number(fn(&MachineSpec, usize) -> f64, fn(&mut MachineSpec, usize) -> &mut f64),
     Limit(fn(&MachineSpec, usize) -> Option<f64>, fn(&mut MachineSpec, usize) -> &mut Option<f64>),
@@ -34,7 +34,7 @@ pub(super) enum FieldAccess {
     Metres(fn(&Machine, usize) -> f64, fn(&mut MachineSpec, usize, f64) -> Result<(), MachineError>),
 }
 
-/// Makes both functions of an [`At`] from one place expression.
+/// Makes both functions of a [`FieldAccess`] from one place expression.
 macro_rules! at {
     ($kind:ident, |$spec:ident, $i:tt| $place:expr) => {
         FieldAccess::$kind(|$spec, $i| $place, |$spec, $i| &mut $place)

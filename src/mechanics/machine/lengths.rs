@@ -6,7 +6,8 @@ use super::spec::{Length, MachineSpec};
 use stillbase_settings::range::{quote_clipped, shortened};
 
 impl MachineSpec {
-    /// Returns every length of a machine, m: named lengths, and under the link's name those that links do not share.
+    /// Returns all lengths of a machine, m: named lengths by their names, and lengths of single links by the links'
+    /// names.
     pub fn own_lengths(&self) -> impl Iterator<Item = (&str, f64)> {
         let named = self.lengths.iter().map(|(name, length)| (name.as_str(), *length));
         let alone = self.links.iter().filter_map(|link| match link.length {

@@ -9,7 +9,7 @@
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | q_k | absolute angle of drive k, e(q) = (cos q, sin q) | rad |
-//! | r_j | a point of link j, Σ_k w_k e(q_k): its [`Chain`] w | m |
+//! | r_j | a point of link j, Σ_k w_k e(q_k); the weights w are its [`Chain`] | m |
 //! | l_cj | CM of link j along the link, from its root | m |
 
 mod caps;

@@ -8,7 +8,7 @@ use super::motors::Motors;
 use super::spec::{Link, MachineSpec};
 use crate::planar::{MAX_DRIVES, Vector};
 
-/// A valid machine. Copies share their data, so that copying is cheap, and so is comparing copies.
+/// A valid machine. Copies share their data, so that copying a machine and comparing copies are cheap.
 #[derive(Clone, Debug)]
 pub struct Machine(Arc<MachineData>);
 
@@ -49,9 +49,9 @@ pub struct ResolvedLink {
 pub struct RelativeAngle {
     /// Its name.
     pub name: String,
-    /// Index of the drive whose angle counts positive, from 0.
+    /// Index of the drive whose angle is added, from 0.
     pub to: usize,
-    /// Index of the drive whose angle counts negative, from 0.
+    /// Index of the drive whose angle is subtracted, from 0.
     pub from: usize,
     /// Offset, rad.
     pub offset: f64,
@@ -114,8 +114,8 @@ impl Machine {
         self.redundancy() > 0
     }
 
-    /// Returns the number of degrees of freedom that the drives keep when the end effector is held in place. Holding b
-    /// takes one of them.
+    /// Returns the number of degrees of freedom that the drives keep when the end effector is held in place. Keeping b
+    /// constant removes one of them.
     pub fn redundancy(&self) -> usize {
         self.drives().saturating_sub(2)
     }
@@ -130,12 +130,12 @@ impl Machine {
         &self.0.parts
     }
 
-    /// The end effector as a sum of unit vectors, (14).
+    /// The position of the end effector, (14), as weights of unit vectors, m.
     pub fn end_effector(&self) -> &Chain {
         &self.0.end_effector
     }
 
-    /// Returns the upper bound of the end effector's distance from B, Σ |L_k|, m.
+    /// Returns an upper bound of the end effector's distance from B, m: the sum of the magnitudes of its weights.
     pub fn reach(&self) -> f64 {
         self.0.end_effector.iter().map(|length| length.abs()).sum()
     }
@@ -170,7 +170,8 @@ impl Machine {
         self.0.bodies.iter().map(|l| l.mass).sum::<f64>() + self.0.spec.payload.mass
     }
 
-    /// The CM of link j as Σ_k a_jk e(q_k), complex where the CM lies off the link's axis.
+    /// Returns the coefficients a_jk, m, of the CM Σ_k a_jk e(q_k) of link j; they are complex if the CM lies off the
+    /// link's axis.
     pub fn com_chain(&self, j: usize) -> [Vector; MAX_DRIVES] {
         let (link, part) = (&self.0.bodies[j], &self.0.parts[j]);
         let mut a = part.root.map(|w| Vector::new(w, 0.0));
@@ -178,7 +179,7 @@ impl Machine {
         a
     }
 
-    /// Returns for every closure the difference of its two points, a sum of unit vectors that is zero in every pose.
+    /// Returns the difference of the two points of each closure as weights of unit vectors, m; it is zero to rounding.
     pub fn closure_gaps(&self) -> Vec<Chain> {
         let gap = |l: &ResolvedClosure| {
             let (a, b) = (self.0.parts[l.a].point(l.at_a), self.0.parts[l.b].point(l.at_b));
@@ -187,7 +188,8 @@ impl Machine {
         self.0.loops.iter().map(gap).collect()
     }
 
-    /// The centre of mass of the payload as a sum of unit vectors, complex where it lies off the link's axis.
+    /// Returns the coefficients, m, of the payload's centre of mass as a sum of unit vectors; they are complex if it
+    /// lies off the link's axis.
     pub fn payload_chain(&self) -> [Vector; MAX_DRIVES] {
         let (part, [along, left]) = (&self.0.parts[self.0.end_link], self.0.spec.payload.offset);
         let mut a = self.0.end_effector.map(|w| Vector::new(w, 0.0));

@@ -3,7 +3,7 @@
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | A | A_kk = 1, A_k,on(k) = −1: motor k turns by A q | |
+//! | A | A_kk = 1, A_k,on(k) = −1, where drive on(k) carries motor k; motors have the angles A q | |
 //! | m | torques of the motors, m = A⁻ᵀ τ; power is m · A q̇ = τ · q̇ | N m |
 //! | τ | generalised torques of the absolute angles, as in (4) | N m |
 
@@ -23,7 +23,8 @@ pub struct Motors {
 const BASE: usize = usize::MAX;
 
 impl Motors {
-    /// Takes the drive that carries each stator, `None` for the base. They must not form a cycle.
+    /// Makes it from the drive that carries each stator, `None` for the base. The drives must not carry each other in a
+    /// cycle.
     pub(super) fn new(on: &[Option<usize>]) -> Self {
         let mut motors = Self {
             drives: on.len(),
@@ -98,7 +99,7 @@ impl Motors {
         }
     }
 
-    /// Returns Aᵀ m, N m: generalised torques from those of the motors, without their reactions on the base.
+    /// Returns Aᵀ m, N m: generalised torques from those of the motors. Their reactions on the base are not included.
     #[inline]
     #[must_use]
     pub fn generalised_torques(&self, torques: &PerDrive) -> PerDrive {
@@ -109,7 +110,7 @@ impl Motors {
         generalised
     }
 
-    /// Returns whether drive l is drive k or is carried by it, directly or through others.
+    /// Returns whether drive l is drive k, or is carried by drive k directly or through other drives.
     pub fn carries(&self, k: usize, l: usize) -> bool {
         std::iter::successors(Some(l), |l| self.on(*l)).take(MAX_DRIVES).any(|l| l == k)
     }

@@ -13,7 +13,7 @@ pub(super) const GRAVITY: Range = Range::either_way(MAX_NUMBER, "m/s²");
 pub const LENGTH: Range = Range::new(1e-6, MAX_NUMBER, "m");
 /// Range of a coordinate.
 pub const PLACE: Range = Range::either_way(MAX_NUMBER, "m");
-/// The mass of a link may be nearly zero, but not zero.
+/// Range of a mass that must be positive; it may be nearly zero.
 pub const MASS: Range = Range::new(1e-15, MAX_NUMBER, "kg");
 /// Range of a mass that may be zero.
 pub const LOAD: Range = Range::new(0.0, MAX_NUMBER, "kg");
@@ -21,7 +21,7 @@ pub(super) const RADIUS: Range = Range::new(0.0, MAX_NUMBER, "m");
 /// Range of a moment of inertia.
 pub const INERTIA: Range = Range::new(0.0, MAX_NUMBER, "kg m²");
 pub(super) const TORQUE_LIMIT: Range = Range::new(MIN_POSITIVE, MAX_NUMBER, "N m");
-/// Gear ratios are limited either way; a ratio of 0 is refused by its own check.
+/// Range of a gear ratio; a separate check rejects a ratio of 0.
 pub const RATIO: Range = Range::either_way(1e4, "");
 pub(super) const SPEED_LIMIT: Range = Range::new(MIN_POSITIVE, MAX_NUMBER, "rad/s");
 pub(super) const ACCELERATION_LIMIT: Range = Range::new(MIN_POSITIVE, MAX_NUMBER, "rad/s²");

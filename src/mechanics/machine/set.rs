@@ -60,12 +60,13 @@ impl Machine {
         Self::new(spec)
     }
 
-    /// Returns whether a setting has an effect on this machine; `pushed`: whether a force acts on the end effector.
+    /// Returns whether a setting has an effect on this machine; `pushed` says whether a force acts on the end effector.
     pub fn uses(&self, key: &str, pushed: bool) -> bool {
         KeyRow::of(key).and_then(|row| row.uses).is_none_or(|uses| uses(self.spec(), pushed))
     }
 
-    /// Returns the settings that differ from their default but have no effect.
+    /// Returns the keys of settings that differ from their defaults but have no effect; `pushed` as in
+    /// [`uses`](Self::uses).
     pub fn ineffective_keys(&self, pushed: bool) -> impl Iterator<Item = &'static str> {
         let is_given = |row: &KeyRow| !change::same_value(&row.value(self, 0), &change::value(row.key.default));
         let idle = move |row: &&KeyRow| row.uses.is_some_and(|uses| !uses(self.spec(), pushed)) && is_given(row);
@@ -87,7 +88,7 @@ impl Machine {
 }
 
 fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), MachineError> {
-    // The key of the whole list, as in a file.
+    // This key sets the whole list, as in a file.
     if key == "counterweight" {
         let want = "a list of { link, mass, at, radius, fixed }, or the word default for none";
         let all = || value.clone().try_into().map_err(|_| bad(key, value, want));
@@ -99,7 +100,7 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), Machin
     if !MACHINE_KEYS.iter().any(|row| shares_head(row.key.path, key)) {
         return Err(unknown());
     }
-    // Keys of a body that does not exist are errors.
+    // Fails for a body that does not exist.
     let i = body_of(spec, key)?;
     let row = KeyRow::of(key).ok_or_else(unknown)?;
     // A required key has no default value.
@@ -120,7 +121,7 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), Machin
     Ok(())
 }
 
-/// Returns whether a key matches a pattern in all parts but the last, in which it may differ.
+/// Returns whether a key matches a pattern in all parts except the last, which may differ.
 fn shares_head(pattern: &str, key: &str) -> bool {
     let (of, head) = (pattern.rsplit_once('.'), key.rsplit_once('.'));
     of.zip(head).map_or(pattern == key, |((pattern, _), (head, _))| key::names(pattern, head))
@@ -154,7 +155,7 @@ fn is_default(value: &Value) -> bool {
     value.as_str() == Some(DEFAULT_WORD)
 }
 
-/// Returns whether a value removes an optional setting: the word `default`, or that for none.
+/// Returns whether a value removes an optional setting: the word `default` or [`Key::NONE`].
 fn is_none(value: &Value) -> bool {
     is_default(value) || value.as_str() == Some(Key::NONE)
 }

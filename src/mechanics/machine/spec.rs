@@ -14,19 +14,19 @@ pub struct MachineSpec {
     /// Acceleration of gravity in base axes, m/s².
     #[serde(default, skip_serializing_if = "is_zero")]
     pub gravity: [f64; 2],
-    /// Named lengths, m: bars that must stay equal share one.
+    /// Named lengths, m; links that must have equal lengths share one.
     #[serde(default)]
     pub lengths: std::collections::BTreeMap<String, f64>,
-    /// A mass held at the end effector.
+    /// The payload at the end effector.
     #[serde(default, skip_serializing_if = "Payload::is_none")]
     pub payload: Payload,
-    /// The actuators: on the base, all at B on one axis, or in the joints.
+    /// The actuators: those on the base share one axis at B, all others sit in joints.
     #[serde(default, rename = "drive")]
     pub drives: Vec<Drive>,
-    /// The bars.
+    /// The links, rigid bars.
     #[serde(default, rename = "link")]
     pub links: Vec<Link>,
-    /// Discs on links, which balance them.
+    /// Discs on links, which balance the machine.
     #[serde(default, rename = "counterweight", skip_serializing_if = "Vec::is_empty")]
     pub counterweights: Vec<Counterweight>,
     /// Pins that close loops.
@@ -53,11 +53,11 @@ pub struct Payload {
     /// Inertia about its own centre of mass, kg m².
     #[serde(default)]
     pub inertia: f64,
-    /// Its centre of mass relative to the end effector: along the link that holds it, and to the left of that, m.
+    /// Its centre of mass relative to the end effector: along the link that holds it, and to the left of that link's
+    /// axis, m.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub offset: [f64; 2],
-    /// Height of its centre of mass, and of a force on the end effector, along the drives' axis from the plane of
-    /// reference, m.
+    /// Height of its centre of mass, and of a force on the end effector, above the reference plane through B, m.
     #[serde(default, skip_serializing_if = "is_nought")]
     pub axial: f64,
 }
@@ -82,7 +82,8 @@ impl Payload {
     }
 }
 
-/// An actuator. Its limits apply to the motor's angle: of the links that it turns relative to the stator.
+/// An actuator. Its limits apply to the motor's torque and to the motion of the links that it turns relative to the
+/// stator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Drive {
@@ -108,13 +109,13 @@ pub struct Drive {
     pub jerk_limit: Option<f64>,
 }
 
-/// The rotor of a motor. Its mass belongs to the link that carries it.
+/// The rotor of a motor. The mass of the rotor is included in the link that carries the motor.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rotor {
     /// Inertia about its axis, kg m².
     pub inertia: f64,
-    /// Gear ratio: turns of the rotor relative to the stator for one turn of the drive; negative if it reverses.
+    /// Gear ratio: turns of the rotor relative to the stator for one turn of the drive; negative if the gear reverses.
     #[serde(default = "direct")]
     pub ratio: f64,
 }
@@ -153,14 +154,14 @@ pub struct Link {
     /// Distance of its centre of mass from the link's axis, to the left of the direction root to tip, m.
     #[serde(default, skip_serializing_if = "is_nought")]
     pub com_normal: f64,
-    /// Height of its centre of mass along the drives' axis, from the plane of reference at B, m. The motion stays
-    /// plane; the offsets decide which moments tilt the base.
+    /// Height of its centre of mass above the reference plane through B, m. The motion stays planar; the heights
+    /// determine the moments that tilt the base.
     #[serde(default, skip_serializing_if = "is_nought")]
     pub axial: f64,
 }
 
-/// A disc on a link's axis, in the plane of the link's own centre of mass. It moves with the link; the link's mass does
-/// not include it.
+/// A disc on a link's axis, in the plane of the link's own centre of mass. It moves with the link; the mass of the link
+/// excludes it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Counterweight {
@@ -279,14 +280,14 @@ pub struct Closure {
 pub struct Angle {
     /// Its name.
     pub name: String,
-    /// Name of the drive whose angle counts positive.
+    /// Name of the drive whose angle is added.
     pub to: String,
-    /// Name of the drive whose angle counts negative.
+    /// Name of the drive whose angle is subtracted.
     pub from: String,
     /// Offset, rad.
     #[serde(default, skip_serializing_if = "is_nought")]
     pub offset: f64,
-    /// Lower limit, rad; `None` for no limits: poses are then sought in one turn, −π to π.
+    /// Lower limit, rad; `None` if there are no limits; poses are then searched in one turn, −π to π.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub min: Option<f64>,
     /// Upper limit, rad.

@@ -10,7 +10,7 @@ use stillbase_settings::number::counted;
 /// Maximum number of drives of a machine.
 pub const MAX_DRIVES: usize = 8;
 
-/// One number for each drive, without allocation. It dereferences to a slice with one element a drive.
+/// One number for each drive, without allocation. It dereferences to a slice with one element for each drive.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(into = "Vec<f64>", try_from = "Vec<f64>")]
 pub struct PerDrive {
@@ -44,7 +44,7 @@ impl PerDrive {
         if self.len == n { *self } else { Self::from_fn(n, |k| self[k]) }
     }
 
-    /// A copy of a slice, or `None` if it holds more than [`MAX_DRIVES`].
+    /// A copy of a slice, or `None` if the slice has more than [`MAX_DRIVES`] elements.
     pub fn from_slice(values: &[f64]) -> Option<Self> {
         (values.len() <= MAX_DRIVES).then(|| Self::from_fn(values.len(), |k| values[k]))
     }
@@ -127,7 +127,7 @@ impl PerDrive {
         &mut self.values.as_chunks_mut().0[0]
     }
 
-    /// Makes one from the first `n` elements of an array, whose other elements are zero.
+    /// Makes one from the first `n` elements of an array; its other elements must be zero.
     #[inline]
     pub fn of_array<const N: usize>(n: usize, values: [f64; N]) -> Self {
         Self { len: n, ..Self::from(values) }
@@ -210,5 +210,5 @@ impl Deref for DriveAngles {
     }
 }
 
-/// The unit vectors e(q_k): the only trigonometry the dynamics needs.
+/// The unit vectors e(q_k): the only trigonometric functions that the dynamics needs.
 pub type UnitVectors = [Vector; MAX_DRIVES];

@@ -8,7 +8,7 @@
 
 use super::Vector;
 
-/// Limit of |q|, rad, for the table: below it, k steps times their first part is exact and the error below 2e-16.
+/// Limit of |q|, rad, for the table. Below it, k times the first part of a step is exact, and the error is below 2e-16.
 const MAX_TABLE_RAD: f64 = 1e5;
 /// Number of steps of the table in a turn.
 const STEPS: usize = 128;
@@ -25,7 +25,8 @@ pub fn unit(q: f64) -> Vector {
     if q.abs() < MAX_TABLE_RAD {
         by_table(q)
     } else {
-        // For larger |q| the reduction needs more bits of π: the system's library is used, without identical bits.
+        // For larger |q| the reduction needs more bits of π. The system's library is used, whose bits may differ
+        // between computers.
         let (sin, cos) = q.sin_cos();
         Vector::new(cos, sin)
     }
@@ -67,8 +68,8 @@ const fn turn() -> [[f64; 2]; STEPS] {
     table
 }
 
-/// Returns (cos, sin) of j steps, up to π/4, by Taylor series of the first part of the angle; the
-/// remainder is added to first order.
+/// Returns (cos, sin) of j steps, up to π/4, by Taylor series of the first part of the angle; the remainder is added to
+/// first order.
 const fn eighth(j: usize) -> [f64; 2] {
     let (x, rest) = (j as f64 * STEP[0], j as f64 * STEP[1]);
     // The series are summed without their leading terms 1 and x, which are added last: only that sum loses bits.

@@ -27,7 +27,7 @@ pub fn length(v: Vector) -> f64 {
 pub struct Wrench {
     /// Force, N.
     pub force: Vector,
-    /// Moment about the axis normal to the plane, N m.
+    /// Moment about the axis normal to the plane, N m, positive counter-clockwise.
     pub moment: f64,
 }
 
@@ -36,6 +36,6 @@ pub struct Wrench {
 pub struct Pose2 {
     /// Position, m.
     pub at: Vector,
-    /// Angle, rad.
+    /// Angle, rad, positive counter-clockwise.
     pub angle: f64,
 }

@@ -8,7 +8,7 @@ use super::{Chart, EMPTY_CHART, charts};
 use stillbase_session::scenario::Scenario;
 use stillbase_simulation::signals::Signal;
 
-/// Maximum number of plots that the user adds, and of curves added to one plot.
+/// Maximum number of plots that the user can add, and of curves added to one plot.
 const MAX_ADDED: usize = 24;
 
 /// The user's choice of plots and curves.
@@ -123,7 +123,7 @@ impl PlotChoice {
         self.changes.retain(|_, changes| *changes != PlotSettings::default());
     }
 
-    /// Returns the plots of a scenario in order of display; `pins`: pin forces are switched on.
+    /// Returns the plots of a scenario in order of display; `pins` says whether pin forces are switched on.
     pub fn plots<'a>(&self, scenario: &Scenario, signals: &'a [Signal], pins: bool) -> Vec<Plot<'a>> {
         let none = PlotSettings::default();
         let of = |name: &str| self.changes.get(name).unwrap_or(&none);
@@ -151,7 +151,7 @@ pub struct Plot<'a> {
     pub name: String,
     /// Title.
     pub title: String,
-    /// Chart of the table, or a chart without signals.
+    /// Chart of the table; a chart without signals if the user added the plot.
     pub chart: Chart,
     /// Whether the user added the plot.
     pub own: bool,

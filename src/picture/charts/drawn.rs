@@ -51,9 +51,9 @@ impl PlotLines {
         let mut across = [f64::INFINITY, f64::NEG_INFINITY];
         for (run, samples) in runs {
             for (i, curve) in plot.curves.iter().enumerate().filter(|(_, curve)| curve.on) {
-                let (path, times) = (&curve.signal.path, curve.scale);
+                let (path, factor) = (&curve.signal.path, curve.scale);
                 if let Some(bounds) = samples.bounds(path, shown) {
-                    widen(&mut drawn.y, bounds.map(|y| times * y));
+                    widen(&mut drawn.y, bounds.map(|y| factor * y));
                 }
                 let mut points = match plot.against {
                     None => samples.line(path, shown, columns),
@@ -64,17 +64,17 @@ impl PlotLines {
                         samples.line_against(&against.path, path, shown, 4 * columns)
                     }
                 };
-                points.iter_mut().for_each(|[_, y]| *y *= times);
+                points.iter_mut().for_each(|[_, y]| *y *= factor);
                 drawn.lines.push(PlotLine { curve: i, run, points });
             }
         }
         if statistics {
             let of = |path: &str| samples.statistics(path, shown);
-            let scaled = |s: Statistics, times: f64| Statistics {
-                least: times * s.least,
-                greatest: times * s.greatest,
-                mean: times * s.mean,
-                rms: times * s.rms,
+            let scaled = |s: Statistics, factor: f64| Statistics {
+                least: factor * s.least,
+                greatest: factor * s.greatest,
+                mean: factor * s.mean,
+                rms: factor * s.rms,
                 ..s
             };
             let curves = plot.curves.iter();
@@ -88,7 +88,7 @@ impl PlotLines {
         drawn
     }
 
-    /// Returns the resolution with which values are written: less than the eye resolves on the vertical axis.
+    /// Returns the resolution to which values are written: finer than the eye can resolve on the vertical axis.
     pub fn finest(&self) -> f64 {
         2e-4 * (self.y[1] - self.y[0])
     }
@@ -105,7 +105,7 @@ fn widen(bounds: &mut [f64; 2], [low, high]: [f64; 2]) {
 fn rounded_bounds(plot: &Plot<'_>, [low, high]: [f64; 2]) -> [f64; 2] {
     let mut chart = plot.chart;
     if chart.min_range == 0.0 {
-        // A plot that the user added has no minimum range; 0.1 % of its largest value takes its place.
+        // A plot that the user added has no minimum range; 0.1 % of its largest value replaces it.
         let most = low.abs().max(high.abs());
         chart.min_range = if most.is_finite() && most > 0.0 { 1e-3 * most } else { 1.0 };
     }
@@ -114,7 +114,7 @@ fn rounded_bounds(plot: &Plot<'_>, [low, high]: [f64; 2]) -> [f64; 2] {
     [low - margin, high + margin]
 }
 
-/// Returns bounds with a margin, which are never equal.
+/// Returns bounds widened by a margin, so that they are never equal.
 fn with_margin([low, high]: [f64; 2]) -> [f64; 2] {
     if !(low.is_finite() && high.is_finite()) {
         return [0.0, 1.0];

@@ -93,7 +93,7 @@ impl Axes {
         let [left, top, right, bottom] = self.sides.map(f64::from);
         let across = (x - self.x[0]) / (self.x[1] - self.x[0]);
         let up = (y - self.y[0]) / (self.y[1] - self.y[0]);
-        // Clamped far outside the axes, so that coordinates fit an f32.
+        // Coordinates are clamped far outside the axes, so that they fit an f32.
         [left + across * (right - left), bottom + up * (top - bottom)].map(|p| p.clamp(-1e5, 1e5) as f32)
     }
 
@@ -132,8 +132,8 @@ pub fn pen(plot: &Plot<'_>, curve: usize, look: &PlotContext<'_>) -> (Rgba, Opti
     (tone(curve), [None, Some([6.0, 3.0]), Some([1.5, 2.5]), Some([10.0, 3.0])][same % 4])
 }
 
-/// Returns the dash and the opacity of the lines of an overlaid run. Runs do not differ by colour, because the colour
-/// stands for the signal.
+/// Returns the dash and the opacity of the lines of an overlaid run. Runs do not differ by colour, because colours
+/// distinguish signals.
 pub fn dashes(run: usize) -> (Option<[f32; 2]>, f32) {
     let styles = [[7.0, 4.2], [1.2, 4.0], [3.5, 2.1], [14.0, 8.4], [1.2, 7.0]];
     (styles.get(run % 6).copied(), if run >= 6 { 0.45 } else { 0.7 })
@@ -148,7 +148,7 @@ const THINNING_TOLERANCE_PT: f32 = 0.1;
 pub fn body(plot: &Plot<'_>, drawn: &PlotLines, axes: &Axes, look: &PlotContext<'_>) -> Vec<FigureItem> {
     let p = look.palette;
     let [left, top, right, bottom] = axes.sides;
-    // Text last, so that all clipped items follow each other.
+    // Text comes last, so that all clipped items are consecutive.
     let (mut items, mut words) = (Vec::new(), Vec::new());
     let small = |text: String| vec![FigureText { text, size: TICK_SIZE_PT, bold: false, colour: p.dim }];
     let line =
@@ -219,7 +219,7 @@ fn cursors(plot: &Plot<'_>, axes: &Axes, look: &PlotContext<'_>) -> Vec<FigureIt
             }
             Some(against) => items.extend(plot.shown().filter_map(|curve| {
                 let at = [against.value(frame), curve.scale * curve.signal.value(frame)];
-                // No dot for values outside the vertical axis.
+                // Values outside the vertical axis have no dot.
                 let seen = at.iter().all(|x| x.is_finite()) && (axes.y[0]..=axes.y[1]).contains(&at[1]);
                 seen.then(|| FigureItem::Dot { at: axes.place(at), radius: 3.5, colour: tone })
             })),

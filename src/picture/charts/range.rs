@@ -2,14 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Maximum length of the usual interval, s.
+/// Maximum length of the default interval, s.
 const MAX_USUAL_S: f64 = 12.0;
-/// Minimum length of the usual interval of a run whose end is unknown, s.
+/// Minimum length of the default interval of a run whose end is unknown, s.
 const MIN_OPEN_USUAL_S: f64 = 4.0;
 /// Minimum length of any interval, s.
 const MIN_LENGTH_S: f64 = 1e-5;
 
-/// The time intervals of a run. A choice of `None` stands for the usual interval.
+/// The time intervals of a run. A choice of `None` means the default interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimeExtent {
     /// Interval from the start to the end of the run, s.
@@ -25,7 +25,7 @@ impl TimeExtent {
     }
 
     /// Returns the intervals of a run whose end is unknown. `planned` is the planned duration, `end` the time that has
-    /// passed and `now` the displayed instant, all s. The usual interval has a constant length, so that curves scroll
+    /// passed and `now` the displayed instant, all s. The default interval has a constant length, so that curves scroll
     /// instead of shrinking.
     pub fn open_ended(planned: f64, end: f64, now: f64) -> Self {
         let window = planned.clamp(MIN_OPEN_USUAL_S, MAX_USUAL_S);
@@ -50,12 +50,13 @@ impl TimeExtent {
         from <= self.whole[0] + 1e-9 && to >= self.whole[1] - 1e-9
     }
 
-    /// Toggles between the whole run and the usual interval; returns the new choice.
+    /// Toggles between the whole run and the default interval; returns the new choice.
     pub fn all(&self, chosen: Option<[f64; 2]>) -> Option<[f64; 2]> {
         (chosen != Some(self.whole) && self.usual != self.whole).then_some(self.whole)
     }
 
-    /// Returns the choice that magnifies the interval `shown` by `factor`; the time `about`, s, keeps its place.
+    /// Returns the choice that magnifies the interval `shown` by `factor`; the time `about`, s, keeps its place on the
+    /// axis.
     pub fn zoomed(&self, shown: [f64; 2], about: f64, factor: f64) -> Option<[f64; 2]> {
         let (now, most) = (shown[1] - shown[0], self.whole[1] - self.whole[0]);
         let length = (now / factor.max(1e-6)).clamp(MIN_LENGTH_S.min(most), most);

@@ -21,7 +21,7 @@ pub fn search<'a>(signals: &'a [Signal], text: &str) -> Vec<&'a Signal> {
     found.into_iter().map(|(_, signal)| signal).collect()
 }
 
-/// Returns how well a field matches a word, from 0 (no match) to 100.
+/// Returns the score of a word in a field, from 0 (no match) to 100.
 fn match_score(field: &str, word: &str) -> u32 {
     let parts = || field.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|part| !part.is_empty());
     if field == word {

@@ -56,7 +56,7 @@ fn element(item: &FigureItem) -> String {
         FigureItem::Area { sides, colour } => rect(*sides, &paint("fill", *colour)),
         FigureItem::Text { at: [x, y], anchor: [across, down], words } => {
             let size = words.iter().fold(0.0_f32, |most, w| most.max(w.size));
-            // The baseline, 0.93 of the font size below the top of the text; a line is 1.16 of the font size high.
+            // The baseline is 0.93 of the font size below the top of the text; a line is 1.16 of the font size high.
             let base = y + size * (0.93 - 1.16 * down);
             let anchor = if *across == 0.0 {
                 "start"

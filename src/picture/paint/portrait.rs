@@ -16,7 +16,7 @@ use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
 const BEND_FRACTION: f64 = 0.62;
 /// Relative angle without limits, and angle between drives that no relative angle connects, rad.
 const FREE_ANGLE_RAD: f64 = 1.0;
-/// Number of orientations, over half a turn, that are tried to fill the picture best.
+/// Number of orientations tried, over half a turn; the one that fills the picture best is chosen.
 const ORIENTATIONS: usize = 24;
 /// Ratio of width to height of the picture for which the orientation is chosen.
 const ASPECT_RATIO: f64 = 2.2;
@@ -62,7 +62,7 @@ impl Portrait {
         Self { links, pins, tip, foot, bounds }
     }
 
-    /// Height of the smallest picture of the given ratio that holds the machine, m.
+    /// Height of the smallest picture with [`ASPECT_RATIO`] that contains the machine, m.
     fn size(&self) -> f64 {
         let size = self.bounds[1] - self.bounds[0];
         size.im.max(size.re / ASPECT_RATIO)

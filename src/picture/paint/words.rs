@@ -18,9 +18,9 @@ const EDGE_DISTANCE_PT: f32 = 8.0;
 
 /// Horizontal shifts that are tried if no vertical shift suffices, points.
 const SIDEWAYS_SHIFTS_PT: [f32; 7] = [0.0, -30.0, 30.0, -60.0, 60.0, -100.0, 100.0];
-/// Spacing of the vertical shifts that are tried with them, points.
+/// Spacing of the vertical shifts that are combined with the horizontal ones, points.
 const SHIFT_STEP_PT: f32 = 7.0;
-/// Number of these vertical shifts, upwards and downwards each.
+/// Number of these vertical shifts in each direction.
 const SHIFT_STEPS: i32 = 12;
 /// Minimum distance of labels from the centre line of a bar, points.
 const BAR_DISTANCE_PT: f32 = 7.0;
@@ -31,7 +31,7 @@ const OVERLAP_COST: f32 = 1e4;
 const OUT_OF_VIEW_COST: f32 = 1e3;
 const BAR_COST: f32 = 60.0;
 
-/// Labels of one point and name; they are shifted together.
+/// Labels with the same point and the same name; they are shifted together.
 struct Group<'a> {
     /// Labels of higher rank avoid those of lower rank.
     rank: u8,
@@ -150,7 +150,7 @@ impl Group<'_> {
             let [x, y] = label.offset;
             let over = at.x + x + widest - (view.right() - 10.0);
             let (align, shift) = match label.anchor {
-                // Lower, so as not to cover the point.
+                // The label is lowered, so that it does not cover the point.
                 Anchor::Left if over > 0.0 && view.contains(at) => {
                     (Align2::LEFT_CENTER, vec2(x - over, if over > MAX_OVERHANG_PT { y + 30.0 } else { y }))
                 }
@@ -202,15 +202,15 @@ fn cheapest_shift(boxes: &[Rect], taken: &[Rect], bars: &[[Pos2; 2]], view: Rect
         });
         each.sum::<f32>() + shift.y.abs() + 0.6 * shift.x.abs()
     };
-    let ways = SIDEWAYS_SHIFTS_PT
+    let shifts = SIDEWAYS_SHIFTS_PT
         .iter()
         .flat_map(|x| (-SHIFT_STEPS..=SHIFT_STEPS).map(move |i| vec2(*x, i as f32 * SHIFT_STEP_PT)));
-    let cheapest = ways.map(|shift| (cost(shift), shift)).min_by(|a, b| a.0.total_cmp(&b.0));
+    let cheapest = shifts.map(|shift| (cost(shift), shift)).min_by(|a, b| a.0.total_cmp(&b.0));
     cheapest.map_or(Vec2::ZERO, |(_, shift)| shift)
 }
 
-/// Returns the smallest vertical shift, points, for which the boxes are in view and overlap nothing of `taken`; `None`
-/// if there is none within [`MAX_SHIFT_PT`].
+/// Returns the smallest vertical shift, points, for which the boxes are in view and overlap no rectangle in `taken`;
+/// `None` if there is none within [`MAX_SHIFT_PT`].
 fn clearing_shift(boxes: &[Rect], taken: &[Rect], view: Rect) -> Option<f32> {
     let moved = |shift: f32| boxes.iter().map(move |place| place.translate(vec2(0.0, shift)));
     let is_free = |shift: f32| {

@@ -26,7 +26,7 @@ twin! {
     }
 }
 
-/// Writes buffers through reused staging memory; without growth nothing is allocated.
+/// Writes buffers through reused staging memory, which is allocated only if it must grow.
 pub(super) struct Upload<'a> {
     pub(super) device: &'a wgpu::Device,
     pub(super) encoder: &'a mut wgpu::CommandEncoder,
@@ -50,7 +50,7 @@ pub(super) struct SharedBindings {
     pub(super) quality: Quality,
 }
 
-/// The usual entry points.
+/// The default entry points of the vertex and the fragment stage.
 pub(super) const ENTRIES: [&str; 2] = ["vertex", "fragment"];
 
 /// The parameters in which pipelines differ.
@@ -71,7 +71,7 @@ pub(super) struct Recipe<'a> {
 }
 
 impl<'a> Recipe<'a> {
-    /// Returns the recipe of a quad per instance, whose corners the vertex shader computes; it writes no depth.
+    /// Returns the recipe for one quad per instance. The vertex shader computes its corners, and depth is not written.
     pub(super) fn quads(
         label: &'a str,
         module: &'a wgpu::ShaderModule,

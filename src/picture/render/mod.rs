@@ -1,7 +1,7 @@
 //! Draws a [`Scene`] on the GPU: in a window's pass, or into a picture ([`offscreen`]).
 //!
 //! The renderer depends on scenes, not on mechanics. It draws into its own multisampled target and copies the result
-//! pixel for pixel, so a window, a test and a recording show the same picture. Drawing order: background, opaque
+//! pixel for pixel. So a window, a test and a recording show the same picture. Drawing order: background, opaque
 //! solids, areas, shadows, depth-tested lines, shells, translucent solids, lines on top, markers. Labels are drawn by
 //! egui, which has the fonts.
 //!

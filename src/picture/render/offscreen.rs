@@ -54,7 +54,7 @@ pub struct Picture {
     pub width: u32,
     /// Number of rows.
     pub height: u32,
-    /// `4 width height` bytes.
+    /// `4 · width · height` bytes.
     pub rgba: Vec<u8>,
 }
 
@@ -66,7 +66,7 @@ impl Picture {
         pixel.try_into().ok()
     }
 
-    /// Encodes as PNG. Fails if `rgba` is not `4 width height` bytes or the picture is empty.
+    /// Encodes as PNG. Fails if `rgba` does not have `4 · width · height` bytes or the picture is empty.
     pub fn to_png(&self) -> io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
         self.encode(&mut bytes)?;
@@ -111,8 +111,8 @@ pub struct Gpu {
 impl Gpu {
     /// Opens the adapter that the system prefers.
     pub fn new() -> Result<Self, NoAdapter> {
-        // Vulkan, Metal or DirectX 12. Tests compare pictures to the byte, so no fallback that draws slightly
-        // differently.
+        // Only Vulkan, Metal and DirectX 12 are used. Tests compare pictures byte by byte, and a fallback would draw
+        // slightly differently.
         let backends = wgpu::Backends::PRIMARY;
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends,
@@ -136,7 +136,7 @@ impl Gpu {
         &self.adapter
     }
 
-    /// The device, for other drawing than scenes.
+    /// The device, for drawing other than that of scenes.
     pub fn device(&self) -> &wgpu::Device {
         &self.device
     }
@@ -160,7 +160,7 @@ impl Gpu {
         texture.map_or(Err(NoPicture::Size { width, height, most }), |texture| self.readback(&texture))
     }
 
-    /// Reads back any texture with usage `COPY_SRC`, four bytes per pixel and premultiplied alpha.
+    /// Reads back a texture with usage `COPY_SRC`, four bytes per pixel and premultiplied alpha.
     pub fn readback(&mut self, texture: &wgpu::Texture) -> Result<Picture, NoPicture> {
         use wgpu::TextureFormat::{Bgra8Unorm, Bgra8UnormSrgb, Rgba8Unorm, Rgba8UnormSrgb};
         let swap = match texture.format() {

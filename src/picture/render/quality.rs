@@ -20,7 +20,7 @@ impl Quality {
         }
     }
 
-    /// Cells per side of the grid of an area. In draft quality, an edge of half a turn is half a pixel off.
+    /// Cells per side of the grid of an area. In draft quality, a boundary arc of half a turn deviates by half a pixel.
     pub(super) fn cells(self) -> u16 {
         match self {
             Self::Fine => 64,

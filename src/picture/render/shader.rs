@@ -31,7 +31,7 @@ macro_rules! twin {
 }
 pub(crate) use twin;
 
-/// Expands to the name and the text at build time of `shaders/NAME.wgsl`.
+/// Expands to the name of the file `shaders/NAME.wgsl` and its text at build time.
 macro_rules! embedded {
     ($name:literal) => {
         ($name, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shaders/", $name, ".wgsl")))
@@ -59,7 +59,8 @@ impl<P> Shader<P> {
         Self { pipelines }
     }
 
-    /// Reloads a changed file; if it does not validate, the last valid pipelines remain and one line says why.
+    /// Reloads a changed file; if it is not valid, the last valid pipelines remain, and a line on standard error says
+    /// why.
     #[cfg(debug_assertions)]
     pub(crate) fn reload(&mut self, device: &wgpu::Device) {
         let Some(text) = self.watch.changed() else { return };

@@ -45,7 +45,7 @@ struct Pipelines {
     opaque: wgpu::RenderPipeline,
     /// Thin outline in the background colour around each opaque solid.
     casing: wgpu::RenderPipeline,
-    /// Depth of the nearest translucent surface, so that only that surface of a translucent solid is drawn.
+    /// Writes the depth of the nearest translucent surface, so that only this surface of a translucent solid is drawn.
     front: wgpu::RenderPipeline,
     translucent: wgpu::RenderPipeline,
     /// Open surfaces, all layers and both sides; they write no depth.

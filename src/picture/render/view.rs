@@ -3,7 +3,7 @@
 /// Projection and size of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// Clip space from world space, column-major, depth 0..1.
+    /// Transformation from world space to clip space, column-major, with depth 0 to 1.
     pub clip_from_world: [[f32; 4]; 4],
     /// Unit vector from the scene towards the eye, in the world.
     pub eye_direction: [f32; 3],
@@ -23,7 +23,7 @@ impl View {
         (w > 0.0).then(|| [(0.5 + 0.5 * clip(0) / w) * width, (0.5 - 0.5 * clip(1) / w) * height])
     }
 
-    /// Distance of two points on the screen, physical pixels; 0 if one is behind the eye.
+    /// Distance between two points on the screen, physical pixels; 0 if one is behind the eye.
     pub(super) fn pixels_between(&self, a: [f32; 3], b: [f32; 3]) -> f32 {
         match (self.project(a), self.project(b)) {
             (Some(a), Some(b)) => (b[0] - a[0]).hypot(b[1] - a[1]),

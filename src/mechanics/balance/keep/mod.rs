@@ -1,10 +1,10 @@
 //! Keeping a machine balanced: the least change of chosen parameters with which (7) and (8) hold.
 //!
-//! The objective is Σ (p Δ)² over the parameters that may change, Δ in kg or m from the reference value
+//! The objective is Σ (p Δ)² over the parameters that may change. Δ, kg or m, is the change from the reference value
 //! [`from`](ListedParameter::from). With all l_c as parameters and reference 0 it is the objective of
 //! [`design`](super::design()). (7) and (8) are linear in m and s = m l_c, and so is a bound on l_c: lo m ≤ s ≤ hi m.
 //! If no body may change both its mass and a position, this is a quadratic program with one optimum. The solutions of
-//! (7) and (8) form a plane; the answer is the point of the plane within the bounds that is nearest to no change. If a
+//! (7) and (8) form a plane; the answer is the point of this plane within the bounds that has the least change. If one
 //! body may change both, [`search`] starts from several points, and the answer is not certified.
 //!
 //! # Symbols

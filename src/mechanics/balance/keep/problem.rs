@@ -13,12 +13,12 @@ use crate::machine::{BALANCE_TOLERANCE, Inertia, Machine, MachineError, MachineS
 use crate::planar::Vector;
 use stillbase_convex::{LinearRow, Program, infeasible_bounds};
 
-/// A machine that has been kept balanced.
+/// A machine balanced by the least change of parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RebalancedMachine {
     /// The machine, balanced to rounding.
     pub machine: Machine,
-    /// Value of each parameter, kg or m, in the order of the list.
+    /// Value of each parameter, kg or m, in the order of the request.
     pub values: Vec<f64>,
     /// Minimum of the objective: Σ (p Δ)² of the parameters that are not fixed.
     pub cost: f64,
@@ -28,7 +28,8 @@ pub struct RebalancedMachine {
 }
 
 impl RebalancedMachine {
-    /// Returns the settings that turn machine `of` into this machine, by key, including the radii of discs.
+    /// Returns the keys and values of all settings in which this machine differs from `of`, including the radii of
+    /// discs.
     pub fn settings(&self, of: &Machine) -> Vec<(String, f64)> {
         let (now, was) = (self.machine.spec(), of.spec());
         let changed = Parameter::all(&self.machine).into_iter().filter_map(|parameter| {
@@ -44,14 +45,14 @@ impl RebalancedMachine {
 /// Returns the balanced, invariant machine, (7) and (8), with the least change of the listed parameters.
 ///
 /// # Errors
-/// If the list is not valid, or if there is no such machine: then with the limits that contradict each other and the
-/// values to which they would have to be relaxed.
+/// If the list is not valid, or if no such machine exists. The error then names the limits that contradict each other,
+/// and relaxed values that are sufficient.
 pub fn rebalance(machine: &Machine, asked: &RebalanceRequest) -> Result<RebalancedMachine, RebalanceError> {
     rebalance_with(machine, asked, &[])
 }
 
-/// As [`rebalance`], for a machine with known additional residuals `beyond` of the conditions, in their order: the sums
-/// of computed and additional residuals are to vanish.
+/// As [`rebalance`], but each condition has a known additional residual in `beyond`, kg m or kg m², in the order of
+/// [`Condition::all`]. The sums of computed and additional residuals must vanish.
 ///
 /// # Errors
 /// As [`rebalance`].
@@ -79,8 +80,8 @@ pub fn rebalance_with(
     }
 }
 
-/// Returns the residual of each condition, kg m or kg m², that no values of the listed parameters remove: the least
-/// squares residual, with all equations scaled to unit norm. `beyond`: see [`rebalance_with`].
+/// Returns the part of each residual, kg m or kg m², that no values of the listed parameters remove. This is the
+/// residual of the least squares solution, with all equations scaled to unit norm. `beyond`: see [`rebalance_with`].
 ///
 /// # Errors
 /// If the list is not valid.
@@ -127,7 +128,7 @@ impl<'a> Problem<'a> {
             for (&condition, beyond) in problem.conditions.iter().zip(&problem.beyond) {
                 let a = asked.parameters.iter().map(|one| problem.by(condition, one.parameter, across) / one.penalty);
                 let residual = condition.residual(&start) + beyond;
-                // A tenth of the tolerance of the finished machine.
+                // Ten times stricter than the check of the finished machine.
                 let tolerance = 0.1 * condition.tolerance(&scale).max(condition.tolerance(&start));
                 let equation = LinearEquation {
                     a: a.collect(),
@@ -140,8 +141,8 @@ impl<'a> Problem<'a> {
         Ok(problem)
     }
 
-    /// Returns the change of a condition with a change of a parameter by 1 kg or 1 m, its real part or, if `across`,
-    /// its imaginary part.
+    /// Returns the derivative of a condition by a parameter, per kg or per m: the imaginary part if `across`, otherwise
+    /// the real part.
     fn by(&self, condition: Condition, parameter: Parameter, across: bool) -> f64 {
         let mass = self.mass_from(parameter.body);
         let Some(link) = self.carrier(parameter.body) else { return 0.0 };
@@ -179,7 +180,7 @@ impl<'a> Problem<'a> {
         self.asked.parameters.iter().position(|one| one.parameter == parameter)
     }
 
-    /// Returns the minimisation problem for bodies of which masses and positions may change.
+    /// Returns the minimisation problem for bodies whose mass and position may both change.
     fn search<'b>(&self, equations: &'b [LinearEquation], bounds: &'b [LinearRow]) -> RebalanceSearch<'b> {
         let all = || self.asked.parameters.iter().enumerate();
         let masses = all().filter(|(_, one)| one.parameter.quantity == BodyQuantity::Mass).map(|(at, one)| {
@@ -195,7 +196,7 @@ impl<'a> Problem<'a> {
         RebalanceSearch { equations, counts, masses: masses.collect(), bounds }
     }
 
-    /// Returns whether no body may change both its mass and a position: then the problem is a convex quadratic program.
+    /// Returns whether the problem is a convex quadratic program: no body may change both its mass and a position.
     fn is_convex(&self) -> bool {
         let all =
             || self.asked.parameters.iter().filter(|one| one.hold != ParameterBounds::Fixed).map(|one| one.parameter);
@@ -203,7 +204,7 @@ impl<'a> Problem<'a> {
         !masses.any(|mass| all().any(|other| other.body == mass.body && other != mass))
     }
 
-    /// Returns the row a · y = right that holds where parameter i has a value, kg or m.
+    /// Returns the row a · y = right that gives parameter i the value `value`, kg or m.
     fn row(&self, i: usize, value: f64) -> LinearRow {
         let ListedParameter { parameter, penalty, from, .. } = self.asked.parameters[i];
         let mut terms = vec![(i, 1.0)];
@@ -222,12 +223,12 @@ impl<'a> Problem<'a> {
         let row = self.row(i, value);
         let mut a = vec![0.0; self.asked.parameters.len()];
         row.terms.iter().for_each(|&(j, by)| a[j] += by);
-        // At least 1e-12 m or kg.
+        // Corresponds to at least 1e-12 m or kg.
         let tolerance = one.penalty * BALANCE_TOLERANCE * (value.abs() + one.from.abs()).max(1e-3);
         Some(LinearEquation { a, right: row.right, tolerance })
     }
 
-    /// Returns the limits with their rows a · y ≤ right; with those of fixed parameters if `fixed`.
+    /// Returns the limits with their rows a · y ≤ right; limits of fixed parameters are included only if `fixed`.
     fn limits(&self, fixed: bool) -> Vec<(ParameterLimit, LinearRow)> {
         let mut all = Vec::new();
         for (i, one) in self.asked.parameters.iter().enumerate() {
@@ -246,7 +247,7 @@ impl<'a> Problem<'a> {
         all
     }
 
-    /// Returns the rows of limits, after those that keep every mass positive.
+    /// Returns the rows that keep every mass positive, followed by the rows of `limits`.
     fn bounds(&self, limits: &[(ParameterLimit, LinearRow)]) -> Vec<LinearRow> {
         self.floors().chain(limits.iter().map(|(_, row)| row.clone())).collect()
     }
@@ -339,8 +340,8 @@ impl<'a> Problem<'a> {
         RebalanceError::Inconsistent { condition: condition.name(self.machine), residual: left }
     }
 
-    /// Returns the relaxed limits with the least Σ p |change| with which there is a solution: within the default
-    /// bounds, or without these if they are too tight. Empty if the solver finds no solution.
+    /// Returns the relaxed limits with the least Σ p |change| that make the problem feasible. Default bounds are
+    /// relaxed only if that is necessary. Empty if the solver finds no solution.
     fn relief(&self, plane: &SolutionSpace, limits: &[(ParameterLimit, LinearRow)]) -> Vec<LimitRelaxation> {
         let mut reliefs = [false, true].into_iter().map(|usual| self.relief_of(plane, limits, usual));
         reliefs.find(|relief| !relief.is_empty()).unwrap_or_default()
@@ -350,9 +351,9 @@ impl<'a> Problem<'a> {
         &self,
         plane: &SolutionSpace,
         limits: &[(ParameterLimit, LinearRow)],
-        usual: bool,
+        relax_defaults: bool,
     ) -> Vec<LimitRelaxation> {
-        let widest = self.asked.parameters.iter().enumerate().filter(|_| !usual).flat_map(|(i, one)| {
+        let widest = self.asked.parameters.iter().enumerate().filter(|_| !relax_defaults).flat_map(|(i, one)| {
             let ends =
                 [LimitSide::Least, LimitSide::Most].into_iter().zip(one.widest(self.machine).into_iter().flatten());
             ends.map(move |(side, value)| self.limit(i, side, value))
@@ -364,10 +365,10 @@ impl<'a> Problem<'a> {
         for i in 0..c.len() {
             let mut terms: Vec<(usize, f64)> = (0..k).map(|j| (j, m[(i, j)])).collect();
             if i >= floors {
-                let gives = k + i - floors;
-                program.at_most.push(LinearRow::new([(gives, -1.0)], 0.0));
-                if usual || !limits[i - floors].0.usual {
-                    terms.push((gives, -1.0));
+                let slack = k + i - floors;
+                program.at_most.push(LinearRow::new([(slack, -1.0)], 0.0));
+                if relax_defaults || !limits[i - floors].0.usual {
+                    terms.push((slack, -1.0));
                 }
             }
             program.at_most.push(LinearRow::new(terms, c[i] / scale));
@@ -375,13 +376,13 @@ impl<'a> Problem<'a> {
         let Ok(least) = program.solve() else { return Vec::new() };
         let z = DVector::from_fn(k, |j, _| least.x[j] * scale);
         let y = &plane.particular + &plane.null_space * &z;
-        // Rounded outwards to few digits, and to fewer if the rounded limits are infeasible.
+        // The relaxed limits are rounded outwards to few digits, and to fewer if the rounded limits are infeasible.
         let mut reliefs = [1e-4, 1e-3, 1e-2].into_iter().map(|step| self.relieved(limits, &y, step, scale));
         reliefs.find(|relief| plane.nearest(&self.bounds(&self.relaxed(limits, relief))).is_ok()).unwrap_or_default()
     }
 
-    /// Returns the relaxed limits that admit y, rounded outwards in steps of a fraction `step` of the change's power of
-    /// ten.
+    /// Returns the relaxed limits that admit y. They are rounded outwards to multiples of `step` times the power of ten
+    /// above the change.
     fn relieved(
         &self,
         limits: &[(ParameterLimit, LinearRow)],
@@ -403,7 +404,7 @@ impl<'a> Problem<'a> {
         limits.iter().filter_map(relief).collect()
     }
 
-    /// Returns the limits with their relaxed values.
+    /// Returns all limits, with the relaxed values of those in `relief`.
     fn relaxed(
         &self,
         limits: &[(ParameterLimit, LinearRow)],

@@ -25,11 +25,11 @@ pub struct ParameterLimit {
     pub key: String,
     /// For a counterweight, the link that carries it, because its key has only its number.
     pub carrier: Option<String>,
-    /// Whether it is the lower or the upper limit.
+    /// Side of the limit: lower or upper.
     pub side: LimitSide,
     /// Whether the parameter is fixed.
     pub fixed: bool,
-    /// Whether it is a default limit.
+    /// Whether the limit is a default.
     pub usual: bool,
     /// Value of the limit, m or kg.
     pub value: f64,
@@ -82,7 +82,7 @@ fn sufficient_relief(relief: &[LimitRelaxation]) -> String {
     if relief.is_empty() { String::new() } else { format!("; {} would do", listed(relief, " and ")) }
 }
 
-/// Why a machine cannot be kept balanced.
+/// Reason why a machine cannot be kept balanced.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RebalanceError {
     /// A number that is out of range.
@@ -92,7 +92,7 @@ pub enum RebalanceError {
         what: String,
         /// The number.
         value: f64,
-        /// The range that would be right.
+        /// The allowed range.
         want: String,
     },
     /// There is no such parameter.
@@ -119,9 +119,10 @@ pub enum RebalanceError {
     /// These limits contradict each other: a minimal set.
     #[error("no balance within these limits: {}{}", listed(.limits, "; "), sufficient_relief(.relief))]
     Conflict {
-        /// The limits; without any one of them the others do not contradict each other.
+        /// The limits; if any one of them is removed, the others are feasible together.
         limits: Vec<ParameterLimit>,
-        /// Relaxed limits, of these and all others, with which there is a solution: those with the least Σ p |change|.
+        /// Relaxed limits with which there is a solution, with the least Σ p |change|. They may include limits not in
+        /// `limits`.
         relief: Vec<LimitRelaxation>,
     },
     /// The solver failed.

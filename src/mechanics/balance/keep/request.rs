@@ -9,13 +9,14 @@ use stillbase_settings::number::ShortNumber;
 /// Bounds of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ParameterBounds {
-    /// The parameter keeps its value in the machine. Unlike one that is not listed, a refusal may name it as a cause.
+    /// The parameter keeps its value in the machine. If there is no solution, the error may name this parameter as a
+    /// cause; it never names one that is not listed.
     Fixed,
-    /// Default bounds about the reference value: for a mass a tenth to ten times, for a position ten times the
-    /// machine's reach either way, at least 10 m.
+    /// Default bounds about the reference value. A mass may change by a factor of ten either way; a position by ten
+    /// times the machine's reach, or 10 m if that is more.
     Free,
-    /// Lower and upper bound, kg or m. A mass also stays above a thousandth of both its present and its reference
-    /// value.
+    /// Lower and upper bound, kg or m. A mass also stays above a thousandth of the smaller of its present and its
+    /// reference value.
     Within([f64; 2]),
 }
 
@@ -25,7 +26,8 @@ pub(super) const MIN_MASS: f64 = 1e-3;
 /// Default bounds of a mass: its reference value divided and multiplied by this factor.
 const DEFAULT_MASS_FACTOR: f64 = 10.0;
 
-/// Default bounds of a position: its reference value plus or minus this many times the machine's reach, at least 1 m.
+/// Default bounds of a position: its reference value plus or minus this factor times the machine's reach, or times 1 m
+/// if the reach is shorter.
 const DEFAULT_TRAVEL_FACTOR: f64 = 10.0;
 
 /// A listed parameter, with its bounds and its penalty.
@@ -42,7 +44,7 @@ pub struct ListedParameter {
 }
 
 impl ListedParameter {
-    /// Returns its lower and upper bound, kg or m; both are its value if it is fixed.
+    /// Returns its lower and upper bound, kg or m; both are the present value if it is fixed.
     pub(super) fn ends(&self, machine: &Machine) -> Option<[f64; 2]> {
         let value = self.parameter.value(machine.spec())?;
         Some(match (self.hold, self.parameter.quantity) {
@@ -59,15 +61,14 @@ impl ListedParameter {
         })
     }
 
-    /// Returns the widest bounds to which its limits may be relaxed: the default bounds and its own, whichever are
-    /// wider.
+    /// Returns the bounds to which its limits may be relaxed, kg or m: the union of its bounds and the default bounds.
     pub(super) fn widest(&self, machine: &Machine) -> Option<[f64; 2]> {
         let ([low, high], usual) = (self.ends(machine)?, Self { hold: ParameterBounds::Free, ..*self }.ends(machine)?);
         Some([low.min(usual[0]), high.max(usual[1])])
     }
 }
 
-/// The parameters that may change. All others stay as they are.
+/// The parameters that may change, and fixed ones. All parameters that are not listed keep their values.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RebalanceRequest {
     /// The parameters, each at most once.
@@ -76,7 +77,7 @@ pub struct RebalanceRequest {
 
 impl RebalanceRequest {
     /// Lists the positions of all links' centres of mass along the links, with default bounds about their present
-    /// values. `penalty` holds one penalty a link, such as those of a [`Preset`](super::super::Preset).
+    /// values. `penalty` holds the penalty of each link, such as those of a [`Preset`](super::super::Preset).
     pub fn coms(machine: &Machine, penalty: &[f64]) -> Self {
         let adjusted = |(j, link): (usize, &crate::machine::Link)| ListedParameter {
             parameter: Parameter::com(j),
@@ -87,8 +88,8 @@ impl RebalanceRequest {
         Self { parameters: machine.spec().links.iter().enumerate().map(adjusted).collect() }
     }
 
-    /// Returns the same list with changes measured from another machine. During a drag, changes are measured from the
-    /// machine at its start.
+    /// Returns the same list with the values of another machine as reference values. During a drag, that is the machine
+    /// before the drag.
     #[must_use]
     pub fn measured_from(mut self, machine: &Machine) -> Self {
         for one in &mut self.parameters {
@@ -97,7 +98,7 @@ impl RebalanceRequest {
         self
     }
 
-    /// Returns the entry of a parameter.
+    /// Returns the entry of a parameter; `None` if it is not listed.
     pub fn of(&self, parameter: Parameter) -> Option<&ListedParameter> {
         self.parameters.iter().find(|one| one.parameter == parameter)
     }

@@ -1,10 +1,10 @@
-//! [`RebalanceSearch`]: minimises Σ (p Δ)² if a mass and a position of one body may change.
+//! [`RebalanceSearch`]: minimises Σ (p Δ)² if a mass and a position of one body may both change.
 //!
-//! In y the conditions and all limits are linear, but a position changes by y m₀/(p m). So the objective
-//! F(y) = Σ y_m² + Σ (y_l m₀/m)² is not convex. Newton's method minimises F from several starts. Each step goes
-//! towards the minimum of a quadratic model within the limits, and stays feasible because the feasible set is convex.
-//! The result is no worse than any start, one of which keeps every mass as it is. It is not certified: another local
-//! minimum may be lower.
+//! The conditions and all limits are linear in y, but a position changes by y m₀/(p m). So the objective F(y), the sum
+//! of all y_m² and (y_l m₀/m)², is not convex. Newton's method minimises F from several starts. Each step goes towards
+//! the minimum of a quadratic model within the limits, and stays feasible because the feasible set is convex. The
+//! result is no worse than any start, one of which keeps every mass at its reference value. It is not certified:
+//! another local minimum may be lower.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -23,19 +23,19 @@ use stillbase_convex::LinearRow;
 const MAX_NEWTON_STEPS: usize = 60;
 /// Iteration stops if the predicted decrease is less than this fraction of F.
 const MIN_DECREASE: f64 = 1e-15;
-/// Smallest curvature of a convexified model, as a fraction of that of a mass alone.
+/// Smallest curvature of a convexified model along y_m, as a fraction of the curvature of y_m².
 const MIN_CURVATURE: f64 = 0.05;
 /// Sufficient decrease: the fraction of the predicted decrease that a step must achieve.
 const SUFFICIENT_DECREASE: f64 = 1e-4;
-/// Ratios m/m₀ of all masses in the quadratic models of the first starts.
+/// Ratios m/m₀ in the quadratic models of the first starts; each is used for all masses.
 const START_MASS_RATIOS: [f64; 5] = [1.0, 3.0, 0.3, 8.0, 0.12];
 /// Number of starts with a different ratio for each mass, per mass that may change.
 const MIXED_STARTS_PER_MASS: usize = 8;
-/// Maximum number of such starts.
+/// Maximum number of starts with a different ratio for each mass.
 const MAX_MIXED_STARTS: usize = 16;
-/// Maximum number of starts, the best ones, from which the search goes on.
+/// Maximum number of starts from which Newton's method runs: those with the smallest F.
 const MAX_SEARCHES: usize = 6;
-/// Relative tolerance of F for replacing a result by that with exact positions: rounding.
+/// Relative increase of F, due to rounding, that is accepted when a result is replaced by one with exact positions.
 const VALUE_TOLERANCE: f64 = 1e-9;
 
 /// A mass that may change.
@@ -55,7 +55,7 @@ pub(super) struct MassVariable {
 /// The minimisation problem.
 pub(super) struct RebalanceSearch<'a> {
     pub equations: &'a [LinearEquation],
-    /// For each component of y whether it enters F: fixed ones do not.
+    /// Whether each component of y enters F; fixed parameters do not.
     pub counts: Vec<bool>,
     pub masses: Vec<MassVariable>,
     /// The limits, a · y ≤ right.
@@ -71,7 +71,7 @@ impl RebalanceSearch<'_> {
         let unchanged = self.with_masses(&self.masses.iter().map(|mass| mass.from).collect::<Vec<_>>());
         let mut ends: Vec<_> = starts.into_iter().chain(unchanged).map(|y| self.descend(plane, y)).collect();
         ends.sort_by(|a, b| self.value(a).total_cmp(&self.value(b)));
-        // Solved again with these masses held, so that positions are exact.
+        // The problem is solved again with these masses fixed, so that positions are exact.
         let exact = ends.first().and_then(|best| {
             let masses = self.masses.iter().map(|mass| mass.from + best[mass.at] / mass.penalty);
             self.with_masses(&masses.collect::<Vec<_>>())
@@ -104,7 +104,7 @@ impl RebalanceSearch<'_> {
         ratios.filter_map(|ratios: Vec<f64>| self.start(plane, &ratios)).collect()
     }
 
-    /// Minimises F with the masses held at given values, kg, clamped to their limits; `None` if that is not feasible.
+    /// Minimises F with the masses fixed at given values, kg, clamped to their limits; `None` if that is not feasible.
     fn with_masses(&self, masses: &[f64]) -> Option<DVector<f64>> {
         let held = self.masses.iter().zip(masses).map(|(mass, value)| {
             let mut a = vec![0.0; self.counts.len()];
@@ -118,8 +118,8 @@ impl RebalanceSearch<'_> {
         Some(self.descend(&plane, y))
     }
 
-    /// Returns the minimum of the quadratic model of F in which m/m₀ has given ratios, and in which changes of masses
-    /// are measured from those; `None` if it is not feasible.
+    /// Returns the minimum of a quadratic model of F, built for given ratios m/m₀, that also penalises other ratios;
+    /// `None` if the limits are infeasible.
     fn start(&self, plane: &SolutionSpace, ratios: &[f64]) -> Option<DVector<f64>> {
         let mut h =
             DMatrix::from_diagonal(&DVector::from_iterator(self.counts.len(), self.counts.iter().map(curvature)));
