@@ -1,6 +1,6 @@
 //! Motion planning: which poses and paths a machine can reach, and when it passes along them.
 //!
-//! Others reach this crate as `stillbase::planning`; `stillbase` alone follows semantic versioning.
+//! Other programs use this crate as `stillbase::planning`; only `stillbase` follows semantic versioning.
 //!
 //! | what | modules |
 //! |---|---|

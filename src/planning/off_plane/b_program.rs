@@ -1,8 +1,7 @@
-//! The convex program of the least reaction: the course of b within a corridor with the least ∫ b″² or the least peak
-//! of
-//! |b″|.
+//! The convex program of the least reaction: the course of b within a corridor with the least ∫ b″² or the least
+//! maximum of |b″|.
 //!
-//! b″ is linear between even nodes. b and b′ of the nodes are unknowns too, with exact integration as equality
+//! b″ is linear between evenly spaced nodes. b and b′ of the nodes are unknowns too; exact integration gives equality
 //! constraints.
 
 use crate::off_plane::b_course::BCourse;
@@ -12,28 +11,29 @@ use stillbase_convex::{LinearRow, Program};
 
 /// Number of stations of the corridor in each piece.
 pub(super) const PIECE_STATIONS: usize = 8;
-/// Stride of the stations where only the value of a program is wanted.
+/// Stride of the stations in programs of which only the minimum is needed, not the course.
 const STRIDE_FOR_VALUE: usize = 2;
-/// Margin of b to the corridor's bounds, rad, at most a tenth of its width. At a fold the joint rates would be
-/// infinite.
+/// Margin between b and the corridor's bounds, rad; at most a tenth of its width. It avoids folds, where joint rates
+/// are infinite.
 const MARGIN_RAD: f64 = 1e-3;
 /// The margin is reduced until it raises the objective by at most this fraction.
 const MARGIN_COST: f64 = 4e-3;
 /// Margin that is always kept, against rounding, rad.
 const MIN_MARGIN_RAD: f64 = 1e-8;
-/// If the start or the end lies within the margin, the margin grows from there over this fraction of the motion.
+/// If the start or the end lies within the margin, the margin is reduced there and grows over this fraction of the
+/// motion.
 const GROWTH_SHARE: f64 = 0.1;
 /// Maximum number of times that the bounds are tightened because the course leaves the corridor between stations.
 const MAX_TIGHTENINGS: usize = 4;
 /// Fraction of the least peak by which the smoothest course may exceed it.
 const SMOOTHING_COST: f64 = 1e-7;
 
-/// Lower and upper bound of b − b_0 at each station, rad: the even stations first, then those between.
+/// Lower and upper bound of b − b_0 at each station, rad: evenly spaced stations first, then the additional ones.
 type Walls = Vec<[f64; 2]>;
 
-/// Finds the course of least ∫ b″² du, or of least peak of |b″| if `peak`, within the corridor at every station and, to
-/// second order, between them. Each of the `spaces` pieces has [`PIECE_STATIONS`] stations. The margin may cost `ease`
-/// times [`MARGIN_COST`]. Fails with the reason in words.
+/// Finds the course of least ∫ b″² du, or of least peak |b″| if `peak`. It stays within the corridor at every station
+/// and, to second order, between stations. Each of the `spaces` pieces has [`PIECE_STATIONS`] stations. The margin
+/// may cost `ease` times [`MARGIN_COST`]. An error gives the reason in words.
 pub(super) fn least_course(
     corridor: &Corridor,
     end: Option<f64>,
@@ -42,7 +42,7 @@ pub(super) fn least_course(
     ease: f64,
 ) -> Result<BCourse, String> {
     let value = |share: f64| value(corridor, &walls(corridor, end, share, 0.0), end, peak, spaces);
-    // The objective is convex in the share of the margin, so that a chord bounds the cost of a share from above.
+    // The minimum is convex in the fraction of the margin, so a chord bounds the cost of a fraction from above.
     let free = value(0.0)?;
     let mut shares = match value(1.0) {
         Ok(wide) if wide - free <= ease * MARGIN_COST * free => vec![1.0],
@@ -95,7 +95,7 @@ fn past(corridor: &Corridor, course: &BCourse) -> f64 {
         let b = course.at(0.5 * (w[0].u + w[1].u))[0];
         let side = |side: usize, ends: [f64; 2]| {
             let bulges = [k, k + 1].map(|k| bulge(corridor, k, side));
-            // Across a jump of the corridor interpolation has no meaning.
+            // Interpolation across a jump of the corridor is meaningless.
             let [Some(i), Some(j)] = bulges else { return f64::NEG_INFINITY };
             let sense = [1.0, -1.0][side];
             sense * (0.5 * (ends[0] + ends[1]) - b) + i.min(j)
@@ -105,8 +105,8 @@ fn past(corridor: &Corridor, course: &BCourse) -> f64 {
     at.chain(between).fold(0.0, f64::max)
 }
 
-/// Estimates from second differences by how much, rad, a bound of the corridor may lie further inside halfway to the
-/// next station than linear interpolation gives. Returns `None` at a jump, such as where another limit takes over.
+/// Estimates from second differences how far, rad, a bound of the corridor lies inside its linear interpolation
+/// halfway to the next station. Returns `None` at a jump, such as where another limit becomes active.
 fn bulge(corridor: &Corridor, k: usize, side: usize) -> Option<f64> {
     let stations = corridor.stations();
     let bound = |k: usize| [stations[k].low, stations[k].high][side];
@@ -183,8 +183,8 @@ fn squared(mut program: Program, spaces: usize) -> Program {
     program
 }
 
-/// Builds the constraints of a course, with `more` additional unknowns at the end. Bounds apply at every `every`th even
-/// station and at all stations between.
+/// Builds the constraints of a course, with `more` additional unknowns at the end. Bounds apply at every `every`th
+/// evenly spaced station and at all additional stations.
 fn program(corridor: &Corridor, walls: &Walls, end: Option<f64>, spaces: usize, every: usize, more: usize) -> Program {
     let start = corridor.start().b;
     let h = 1.0 / spaces as f64;
@@ -220,8 +220,9 @@ fn program(corridor: &Corridor, walls: &Walls, end: Option<f64>, spaces: usize, 
     program
 }
 
-/// Returns the bounds of b − b_0, rad: the corridor reduced by a share of the margin and by its curvature between
-/// stations. If the start or a given end of the course lies within the margin, the margin grows from there.
+/// Returns the bounds of b − b_0, rad: the corridor reduced by a fraction of the margin and by the bulge of its
+/// bounds between stations. If the start or a given end of the course lies within the margin, the margin is reduced
+/// there.
 fn walls(corridor: &Corridor, end: Option<f64>, share: f64, extra: f64) -> Walls {
     let stations = corridor.stations();
     let (first, last) = (&stations[0], &stations[stations.len() - 1]);
