@@ -81,7 +81,7 @@ impl Wall {
     }
 
     /// Returns the outlines rotated by an angle, rad, and split at their corners and where the wall turns away from the
-    /// eye. `eye` is the unit vector towards it. Each piece comes with a flag: the eye is on its outer side.
+    /// eye. `eye` is the unit vector towards it. Each piece has a flag that is true if the eye is on its outer side.
     pub fn contour(&self, turn: f64, eye: [f64; 3]) -> Vec<(Vec<Vector>, bool)> {
         let turn = unit(turn);
         let level = Vector::new(eye[0], eye[1]) * turn.conj();

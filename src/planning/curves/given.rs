@@ -85,7 +85,7 @@ pub enum SamplesError {
         /// Number of entries of the first row, or the nearest permitted number.
         want: usize,
     },
-    /// Not a number.
+    /// An entry that is not finite.
     #[error("sample {}, number {}: want a finite number", row + 1, column + 1)]
     NotFinite {
         /// Row, counted from 0.

@@ -30,7 +30,7 @@ pub enum Path {
     OnPlane {
         /// Converts (a_1, a_2) and b to drive angles.
         map: PlaneMap,
-        /// rad.
+        /// Pose constant, rad.
         b: f64,
         /// a_1 + i a_2, rad.
         curve: Curve,

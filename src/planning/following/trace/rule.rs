@@ -78,7 +78,7 @@ impl std::fmt::Display for SheetEnd {
     }
 }
 
-/// In words.
+/// Serialised as its description in words.
 impl Serialize for SheetEnd {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
