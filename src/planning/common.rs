@@ -1,4 +1,4 @@
-//! The pose constants b at which several points can all be reached. If there are none: the shortest move of one point
+//! The pose constants b at which several points can all be reached. If there is none, the shortest move of one point
 //! that creates one. One method serves any number of drives.
 //!
 //! # Symbols
@@ -130,7 +130,7 @@ fn least_move(space: &PoseSpace, p: Vector, point: usize, others: &BSet) -> Opti
     }
     let (r, theta, sum) = (p.norm(), p.arg(), space.lambda_sum());
     let (near, far) = (space.nearest(), space.farthest());
-    // Length of the move to a distance, m, and its turn, rad, given the b at which (distance, 0) can be reached.
+    // Length, m, and turn, rad, of the shortest move to a point at `distance`; `set` is B(distance).
     let by = |distance: f64, set: Result<BSet, NoReach>| -> (f64, f64) {
         let turned = |set: BSet| BSet {
             intervals: set.intervals.iter().map(|[low, high]| [low + theta * sum, high + theta * sum]).collect(),

@@ -12,7 +12,7 @@
 //! | poses of several points at a b, and how the points are carried along when b changes | [`posed`] |
 //! | time: time laws, limits, the fastest motion | [`timing`] |
 //! | how the redundant freedoms of four and more drives are used | [`posture`] |
-//! | at constant b: following curves, or the reason why not; following the pointer and the slider of b | [`following`] |
+//! | at constant b: following curves, or the reason why not; following pointer and slider | [`following`] |
 //! | off the planes b = const: the cost of a change of b, the least reaction, zero momentum | [`off_plane`] |
 //! | path and timing together, and a forecast of torques and reactions | [`motion`], [`forecast`] |
 //!

@@ -183,7 +183,7 @@ fn mark(scene: &mut Scene, ticks: &mut Vec<Vec<[f32; 3]>>, palette: &Palette, si
     scene.labels.push(Label::new("axes/titles", at, offset, axis.title, axis.colour, 12.5, Anchor::Centre));
 }
 
-/// Returns an interval of length `width` that contains the given interval with a `margin` on both sides and is centred
+/// Returns an interval of length `width` that contains the given interval with a `margin` on both sides. Its centre is
 /// as near to `home` as possible. If the given interval is too long, the result contains its lower part.
 pub fn covering_range([low, high]: [f64; 2], home: f64, width: f64, margin: f64) -> [f64; 2] {
     let middle = home.max(high + margin - 0.5 * width).min(low - margin + 0.5 * width);

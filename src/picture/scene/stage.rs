@@ -303,7 +303,7 @@ impl Stage {
     }
 
     /// Returns the points that the camera has to show: the machine in its present and in other poses, its workspace
-    /// and its task; optionally the workspace for comparison.
+    /// and its task. Optional points are those of the workspace for comparison.
     pub fn content(&self, frame: &Frame, poses: &[DriveAngles]) -> ViewContent {
         let (base, z) = (frame.base, self.handle_height());
         let on_base = |p: Vector| base.at + unit(base.angle) * p;

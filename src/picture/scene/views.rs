@@ -165,8 +165,8 @@ impl QuickQuery for Views {
     }
 }
 
-/// Query for [`Views`] with the parts that change more often: base and payload, the drives along the axes of joint
-/// space, and, once computed, the outline with its tower.
+/// Query for [`Views`] with the parts that change more often. These are base and payload, the drives along the axes of
+/// joint space, and, once computed, the outline with its tower.
 #[derive(Debug)]
 struct Completed;
 
@@ -222,7 +222,7 @@ impl Views {
     }
 
     /// Returns the views of a run, from the cache if possible, without the parts that [`completed`](Self::completed)
-    /// adds; for a whole run, `over` is the interval of its b, rad.
+    /// adds. For a whole run, `over` is the interval of its b, rad.
     #[doc(hidden)]
     pub fn made(queries: &Queries, run: &Run, over: Option<[f64; 2]>) -> Arc<Self> {
         queries.ask_if::<QuickWork<Self>>(

@@ -153,8 +153,8 @@ fn turning(a: Vector, b: Vector, c: Vector) -> f64 {
     cross(u, v).atan2(dot(u, v))
 }
 
-/// Thins a path: keeps its ends, and a point whenever the change of direction since the last kept point exceeds `turn`,
-/// rad, or the length exceeds `side`, m.
+/// Thins a path but keeps its ends. Another point is kept when, since the last kept point, the direction has changed
+/// by more than `turn`, rad, or the length exceeds `side`, m.
 fn thinned(path: &[Vector], side: f64, turn: f64) -> Vec<Vector> {
     let mut kept: Vec<Vector> = path.first().copied().into_iter().collect();
     let (mut turned, mut gone) = (0.0, 0.0);

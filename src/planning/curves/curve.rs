@@ -62,7 +62,7 @@ pub enum CurveError {
     /// The three points lie on a line.
     #[error("the three points lie on a line, so no arc goes through them: move the middle one aside")]
     Collinear,
-    /// A coordinate is not a number.
+    /// A coordinate is not finite.
     #[error("point {}: want finite coordinates", .0 + 1)]
     NotFinite(usize),
 }
@@ -238,8 +238,8 @@ impl Curve {
         Self { pieces: shapes.into_iter().enumerate().map(piece).collect(), length }
     }
 
-    /// Returns the length of the curve, m or rad: exact for lines and arcs, the sum of the chords for splines, twice
-    /// the blend distance for a rounded corner.
+    /// Returns the length of the curve, m or rad. It is exact for lines and arcs, the sum of the chords for splines,
+    /// and twice the blend distance for a rounded corner.
     pub fn length(&self) -> f64 {
         self.length
     }

@@ -10,12 +10,12 @@
 //! # Source
 //! On each interval the spline is the quintic Hermite polynomial through (y, m, M) at both ends. Continuity of y⃛ and
 //! y⁗ at every inner sample gives two linear equations for its m and M, a symmetric block-tridiagonal system. At both
-//! ends m and M are those of the polynomial through the six samples next to the end, so that nothing is assumed about
-//! how the motion begins or stops. The error of y falls with h⁶, that of ẏ with h⁵, that of ÿ with h⁴.
+//! ends m and M are those of the polynomial through the six samples next to the end. So nothing is assumed about how
+//! the motion begins or stops. The error of y falls with h⁶, that of ẏ with h⁵, that of ÿ with h⁴.
 //!
 //! # Noise
-//! The spline does not smooth. Independent errors of standard deviation σ in evenly spaced samples cause errors of ÿ
-//! whose root mean square is [`NOISE_GAIN`] σ/h² at inner samples and about 27 σ/h² at both ends, where only six
+//! The spline does not smooth. Independent errors of standard deviation σ in evenly spaced samples cause errors of ÿ.
+//! Their root mean square is [`NOISE_GAIN`] σ/h² at inner samples, and about 27 σ/h² at both ends, where only six
 //! samples contribute.
 
 use nalgebra::{Matrix2, Vector2};

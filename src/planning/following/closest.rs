@@ -1,9 +1,9 @@
-//! The motion at one b that is closest to a given one and has the same end effector path, for more than three drives;
-//! [`on_plane`](super::on_plane) does the same for three.
+//! The motion at one b that is closest to a given motion and has the same end effector path. This module serves more
+//! than three drives, [`on_plane`](super::on_plane) three.
 //!
 //! A point and a b leave n − 3 degrees of freedom. Among these poses this module chooses the one closest to the given
-//! pose in the metric of kinetic energy: it minimises ½ Σ H_kk Δq_k² with p and b fixed, by Newton's method, sample by
-//! sample. The result depends smoothly on the sample alone; joint limits are checked, not imposed.
+//! pose in the metric of kinetic energy. Sample by sample, Newton's method minimises ½ Σ H_kk Δq_k² with p and b
+//! fixed. The result depends smoothly on the sample alone; joint limits are checked, not imposed.
 
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;

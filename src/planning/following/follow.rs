@@ -350,8 +350,8 @@ impl Follower {
         acc
     }
 
-    /// Returns the accelerations nearest to the wanted ones, between these and full braking, after which the reference
-    /// can stop on a straight line without leaving its sheet.
+    /// Returns accelerations between the wanted ones and full braking, as near as possible to the wanted ones. After
+    /// them the reference can stop on a straight line without leaving its sheet.
     fn before_folds(&self, want: &PerDrive) -> PerDrive {
         let wanted = self.within_limits(want);
         if !self.map.has_bars() || self.can_stop_after(&wanted) {

@@ -28,7 +28,7 @@ pub struct BIntegral {
     phase: f64,
     /// S, kg m².
     sum: f64,
-    /// H_22 − H_11.
+    /// H_22 − H_11, kg m².
     difference: f64,
     /// C_12, kg m².
     coupling: Vector,

@@ -1,5 +1,5 @@
-//! The corridor of b along a motion of the end effector: at each point, the interval b_min to b_max in which the sheet
-//! of the start pose reaches that point within the joint limits.
+//! The corridor of b along a motion of the end effector. At each point it is the interval from b_min to b_max in which
+//! the sheet of the start pose reaches that point within the joint limits.
 //!
 //! On one sheet q = q(x, y, b): once the end effector's motion is given, b is the only free coordinate. The bounds
 //! are joint limits or folds; they follow exactly from the self-motion of each point, divided where b reverses.
@@ -212,8 +212,8 @@ impl Corridor {
         Ok(corridor)
     }
 
-    /// Returns where a bound of the corridor jumps, for example where a fold begins: the index of the station before,
-    /// and the side of the bound.
+    /// Returns where a bound of the corridor jumps, for example because a fold begins. Each jump has the index of the
+    /// station before it, and the side of the bound.
     fn jumps(&self) -> Vec<(usize, usize)> {
         let step = |k: usize, side: usize| gap(self.stations[k].bound(side), self.stations[k + 1].bound(side));
         let last = self.stations.len() - 2;

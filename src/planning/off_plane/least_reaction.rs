@@ -203,7 +203,7 @@ impl LeastReaction {
     }
 
     /// Compares the base moments of three ways to make the same motion of the end effector in `duration`, s. `tip` is
-    /// the end effector of the model in the plan, `curve` the planned curve.
+    /// the `end_effector` of the planned model, `curve` the planned curve.
     pub fn compare(&self, tip: &Chain, curve: impl Fn(f64) -> CurvePoint, duration: f64) -> Verdicts {
         let start = self.corridor.start();
         let fixed = match self.corridor.first_station_outside(start.b) {
@@ -295,8 +295,8 @@ pub struct MinimumNorm {
     pub keeps_limits: bool,
 }
 
-/// Returns the path of the drives along a course of b. It has few nodes if these keep the end effector on its curve
-/// at all stations, because rounding errors of q″ grow with the number of nodes. Near a fold it has nodes at all
+/// Returns the path of the drives along a course of b. Few nodes are used if they keep the end effector on its curve
+/// at all stations, because rounding errors of q″ grow with their number. Near a fold the path has nodes at all
 /// stations and more between them.
 fn followed(
     corridor: &Corridor,

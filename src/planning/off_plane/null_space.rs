@@ -99,9 +99,9 @@ const NODE_INTERVALS: usize = 256;
 const STEPS_PER_INTERVAL: usize = 4;
 
 /// Integrates a motion of zero momentum from a pose, for any number of drives, by the classical fourth-order
-/// Runge–Kutta method. q′ is the wanted direction w, rad, projected onto the rates of zero momentum. On an invariant
-/// machine the motion is a straight line. Returns `None` unless pose and direction are finite and have one entry for
-/// each drive.
+/// Runge–Kutta method. The derivative q′ is the wanted direction w, rad, projected onto the rates of zero momentum. On
+/// an invariant machine the motion is a straight line. Returns `None` unless pose and direction are finite and have
+/// one entry for each drive.
 pub fn motion(model: &Inertia, start: DriveAngles, w: &PerDrive) -> Option<PathTable> {
     let n = model.drives();
     if start.len() != n || w.len() != n || !start.iter().chain(w.iter()).all(|x| x.is_finite()) {
@@ -234,8 +234,8 @@ pub fn twist(model: &Inertia, q: &DriveAngles) -> f64 {
 
 /// Returns whether the machine has a pose constant: a b(q) that is constant along every motion of zero momentum.
 ///
-/// One or two drives always have one. Three and more have one if H_jj C_kl = C_kj C_jl for every three of them. If
-/// every drive has some inertia of its own, this means an invariant mass matrix, constant D and b = Σ λ_k q_k.
+/// One or two drives always have one. Three and more have one if H_jj C_kl = C_kj C_jl for every three of them. If no
+/// H_jj is zero, this means an invariant mass matrix, constant D and b = Σ λ_k q_k.
 pub fn is_integrable(model: &Inertia) -> bool {
     let n = model.drives();
     let whole: f64 = (0..n).map(|k| model.diagonal(k)).sum();

@@ -205,9 +205,9 @@ impl Price {
     }
 }
 
-/// Returns the b of two sets that are nearest to each other, rad, shifted by whole periods so that the first is as near
-/// as possible to `near`. If the sets overlap, both are the common b nearest to `near`. Returns `None` if a set is
-/// empty.
+/// Returns the two b, one of each set, that are nearest to each other, rad. Whole periods are added so that the first
+/// is as near as possible to `near`. If the sets overlap, both are the common b nearest to `near`. Returns `None` if a
+/// set is empty.
 pub fn nearest_planes(from: &BSet, to: &BSet, near: f64) -> Option<[f64; 2]> {
     let common = BSet::overlap(&[from.clone(), to.clone()]);
     if let Some(b) = common.nearest(near) {

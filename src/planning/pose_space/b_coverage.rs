@@ -76,8 +76,8 @@ impl BCoverage {
         (0..n).find(same)
     }
 
-    /// Whether no critical value has passed gap j on its way to gap i of another distance: the values near either gap
-    /// are the same and lie on the same side of it.
+    /// Returns whether no critical value passes the gap on its way from gap i of another distance to gap j. Then the
+    /// values near both gaps are the same and lie on the same sides.
     fn has_sides(&self, j: usize, of: &Self, i: usize) -> bool {
         let near = NEAR_GAP * self.period;
         let (here, there) = (self.middle(j), of.middle(i));

@@ -51,7 +51,7 @@ impl CriticalPose {
     }
 
     /// Merges another critical pose at the same b. Where a curve of critical poses meets a limit, both may be the same
-    /// pose. Then the one with more compounds decides whether b can rise or fall; if each has two, b can rise or fall
+    /// pose. Then the one with more compounds decides whether b can rise or fall. If each has two, b can rise or fall
     /// only if it can from both. In all other cases it suffices that b can from either.
     pub fn merge(&mut self, other: &Self) {
         let near = |apart: f64| self.a.iter().zip(other.a.iter()).all(|(x, y)| (x - y).abs() < apart);
@@ -380,8 +380,8 @@ impl PoseSpace {
     }
 }
 
-/// Returns whether b can rise, and whether it can fall, from a stationary pose to second order while the point is kept:
-/// the signs of the form −Σ C x²/ν on Σ C x = Σ Λ x = 0, with C = |L| cos α.
+/// Returns whether b can rise, and whether it can fall, from a stationary pose to second order while the point is
+/// kept. These are the signs of the form −Σ C x²/ν on Σ C x = Σ Λ x = 0, with C = |L| cos α.
 fn ways(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES]) -> [bool; 2] {
     if n == 3 {
         let x = [
@@ -395,8 +395,8 @@ fn ways(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES]) ->
     signature(n, nu, c, lambda).unwrap_or_else(|| by_basis(n, nu, c, lambda))
 }
 
-/// As [`ways`], by Haynsworth's inertia theorem. The numbers of signs on the subspace are those of the form plus
-/// those of the Schur complement of the two conditions, less two of each. `None` if a pivot is zero within rounding.
+/// As [`ways`], by Haynsworth's inertia theorem. Positive and negative signs are counted in the form and in the Schur
+/// complement of the two conditions; the subspace has two of each less. `None` if a pivot is zero within rounding.
 fn signature(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES]) -> Option<[bool; 2]> {
     let size = c[..n].iter().fold(0.0_f64, |most, c| most.max(c.abs()));
     let (mut positive, mut negative) = (0, 0);
@@ -469,9 +469,9 @@ fn roots(c: &Pattern, signs: &Signs, square: f64, mut found: impl FnMut(f64, usi
     };
     let alive = |cell: usize| signs.cells >> cell & 1 == 1;
     let value = |i: usize| signs.values[i] - square;
-    // Between turning points |p|² is monotone. A turning point in a cell beyond the limits is not known exactly: the
-    // monotone interval before it ends at the cell's start, the next begins at its end. Each bound of an interval has
-    // a cell, t and the value.
+    // Between turning points |p|² is monotone. A turning point in a cell beyond the limits is not known exactly. The
+    // monotone interval before it ends at the cell's start, the next begins at the cell's end. Each bound of an
+    // interval has a cell, t and the value.
     let end = |i: usize| (place(i), value(i));
     let (mut first, mut from) = (0, end(0));
     for turns in 0..=signs.turns.len() {
@@ -505,7 +505,7 @@ fn roots(c: &Pattern, signs: &Signs, square: f64, mut found: impl FnMut(f64, usi
     }
 }
 
-/// Finds a zero of a function with a known slope between two places of opposite sign: Newton's iteration, safeguarded
+/// Finds a zero of a function with a known slope between two places of opposite sign. Newton's iteration is replaced
 /// by bisection where it leaves the bracket or converges slowly.
 fn bracketed(f: &impl Fn(f64) -> (f64, f64), [mut a, mut b]: [f64; 2], [fa, fb]: [f64; 2]) -> f64 {
     let mut x = a + (b - a) * (fa / (fa - fb));

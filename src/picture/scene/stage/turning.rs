@@ -1,5 +1,5 @@
-//! Rotation of a link by the pointer: its drive follows the pointer about the root of the link, and the other drives
-//! move such that b is constant.
+//! Rotation of a link by the pointer. Its drive follows the pointer about the root of the link, while the other drives
+//! keep b constant.
 
 use std::f64::consts::PI;
 

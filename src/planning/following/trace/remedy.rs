@@ -7,7 +7,7 @@ use crate::curves::curve::Curve;
 use crate::reactionless::{BSet, Decimal, PlaneMap};
 use stillbase_mechanics::planar::unit;
 
-/// Number of intervals of the curve in the result, which is drawn.
+/// Number of intervals of [`Blocked::curve`], which is drawn.
 const DRAWN_INTERVALS: i32 = 160;
 
 pub(super) fn blocked(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, s: f64, stop: SheetEnd) -> Blocked {
