@@ -1,4 +1,4 @@
-//! Motion planning: which poses and paths a machine can reach, and when it passes along them.
+//! Motion planning: the poses and paths that a machine can reach, and the timing of motions along them.
 //!
 //! Other programs use this crate as `stillbase::planning`; only `stillbase` follows semantic versioning.
 //!
@@ -11,7 +11,7 @@
 //! | the b that several points share, and if there is none, the point that has to move least | [`common`] |
 //! | poses of several points at a b, and how the points are carried along when b changes | [`posed`] |
 //! | time: time laws, limits, the fastest motion | [`timing`] |
-//! | how the redundant freedoms of four and more drives are used | [`posture`] |
+//! | use of the redundant freedoms of four and more drives | [`posture`] |
 //! | at constant b: following curves, or the reason why not; following pointer and slider | [`following`] |
 //! | off the planes b = const: the cost of a change of b, the least reaction, zero momentum | [`off_plane`] |
 //! | path and timing together, and a forecast of torques and reactions | [`motion`], [`forecast`] |

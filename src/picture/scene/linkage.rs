@@ -167,7 +167,7 @@ impl LinkageModel {
                 None => 1.0 + 0.12 * f64::from(on_base),
             };
             let below = match at {
-                // Below the link that carries the motor.
+                // The motor is below the link that carries it.
                 Some(_) => machine.motors().on(k).map_or(0.0, layer) - 0.92 * drive_height,
                 None => {
                     on_base += 1;

@@ -170,7 +170,8 @@ pub struct PathChain {
 }
 
 impl PathChain {
-    /// Chains paths, each with its share of s. Returns `None` if there are none, or a share is not above 0.
+    /// Chains paths; s is divided among them in proportion to the given shares. Returns `None` if there are none, or a
+    /// share is not above 0.
     pub fn new(parts: Vec<(Path, f64)>) -> Option<Self> {
         let total: f64 = parts.iter().map(|(_, share)| share).sum();
         let sound = total.is_finite() && parts.iter().all(|(_, share)| *share > 0.0);

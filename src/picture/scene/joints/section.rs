@@ -1,6 +1,6 @@
-//! [`JointSection`]: joint space of a machine whose planes have no closed form. With two drives it is a plane, in
-//! which b = const is a line. With more it is three-dimensional: a section at the present angles of the drives without
-//! an axis. In it, b = const is a plane.
+//! [`JointSection`]: joint space of a machine without closed-form [planes](PoseSpace::planes). With two drives it is a
+//! plane, in which b = const is a line. With more it is three-dimensional: a section at the present angles of the
+//! drives without an axis. In it, b = const is a plane.
 //!
 //! The unit of the scene is the radian, and the chosen drives are along x, y and z. The origin moves with b, unless
 //! the shown interval of b is constant.
