@@ -1,5 +1,5 @@
-//! The pose constants b at which several points can all be reached, and if there are none, the shortest move of one
-//! point that mends it: one method for any number of drives.
+//! The pose constants b at which several points can all be reached. If there is none, the shortest move of one point
+//! that creates one. One method serves any number of drives.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -20,13 +20,13 @@ use crate::reactionless::{BSet, Decimal, NoReach};
 use crate::unreachable::{NoCommonB, PointCorrection, RoundedCorrection, Unreachable};
 use stillbase_mechanics::planar::{Vector, unit};
 
-/// Equal steps between the least and the greatest distance r' in the coarse search.
+/// Number of equal steps from the least to the greatest distance r' in the coarse search.
 const RADIAL_STEPS: usize = 96;
 /// Number of best coarse distances that are refined, and golden sections of each refinement.
 const MAX_REFINED: usize = 3;
 const GOLDEN_SECTIONS: usize = 40;
 
-/// Factors less 1 by which the shortest move is lengthened in turn, until rounding no longer makes it infeasible.
+/// Fractions by which the shortest move is lengthened, tried in turn until rounding no longer makes it infeasible.
 const EXTENSIONS: [f64; 10] = [0.0, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4, 1e-2, 0.05];
 
 /// Returns the b at which a point, m, can be reached, each interval widened by [`PoseSpace::b_slack`].
@@ -56,8 +56,8 @@ pub fn middle_b(space: &PoseSpace, points: &[Vector]) -> Option<f64> {
     Some(0.5 * (widest[0] + widest[1]))
 }
 
-/// Returns the b, rad, at which to start a motion through points, m: the midpoint that all share, or else that of the
-/// first point alone.
+/// Returns the b, rad, at which to start a motion through points, m: the [midpoint](middle_b) for all of them, or else
+/// for the first point alone.
 pub fn starting_b(space: &PoseSpace, points: &[Vector]) -> Option<f64> {
     middle_b(space, points).or_else(|| middle_b(space, points.get(..1)?))
 }
@@ -130,7 +130,7 @@ fn least_move(space: &PoseSpace, p: Vector, point: usize, others: &BSet) -> Opti
     }
     let (r, theta, sum) = (p.norm(), p.arg(), space.lambda_sum());
     let (near, far) = (space.nearest(), space.farthest());
-    // Length of the move to a distance, m, and its turn, rad, given the b at which (distance, 0) can be reached.
+    // Length, m, and turn, rad, of the shortest move to a point at `distance`; `set` is B(distance).
     let by = |distance: f64, set: Result<BSet, NoReach>| -> (f64, f64) {
         let turned = |set: BSet| BSet {
             intervals: set.intervals.iter().map(|[low, high]| [low + theta * sum, high + theta * sum]).collect(),
@@ -149,7 +149,7 @@ fn least_move(space: &PoseSpace, p: Vector, point: usize, others: &BSet) -> Opti
     let step = (far - near) / RADIAL_STEPS as f64;
     let mut tries: Vec<f64> = (0..=RADIAL_STEPS).map(|i| near + step * i as f64).chain([r.clamp(near, far)]).collect();
     tries.sort_by(|x, y| (x - r).abs().total_cmp(&(y - r).abs()));
-    // The move is at least as long as the difference of the distances.
+    // The move is at least as long as the difference of the distances, so the search may stop early.
     let mut tried: Vec<(f64, f64)> = Vec::with_capacity(tries.len());
     let mut best = f64::INFINITY;
     for distance in tries {
@@ -174,8 +174,8 @@ fn least_move(space: &PoseSpace, p: Vector, point: usize, others: &BSet) -> Opti
         if least < gap { (least, better) } else { (gap, distance) }
     });
     let (_, distance) = refined.min_by(|x, y| x.0.total_cmp(&y.0))?;
-    // Rounding may separate sets that just touch, as at the end of the curve of two drives: then slightly other
-    // distances.
+    // Rounding may separate sets that just touch, such as at an endpoint of the curve of two drives. So slightly
+    // different distances are tried too.
     let beside = [0.0, 1e-12, 1e-10, 1e-8, 1e-6].into_iter().flat_map(|share| [share * far, -share * far]);
     let mut touching = beside.filter_map(|beside| {
         let distance = (distance + beside).clamp(near, far);
@@ -229,7 +229,7 @@ fn made_robust(space: &PoseSpace, points: &[Vector], others: &BSet, mend: PointC
             let [low, high] = shared(at)?;
             let b = mend.b.clamp(low, high);
             let inside = |x: f64| low <= x && x <= high && serves(at, x);
-            // If the common interval of b is short, its midpoint allows fewer decimals than its ends.
+            // If the common interval of b is short, its midpoint allows fewer decimals than its bounds.
             let b = [b, 0.5 * (low + high)].into_iter().filter_map(|b| Decimal::that(b, 4, inside));
             let b = b.min_by_key(Decimal::decimals).filter(|b| b.decimals() <= decimals + 4)?;
             Some(RoundedCorrection { to, b, far, does: true })

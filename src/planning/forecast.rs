@@ -48,7 +48,7 @@ const MAX_SAMPLES: usize = 100_000;
 /// Number of samples between two progress reports.
 const SAMPLES_PER_REPORT: usize = 1024;
 
-/// A limit counts as exceeded above this ratio to it; below, the excess is rounding.
+/// Ratio of a quantity to its limit above which the limit is exceeded; a smaller excess is a rounding error.
 const EXCEEDED_ABOVE: f64 = 1.0 + 1e-6;
 
 impl Forecast {
@@ -90,7 +90,7 @@ impl Forecast {
             b_start: lambda.dot(&motion.at(0.0).q),
             b_end: lambda.dot(&motion.at(time).q),
         };
-        // The samples lie between: the endpoints belong to the range too.
+        // The samples are midpoints, but the range of b includes both ends of the motion.
         sum.b = [sum.b_start.min(sum.b_end), sum.b_start.max(sum.b_end)];
         let dt = time / instants as f64;
         // At midpoints, so that a jump of the acceleration is not sampled on the wrong side.

@@ -1,18 +1,18 @@
-//! Motion planning: which poses and paths a machine can reach, and when it passes along them.
+//! Motion planning: the poses and paths that a machine can reach, and the timing of motions along them.
 //!
-//! Others reach this crate as `stillbase::planning`; `stillbase` alone follows semantic versioning.
+//! Other programs use this crate as `stillbase::planning`; only `stillbase` follows semantic versioning.
 //!
 //! | what | modules |
 //! |---|---|
-//! | whether a machine has a pose constant b = Σ λ_k q_k, in words | [`pose_constant`] |
-//! | coordinates (a, b), poses, workspace boundaries, and the b at which a point can be reached, for any number of drives | [`pose_space`] |
-//! | the same in closed form for three drives with two bounded angles; [`pose_space`] uses it for such machines | [`reactionless`] |
+//! | existence of a pose constant b = Σ λ_k q_k, described in words | [`pose_constant`] |
+//! | coordinates (a, b), poses, workspace boundaries, feasible sets of b; any number of drives | [`pose_space`] |
+//! | the same in closed form, for three drives with two bounded angles; used by [`pose_space`] | [`reactionless`] |
 //! | geometry: curves of the end effector, paths of the drives | [`curves`] |
 //! | the b that several points share, and if there is none, the point that has to move least | [`common`] |
 //! | poses of several points at a b, and how the points are carried along when b changes | [`posed`] |
 //! | time: time laws, limits, the fastest motion | [`timing`] |
-//! | how the redundant freedoms of four and more drives are used | [`posture`] |
-//! | with b held: curves followed, or the reason why not; dragging by the pointer, the slider of b | [`following`] |
+//! | use of the redundant freedoms of four and more drives | [`posture`] |
+//! | at constant b: following curves, or the reason why not; following pointer and slider | [`following`] |
 //! | off the planes b = const: the cost of a change of b, the least reaction, zero momentum | [`off_plane`] |
 //! | path and timing together, and a forecast of torques and reactions | [`motion`], [`forecast`] |
 //!

@@ -1,4 +1,5 @@
-//! Whether a machine has a pose constant b, in words; and queries for its pose space and for the b that reach points.
+//! Existence of a machine's pose constant b, described in words; queries for its pose space and for the b that reach
+//! points.
 
 use std::fmt;
 use std::sync::Arc;
@@ -46,7 +47,7 @@ impl QuickQuery for CommonB {
     }
 }
 
-/// Whether a machine has a pose constant b = Σ λ_k q_k.
+/// Existence of a machine's pose constant b = Σ λ_k q_k.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PoseConstant {
     /// Holding b keeps the base free of moments.
@@ -78,7 +79,7 @@ impl fmt::Display for PoseConstant {
 }
 
 impl PoseConstant {
-    /// Returns whether a machine has a pose constant.
+    /// Classifies a machine.
     pub fn of(machine: &Machine) -> Self {
         match PoseSpace::general(machine) {
             Ok(_) if is_reactionless(machine) => Self::Exact,

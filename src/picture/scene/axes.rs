@@ -76,8 +76,8 @@ impl<'a> Sight<'a> {
         super::pointer::dot(self.right, p)
     }
 
-    /// Returns the edge that carries the ticks of axis k, with 0 as its own coordinate, and the direction out of the
-    /// box.
+    /// Returns the edge that carries the ticks of axis k, with coordinate k set to 0, and the direction from this edge
+    /// out of the box.
     fn edge(&self, k: usize) -> ([f64; 3], [f64; 3]) {
         let middle = [0, 1, 2].map(|i| 0.5 * (self.axes[i].ends[0] + self.axes[i].ends[1]));
         let mut at = match k {
@@ -103,8 +103,9 @@ impl<'a> Sight<'a> {
     }
 }
 
-/// Draws a box seen from `eye`, a unit vector from the scene towards the eye; `stands` says whether the box may change.
-pub fn draw(scene: &mut Scene, palette: &Palette, axes: &[Axis; 3], eye: [f64; 3], stands: ItemChanges) {
+/// Draws a box seen from `eye`, a unit vector from the scene towards the eye; `changes` says whether the box may
+/// change.
+pub fn draw(scene: &mut Scene, palette: &Palette, axes: &[Axis; 3], eye: [f64; 3], changes: ItemChanges) {
     let sight = Sight::new(axes, eye);
     let (mut grid, mut edges, mut ticks) = (Vec::new(), Vec::new(), Vec::new());
     // Each wall is numbered by its normal axis; grid lines run along one of its axes at the ticks of the other.
@@ -130,7 +131,7 @@ pub fn draw(scene: &mut Scene, palette: &Palette, axes: &[Axis; 3], eye: [f64; 3
         Polyline::new("axes/edges", edges, 1.0, palette.line),
         Polyline::new("axes/ticks", ticks, 1.0, palette.dim),
     ];
-    let box_lines = box_lines.map(|line| Polyline { changes: stands, ..line });
+    let box_lines = box_lines.map(|line| Polyline { changes, ..line });
     scene.lines.splice(first..first, box_lines);
 }
 
@@ -174,7 +175,7 @@ fn mark(scene: &mut Scene, ticks: &mut Vec<Vec<[f32; 3]>>, palette: &Palette, si
         false => {
             let far = usize::from(sight.back[k] == axis.ends[1]);
             let beyond = axis.values[far] + 0.1 * (axis.values[far] - axis.values[1 - far]);
-            // At the foot of the vertical axis, its tick labels need the space.
+            // At the foot of the vertical axis, the title leaves space for the tick labels of that axis.
             let shared = sight.edge(2).0[k] == sight.back[k];
             (place(beyond, 0.012), beside(if shared { 48.0 } else { 19.0 }))
         }
@@ -182,8 +183,8 @@ fn mark(scene: &mut Scene, ticks: &mut Vec<Vec<[f32; 3]>>, palette: &Palette, si
     scene.labels.push(Label::new("axes/titles", at, offset, axis.title, axis.colour, 12.5, Anchor::Centre));
 }
 
-/// Returns an interval of length `width` that contains the given interval with a `margin` on both sides, as near to
-/// centred on `home` as possible. If the given interval is too long, the result contains its lower part.
+/// Returns an interval of length `width` that contains the given interval with a `margin` on both sides. Its centre is
+/// as near to `home` as possible. If the given interval is too long, the result contains its lower part.
 pub fn covering_range([low, high]: [f64; 2], home: f64, width: f64, margin: f64) -> [f64; 2] {
     let middle = home.max(high + margin - 0.5 * width).min(low - margin + 0.5 * width);
     [middle - 0.5 * width, middle + 0.5 * width]

@@ -9,10 +9,10 @@ use stillbase_simulation::frame::{Frame, Reach};
 /// Minimum number of intervals in which a path is drawn.
 const MIN_INTERVALS: usize = 256;
 
-/// Number of intervals for each part of a path, if that is more.
+/// Number of intervals for each part of a path, if this gives more than [`MIN_INTERVALS`].
 const INTERVALS_PER_PART: usize = 48;
 
-/// Maximum number of points of a task that are all drawn; of more, only the first and last are drawn.
+/// Maximum number of points of a task that are all drawn; of more points, only the first and last are drawn.
 const MAX_NAMED: usize = 24;
 
 /// Returns number, name and position, m, of the points to be drawn.

@@ -11,7 +11,7 @@ impl Measure {
     /// All measures, in the order in which key J shows them.
     pub const ALL: [Self; 3] = [Self::Det, Self::Manipulability, Self::TorquePerForce];
 
-    /// Returns the next measure; `None` stands for no measure, before the first and after the last.
+    /// Returns the next measure; `None` means no measure, and comes before the first and after the last.
     pub fn after(now: Option<Self>) -> Option<Self> {
         match now {
             None => Some(Self::Det),

@@ -38,7 +38,7 @@ struct Link {
     com: Vector,
     /// Length, m.
     length: f64,
-    /// Name of its length, if it is a named one that several links may share.
+    /// Name of its length, if that is a named length that several links may share.
     shared: Option<String>,
 }
 
@@ -134,7 +134,7 @@ impl DesignDrawing {
         }
     }
 
-    /// Draws a line along a link, and its length beyond its end.
+    /// Draws a line along a link, and the text of its length beyond its end.
     fn draw_length(
         &self,
         scene: &mut Scene,

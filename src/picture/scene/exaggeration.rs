@@ -17,8 +17,8 @@ const NOISE_LEVEL: f64 = 1e-10;
 /// Maximum factor of exaggeration.
 const MAX_FACTOR: f64 = 1e6;
 
-/// Returns the smallest factor of 1, 2, 5, 10 … that makes the largest motion of a run visible. The arguments are the
-/// largest displacement, m, the largest rotation, rad, and the reach of the machine, m.
+/// Returns the smallest of the factors 1, 2, 5, 10 … that makes the largest motion of a run visible. The arguments are
+/// the largest displacement, m, the largest rotation, rad, and the reach of the machine, m.
 pub fn exaggeration([shift, angle]: [f64; 2], reach: f64) -> f64 {
     let motion = shift + angle * reach;
     if !(motion > NOISE_LEVEL * reach && motion.is_finite()) {

@@ -3,7 +3,8 @@
 
 use super::Mesh;
 
-/// Returns the mesh inside closed loops, m, whose last point connects to the first; at z = 0, visible from both sides.
+/// Returns the mesh inside closed loops, m; the last point of a loop connects to its first. The mesh is at z = 0 and
+/// visible from both sides.
 pub fn mesh(loops: &[Vec<[f64; 2]>]) -> Mesh {
     let mut mesh = Mesh { shell: true, ..Mesh::default() };
     // Edges directed upwards, without horizontal ones.

@@ -22,7 +22,7 @@ pub struct ViewContent {
 
 /// Margin around all points for their labels, px.
 const MARGIN_PX: f64 = 26.0;
-/// Maximum fraction by which the second points may reduce the scale.
+/// Maximum fraction by which the points of [`ViewContent::then`] may reduce the scale.
 const MAX_LOSS: f64 = 0.15;
 /// Number of iterations in perspective, where the scale depends on the distance.
 const ITERATIONS: usize = 12;
@@ -96,6 +96,6 @@ fn free(seen: [f64; 2], room: &PictureArea) -> [f64; 4] {
         best = best.into_iter().flat_map(beside).collect();
     }
     let best = best.into_iter().max_by(|a, b| size(*a).total_cmp(&size(*b)));
-    // Covering rectangles are ignored if the rest is less than 0.3 times as large.
+    // Covering rectangles are ignored if they reduce the content to less than 0.3 times its size in the whole picture.
     best.filter(|free| size(*free) > 0.3 * size(whole)).unwrap_or(whole)
 }

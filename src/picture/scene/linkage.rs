@@ -1,6 +1,6 @@
 //! The body of a machine: bars, pins, counterweights and drives, as meshes that do not change while it moves.
 //!
-//! Links that share a pin follow different drives, so each drive has a layer of its own and links do not intersect.
+//! Links that share a pin follow different drives, so each drive has its own layer and links do not intersect.
 
 use std::sync::Arc;
 
@@ -167,7 +167,7 @@ impl LinkageModel {
                 None => 1.0 + 0.12 * f64::from(on_base),
             };
             let below = match at {
-                // Below the link that carries the motor.
+                // The motor is below the link that carries it.
                 Some(_) => machine.motors().on(k).map_or(0.0, layer) - 0.92 * drive_height,
                 None => {
                     on_base += 1;
@@ -215,7 +215,7 @@ impl LinkageModel {
         self.top
     }
 
-    /// Height of the plate under the drives, m.
+    /// Height of the plate under the drives, m; negative, because it lies below the links.
     pub fn bottom(&self) -> f64 {
         let on_base = self.motors.iter().filter(|motor| motor.at.is_none());
         on_base.fold(0.0_f64, |m, motor| m.min(motor.z)) - 0.015 * self.reach

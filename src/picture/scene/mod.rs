@@ -1,10 +1,11 @@
 //! Scenes as plain data between simulation and renderer.
 //!
-//! A [`Scene`] holds solids, lines, areas, markers and labels in world coordinates (metres; x and y in the plane of
-//! motion, z along the drive axis, towards the viewer of the flat view). Numbers are converted from `f64` to `f32` here
-//! and nowhere else. Every item has a name, which is also its path in a recording, a pose `world_from_item`, and a
-//! statement of which parts [may change](ItemChanges). Most geometry is built once; afterwards only poses change. Colours
-//! are sRGB with straight alpha, as in the palette. Sizes in `px` are logical pixels.
+//! A [`Scene`] holds solids, lines, areas, markers and labels in world coordinates, in metres. x and y lie in the
+//! plane of motion; z points along the drive axis, towards the viewer of the flat view. Numbers are converted from
+//! `f64` to `f32` here and nowhere else. Every item has a name, which is also its path in a recording, a pose
+//! `world_from_item`, and a statement of which parts [may change](ItemChanges). Most geometry is built once;
+//! afterwards only poses change. Colours are sRGB with straight alpha, as in the [`palette`]. Sizes in `px` are
+//! logical pixels.
 
 #[doc(hidden)]
 pub mod arrow;
@@ -114,7 +115,7 @@ pub enum ItemChanges {
     Shape,
 }
 
-/// A mesh with pose and colour. Several solids of one name share a mesh.
+/// A mesh with pose and colour. Solids with the same name share a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solid {
     /// Name, like `machine/link/5`.

@@ -87,7 +87,7 @@ impl DragAction {
             Self::Waypoint(i, at) => Self::Waypoint(i, both(at, POSITION_GRID_M)),
             Self::Payload(offset) => Self::Payload(both(offset, POSITION_GRID_M)),
             Self::Limit { angle, end, mut ends } => {
-                // Rounded, unless that is beyond the other limit.
+                // The limit is rounded, unless that puts it beyond the other limit.
                 let rounded = round(ends[end], ANGLE_SNAP);
                 let fits = if end == 0 { rounded < ends[1] } else { rounded > ends[0] };
                 ends[end] = if fits { rounded } else { ends[end] };
@@ -99,7 +99,7 @@ impl DragAction {
             Self::Mass { link, to } => Self::Mass { link, to: round(to, POSITION_GRID_M) },
             Self::Weight { weight, to } => Self::Weight { weight, to: round(to, POSITION_GRID_M) },
             Self::Length { link, to } => Self::Length { link, to: round(to, POSITION_GRID_M).max(POSITION_GRID_M) },
-            // Already snapped, if `Hold::snaps` is set.
+            // Already snapped, if `LinkHold::snaps` is set.
             Self::Angles(a) => Self::Angles(a),
         }
     }

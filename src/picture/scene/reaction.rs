@@ -11,23 +11,23 @@ use crate::numbers::{round_up, signed};
 use stillbase_mechanics::planar::Vector;
 use stillbase_simulation::frame::{Frame, REACTIONLESS_SHARE};
 
-/// Length of a full arrow, as a fraction of the reach of the machine.
+/// Length of the arrow of a full-scale force, as a fraction of the reach of the machine.
 pub const FULL_ARROW: f64 = 0.25;
 /// Radius of the arc of a moment, as a fraction of the reach of the machine.
 pub const ARC_RADIUS: f64 = 0.17;
-/// Angle of a full arc, rad.
+/// Angle of the arc of a full-scale moment, rad.
 pub const FULL_ARC: f64 = 1.5 * FRAC_PI_2;
 /// Minimum length of a visible arrow, as a fraction of the reach.
 const MIN_ARROW: f64 = 0.004;
 /// Minimum angle of a visible arc, rad.
 const MIN_SWEEP_RAD: f64 = 0.02;
 
-/// Force and moment of a full arrow and a full arc.
+/// Full-scale force and moment: those of an arrow of length [`FULL_ARROW`] and an arc of angle [`FULL_ARC`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
-    /// Force of a full arrow, N.
+    /// Full-scale force, N.
     pub newtons: f64,
-    /// Moment of a full arc, N m.
+    /// Full-scale moment, N m.
     pub newton_metres: f64,
 }
 
@@ -66,13 +66,14 @@ impl ReactionGlyph {
         }
     }
 
-    /// Returns the arrow as a fraction of the reach; `newtons` is the force of a full arrow. `None` if it is too small.
+    /// Returns the arrow as a fraction of the reach; `newtons` is the full-scale force. `None` if the arrow is too
+    /// small.
     pub fn arrow(&self, newtons: f64) -> Option<Vector> {
         let arrow = self.force * (FULL_ARROW / newtons);
         (self.has_force && arrow.norm() > MIN_ARROW).then_some(arrow)
     }
 
-    /// Returns the angle of the arc, rad; `newton_metres` is the moment of a full arc. `None` if it is too small.
+    /// Returns the angle of the arc, rad; `newton_metres` is the full-scale moment. `None` if the arc is too small.
     pub fn sweep(&self, newton_metres: f64) -> Option<f64> {
         let sweep = self.moment / newton_metres * FULL_ARC;
         (self.has_moment && sweep.abs() > MIN_SWEEP_RAD).then_some(sweep)

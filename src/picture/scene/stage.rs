@@ -95,7 +95,8 @@ impl Stage {
         }
     }
 
-    /// Prepares a run for drawing, without an outline of the workspace that takes longer to compute.
+    /// Prepares a run for drawing. It leaves a workspace outline that takes long to compute to
+    /// [`finish`](Self::finish).
     pub fn begun(run: &Run) -> Self {
         let model = &run.scenario().machine;
         // If the plant has other lengths than the model, the plant is drawn.
@@ -169,7 +170,7 @@ impl Stage {
         &self.linkage
     }
 
-    /// Ends of the colour scale of a measure of dexterity.
+    /// Values of a measure of dexterity at both ends of its colour scale.
     pub fn shaded(&self, measure: Measure) -> [f64; 2] {
         self.outlined().and_then(|workspace| workspace.shaded(measure)).unwrap_or([0.0, 1.0])
     }
@@ -232,8 +233,7 @@ impl Stage {
         under::link(&self.linkage, shown, pointer)
     }
 
-    /// Picks the link under the pointer, if the machine has planes on which the link can be rotated, or freedoms left
-    /// with fixed end effector.
+    /// Picks the link under the pointer, if it can be rotated on a plane, or dragged while the end effector stays.
     pub fn grip(&self, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<Pick> {
         if self.links_draggable {
             let i = self.link_at(shown, pointer)?;
@@ -283,7 +283,8 @@ impl Stage {
             .or_else(|| edge().map(|_| Handle::Boundary))
     }
 
-    /// Returns the b, rad, of a drawn position of the knob, m; of all full turns, the b nearest to `near`.
+    /// Returns the b, rad, of a drawn position of the knob, m; of all b that differ by full turns, the nearest to
+    /// `near`.
     pub fn ring_b(&self, at: [f64; 2], near: f64, shown: &DrawnFrame<'_>) -> Option<f64> {
         Some(self.ring.as_ref()?.b(Vector::new(at[0], at[1]), near, shown))
     }
@@ -301,8 +302,8 @@ impl Stage {
         self.plan.iter().flat_map(|plan| plan.waypoints.iter().map(|(i, ..)| *i))
     }
 
-    /// Returns the points that the camera has to show: the machine in its present and in other poses, its workspace and
-    /// its task; secondly the workspace for comparison.
+    /// Returns the points that the camera has to show: the machine in its present and in other poses, its workspace
+    /// and its task. Optional points are those of the workspace for comparison.
     pub fn content(&self, frame: &Frame, poses: &[DriveAngles]) -> ViewContent {
         let (base, z) = (frame.base, self.handle_height());
         let on_base = |p: Vector| base.at + unit(base.angle) * p;
@@ -370,7 +371,7 @@ impl Stage {
         scene
     }
 
-    /// Draws the machine, and translucently its pose at the start and its poses on another plane.
+    /// Draws the machine, and as translucent links its pose at the start and its poses on a previewed plane.
     fn bodies(&self, scene: &mut Scene, palette: &Palette, shown: &DrawnFrame<'_>, options: &ViewOptions) {
         if let Some(plan) = self.plan.as_ref().filter(|plan| !plan.waits()) {
             scene.solids.extend(self.linkage.ghost("plan/start", &plan.start, palette, 0.16));

@@ -1,5 +1,5 @@
 //! All reactionless workspaces at once, with the pose constant b as height over the plane of motion. Each horizontal
-//! section of the tower is the workspace of its b, rotated by b* = b/Σλ, (15). A point is reachable for those b for
+//! section of the tower is the workspace of its b, rotated by b* = b/Σλ, (15). A point is reachable at those b at
 //! which its vertical line is inside the tower.
 //!
 //! With two drives a section is a curve; with four or more drives the tower is shown by the outlines of its sections.
@@ -42,7 +42,7 @@ const HEIGHT_PER_RADIUS: f64 = 2.1;
 const CELLS: u32 = 64;
 /// Cells per side of the fill of a section in a recording.
 const RECORDED_CELLS: u32 = 40;
-/// Maximum number of points whose b are all shown; of more points, only the first and last are shown.
+/// Maximum number of points whose sets of b are all shown; of more points, only the first and last are shown.
 const MAX_POSTS: usize = 8;
 /// Distance within which the pointer picks a bar, px.
 const BAR_PICK_PX: f64 = 9.0;
@@ -69,14 +69,14 @@ pub struct Tower {
     contours: Strips,
 }
 
-/// A point of the plane and the set of b for which it is reachable.
+/// A point of the plane and the set of b at which it is reachable.
 #[derive(Clone, Debug)]
 pub struct TowerPost {
     /// Name: `A`, `1`, `B`, `target`.
     pub name: String,
     /// Position, m.
     pub at: Vector,
-    /// Values of b for which the point is reachable; `None` if there are none.
+    /// Values of b at which the point is reachable; `None` if there are none.
     pub reach: Option<BSet>,
 }
 
@@ -167,7 +167,7 @@ impl Tower {
         (0..8).map(|i| [corner(i)[0], corner(i)[1], if i < 4 { 0.0 } else { height }]).collect()
     }
 
-    /// Returns the points whose b are shown, and for each the intervals of b within the shown interval.
+    /// Returns the points whose sets of b are shown, each with the parts of its set inside the shown interval.
     pub fn posts(&self, frame: &Frame) -> Vec<(TowerPost, Vec<[f64; 2]>)> {
         let window = self.window(frame.b_reference);
         if let Some(ends) = &self.ends {
@@ -218,7 +218,7 @@ impl Tower {
         let [low, high] = self.window(frame.b_reference);
         let ray = pointer.ray()?;
         let [x, y, _] = pick.at;
-        // Slightly beyond the ends, so that the shown interval can be shifted.
+        // b can be dragged slightly beyond the shown interval, so that this interval shifts.
         let slack = 0.05 * self.span;
         let b = || Some(low + ray.along_line([x, y, 0.0], [0.0, 0.0, 1.0])? / self.rise());
         match pick.handle {
@@ -226,7 +226,7 @@ impl Tower {
             Handle::Plane => Some(DragAction::B(b()?.clamp(low - slack, high + slack))),
             Handle::Bar => {
                 let b = b()?;
-                // The nearest b for which the point of the picked bar is reachable.
+                // The nearest b at which the point of the picked bar is reachable.
                 let away = |post: &TowerPost| (post.at - Vector::new(x, y)).norm();
                 let posts = self.posts(frame).into_iter();
                 let (_, bars) = posts.min_by(|s, t| away(&s.0).total_cmp(&away(&t.0)))?;
@@ -245,7 +245,7 @@ impl Tower {
         let z = |b: f64| (b - low) * self.rise();
         let hot = options.highlighted == Some(Handle::Plane);
         let turned = |b: f64| posed(Vector::default(), unit(self.space.turn(b)), z(b));
-        let stands = if self.fixed.is_some() { ItemChanges::Nothing } else { ItemChanges::Shape };
+        let item_changes = if self.fixed.is_some() { ItemChanges::Nothing } else { ItemChanges::Shape };
         let solid = |name: &'static str, mesh, b, colour, changes| Solid {
             name: name.into(),
             mesh,
@@ -256,10 +256,10 @@ impl Tower {
         let mut scene = Scene::new(palette.background, self.model.clone());
         scene.solids = vec![
             solid("slice", 0, b, faded(palette.amber, if hot { 0.42 } else { 0.34 }), ItemChanges::Pose),
-            solid("wall", 1, low, faded(palette.amber, 0.1), stands),
+            solid("wall", 1, low, faded(palette.amber, 0.1), item_changes),
         ];
         let eye = camera.eye_direction().map(f64::from);
-        axes::draw(&mut scene, &palette, &self.axes(&palette, frame), eye, stands);
+        axes::draw(&mut scene, &palette, &self.axes(&palette, frame), eye, item_changes);
         self.contours(&mut scene, &palette, [low, high], eye);
         let outline = Polyline::new("slice/boundary", self.outline.clone(), if hot { 3.4 } else { 2.2 }, palette.amber);
         scene.lines.push(outline.on_top().moving(turned(b)));
@@ -267,7 +267,7 @@ impl Tower {
         self.bars(&mut scene, &palette, frame, [z(low), z(high)], z);
         self.course(&mut scene, &palette, z);
         if self.ends.is_some() {
-            scene.lines[first..].iter_mut().for_each(|line| line.changes = stands);
+            scene.lines[first..].iter_mut().for_each(|line| line.changes = item_changes);
         }
         self.target(&mut scene, &palette, frame, options, z(b));
         scene

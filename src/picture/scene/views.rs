@@ -50,7 +50,7 @@ pub enum ViewKind {
     Joints,
     /// All reactionless workspaces, b as height.
     Tower,
-    /// The machine's masses and lengths, to be changed.
+    /// The machine's masses and lengths, for editing.
     Design,
 }
 
@@ -154,7 +154,7 @@ impl PartialEq for ViewSubject {
 
 impl QuickQuery for Views {
     type Input = ViewSubject;
-    /// Views; in the window without outline and tower if the outline takes longer to compute.
+    /// The views; those for the window lack outline and tower if the outline takes long to compute.
     type Answer = Self;
 
     fn answer(seen: &ViewSubject) -> Self {
@@ -165,8 +165,8 @@ impl QuickQuery for Views {
     }
 }
 
-/// Query for [`Views`] with the parts that change more often: base and payload, the outline once it is computed with
-/// its tower, and the drives along the axes of joint space.
+/// Query for [`Views`] with the parts that change more often. These are base and payload, the drives along the axes of
+/// joint space, and, once computed, the outline with its tower.
 #[derive(Debug)]
 struct Completed;
 
@@ -222,7 +222,7 @@ impl Views {
     }
 
     /// Returns the views of a run, from the cache if possible, without the parts that [`completed`](Self::completed)
-    /// adds; for a whole run, `over` is the interval of its b, rad.
+    /// adds. For a whole run, `over` is the interval of its b, rad.
     #[doc(hidden)]
     pub fn made(queries: &Queries, run: &Run, over: Option<[f64; 2]>) -> Arc<Self> {
         queries.ask_if::<QuickWork<Self>>(
@@ -340,7 +340,8 @@ impl Views {
         }
     }
 
-    /// Returns the index of the drive along each axis of joint space, if the order is fixed by the machine.
+    /// Returns the index of the drive along each axis of joint space, if the machine determines the order; otherwise
+    /// 0, 1, 2.
     #[doc(hidden)]
     pub fn joint_axes(&self) -> [usize; 3] {
         self.joints.as_ref().map_or([0, 1, 2], JointSpace::axes)
@@ -422,7 +423,7 @@ impl Views {
     /// Returns the drawn item under the pointer that can be dragged.
     #[doc(hidden)]
     pub fn pick(&self, kind: ViewKind, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<Pick> {
-        // Only the machine's own views exaggerate.
+        // Only the views of the machine exaggerate motion; the others use the true frame.
         let frame = shown.frame;
         match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.pick(frame, pointer),
@@ -435,7 +436,7 @@ impl Views {
                 });
                 let near = picks.filter(|(_, d)| *d < PICK_RADIUS);
                 let first = near.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
-                // If the target covers a point of the path, the point is picked by its label, to the left of it.
+                // If the target covers a point of the path, the point is picked by its label, which is to its left.
                 let points = self.stage.waypoints().filter_map(|i| {
                     let handle = Handle::Waypoint(i);
                     let at = self.stage.handle(handle, shown)?;
@@ -448,7 +449,7 @@ impl Views {
                         .then_some((Pick::of(handle, at), off))
                 });
                 let point = points.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
-                // A payload under the target is picked by its label, above it.
+                // A payload under the target is picked by its label, which is above it.
                 let load = self.stage.handle(Handle::Payload, shown).filter(|at| {
                     let Some([x, y]) = pointer.seen(*at) else { return false };
                     let [px, py] = pointer.at;

@@ -81,7 +81,7 @@ impl Wall {
     }
 
     /// Returns the outlines rotated by an angle, rad, and split at their corners and where the wall turns away from the
-    /// eye. `eye` is the unit vector towards it. Each piece comes with a flag: the eye is on its outer side.
+    /// eye. `eye` is the unit vector towards it. Each piece has a flag that is true if the eye is on its outer side.
     pub fn contour(&self, turn: f64, eye: [f64; 3]) -> Vec<(Vec<Vector>, bool)> {
         let turn = unit(turn);
         let level = Vector::new(eye[0], eye[1]) * turn.conj();
@@ -153,8 +153,8 @@ fn turning(a: Vector, b: Vector, c: Vector) -> f64 {
     cross(u, v).atan2(dot(u, v))
 }
 
-/// Thins a path: keeps its ends, and a point whenever the change of direction since the last kept point exceeds `turn`,
-/// rad, or the length exceeds `side`, m.
+/// Thins a path but keeps its ends. Another point is kept when, since the last kept point, the direction has changed
+/// by more than `turn`, rad, or the length exceeds `side`, m.
 fn thinned(path: &[Vector], side: f64, turn: f64) -> Vec<Vector> {
     let mut kept: Vec<Vector> = path.first().copied().into_iter().collect();
     let (mut turned, mut gone) = (0.0, 0.0);

@@ -62,7 +62,7 @@ pub enum CurveError {
     /// The three points lie on a line.
     #[error("the three points lie on a line, so no arc goes through them: move the middle one aside")]
     Collinear,
-    /// A coordinate is not a number.
+    /// A coordinate is not finite.
     #[error("point {}: want finite coordinates", .0 + 1)]
     NotFinite(usize),
 }
@@ -90,7 +90,7 @@ impl Curve {
         if turn.abs() <= 1e-6 * ab.norm() * ac.norm() {
             return Err(CurveError::Collinear);
         }
-        // The circumcentre, relative to a.
+        // The circumcentre.
         let i = Vector::new(0.0, 1.0);
         let centre = a + i * (ac * ab.norm_sqr() - ab * ac.norm_sqr()) / (-2.0 * turn);
         let arm = a - centre;
@@ -125,8 +125,8 @@ impl Curve {
     }
 
     /// Returns straight lines through points. A quintic rounds each corner: it begins and ends at the distance `blend`
-    /// from the corner, but at most half of the shorter line. Where `blend` is 0 or the line turns back, the curve ends
-    /// and another begins.
+    /// from the corner, but at most at half of the shorter line. Where `blend` is 0 or the line turns back, the curve
+    /// ends and another begins.
     ///
     /// # Errors
     /// If there are fewer than two points, or two neighbours coincide.
@@ -238,8 +238,8 @@ impl Curve {
         Self { pieces: shapes.into_iter().enumerate().map(piece).collect(), length }
     }
 
-    /// Returns the length of the curve, m or rad: exact for lines and arcs, the sum of the chords for splines, twice
-    /// the blend distance for a rounded corner.
+    /// Returns the length of the curve, m or rad. It is exact for lines and arcs, the sum of the chords for splines,
+    /// and twice the blend distance for a rounded corner.
     pub fn length(&self) -> f64 {
         self.length
     }
@@ -278,7 +278,8 @@ impl Curve {
         piece.shape.third((s - piece.from) / run) / (run * run * run)
     }
 
-    /// Returns the s of the point nearest to p: the best of `samples` + 1 even samples, refined to first order.
+    /// Returns the s of the point nearest to p: the best of `samples` + 1 evenly spaced samples, refined to first
+    /// order.
     pub fn nearest(&self, p: Vector, samples: usize) -> f64 {
         let n = samples.max(2);
         let distance = |i: usize| (self.at(i as f64 / n as f64).p - p).norm_sqr();
@@ -377,7 +378,7 @@ fn periodic_bends(p: &[Vector], h: &[f64]) -> Vec<Vector> {
     let before = |i: usize| (i + n - 1) % n;
     let mut rows: Vec<_> = (0..n).map(|i| [h[before(i)], 2.0 * (h[before(i)] + h[i]), h[i]]).collect();
     let sides: Vec<_> = (0..n).map(|i| slope_change(p, h, i, before(i))).collect();
-    // The corner entries of the cyclic matrix by the Sherman–Morrison formula.
+    // The Sherman–Morrison formula accounts for the corner entries of the cyclic matrix.
     let corner = h[n - 1];
     let gamma = -rows[0][1];
     rows[0][1] -= gamma;

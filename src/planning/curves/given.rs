@@ -85,7 +85,7 @@ pub enum SamplesError {
         /// Number of entries of the first row, or the nearest permitted number.
         want: usize,
     },
-    /// Not a number.
+    /// An entry that is not finite.
     #[error("sample {}, number {}: want a finite number", row + 1, column + 1)]
     NotFinite {
         /// Row, counted from 0.
@@ -235,7 +235,8 @@ impl Samples {
         (rows.len() == self.count()).then(|| Self::new(&rows).ok()).flatten()
     }
 
-    /// Returns about `count` of the samples, evenly chosen, with the first and the last.
+    /// Returns about `count` of the samples, at least six, at nearly even index steps and including the first and the
+    /// last.
     #[must_use]
     pub fn thinned(&self, count: usize) -> Self {
         let last = self.count() - 1;
@@ -263,8 +264,8 @@ impl Samples {
         self.with_values((0..self.count()).map(row)).ok_or_else(wrong)
     }
 
-    /// Returns the uncertainty of a column's second derivative, in its unit/s². Noise or coarse sampling causes it; the
-    /// estimate is from the sixth differences of the samples.
+    /// Returns the uncertainty of a column's second derivative, in its unit/s². It is estimated from the sixth
+    /// differences of the samples, which grow with noise and coarse sampling.
     pub fn uncertainty(&self, column: usize) -> f64 {
         const BINOMIAL: [f64; 7] = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];
         let y: Vec<f64> = self.rows().map(|row| row[column + 1]).collect();

@@ -9,10 +9,10 @@
 //! | Ω | 2 sin(π f_c h)/h, cut-off f_c as seen by differences at the mean spacing h | rad/s |
 //!
 //! # Source
-//! Whittaker's graduation with third differences: min Σ w (y − f)² + Ω⁻⁶ Σ H (D f)². With c = H D f it is (H⁻¹ + Ω⁻⁶ D
-//! w⁻¹ Dᵀ) c = D y and f = y − Ω⁻⁶ w⁻¹ Dᵀ c, seven diagonals; this form subtracts a small correction from y and so
-//! avoids cancellation of large numbers. For even spacing a wave of frequency f keeps 1/(1 + (sin(πfh)/sin(πf_c h))⁶)
-//! of its amplitude, half of it at f_c, and no phase is shifted. Parabolas pass unchanged.
+//! Whittaker's graduation with third differences: min Σ w (y − f)² + Ω⁻⁶ Σ H (D f)². With c = H D f the minimum
+//! satisfies (H⁻¹ + Ω⁻⁶ D w⁻¹ Dᵀ) c = D y and f = y − Ω⁻⁶ w⁻¹ Dᵀ c. The matrix has seven diagonals. This form
+//! subtracts a small correction from y and so avoids cancellation of large numbers. With even spacing, the gain at the
+//! frequency f is 1/(1 + (sin(πfh)/sin(πf_c h))⁶): one half at f_c. No phase is shifted. Parabolas pass unchanged.
 
 /// Number of diagonals of the matrix on either side of the main one.
 const HALF_BANDWIDTH: usize = 3;
@@ -74,7 +74,7 @@ impl LowPass {
         factor.iter().all(|row| row[0] > 0.0 && row.iter().all(|x| x.is_finite())).then_some(Self { d, share, factor })
     }
 
-    /// Returns the values smoothed.
+    /// Returns the smoothed values, one for each time.
     pub fn smooth(&self, y: &[f64]) -> Vec<f64> {
         let m = self.d.len();
         let mut c: Vec<f64> = self.d.iter().zip(y.windows(4)).map(|(d, y)| (0..4).map(|k| d[k] * y[k]).sum()).collect();

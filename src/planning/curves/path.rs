@@ -30,14 +30,14 @@ pub enum Path {
     OnPlane {
         /// Converts (a_1, a_2) and b to drive angles.
         map: PlaneMap,
-        /// rad.
+        /// Pose constant, rad.
         b: f64,
         /// a_1 + i a_2, rad.
         curve: Curve,
     },
-    /// Paths end to end; where two meet the motion must rest.
+    /// Consecutive paths; the motion must be at rest where two meet.
     Chain(PathChain),
-    /// The end effector follows that of a joint line while drive 1 goes straight to an angle of its own (case 2).
+    /// The end effector follows that of a joint line while drive 1 turns linearly to a different angle (case 2).
     SameTip(SameTip),
 }
 
@@ -102,7 +102,7 @@ impl Path {
         joints.into_iter().filter(|s| *s > 0.0 && *s < 1.0).filter(jumps).collect()
     }
 
-    /// Returns the number of paths that it consists of; a table counts as one for every 1024 nodes or part of them.
+    /// Returns the number of paths in a chain, else 1; a table counts as one path for each 1024 nodes, rounded up.
     pub fn parts(&self) -> usize {
         match self {
             Self::Chain(chain) => chain.paths.iter().map(Self::parts).sum(),
@@ -111,9 +111,8 @@ impl Path {
         }
     }
 
-    /// Returns d³q/ds³ at s, rad. It is exact except for case 2, where it is a difference quotient of q″. At a jump,
-    /// such as where a blend begins, it is the value after s; for a curve on a plane or a chain of paths, the value
-    /// before s.
+    /// Returns d³q/ds³ at s, rad. It is exact except for case 2, where it is a difference quotient of q″. At a jump it
+    /// is the value after s; for a curve on a plane or a chain of paths, the value before s.
     pub fn third(&self, s: f64) -> PerDrive {
         let s = s.clamp(0.0, 1.0);
         match self {
@@ -141,8 +140,8 @@ impl Path {
         }
     }
 
-    /// Returns s from 0 to 1, for tables and curves on a plane so dense that the path changes little between
-    /// neighbours; for other paths the joints.
+    /// Returns samples of s from 0 to 1. In tables and curves on a plane the path changes little between neighbours;
+    /// other paths give their joints.
     pub fn places(&self) -> Vec<f64> {
         match self {
             Self::Table(table) => table.stations().to_vec(),
@@ -171,7 +170,8 @@ pub struct PathChain {
 }
 
 impl PathChain {
-    /// Chains paths, each with its share of s. Returns `None` if there are none, or a share is not above 0.
+    /// Chains paths; s is divided among them in proportion to the given shares. Returns `None` if there are none, or a
+    /// share is not above 0.
     pub fn new(parts: Vec<(Path, f64)>) -> Option<Self> {
         let total: f64 = parts.iter().map(|(_, share)| share).sum();
         let sound = total.is_finite() && parts.iter().all(|(_, share)| *share > 0.0);
@@ -215,7 +215,7 @@ impl PathChain {
         path.third(s).scaled(1.0 / (run * run * run))
     }
 
-    /// Concatenates values of s of the paths, converted to s of the whole.
+    /// Concatenates values of s of the paths, converted to s of the chain.
     fn joined(&self, places: impl Fn(&Path) -> Vec<f64>) -> Vec<f64> {
         let own = self.parts().flat_map(|(path, [from, to])| {
             let inner: Vec<f64> = places(path).into_iter().filter(|s| *s < 1.0).collect();
@@ -257,7 +257,7 @@ pub fn minimum_norm_path(
     PathTable::even(nodes).ok_or(PathError::Singular { s: 0.0 })
 }
 
-/// Follows a curve with minimum-norm rates piece by piece. Each piece has intervals of its own, because integration
+/// Follows a curve with minimum-norm rates piece by piece. Each piece has its own intervals, because integration
 /// across a joint would lose accuracy.
 ///
 /// # Errors
@@ -266,8 +266,8 @@ pub fn minimum_norm_curve(tip: &Chain, start: DriveAngles, curve: &Curve) -> Res
     least_rate_curve(tip, None, start, curve)
 }
 
-/// Follows a curve piece by piece with the least rates that keep Σ λ_k q_k constant, if λ is given as `held`. With more
-/// than three drives the path then stays on the poses of one b.
+/// Follows a curve piece by piece with the rates of minimum norm. If λ is given as `held`, these also keep b = Σ λ_k
+/// q_k constant.
 ///
 /// # Errors
 /// If the Jacobian, with λ, loses rank on the way.
@@ -295,7 +295,7 @@ pub(crate) fn by_pieces<E>(
     follow: impl Fn(DriveAngles, [f64; 2], &dyn Fn(f64) -> CurvePoint, usize) -> Result<Vec<PathPoint>, E>,
 ) -> Result<Option<PathTable>, E> {
     let joints: Vec<f64> = curve.joints().collect();
-    // Curves of very many pieces, as those through samples, have short ones.
+    // Curves with very many pieces, such as those through samples, have short pieces.
     let min_intervals = if joints.len() > 200 { 1 } else { 16 };
     let (mut stations, mut nodes, mut q) = (Vec::new(), Vec::new(), start);
     for ends in joints.windows(2) {
@@ -320,8 +320,8 @@ pub(crate) fn by_pieces<E>(
     Ok(PathTable::new(stations, nodes))
 }
 
-/// Integrates the least rates along a curve and returns the nodes. `held` is an additional row of the Jacobian with the
-/// constant that its product with the rates must equal.
+/// Integrates the rates of minimum norm along a curve and returns the nodes. `held` is an additional row of the
+/// Jacobian with the constant that its product with the rates must equal.
 fn least_rate_nodes(
     tip: &Chain,
     held: Option<(&PerDrive, f64)>,
@@ -346,7 +346,7 @@ fn least_rate_nodes(
     let mut nodes = Vec::with_capacity(spaces + 1);
     for i in 0..=spaces {
         let s = i as f64 / spaces as f64;
-        // A step may jump over the place where the rank is lost, but not without leaving the curve.
+        // A step may cross a singularity unnoticed, but then the end effector leaves the curve.
         let gap = curve(s).p - end_effector(tip, &q.units());
         if gap.is_nan() || gap.norm() > max_drift {
             return Err(PathError::Singular { s });
@@ -370,8 +370,8 @@ fn least_rate_nodes(
     Ok(nodes)
 }
 
-/// Follows the end effector of the joint line `from`–`to` with four drives or more. Drive 1 goes straight to
-/// `first_to`, rad; the others move with the least rates.
+/// Follows the end effector of the joint line `from`–`to` with four drives or more. Drive 1 turns linearly to
+/// `first_to`, rad; the others move with the rates of minimum norm.
 ///
 /// # Errors
 /// If the Jacobian loses rank on the way.
@@ -387,8 +387,8 @@ pub fn same_tip_path(tip: &Chain, from: DriveAngles, to: DriveAngles, first_to: 
     PathTable::even(nodes).ok_or(PathError::Singular { s: 0.0 })
 }
 
-/// Path on which the end effector follows a joint line while drive 1 has a course of its own. Drives 2 and 3 follow
-/// with one sign of the elbow angle.
+/// Path on which the end effector follows that of a joint line while drive 1 turns linearly to a different angle.
+/// Drives 2 and 3 keep the sign of the elbow angle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SameTip {
     tip: Chain,
@@ -399,10 +399,10 @@ pub struct SameTip {
 }
 
 impl SameTip {
-    /// Follows the end effector of the joint line `from`–`to` while drive 1 goes straight to `first_to`, rad.
+    /// Follows the end effector of the joint line `from`–`to` while drive 1 turns linearly to `first_to`, rad.
     ///
     /// # Errors
-    /// If links 5 and 9 cannot reach it somewhere.
+    /// If drives 2 and 3 cannot place the end effector somewhere.
     pub fn new(tip: &Chain, from: DriveAngles, to: DriveAngles, first_to: f64) -> Result<Self, PathError> {
         let elbow = (from[2] - from[1]).sin();
         let path = Self { tip: *tip, from, to, first_to, elbow };

@@ -10,20 +10,21 @@
 //! # Source
 //! On each interval the spline is the quintic Hermite polynomial through (y, m, M) at both ends. Continuity of y⃛ and
 //! y⁗ at every inner sample gives two linear equations for its m and M, a symmetric block-tridiagonal system. At both
-//! ends m and M are those of the polynomial through the six samples next to the end, so that nothing is assumed about
-//! how the motion begins or stops. The error of y falls with h⁶, that of ẏ with h⁵, that of ÿ with h⁴.
+//! ends m and M are those of the polynomial through the six samples next to the end. So nothing is assumed about how
+//! the motion begins or stops. The error of y falls with h⁶, that of ẏ with h⁵, that of ÿ with h⁴.
 //!
 //! # Noise
-//! The spline does not smooth. Independent errors of standard deviation σ in evenly spaced samples cause errors of ÿ
-//! whose root mean square is [`NOISE_GAIN`] σ/h² inside and about 27 σ/h² at the ends, where only six samples count.
+//! The spline does not smooth. Independent errors of standard deviation σ in evenly spaced samples cause errors of ÿ.
+//! Their root mean square is [`NOISE_GAIN`] σ/h² at inner samples, and about 27 σ/h² at both ends, where only six
+//! samples contribute.
 
 use nalgebra::{Matrix2, Vector2};
 
 /// Minimum number of samples.
 pub const MIN_SPLINE_SAMPLES: usize = 6;
 
-/// Root mean square error of ÿ inside, times h²/σ, for evenly spaced samples with independent errors of standard
-/// deviation σ.
+/// Root mean square error of ÿ at inner samples, times h²/σ. The samples are evenly spaced and have independent errors
+/// of standard deviation σ.
 pub const NOISE_GAIN: f64 = 4.5;
 
 /// Equations of the spline for given times, factorised once for any number of columns.
@@ -78,7 +79,7 @@ impl Knots {
             let (before, next) = ((y(i) - y(i - 1)) / (l * l * l), (y(i + 1) - y(i)) / (r * r * r));
             let side = Vector2::new(360.0 * (before / l + next / r), 60.0 * (next - before));
             let [below, pivot] = &self.rows[i - 1];
-            // The first and the last sample are known.
+            // m and M of the first and the last sample are known.
             x.push(pivot * (side - below * x[i - 1]));
         }
         x.push(end);
@@ -90,7 +91,7 @@ impl Knots {
     }
 }
 
-/// Returns the first and second derivatives, at the first of six points (t, y), of the polynomial through them.
+/// Returns the first two derivatives of the polynomial through six points (t, y), at the first of them.
 fn at_end(points: [(f64, f64); MIN_SPLINE_SAMPLES]) -> [f64; 2] {
     let (t, mut c) = (points.map(|p| p.0), points.map(|p| p.1));
     // Newton's divided differences, in place.

@@ -3,8 +3,9 @@
 use crate::curves::PathPoint;
 use stillbase_mechanics::planar::PerDrive;
 
-/// Nodes of a path at s from 0 to 1, in order, joined by quintics that keep q, q′ and q″; the quintic's error falls
-/// with the sixth power of the spacing. Between nodes of one pose constant b, b is kept to rounding.
+/// Nodes of a path at s from 0 to 1, in order, joined by quintics that match q, q′ and q″. The error of the quintics
+/// falls with the sixth power of the spacing. If all nodes have the same b, so has every pose between them, up to
+/// rounding.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathTable {
     s: Vec<f64>,

@@ -18,7 +18,7 @@ pub(super) fn last_open(is_open: impl Fn(f64) -> bool) -> f64 {
     open
 }
 
-/// Returns the speed at which to close a distance, so that braking at 0.8 of `bound` still stops in time.
+/// Returns the speed at which to close a distance, so that a deceleration of 0.8 `bound` still stops in time.
 pub(super) fn approach(distance: f64, bound: f64) -> f64 {
     (distance / (4.0 * LAG_TIME)).min((1.6 * bound * distance).sqrt())
 }

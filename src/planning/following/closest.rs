@@ -1,9 +1,9 @@
-//! The motion at one b that is closest to a given one and has the same end effector path, for more than three drives;
-//! [`on_plane`](super::on_plane) does the same for three.
+//! The motion at one b that is closest to a given motion and has the same end effector path. This module serves more
+//! than three drives, [`on_plane`](super::on_plane) three.
 //!
-//! A point and a b leave n − 3 degrees of freedom. Of all such poses this module takes the one that is closest to the
-//! given pose in the metric of kinetic energy: it minimises ½ Σ H_kk Δq_k² with p and b fixed, by Newton's method,
-//! sample by sample. The result depends on the sample alone, and smoothly as long as no angle is at a limit.
+//! A point and a b leave n − 3 degrees of freedom. Among these poses this module chooses the one closest to the given
+//! pose in the metric of kinetic energy. Sample by sample, Newton's method minimises ½ Σ H_kk Δq_k² with p and b
+//! fixed. The result depends smoothly on the sample alone; joint limits are checked, not imposed.
 
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
@@ -16,13 +16,13 @@ use stillbase_mechanics::machine::Inertia;
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use stillbase_query::ProgressCallback;
 
-/// Number of samples on which the deviation at a b is computed.
+/// Number of samples from which the deviation at a b is computed.
 const DEVIATION_SAMPLES: usize = 61;
-/// Number of samples whose reaching b are intersected to find the candidate intervals.
+/// Number of samples whose feasible sets of b are intersected to find the candidate intervals.
 const REACH_SAMPLES: usize = 25;
 /// Number of b tried in each interval.
 const TRIES: usize = 12;
-/// Number of golden section steps after that.
+/// Number of golden section steps that refine the best b.
 const SECTIONS: usize = 16;
 /// Maximum number of Newton iterations.
 const MAX_ITERATIONS: usize = 40;
@@ -71,7 +71,7 @@ pub(super) fn same_tip(
     b: f64,
 ) -> Result<Samples, NoClosestMotion> {
     let mut rows = Vec::with_capacity(samples.count());
-    // First guess: the given pose plus the offset of the sample before.
+    // The first guess is the given pose plus the offset of the sample before.
     let mut off = PerDrive::zeros(space.drives());
     let mut pull = [0.0; 3];
     for i in 0..samples.count() {
@@ -93,8 +93,9 @@ pub(super) fn same_tip(
     samples.with_values(rows).ok_or(NoClosestMotion::Pose { time: samples.time(0), b, at: Vector::default() })
 }
 
-/// Finds the constant b whose motion with the same end effector path is closest to the given one, rad, and its ‖Δq‖,
-/// rad, from at most 61 of the samples. Returns `None` if no b was found, or if `goes_on` cancels the search.
+/// Finds the constant b, rad, whose motion with the same end effector path is closest to the given one. Also returns
+/// the ‖Δq‖, rad, of that motion. Both come from at most 61 of the samples. Returns `None` if no b was found, or if
+/// `goes_on` cancels the search.
 pub(super) fn nearest_b(
     space: &PoseSpace,
     model: &Inertia,

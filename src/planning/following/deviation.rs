@@ -21,7 +21,7 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// Returns the deviation between motions of equal duration, from `instants` + 1 even instants.
+    /// Returns the deviation between motions of equal duration, from `instants` + 1 evenly spaced instants.
     pub fn between(tip: &Chain, model: &Inertia, one: &Motion, other: &Motion, instants: usize) -> Self {
         let n = model.drives();
         let mut worst = Self { end_effector: 0.0, joints: PerDrive::zeros(n), rms: 0.0 };
@@ -55,9 +55,9 @@ pub(super) fn angle_distance(model: &Inertia, one: &Samples, other: &Samples) ->
     (spaces.sum::<f64>() / (whole * one.duration())).sqrt()
 }
 
-/// Finds the b of a set, rad, at which the distance `far` is least, and that distance. It tries `tries` even b in each
-/// interval and `mean`, then refines the best by `sections` golden section steps. Returns `None` if the distance is
-/// finite nowhere, or if `goes_on` cancels the search.
+/// Finds the b of a set, rad, at which the distance `far` is least, and that distance. It tries `tries` evenly spaced
+/// b in each interval and `mean`, then refines the best by `sections` golden section steps. Returns `None` if the
+/// distance is finite nowhere, or if `goes_on` cancels the search.
 pub(super) fn least(
     set: &BSet,
     mean: f64,

@@ -21,7 +21,7 @@ pub struct Target {
     pub reach: Reach,
 }
 
-/// Bounds on how fast the reference may change.
+/// Bounds on the accelerations of the reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Bound of |ä|, rad/s².
@@ -87,7 +87,7 @@ impl Courses {
 }
 
 impl Follower {
-    /// Starts at the pose and rates of a reference and slows to rest, with b as near as it can stop. `step` is the time
+    /// Starts at the pose and rates of a reference and slows to rest; b stops as early as it can. `step` is the time
     /// between calls of [`advance`](Self::advance), s.
     pub fn new(map: Arc<PoseSpace>, bounds: Bounds, step: f64, from: &Reference) -> Self {
         let (x, b) = map.project(&from.q);
@@ -111,7 +111,7 @@ impl Follower {
         follower
     }
 
-    /// Sets the aim to where the reference can stop soonest.
+    /// Sets the aim to the pose at which the reference can stop soonest.
     fn aim_at_stop(&mut self) {
         let stop = norm(&self.a.v) / self.bounds.joint;
         self.aim = self.map.clamped(&self.a.x.plus(0.5 * stop, &self.a.v));
@@ -120,7 +120,7 @@ impl Follower {
     }
 
     /// Drags a point of a link while the end effector stays where it is or comes to rest. On machines of fewer than
-    /// [four drives](PoseSpace::leaves_freedoms) nothing moves.
+    /// [four drives](PoseSpace::leaves_freedoms) no link can be dragged.
     pub fn set_pull(&mut self, pull: Pull) {
         if let Some(held) = &mut self.held {
             held.pull(pull);
@@ -168,7 +168,7 @@ impl Follower {
     }
 
     /// Sets the target of the relative angles, rad. The aim is the last point before a limit or a fold on the straight
-    /// line there.
+    /// line to them.
     pub fn set_angles(&mut self, a: &PerDrive) {
         self.let_go();
         self.aim = self.as_far_as_open(self.map.clamped(a));
@@ -177,7 +177,7 @@ impl Follower {
         self.steer();
     }
 
-    /// Returns the relative angles that the reference goes to, rad.
+    /// Returns the relative angles that the reference moves to, rad.
     pub fn aim(&self) -> &PerDrive {
         &self.aim
     }
@@ -199,7 +199,7 @@ impl Follower {
         self.b.x
     }
 
-    /// Returns the b that the reference goes to, rad.
+    /// Returns the b that the reference moves to, rad.
     pub fn b_aim(&self) -> f64 {
         self.b_aim
     }
@@ -322,7 +322,8 @@ impl Follower {
         let mut acc = PerDrive::from_fn(n, |i| {
             let (x, v) = (self.a.x[i], self.a.v[i]);
             // Maximum acceleration towards a limit at distance d, approached at speed v: after this step the angle can
-            // brake step by step and stop at the limit. If it is too near for that, it turns back there.
+            // brake step by step and stop at the limit. If the limit is too near for that, the angle turns back at the
+            // limit.
             let max_towards = |d: f64, v: f64| {
                 if d == f64::INFINITY {
                     return d;
@@ -349,8 +350,8 @@ impl Follower {
         acc
     }
 
-    /// Returns the accelerations nearest to the wanted ones, between these and full braking, after which the reference
-    /// can stop on a straight line without leaving its sheet.
+    /// Returns accelerations between the wanted ones and full braking, as near as possible to the wanted ones. After
+    /// them the reference can stop on a straight line without leaving its sheet.
     fn before_folds(&self, want: &PerDrive) -> PerDrive {
         let wanted = self.within_limits(want);
         if !self.map.has_bars() || self.can_stop_after(&wanted) {
@@ -364,8 +365,8 @@ impl Follower {
         at(last_open(|t| self.can_stop_after(&at(t))))
     }
 
-    /// Returns whether the coming step with these accelerations, and the straight line on to a stop, meet no limit or
-    /// fold.
+    /// Returns whether the coming step with these accelerations, and the straight line from there to the stop, meet no
+    /// limit or fold.
     fn can_stop_after(&self, acc: &PerDrive) -> bool {
         let next = Courses { acc: *acc, ..self.a }.after(self.step);
         let speed = norm(&next.v);

@@ -1,11 +1,10 @@
-//! Dragging a link while the end effector is held, for four drives and more: motion in the freedoms left at one point
-//! and one b.
+//! Dragging a link while the end effector and b are held, for four drives and more.
 //!
 //! # Method
 //! With b fixed, the poses with the same end effector position p(a) form a set of n − 3 dimensions in the n − 1
 //! relative angles a. Over a step the tangential displacement w is a quadratic function of time. Then a = a₀ + w +
-//! J₀ᵀμ, with the μ that keeps the point, found by Newton's method; rates and accelerations follow from J ȧ = 0. So
-//! point and b are kept to rounding at every instant, at any speed.
+//! J₀ᵀμ, where Newton's method finds the μ that keeps the end effector; rates and accelerations follow from J ȧ = 0.
+//! So the end effector and b are constant up to rounding at every instant and any speed.
 
 use std::sync::Arc;
 
@@ -34,12 +33,12 @@ const TURNING_SHARE: f64 = 0.4;
 const MAX_ERROR_SHARE: f64 = 0.15;
 /// Damping of the least-squares rates, as a fraction of the reach per radian.
 const DAMPING_SHARE: f64 = 0.05;
-/// The reference stops when its wanted and its present speed are below this, rad/s.
+/// The reference stops when both its wanted and its present speed are below this, rad/s.
 const STILL_BELOW_RAD_S: f64 = 1e-8;
 /// Tolerance of the end effector position, as a fraction of the reach.
 const POSITION_TOLERANCE: f64 = 1e-15;
 
-/// A reference that keeps the end effector while a link is dragged.
+/// A reference that keeps the end effector in place while a link is dragged.
 #[derive(Clone, Debug)]
 pub struct HeldReference {
     space: Arc<PoseSpace>,
@@ -84,8 +83,8 @@ fn solved(j: &Columns, j0: &Columns, n: usize, r: Vector) -> Option<Vector> {
 }
 
 impl HeldReference {
-    /// Holds the end effector at its position in a pose at rest, and starts the drag. `bound` is that of |ä|, rad/s²;
-    /// `step` is the time between calls of [`advance`](Self::advance), s.
+    /// Holds the end effector at its position in a pose at rest, and starts the drag. `bound` is the bound on |ä|,
+    /// rad/s²; `step` is the time between calls of [`advance`](Self::advance), s.
     pub fn new(space: Arc<PoseSpace>, a: PerDrive, b: f64, (bound, step): (f64, f64), pull: Pull) -> Self {
         let (point, still) = (space.end_effector(&space.lift(&a, b)), PerDrive::zeros(a.len()));
         let mut held = Self { space, pull, point, b, bound, step, a, v: still, acc: still };
@@ -168,12 +167,12 @@ impl HeldReference {
         (off.norm() < 1e-9 * self.space.farthest()).then_some(a)
     }
 
-    /// Returns the normal component of ä that keeps the end effector at given rates. `along_it` is J times the
-    /// tangential acceleration.
-    fn turning(&self, j: &Columns, j0: &Columns, a: &PerDrive, v: &PerDrive, along_it: Vector) -> Option<PerDrive> {
+    /// Returns the normal component of ä that keeps the end effector in place, for the rates `v`. `j_acc` is J times
+    /// the tangential acceleration.
+    fn turning(&self, j: &Columns, j0: &Columns, a: &PerDrive, v: &PerDrive, j_acc: Vector) -> Option<PerDrive> {
         let (q, qd) = (self.space.lift(a, self.b), self.space.lift_rates(v, 0.0));
         let inwards: Vector = (0..q.len()).map(|k| unit(q[k]) * (self.space.arms()[k] * qd[k] * qd[k])).sum();
-        Some(across(j0, solved(j, j0, a.len(), inwards - along_it)?, a.len()))
+        Some(across(j0, solved(j, j0, a.len(), inwards - j_acc)?, a.len()))
     }
 
     /// Returns the state after the time dt, s, with a tangential acceleration; `None` if no pose keeps the end

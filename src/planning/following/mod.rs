@@ -1,5 +1,5 @@
-//! Motions with b constant: following a curve on one sheet of a plane, the motion nearest to a given one, and following
-//! the pointer and the slider.
+//! Motions with b constant: following a curve on one sheet of a plane, the motion nearest to a given one, and
+//! following pointer and slider.
 
 mod braking;
 mod closest;

@@ -11,9 +11,9 @@
 //! # Source
 //! In the metric of kinetic energy the normal of the planes is D⁻¹λ ∝ (1, …, 1). So the nearest pose on a plane is the
 //! pose rotated as a whole by (b − b(t))/Σλ. Its distance is |b − b(t)|/Σλ, and the nearest constant b is b̄. This
-//! rotates the end effector with the arm. To keep the end effector instead, the pose moves along the null space of its
-//! Jacobian onto the plane, (16) inverted, if b reaches every point of its path. A search finds the nearest such b in
-//! the same metric.
+//! rotates the end effector with the arm. To keep the end effector instead, each pose moves along the null space of
+//! its Jacobian onto the plane, by inversion of (16). This takes a b that reaches every point of the path; a search
+//! finds the nearest one in the same metric.
 
 use thiserror::Error;
 
@@ -78,8 +78,9 @@ pub fn same_tip(
     }
 }
 
-/// Finds the constant b whose motion with the same end effector path is nearest to the given one, rad, and its ‖Δq‖,
-/// rad, from a subset of the samples. Returns `None` if no b was found, or if `goes_on` cancels the search.
+/// Finds the constant b, rad, whose motion with the same end effector path is nearest to the given one. Also returns
+/// the ‖Δq‖, rad, of that motion. Both come from a subset of the samples. Returns `None` if no b was found, or if
+/// `goes_on` cancels the search.
 pub fn nearest_b(
     space: &PoseSpace,
     model: &Inertia,

@@ -13,10 +13,10 @@ use stillbase_query::ProgressCallback;
 
 /// Number of b tried in each interval.
 const TRIES: usize = 32;
-/// Number of golden section steps after that.
+/// Number of golden section steps that refine the best b.
 const SECTIONS: usize = 24;
 
-/// Number of samples on which the deviation at a b is computed.
+/// Number of samples from which the deviation at a b is computed.
 const DEVIATION_SAMPLES: usize = 201;
 
 /// Returns the end effector curve over s = t/T of a path of the drives.
@@ -33,9 +33,9 @@ fn tip_curve(tip: &Chain, path: &PathTable) -> Option<Curve> {
     Curve::through(path.stations(), &nodes)
 }
 
-/// Finds the constant b whose motion with the same end effector path is nearest to the given one, rad, and its ‖Δq‖,
-/// rad, from at most 201 of the samples. Returns `None` if the curve can be followed at no b, or if `goes_on` cancels
-/// the search.
+/// Finds the constant b, rad, whose motion with the same end effector path is nearest to the given one. Also returns
+/// the ‖Δq‖, rad, of that motion. Both come from at most 201 of the samples. Returns `None` if the curve can be
+/// followed at no b, or if `goes_on` cancels the search.
 pub(super) fn nearest_b(
     map: &PlaneMap,
     model: &Inertia,
@@ -58,7 +58,7 @@ pub(super) fn nearest_b(
 /// pose. Returns `None` if the samples define no path.
 ///
 /// # Errors
-/// Where the curve cannot be followed, why, and at which b it can.
+/// If the curve cannot be followed: where and why, and a b at which it can, if known.
 pub(super) fn same_tip(
     map: &PlaneMap,
     tip: &Chain,

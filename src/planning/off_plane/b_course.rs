@@ -10,11 +10,11 @@
 /// b over u = t/T: cubic pieces, b″ continuous.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BCourse {
-    /// b, b′, b″ at even u.
+    /// b, b′, b″ at evenly spaced u.
     nodes: Vec<[f64; 3]>,
 }
 
-/// Base moment of a motion.
+/// Peak and root mean square of the base moment over a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaseReaction {
     /// Maximum |n_B|, N m.
@@ -29,8 +29,8 @@ impl BCourse {
         Self { nodes: vec![[b, 0.0, 0.0]; 2] }
     }
 
-    /// Integrates b″ at even nodes, from rest at `start`, rad. A term linear in u is added to b″ so that the course
-    /// ends at rest, and at `end`, rad, if given.
+    /// Integrates b″ at evenly spaced nodes, from rest at `start`, rad. A term linear in u is added to b″ so that the
+    /// course ends at rest, and at `end`, rad, if given.
     pub(super) fn integrated(start: f64, mut second: Vec<f64>, end: Option<f64>) -> Self {
         let spaces = second.len() - 1;
         let h = 1.0 / spaces as f64;
@@ -53,7 +53,7 @@ impl BCourse {
         Self { nodes: sum(&second).0 }
     }
 
-    /// Returns b, b′, b″ at even u from 0 to 1, rad.
+    /// Returns b, b′, b″ at evenly spaced u from 0 to 1, rad.
     pub fn nodes(&self) -> &[[f64; 3]] {
         &self.nodes
     }

@@ -1,4 +1,4 @@
-//! The pose constant of two drives, also where the mass matrix depends on the pose.
+//! The pose constant of a machine with two drives, even if its mass matrix depends on the pose.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -28,7 +28,7 @@ pub struct BIntegral {
     phase: f64,
     /// S, kg m².
     sum: f64,
-    /// H_22 − H_11.
+    /// H_22 − H_11, kg m².
     difference: f64,
     /// C_12, kg m².
     coupling: Vector,
@@ -45,7 +45,7 @@ impl BIntegral {
         }
         let (first, second, coupling) = (model.momentum(0), model.momentum(1), model.coupling(0, 1));
         let (sum, twice_coupling) = (first + second, 2.0 * coupling.norm());
-        // Rotors count in H, and only then in D.
+        // With rotors S differs from H_11 + H_22, so S > 2R does not follow from a positive definite H.
         let definite = model.diagonal(0) * model.diagonal(1) > coupling.norm_sqr() && sum > twice_coupling;
         definite.then(|| Self {
             gain: 0.5 * (second - first) / ((sum - twice_coupling) * (sum + twice_coupling)).sqrt(),
@@ -95,7 +95,7 @@ impl BIntegral {
         PathTable::even((0..=NODE_INTERVALS).map(node).collect())
     }
 
-    /// Returns √(S² − 4R²) ∫ dψ/(S + 2R cos ψ) = 2 arctan(k tan(ψ/2)) from 0, continued over whole turns.
+    /// Returns √(S² − 4R²) ∫_0^ψ dψ/(S + 2R cos ψ) = 2 arctan(k tan(ψ/2)), continuous over whole turns.
     fn swept(&self, psi: f64) -> f64 {
         let (e, k) = (unit(psi), self.k);
         psi - 2.0 * f64::atan((1.0 - k) * e.im / ((1.0 + k) + (1.0 - k) * e.re))

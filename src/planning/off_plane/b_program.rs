@@ -1,8 +1,7 @@
-//! The convex program of the least reaction: the course of b within a corridor with the least ∫ b″² or the least peak
-//! of
-//! |b″|.
+//! The convex program of the least reaction: the course of b within a corridor with the least ∫ b″² or the least
+//! maximum of |b″|.
 //!
-//! b″ is linear between even nodes. b and b′ of the nodes are unknowns too, with exact integration as equality
+//! b″ is linear between evenly spaced nodes. b and b′ of the nodes are unknowns too; exact integration gives equality
 //! constraints.
 
 use crate::off_plane::b_course::BCourse;
@@ -12,28 +11,29 @@ use stillbase_convex::{LinearRow, Program};
 
 /// Number of stations of the corridor in each piece.
 pub(super) const PIECE_STATIONS: usize = 8;
-/// Stride of the stations where only the value of a program is wanted.
+/// Stride of the stations in programs of which only the minimum is needed, not the course.
 const STRIDE_FOR_VALUE: usize = 2;
-/// Margin of b to the corridor's bounds, rad, at most a tenth of its width. At a fold the joint rates would be
-/// infinite.
+/// Margin between b and the corridor's bounds, rad; at most a tenth of its width. It avoids folds, where joint rates
+/// are infinite.
 const MARGIN_RAD: f64 = 1e-3;
 /// The margin is reduced until it raises the objective by at most this fraction.
 const MARGIN_COST: f64 = 4e-3;
 /// Margin that is always kept, against rounding, rad.
 const MIN_MARGIN_RAD: f64 = 1e-8;
-/// If the start or the end lies within the margin, the margin grows from there over this fraction of the motion.
+/// If the start or the end lies within the margin, the margin is reduced there and grows over this fraction of the
+/// motion.
 const GROWTH_SHARE: f64 = 0.1;
 /// Maximum number of times that the bounds are tightened because the course leaves the corridor between stations.
 const MAX_TIGHTENINGS: usize = 4;
 /// Fraction of the least peak by which the smoothest course may exceed it.
 const SMOOTHING_COST: f64 = 1e-7;
 
-/// Lower and upper bound of b − b_0 at each station, rad: the even stations first, then those between.
-type Walls = Vec<[f64; 2]>;
+/// Lower and upper bound of b − b_0 at each station, rad: evenly spaced stations first, then the additional ones.
+type Bounds = Vec<[f64; 2]>;
 
-/// Finds the course of least ∫ b″² du, or of least peak of |b″| if `peak`, within the corridor at every station and, to
-/// second order, between them. Each of the `spaces` pieces has [`PIECE_STATIONS`] stations. The margin may cost `ease`
-/// times [`MARGIN_COST`]. Fails with the reason in words.
+/// Finds the course of least ∫ b″² du, or of least peak |b″| if `peak`. It stays within the corridor at every station
+/// and, to second order, between stations. Each of the `spaces` pieces has [`PIECE_STATIONS`] stations. The margin
+/// may cost `ease` times [`MARGIN_COST`]. An error gives the reason in words.
 pub(super) fn least_course(
     corridor: &Corridor,
     end: Option<f64>,
@@ -41,8 +41,8 @@ pub(super) fn least_course(
     spaces: usize,
     ease: f64,
 ) -> Result<BCourse, String> {
-    let value = |share: f64| value(corridor, &walls(corridor, end, share, 0.0), end, peak, spaces);
-    // The objective is convex in the share of the margin, so that a chord bounds the cost of a share from above.
+    let value = |share: f64| value(corridor, &bounds(corridor, end, share, 0.0), end, peak, spaces);
+    // The minimum is convex in the fraction of the margin, so a chord bounds the cost of a fraction from above.
     let free = value(0.0)?;
     let mut shares = match value(1.0) {
         Ok(wide) if wide - free <= ease * MARGIN_COST * free => vec![1.0],
@@ -70,8 +70,8 @@ fn kept_within(
     let mut extra = 0.0;
     let mut rounds = 0;
     loop {
-        let course = solved(corridor, &walls(corridor, end, share, extra), end, peak, spaces)?;
-        let past = past(corridor, &course);
+        let course = solved(corridor, &bounds(corridor, end, share, extra), end, peak, spaces)?;
+        let past = excess(corridor, &course);
         if past <= LIMIT_SLACK {
             return Ok(course);
         }
@@ -85,7 +85,7 @@ fn kept_within(
 
 /// Returns the maximum distance of a course beyond the bounds of its corridor, at stations and halfway between them,
 /// rad.
-fn past(corridor: &Corridor, course: &BCourse) -> f64 {
+fn excess(corridor: &Corridor, course: &BCourse) -> f64 {
     let stations = corridor.stations();
     let at = stations.iter().chain(corridor.extra_stations()).map(|s| {
         let b = course.at(s.u)[0];
@@ -95,7 +95,7 @@ fn past(corridor: &Corridor, course: &BCourse) -> f64 {
         let b = course.at(0.5 * (w[0].u + w[1].u))[0];
         let side = |side: usize, ends: [f64; 2]| {
             let bulges = [k, k + 1].map(|k| bulge(corridor, k, side));
-            // Across a jump of the corridor interpolation has no meaning.
+            // Interpolation across a jump of the corridor is meaningless.
             let [Some(i), Some(j)] = bulges else { return f64::NEG_INFINITY };
             let sense = [1.0, -1.0][side];
             sense * (0.5 * (ends[0] + ends[1]) - b) + i.min(j)
@@ -105,8 +105,8 @@ fn past(corridor: &Corridor, course: &BCourse) -> f64 {
     at.chain(between).fold(0.0, f64::max)
 }
 
-/// Estimates from second differences by how much, rad, a bound of the corridor may lie further inside halfway to the
-/// next station than linear interpolation gives. Returns `None` at a jump, such as where another limit takes over.
+/// Estimates from second differences how far, rad, a bound of the corridor lies inside its linear interpolation
+/// halfway to the next station. Returns `None` at a jump, such as where another limit becomes active.
 fn bulge(corridor: &Corridor, k: usize, side: usize) -> Option<f64> {
     let stations = corridor.stations();
     let bound = |k: usize| [stations[k].low, stations[k].high][side];
@@ -121,11 +121,17 @@ fn bulge(corridor: &Corridor, k: usize, side: usize) -> Option<f64> {
 }
 
 /// Solves for the course. The unknowns b − b_0, b′, b″ of each node are adjacent, so that the matrix is banded.
-fn solved(corridor: &Corridor, walls: &Walls, end: Option<f64>, peak: bool, spaces: usize) -> Result<BCourse, String> {
-    let mut least = program(corridor, walls, end, spaces, 1, 0);
+fn solved(
+    corridor: &Corridor,
+    bounds: &Bounds,
+    end: Option<f64>,
+    peak: bool,
+    spaces: usize,
+) -> Result<BCourse, String> {
+    let mut least = program(corridor, bounds, end, spaces, 1, 0);
     if peak {
         // First minimise the peak alone, then ∫ b″² at that peak.
-        let bound = least_peak(corridor, walls, end, spaces, 1)? * (1.0 + SMOOTHING_COST);
+        let bound = least_peak(corridor, bounds, end, spaces, 1)? * (1.0 + SMOOTHING_COST);
         for i in 0..=spaces {
             least.at_most.push(LinearRow::new([(3 * i + 2, 1.0)], bound));
             least.at_most.push(LinearRow::new([(3 * i + 2, -1.0)], bound));
@@ -137,11 +143,11 @@ fn solved(corridor: &Corridor, walls: &Walls, end: Option<f64>, peak: bool, spac
 }
 
 /// Returns the least value of the objective, rad: the root of ∫ b″² du, or the peak of |b″|.
-fn value(corridor: &Corridor, walls: &Walls, end: Option<f64>, peak: bool, spaces: usize) -> Result<f64, String> {
+fn value(corridor: &Corridor, bounds: &Bounds, end: Option<f64>, peak: bool, spaces: usize) -> Result<f64, String> {
     if peak {
-        return least_peak(corridor, walls, end, spaces, STRIDE_FOR_VALUE);
+        return least_peak(corridor, bounds, end, spaces, STRIDE_FOR_VALUE);
     }
-    let x = solution(&squared(program(corridor, walls, end, spaces, STRIDE_FOR_VALUE, 0), spaces))?;
+    let x = solution(&squared(program(corridor, bounds, end, spaces, STRIDE_FOR_VALUE, 0), spaces))?;
     let square = |i: usize| {
         let (x, y) = (x[3 * i + 2], x[3 * i + 5]);
         (x * x + x * y + y * y) / (3.0 * spaces as f64)
@@ -152,13 +158,13 @@ fn value(corridor: &Corridor, walls: &Walls, end: Option<f64>, peak: bool, space
 /// Returns the least peak of |b″|, rad, from a linear program with the peak as an additional unknown.
 fn least_peak(
     corridor: &Corridor,
-    walls: &Walls,
+    bounds: &Bounds,
     end: Option<f64>,
     spaces: usize,
     every: usize,
 ) -> Result<f64, String> {
     let top = 3 * (spaces + 1);
-    let mut linear = program(corridor, walls, end, spaces, every, 1);
+    let mut linear = program(corridor, bounds, end, spaces, every, 1);
     linear.linear[top] = 1.0;
     for i in 0..=spaces {
         linear.at_most.push(LinearRow::new([(3 * i + 2, 1.0), (top, -1.0)], 0.0));
@@ -183,9 +189,16 @@ fn squared(mut program: Program, spaces: usize) -> Program {
     program
 }
 
-/// Builds the constraints of a course, with `more` additional unknowns at the end. Bounds apply at every `every`th even
-/// station and at all stations between.
-fn program(corridor: &Corridor, walls: &Walls, end: Option<f64>, spaces: usize, every: usize, more: usize) -> Program {
+/// Builds the constraints of a course, with `more` additional unknowns at the end. Bounds apply at every `every`th
+/// evenly spaced station and at all additional stations.
+fn program(
+    corridor: &Corridor,
+    bounds: &Bounds,
+    end: Option<f64>,
+    spaces: usize,
+    every: usize,
+    more: usize,
+) -> Program {
     let start = corridor.start().b;
     let h = 1.0 / spaces as f64;
     let mut program = Program::over(3 * (spaces + 1) + more);
@@ -203,8 +216,8 @@ fn program(corridor: &Corridor, walls: &Walls, end: Option<f64>, spaces: usize, 
             .push(LinearRow::new([(b + 3, 1.0), (b, -1.0), (v, -h), (w, -h * h / 3.0), (w + 3, -h * h / 6.0)], 0.0));
     }
     let even = corridor.stations().len();
-    let besides = corridor.extra_stations().iter().map(|s| s.u * (even - 1) as f64).zip(&walls[even..]);
-    let stations = walls[..even].iter().enumerate().skip(every).step_by(every).map(|(k, wall)| (k as f64, wall));
+    let besides = corridor.extra_stations().iter().map(|s| s.u * (even - 1) as f64).zip(&bounds[even..]);
+    let stations = bounds[..even].iter().enumerate().skip(every).step_by(every).map(|(k, pair)| (k as f64, pair));
     for (k, [low, high]) in stations.chain(besides) {
         let place = k / PIECE_STATIONS as f64;
         let i = (place as usize).min(spaces - 1);
@@ -213,20 +226,21 @@ fn program(corridor: &Corridor, walls: &Walls, end: Option<f64>, spaces: usize, 
         let [b, v, w] = [3 * i, 3 * i + 1, 3 * i + 2];
         let row = |s: f64| [(b, s), (v, s * d), (w, s * (d * d / 2.0 - cubic)), (w + 3, s * cubic)];
         if k + 1.0 < even as f64 || end.is_none() {
-            let walls = [(1.0, *high), (-1.0, -low)].into_iter().filter(|(_, right)| right.is_finite());
-            program.at_most.extend(walls.map(|(s, right)| LinearRow::new(row(s), right)));
+            let bounds = [(1.0, *high), (-1.0, -low)].into_iter().filter(|(_, right)| right.is_finite());
+            program.at_most.extend(bounds.map(|(s, right)| LinearRow::new(row(s), right)));
         }
     }
     program
 }
 
-/// Returns the bounds of b − b_0, rad: the corridor reduced by a share of the margin and by its curvature between
-/// stations. If the start or a given end of the course lies within the margin, the margin grows from there.
-fn walls(corridor: &Corridor, end: Option<f64>, share: f64, extra: f64) -> Walls {
+/// Returns the bounds of b − b_0, rad: the corridor reduced by a fraction of the margin and by the bulge of its
+/// bounds between stations. If the start or a given end of the course lies within the margin, the margin is reduced
+/// there.
+fn bounds(corridor: &Corridor, end: Option<f64>, share: f64, extra: f64) -> Bounds {
     let stations = corridor.stations();
     let (first, last) = (&stations[0], &stations[stations.len() - 1]);
     let (b_0, b_1) = (corridor.start().b, end.unwrap_or(0.0));
-    let wall = |station: &Station, bulges: [f64; 2]| {
+    let bounds_at = |station: &Station, bulges: [f64; 2]| {
         let tenth = 0.1 * (station.high - station.low);
         let inset = |side: usize, gap: [f64; 2]| {
             let whole = share * MARGIN_RAD.min(tenth) + (bulges[side] + MIN_MARGIN_RAD + extra).min(tenth);
@@ -240,7 +254,7 @@ fn walls(corridor: &Corridor, end: Option<f64>, share: f64, extra: f64) -> Walls
     };
     let even = stations.iter().enumerate().map(|(k, station)| {
         let bulges = [0, 1].map(|side| bulge(corridor, k, side).unwrap_or(0.0));
-        wall(station, bulges)
+        bounds_at(station, bulges)
     });
-    even.chain(corridor.extra_stations().iter().map(|station| wall(station, [0.0; 2]))).collect()
+    even.chain(corridor.extra_stations().iter().map(|station| bounds_at(station, [0.0; 2]))).collect()
 }

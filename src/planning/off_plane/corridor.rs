@@ -1,8 +1,8 @@
-//! The corridor of b along a motion of the end effector: the interval from b_min to b_max in which each of its points
-//! can be reached on the sheet of the start pose, within the joint limits.
+//! The corridor of b along a motion of the end effector. At each point it is the interval from b_min to b_max in which
+//! the sheet of the start pose reaches that point within the joint limits.
 //!
-//! On one sheet q = q(x, y, b): once the end effector's motion is given, b is the only free coordinate. The self-motion
-//! of each point, divided where b reverses, gives the bounds exactly: joint limits or folds.
+//! On one sheet q = q(x, y, b): once the end effector's motion is given, b is the only free coordinate. The bounds
+//! are joint limits or folds; they follow exactly from the self-motion of each point, divided where b reverses.
 
 use thiserror::Error;
 
@@ -10,7 +10,7 @@ use crate::curves::curve::CurvePoint;
 use crate::reactionless::{LIMIT_SLACK, NoReach, PlaneMap, PlanePoint, describe_interval, metres};
 use stillbase_mechanics::planar::Vector;
 
-/// Number of samples of a self-motion with which its parts are told apart.
+/// Number of samples of each branch of a self-motion.
 const SAMPLES: usize = 25;
 /// Maximum change of a pose between neighbouring stations, rad; a pose further away is on another branch.
 const MAX_POSE_CHANGE_RAD: f64 = 0.2;
@@ -18,14 +18,15 @@ const MAX_POSE_CHANGE_RAD: f64 = 0.2;
 const MAX_NEWTON_MOVE_RAD: f64 = 0.05;
 /// Differences of b below this are rounding errors, rad.
 const B_ROUNDING_RAD: f64 = 1e-11;
-/// A bound of the corridor jumps in an interval between stations if it changes there by more than this factor times its
-/// change in the neighbouring intervals, plus [`MIN_JUMP_RAD`].
+/// A bound jumps between two stations if it changes by more than this factor times its change in the neighbouring
+/// intervals, plus [`MIN_JUMP_RAD`].
 const JUMP_FACTOR: f64 = 4.0;
 /// Minimum size of a jump, rad.
 const MIN_JUMP_RAD: f64 = 1e-6;
 /// Number of bisections that locate a jump.
 const HALVINGS: usize = 24;
-/// Number of stations between a jump and the next even one; each is twice as far from the jump as the one before.
+/// Number of stations between a jump and the next evenly spaced station; each is twice as far from the jump as the
+/// one before.
 const GRADES: i32 = 10;
 /// Maximum number of jumps at which stations are added.
 const MAX_JUMPS: usize = 32;
@@ -53,7 +54,7 @@ pub struct Corridor {
     map: PlaneMap,
     start: PlanePoint,
     stations: Vec<Station>,
-    /// Additional stations between the even ones, where a bound of the corridor jumps.
+    /// Additional stations between the evenly spaced ones, where a bound of the corridor jumps.
     extra_stations: Vec<Station>,
 }
 
@@ -142,7 +143,7 @@ impl Station {
     }
 
     /// Returns b_min for side 0, b_max for side 1, rad.
-    fn end(&self, side: usize) -> f64 {
+    fn bound(&self, side: usize) -> f64 {
         [self.low, self.high][side]
     }
 
@@ -211,10 +212,10 @@ impl Corridor {
         Ok(corridor)
     }
 
-    /// Returns the intervals between stations in which a bound of the corridor jumps, such as where a fold begins, each
-    /// with the side of the bound.
+    /// Returns where a bound of the corridor jumps, for example because a fold begins. Each jump has the index of the
+    /// station before it, and the side of the bound.
     fn jumps(&self) -> Vec<(usize, usize)> {
-        let step = |k: usize, side: usize| gap(self.stations[k].end(side), self.stations[k + 1].end(side));
+        let step = |k: usize, side: usize| gap(self.stations[k].bound(side), self.stations[k + 1].bound(side));
         let last = self.stations.len() - 2;
         let sudden = |&(k, side): &(usize, usize)| {
             let beside = [k.checked_sub(1), (k < last).then_some(k + 1)];
@@ -224,23 +225,23 @@ impl Corridor {
         (0..=last).flat_map(|k| [(k, 0), (k, 1)]).filter(sudden).take(MAX_JUMPS).collect()
     }
 
-    /// Returns stations on the narrower side of a jump, at distances that halve towards it. They resolve the corner of
-    /// the corridor that the even stations miss.
+    /// Returns stations on the narrower side of a jump, at distances that halve towards it. They resolve the corner
+    /// of the corridor that the evenly spaced stations miss.
     fn stations_near_jump(&self, curve: impl Fn(f64) -> CurvePoint, (k, side): (usize, usize)) -> Vec<Station> {
         let [before, after] = [&self.stations[k], &self.stations[k + 1]];
-        let ends = [before.end(side), after.end(side)];
+        let bounds = [before.bound(side), after.bound(side)];
         let (mut low, mut high) = (before.u, after.u);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
             let Some(station) = self.at(&curve, middle) else { break };
-            let [to_before, to_after] = ends.map(|end| gap(station.end(side), end));
+            let [to_before, to_after] = bounds.map(|bound| gap(station.bound(side), bound));
             if to_before <= to_after {
                 low = middle;
             } else {
                 high = middle;
             }
         }
-        let narrows = if side == 0 { ends[1] > ends[0] } else { ends[1] < ends[0] };
+        let narrows = if side == 0 { bounds[1] > bounds[0] } else { bounds[1] < bounds[0] };
         let (corner, even) = if narrows { (high, after.u) } else { (low, before.u) };
         if corner == even {
             return Vec::new();
@@ -261,17 +262,17 @@ impl Corridor {
         })
     }
 
-    /// Adds a station between the even ones.
+    /// Adds a station between the evenly spaced ones.
     pub(super) fn add_station(&mut self, station: Station) {
         self.extra_stations.push(station);
     }
 
-    /// Returns the stations between the even ones, unordered.
+    /// Returns the stations between the evenly spaced ones, unordered.
     pub(super) fn extra_stations(&self) -> &[Station] {
         &self.extra_stations
     }
 
-    /// Returns the even stations, from u = 0 to 1.
+    /// Returns the evenly spaced stations, from u = 0 to 1.
     pub fn stations(&self) -> &[Station] {
         &self.stations
     }
@@ -305,7 +306,7 @@ fn station(map: &PlaneMap, u: f64, point: CurvePoint, near: PlanePoint, det: f64
     for branch in map.self_motion(p, SAMPLES) {
         for mut line in monotone_parts(map, branch) {
             let (low, high) = (line[0].b, line[line.len() - 1].b);
-            // Folds bound a part, so that det has one sign inside it. If a sheet has shrunk to a point, the sign is
+            // Folds bound a part, so that det has one sign inside it. If the sheet has shrunk to a point, the sign is
             // arbitrary.
             let own = map.det(inside(&line));
             if own * det < 0.0 && high - low > B_ROUNDING_RAD {

@@ -1,7 +1,7 @@
 //! Joint drift on a closed path of the end effector that is followed repeatedly at zero angular momentum.
 //!
 //! D(q) q̇ = 0 is nonholonomic if D depends on the pose: the end effector returns, the joints do not. On an invariant
-//! machine the joints return too, to rounding. For this reason the paper requires invariance, (8).
+//! machine the joints return too, up to rounding. For this reason the paper requires invariance, (8).
 
 use thiserror::Error;
 
@@ -36,7 +36,7 @@ pub enum DriftError {
         /// Distance between its ends, m.
         gap: f64,
     },
-    /// [J; D] has lost rank.
+    /// [J; D] is singular.
     #[error("at s = {s:.3} of the curve, time {cycle} round, no rates of zero momentum follow it")]
     Singular {
         /// s of the curve, 0 to 1.
@@ -69,21 +69,23 @@ const CURVE_TOLERANCE: f64 = 1e-14;
 const MAX_STEP_ERROR: f64 = 1e-4;
 
 /// Follows a curve of the end effector at zero angular momentum, [J; D] q′ = [p′; 0], by the classical fourth-order
-/// Runge–Kutta method. After each step, rates of zero momentum project the end effector back onto the curve. Any time
-/// law from rest to rest keeps the moment at zero. With four drives or more the rates are the least of these.
+/// Runge–Kutta method. After each step, Newton steps of zero momentum project the end effector back onto the curve.
+/// The moment is zero for any time law from rest to rest. With four drives or more the rates are those of minimum
+/// norm.
 ///
 /// # Errors
-/// If there are fewer than three drives, the start is not on the curve, or [J; D] loses rank.
+/// If a machine with angular momentum has fewer than three drives, the start is not on the curve, or [J; D] loses
+/// rank.
 pub fn zero_momentum_path(
     model: &Inertia,
     start: DriveAngles,
     curve: impl Fn(f64) -> CurvePoint,
 ) -> Result<PathTable, DriftError> {
-    PathTable::even(round(model, start, &curve, NODE_INTERVALS, 1)?).ok_or(DriftError::Singular { s: 0.0, cycle: 1 })
+    PathTable::even(follow_once(model, start, &curve, NODE_INTERVALS, 1)?)
+        .ok_or(DriftError::Singular { s: 0.0, cycle: 1 })
 }
 
-/// Follows a curve at zero angular momentum piece by piece, each piece with its own intervals. `cycle` is named in
-/// errors.
+/// Follows a curve at zero angular momentum piece by piece, each piece with its own intervals. Errors report `cycle`.
 ///
 /// # Errors
 /// As [`zero_momentum_path`].
@@ -94,7 +96,7 @@ pub fn zero_momentum_curve(
     cycle: usize,
 ) -> Result<PathTable, DriftError> {
     let piece = |q: DriveAngles, [from, to]: [f64; 2], at: &dyn Fn(f64) -> CurvePoint, spaces: usize| {
-        round(model, q, &at, spaces, cycle).map_err(|error| match error {
+        follow_once(model, q, &at, spaces, cycle).map_err(|error| match error {
             DriftError::Singular { s, cycle } => DriftError::Singular { s: from + s * (to - from), cycle },
             other => other,
         })
@@ -103,7 +105,7 @@ pub fn zero_momentum_curve(
 }
 
 /// Follows a curve once and returns the nodes.
-fn round(
+fn follow_once(
     model: &Inertia,
     start: DriveAngles,
     curve: &impl Fn(f64) -> CurvePoint,
@@ -217,11 +219,11 @@ pub fn drift_in(
     }
     let spaces = spaces.clamp(2, 4096);
     let end = |nodes: &[PathPoint]| nodes.last().map_or(start, |node| node.q);
-    let first = round(model, start, &curve, spaces, 1)?;
+    let first = follow_once(model, start, &curve, spaces, 1)?;
     let mut ends = vec![start, end(&first)];
     let first = PathTable::even(first).ok_or(DriftError::Singular { s: 0.0, cycle: 1 })?;
     for cycle in 2..=cycles {
-        ends.push(end(&round(model, ends[cycle - 1], &curve, spaces, cycle)?));
+        ends.push(end(&follow_once(model, ends[cycle - 1], &curve, spaces, cycle)?));
     }
     Ok(Drift { ends, first })
 }

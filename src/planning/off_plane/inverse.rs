@@ -24,10 +24,10 @@ pub(crate) fn rates(map: &PlaneMap, a: [f64; 2], first: Vector, second: Vector) 
     [ad, solve(second + inward)]
 }
 
-/// Finds the pose with the end effector on a point of a curve at b = `[b, b′, b″]`, on the sheet of the pose `from`,
-/// and its derivatives by the parameter of the curve.
+/// Finds the pose on the sheet of `from` that puts the end effector on a point of a curve at b = `[b, b′, b″]`. Also
+/// returns its derivatives with respect to the curve parameter.
 ///
-/// `None` where [`PlaneMap::follow`] finds no such pose, or where det ∂(x, y)/∂(a_1, a_2) = 0.
+/// Returns `None` where [`PlaneMap::follow`] finds no such pose, or where det ∂(x, y)/∂(a_1, a_2) = 0.
 pub fn pose_along(map: &PlaneMap, point: &CurvePoint, b: [f64; 3], from: [f64; 2]) -> Option<(PlanePoint, PathPoint)> {
     let a = map.follow(point.p, b[0], from)?;
     let turn = b.map(|b| map.turn(b));

@@ -43,7 +43,8 @@ const MAX_NODES_PER_STATION: usize = 16;
 /// Maximum deviation from the curve, as a fraction of the arm length; beyond it the curve counts as not followed.
 const MAX_DEVIATION: f64 = 1e-6;
 
-/// Maximum number of solutions b(u) with one margin; after each, the corridor gets a station. Then the margin grows.
+/// Maximum number of solutions b(u) with one margin. After each, a station is added to the corridor; after the last,
+/// the margin grows.
 const MAX_CORRIDOR_REFINEMENTS: usize = 4;
 
 /// The objective.
@@ -64,7 +65,7 @@ pub struct LeastReaction {
     inertia: f64,
 }
 
-/// Why no such motion was found.
+/// Why no motion of least reaction was found.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum LeastReactionError {
     /// b has no corridor.
@@ -165,7 +166,8 @@ impl LeastReaction {
                     Ok(path) => return Ok(Self { corridor, course, path, inertia }),
                     Err(why) => why,
                 };
-                // If b leaves the corridor between two stations, as where a fold begins, add a station there.
+                // If b leaves the corridor between two stations, for example where a fold begins, add a station
+                // there.
                 let place = match &why {
                     LeastReactionError::NotFollowed { u } => corridor.at(&curve, *u),
                     _ => None,
@@ -200,8 +202,8 @@ impl LeastReaction {
         self.course.reaction(self.inertia, duration)
     }
 
-    /// Compares the base moments of three ways to make the same motion of the end effector in `duration`, s. `tip` and
-    /// `curve` are those of the plan.
+    /// Compares the base moments of three ways to make the same motion of the end effector in `duration`, s. `tip` is
+    /// the `end_effector` of the planned model, `curve` the planned curve.
     pub fn compare(&self, tip: &Chain, curve: impl Fn(f64) -> CurvePoint, duration: f64) -> Verdicts {
         let start = self.corridor.start();
         let fixed = match self.corridor.first_station_outside(start.b) {
@@ -266,7 +268,7 @@ impl Serialize for Verdicts {
     }
 }
 
-/// Whether the b of the start pose is feasible for the whole motion.
+/// Feasibility of the b of the start pose for the whole motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FixedB {
     /// It is feasible, and n_B = 0.
@@ -293,9 +295,9 @@ pub struct MinimumNorm {
     pub keeps_limits: bool,
 }
 
-/// Returns the path of the drives along a course of b. It has few nodes if these keep the end effector on its curve at
-/// all stations, as rounding errors of q″ grow with their number. Near a fold it has nodes at all stations and
-/// more between them.
+/// Returns the path of the drives along a course of b. Few nodes are used if they keep the end effector on its curve
+/// at all stations, because rounding errors of q″ grow with their number. Near a fold the path has nodes at all
+/// stations and more between them.
 fn followed(
     corridor: &Corridor,
     curve: impl Fn(f64) -> CurvePoint,

@@ -13,10 +13,10 @@
 //! | dD | ∂D_k/∂q_m − ∂D_m/∂q_k = −2 Im Z_km | n×n, kg m² |
 //!
 //! # Source
-//! D_k = C_kk + J_k + Σ_l Re Z_kl, so ∂D_k/∂q_m = −Im Z_km for m ≠ k and ∂D_k/∂q_k = Σ_{l≠k} Im Z_kl. By Frobenius, D
-//! q̇ = 0 is integrable where D ∧ dD = 0. For three drives that 3-form is 2 Im[(H_11 C_23 − C_21 C_13) e^{i(q_3−q_2)} +
-//! (H_22 C_31 − C_32 C_21) e^{i(q_1−q_3)} + (H_33 C_12 − C_13 C_32) e^{i(q_2−q_1)}]: it vanishes in all poses only if
-//! its coefficients do, and if H is positive definite, only if every C_kl is zero.
+//! D_k = C_kk + J_k + Σ_{l≠k} Re Z_kl, so ∂D_k/∂q_m = −Im Z_km for m ≠ k and ∂D_k/∂q_k = Σ_{l≠k} Im Z_kl. By
+//! Frobenius, D q̇ = 0 is integrable where D ∧ dD = 0. For three drives that 3-form is 2 Im[(H_11 C_23 − C_21 C_13)
+//! e^{i(q_3−q_2)} + (H_22 C_31 − C_32 C_21) e^{i(q_1−q_3)} + (H_33 C_12 − C_13 C_32) e^{i(q_2−q_1)}]. It vanishes in
+//! all poses only if its coefficients do; if H is positive definite, these vanish only if every C_kl is zero.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -81,7 +81,7 @@ impl NullSpace {
     }
 }
 
-/// Returns the rates of zero momentum nearest to wanted ones w: w − D (D · w)/(D · D).
+/// Returns the rates of zero momentum nearest to the wanted rates w: w − D (D · w)/(D · D).
 pub fn projected(model: &Inertia, q: &DriveAngles, w: &PerDrive) -> PerDrive {
     let d = momentum_row(model, &q.units());
     w.plus(-share(&d, w), &d)
@@ -99,9 +99,9 @@ const NODE_INTERVALS: usize = 256;
 const STEPS_PER_INTERVAL: usize = 4;
 
 /// Integrates a motion of zero momentum from a pose, for any number of drives, by the classical fourth-order
-/// Runge–Kutta method. q′ is the wanted direction w, rad, projected onto the rates of zero momentum. On an invariant
-/// machine the motion is a straight line. Returns `None` unless pose and direction have the machine's drives and are
-/// finite.
+/// Runge–Kutta method. The derivative q′ is the wanted direction w, rad, projected onto the rates of zero momentum. On
+/// an invariant machine the motion is a straight line. Returns `None` unless pose and direction are finite and have
+/// one entry for each drive.
 pub fn motion(model: &Inertia, start: DriveAngles, w: &PerDrive) -> Option<PathTable> {
     let n = model.drives();
     if start.len() != n || w.len() != n || !start.iter().chain(w.iter()).all(|x| x.is_finite()) {
@@ -137,8 +137,8 @@ fn node(model: &Inertia, q: DriveAngles, w: &PerDrive) -> PathPoint {
 }
 
 /// Returns the rates that give the end effector the velocity v, m/s, at angular momentum h, kg m²/s, about B: [J; D] q̇
-/// = [v; h]. With more than three drives, or if no motion has angular momentum, these are the least rates. Returns
-/// `None` for fewer drives, or if the matrix has lost rank.
+/// = [v; h]. With more than three drives, or if no motion has angular momentum, these are the rates of minimum norm.
+/// Returns `None` for fewer than three drives with angular momentum, or if the matrix has lost rank.
 pub fn rates(model: &Inertia, q: &DriveAngles, v: Vector, h: f64) -> Option<PerDrive> {
     if model.drives() > 3 || turns_nothing(model) {
         return least(model, q, v, Vector::default(), h).map(|(rates, _)| rates);
@@ -183,8 +183,8 @@ pub fn turns_nothing(model: &Inertia) -> bool {
         && Inertia::pairs(n).all(|(k, l)| model.coupling(k, l).norm() <= BALANCE_TOLERANCE * whole)
 }
 
-/// Returns the least rates that give the end effector the velocity v, m/s, at angular momentum h, kg m²/s, and their
-/// exact derivative for v̇ = `vd`, m/s², and constant h.
+/// Returns the rates of minimum norm that give the end effector the velocity v, m/s, at angular momentum h, kg m²/s.
+/// Also returns their exact derivative for v̇ = `vd`, m/s², and constant h.
 pub(super) fn least(model: &Inertia, q: &DriveAngles, v: Vector, vd: Vector, h: f64) -> Option<(PerDrive, PerDrive)> {
     let e = q.units();
     if turns_nothing(model) {
@@ -194,8 +194,8 @@ pub(super) fn least(model: &Inertia, q: &DriveAngles, v: Vector, vd: Vector, h: 
     minimum_norm_with(&model.end_effector, &d, h, |qd| momentum_row_rate(model, &e, qd), &e, v, vd)
 }
 
-/// Returns [J; D/scale] of three drives and the scale, kg m, at which D is as long as the arm. Returns `None` for other
-/// numbers of drives, or if the matrix has lost rank.
+/// Returns [J; D/scale] of three drives, and the scale, kg m, that makes the norm of D/scale equal to the arm length.
+/// Returns `None` for other numbers of drives, or if the matrix has lost rank.
 pub(super) fn lines(model: &Inertia, e: &UnitVectors) -> Option<(Matrix3<f64>, f64)> {
     if model.drives() != 3 {
         return None;
@@ -234,12 +234,12 @@ pub fn twist(model: &Inertia, q: &DriveAngles) -> f64 {
 
 /// Returns whether the machine has a pose constant: a b(q) that is constant along every motion of zero momentum.
 ///
-/// One or two drives always have one. Three and more have one if H_jj C_kl = C_kj C_jl for any three of them. If every
-/// drive has some inertia of its own, this means an invariant mass matrix, constant D and b = Σ λ_k q_k.
+/// One or two drives always have one. Three and more have one if H_jj C_kl = C_kj C_jl for every three of them. If no
+/// H_jj is zero, this means an invariant mass matrix, constant D and b = Σ λ_k q_k.
 pub fn is_integrable(model: &Inertia) -> bool {
     let n = model.drives();
     let whole: f64 = (0..n).map(|k| model.diagonal(k)).sum();
-    // Inertias in D without couplings: rotors count in H, not in D.
+    // D without couplings, in place of H_jj: a rotor adds a different inertia to D than to H.
     let own = model.momenta();
     let holds = |j: usize, k: usize, l: usize| {
         let residual = own[j] * model.coupling(k, l) - model.coupling(k, j) * model.coupling(j, l);

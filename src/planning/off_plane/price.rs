@@ -33,7 +33,8 @@ use stillbase_settings::number::counted;
 /// Time law of b from rest to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PoseLaw {
-    /// Constant b̈ for half of T, its negative for the rest: the least peak of n_B, and the least time for a peak.
+    /// Constant b̈ for half of T, its negative for the rest: the least peak of n_B, and the least time for a given
+    /// peak.
     BangBang,
     /// 3 u² − 2 u³: the least ∫ n_B² dt.
     Cubic,
@@ -85,7 +86,7 @@ pub enum PriceError {
         /// Maximum |g_k|, kg m.
         residual: f64,
     },
-    /// Poses with another number of angles than the machine has drives.
+    /// The number of angles of a pose differs from the machine's number of drives.
     #[error("poses of {from} and {to} angles for a machine of {}: want {drives} each", counted(drives, "drive"))]
     Drives {
         /// Number of angles of the first pose.
@@ -179,8 +180,8 @@ impl Price {
     }
 
     /// Returns the final rotation of a free-floating base that starts at rest, whatever the path, law and duration: Δθ
-    /// = −D_1 Δb/(I_b + μ|ρ|² + Σ(C_kk + J_k) + ΣJ_rotor), rad. Here Δb is that of the angles between drives and base,
-    /// q_k − θ.
+    /// = −D_1 Δb/(I_b + μ|ρ|² + Σ(C_kk + J_k) + ΣJ_rotor), rad. Here b is formed from the angles between drives and
+    /// base, q_k − θ.
     ///
     /// # Errors
     /// If the machine's mass matrix is not constant, its centre of mass moves, or the base is invalid.
@@ -204,8 +205,9 @@ impl Price {
     }
 }
 
-/// Returns the b of two sets that are nearest to each other, rad, shifted by whole periods so that the first is as near
-/// as possible to `near`. If the sets overlap, both are the common b nearest to it. Returns `None` if a set is empty.
+/// Returns the two b, one of each set, that are nearest to each other, rad. Whole periods are added so that the first
+/// is as near as possible to `near`. If the sets overlap, both are the common b nearest to `near`. Returns `None` if a
+/// set is empty.
 pub fn nearest_planes(from: &BSet, to: &BSet, near: f64) -> Option<[f64; 2]> {
     let common = BSet::overlap(&[from.clone(), to.clone()]);
     if let Some(b) = common.nearest(near) {
@@ -226,21 +228,22 @@ pub fn nearest_planes(from: &BSet, to: &BSet, near: f64) -> Option<[f64; 2]> {
     best
 }
 
-/// Fractions of the way to the middle of an interval of b, tried in turn if rounding leaves its bound without a pose.
+/// Fractions of the way from a bound of an interval of b to its middle, tried in turn if rounding leaves the bound
+/// without a pose.
 pub const INWARD_SHARES: [f64; 4] = [0.0, 1e-12, 1e-9, 1e-6];
 
 /// Returns the straight joint line between two poses of any b; b then follows the time law. Limits of relative angles
-/// form a box, so that the line keeps them if its ends do.
+/// form a box, so the line keeps them if both poses do.
 pub fn joint_line([from, to]: &[PoseAngles; 2]) -> Path {
     Path::JointLine { from: from.q, to: to.q }
 }
 
-/// Returns a motion in which b is bang-bang over the whole of T, while the relative angles follow the quintic law: the
-/// least peak of n_B with relative angles that start and stop smoothly. Its parameter is u = t/T, so rates are q′/T and
-/// accelerations q″/T².
+/// Returns a motion in which b is bang-bang over the whole of T, while the relative angles follow the quintic law. It
+/// has the least peak of n_B, and its relative angles start and stop smoothly. Its parameter is u = t/T, so rates are
+/// q′/T and accelerations q″/T².
 ///
-/// b″ jumps at u = 0, ½ and 1. At ½ it is that of the first half; the second half begins at the next floating-point
-/// number after ½.
+/// b″ jumps at u = 0, ½ and 1. At ½ it has the value of the first half; the second half begins at the next
+/// floating-point number.
 pub fn bang_bang_in_b(space: &PoseSpace, [from, to]: &[PoseAngles; 2]) -> Option<PathTable> {
     let step = to.a.minus(&from.a);
     let delta_b = to.b - from.b;

@@ -3,13 +3,13 @@
 use super::critical::CriticalPose;
 use crate::reactionless::BSet;
 
-/// Critical values farther than this from a gap, as a fraction of the period of b, cannot pass it from one circle to
-/// the next.
+/// Critical values farther than this from a gap, as a fraction of the period of b, cannot pass it between
+/// neighbouring distances.
 const NEAR_GAP: f64 = 0.125;
 
 /// The circle of b at a distance from B, divided by the critical values into gaps that are feasible or not. Feasible
-/// sets begin and end at critical values only. At a nearby distance, the gap between the same two values is therefore
-/// feasible too, or not, unless a third value has passed both. In that case the neighbouring values have mostly
+/// sets begin and end at critical values only. At a nearby distance, the gap between the same two values therefore
+/// has the same feasibility, unless a third value has passed both. In that case the neighbouring values have mostly
 /// changed.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BCoverage {
@@ -62,8 +62,8 @@ impl BCoverage {
     }
 
     /// Finds the gap between the same two critical values as gap `i` of another distance. With `all`, the next values
-    /// on either side must agree as well, and none may have passed the gap. Values that pass each other keep their
-    /// cyclic order; so with fewer than three the index must agree too.
+    /// on either side must agree as well, and none may have passed the gap. Two values that pass each other keep
+    /// their cyclic order; with fewer than three values the index must therefore agree too.
     pub fn gap(&self, of: &Self, i: usize, all: bool) -> Option<usize> {
         let (n, around) = (self.ends.len(), of.around(i));
         let same = |j: &usize| {
@@ -76,8 +76,8 @@ impl BCoverage {
         (0..n).find(same)
     }
 
-    /// Whether no critical value has passed gap j on its way to gap i of another distance: the values near either gap
-    /// are the same and lie on the same side of it.
+    /// Returns whether no critical value passes the gap on its way from gap i of another distance to gap j. Then the
+    /// values near both gaps are the same and lie on the same sides.
     fn has_sides(&self, j: usize, of: &Self, i: usize) -> bool {
         let near = NEAR_GAP * self.period;
         let (here, there) = (self.middle(j), of.middle(i));
@@ -106,8 +106,8 @@ impl BCoverage {
         [self.ends[i].b, if i + 1 < n { self.ends[i + 1].b } else { self.ends[0].b + self.period }]
     }
 
-    /// Returns how far below and above gap i the next gaps lie that are known to be empty, rad: poses in gap i cannot
-    /// come from beyond them.
+    /// Returns the distances, rad, from gap i down and up to the nearest gaps known to be empty. Poses in gap i
+    /// cannot come from beyond those.
     pub fn free(&self, i: usize, empty: &[bool]) -> [f64; 2] {
         let n = self.ends.len();
         let [from, to] = self.edges(i);

@@ -84,8 +84,8 @@ impl BoxedStep<'_> {
         x.iter().zip(self.columns).map(|(x, c)| *c * *x).sum()
     }
 
-    /// Line search: returns where the dual is greatest along a direction, or 1 if near enough. The slope of the dual
-    /// decreases piecewise linearly.
+    /// Line search: returns the step factor at which the dual is greatest along a direction, or 1 if that is near
+    /// enough. The slope of the dual decreases piecewise linearly. Returns `None` if no maximum is found.
     fn along(&self, nu: Vector, way: Vector, slope: impl Fn(&PerDrive, Vector) -> f64) -> Option<f64> {
         let at = |t: f64| slope(&self.at(nu + t * way), nu + t * way);
         let first = at(0.0);
@@ -93,7 +93,7 @@ impl BoxedStep<'_> {
         if whole.abs() <= 1e-3 * first {
             return Some(1.0);
         }
-        let mut kinks = [f64::INFINITY; 2 * MAX_DRIVES];
+        let mut breakpoints = [f64::INFINITY; 2 * MAX_DRIVES];
         let mut count = 0;
         for i in 0..self.wish.len() {
             let speed = dot(self.columns[i], way) / self.weight[i];
@@ -101,23 +101,23 @@ impl BoxedStep<'_> {
             for end in self.range[i] {
                 let t = (end - own) / speed;
                 if t > 0.0 && t.is_finite() {
-                    kinks[count] = t;
+                    breakpoints[count] = t;
                     count += 1;
                 }
             }
         }
-        let kinks = &mut kinks[..count];
-        kinks.sort_unstable_by(f64::total_cmp);
+        let breakpoints = &mut breakpoints[..count];
+        breakpoints.sort_unstable_by(f64::total_cmp);
         let (mut from, mut before) = (0.0, first);
-        for t in kinks.iter().copied() {
+        for t in breakpoints.iter().copied() {
             let here = at(t);
             if here <= 0.0 {
                 return Some(from + (t - from) * before / (before - here));
             }
             (from, before) = (t, here);
         }
-        // Past the last kink the slope comes only from the regularisation and from components without bounds in this
-        // direction.
+        // Past the last breakpoint the slope comes only from the regularisation and from components without bounds in
+        // this direction.
         let beyond = from.max(1.0) * 2.0;
         let here = at(beyond);
         let falls = before - here;

@@ -4,13 +4,13 @@
 //! With p fixed, b is a function on the poses of p, and the poses at one b form connected components. As b rises, a
 //! component first ends, splits or merges at a critical pose, from which b can fall. A descent from that pose reaches
 //! the component without passing another critical pose. The same holds for falling b. So each component is found by
-//! climbing from a critical pose below it or descending from one above it. The exceptions are components along which b
-//! changes without end, as turns of the whole machine: they have no critical poses.
+//! climbing from a critical pose below it or descending from one above it. The exceptions are components along which
+//! b changes without end, such as turns of the whole machine: they have no critical poses.
 //!
-//! From a critical pose, b changes to first order along a joint that leaves its limit in the right sense. Otherwise it
-//! changes to second order, along the direction of largest curvature of b among those that keep p. From there on,
-//! Newton's iteration at prescribed values of b takes steps of least norm in a within the bounds of every a_i. If it
-//! does not converge, the step of b is reduced to a quarter.
+//! From a critical pose, b changes to first order if a joint that leaves its limit changes b in the wanted direction.
+//! Otherwise it changes to second order, along the direction of largest curvature of b among those that keep p. From
+//! there on, Newton's iteration at prescribed values of b takes steps of least norm in a within the bounds of every
+//! a_i. If it does not converge, the step of b is reduced to a quarter.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -23,15 +23,15 @@ use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, dot
 const MAX_NEWTON_ITERATIONS: usize = 30;
 const MAX_STEP_RAD: f64 = 0.7;
 const MIN_STEP_RAD: f64 = 1e-11;
-/// Residual below which a pose is on its point, and a looser one that is accepted at the end; as fractions of the
+/// Residual at which Newton's iteration stops, and a larger one that is accepted if it stalls; as fractions of the
 /// reach.
 const RESIDUAL_TOLERANCE: f64 = 1e-13;
 const STALLED_TOLERANCE: f64 = 1e-10;
-/// Values of b within this tolerance, rad, of a critical one may differ from it by rounding only. The critical pose
+/// Values of b within this tolerance, rad, of a critical value may differ from it only by rounding. The critical pose
 /// itself is then the solution, if its residual is below this fraction of the reach.
 const CRITICAL_B_TOLERANCE_RAD: f64 = 1e-9;
 const CRITICAL_RESIDUAL: f64 = 5e-10;
-/// Iterations that reduce the residual by less than half are stopped after this number.
+/// Newton's iteration stops after more than this number of iterations that reduce the residual by less than half.
 const MAX_SLOW_ITERATIONS: usize = 6;
 /// Limits on the work of one continuation in b.
 #[derive(Clone, Copy, Debug)]
@@ -44,13 +44,13 @@ pub(super) struct ContinuationLimits {
     max_rejected: usize,
 }
 
-/// While no pose has been found.
+/// Limits while no pose has been found.
 pub(super) const FULL_CONTINUATION: ContinuationLimits =
     ContinuationLimits { max_steps: 60, min_step_fraction: 1e-5, max_rejected: usize::MAX };
-/// For further poses.
+/// Limits for further poses.
 pub(super) const SHORT_CONTINUATION: ContinuationLimits =
     ContinuationLimits { max_steps: 8, min_step_fraction: 0.05, max_rejected: usize::MAX };
-/// Where most likely there is no pose.
+/// Limits where a pose is unlikely.
 pub(super) const MINIMAL_CONTINUATION: ContinuationLimits =
     ContinuationLimits { max_steps: 4, min_step_fraction: 0.2, max_rejected: 2 };
 /// Greatest first step along the direction of largest curvature, rad.
@@ -60,7 +60,7 @@ const FIRST_STEP_TRIES: usize = 4;
 /// Derivatives and curvatures of b below this fraction of the largest are treated as zero.
 const GAIN_TOLERANCE: f64 = 1e-9;
 
-/// A change of b from a critical pose: by `rise`, rad, down if negative.
+/// A change of b from a critical pose by `rise`, rad; negative if b falls.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Climb<'a> {
     pub from: &'a CriticalPose,
@@ -73,7 +73,7 @@ impl PoseSpace {
         std::array::from_fn(|i| self.joints.get(i).map_or([0.0; 2], |joint| joint.limits))
     }
 
-    /// Returns the end effector, m, and ∂p/∂a_i with b held, m.
+    /// Returns the end effector position, m, and ∂p/∂a_i at constant b, m.
     pub(crate) fn columns(&self, q: &DriveAngles) -> (Vector, [Vector; MAX_DRIVES]) {
         let i = Vector::new(0.0, 1.0);
         let mut arm = [Vector::default(); MAX_DRIVES];
@@ -106,7 +106,7 @@ impl PoseSpace {
         self.solved_by(p, b, from, windows, usize::MAX)
     }
 
-    /// Does the same with at most `max_rejected` rejected steps.
+    /// As [`solved`](Self::solved), with at most `max_rejected` rejected steps.
     fn solved_by(
         &self,
         p: Vector,
@@ -189,8 +189,8 @@ impl PoseSpace {
         starts
     }
 
-    /// Returns the changes of b from critical poses to the given b, rad, the smallest first. If b is a critical value
-    /// within rounding, that pose is among them.
+    /// Returns the changes of b from critical poses to the given b, rad, the smallest first. Critical poses whose b
+    /// equals the given one up to rounding are always included.
     pub(super) fn climbs<'a>(&self, starts: &'a [CriticalPose], b: f64) -> Vec<Climb<'a>> {
         let period = self.period();
         let mut climbs: Vec<Climb<'a>> = Vec::with_capacity(starts.len());
@@ -211,7 +211,8 @@ impl PoseSpace {
         climbs
     }
 
-    /// Follows a climb to a pose at p, m, on the x axis; a critical pose within rounding counts as one.
+    /// Follows a climb to a pose at p, m, on the x axis. It accepts the critical pose itself if that fits up to
+    /// rounding.
     pub(super) fn climbed(&self, p: Vector, climb: &Climb<'_>, effort: ContinuationLimits) -> Option<PerDrive> {
         let Climb { from, rise } = climb;
         self.climbed_strictly(p, climb, effort).or_else(|| {
@@ -223,7 +224,7 @@ impl PoseSpace {
         })
     }
 
-    /// Does the same without accepting the critical pose itself.
+    /// As [`climbed`](Self::climbed), without accepting the critical pose itself.
     pub(super) fn climbed_strictly(
         &self,
         p: Vector,
@@ -258,7 +259,7 @@ impl PoseSpace {
         None
     }
 
-    /// Returns how b can change from a critical pose in the direction of a sign.
+    /// Returns the ways in which b can change from a critical pose in the direction of a sign.
     fn leaving(&self, a: &PerDrive, b: f64, sign: f64) -> Leaving {
         let none = Leaving { gains: false, along: None };
         let n = self.joints.len();
@@ -267,7 +268,7 @@ impl PoseSpace {
         let limits = |i: usize| self.joints[i].limits;
         let is_free = |i: &usize| a[*i] > limits(*i)[0] && a[*i] < limits(*i)[1];
         let free: Vec<usize> = (0..n).filter(is_free).collect();
-        // μ is normal to all that the free joints can do to p.
+        // μ is normal to every velocity that the free joints can give p.
         let Some(most) = free.iter().copied().max_by(|i, j| columns[*i].norm_sqr().total_cmp(&columns[*j].norm_sqr()))
         else {
             return none;
@@ -312,13 +313,13 @@ impl PoseSpace {
 
 /// The ways in which b can change from a critical pose.
 struct Leaving {
-    /// Whether a joint at its limit changes b in the right sense by leaving it.
+    /// Whether a joint at its limit changes b in the wanted direction by leaving the limit.
     gains: bool,
     /// The direction of largest curvature of b that keeps p, and that curvature.
     along: Option<(PerDrive, f64)>,
 }
 
-/// Returns the bounds relative to a pose, limited to `longest` either way, rad.
+/// Returns the bounds of a step from a pose, at most `longest` either way, rad.
 pub(super) fn within(windows: &[[f64; 2]; MAX_DRIVES], a: &PerDrive, longest: f64) -> [[f64; 2]; MAX_DRIVES] {
     std::array::from_fn(|i| {
         let [low, high] = windows[i];

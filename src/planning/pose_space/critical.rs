@@ -1,5 +1,5 @@
-//! Critical values of b of a point, where its feasible set of b can end: b is stationary with respect to the joints
-//! that are not at a limit.
+//! Critical values of b for a point, the only ones at which its feasible set of b can end. There b is stationary with
+//! respect to the joints that are not at a limit.
 
 use std::f64::consts::{PI, TAU};
 
@@ -25,7 +25,7 @@ pub(super) struct CriticalPose {
     pub a: PerDrive,
     /// Whether `up` and `down` are certain; where several values of b merge they may not be.
     pub sure: bool,
-    /// Number of compounds.
+    /// Number of compounds: groups of drives that turn as one because their relative angles are at limits.
     count: usize,
 }
 
@@ -51,8 +51,8 @@ impl CriticalPose {
     }
 
     /// Merges another critical pose at the same b. Where a curve of critical poses meets a limit, both may be the same
-    /// pose. Then the one with more compounds decides whether b can rise or fall; if each has two, b can do so only if
-    /// both say so. In all other cases b can do so if it can from either.
+    /// pose. Then the one with more compounds decides whether b can rise or fall. If each has two, b can rise or fall
+    /// only if it can from both. In all other cases it suffices that b can from either.
     pub fn merge(&mut self, other: &Self) {
         let near = |apart: f64| self.a.iter().zip(other.a.iter()).all(|(x, y)| (x - y).abs() < apart);
         let one = near(SAME_POSE_RAD);
@@ -64,7 +64,8 @@ impl CriticalPose {
             }
             return;
         }
-        // Independent of the order of merging, so that it is the same at other distances.
+        // The lower curve wins. The result is then independent of the order of merging, and the same at other
+        // distances.
         if other.spot.curve < self.spot.curve {
             (self.spot, self.a, self.count) = (other.spot, other.a, other.count);
         }
@@ -83,7 +84,7 @@ impl CriticalPose {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct CriticalPoint {
     pub curve: CriticalCurve,
-    /// With two compounds the angle γ between their arms, 0 to π; with more the t of ν = ν_max sin t.
+    /// With two compounds, the angle γ between their arms, 0 to π; with more, the t of ν = ν_max sin t.
     pub t: f64,
 }
 
@@ -187,8 +188,8 @@ impl PoseSpace {
         Some((distance, turn(c.of[0]) * self.lambda_sum + self.b(&self.unturned(&a))))
     }
 
-    /// Two compounds: the point leaves no freedom, and each pose has a single b. Returns false if a pose is in a corner
-    /// of the limits.
+    /// Visits the critical poses of two compounds: the point leaves no freedom, and each pose has a single b. Returns
+    /// false if a pose is in a corner of the limits.
     fn triangle(
         &self,
         c: &Pattern,
@@ -234,8 +235,8 @@ impl PoseSpace {
     }
 
     /// Whether the free joint of two compounds reaches a limit at this distance from B, m, within the overshoot that
-    /// the tolerance of the limits allows. All curves that meet in a corner give the same answer. Two drives have one
-    /// curve only.
+    /// the tolerance of the limits allows. All curves that meet in a corner give the same answer. Two drives have
+    /// only one curve, so no corner.
     fn in_corner(&self, c: &Pattern, a: &PerDrive, r: f64) -> bool {
         let Some(i) = (0..self.joints.len()).find(|i| c.at[*i] == LimitState::Free && self.joints.len() > 1) else {
             return false;
@@ -250,8 +251,8 @@ impl PoseSpace {
         })
     }
 
-    /// Three compounds and more: one equation in ν for each choice of signs. Returns false if a solution lies at ν = 0
-    /// within rounding, with all arms on one line.
+    /// Visits the critical poses of three compounds and more: one equation in ν for each choice of signs. Returns
+    /// false if a solution lies at ν = 0 within rounding, with all arms on one line.
     fn stationary(
         &self,
         c: &Pattern,
@@ -321,8 +322,8 @@ impl PoseSpace {
         let (mu, [mut up, mut down]) = which();
         let mut undecided = false;
         if let Some(mu) = mu.filter(|_| c.held) {
-            // The derivative of b beyond what keeps the point: for each drive, and for each joint the sum over all
-            // drives that it turns.
+            // The derivative of the Lagrangian b − μ·p by each drive angle. For a joint it is the sum over all drives
+            // that the joint turns.
             let mut gain = PerDrive::from_fn(self.drives(), |k| {
                 let q = turn(c.of[k]) + c.delta[k];
                 self.lambda[k] - self.arms[k] * dot(mu, Vector::new(0.0, 1.0) * unit(q))
@@ -347,7 +348,8 @@ impl PoseSpace {
                 }
             }
         }
-        // The first term is that of drive 1; the windings change b.
+        // `first` is b of the whole machine turned with drive 1; the relative angles, and so their windings, add the
+        // rest of b.
         let first = turn(c.of[0]) * self.lambda_sum;
         self.each_winding(0, c, a, name, &mut |a, name| {
             let b = first + self.b(&self.unturned(a));
@@ -378,8 +380,8 @@ impl PoseSpace {
     }
 }
 
-/// Returns whether b can rise, and whether it can fall, from a stationary pose to second order while the point is kept:
-/// the signs of the form −Σ C x²/ν on Σ C x = Σ Λ x = 0, with C = |L| cos α.
+/// Returns whether b can rise, and whether it can fall, from a stationary pose to second order while the point is
+/// kept. These are the signs of the form −Σ C x²/ν on Σ C x = Σ Λ x = 0, with C = |L| cos α.
 fn ways(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES]) -> [bool; 2] {
     if n == 3 {
         let x = [
@@ -393,8 +395,8 @@ fn ways(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES]) ->
     signature(n, nu, c, lambda).unwrap_or_else(|| by_basis(n, nu, c, lambda))
 }
 
-/// Returns the same by Haynsworth's inertia theorem. The signs on the subspace are those of the form plus those of the
-/// Schur complement of the two conditions, less two of each. `None` if a pivot is zero within rounding.
+/// As [`ways`], by Haynsworth's inertia theorem. Positive and negative signs are counted in the form and in the Schur
+/// complement of the two conditions; the subspace has two of each less. `None` if a pivot is zero within rounding.
 fn signature(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES]) -> Option<[bool; 2]> {
     let size = c[..n].iter().fold(0.0_f64, |most, c| most.max(c.abs()));
     let (mut positive, mut negative) = (0, 0);
@@ -427,9 +429,9 @@ fn signature(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES
     Some(if nu > 0.0 { ways } else { [ways[1], ways[0]] })
 }
 
-/// Returns the same from a basis of the null space of the two conditions.
+/// As [`ways`], from a basis of the null space of the two conditions.
 fn by_basis(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES]) -> [bool; 2] {
-    // The basis by orthogonalisation; its first two rows span the conditions.
+    // Orthogonalisation: the first two rows span the conditions, the others their null space.
     let mut rows: Vec<Vec<f64>> = Vec::with_capacity(n);
     let candidates = [c[..n].to_vec(), lambda[..n].to_vec()].into_iter();
     let axes = (0..n).map(|i| (0..n).map(|j| if i == j { 1.0 } else { 0.0 }).collect::<Vec<f64>>());
@@ -467,9 +469,9 @@ fn roots(c: &Pattern, signs: &Signs, square: f64, mut found: impl FnMut(f64, usi
     };
     let alive = |cell: usize| signs.cells >> cell & 1 == 1;
     let value = |i: usize| signs.values[i] - square;
-    // Between turning points |p|² is monotone. A turning point in a cell beyond the limits is not known exactly: the
-    // monotone interval before it ends at the cell's start, the next begins at its end. Ends: the cell, t and the
-    // value.
+    // Between turning points |p|² is monotone. A turning point in a cell beyond the limits is not known exactly. The
+    // monotone interval before it ends at the cell's start, the next begins at the cell's end. Each bound of an
+    // interval has a cell, t and the value.
     let end = |i: usize| (place(i), value(i));
     let (mut first, mut from) = (0, end(0));
     for turns in 0..=signs.turns.len() {
@@ -503,7 +505,7 @@ fn roots(c: &Pattern, signs: &Signs, square: f64, mut found: impl FnMut(f64, usi
     }
 }
 
-/// Finds a zero of a function with a known slope between two places of opposite sign: Newton's iteration, safeguarded
+/// Finds a zero of a function with a known slope between two places of opposite sign. Newton's iteration is replaced
 /// by bisection where it leaves the bracket or converges slowly.
 fn bracketed(f: &impl Fn(f64) -> (f64, f64), [mut a, mut b]: [f64; 2], [fa, fb]: [f64; 2]) -> f64 {
     let mut x = a + (b - a) * (fa / (fa - fb));

@@ -1,11 +1,11 @@
 //! Inverse kinematics of a dragged end effector while b is held, for any number of redundant freedoms.
 //!
 //! # Method
-//! Each step moves the end effector towards the point, keeps b, and minimises the kinetic energy by the λ of the
-//! drives: Δq = Λ⁻¹Cᵀ(CΛ⁻¹Cᵀ + μ)⁻¹ r. The rows of C are ∂p/∂q, λ, and one for each relative angle at a limit that the
-//! step would violate. The damping μ (Levenberg, Marquardt) acts on the rows of the point only, and grows while steps
-//! are rejected. If the point is out of reach, Newton's iteration minimises |p − Σ c_k e^{iq_k}|². Its second
-//! derivatives are CᵀC, plus (p − Σ c e)·c_k e_k on the diagonal. It converges to a nearest pose.
+//! Each step moves the end effector towards the point, keeps b, and minimises the kinetic energy with the λ of the
+//! drives as weights: Δq = Λ⁻¹Cᵀ(CΛ⁻¹Cᵀ + μ)⁻¹ r. The rows of C are ∂p/∂q, λ, and one for each relative angle at a
+//! limit that the step would violate. The damping μ (Levenberg, Marquardt) acts on the rows of the point only, and
+//! grows while steps are rejected. If the point is out of reach, Newton's iteration minimises |p − Σ c_k e^{iq_k}|².
+//! Its second derivatives are CᵀC, plus (p − Σ c e)·c_k e_k on the diagonal. It converges to a locally nearest pose.
 
 use super::space::{GuidanceMode, PoseSpace};
 use nalgebra::{SMatrix, SVector};
@@ -40,15 +40,16 @@ type Rows = SMatrix<f64, ROWS, MAX_DRIVES>;
 const KKT: usize = 2 * MAX_DRIVES;
 
 impl PoseSpace {
-    /// Returns relative angles at b with the end effector on p, m, or as near as possible, starting from others; and
-    /// its distance from p, m.
+    /// Returns relative angles at b that put the end effector on p, m, or as near as possible, by iteration from
+    /// `from`. Also returns its distance from p, m.
     pub fn drag_to(&self, p: Vector, b: f64, from: &[f64]) -> (PerDrive, f64) {
         let gone = self.approach(p, b, from, None);
         if gone.1 <= RESIDUAL_TOLERANCE * self.farthest() { gone } else { self.minimise_distance(p, b, gone) }
     }
 
-    /// Does the same for a space [guided](Self::with_guidance) to [keep](GuidanceMode::Keep) the angle of a drive, or
-    /// to approach the [middle](GuidanceMode::Middle) of all ranges; `None` for other spaces.
+    /// As [`drag_to`](Self::drag_to), for a space [guided](Self::with_guidance) to [keep](GuidanceMode::Keep) the
+    /// angle of a drive, or to approach the [middle](GuidanceMode::Middle) of all ranges. Returns `None` for other
+    /// spaces.
     pub fn drag_to_guided(&self, p: Vector, b: f64, from: &[f64]) -> Option<(PerDrive, f64)> {
         match self.lead {
             GuidanceMode::Keep(kept) => Some(self.approach(p, b, from, Some(kept))),
@@ -98,7 +99,8 @@ impl PoseSpace {
         (a, distance)
     }
 
-    /// Does the same for a point that was out of reach at a nearby b, starting from the pose there.
+    /// As [`drag_to`](Self::drag_to), for a point that was out of reach at a nearby b, by iteration from the pose at
+    /// that b.
     pub fn drag_to_from_nearby(&self, p: Vector, b: f64, from: &[f64]) -> (PerDrive, f64) {
         let a = self.clamped(from);
         let distance = (self.end_effector(&self.lift(&a, b)) - p).norm();
@@ -110,7 +112,7 @@ impl PoseSpace {
         if gone.1 < settled.1 { gone } else { settled }
     }
 
-    /// Returns the local minimum of the distance from p, and that distance, m.
+    /// Returns the pose at a local minimum of the distance from p, and that distance, m.
     fn minimise_distance(&self, p: Vector, b: f64, (mut a, mut distance): (PerDrive, f64)) -> (PerDrive, f64) {
         let mut q = self.lift(&a, b);
         let mut mu = INITIAL_DAMPING;
@@ -207,7 +209,7 @@ impl PoseSpace {
         if let Some(kept) = kept {
             c[(KEPT_ROW, kept)] = 1.0;
         }
-        // A drive without inertia has no weight; a small one keeps the step finite.
+        // A drive without inertia has no weight; a small weight keeps the step finite.
         let cost = |k: usize| self.lambda[k].abs().max(1e-6);
         let light = match &self.lead {
             GuidanceMode::Weighed(inverse) => {

@@ -15,7 +15,7 @@ pub(super) const TITLES: [&str; 8] =
 /// Maximum number of ticks on the longest axis.
 const MAX_TICKS: f64 = 10.0;
 
-/// Returns the axes of three drives over their bounds in the scene, with the current values; `origin` is q of all
+/// Returns the axes of three drives over their bounds in the scene, with the current values. `origin` is q of all
 /// drives at the origin of the scene, rad.
 pub(super) fn axes(
     palette: &Palette,

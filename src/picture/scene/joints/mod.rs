@@ -1,5 +1,5 @@
-//! [`JointSpace`]: joint space of any machine that has a b. Its axes are drive angles, and constant b is a surface in it: a
-//! plane, or a line with two axes.
+//! [`JointSpace`]: joint space of any machine that has a b. Its axes are drive angles. A surface of constant b is a
+//! plane, or with two axes a line.
 //!
 //! | subject | file |
 //! |---|---|
@@ -42,8 +42,8 @@ impl JointSpace {
         Self::showing(run, None)
     }
 
-    /// Prepares a whole run whose b lie in an interval, rad. It shows a constant interval that contains it; coordinates
-    /// of the scene are q itself.
+    /// Prepares a whole run whose b lie in the interval `b`, rad. The shown interval is constant and contains `b`; the
+    /// coordinates of the scene are q itself.
     pub fn over(run: &Run, b: [f64; 2]) -> Option<Self> {
         Self::showing(run, Some(b))
     }
@@ -104,7 +104,7 @@ impl JointSpace {
         }
     }
 
-    /// Converts a point of the scene to q, rad; drives without an axis have their angles in the frame.
+    /// Converts a point of the scene to q, rad; drives without an axis have the angles given by the frame.
     pub fn angles(&self, point: [f64; 3], frame: &Frame) -> Vec<f64> {
         match &self.0 {
             Kind::Prism(prism) => prism.angles(point, frame.b_reference).to_vec(),
@@ -113,7 +113,7 @@ impl JointSpace {
     }
 
     /// Returns the ends or corners, in order, of the surface of constant b, rad, within the joint limits. Drives
-    /// without an axis have their angles in the frame.
+    /// without an axis have the angles given by the frame.
     pub fn surface(&self, b: f64, frame: &Frame) -> Vec<[f64; 3]> {
         match &self.0 {
             Kind::Prism(prism) => prism.surface(b, frame.b_reference).to_vec(),

@@ -275,7 +275,7 @@ impl Prism {
     fn plane(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, pose: Transform, hot: bool) {
         let b = frame.b_reference;
         let polygon = self.polygon(b, b);
-        // Outside a corner that is not near the pose.
+        // The label is outside a corner that is not near the pose.
         let taken = [0, 1].iter().all(|i| (frame.a[*i] - self.corners[2][*i]).abs() < 0.8);
         let (corner, other) = if taken { (polygon[0], polygon[2]) } else { (polygon[2], polygon[0]) };
         let at = [0, 1, 2].map(|k| corner[k] + 0.1 * (corner[k] - other[k]));
@@ -291,7 +291,7 @@ impl Prism {
         for (i, ends) in polygon.windows(2).enumerate() {
             // Sides run alternately along a_1 and a_2; the other angle is at a limit.
             let fixed = 1 - i % 2;
-            // Slightly outside of the side.
+            // The label is slightly outside the side.
             let at =
                 [0, 1, 2].map(|k| 0.5 * (1.13 * (ends[0][k] + ends[1][k]) - 0.13 * (polygon[0][k] + polygon[2][k])));
             let text = format!("{} = {}°", ["a₁", "a₂"][fixed], degrees(self.corners[i][fixed]));

@@ -4,7 +4,7 @@ use crate::scene::{ItemChanges, axes};
 
 /// Minimum length of the interval, rad.
 const MIN_LENGTH_RAD: f64 = 3.0;
-/// Minimum distance of the present b from the ends of the interval, rad.
+/// Minimum distance of the present b from the bounds of the interval, rad.
 const MARGIN_RAD: f64 = 0.4;
 /// Spacing of neighbouring surfaces, rad; they are at multiples of this.
 const SPACING_RAD: f64 = 0.5;
@@ -49,7 +49,7 @@ impl ShownRange {
         (0..MAX_SURFACES).map(move |i| (first + f64::from(i)) * SPACING_RAD).take_while(move |of| *of <= high)
     }
 
-    /// Returns which parts may change of the items around the present surface.
+    /// Returns the parts of the items around the present surface that may change.
     pub fn changes(&self) -> ItemChanges {
         if self.is_fixed() { ItemChanges::Nothing } else { ItemChanges::Shape }
     }

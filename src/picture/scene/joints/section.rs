@@ -1,8 +1,9 @@
-//! [`JointSection`]: joint space of a machine without planes in closed form. With two drives it is a plane; b = const
-//! is a line. With more it is three-dimensional, a section at the present angles of drives that have no axis. In it,
-//! b = const is a plane.
+//! [`JointSection`]: joint space of a machine without closed-form [planes](PoseSpace::planes). With two drives it is a
+//! plane, in which b = const is a line. With more it is three-dimensional: a section at the present angles of the
+//! drives without an axis. In it, b = const is a plane.
 //!
-//! The unit of the scene is the radian, the chosen drives are along x, y and z, and the origin moves with b.
+//! The unit of the scene is the radian, and the chosen drives are along x, y and z. The origin moves with b, unless
+//! the shown interval of b is constant.
 
 use std::sync::Arc;
 
@@ -158,7 +159,7 @@ impl JointSection {
         }
         let bounds = self.bounds;
         let far = bounds.iter().map(|[from, to]| to - from).sum::<f64>();
-        // Foot of the perpendicular from the origin, then a segment or square that contains the whole box.
+        // From the foot of the perpendicular from the origin, a segment or square that contains the whole box.
         let off = (b - self.space.b(&self.angles([0.0; 3], frame))) / size;
         let foot = normal.map(|x| off * x);
         let mut part: Vec<[f64; 3]> = if self.is_flat() {

@@ -1,5 +1,5 @@
-//! The base (a plate that floats or is mounted on springs), its reaction wheel and the payload. If the base moves, base
-//! and machine are also outlined as if it had not moved.
+//! The base (a plate that floats or is mounted on springs), its reaction wheel and the payload. If the base moves,
+//! dashed outlines show base and machine as if it had not moved.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -130,7 +130,7 @@ impl BaseStage {
         let on = |angle: f64, share: f64| point(unit(angle) * (share * radius), 0.0);
         let rim: Vec<_> = (0..=72).map(|i| on(TAU * f64::from(i) / 72.0, 1.0)).collect();
         let spokes = (0..3).map(|i| TAU * f64::from(i) / 3.0).map(|angle| vec![on(angle, 0.72), on(angle, 1.0)]);
-        // The colour shows whether the wheel is saturated.
+        // The colour changes when the wheel saturates, so more than the pose may change.
         let line = |name: &'static str, strips: Vec<_>, width| Polyline {
             world_from_item: pose,
             ..Polyline::new(name, strips, width, colour).on_top()
@@ -202,7 +202,8 @@ impl BaseStage {
         scene.labels.push(Label::new("push/size", point(to, z), [aside, 0.0], words, palette.amber, 12.5, anchor));
     }
 
-    /// Draws base and machine as if the base had not moved, if it has moved visibly, and writes its motion.
+    /// Writes the motion of a base that can move. If it has moved visibly, also draws base and machine as if it had
+    /// not. `times` is the factor of exaggeration.
     pub fn unmoved(
         &self,
         scene: &mut Scene,
@@ -285,7 +286,7 @@ fn spring(from: Vector, to: Vector, half: f64, z: f64) -> Vec<[f32; 3]> {
             i if i % 2 == 0 => 1.0,
             _ => -1.0,
         };
-        // Straight at both ends.
+        // The line is straight at both ends.
         let share = if i == 0 { 0.0 } else { 0.12 + 0.76 * f64::from(i) / f64::from(SEGMENTS) };
         point(from + way * share + across * side, z)
     };

@@ -68,10 +68,10 @@ impl PlannedPath {
                 scene.labels.push(Label::new(own, at, [-12.0, down], text, colour, size, Anchor::Right));
             };
             words("plan/names", name, 0.0, ink, 13.0);
-            let mut way_out = |text: &str| words("plan/unserved", text, 15.0, palette.reaction, 11.5);
+            let mut remedy = |text: &str| words("plan/unserved", text, 15.0, palette.reaction, 11.5);
             match unserved {
-                Some((_, Some(b))) => way_out(&format!("b = {b} rad would reach it")),
-                Some((_, None)) => way_out("no b reaches it"),
+                Some((_, Some(b))) => remedy(&format!("b = {b} rad would reach it")),
+                Some((_, None)) => remedy("no b reaches it"),
                 None => {}
             }
         }

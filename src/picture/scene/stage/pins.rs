@@ -29,9 +29,9 @@ impl Pins {
         Self(pins.into_iter().map(|pin| Pin { item: named(&pin.name), name: pin.name, at: pin.at }).collect())
     }
 
-    /// Draws the force of each pin, from its first link on its second. The largest force has the colour of reactions
-    /// and a label. The scale depends on the largest force of the instant, because near a change point forces are
-    /// unbounded.
+    /// Draws the force at each pin that its first link exerts on its second. The largest force has the colour of
+    /// reactions and a label. The scale depends on the largest force of the instant, because near a change point
+    /// forces are unbounded.
     pub fn draw(&self, scene: &mut Scene, linkage: &LinkageModel, palette: &Palette, shown: &DrawnFrame<'_>) {
         let Self(pins) = self;
         if pins.is_empty() {
@@ -63,7 +63,7 @@ impl Pins {
             0 => format!("pins: {:.3} m = {} N", 0.25 * reach, round_number(full)),
             n => format!("pins: {n} undefined at a change point"),
         };
-        // Below the labels of the reaction.
+        // The label is below those of the reaction.
         let at = point(Vector::new(0.2 * reach, -0.11 * reach), z);
         scene.labels.push(Label::new("pin_forces/scale", at, [0.0, 90.0], text, palette.dim, 11.5, Anchor::Left));
     }

@@ -41,7 +41,7 @@ impl BaseRing {
         shown.base.at + unit(self.turn(shown)) * self.radius
     }
 
-    /// Returns the b of a position of the knob, rad; of all full turns, the b nearest to `near`.
+    /// Returns the b of a position of the knob, rad; of all b that differ by full turns, the nearest to `near`.
     pub fn b(&self, at: Vector, near: f64, shown: &DrawnFrame<'_>) -> f64 {
         closest_turn(shown.in_base(at).arg(), near / self.lambda_sum) * self.lambda_sum
     }

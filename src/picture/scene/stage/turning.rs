@@ -1,5 +1,5 @@
-//! Rotation of a link by the pointer: its drive follows the pointer about the root of the link, and the other drives
-//! move such that b is constant.
+//! Rotation of a link by the pointer. Its drive follows the pointer about the root of the link, while the other drives
+//! keep b constant.
 
 use std::f64::consts::PI;
 
@@ -79,7 +79,7 @@ pub fn turned(
 ) -> Option<[f64; 2]> {
     let at = place(bar, shown, pointer)?;
     let pose = |angle: f64| map.with_drive_at(bar.drive, angle, b, grip.from);
-    let stops = |angle: f64| match grip.snaps {
+    let snapped = |angle: f64| match grip.snaps {
         true => pose((angle / ANGLE_SNAP).round() * ANGLE_SNAP),
         false => pose(angle),
     };
@@ -96,14 +96,14 @@ pub fn turned(
         let next = (now + step).clamp(low, high);
         let miss = residual(next);
         if miss * first <= 0.0 && miss.abs() < 1.0 {
-            return Some(stops(bisected(&residual, now, next)));
+            return Some(snapped(bisected(&residual, now, next)));
         }
         if next == now {
             break;
         }
         now = next;
     }
-    Some(stops(now))
+    Some(snapped(now))
 }
 
 /// Finds a change of sign of a function between two points by bisection.

@@ -66,8 +66,8 @@ struct Sheets {
     dexterity: [OnceLock<[f64; 2]>; 3],
 }
 
-/// Returns the name of a workspace or curve: "reactionless" or "nearly reactionless".
-fn held(noun: &str, is_reactionless: bool) -> String {
+/// Returns the name of a workspace or curve: `noun` with "reactionless" or "nearly reactionless" before it.
+fn title(noun: &str, is_reactionless: bool) -> String {
     format!("{}reactionless {noun}", if is_reactionless { "" } else { "nearly " })
 }
 
@@ -117,7 +117,7 @@ impl Workspace {
         };
         Some(Self {
             boundary: shape.iter().map(closed).collect(),
-            words: [held("workspace", space.is_reactionless()), format!("{:.3} m²", boundary.area())],
+            words: [title("workspace", space.is_reactionless()), format!("{:.3} m²", boundary.area())],
             middle: roomiest_of_planes(planes, &shape),
             ends: Vec::new(),
             inside: Inside::Sheets(Sheets {
@@ -139,7 +139,7 @@ impl Workspace {
         let outline = space.outline_within(0.0, CHORD_TOLERANCE, goes_on)?;
         let curve = vectors(&outline.curve);
         let (lines, words, middle) = if curve.len() > 1 {
-            let words = [held("curve", space.is_reactionless()), format!("{:.3} m", outline.length)];
+            let words = [title("curve", space.is_reactionless()), format!("{:.3} m", outline.length)];
             (vec![flat(&curve)], words, curve[curve.len() / 2])
         } else {
             let closed = |line: &Vec<[f64; 2]>| {
@@ -147,7 +147,7 @@ impl Workspace {
                 points.extend(points.first().copied());
                 points
             };
-            let words = [held("workspace", space.is_reactionless()), format!("{:.3} m²", outline.area)];
+            let words = [title("workspace", space.is_reactionless()), format!("{:.3} m²", outline.area)];
             let middle = roomiest(&outline.loops, outline.extent, 0.35 * space.farthest());
             (outline.loops.iter().map(closed).collect(), words, middle)
         };
@@ -285,7 +285,7 @@ impl Workspace {
     ) {
         let (turn, z) = (self.turn(shown.frame.b_reference, shown.base), linkage.floor());
         let Some(sheets) = self.sheets() else {
-            // Below all lines.
+            // The fill is below all lines.
             let below = posed(shown.base.at, unit(turn), z - FILL_DEPTH * linkage.reach());
             scene.solids.extend(fill.map(|mesh| Solid {
                 name: "workspace".into(),

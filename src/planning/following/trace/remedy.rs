@@ -7,7 +7,7 @@ use crate::curves::curve::Curve;
 use crate::reactionless::{BSet, Decimal, PlaneMap};
 use stillbase_mechanics::planar::unit;
 
-/// Number of intervals of the curve that is drawn.
+/// Number of intervals of [`Blocked::curve`], which is drawn.
 const DRAWN_INTERVALS: i32 = 160;
 
 pub(super) fn blocked(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, s: f64, stop: SheetEnd) -> Blocked {
@@ -33,8 +33,8 @@ pub(super) fn blocked(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, s: f
     }
 }
 
-/// Finds the b nearest to a given one at which curves can be followed, of those that reach each point, rad. The second
-/// value is this b rounded so that the curves can still be followed.
+/// Finds the b, rad, nearest to a given one at which curves can be followed. It is in the set `common`, at which each
+/// point can be reached. The second value is this b rounded so that the curves can still be followed.
 fn nearest_b(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, common: &BSet) -> Option<(f64, Option<Decimal>)> {
     const TRIES: usize = 24;
     let can = |b: f64| is_feasible(map, curves, b, rule);
@@ -50,7 +50,7 @@ fn nearest_b(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, common: &BSet
     let found = tries.iter().position(|x| can(*x))?;
     let first = tries[found];
     let mut good = first;
-    // Bisect between it and the nearest infeasible one on the same side.
+    // Bisect between this b and the nearest infeasible one on the same side of the given b.
     let beside = tries[..found].iter().rev().copied().find(|x| (x - b) * (good - b) >= 0.0);
     if let Some(mut bad) = beside {
         for _ in 0..16 {

@@ -11,9 +11,9 @@ use stillbase_mechanics::planar::Vector;
 pub enum SheetEnd {
     /// A relative angle at its limit.
     Limit {
-        /// Which angle: 0 for a_1, 1 for a_2.
+        /// Index of the angle: 0 for a_1, 1 for a_2.
         angle: usize,
-        /// Whether at its upper limit, else at its lower.
+        /// Whether it is at its upper limit, else at its lower.
         upper: bool,
     },
     /// det = 0: two poses meet and vanish.
@@ -34,12 +34,12 @@ pub struct Blocked {
     /// b, rad.
     #[serde(skip)]
     pub b: f64,
-    /// Where it stops on the whole curve, 0 to 1 by length.
+    /// Place on the whole curve at which it stops, 0 to 1 by length.
     pub s: f64,
     /// The first point that cannot be passed, m.
     #[serde(rename = "point")]
     pub at: Vector,
-    /// What stops it there.
+    /// Reason why it stops there.
     #[serde(rename = "reason")]
     pub stop: SheetEnd,
     /// Whether no pose of this plane reaches the curve just beyond, so that it leaves the workspace, not only the
@@ -48,7 +48,7 @@ pub struct Blocked {
     /// The pose constant nearest to b at which the whole curve can be followed, rad.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nearest_b: Option<f64>,
-    /// `nearest_b` as it is shown: rounded so that the curve can still be followed.
+    /// `nearest_b` rounded for display, so that the curve can still be followed.
     #[serde(skip)]
     pub displayed_b: Option<Decimal>,
     /// Whether one b reaches every point of the curve, even if the curve cannot be followed at it.
@@ -78,7 +78,7 @@ impl std::fmt::Display for SheetEnd {
     }
 }
 
-/// In words.
+/// Serialised as its description in words.
 impl Serialize for SheetEnd {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)

@@ -11,8 +11,8 @@ use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
 /// Minimum step of s; if even this fails, the curve cannot be followed further.
 const MIN_STEP: f64 = 1e-11;
 
-/// Maximum distance of a pose from its tangent prediction, rad, plus a quarter of the step; beyond it the step is
-/// halved.
+/// Constant part of the maximum distance of a pose from its tangent prediction, rad; a quarter of the change of pose
+/// is added. Beyond the sum the step is halved.
 const MAX_PREDICTION_ERROR_RAD: f64 = 0.02;
 
 /// Tolerance of the quintics between nodes, rad: above it an interval is halved.
@@ -99,7 +99,7 @@ impl PlaneTrack<'_> {
         let joints: Vec<f64> = self.curve.joints().collect();
         let mut ahead: Vec<f64> = Vec::with_capacity(64);
         let pieces = joints.len() - 1;
-        // Curves of very many pieces, as those through samples, have short ones.
+        // Curves with very many pieces, such as those through samples, have short pieces.
         let spaces = if pieces > MANY_PIECES { 1 } else { INITIAL_INTERVALS };
         for ends in joints.windows(2) {
             let run = ends[1] - ends[0];
@@ -161,7 +161,7 @@ impl PlaneTrack<'_> {
             if past(bad) <= LIMIT_SLACK {
                 continue;
             }
-            // A long interval has an inaccurate quintic: it counts only if the pose there is infeasible.
+            // The quintic of a long interval is inaccurate: its excess counts only if the pose there is infeasible.
             if self.map.follow(self.curve.at(s + (t - s) * bad).p, self.b, x.a).is_some() {
                 continue;
             }
@@ -195,7 +195,8 @@ struct Jet {
     second: [f64; 2],
 }
 
-/// Evaluates the quintic through value and two derivatives at both ends of an interval h, at its fraction u.
+/// Evaluates, at the fraction u of an interval of length h, the quintic through value and two derivatives at both
+/// ends.
 fn hermite(from: [f64; 3], to: [f64; 3], h: f64, u: f64) -> f64 {
     let (c1, c2) = (from[1] * h, 0.5 * from[2] * h * h);
     let (v, v1, v2) = (to[0] - from[0] - c1 - c2, to[1] * h - c1 - 2.0 * c2, to[2] * h * h - 2.0 * c2);

@@ -1,4 +1,4 @@
-//! Following curves from a pose, and whether they can be followed.
+//! Following curves from a pose, and tests whether they can be followed.
 
 use super::rule::{Rule, TraceEnd};
 use super::track::PlaneTrack;
@@ -6,13 +6,13 @@ use crate::curves::{Curve, PathTable};
 use crate::reactionless::{BSet, PlaneMap};
 use stillbase_mechanics::planar::{Vector, unit};
 
-/// Number of stations at which a curve is checked for other b, or for its longest part.
+/// Number of stations in the searches for another b, or for the longest part of a curve.
 pub(super) const TRIAL_STATIONS: usize = 96;
 
 /// Follows a curve on the plane b, rad, from a pose at its start in `stations` steps and returns the last pose, rad.
 ///
 /// # Errors
-/// The s where it stops, the last pose, and the reason.
+/// The s at which the curve can no longer be followed, the last pose, and the reason.
 pub fn walk(
     map: &PlaneMap,
     curve: &Curve,
