@@ -14,12 +14,12 @@ const REACHED_TOLERANCE: f64 = 1e-9;
 const MAX_STARTS: usize = 24;
 /// Another pose is preferred if it is nearer by at least this fraction of the reach.
 const MIN_IMPROVEMENT: f64 = 1e-4;
-/// Samples along the curve of two drives, and steps of the ternary search between two of them.
+/// Number of samples along the curve of two drives, and of steps of the ternary search between two samples.
 const CURVE_SAMPLES: usize = 240;
 const TERNARY_STEPS: usize = 60;
 
 impl PoseSpace {
-    /// Whether a point at a b leaves freedoms, so that a link can be dragged while the end effector stays.
+    /// Whether freedoms remain at a given point and b, so that a link can be dragged while the end effector stays.
     pub fn leaves_freedoms(&self) -> bool {
         self.drives() > 3
     }
@@ -29,7 +29,7 @@ impl PoseSpace {
         self.planes().is_ok_and(|planes| planes.has_bars())
     }
 
-    /// Whether the straight line in joint space between two poses of one b is open.
+    /// Whether the straight line in joint space between two poses of one b is not blocked.
     pub fn is_open_way(&self, from: &PerDrive, to: &PerDrive) -> bool {
         self.planes().map_or(true, |planes| planes.is_open_way([from[0], from[1]], [to[0], to[1]]))
     }
@@ -97,7 +97,7 @@ fn pose_for(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive) -> (PerDrive,
         _ => space.drag_to(p, b, from),
     };
     if !is_at(space, off) && space.drives() > 3 {
-        // A pose of another elbow may reach it; no obstacle lies between.
+        // A pose with another elbow configuration may reach it; without planes nothing blocks the path there.
         let poses = space.poses(p, b, from);
         match poses.first() {
             Some(q) => (a, off) = (space.angles(q), 0.0),
@@ -127,7 +127,7 @@ fn nearest_of_all(space: &PoseSpace, p: Vector, b: f64, a: PerDrive, off: f64) -
 /// Returns the point of the curve of two drives that is nearest to p, and its distance, m. A joint that turns freely is
 /// searched within half a turn of `turn`, rad.
 fn along_curve(space: &PoseSpace, p: Vector, b: f64, turn: f64) -> (PerDrive, f64) {
-    // A free joint is searched within half a turn either way: the curve is periodic.
+    // The curve of a free joint is periodic.
     let is_free = space.joints()[0].bounds()[0].is_infinite();
     let [low, high] = if is_free { [turn - PI, turn + PI] } else { space.joints()[0].limits() };
     let off = |a: f64| (space.end_effector(&space.lift(&[a], b)) - p).norm();

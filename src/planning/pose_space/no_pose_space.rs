@@ -1,4 +1,4 @@
-//! [`NoPoseSpace`]: why a machine has no pose constant; and why a machine of few drives follows no curves.
+//! [`NoPoseSpace`]: why a machine has no pose constant. [`NotFollowable`]: why its end effector cannot follow curves.
 
 use thiserror::Error;
 
@@ -70,11 +70,11 @@ pub struct NotFollowable {
     pub drives: usize,
 }
 
-/// Even then two drives conserve an integral: see [`b_integral`](crate::off_plane::b_integral).
+/// Added for two drives, which conserve an integral in any case: see [`b_integral`](crate::off_plane::b_integral).
 const ONLY_TWO: &str = "; without a moment its two drives keep q₁ plus an integral over q₂ − q₁, which is not offered as \
                         b, because its λ changes with the pose";
 
-/// Below this relative variation of λ, holding b removes most of the base moment.
+/// Maximum relative variation of λ with the pose at which holding b still removes most of the base moment.
 const MAX_POSE_DEPENDENCE: f64 = 0.1;
 
 /// Whether holding Σ λ_k q_k keeps the base free of moments.

@@ -1,5 +1,5 @@
-//! [`Planes`]: the closed forms of three drives with limits of both relative angles. A pose space holds them, and gives
-//! access to what only planes have: sheets, folds and change points.
+//! [`Planes`]: the closed forms of three drives with limits of both relative angles. A pose space contains them and
+//! gives access to their sheets, folds and change points.
 
 use thiserror::Error;
 
@@ -31,7 +31,7 @@ impl PartialEq for Planes {
 /// Why a machine has no reactionless planes in closed form.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum PlaneError {
-    /// The machine has not three drives and two relative angles.
+    /// The machine does not have three drives and two relative angles.
     #[error(
         "this machine has {} and {}: planes want three drives and two relative angles with limits, each an [[angle]] \
          with name, to, from, min and max",
@@ -68,10 +68,10 @@ impl PlaneError {
 }
 
 impl Planes {
-    /// Returns the planes of a machine, with the λ of its constant diagonal D_k = H_kk.
+    /// Returns the planes of a machine, with λ from the constant diagonal D_k = H_kk of its inertia matrix.
     ///
     /// # Errors
-    /// If it has not three drives and two relative angles with limits, or no b.
+    /// If it does not have three drives and two relative angles with limits, or has no b.
     pub(super) fn of(machine: &Machine) -> Result<Self, PlaneError> {
         let map = plane_map(machine)?;
         let (boundary, is_reactionless) = (Boundary::of(&map), is_reactionless(machine));
@@ -94,12 +94,12 @@ impl Planes {
         self.keep_off_change_points
     }
 
-    /// Whether something within the limits can block a path: a fold, or a change point that is to be kept off.
+    /// Whether a fold, or a change point that is to be avoided, can block a path within the limits.
     pub fn has_bars(&self) -> bool {
         self.keep_off_change_points || self.boundary.interior_singularity()
     }
 
-    /// Returns Eqs (13)–(16) of the machine.
+    /// Returns the machine's coordinate map, Eqs (13)–(16).
     pub fn map(&self) -> &PlaneMap {
         &self.map
     }
@@ -134,7 +134,7 @@ impl Planes {
         if !other_sheet && self.is_open_way(from, edge) {
             return (edge, Reach::Outside { nearest: nearest.at, feasible_b, displayed_b, other_sheet });
         }
-        // Something blocks the straight line to it: as near as possible.
+        // The straight line in joint space is blocked: move as near to the target as possible.
         let a = self.towards(p, b, from);
         (a, Reach::Outside { nearest: self.map.forward(a, b), feasible_b, displayed_b, other_sheet })
     }
@@ -179,10 +179,10 @@ pub fn plane_area(machine: &Machine) -> Option<f64> {
     Some(Boundary::of(&plane_map(machine).ok()?).area())
 }
 
-/// Returns Eqs (13)–(16) of a machine.
+/// Returns the coordinate map of a machine, Eqs (13)–(16).
 ///
 /// # Errors
-/// If it has not three drives and two relative angles with limits, or no b.
+/// If it does not have three drives and two relative angles with limits, or has no b.
 pub fn plane_map(machine: &Machine) -> Result<PlaneMap, PlaneError> {
     let shape = || PlaneError::Shape { drives: machine.drives(), angles: machine.angles().len() };
     let [first, second] = machine.angles() else { return Err(shape()) };

@@ -82,8 +82,8 @@ impl Stations {
         Self::at(curves, law, curves.iter().zip(&shares).map(grid).collect())
     }
 
-    /// Returns stations with marked intervals divided in four and their neighbours in two. `marked` has one per leg
-    /// and interval.
+    /// Returns stations with marked intervals divided in four and their neighbours in two. `marked` has one flag per
+    /// leg and interval.
     pub fn parted(&self, curves: &[Curve], law: Option<TimeLaw>, marked: &[Vec<bool>]) -> Self {
         let grid = |(leg, marked): (&PathLeg, &Vec<bool>)| {
             let is_marked = |i: usize| marked.get(i).copied().unwrap_or(false);
