@@ -28,7 +28,7 @@ const SAME_POSE_RAD: f64 = 1e-7;
 pub struct Poses {
     len: usize,
     few: [PlanePoint; INLINE],
-    /// All of them, if they are more than fit inline; only limits of many turns allow so many.
+    /// All poses, if there are more than fit inline; this only occurs for limits many turns apart.
     many: Vec<PlanePoint>,
 }
 
@@ -94,12 +94,12 @@ impl Poses {
 }
 
 impl PlaneMap {
-    /// Returns all poses within the limits that put the end effector on `p`, m, on the plane `b`, rad: each elbow and
-    /// each sheet.
+    /// Returns all poses within the limits that put the end effector on `p`, m, on the plane `b`, rad, over all elbow
+    /// configurations and sheets.
     ///
-    /// b is not wrapped: Σ λ_k q_k of the lifted pose is `b`. Limits may be exceeded by [`LIMIT_SLACK`]; the poses returned
-    /// keep them. The result is empty if there is no pose; [`reach`](Self::reach) gives the reason. Poses that form a
-    /// continuum (the end effector is moved by one arm only) are not listed.
+    /// b is not wrapped: Σ λ_k q_k of the lifted pose is `b`. Poses that exceed limits by up to [`LIMIT_SLACK`] are
+    /// included, moved onto the limits. The result is empty if there is no pose; [`reach`](Self::reach) gives the
+    /// reason. Poses that form a continuum (the end effector is moved by one arm only) are not listed.
     pub fn poses(&self, p: Vector, b: f64) -> Poses {
         let mut poses = Poses::new(b);
         if !(p.re.is_finite() && p.im.is_finite() && b.is_finite()) {

@@ -50,7 +50,7 @@ pub(super) struct Quadrilateral {
     b_0: f64,
     /// Bounds of α and β.
     limits: [AngleLimit; 2],
-    /// Index of the relative angle that α is, and of the one that β is.
+    /// Index of the relative angle that corresponds to α, and of the one that corresponds to β.
     index: [usize; 2],
     /// α = sign a + shift, and the same for β.
     sign: [f64; 2],

@@ -43,12 +43,14 @@ pub enum NoReach {
 enum SelfMotion {
     /// The point is B: these (a_1, a_2) hold it at every b.
     EveryB(Vec<[f64; 2]>),
-    /// Arcs along which b varies; and (a_1, a_2) at their ends that rounding may have removed from them.
+    /// Arcs along which b varies, and (a_1, a_2) of corners of the limits and of flat poses, which rounding may have
+    /// removed from the arcs.
     Curve(Quadrilateral, Vec<MonotoneArc>, Vec<[f64; 2]>),
 }
 
 impl PlaneMap {
-    /// Returns all b at which the end effector can be on `p`, m, within the limits, over all elbows and sheets.
+    /// Returns all b at which the end effector can be on `p`, m, within the limits, over all elbow configurations and
+    /// sheets.
     ///
     /// # Errors
     /// If there are none: the reason.
@@ -229,7 +231,7 @@ impl Step {
     }
 }
 
-/// Joins arcs end to end to branches.
+/// Joins arcs end to end into branches.
 fn branches(mut arcs: Vec<MonotoneArc>) -> Vec<Vec<Step>> {
     // Rounding can leave a single point beside an arc that begins there.
     let meets = |s: &Site, t: &Site| (s.alpha - t.alpha).abs().max((s.beta - t.beta).abs()) < 1e-9;

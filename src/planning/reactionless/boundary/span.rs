@@ -165,7 +165,8 @@ impl Surface {
         there.then_some(t)
     }
 
-    /// Returns the parameters of the cusps of a fold's image: the null vector of the Jacobian is tangent to the curve.
+    /// Returns the parameters of the cusps of a fold's image, where the null vector of the Jacobian is tangent to the
+    /// fold.
     pub fn cusps(&self, span: &BoundarySpan) -> Vec<f64> {
         // On the fold both columns are parallel, so that the component along one of them gives the sense of motion.
         let columns = |t: f64| self.map.columns(&self.map.arms(self.point(span, t)));
@@ -307,7 +308,7 @@ impl BoundarySpan {
     fn guess(&self, t: f64) -> f64 {
         let other = 1 - self.chart;
         let run = self.ends[1][self.chart] - self.ends[0][self.chart];
-        // In this form a straight span keeps its other coordinate exactly.
+        // In this form, a coordinate that is constant along the span stays exact.
         let (rise, s) = (self.ends[1][other] - self.ends[0][other], 1.0 - t);
         let bulge = (self.slopes[0] * run - rise) * s - (self.slopes[1] * run - rise) * t;
         self.ends[0][other] + rise * t + t * s * bulge
