@@ -78,7 +78,7 @@ fn shared(cases: &[Preview]) -> Vec<(Chart, [f64; 2])> {
         }
     }
     for (chart, range) in &mut all {
-        // Recordings hold SI values, also where the window shows thousandths.
+        // Recordings contain SI values, also where the window shows thousandths.
         let si = Chart { min_range: chart.min_range / chart.scale, ..*chart };
         let [low, high] = si.range(range[0], range[1]);
         let margin = 0.06 * (high - low);
@@ -214,7 +214,7 @@ impl Layout<'_> {
         self.container(ContainerKind::Vertical, "All cases", &[top, bottom], &[1.25, 1.0])
     }
 
-    /// Adds one case: scene on the left, plots on the right, events below; and its design.
+    /// Adds the motion of one case, with its scene on the left, plots on the right and events below, and its design.
     fn case(&mut self, case: &Preview, alone: bool) -> Result<[Part; 2], StoreError> {
         self.tab.clone_from(&case.name);
         let mut scenes = vec![self.scene(case, "Scene")?];
@@ -292,9 +292,9 @@ impl Layout<'_> {
     }
 
     /// Adds the charts of a case in the given places, one below the other.
-    fn plots(&mut self, case: &Preview, name: &str, stands: fn(ChartPlace) -> bool) -> Result<Part, StoreError> {
+    fn plots(&mut self, case: &Preview, name: &str, is_included: fn(ChartPlace) -> bool) -> Result<Part, StoreError> {
         let mut parts = Vec::new();
-        for (chart, _) in case.charts.iter().filter(|(chart, _)| stands(chart.place)) {
+        for (chart, _) in case.charts.iter().filter(|(chart, _)| is_included(chart.place)) {
             parts.push(self.plot(case, chart)?);
         }
         self.container(ContainerKind::Vertical, name, &parts, &vec![1.0; parts.len()])
@@ -420,7 +420,7 @@ fn name_of(chart: &Chart) -> String {
 }
 
 /// Returns the title of a plot, with symbol and colour of each series if there is one per drive, at most four. A legend
-/// would cover the curves of so low a plot. With many series, the viewer names the series under the pointer.
+/// would cover the curves of such a low plot. With many series, the viewer names the series under the pointer.
 fn titled(chart: &Chart, case: &Preview) -> String {
     let signals = case.topics.iter().flat_map(|topic| &topic.signals);
     let all: Vec<_> = signals.filter(|signal| chart.holds(signal)).collect();

@@ -1,5 +1,5 @@
-//! [`RecordedFronts`]: the Pareto front of added mass and inertia, as in the design view of the window, with the point of the
-//! machine.
+//! [`RecordedFronts`]: the Pareto front of added mass and inertia, as in the design view of the window, with the point
+//! of the present machine.
 
 use rerun::{EntityPath, LineStrips2D, Points2D, Radius};
 

@@ -66,7 +66,7 @@ pub struct JerkProgram {
     pub(super) sides: Vec<TwoSidedLimit>,
     /// Number of two-sided limits at each point.
     pub(super) each: usize,
-    /// Number of those on torque and acceleration, which come first; then come one on speed and those on jerk.
+    /// Number of those on torque and acceleration, which come first, followed by one on speed and those on jerk.
     pub(super) linear: usize,
     /// Multipliers of the constraints c_i ≥ 0, whose slacks are the coefficients.
     pub(super) multiplier: Vec<f64>,
