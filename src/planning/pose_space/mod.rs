@@ -14,7 +14,8 @@
 //! | λ_k | b = Σ_k λ_k q_k, (13) | 1 |
 //! | a_i | relative joint angles q_to − q_from + offset, n − 1 of them, that connect all drives | rad |
 //! | L, Λ, δ | a *compound*: drives whose relative angles are at their limits turn as one, L = Σ c_k e^{iδ_k}, Λ = Σ λ_k | m, 1, rad |
-//! | ν | multiplier of the condition that b is stationary at a fixed point: |L| sin α = ν Λ for every compound; α is the angle of its arm from a direction common to all | m |
+//! | ν | multiplier of the condition that b is stationary at a fixed point | m |
+//! | α | angle of a compound's arm from a direction common to all; |L| sin α = ν Λ where b is stationary | rad |
 //!
 //! # Method
 //! The feasible b of a point form intervals. At each bound, b is stationary with respect to the joints that are not at

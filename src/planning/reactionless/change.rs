@@ -81,8 +81,8 @@ impl PlaneMap {
         self.sines(a).iter().fold(1.0, |least: f64, s| least.min(s.abs()))
     }
 
-    /// Returns the side of a pose for each pair of [`DRIVE_PAIRS`]: m with mπ ≤ q_l − q_k < (m + 1)π. The straight line in
-    /// (a_1, a_2) between two poses with equal sides crosses no change point.
+    /// Returns the side of a pose for each pair of [`DRIVE_PAIRS`]: m with mπ ≤ q_l − q_k < (m + 1)π. The straight line
+    /// in (a_1, a_2) between two poses with equal sides crosses no change point.
     pub fn sides(&self, a: [f64; 2]) -> [i32; 3] {
         [0, 1, 2].map(|pair| (AngleDifference::of(self, pair).at(a) / PI).floor() as i32)
     }
