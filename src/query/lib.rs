@@ -12,7 +12,7 @@
 //! | [`Queries::grow`] | extends the answer by the new items of a [`Sequence`], in portions |
 //!
 //! An answer depends on its input alone, because the work receives nothing else. Of several inputs requested one after
-//! the other, only the newest matters: work on an older one is stopped, or finished first if it is short. Without
+//! the other, only the newest matters. Work on an older one is stopped, or finished first if it is short. Without
 //! threads the work is done in portions, one at each request.
 
 mod growing;

@@ -66,7 +66,8 @@ enum By<Q: Query> {
 
 impl<Q: Query> RunningWork<Q> {
     /// Begins work, with workers in the background or else in portions. It starts when the work that it replaces has
-    /// stopped: two computations of the same query would compete for processors with each other and with the window.
+    /// stopped. Otherwise two computations of the same query would compete for processors with each other and with the
+    /// window.
     pub fn begin(
         of: Q::Input,
         replaced: ReplacedWork<Q>,

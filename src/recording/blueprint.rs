@@ -1,5 +1,5 @@
 //! The layout with which a recording opens: scene on the left with tabs of joint space and tower, plots on the right,
-//! events below. Several cases are compared in a first tab, and each has a tab of its own.
+//! events below. Several cases are compared in a first tab, and each also has a separate tab.
 //!
 //! Views are rows of a separate store. The builders of the SDK set neither the eye of a 3D view nor axis ranges nor
 //! backgrounds, so the rows are written here.

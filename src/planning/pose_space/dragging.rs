@@ -8,7 +8,7 @@ use super::space::PoseSpace;
 use crate::reactionless::{BSet, Decimal};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
 
-/// Residual below which a point counts as reached, as a fraction of the reach.
+/// Residual below which a point is treated as reached, as a fraction of the reach.
 const REACHED_TOLERANCE: f64 = 1e-9;
 /// Number of starting poses in the search for the nearest one.
 const MAX_STARTS: usize = 24;
@@ -62,8 +62,8 @@ impl PoseSpace {
         pose_for(self, p, b, from)
     }
 
-    /// Does the same starting from a nearby pose, for a target out of reach while b changes; the feasible b in `known`
-    /// are kept.
+    /// Returns the pose for a target as [`target_pose`](Self::target_pose) does, but starts from a nearby pose, for a
+    /// target out of reach while b changes. The feasible b in `known` are kept.
     pub fn target_pose_nearby(&self, p: Vector, b: f64, from: &PerDrive, known: Reach) -> (PerDrive, Reach) {
         if self.planes().is_ok() {
             return self.target_pose(p, b, from);
@@ -117,7 +117,8 @@ fn pose_for(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive) -> (PerDrive,
     (a, Reach::Outside { nearest, feasible_b, displayed_b, other_sheet: false })
 }
 
-/// Returns the pose nearest to p, m, over starts from all ranges; keeps the given one unless another is clearly nearer.
+/// Returns the pose nearest to p, m, found from samples of all joint ranges; the given pose unless another is clearly
+/// nearer.
 fn nearest_of_all(space: &PoseSpace, p: Vector, b: f64, a: PerDrive, off: f64) -> (PerDrive, f64) {
     let others = (0..MAX_STARTS).map(|i| space.drag_to(p, b, &space.sample(i)));
     let best = others.min_by(|x, y| x.1.total_cmp(&y.1));

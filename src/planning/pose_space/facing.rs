@@ -7,7 +7,7 @@ use super::pattern::Patterns;
 use super::space::PoseSpace;
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 
-/// Number of whole turns of that drive tried on either side of the middle of its range.
+/// Number of whole turns of the given drive that are tried on either side of the middle of its range.
 const MAX_TURNS: i32 = 3;
 /// Tolerance of the joint limits for rounding, rad.
 const LIMIT_TOLERANCE_RAD: f64 = 1e-9;

@@ -55,8 +55,8 @@ impl CriticalInterval {
 /// Cached samples at one distance, valid for every b.
 #[derive(Default)]
 pub(super) struct ReachGrid {
-    /// Feasible intervals of b with the last joints held at each grid point, rad, and the index after the last interval
-    /// of each grid point.
+    /// Feasible intervals of b with the last joints held at each grid point, rad. `ends` contains the index after the
+    /// last interval of each grid point.
     spans: Vec<[f64; 2]>,
     ends: Vec<usize>,
     /// The b of sampled poses at the distance, rad.
@@ -215,8 +215,8 @@ impl PoseSpace {
         any
     }
 
-    /// Finds a pose at a distance from B, m, by coordinate descent: the joints turn one after another, each to the
-    /// angle that brings the end effector nearest to the distance.
+    /// Finds a pose at a distance from B, m, by coordinate descent. The joints turn one after another, each to the
+    /// angle that brings the end effector nearest to this distance.
     fn pose_at_distance(&self, distance: f64, mut a: PerDrive) -> Option<PerDrive> {
         let far = self.farthest();
         let at = |a: &PerDrive| self.end_effector(&DriveAngles(self.unturned(a)));

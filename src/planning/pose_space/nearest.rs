@@ -23,7 +23,7 @@ const STEP_TOLERANCE_RAD: f64 = 1e-11;
 const MAX_HALVINGS: usize = 12;
 /// Added to each weight in steps without second derivatives, so that angles of weight 0 stay bounded.
 const WEIGHT_OFFSET: f64 = 1e-3;
-/// Half ranges below this are treated as a single angle when a pose is centred, rad.
+/// An angle with half a range below this is held at its midpoint while a pose is centred, rad.
 const NARROW_HALF_RANGE_RAD: f64 = 1e-3;
 /// Tolerance of active limits, rad.
 const ACTIVE_TOLERANCE_RAD: f64 = 1e-12;
@@ -40,8 +40,8 @@ pub(super) struct PreferredAngles {
 const KKT: usize = 2 * MAX_DRIVES + 2;
 
 impl PoseSpace {
-    /// Returns relative angles at b with the end effector on p, m, that minimise ½ Σ x_i², starting from such a pose.
-    /// x_i is the deviation of a_i from the midpoint of its range, as a fraction of half the range.
+    /// Returns the relative angles of the pose at p, m, and b that minimises ½ Σ x_i², starting from another pose
+    /// there. x_i is the deviation of a_i from the midpoint of its range, as a fraction of half the range.
     pub fn midrange_pose(&self, p: Vector, b: f64, from: &PerDrive) -> PerDrive {
         let half = |i: usize| match self.joints[i].free {
             true => f64::INFINITY,

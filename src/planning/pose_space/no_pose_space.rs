@@ -9,7 +9,7 @@ use stillbase_settings::number::{ShortNumber, counted, significant};
 /// Why a machine has no pose constant, in words.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoPoseSpace {
-    /// D depends on the pose.
+    /// The inertia matrix D depends on the pose.
     #[error(
         "this machine has no pose constant b: its angular momentum depends on the pose, because drives {} and {} are \
          coupled by {} kg m², most of it through link {link}; `stillbase design` finds centres of mass that undo it{}",

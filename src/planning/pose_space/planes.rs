@@ -83,13 +83,13 @@ impl Planes {
         self.is_reactionless
     }
 
-    /// Returns the same planes whose paths keep off change points, or may cross them.
+    /// Returns the same planes with paths that avoid change points, or may cross them.
     #[must_use]
     pub(super) fn keeping_off_change_points(self, keep_off_change_points: bool) -> Self {
         Self { keep_off_change_points, ..self }
     }
 
-    /// Whether paths keep off change points.
+    /// Whether paths avoid change points.
     pub fn keep_off_change_points(&self) -> bool {
         self.keep_off_change_points
     }
@@ -155,7 +155,7 @@ impl Planes {
     }
 
     /// Whether the straight line in joint space between two poses of one plane stays on one sheet, where det keeps its
-    /// sign. If change points are to be kept off, it must also stay on one side of each.
+    /// sign. If change points are to be avoided, it must also stay on one side of each.
     pub fn is_open_way(&self, from: [f64; 2], to: [f64; 2]) -> bool {
         /// Minimum number of samples; long lines have one for each 0.1 rad.
         const MIN_SAMPLES: i32 = 32;
@@ -168,7 +168,7 @@ impl Planes {
         let sheet = self.map.det(from);
         let at = |t: f64| [0, 1].map(|i| from[i] + t * (to[i] - from[i]));
         let far = (to[0] - from[0]).hypot(to[1] - from[1]);
-        // The cast is safe: limits keep it below a thousand.
+        // The cast is safe: the limits keep this number below a thousand.
         let looks = MIN_SAMPLES.max((10.0 * far) as i32);
         (1..=looks).all(|i| self.map.det(at(f64::from(i) / f64::from(looks))) * sheet >= 0.0)
     }

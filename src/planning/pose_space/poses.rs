@@ -73,8 +73,8 @@ impl PoseSpace {
         any
     }
 
-    /// Visits poses of four and more drives until `take` returns false: by climbs from critical poses, and by Newton's
-    /// iteration from samples of all ranges.
+    /// Visits poses of four and more drives until `take` returns false. They are found by climbs from critical poses,
+    /// and by Newton's iteration from samples of all joint ranges.
     fn each_found(&self, p: Vector, b: f64, take: &mut impl FnMut(&PerDrive) -> bool) {
         let serves = |careful| self.reach_with(p, careful).is_ok_and(|set| set.contains(b));
         if !serves(false) && !serves(true) {
@@ -97,7 +97,7 @@ impl PoseSpace {
         self.each_spread(p, b, take);
     }
 
-    /// Visits the poses found from samples of all ranges until `take` returns false.
+    /// Visits the poses found from samples of all joint ranges until `take` returns false.
     pub(super) fn each_spread(&self, p: Vector, b: f64, take: &mut impl FnMut(&PerDrive) -> bool) {
         let windows = self.windows();
         for a in (0..START_SAMPLES).map(|i| self.sample(i)) {
@@ -117,8 +117,8 @@ impl PoseSpace {
         })
     }
 
-    /// Returns the pose of four and more drives that is nearest to given relative angles: the best local minimum from
-    /// the nearest starts in all components.
+    /// Returns the pose of four and more drives that is nearest to given relative angles. It is the best of the local
+    /// minima found from the nearest starts.
     fn nearest_pose(&self, p: Vector, b: f64, near: &[f64]) -> Option<PerDrive> {
         let (n, windows) = (self.joints.len(), self.windows());
         let near = PerDrive::from_fn(n, |i| near[i]);

@@ -25,7 +25,7 @@ impl PoseSpace {
         self.reach_with(p, true)
     }
 
-    /// Does the same with a careful or a quick search for poses; a quick one may miss some b.
+    /// Returns the same set by a careful or a quick search for poses; a quick one may miss some b.
     pub(crate) fn reach_with(&self, p: Vector, careful: bool) -> Result<BSet, NoReach> {
         if let Some(map) = self.map() {
             return map.reach(p);

@@ -78,8 +78,8 @@ impl Ring {
         arcs.map(|w| w[1] - w[0]).fold(0.0, f64::max)
     }
 
-    /// Returns the index of the end on another circle that continues the first end of this one; `None` unless all ends
-    /// continue in the same order.
+    /// Returns the index of the end, on another circle, that continues the first end of this one. Returns `None` unless
+    /// all ends continue in the same order.
     fn turned_to(&self, other: &Self) -> Option<usize> {
         let n = self.ends.len();
         if n != other.ends.len() || (n == 0 && self.whole != other.whole) {
@@ -127,8 +127,8 @@ impl PoseSpace {
         Some(if afresh.jumps < carried.jumps { afresh } else { carried })
     }
 
-    /// Does the same. If `carries` is set, results of a circle are reused for the next; if `careful` is set, poses are
-    /// searched for carefully.
+    /// Returns the circles. If `carries` is set, results of a circle are reused for the next; if `careful` is set,
+    /// poses are searched for carefully.
     fn rings_of(
         &self,
         b: f64,
@@ -214,7 +214,7 @@ impl Sweep<'_> {
     fn ring_of(&self, (r, covered): (f64, BCoverage)) -> (Ring, BCoverage) {
         let n = covered.ends.len();
         let whole = covered.gaps.iter().all(|gap| *gap);
-        // The angle falls as b rises.
+        // The angle decreases as b increases.
         let end = |i: usize| {
             let [before, after] = [covered.gaps[(i + n - 1) % n], covered.gaps[i]];
             let c = &covered.ends[i];
@@ -288,7 +288,7 @@ impl Sweep<'_> {
         self.bisected(&CriticalPoint { t: 0.5 * (from + to), ..spots[0] }, [from, to], ends, MAX_DEPTH, edge)
     }
 
-    /// Does the same between two parameters t, given the middle, by bisection.
+    /// Adds the points of a curve between two parameters t, given its middle, by bisection.
     fn bisected(
         &self,
         middle: &CriticalPoint,

@@ -46,7 +46,7 @@ pub enum GuidanceMode {
     Keep(usize),
     /// Each step minimises a weighted norm; the matrix is the inverse of the weight, row by row.
     Weighed(Box<[[f64; MAX_DRIVES]; MAX_DRIVES]>),
-    /// The pose moves to the one nearest to the midpoints of all ranges.
+    /// The pose moves towards the one nearest to the midpoints of all joint ranges.
     Middle,
 }
 
@@ -121,7 +121,7 @@ impl PoseSpace {
         Self { lead, ..self }
     }
 
-    /// Returns the same space whose paths keep off change points, or may cross them. Without planes it has no effect.
+    /// Returns the same space with paths that avoid change points, or may cross them. Without planes it has no effect.
     #[must_use]
     pub fn keeping_off_change_points(self, keep_off: bool) -> Self {
         let kept = |planes: Arc<Planes>| match planes.keep_off_change_points() == keep_off {
@@ -140,7 +140,7 @@ impl PoseSpace {
         self.planes.as_ref()
     }
 
-    /// Returns Eqs (13)–(16) in closed form, where available.
+    /// Returns the coordinate map of Eqs (13)–(16); `None` without planes.
     #[inline]
     pub(super) fn map(&self) -> Option<&PlaneMap> {
         self.planes.as_ref().ok().map(|planes| planes.map())
@@ -186,8 +186,8 @@ impl PoseSpace {
         &self.joints
     }
 
-    /// Whether the workspace at fixed b is an area, and the b of a point form intervals. Otherwise it is a curve or a
-    /// point, and each point has single values of b.
+    /// Whether the workspace at fixed b is an area, so that the b of a point form intervals. Otherwise it is a curve or
+    /// a point, and each point has single values of b.
     pub fn reaches_area(&self) -> bool {
         self.joints.len() > 1
     }
@@ -200,7 +200,8 @@ impl PoseSpace {
         if self.reaches_area() { Ok(()) } else { Err(NotFollowable { drives: self.drives() }) }
     }
 
-    /// Returns the period of b, 2π Σλ, rad: one turn of all drives adds it to b and changes nothing else.
+    /// Returns the period of b, 2π Σλ, rad: one turn of all drives changes b by a period and leaves the end effector in
+    /// place.
     pub fn period(&self) -> f64 {
         TAU * self.lambda_sum
     }

@@ -104,7 +104,8 @@ impl PoseConstraint<'_> {
         None
     }
 
-    /// Returns the q′ and q″ nearest to given ones that follow a curve with the derivatives `way`, m.
+    /// Returns the q′ and q″, nearest to given ones, with which the end effector follows a curve with the derivatives
+    /// `way`, m.
     pub fn along(
         &self,
         q: &PerDrive,

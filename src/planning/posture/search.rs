@@ -16,8 +16,8 @@ use crate::timing::TimeLaw;
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
 
-/// Resolutions of the search, each tried if the one before finds no path: number of layers, factor on
-/// [`POSE_SPACING_RAD`], and maximum number of poses of a layer.
+/// Resolutions of the search, each tried if the one before finds no path. Each gives the number of layers, the factor
+/// on [`POSE_SPACING_RAD`], and the maximum number of poses of a layer.
 const RESOLUTIONS: [(usize, f64, usize); 3] = [(24, 1.0, 200), (48, 0.5, 500), (96, 0.25, 1200)];
 /// Distance between neighbouring poses with one, two … degrees of freedom, rad.
 const POSE_SPACING_RAD: [f64; 5] = [0.2, 0.35, 0.5, 0.7, 0.9];
@@ -53,7 +53,7 @@ const SAME_PATH_BELOW_RAD: f64 = 0.02;
 const RATE_WEIGHTS_IN_MID_RANGE: [f64; 3] = [1e-2, 1e-4, 1e-6];
 /// Weight of smoothness in the torque objective.
 const SMOOTHNESS_WEIGHT: f64 = 120.0;
-/// Weight of every drive in the smoothness term of the torque objective, so that light drives count as well.
+/// Weight of every drive in the smoothness term of the torque objective, so that light drives are smoothed too.
 const LIGHT_DRIVE_WEIGHT: f64 = 1e-4;
 /// Weight of rates in the torque objective.
 const RATE_WEIGHT_IN_TORQUE: f64 = 1e-6;

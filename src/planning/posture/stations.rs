@@ -21,7 +21,7 @@ pub(super) struct PathLeg {
     pub first: usize,
     /// s of each station, from 0 at the start of this curve to 1 at its end.
     pub s: Vec<f64>,
-    /// Point of the curve at each station, with its derivatives by this s.
+    /// Point of the curve at each station, with its derivatives with respect to this s.
     pub points: Vec<CurvePoint>,
     /// Midpoints between the stations, where the path is checked as well: s and the point of the curve, m.
     pub between: Vec<(f64, Vector)>,

@@ -8,7 +8,7 @@ const MERGE_TOLERANCE_RAD: f64 = 1e-11;
 /// A set of pose constants: disjoint closed intervals on the circle of b.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BSet {
-    /// [b_min, b_max] ascending, rad: b_min in [0, period), b_max ≥ b_min, possibly beyond the period. The whole circle
+    /// [b_min, b_max] ascending, rad: b_min in [0, period), b_max ≥ b_min, possibly beyond the period. The set of all b
     /// is [0, period].
     pub intervals: Vec<[f64; 2]>,
     /// Circumference of the circle, 2π Σλ, rad.

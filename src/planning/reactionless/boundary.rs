@@ -219,8 +219,7 @@ impl Boundary {
     }
 
     /// Returns the boundary point at which the end effector stays on the plane b for a target p, m, outside. It is the
-    /// local minimum of the distance from p to which a descent along one loop leads from the present position `from`,
-    /// m.
+    /// local minimum of the distance from p that a descent along one loop reaches from the present position `from`, m.
     ///
     /// If `from` is inside, the end effector first moves straight towards p up to the boundary, then along it.
     pub fn nearest(&self, p: Vector, b: f64, from: Vector) -> Nearest {

@@ -64,7 +64,7 @@ pub enum NotAPlaneMap {
         "the relative joint angles do not determine the pose on a plane: want two angles that join all three drives"
     )]
     Dependent,
-    /// A number is not finite, or Σλ is zero.
+    /// A number is not finite, Σλ is not above 0, or limits are not in order.
     #[error("λ, lengths, offsets and limits must be finite, with Σλ above 0 and min ≤ max")]
     OutOfRange,
     /// The range of an angle contains too many whole turns, which are counted one by one.

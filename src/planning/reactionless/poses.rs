@@ -19,8 +19,8 @@ const FOLD_TOLERANCE: f64 = 1e-12;
 /// Tolerance of the position of poses clamped to the limits, as a fraction of the reach.
 const CLAMPED_TOLERANCE: f64 = 10.0 * LIMIT_SLACK;
 
-/// Poses nearer to each other than this are equal, rad: where two merge at a fold, their difference is of the order of
-/// the square root of the rounding error.
+/// Poses nearer to each other than this are equal, rad. Where two poses merge at a fold, they differ by about the
+/// square root of the rounding error.
 const SAME_POSE_RAD: f64 = 1e-7;
 
 /// All poses of a point on a plane, sorted by a_1; dereferences to a slice.

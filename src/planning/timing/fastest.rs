@@ -23,8 +23,7 @@ pub const GRID_INTERVALS: usize = 600;
 
 /// Finds the fastest motion on a path within a machine's limits, including those on jerk if `smooth`. On a curve the
 /// grid begins with [`stations`] of [`GRID_INTERVALS`] and the path's own places. It is refined where limited
-/// quantities change much. Finally the motion is slowed down by as much as limits are exceeded between stations, so
-/// that it keeps them everywhere.
+/// quantities change much. Finally the motion is slowed down until it keeps the limits between stations too.
 ///
 /// # Errors
 /// If no limit acts on the motion, or no motion keeps the limits.
@@ -170,7 +169,7 @@ fn bounds_of_phases(
     profile.phases().enumerate().map(phase_bound).collect()
 }
 
-/// Returns the rising s at which q′ or q″ may jump: none for a table, in which both are continuous.
+/// Returns the ascending s at which q′ or q″ may jump: none for a table, in which both are continuous.
 fn jumps(path: &Path) -> Vec<f64> {
     match path {
         Path::Table(_) => Vec::new(),
@@ -293,7 +292,7 @@ fn explain(grid: &PathConstraints, constraints: &Constraints, blocked: NoTiming)
     TimeError::Stuck { s: grid.s[i] }
 }
 
-/// Returns the active limits with their fractions of the duration, the greatest first.
+/// Returns each limit with the fraction of the duration during which it is used most, the greatest first.
 fn leading(path: &Path, grid: &PathConstraints, constraints: &Constraints, x: &[f64]) -> Vec<(DriveLimit, f64)> {
     let mut shares = TimeShares::default();
     for i in 0..x.len().saturating_sub(1) {

@@ -10,8 +10,8 @@ use stillbase_mechanics::machine::Inertia;
 
 /// Number of intervals of a phase that is sampled finely.
 const FINE_INTERVALS: usize = 16;
-/// Distance of samples from the ends of a phase, as a fraction of it: at a jump of a path's derivatives, rounding would
-/// decide which side is evaluated.
+/// Distance of samples from the ends of a phase, as a fraction of it. Without it, rounding would decide which side of a
+/// jump of the path's derivatives is evaluated.
 const END_MARGIN_SHARE: f64 = 1e-6;
 /// Relative margin against rounding.
 const ROUNDING: f64 = 1e-9;

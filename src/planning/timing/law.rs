@@ -2,7 +2,7 @@
 
 use stillbase_settings::word::words;
 
-/// Position s on a path with its derivatives by time.
+/// Position s on a path with its time derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathProgress {
     /// 0 at the start, 1 at the end.
@@ -31,7 +31,7 @@ struct Law {
     peak: f64,
     /// Fractions of T at which s̈ or its slope jumps.
     kinks: &'static [f64],
-    /// Returns s and its first three derivatives by u = t/T, for u from 0 to 1.
+    /// Returns s and its first three derivatives with respect to u = t/T, for u from 0 to 1.
     at: fn(f64) -> [f64; 4],
 }
 

@@ -243,8 +243,8 @@ impl Profile {
         }
     }
 
-    /// Returns the timing stretched by a factor on time. Rates fall with its first power, accelerations with its
-    /// second, jerks with its third.
+    /// Returns the timing stretched by a factor on time. Rates are inversely proportional to the factor, accelerations
+    /// to its square, jerks to its cube.
     #[must_use]
     pub fn stretched(&self, factor: f64) -> Self {
         let duration = factor * self.duration;

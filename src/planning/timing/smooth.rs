@@ -20,11 +20,11 @@ use stillbase_mechanics::machine::Inertia;
 
 /// Number of samples from which the active limits are determined.
 const USAGE_SAMPLES: usize = 2000;
-/// Number of intervals between nodes in proportion to the time of the motion without limits on jerk.
+/// Number of intervals distributed in proportion to the time of the motion without limits on jerk.
 const INTERVALS_BY_TIME: f64 = 200.0;
-/// Number of intervals in proportion to θ.
+/// Number of intervals distributed evenly over θ.
 const INTERVALS_BY_THETA: f64 = 80.0;
-/// Number of intervals for each interval of the grid of that motion.
+/// Number of intervals added for each interval of the grid of that motion.
 const INTERVALS_BY_GRID: f64 = 0.1;
 /// Number of intervals over which the distance of θ from an end grows by the factor e.
 const INTERVALS_BY_ENDS: f64 = 4.0;

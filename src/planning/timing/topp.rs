@@ -13,7 +13,7 @@ use crate::curves::path::Path;
 use crate::timing::law::PathProgress;
 use crate::timing::limits::{ConstraintRow, Constraints, MAX_ROWS, Stretches, stretches};
 
-/// An x of this or more counts as unlimited, 1/s².
+/// An x of this or more is treated as unlimited, 1/s².
 pub(super) const UNLIMITED: f64 = 1e20;
 
 /// Maximum change of a limited quantity over an interval due to the path, as a fraction of its limit; above it the
@@ -234,8 +234,8 @@ impl PathConstraints {
         Ok(x)
     }
 
-    /// Estimates the rise of u over each interval from its neighbours: the smaller of both slopes, or zero if they
-    /// differ in sign, as where u switches.
+    /// Estimates the rise of u over each interval from its neighbours. It is given by the smaller of both slopes, or
+    /// zero if their signs differ, as where u switches.
     fn rises(&self, x: &[f64]) -> Vec<f64> {
         let spaces = x.len() - 1;
         let u = |i: usize| (x[i + 1] - x[i]) / (2.0 * (self.s[i + 1] - self.s[i]));

@@ -1,5 +1,5 @@
-//! [`RecordedFronts`]: the Pareto front of added mass and inertia, as in the design view of the window, with the point
-//! of the present machine.
+//! [`RecordedFronts`]: the Pareto front of added mass and inertia, with the point of the present machine, as in the
+//! window's design view.
 
 use rerun::{EntityPath, LineStrips2D, Points2D, Radius};
 

@@ -176,8 +176,8 @@ impl<'a> Arrangement<'a> {
         strands
     }
 
-    /// Returns the number of poses on the left and on the right of a part; an error with the last sample if another
-    /// curve is too close.
+    /// Returns the number of poses on the left and on the right of a part. If another curve is too close, the error
+    /// contains the last sample.
     fn sides(&self, portion: &SpanPart) -> Result<[i32; 2], [i32; 2]> {
         let span = &self.spans[portion.span];
         let (mut unresolved, mut alike) = ([0; 2], 0);

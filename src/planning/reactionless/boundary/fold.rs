@@ -26,7 +26,7 @@ const SPLIT: [f64; 2] = [0.471_404, 0.524_579];
 #[derive(Clone, Debug, Default)]
 struct Side(Vec<f64>);
 
-/// A cell, with the sides a_2 least, a_2 greatest, a_1 least, a_1 greatest.
+/// A cell, whose sides are at the least a_2, the greatest a_2, the least a_1 and the greatest a_1.
 #[derive(Clone, Debug)]
 struct Cell {
     low: [f64; 2],
@@ -193,7 +193,7 @@ impl Cell {
 
     /// Joins the zeros of a very small cell in pairs: each inward crossing with some outward one.
     fn join(&self, on: &Surface, spans: &mut Vec<BoundarySpan>) {
-        // Whether det > 0 on the left of the way from a to b, by the gradient at a given point.
+        // Whether det > 0 on the left of the line from a to b, by the gradient at a given point.
         let forward = |a: [f64; 2], b: [f64; 2], at: [f64; 2]| {
             let [g1, g2] = on.det.gradient(at);
             g2 * (b[0] - a[0]) - g1 * (b[1] - a[1]) > 0.0

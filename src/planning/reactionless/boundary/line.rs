@@ -7,8 +7,8 @@ use stillbase_mechanics::planar::{Vector, cross, unit};
 
 /// Maximum deviation of chords from the curve, m.
 const CHORD_TOLERANCE_M: f64 = 0.8e-5;
-/// Least and greatest tolerance as a fraction of the unit of the map: small machines need a smaller one, and for large
-/// ones a fixed tolerance would need too many chords.
+/// Least and greatest tolerance as a fraction of the unit of the map. Small machines need a smaller tolerance than
+/// [`CHORD_TOLERANCE_M`]; large ones would need too many chords with it.
 const MIN_CHORD_FRACTION: f64 = 1e-3 * CHORD_TOLERANCE_M;
 const MAX_CHORD_FRACTION: f64 = CHORD_TOLERANCE_M;
 

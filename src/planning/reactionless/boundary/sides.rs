@@ -47,8 +47,8 @@ impl Boundary {
         (!region.is_thin(MIN_WIDTH_RAD)).then(|| Self::over(on, &region))
     }
 
-    /// Returns the range of sides, of a pair's change points, that contain poses within the limits. Side m is mπ ≤ q_l
-    /// − q_k ≤ (m + 1)π. Empty if there is no such pair.
+    /// Returns the sides of a pair's change points on which there are poses within the limits. Side m is mπ ≤ q_l − q_k
+    /// ≤ (m + 1)π. Empty if there is no such pair.
     pub fn sides(&self, pair: usize) -> RangeInclusive<i32> {
         if pair >= DRIVE_PAIRS.len() {
             return RangeInclusive::new(1, 0);

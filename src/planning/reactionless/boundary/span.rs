@@ -35,7 +35,7 @@ pub(super) struct BoundarySpan {
     chart: usize,
     pub ends: [[f64; 2]; 2],
     pub at: [Vector; 2],
-    /// Derivative of the other coordinate by the chart coordinate, at the ends.
+    /// Derivative of the other coordinate with respect to the chart coordinate, at the ends.
     slopes: [f64; 2],
     /// Whether the other coordinate solves det = 0; else it varies linearly too.
     solved: bool,
@@ -43,7 +43,7 @@ pub(super) struct BoundarySpan {
     pub deviation: f64,
 }
 
-/// A point of a span: plane coordinates, position, and derivative of the position by the parameter.
+/// A point of a span: plane coordinates, position, and derivative of the position with respect to the parameter.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SpanPoint {
     pub a: [f64; 2],
@@ -315,7 +315,7 @@ impl BoundarySpan {
     }
 
     /// Returns the contribution of the part from `from` to `to` to the winding number about p, as signed crossings of
-    /// the ray from p towards +x; `None` if p lies on it.
+    /// the ray from p towards +x. Returns `None` if p lies on the part.
     pub fn crossings(&self, on: &Surface, from: (f64, Vector), to: (f64, Vector), p: Vector) -> Option<i32> {
         let (a, b) = (from.1, to.1);
         let unit = on.map.unit();

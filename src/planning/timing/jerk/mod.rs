@@ -4,8 +4,8 @@
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | θ | parameter in place of s, s = 10 θ³ − 15 θ⁴ + 6 θ⁵: ds/dθ = 0 at both ends | |
-//! | y, y′, y″ | θ̇³ and its derivatives by θ | 1/s³ |
-//! | q′, q″, q‴ | derivatives of q by θ | rad |
+//! | y, y′, y″ | θ̇³ and its derivatives with respect to θ | 1/s³ |
+//! | q′, q″, q‴ | derivatives of q with respect to θ | rad |
 //! | c_i | coefficients of y, a quadratic spline over the nodes θ_i | 1/s³ |
 //!
 //! # Method
