@@ -7,8 +7,8 @@ use std::sync::Arc;
 use super::sequence::{Revision, RevisionMark, Sequence};
 use super::slot::AnySlot;
 
-/// An answer that grows with a sequence. It depends only on its input and on the items taken. Items taken one at a
-/// time, all at once, or again after a truncation give the same answer.
+/// An answer that grows with a sequence. It depends only on its input and on the items taken. The answer is the same
+/// whether items are taken one at a time, all at once, or again after a truncation.
 pub trait IncrementalQuery: Clone + Send + Sync + 'static {
     /// Item of the sequence.
     type Item: Clone;

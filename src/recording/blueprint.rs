@@ -62,7 +62,7 @@ pub fn lay_out(store: &mut Store, cases: &[Preview], pictured: bool) -> Result<(
         .with_state(PanelState::Collapsed)
         .with_timeline(TIME_TIMELINE)
         .with_loop_mode(LoopMode::All)
-        // A layout cannot set the displayed instant; playback shows more than the start.
+        // A layout cannot set the displayed instant; playback is on so that more than the start is shown.
         .with_play_state(PlayState::Playing);
     layout.store.layout(&"time_panel".into(), &time)?;
     layout.store.activate_layout()
@@ -191,7 +191,7 @@ impl Layout<'_> {
         Ok(Part { path, id })
     }
 
-    /// Adds the comparison of several cases: scenes above, and compared plots, machines and events below.
+    /// Adds the comparison of several cases, with scenes above, and plots, machines and events below.
     fn comparison(&mut self, cases: &[Preview]) -> Result<Part, StoreError> {
         let scenes = cases.iter().map(|case| self.scene(case, &case.title)).collect::<Result<Vec<_>, _>>()?;
         let mut top = self.container(ContainerKind::Horizontal, "Scenes", &scenes, &vec![1.0; scenes.len()])?;

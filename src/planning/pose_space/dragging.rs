@@ -133,8 +133,8 @@ fn along_curve(space: &PoseSpace, p: Vector, b: f64, turn: f64) -> (PerDrive, f6
     let [low, high] = if is_free { [turn - PI, turn + PI] } else { space.joints()[0].limits() };
     let off = |a: f64| (space.end_effector(&space.lift(&[a], b)) - p).norm();
     let step = (high - low) / CURVE_SAMPLES as f64;
-    let looks = (0..=CURVE_SAMPLES).map(|i| low + step * i as f64);
-    let near = looks.min_by(|x, y| off(*x).total_cmp(&off(*y))).unwrap_or(low);
+    let samples = (0..=CURVE_SAMPLES).map(|i| low + step * i as f64);
+    let near = samples.min_by(|x, y| off(*x).total_cmp(&off(*y))).unwrap_or(low);
     let [mut from, mut to] = [(near - step).max(low), (near + step).min(high)];
     for _ in 0..TERNARY_STEPS {
         let thirds = [(2.0 * from + to) / 3.0, (from + 2.0 * to) / 3.0];

@@ -14,8 +14,8 @@ use super::space::{BASE_RADIUS, PoseSpace};
 use crate::reactionless::{AngleDefinition, AngleLimit, PlaneMap};
 use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 
-/// Grid points over the range of each joint beyond the first two, if there are one, two, three, four, or at least five
-/// of these.
+/// Number of grid points over the range of each joint beyond the first two, for one, two, three, four, and at least
+/// five such joints.
 const GRID_POINTS: [usize; 5] = [33, 13, 7, 5, 3];
 /// Number of critical poses on either side of a gap from which climbs are tried: in a quick and in a careful search.
 const NEAREST_CRITICALS: [usize; 2] = [3, 24];
@@ -82,14 +82,14 @@ impl PoseSpace {
         distance: f64,
         gap: &CriticalInterval,
         criticals: &[CriticalPose],
-        looks: &mut ReachGrid,
+        grid: &mut ReachGrid,
     ) -> bool {
         let p = Vector::new(distance, 0.0);
         if self.drives() > 3 {
-            return self.is_reached_by_climbs(p, gap, criticals, NEAREST_CRITICALS[usize::from(looks.careful)])
-                || self.is_reached_on_grid(p, &gap.places(), looks)
-                || self.is_sampled(distance, gap, looks)
-                || (looks.careful && self.is_reached_from_samples(p, 0.5 * (gap.from + gap.to)));
+            return self.is_reached_by_climbs(p, gap, criticals, NEAREST_CRITICALS[usize::from(grid.careful)])
+                || self.is_reached_on_grid(p, &gap.places(), grid)
+                || self.is_sampled(distance, gap, grid)
+                || (grid.careful && self.is_reached_from_samples(p, 0.5 * (gap.from + gap.to)));
         }
         gap.places().iter().any(|b| self.has_isolated_pose(p, *b))
     }
@@ -126,7 +126,7 @@ impl PoseSpace {
     }
 
     /// Whether a pose exists at one of these b with the last joints held at a grid point.
-    fn is_reached_on_grid(&self, p: Vector, b: &[f64], looks: &mut ReachGrid) -> bool {
+    fn is_reached_on_grid(&self, p: Vector, b: &[f64], grid: &mut ReachGrid) -> bool {
         let (n, first) = (self.joints.len(), 2);
         let each = GRID_POINTS[(self.drives() - 4).min(GRID_POINTS.len() - 1)];
         let at = |i: usize, j: usize| {
@@ -134,7 +134,7 @@ impl PoseSpace {
             low + (high - low) * (j as f64 + 0.5) / each as f64
         };
         let middle = self.middle();
-        let look = |code: usize| {
+        let held_at = |code: usize| {
             let (mut held, mut rest) = (middle, code);
             for i in first..n {
                 held[i] = at(i, rest % each);
@@ -143,30 +143,30 @@ impl PoseSpace {
             held
         };
         (0..each.pow((n - first) as u32)).any(|code| {
-            if code == looks.ends.len() {
-                self.spans(p, &look(code), |span| looks.spans.push(span));
-                looks.ends.push(looks.spans.len());
+            if code == grid.ends.len() {
+                self.spans(p, &held_at(code), |span| grid.spans.push(span));
+                grid.ends.push(grid.spans.len());
             }
-            let from = if code > 0 { looks.ends[code - 1] } else { 0 };
-            looks.spans[from..looks.ends[code]].iter().any(|span| b.iter().any(|b| self.holds(*span, *b)))
+            let from = if code > 0 { grid.ends[code - 1] } else { 0 };
+            grid.spans[from..grid.ends[code]].iter().any(|span| b.iter().any(|b| self.holds(*span, *b)))
         })
     }
 
     /// Whether a sampled pose at the distance has a b in the gap.
-    fn is_sampled(&self, distance: f64, gap: &CriticalInterval, looks: &mut ReachGrid) -> bool {
-        if looks.samples.is_empty() {
+    fn is_sampled(&self, distance: f64, gap: &CriticalInterval, grid: &mut ReachGrid) -> bool {
+        if grid.samples.is_empty() {
             let b = |a: PerDrive| {
                 let q = self.unturned(&a);
                 let turn = self.end_effector(&DriveAngles(q)).arg();
                 self.lambda.dot(&q) - turn * self.lambda_sum
             };
-            let found = (0..START_SAMPLES[usize::from(looks.careful)])
+            let found = (0..START_SAMPLES[usize::from(grid.careful)])
                 .filter_map(|i| self.pose_at_distance(distance, self.sample(i)))
                 .map(b);
-            looks.samples.extend(found.chain([f64::NAN]));
+            grid.samples.extend(found.chain([f64::NAN]));
         }
         let inside = GAP_MARGIN * (gap.to - gap.from);
-        looks.samples.iter().any(|b| self.holds([gap.from + inside, gap.to - inside], *b))
+        grid.samples.iter().any(|b| self.holds([gap.from + inside, gap.to - inside], *b))
     }
 
     /// Whether an interval contains a b, modulo the period.
@@ -182,8 +182,8 @@ impl PoseSpace {
     }
 
     /// Whether any pose is at a distance from B, m, that has no critical values. Such poses then exist at every b.
-    pub(super) fn any_pose(&self, distance: f64, looks: &ReachGrid) -> bool {
-        let starts = START_SAMPLES[usize::from(looks.careful)];
+    pub(super) fn any_pose(&self, distance: f64, grid: &ReachGrid) -> bool {
+        let starts = START_SAMPLES[usize::from(grid.careful)];
         match self.drives() {
             ..4 => self.has_isolated_pose(Vector::new(distance, 0.0), 0.0),
             _ if distance <= BASE_RADIUS * self.farthest() => self.has_pose_at_base(starts),

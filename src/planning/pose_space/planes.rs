@@ -169,8 +169,8 @@ impl Planes {
         let at = |t: f64| [0, 1].map(|i| from[i] + t * (to[i] - from[i]));
         let far = (to[0] - from[0]).hypot(to[1] - from[1]);
         // The cast is safe: the limits keep this number below a thousand.
-        let looks = MIN_SAMPLES.max((10.0 * far) as i32);
-        (1..=looks).all(|i| self.map.det(at(f64::from(i) / f64::from(looks))) * sheet >= 0.0)
+        let samples = MIN_SAMPLES.max((10.0 * far) as i32);
+        (1..=samples).all(|i| self.map.det(at(f64::from(i) / f64::from(samples))) * sheet >= 0.0)
     }
 }
 

@@ -46,7 +46,7 @@ pub enum GuidanceMode {
     Keep(usize),
     /// Each step minimises a weighted norm; the matrix is the inverse of the weight, row by row.
     Weighed(Box<[[f64; MAX_DRIVES]; MAX_DRIVES]>),
-    /// The pose moves towards the one nearest to the midpoints of all joint ranges.
+    /// The pose moves to the one nearest to the midpoints of all joint ranges.
     Middle,
 }
 

@@ -153,8 +153,8 @@ impl RefinementProblem<'_> {
         sum
     }
 
-    /// Calls `what` for each limit of each pose with the index of the limit, the distance beyond it, rad, and the index
-    /// of the pose. The last argument is the sign of the limit and the gradient of the angle.
+    /// Calls `what` for each limit of each pose. Its arguments are the index of the limit, the distance beyond it, rad,
+    /// the index of the pose, and the sign of the limit with the gradient of the angle.
     fn each_limit(&self, q: &[PerDrive], mut what: impl FnMut(usize, f64, usize, (f64, &PerDrive))) {
         let count = self.bounds.len();
         for (i, q) in q.iter().enumerate() {

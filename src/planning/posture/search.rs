@@ -346,10 +346,10 @@ impl<'a> Search<'a> {
         order.sort_by(|x, y| x.values[goal].total_cmp(&y.values[goal]));
         let mut best: Option<Way> = None;
         let mut missed = Missed::Elsewhere;
-        let (mut dearest, mut count) = (f64::INFINITY, 0);
+        let (mut max_cost, mut count) = (f64::INFINITY, 0);
         let mut before: Vec<&Way> = Vec::new();
         for way in order {
-            if way.values[goal] > dearest || count >= MAX_REFINED {
+            if way.values[goal] > max_cost || count >= MAX_REFINED {
                 break;
             }
             if before.iter().any(|other| apart(&other.q, &way.q) < SAME_PATH_BELOW_RAD) {
@@ -360,7 +360,7 @@ impl<'a> Search<'a> {
             let Some(start) = self.placed(way, &held) else { continue };
             match self.refined(&if oriented { held } else { self.held() }, goal, &start, way.closed) {
                 Ok(made) => {
-                    dearest = dearest.min((1.0 + MAX_COST_EXCESS) * way.values[goal]);
+                    max_cost = max_cost.min((1.0 + MAX_COST_EXCESS) * way.values[goal]);
                     count += 1;
                     let better = best.as_ref().is_none_or(|best| made.values[goal] < best.values[goal]);
                     best = if better { Some(made) } else { best };

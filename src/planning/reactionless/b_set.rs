@@ -100,8 +100,8 @@ impl BSet {
         nearest.map_or(b, |(middle, _)| b + share * (middle - b))
     }
 
-    /// Returns the value of the set, shifted by whole periods, that is nearest to b on the real line; b itself if the
-    /// set contains it, `None` if the set is empty.
+    /// Returns the value of the set, shifted by whole periods, that is nearest to b on the real line. This is b itself
+    /// if the set contains it; `None` if the set is empty.
     pub fn nearest(&self, b: f64) -> Option<f64> {
         let step = |[low, high]: &[f64; 2]| {
             let (past, width) = (wrap(b - low, self.period), high - low);

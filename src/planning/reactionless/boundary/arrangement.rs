@@ -18,8 +18,8 @@ const MIN_LENGTH: f64 = 1e-9;
 const MAX_PAIRS: usize = 3000;
 /// Number of remaining pairs at which the spans are tested for an overlap.
 const OVERLAP_CHECK_AT: usize = MAX_PAIRS - 100;
-/// Curves with a common end touch there, or enclose a sliver of negligible area: crossings within this distance of the
-/// end are ignored, as a fraction of the reach.
+/// Crossings within this distance of a common end of two curves are ignored, as a fraction of the reach. The curves
+/// touch there, or enclose a sliver of negligible area.
 const TOUCH_RADIUS: f64 = 1e-4;
 /// Points within this distance of a curve lie on it, as a fraction of the unit of the map.
 const ON_CURVE_TOLERANCE: f64 = 1e-11;

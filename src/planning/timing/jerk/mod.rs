@@ -14,9 +14,9 @@
 //! y): linear except for its last term, which makes one of its two sides non-convex. With θ as parameter, rest at both
 //! ends is not a singularity: y stays above 0 there.
 //!
-//! A primal-dual interior-point method goes from a slow feasible motion to the fastest through feasible ones
-//! (Mehrotra's predictor and corrector; the curvature of non-convex sides is omitted). Each row contains three
-//! neighbouring coefficients, so the cost of a step is proportional to the number of nodes. It finds a local optimum.
+//! A primal-dual interior-point method (Mehrotra's predictor and corrector) improves a slow feasible motion through
+//! feasible ones to the fastest. It omits the curvature of non-convex sides. Each row contains three neighbouring
+//! coefficients, so the cost of a step is proportional to the number of nodes. It finds a local optimum.
 
 mod band;
 mod easing;
