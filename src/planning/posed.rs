@@ -108,8 +108,9 @@ pub fn nearest_poses(space: &PoseSpace, points: [Vector; 2], b: [f64; 2]) -> Opt
     pairs.into_iter().min_by(|x, y| x.1.total_cmp(&y.1)).map(|(pair, _)| pair)
 }
 
-/// Returns where points, m, go when b changes from `old` to `new`, rad. They stay if all can be reached at `new`.
-/// Otherwise they turn with the workspace: with planes from the b nearest to `new` that all share, else from `old`.
+/// Returns the positions of points, m, after b has changed from `old` to `new`, rad. They stay if all can be reached at
+/// `new`. Otherwise they turn with the workspace: with planes from the b nearest to `new` at which all can be reached,
+/// else from `old`.
 pub fn carried_points(space: &PoseSpace, points: &[Vector], [old, new]: [f64; 2]) -> Vec<Vector> {
     if points.iter().all(|p| space.reaches(*p, new)) {
         return points.to_vec();

@@ -16,7 +16,7 @@ pub enum Unreachable {
         x: f64,
         /// y of the point, m.
         y: f64,
-        /// Why no b reaches it.
+        /// Why the point cannot be reached.
         #[source]
         reason: NoReach,
     },
@@ -33,7 +33,7 @@ pub enum Unreachable {
         would_do: String,
         /// The feasible b nearest to the given one, rad.
         nearest_b: Option<f64>,
-        /// That b as displayed: rounded to a value that is still feasible.
+        /// `nearest_b` as displayed: rounded to a value that is still feasible.
         displayed_b: Option<Decimal>,
     },
     /// Each point can be reached at some b, but no single b reaches all of them.

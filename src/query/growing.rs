@@ -1,5 +1,5 @@
-//! [`IncrementalQuery`] answers: each is derived from a [`Sequence`] and is extended when items are appended, instead
-//! of being derived again.
+//! Answers to an [`IncrementalQuery`] are derived from a [`Sequence`]. When items are appended, an answer is extended
+//! instead of being derived again.
 
 use std::any::Any;
 use std::sync::Arc;
@@ -7,8 +7,8 @@ use std::sync::Arc;
 use super::sequence::{Revision, RevisionMark, Sequence};
 use super::slot::AnySlot;
 
-/// An answer that grows with a sequence. It depends only on its input and on the items taken. Items taken one at a
-/// time, all at once, or again after a truncation give the same answer.
+/// An answer that grows with a sequence. It depends only on its input and on the items taken. The answer is the same
+/// whether items are taken one at a time, all at once, or again after a truncation.
 pub trait IncrementalQuery: Clone + Send + Sync + 'static {
     /// Item of the sequence.
     type Item: Clone;
@@ -158,8 +158,8 @@ impl<G: IncrementalQuery> AnySlot for IncrementalAnswers<G> {
 
 impl<G: IncrementalQuery> IncrementalAnswers<G> {
     /// Removes and returns the entry that has most items in common with a revision, so that it grows outside of the
-    /// store. Among the others, keeps those in use: entries with no items in common as long as their sequence exists,
-    /// entries with some in common as long as a sequence has exactly their revision.
+    /// store. The other entries are kept while they are in use. Without common items, that is as long as their sequence
+    /// exists; with common items, as long as a sequence has exactly their revision.
     pub fn take(&mut self, revision: &Revision) -> Option<IncrementalState<G>> {
         let kept = |growth: &IncrementalState<G>| revision.kept_of(&growth.of);
         let best = (0..self.0.len()).max_by_key(|i| kept(&self.0[*i])).filter(|i| kept(&self.0[*i]) > 0);

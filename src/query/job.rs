@@ -8,7 +8,7 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 /// Work of a job.
 pub type Work = Box<dyn FnOnce() + Send>;
 
-/// Runs work, such as a pool of worker threads.
+/// An executor of work, such as a pool of worker threads.
 pub trait Workers {
     /// Runs the work, at once or in the background.
     fn start(&self, work: Work);

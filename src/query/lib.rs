@@ -1,7 +1,7 @@
 //! A [`Query`] derives an answer from an input. [`Queries`] computes the answer when the input changes, and caches it
 //! until then. This is the only cache of the program.
 //!
-//! Others reach this crate as `stillbase::query`; `stillbase` alone follows semantic versioning.
+//! Other crates reach this crate as `stillbase::query`; `stillbase` alone follows semantic versioning.
 //!
 //! | what | how |
 //! |---|---|
@@ -12,8 +12,8 @@
 //! | [`Queries::grow`] | extends the answer by the new items of a [`Sequence`], in portions |
 //!
 //! An answer depends on its input alone, because the work receives nothing else. Of several inputs requested one after
-//! the other, the newest counts: work on an older one stops, or ends first if it is short. Without threads the work is
-//! done in portions, one at each request.
+//! the other, only the newest matters. Work on an older one is stopped, or finished first if it is short. Without
+//! threads the work is done in portions, one at each request.
 
 mod growing;
 mod input;

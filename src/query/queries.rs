@@ -40,7 +40,7 @@ struct Store {
     execution: Mutex<Execution>,
 }
 
-/// Number of stores in existence. A store that referred to itself would never be dropped; tests find that by this
+/// Number of stores in existence. A store that referred to itself would never be dropped; tests detect that by this
 /// count.
 static STORE_COUNT: AtomicUsize = AtomicUsize::new(0);
 
@@ -185,7 +185,7 @@ impl Queries {
     }
 
     /// Returns the answer that grows with a sequence, after it has taken at most `at_most` new items. The answer grows
-    /// in execution while nothing else refers to it; otherwise it is copied.
+    /// in place while nothing else refers to it; otherwise it is copied.
     pub fn grow<G: IncrementalQuery>(
         &self,
         input: &G::Input,

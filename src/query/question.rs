@@ -7,8 +7,8 @@ pub trait Query: Send + Sized + 'static {
     /// Result of the computation.
     type Answer: Send + Sync + 'static;
 
-    /// Whether work under way runs to its end although another input has been requested meanwhile. Short work does, so
-    /// that answers keep coming while the input changes continuously.
+    /// Whether work under way runs to its end even if another input is requested meanwhile. Short work does, so that
+    /// answers keep coming while the input changes continuously.
     const RUNS_TO_END: bool = false;
 
     /// Returns the work for an input, not yet started.

@@ -1,4 +1,4 @@
-//! [`Sequence`]: items that are mostly appended, stored in shared pieces. Its [`Revision`] tells how many of the first
+//! [`Sequence`]: items that are mostly appended, stored in shared pieces. Its [`Revision`] shows how many of the first
 //! items are unchanged since an earlier revision.
 
 use std::ops::Index;
@@ -216,8 +216,8 @@ impl Revision {
         RevisionMark { own: Arc::downgrade(&self.own), alive: Arc::downgrade(&self.alive) }
     }
 
-    /// Returns how many first items are unchanged since an earlier revision: `usize::MAX` if it is this revision, 0 if
-    /// it is unknown.
+    /// Returns how many leading items are unchanged since an earlier revision: `usize::MAX` if it is this revision, 0
+    /// if it is unknown.
     pub fn kept_of(&self, earlier: &RevisionMark) -> usize {
         let is_it = |own: &Arc<()>| std::ptr::eq(Arc::as_ptr(own), earlier.own.as_ptr());
         if is_it(&self.own) {

@@ -26,7 +26,7 @@ pub(super) trait AnySlot: Any + Send {
     /// Returns whether work is under way.
     fn works(&mut self) -> bool;
 
-    /// Number of cached answers.
+    /// Returns the number of cached answers.
     fn count(&self) -> usize;
 
     /// Returns itself, to be cast to its own type.
@@ -60,13 +60,14 @@ enum By<Q: Query> {
     Job(Job<Option<Q::Answer>>),
     /// By the caller, a portion at each request; with the fraction done.
     Portions(Q, f64),
-    /// Nowhere any more: the work has ended.
+    /// The work has ended with this answer.
     Done(Q::Answer),
 }
 
 impl<Q: Query> RunningWork<Q> {
     /// Begins work, with workers in the background or else in portions. It starts when the work that it replaces has
-    /// stopped: two computations of the same query would compete for processors, and with the window.
+    /// stopped. Otherwise two computations of the same query would compete for processors with each other and with the
+    /// window.
     pub fn begin(
         of: Q::Input,
         replaced: ReplacedWork<Q>,
@@ -116,7 +117,7 @@ impl<Q: Query> RunningWork<Q> {
     }
 }
 
-/// Work on an earlier input that was told to stop and may still be running.
+/// Work on an earlier input that was stopped but may still be running.
 pub(super) struct ReplacedWork<Q: Query>(Option<Job<Option<Q::Answer>>>);
 
 impl<Q: Query> ReplacedWork<Q> {
@@ -154,9 +155,8 @@ impl<Q: Query> Slot<Q> {
         self.given_up = None;
     }
 
-    /// Decides whether work on an input is to begin: the input is neither known nor given up, and no work is under way
-    /// that runs to its end. If so, returns the work that it replaces. Stops work on another input, unless that runs to
-    /// its end.
+    /// Stops work on another input, unless such work runs to its end. New work must begin if the answer is neither
+    /// known nor given up and no work remains; then returns the stopped work.
     pub fn replaced_by(&mut self, input: &Q::Input) -> Option<ReplacedWork<Q>> {
         self.collect();
         let stays = |work: &mut RunningWork<Q>| Q::RUNS_TO_END || work.of == *input;

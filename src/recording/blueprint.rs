@@ -1,5 +1,5 @@
 //! The layout with which a recording opens: scene on the left with tabs of joint space and tower, plots on the right,
-//! events below. Several cases are compared in a first tab, and each has a tab of its own.
+//! events below. Several cases are compared in a first tab, and each also has a separate tab.
 //!
 //! Views are rows of a separate store. The builders of the SDK set neither the eye of a 3D view nor axis ranges nor
 //! backgrounds, so the rows are written here.
@@ -62,7 +62,7 @@ pub fn lay_out(store: &mut Store, cases: &[Preview], pictured: bool) -> Result<(
         .with_state(PanelState::Collapsed)
         .with_timeline(TIME_TIMELINE)
         .with_loop_mode(LoopMode::All)
-        // A layout cannot set the displayed instant; playback shows more than the start.
+        // A layout cannot set the displayed instant; playback is on so that more than the start is shown.
         .with_play_state(PlayState::Playing);
     layout.store.layout(&"time_panel".into(), &time)?;
     layout.store.activate_layout()
@@ -78,7 +78,7 @@ fn shared(cases: &[Preview]) -> Vec<(Chart, [f64; 2])> {
         }
     }
     for (chart, range) in &mut all {
-        // Recordings hold SI values, also where the window shows thousandths.
+        // Recordings contain SI values, also where the window shows thousandths.
         let si = Chart { min_range: chart.min_range / chart.scale, ..*chart };
         let [low, high] = si.range(range[0], range[1]);
         let margin = 0.06 * (high - low);
@@ -191,7 +191,7 @@ impl Layout<'_> {
         Ok(Part { path, id })
     }
 
-    /// Adds the comparison of several cases: scenes above, and compared plots, machines and events below.
+    /// Adds the comparison of several cases, with scenes above, and plots, machines and events below.
     fn comparison(&mut self, cases: &[Preview]) -> Result<Part, StoreError> {
         let scenes = cases.iter().map(|case| self.scene(case, &case.title)).collect::<Result<Vec<_>, _>>()?;
         let mut top = self.container(ContainerKind::Horizontal, "Scenes", &scenes, &vec![1.0; scenes.len()])?;
@@ -214,7 +214,7 @@ impl Layout<'_> {
         self.container(ContainerKind::Vertical, "All cases", &[top, bottom], &[1.25, 1.0])
     }
 
-    /// Adds one case: scene on the left, plots on the right, events below; and its design.
+    /// Adds the motion of one case, with its scene on the left, plots on the right and events below, and its design.
     fn case(&mut self, case: &Preview, alone: bool) -> Result<[Part; 2], StoreError> {
         self.tab.clone_from(&case.name);
         let mut scenes = vec![self.scene(case, "Scene")?];
@@ -292,9 +292,9 @@ impl Layout<'_> {
     }
 
     /// Adds the charts of a case in the given places, one below the other.
-    fn plots(&mut self, case: &Preview, name: &str, stands: fn(ChartPlace) -> bool) -> Result<Part, StoreError> {
+    fn plots(&mut self, case: &Preview, name: &str, is_included: fn(ChartPlace) -> bool) -> Result<Part, StoreError> {
         let mut parts = Vec::new();
-        for (chart, _) in case.charts.iter().filter(|(chart, _)| stands(chart.place)) {
+        for (chart, _) in case.charts.iter().filter(|(chart, _)| is_included(chart.place)) {
             parts.push(self.plot(case, chart)?);
         }
         self.container(ContainerKind::Vertical, name, &parts, &vec![1.0; parts.len()])
@@ -420,7 +420,7 @@ fn name_of(chart: &Chart) -> String {
 }
 
 /// Returns the title of a plot, with symbol and colour of each series if there is one per drive, at most four. A legend
-/// would cover the curves of so low a plot. With many series, the viewer names the series under the pointer.
+/// would cover the curves of such a low plot. With many series, the viewer names the series under the pointer.
 fn titled(chart: &Chart, case: &Preview) -> String {
     let signals = case.topics.iter().flat_map(|topic| &topic.signals);
     let all: Vec<_> = signals.filter(|signal| chart.holds(signal)).collect();

@@ -8,18 +8,18 @@ use super::space::PoseSpace;
 use crate::reactionless::{BSet, Decimal};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
 
-/// Residual below which a point counts as reached, as a fraction of the reach.
+/// Residual below which a point is treated as reached, as a fraction of the reach.
 const REACHED_TOLERANCE: f64 = 1e-9;
 /// Number of starting poses in the search for the nearest one.
 const MAX_STARTS: usize = 24;
 /// Another pose is preferred if it is nearer by at least this fraction of the reach.
 const MIN_IMPROVEMENT: f64 = 1e-4;
-/// Samples along the curve of two drives, and steps of the ternary search between two of them.
+/// Number of samples along the curve of two drives, and of steps of the ternary search between two samples.
 const CURVE_SAMPLES: usize = 240;
 const TERNARY_STEPS: usize = 60;
 
 impl PoseSpace {
-    /// Whether a point at a b leaves freedoms, so that a link can be dragged while the end effector stays.
+    /// Whether freedoms remain at a given point and b, so that a link can be dragged while the end effector stays.
     pub fn leaves_freedoms(&self) -> bool {
         self.drives() > 3
     }
@@ -29,7 +29,7 @@ impl PoseSpace {
         self.planes().is_ok_and(|planes| planes.has_bars())
     }
 
-    /// Whether the straight line in joint space between two poses of one b is open.
+    /// Whether the straight line in joint space between two poses of one b is not blocked.
     pub fn is_open_way(&self, from: &PerDrive, to: &PerDrive) -> bool {
         self.planes().map_or(true, |planes| planes.is_open_way([from[0], from[1]], [to[0], to[1]]))
     }
@@ -62,8 +62,8 @@ impl PoseSpace {
         pose_for(self, p, b, from)
     }
 
-    /// Does the same starting from a nearby pose, for a target out of reach while b changes; the feasible b in `known`
-    /// are kept.
+    /// Returns the pose for a target as [`target_pose`](Self::target_pose) does, but starts from a nearby pose, for a
+    /// target out of reach while b changes. The feasible b in `known` are kept.
     pub fn target_pose_nearby(&self, p: Vector, b: f64, from: &PerDrive, known: Reach) -> (PerDrive, Reach) {
         if self.planes().is_ok() {
             return self.target_pose(p, b, from);
@@ -97,7 +97,7 @@ fn pose_for(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive) -> (PerDrive,
         _ => space.drag_to(p, b, from),
     };
     if !is_at(space, off) && space.drives() > 3 {
-        // A pose of another elbow may reach it; no obstacle lies between.
+        // A pose with another elbow configuration may reach it; without planes nothing blocks the path there.
         let poses = space.poses(p, b, from);
         match poses.first() {
             Some(q) => (a, off) = (space.angles(q), 0.0),
@@ -117,7 +117,8 @@ fn pose_for(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive) -> (PerDrive,
     (a, Reach::Outside { nearest, feasible_b, displayed_b, other_sheet: false })
 }
 
-/// Returns the pose nearest to p, m, over starts from all ranges; keeps the given one unless another is clearly nearer.
+/// Returns the pose nearest to p, m, found from samples of all joint ranges; the given pose unless another is clearly
+/// nearer.
 fn nearest_of_all(space: &PoseSpace, p: Vector, b: f64, a: PerDrive, off: f64) -> (PerDrive, f64) {
     let others = (0..MAX_STARTS).map(|i| space.drag_to(p, b, &space.sample(i)));
     let best = others.min_by(|x, y| x.1.total_cmp(&y.1));
@@ -127,13 +128,13 @@ fn nearest_of_all(space: &PoseSpace, p: Vector, b: f64, a: PerDrive, off: f64) -
 /// Returns the point of the curve of two drives that is nearest to p, and its distance, m. A joint that turns freely is
 /// searched within half a turn of `turn`, rad.
 fn along_curve(space: &PoseSpace, p: Vector, b: f64, turn: f64) -> (PerDrive, f64) {
-    // A free joint is searched within half a turn either way: the curve is periodic.
+    // The curve of a free joint is periodic.
     let is_free = space.joints()[0].bounds()[0].is_infinite();
     let [low, high] = if is_free { [turn - PI, turn + PI] } else { space.joints()[0].limits() };
     let off = |a: f64| (space.end_effector(&space.lift(&[a], b)) - p).norm();
     let step = (high - low) / CURVE_SAMPLES as f64;
-    let looks = (0..=CURVE_SAMPLES).map(|i| low + step * i as f64);
-    let near = looks.min_by(|x, y| off(*x).total_cmp(&off(*y))).unwrap_or(low);
+    let samples = (0..=CURVE_SAMPLES).map(|i| low + step * i as f64);
+    let near = samples.min_by(|x, y| off(*x).total_cmp(&off(*y))).unwrap_or(low);
     let [mut from, mut to] = [(near - step).max(low), (near + step).min(high)];
     for _ in 0..TERNARY_STEPS {
         let thirds = [(2.0 * from + to) / 3.0, (from + 2.0 * to) / 3.0];

@@ -7,7 +7,7 @@ use super::pattern::Patterns;
 use super::space::PoseSpace;
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 
-/// Number of whole turns of that drive tried on either side of the middle of its range.
+/// Number of whole turns of the given drive that are tried on either side of the middle of its range.
 const MAX_TURNS: i32 = 3;
 /// Tolerance of the joint limits for rounding, rad.
 const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
@@ -15,7 +15,7 @@ const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
 impl PoseSpace {
     /// Returns poses of four and more drives within the limits that put the end effector on `p`, m, at `b`, rad. One
     /// drive is at a given angle, rad, modulo whole turns. The poses nearest to the given relative angles come first.
-    /// Returns no poses if other drives are joined to the given one beyond it.
+    /// Returns no poses unless the given drive is at the end of the joint tree.
     pub fn poses_with_drive_angle(
         &self,
         p: Vector,
@@ -48,7 +48,7 @@ impl PoseSpace {
         found.into_iter().map(|(_, q)| q).collect()
     }
 
-    /// Returns the machine without a drive at the end of the joint tree, and the index of its joint.
+    /// Returns the space without a drive at the end of the joint tree, and the index of the removed joint.
     fn without(&self, drive: usize) -> Option<(Self, usize)> {
         let mut own = self.joints.iter().enumerate().filter(|(_, joint)| joint.ends.contains(&drive));
         let (joint, _) = own.next().filter(|(_, joint)| joint.ends[1] == drive)?;

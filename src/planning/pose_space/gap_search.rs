@@ -1,10 +1,10 @@
-//! Whether any pose is at a distance from B between two critical values of b.
+//! Search for poses at a given distance from B with b between two critical values.
 //!
 //! # Method
-//! A component between two critical values of b extends to both of them, and ends or merges at critical poses beyond.
-//! So it is found by climbing from the nearest critical poses below or descending from the nearest ones above.
-//! Components on which b goes round without end have no critical poses. They are found on a grid over the last joints,
-//! with the remaining three arms in closed form.
+//! A connected set of poses between two critical values of b extends to both of them, and ends or merges at critical
+//! poses beyond. So it is found by climbing from the nearest critical poses below or descending from the nearest ones
+//! above. A component without an extremum of b has no critical poses. Such components are found on a grid over the last
+//! joints, with the remaining three arms in closed form.
 
 use std::f64::consts::{PI, TAU};
 
@@ -14,8 +14,8 @@ use super::space::{BASE_RADIUS, PoseSpace};
 use crate::reactionless::{AngleDefinition, AngleLimit, PlaneMap};
 use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 
-/// Grid points over the range of each joint beyond the first two, if there are one, two, three, four, five or more of
-/// these.
+/// Number of grid points over the range of each joint beyond the first two, for one, two, three, four, and at least
+/// five such joints.
 const GRID_POINTS: [usize; 5] = [33, 13, 7, 5, 3];
 /// Number of critical poses on either side of a gap from which climbs are tried: in a quick and in a careful search.
 const NEAREST_CRITICALS: [usize; 2] = [3, 24];
@@ -27,11 +27,12 @@ const MAX_GAP_DEPTH: f64 = 0.02;
 const MAX_SWEEPS: usize = 200;
 /// Sweeps that reduce the error of the distance by less than this fraction of the reach end the search.
 const MIN_SWEEP_GAIN: f64 = 1e-12;
-/// Number of samples of all ranges from which poses at a distance are sought: in a quick and in a careful search.
+/// Number of samples over all joint ranges from which poses at a distance are sought: in a quick and in a careful
+/// search.
 const START_SAMPLES: [usize; 2] = [32, 512];
 /// Margin by which a sample must lie inside a gap, as a fraction of the gap.
 const GAP_MARGIN: f64 = 1e-3;
-/// Distance from B at which poses are sought as a start for one at B, as a fraction of the reach.
+/// Distance from B of poses from which a search for a pose at B starts, as a fraction of the reach.
 const NEAR_BASE_DISTANCE: f64 = 1e-2;
 /// Critical values within this tolerance are equal, rad.
 const SAME_CRITICAL_RAD: f64 = 1e-9;
@@ -40,21 +41,22 @@ const SAME_CRITICAL_RAD: f64 = 1e-9;
 pub(super) struct CriticalInterval {
     pub from: f64,
     pub to: f64,
-    /// Maximum distances below and above the gap of critical poses from which it can be reached, rad.
+    /// Critical poses can lead into the gap from at most this far below and above it, rad.
     pub free: [f64; 2],
 }
 
 impl CriticalInterval {
-    /// Some values of b in the gap: near its ends too, as a set that is about to split has few poses.
+    /// Returns sample values of b in the gap, rad, some of them near its bounds.
     fn places(&self) -> [f64; 5] {
         [0.5, 0.2, 0.8, 0.05, 0.95].map(|part| self.from + part * (self.to - self.from))
     }
 }
 
-/// Cached samples at one distance: they hold for every b.
+/// Cached samples at one distance, valid for every b.
 #[derive(Default)]
 pub(super) struct ReachGrid {
-    /// Feasible intervals of b with the last joints held at each grid point, rad; and the end index of each grid point.
+    /// Feasible intervals of b with the last joints held at each grid point, rad. `ends` contains the index after the
+    /// last interval of each grid point.
     spans: Vec<[f64; 2]>,
     ends: Vec<usize>,
     /// The b of sampled poses at the distance, rad.
@@ -64,7 +66,7 @@ pub(super) struct ReachGrid {
 }
 
 impl ReachGrid {
-    /// Clears the samples for another point.
+    /// Clears the samples, for another distance.
     pub fn clear(&mut self) {
         self.spans.clear();
         self.ends.clear();
@@ -73,21 +75,21 @@ impl ReachGrid {
 }
 
 impl PoseSpace {
-    /// Whether some pose is on the x axis at a distance from B, m, with b in a gap between critical poses, given in
-    /// ascending b.
+    /// Whether some pose has its b in the gap and its end effector on the x axis at a distance from B, m. The critical
+    /// poses are given in ascending b.
     pub(super) fn has_pose(
         &self,
         distance: f64,
         gap: &CriticalInterval,
         criticals: &[CriticalPose],
-        looks: &mut ReachGrid,
+        grid: &mut ReachGrid,
     ) -> bool {
         let p = Vector::new(distance, 0.0);
         if self.drives() > 3 {
-            return self.is_reached_by_climbs(p, gap, criticals, NEAREST_CRITICALS[usize::from(looks.careful)])
-                || self.is_reached_on_grid(p, &gap.places(), looks)
-                || self.is_sampled(distance, gap, looks)
-                || (looks.careful && self.is_reached_from_samples(p, 0.5 * (gap.from + gap.to)));
+            return self.is_reached_by_climbs(p, gap, criticals, NEAREST_CRITICALS[usize::from(grid.careful)])
+                || self.is_reached_on_grid(p, &gap.places(), grid)
+                || self.is_sampled(distance, gap, grid)
+                || (grid.careful && self.is_reached_from_samples(p, 0.5 * (gap.from + gap.to)));
         }
         gap.places().iter().any(|b| self.has_isolated_pose(p, *b))
     }
@@ -123,8 +125,8 @@ impl PoseSpace {
         })
     }
 
-    /// Whether a pose at one of these b exists with the last joints held at a grid point.
-    fn is_reached_on_grid(&self, p: Vector, b: &[f64], looks: &mut ReachGrid) -> bool {
+    /// Whether a pose exists at one of these b with the last joints held at a grid point.
+    fn is_reached_on_grid(&self, p: Vector, b: &[f64], grid: &mut ReachGrid) -> bool {
         let (n, first) = (self.joints.len(), 2);
         let each = GRID_POINTS[(self.drives() - 4).min(GRID_POINTS.len() - 1)];
         let at = |i: usize, j: usize| {
@@ -132,7 +134,7 @@ impl PoseSpace {
             low + (high - low) * (j as f64 + 0.5) / each as f64
         };
         let middle = self.middle();
-        let look = |code: usize| {
+        let held_at = |code: usize| {
             let (mut held, mut rest) = (middle, code);
             for i in first..n {
                 held[i] = at(i, rest % each);
@@ -141,30 +143,30 @@ impl PoseSpace {
             held
         };
         (0..each.pow((n - first) as u32)).any(|code| {
-            if code == looks.ends.len() {
-                self.spans(p, &look(code), |span| looks.spans.push(span));
-                looks.ends.push(looks.spans.len());
+            if code == grid.ends.len() {
+                self.spans(p, &held_at(code), |span| grid.spans.push(span));
+                grid.ends.push(grid.spans.len());
             }
-            let from = if code > 0 { looks.ends[code - 1] } else { 0 };
-            looks.spans[from..looks.ends[code]].iter().any(|span| b.iter().any(|b| self.holds(*span, *b)))
+            let from = if code > 0 { grid.ends[code - 1] } else { 0 };
+            grid.spans[from..grid.ends[code]].iter().any(|span| b.iter().any(|b| self.holds(*span, *b)))
         })
     }
 
     /// Whether a sampled pose at the distance has a b in the gap.
-    fn is_sampled(&self, distance: f64, gap: &CriticalInterval, looks: &mut ReachGrid) -> bool {
-        if looks.samples.is_empty() {
+    fn is_sampled(&self, distance: f64, gap: &CriticalInterval, grid: &mut ReachGrid) -> bool {
+        if grid.samples.is_empty() {
             let b = |a: PerDrive| {
                 let q = self.unturned(&a);
                 let turn = self.end_effector(&DriveAngles(q)).arg();
                 self.lambda.dot(&q) - turn * self.lambda_sum
             };
-            let found = (0..START_SAMPLES[usize::from(looks.careful)])
+            let found = (0..START_SAMPLES[usize::from(grid.careful)])
                 .filter_map(|i| self.pose_at_distance(distance, self.sample(i)))
                 .map(b);
-            looks.samples.extend(found.chain([f64::NAN]));
+            grid.samples.extend(found.chain([f64::NAN]));
         }
         let inside = GAP_MARGIN * (gap.to - gap.from);
-        looks.samples.iter().any(|b| self.holds([gap.from + inside, gap.to - inside], *b))
+        grid.samples.iter().any(|b| self.holds([gap.from + inside, gap.to - inside], *b))
     }
 
     /// Whether an interval contains a b, modulo the period.
@@ -179,14 +181,14 @@ impl PoseSpace {
         }
     }
 
-    /// Whether any pose is at a distance from B, m, where no critical values exist: then it exists at every b.
-    pub(super) fn any_pose(&self, distance: f64, looks: &ReachGrid) -> bool {
-        let starts = START_SAMPLES[usize::from(looks.careful)];
+    /// Whether any pose is at a distance from B, m, that has no critical values. Such poses then exist at every b.
+    pub(super) fn any_pose(&self, distance: f64, grid: &ReachGrid) -> bool {
+        let starts = START_SAMPLES[usize::from(grid.careful)];
         match self.drives() {
             ..4 => self.has_isolated_pose(Vector::new(distance, 0.0), 0.0),
             _ if distance <= BASE_RADIUS * self.farthest() => self.has_pose_at_base(starts),
             _ if (0..starts).any(|i| self.pose_at_distance(distance, self.sample(i)).is_some()) => true,
-            // By continuity, between a pose farther from B and one at B.
+            // By continuity, a pose farther from B and one at B imply one at this distance.
             _ => {
                 let distance_of = |i: usize| self.end_effector(&DriveAngles(self.unturned(&self.sample(i)))).norm();
                 (0..starts).any(|i| distance_of(i) >= distance) && self.has_pose_at_base(starts)
@@ -213,8 +215,8 @@ impl PoseSpace {
         any
     }
 
-    /// Finds a pose at a distance from B, m, by coordinate descent: the joints turn one after another, each to the
-    /// angle that brings the end effector nearest to the distance.
+    /// Finds a pose at a distance from B, m, by coordinate descent. The joints turn one after another, each to the
+    /// angle that brings the end effector nearest to this distance.
     fn pose_at_distance(&self, distance: f64, mut a: PerDrive) -> Option<PerDrive> {
         let far = self.farthest();
         let at = |a: &PerDrive| self.end_effector(&DriveAngles(self.unturned(a)));
@@ -233,8 +235,8 @@ impl PoseSpace {
                 let sense = self.joints[i].sense;
                 let [from, to] = [low, high].map(|end| apart + sense * (end - own));
                 let (from, to) = (from.min(to), from.max(to));
-                // Angle between the two parts: the extrema of the distance are where they are in line, or at the
-                // limits.
+                // The distance is extreme where the two parts are in line, at the angles 0 and π between them, or at
+                // the limits.
                 let inside = |line: f64| Some(line + ((from - line) / TAU).ceil() * TAU).filter(|x| *x <= to);
                 let length = |angle: f64| (still + turning * unit(angle - apart)).norm();
                 let ends = if length(from) < length(to) { [from, to] } else { [to, from] };
@@ -244,7 +246,7 @@ impl PoseSpace {
                     let sizes = [still.norm(), turning.norm()];
                     let square = distance * distance - sizes[0] * sizes[0] - sizes[1] * sizes[1];
                     let bend = (square / (2.0 * sizes[0] * sizes[1])).clamp(-1.0, 1.0).acos();
-                    // The nearest solution in the range; rounding may leave none.
+                    // The nearest solution in the range; rounding may exclude both.
                     let both = [bend, -bend].map(|line| line + ((from - line) / TAU).ceil() * TAU);
                     let there = both
                         .into_iter()

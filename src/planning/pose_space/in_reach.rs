@@ -14,9 +14,10 @@ pub enum Reach {
         nearest: Vector,
         /// The b nearest to the present one at which the target can be reached, rad; `None` if there is none.
         feasible_b: Option<f64>,
-        /// That b as displayed: rounded to a value that is still feasible.
+        /// `feasible_b` as displayed: rounded to a value that is still feasible.
         displayed_b: Option<Decimal>,
-        /// Whether a pose at this b reaches it, but beyond a fold, or beyond a change point that is to be kept off.
+        /// Whether a pose at the present b reaches the target, but only beyond a fold or a change point that is to be
+        /// avoided.
         other_sheet: bool,
     },
     /// A change of b has made the target infeasible, so the machine keeps its relative angles and turns with its

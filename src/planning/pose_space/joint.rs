@@ -3,7 +3,7 @@
 /// A relative angle between two drives, one of them nearer to drive 1 in the tree of joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RelativeJoint {
-    /// The drive nearer to drive 1, and the other, counted from 0.
+    /// Indices, counted from 0, of the drive nearer to drive 1 and of the other drive.
     pub(super) ends: [usize; 2],
     /// Sign of the farther drive's angle in the relative angle: 1 or −1.
     pub(super) sense: f64,

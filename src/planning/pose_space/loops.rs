@@ -1,18 +1,19 @@
 //! [`TracedBoundary`]: the boundary of a workspace as closed polygons.
 //!
-//! Where every end of the workspace on a circle continues on the next circle, edges join them. Where the number or
-//! order of the ends changes, both neighbouring circles count as one, and their ends are joined along it in pairs.
-//! Between such a pair lies the part of the circle that belongs to the workspace on one side only. So every end has two
-//! edges, one inwards and one outwards, and all polygons close.
+//! An end is a point where the workspace begins or ends on a circle. Where every end continues on the next circle,
+//! edges join the ends of both circles. Where their number or order changes, the two neighbouring circles are treated
+//! as one, and their ends are joined along it in pairs. Between the ends of a pair, the workspace is on one side of the
+//! circle only. So every end has two edges, one inwards and one outwards, and all polygons close.
 
 use std::f64::consts::TAU;
 
 use super::rings::{BoundaryStep, Ring, Rings};
 use stillbase_mechanics::planar::{Vector, unit};
 
-/// Points within this fraction of the reach are equal; loops nowhere wider are dropped.
+/// Points within this fraction of the reach are equal. Loops of at most ten times this fraction of the squared reach
+/// are dropped.
 const SAME_POINT: f64 = 1e-10;
-/// A circle about B with a radius below this fraction of the reach counts as B.
+/// A circle about B with a radius below this fraction of the reach is treated as B.
 const BASE_RADIUS: f64 = 1e-6;
 
 /// A boundary: loops with the workspace on their left.
@@ -50,7 +51,7 @@ struct Node {
 }
 
 impl Rings {
-    /// Joins all ends to the boundary.
+    /// Joins all ends into closed loops.
     pub fn traced(&self) -> TracedBoundary {
         let far = self.rings.last().map_or(0.0, |ring| ring.r);
         let mut all = All { of: self, nodes: Vec::new(), first: Vec::new(), circles: Vec::new() };
@@ -112,8 +113,8 @@ impl All<'_> {
         }
     }
 
-    /// Joins the ends on the outer side of one circle and on the inner side of the next along that circle. Nothing lies
-    /// beyond the last circle or inside the first.
+    /// Joins the outer sides of one circle's ends and the inner sides of the next circle's ends, along the first
+    /// circle. There is no workspace beyond the last circle or inside the first.
     fn join_along_circle(&mut self, inner: Option<usize>, outer: Option<usize>) {
         let empty = Ring::default();
         let ring = |j: Option<usize>| j.map_or(&empty, |j| &self.of.rings[j]);

@@ -3,8 +3,8 @@
 //! # Method
 //! Minimises ½ Σ w_i (a_i − y_i)² over the poses at (p, b) within the limits by sequential quadratic programming; after
 //! each step Newton's iteration restores p. A full Newton step uses the Hessian of the Lagrangian, including the second
-//! derivatives of p, in the angles that are not at their limits. If it does not improve the objective, shortened steps
-//! without second derivatives are tried.
+//! derivatives of p; angles at their limits are held. If it does not improve the objective, shortened steps without
+//! second derivatives are tried.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -23,7 +23,7 @@ const STEP_TOLERANCE_RAD: f64 = 1e-11;
 const MAX_HALVINGS: usize = 12;
 /// Added to each weight in steps without second derivatives, so that angles of weight 0 stay bounded.
 const WEIGHT_OFFSET: f64 = 1e-3;
-/// Half ranges below this are treated as a single angle when a pose is centred, rad.
+/// An angle with half a range below this is held at its midpoint while a pose is centred, rad.
 const NARROW_HALF_RANGE_RAD: f64 = 1e-3;
 /// Tolerance of active limits, rad.
 const ACTIVE_TOLERANCE_RAD: f64 = 1e-12;
@@ -40,16 +40,15 @@ pub(super) struct PreferredAngles {
 const KKT: usize = 2 * MAX_DRIVES + 2;
 
 impl PoseSpace {
-    /// Returns relative angles at b with the end effector on p, m, that minimise ½ Σ x_i², starting from such a pose.
-    /// x_i is the deviation of a_i from the midpoint of its range, as a fraction of half the range.
+    /// Returns the relative angles of the pose at p, m, and b that minimises ½ Σ x_i², starting from another pose
+    /// there. x_i is the deviation of a_i from the midpoint of its range, as a fraction of half the range.
     pub fn midrange_pose(&self, p: Vector, b: f64, from: &PerDrive) -> PerDrive {
         let half = |i: usize| match self.joints[i].free {
             true => f64::INFINITY,
             false => 0.5 * (self.joints[i].limits[1] - self.joints[i].limits[0]).max(1e-6),
         };
         let middle = self.middle();
-        // Beside an angle that hardly turns, the others would hardly count: it is held at its middle, where it costs
-        // them next to nothing.
+        // An angle with a narrow range would dominate the objective, so it is held at its midpoint if that is feasible.
         let is_narrow = |i: usize| half(i) < NARROW_HALF_RANGE_RAD;
         let (mut weight, mut start) = (PerDrive::from_fn(self.joints.len(), |i| half(i).powi(-2)), *from);
         let mut bounds = std::array::from_fn(|i| self.joints.get(i).map_or([0.0; 2], |joint| joint.bounds()));
@@ -65,8 +64,8 @@ impl PoseSpace {
         self.nearest_to_wish(p, b, &start, &PreferredAngles { angles: middle, weight }, &bounds)
     }
 
-    /// Returns the pose at p, m, and b, rad, that minimises the weighted distance from a wish, starting from another
-    /// pose there.
+    /// Returns the pose at p, m, and b, rad, that minimises the weighted distance from preferred angles, starting from
+    /// another pose there.
     pub(super) fn nearest_to_wish(
         &self,
         p: Vector,
@@ -131,7 +130,8 @@ impl PoseSpace {
             true => self.lift_rates(&PerDrive::from_fn(n, |j| f64::from(u8::from(i == j))), 0.0),
             false => PerDrive::zeros(0),
         });
-        // Sign convention: the Lagrangian is ½ Σ w (a − y)² − ν·p, and ∂²p is −Σ c_k e_k.
+        // Sign convention: the Lagrangian is ½ Σ w (a − y)² − ν·p, and the second derivatives of p contain −c_k
+        // e^{iq_k}.
         let bends = PerDrive::from_fn(self.drives(), |k| dot(nu, self.arms[k] * unit(q[k])));
         let mut square = SMatrix::<f64, KKT, KKT>::identity();
         let mut side = SVector::<f64, KKT>::zeros();

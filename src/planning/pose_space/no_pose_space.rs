@@ -1,4 +1,4 @@
-//! [`NoPoseSpace`]: why a machine has no pose constant; and why a machine of few drives follows no curves.
+//! [`NoPoseSpace`]: why a machine has no pose constant. [`NotFollowable`]: why its end effector cannot follow curves.
 
 use thiserror::Error;
 
@@ -9,7 +9,7 @@ use stillbase_settings::number::{ShortNumber, counted, significant};
 /// Why a machine has no pose constant, in words.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoPoseSpace {
-    /// D depends on the pose.
+    /// The inertia matrix D depends on the pose.
     #[error(
         "this machine has no pose constant b: its angular momentum depends on the pose, because drives {} and {} are \
          coupled by {} kg m², most of it through link {link}; `stillbase design` finds centres of mass that undo it{}",
@@ -70,11 +70,11 @@ pub struct NotFollowable {
     pub drives: usize,
 }
 
-/// Even then two drives conserve an integral: see [`b_integral`](crate::off_plane::b_integral).
+/// Added for two drives, which conserve an integral in any case: see [`b_integral`](crate::off_plane::b_integral).
 const ONLY_TWO: &str = "; without a moment its two drives keep q₁ plus an integral over q₂ − q₁, which is not offered as \
                         b, because its λ changes with the pose";
 
-/// Below this relative variation of λ, holding b removes most of the base moment.
+/// Maximum relative variation of λ with the pose at which holding b still removes most of the base moment.
 const MAX_POSE_DEPENDENCE: f64 = 0.1;
 
 /// Whether holding Σ λ_k q_k keeps the base free of moments.

@@ -1,8 +1,8 @@
 //! The workspace of the end effector while b is held, as an outline.
 //!
 //! b only turns the workspace about B. Let β be the values of b at which the point at a distance r on the x axis can be
-//! reached. Then the points at r that belong to the workspace have the angles φ = (b − β)/Σλ. The ends of the sets of
-//! β, over r, are the boundary.
+//! reached. Then the points at r that belong to the workspace have the angles φ = (b − β)/Σλ. The bounds of the
+//! intervals of β, as functions of r, trace the boundary.
 
 use super::loops::TracedBoundary;
 use super::space::PoseSpace;
@@ -63,9 +63,9 @@ impl PoseSpace {
         self.outline_within(b, CHORD_TOLERANCE_M, &mut |_| true).unwrap_or_default()
     }
 
-    /// Returns the workspace with chords that deviate by at most `chord`, m, from the boundary; with one and two drives
-    /// `chord` has no effect. Progress from 0 to 1 is reported to `goes_on`; if that returns false, the result is
-    /// `None`.
+    /// Returns the workspace with chords that deviate by at most `chord`, m, from the boundary. With planes, or with
+    /// one or two drives, `chord` has no effect. Progress from 0 to 1 is reported to `goes_on`; if that returns false,
+    /// the result is `None`.
     pub fn outline_within(&self, b: f64, chord: f64, goes_on: &mut dyn FnMut(f64) -> bool) -> Option<Outline> {
         if let Ok(planes) = self.planes() {
             let (boundary, loops) = (planes.boundary(), planes.boundary().turned(b));
@@ -88,7 +88,7 @@ impl PoseSpace {
         })
     }
 
-    /// Two drives: the curve of the end effector as the relative angle runs between its limits.
+    /// Returns the curve of the end effector of two drives, as the relative angle varies between its limits.
     fn curve(&self, b: f64) -> Outline {
         let [low, high] = self.joints[0].limits;
         let place = |a: f64| self.end_effector(&self.lift(&[a], b));

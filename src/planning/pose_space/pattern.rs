@@ -1,5 +1,5 @@
-//! [`Pattern`]: a choice of joints that are held at a limit, with all that follows from it for the search of stationary
-//! poses, independent of the point.
+//! [`Pattern`]: a choice of joints held at their limits, with the quantities for finding stationary poses that do not
+//! depend on the point.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::{Arc, OnceLock};
@@ -10,12 +10,13 @@ use stillbase_mechanics::planar::{MAX_DRIVES, Vector, unit};
 /// Number of cells in which a sign change is sought.
 pub(super) const SIGN_INTERVALS: usize = 24;
 
-/// Returns the boundary of a cell: t from 0 to π/2, ν = ν_max sin t.
+/// Returns t at a cell boundary, from 0 to π/2; ν = ν_max sin t.
 pub(super) fn place(i: usize) -> f64 {
     FRAC_PI_2 * i as f64 / SIGN_INTERVALS as f64
 }
 
-/// Returns where the slope at a cell boundary is evaluated: slightly inside at both ends, where the slope is 0 or 0/0.
+/// Returns t at which the slope of a cell boundary is evaluated. It is slightly inside at t = 0 and π/2, where the
+/// slope is 0 or 0/0.
 fn slope_place(i: usize) -> f64 {
     const END_OFFSET: f64 = 1e-6;
     place(i).clamp(END_OFFSET, FRAC_PI_2 - END_OFFSET)
@@ -53,7 +54,7 @@ pub(super) struct Pattern {
     pub lambda: [f64; MAX_DRIVES],
     /// The angle of each free joint when its two compounds have equal angles, rad.
     pub shift: [f64; MAX_DRIVES],
-    /// Whether a held joint has different limits, so that it can leave one.
+    /// Whether some held joint has two different limits, so that it can leave the active one.
     pub held: bool,
     /// With three and more compounds: the greatest ν, m, and the compound whose cosine is 0 there.
     pub most: f64,
@@ -87,7 +88,7 @@ pub(super) struct TurningPoint {
     pub value: f64,
 }
 
-/// Values at a cell boundary for each choice of signs: [`Pattern::stretched`] there, and the rates nearby.
+/// Values at a cell boundary that serve all choices of signs: [`Pattern::stretched`] there, and the rates nearby.
 #[derive(Clone, Copy)]
 struct Place {
     at: (f64, [f64; MAX_DRIVES], Vector),
@@ -103,12 +104,11 @@ struct Rates {
     across: f64,
 }
 
-/// Cache of the patterns of a machine, computed at the first use. They depend only on the space that holds them; its
-/// copies share them.
+/// Cache of the patterns of a pose space, computed at the first use. Copies of the space share it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Patterns(Arc<OnceLock<Vec<Pattern>>>);
 
-/// Patterns follow from the other fields that are compared.
+/// Always equal: patterns follow from other fields of the space, which are compared.
 impl PartialEq for Patterns {
     fn eq(&self, _: &Self) -> bool {
         true
@@ -192,7 +192,7 @@ impl Pattern {
         let most = |i: &usize| c.length[*i] / c.lambda[*i].abs();
         c.across = (0..c.count).min_by(|x, y| most(x).total_cmp(&most(y)))?;
         c.most = most(&c.across);
-        // If ν is unbounded, every Λ is 0; if ν_max is 0, an arm is 0 and b ends only at limits.
+        // If ν is unbounded, every Λ is 0; if ν_max is 0, an arm is 0 and b is extreme only at limits.
         if !(c.most.is_finite() && c.most > 0.0) {
             return None;
         }
@@ -227,7 +227,7 @@ impl Pattern {
                     least.min(greatest) + shift - PRESELECTION_TOLERANCE_RAD,
                     least.max(greatest) + shift + PRESELECTION_TOLERANCE_RAD,
                 ];
-                // The upper bound, less whole turns, less than one turn above the lower limit.
+                // The upper bound minus whole turns, so that it lies less than one turn above the lower limit.
                 let first = high - TAU * ((high - joint.limits[0]) / TAU).floor();
                 first - (high - low) <= joint.limits[1]
             })
@@ -252,7 +252,8 @@ impl Pattern {
             let ends = [cell, cell + 1];
             let [from, to] = ends.map(slope_place);
             let [rise, fall] = ends.map(|i| slopes[i]);
-            // A cell may hold two turning points: if the cubic through both values and slopes has them.
+            // A cell may contain two turning points. It is halved if the cubic through both values and slopes has an
+            // opposite slope at the middle.
             let flat = 1.5 * (values[cell + 1] - values[cell]) / (to - from) - 0.25 * (rise + fall);
             let mut parts = [[(from, rise), (to, fall)]; 2];
             if rise * fall > 0.0 && flat * rise < 0.0 {

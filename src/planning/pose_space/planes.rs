@@ -1,5 +1,5 @@
-//! [`Planes`]: the closed forms of three drives with limits of both relative angles. A pose space holds them, and gives
-//! access to what only planes have: sheets, folds and change points.
+//! [`Planes`]: the closed forms of three drives with limits of both relative angles. A pose space contains them and
+//! gives access to their sheets, folds and change points.
 
 use thiserror::Error;
 
@@ -31,7 +31,7 @@ impl PartialEq for Planes {
 /// Why a machine has no reactionless planes in closed form.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum PlaneError {
-    /// The machine has not three drives and two relative angles.
+    /// The machine does not have three drives and two relative angles.
     #[error(
         "this machine has {} and {}: planes want three drives and two relative angles with limits, each an [[angle]] \
          with name, to, from, min and max",
@@ -68,10 +68,10 @@ impl PlaneError {
 }
 
 impl Planes {
-    /// Returns the planes of a machine, with the λ of its constant diagonal D_k = H_kk.
+    /// Returns the planes of a machine, with λ from the constant diagonal D_k = H_kk of its inertia matrix.
     ///
     /// # Errors
-    /// If it has not three drives and two relative angles with limits, or no b.
+    /// If it does not have three drives and two relative angles with limits, or has no b.
     pub(super) fn of(machine: &Machine) -> Result<Self, PlaneError> {
         let map = plane_map(machine)?;
         let (boundary, is_reactionless) = (Boundary::of(&map), is_reactionless(machine));
@@ -83,23 +83,23 @@ impl Planes {
         self.is_reactionless
     }
 
-    /// Returns the same planes whose paths keep off change points, or may cross them.
+    /// Returns the same planes with paths that avoid change points, or may cross them.
     #[must_use]
     pub(super) fn keeping_off_change_points(self, keep_off_change_points: bool) -> Self {
         Self { keep_off_change_points, ..self }
     }
 
-    /// Whether paths keep off change points.
+    /// Whether paths avoid change points.
     pub fn keep_off_change_points(&self) -> bool {
         self.keep_off_change_points
     }
 
-    /// Whether something within the limits can block a path: a fold, or a change point that is to be kept off.
+    /// Whether a fold, or a change point that is to be avoided, can block a path within the limits.
     pub fn has_bars(&self) -> bool {
         self.keep_off_change_points || self.boundary.interior_singularity()
     }
 
-    /// Returns Eqs (13)–(16) of the machine.
+    /// Returns the machine's coordinate map, Eqs (13)–(16).
     pub fn map(&self) -> &PlaneMap {
         &self.map
     }
@@ -134,7 +134,7 @@ impl Planes {
         if !other_sheet && self.is_open_way(from, edge) {
             return (edge, Reach::Outside { nearest: nearest.at, feasible_b, displayed_b, other_sheet });
         }
-        // Something blocks the straight line to it: as near as possible.
+        // The straight line in joint space is blocked: move as near to the target as possible.
         let a = self.towards(p, b, from);
         (a, Reach::Outside { nearest: self.map.forward(a, b), feasible_b, displayed_b, other_sheet })
     }
@@ -155,7 +155,7 @@ impl Planes {
     }
 
     /// Whether the straight line in joint space between two poses of one plane stays on one sheet, where det keeps its
-    /// sign. If change points are to be kept off, it must also stay on one side of each.
+    /// sign. If change points are to be avoided, it must also stay on one side of each.
     pub fn is_open_way(&self, from: [f64; 2], to: [f64; 2]) -> bool {
         /// Minimum number of samples; long lines have one for each 0.1 rad.
         const MIN_SAMPLES: i32 = 32;
@@ -168,9 +168,9 @@ impl Planes {
         let sheet = self.map.det(from);
         let at = |t: f64| [0, 1].map(|i| from[i] + t * (to[i] - from[i]));
         let far = (to[0] - from[0]).hypot(to[1] - from[1]);
-        // The cast is safe: limits keep it below a thousand.
-        let looks = MIN_SAMPLES.max((10.0 * far) as i32);
-        (1..=looks).all(|i| self.map.det(at(f64::from(i) / f64::from(looks))) * sheet >= 0.0)
+        // The cast is safe: the limits keep this number below a thousand.
+        let samples = MIN_SAMPLES.max((10.0 * far) as i32);
+        (1..=samples).all(|i| self.map.det(at(f64::from(i) / f64::from(samples))) * sheet >= 0.0)
     }
 }
 
@@ -179,10 +179,10 @@ pub fn plane_area(machine: &Machine) -> Option<f64> {
     Some(Boundary::of(&plane_map(machine).ok()?).area())
 }
 
-/// Returns Eqs (13)–(16) of a machine.
+/// Returns the coordinate map of a machine, Eqs (13)–(16).
 ///
 /// # Errors
-/// If it has not three drives and two relative angles with limits, or no b.
+/// If it does not have three drives and two relative angles with limits, or has no b.
 pub fn plane_map(machine: &Machine) -> Result<PlaneMap, PlaneError> {
     let shape = || PlaneError::Shape { drives: machine.drives(), angles: machine.angles().len() };
     let [first, second] = machine.angles() else { return Err(shape()) };

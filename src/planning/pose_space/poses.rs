@@ -5,17 +5,18 @@ use super::nearest::PreferredAngles;
 use super::space::PoseSpace;
 use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 
-/// Tolerance of b of two drives, as a fraction of Σλ: b printed with nine digits keeps it. The point may miss by the
-/// same fraction of the reach.
+/// Tolerance of b of two drives, as a fraction of Σλ; b printed with nine digits is within it. It is also the tolerance
+/// of position, as a fraction of the reach.
 const B_TOLERANCE: f64 = 1e-6;
-/// With four and more drives: number of samples of all ranges, and of starts from which the nearest pose is sought.
+/// With four and more drives: number of samples over all joint ranges, and of starts from which the nearest pose is
+/// sought.
 const START_SAMPLES: usize = 32;
 const MAX_DESCENTS: usize = 12;
-/// Maximum number of climbs from critical poses that is tried once a pose is found.
+/// Number of climbs from critical poses after which no more are tried if a pose has been found.
 const MAX_CLIMBS: usize = 32;
 /// Poses whose angles all differ by less than this are equal, rad.
 const SAME_POSE_RAD: f64 = 1e-6;
-/// Their square roots generate the sequence of samples.
+/// Primes, whose square roots generate the sequence of samples.
 const PRIMES: [f64; MAX_DRIVES - 1] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0];
 
 impl PoseSpace {
@@ -33,7 +34,7 @@ impl PoseSpace {
     }
 
     /// Returns relative angles of poses at `p`, m, and `b`, rad: of all poses with up to three drives. With more, of at
-    /// least one pose in each connected component, and of further samples, in no order.
+    /// least one pose in each connected component, and of further poses found from samples, in no particular order.
     pub fn representative_poses(&self, p: Vector, b: f64) -> Vec<PerDrive> {
         if let Some(map) = self.map() {
             return map.poses(p, b).iter().map(|pose| PerDrive::from(pose.a)).collect();
@@ -72,8 +73,8 @@ impl PoseSpace {
         any
     }
 
-    /// Visits poses of four and more drives until `take` returns false: by climbs from critical poses, and by Newton's
-    /// iteration from samples of all ranges.
+    /// Visits poses of four and more drives until `take` returns false. They are found by climbs from critical poses,
+    /// and by Newton's iteration from samples of all joint ranges.
     fn each_found(&self, p: Vector, b: f64, take: &mut impl FnMut(&PerDrive) -> bool) {
         let serves = |careful| self.reach_with(p, careful).is_ok_and(|set| set.contains(b));
         if !serves(false) && !serves(true) {
@@ -96,7 +97,7 @@ impl PoseSpace {
         self.each_spread(p, b, take);
     }
 
-    /// Visits the poses found from samples of all ranges until `take` returns false.
+    /// Visits the poses found from samples of all joint ranges until `take` returns false.
     pub(super) fn each_spread(&self, p: Vector, b: f64, take: &mut impl FnMut(&PerDrive) -> bool) {
         let windows = self.windows();
         for a in (0..START_SAMPLES).map(|i| self.sample(i)) {
@@ -106,7 +107,7 @@ impl PoseSpace {
         }
     }
 
-    /// Returns relative angles of an infinite sequence of samples that fills all ranges evenly.
+    /// Returns the relative angles, rad, of sample i of an infinite sequence that fills all joint ranges evenly.
     pub(crate) fn sample(&self, i: usize) -> PerDrive {
         PerDrive::from_fn(self.joints.len(), |j| {
             let [low, high] = self.joints[j].limits;
@@ -116,8 +117,8 @@ impl PoseSpace {
         })
     }
 
-    /// Returns the pose of four and more drives that is nearest to given relative angles: the best local minimum from
-    /// the nearest starts in all components.
+    /// Returns the pose of four and more drives that is nearest to given relative angles. It is the best of the local
+    /// minima found from the nearest starts.
     fn nearest_pose(&self, p: Vector, b: f64, near: &[f64]) -> Option<PerDrive> {
         let (n, windows) = (self.joints.len(), self.windows());
         let near = PerDrive::from_fn(n, |i| near[i]);
@@ -152,7 +153,8 @@ impl PoseSpace {
         }
     }
 
-    /// Visits the poses of two drives until `take` returns false: a point has two elbows, each with its own b.
+    /// Visits the poses of two drives until `take` returns false: a point has two elbow configurations, each at a
+    /// different b.
     fn elbows(&self, p: Vector, b: f64, take: &mut impl FnMut(&PerDrive) -> bool) {
         let [l, m] = [self.arms[0], self.arms[1]];
         let cos = (p.norm_sqr() - l * l - m * m) / (2.0 * l * m);

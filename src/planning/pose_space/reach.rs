@@ -9,10 +9,10 @@ use stillbase_mechanics::planar::{DriveAngles, Vector};
 
 /// Critical values of b within this tolerance are equal, rad.
 const SAME_B_RAD: f64 = 1e-10;
-/// Tolerance of a single b of one and two drives, as a fraction of Σλ: half of that of their poses.
+/// Tolerance of a single b of one and two drives, as a fraction of Σλ: half the tolerance used for their poses.
 const SINGLE_B_TOLERANCE: f64 = 0.5e-6;
-/// Offset to a neighbouring distance, as a fraction of the reach: beyond the effect of rounding and of the tolerance of
-/// limits.
+/// Offset to a neighbouring distance, as a fraction of the reach: larger than the effects of rounding and of the
+/// tolerance of limits.
 const NEIGHBOUR_OFFSET: f64 = 4.1e-9;
 
 impl PoseSpace {
@@ -25,7 +25,7 @@ impl PoseSpace {
         self.reach_with(p, true)
     }
 
-    /// Does the same with a careful or a quick search for poses; a quick one may miss some b.
+    /// Returns the same set by a careful or a quick search for poses; a quick one may miss some b.
     pub(crate) fn reach_with(&self, p: Vector, careful: bool) -> Result<BSet, NoReach> {
         if let Some(map) = self.map() {
             return map.reach(p);
@@ -70,7 +70,7 @@ impl PoseSpace {
         tries.iter().find_map(|b| self.poses(p, *b, &self.middle()).first().copied())
     }
 
-    /// Returns the b of points at a distance from B, m, for the point on the x axis.
+    /// Returns the feasible b of the point on the x axis at a distance from B, m.
     fn reach_of(&self, distance: f64, careful: bool) -> BSet {
         let period = self.period();
         if self.drives() == 1 {
@@ -88,8 +88,8 @@ impl PoseSpace {
         if self.criticals(distance, |c| work.ends.push(c)) {
             return self.joined(distance, &[], &mut work).set(period);
         }
-        // At distances just reached by straight arms, or by corners of the limits, critical values coincide and cannot
-        // be distinguished: the union of the sets on both sides is taken.
+        // Where straight arms, or arms with all joints at limits, just reach a distance, critical values coincide. Then
+        // the union of the sets at both neighbouring distances is taken.
         let parts = [-NEIGHBOUR_OFFSET, NEIGHBOUR_OFFSET].map(|by| {
             let neighbour = (distance + by * self.farthest()).abs();
             work.ends.clear();
@@ -119,8 +119,8 @@ impl PoseSpace {
         (at, self.joined(at, neighbours, work))
     }
 
-    /// Determines which gaps between critical values are feasible: by the critical poses beside them, by neighbouring
-    /// distances, or by a search for poses.
+    /// Determines which gaps between critical values are feasible: by the critical poses at their bounds, by
+    /// neighbouring distances, or by a search for poses.
     fn joined(&self, distance: f64, neighbours: &[&BCoverage], work: &mut ReachBuffers) -> BCoverage {
         let period = self.period();
         work.looks.clear();
@@ -145,7 +145,8 @@ impl PoseSpace {
         }
         let n = merged.len();
         if n == 0 {
-            // Without critical values b may go round without end: near B the machine turns as a whole.
+            // Without critical values, all b are feasible or none: near B, for instance, the machine can turn as a
+            // whole.
             let known = agreed(neighbours.iter().map(|seen| seen.whole())).filter(|_| neighbours.len() > 1);
             let whole = self.drives() > 2 && known.unwrap_or_else(|| self.any_pose(distance, &work.looks));
             return BCoverage { ends: Vec::new(), gaps: vec![whole], period };

@@ -11,7 +11,7 @@ use stillbase_mechanics::planar::{Vector, unit};
 
 /// Initial number of circles.
 const INITIAL_CIRCLES: usize = 128;
-/// One circle in this many is computed without the result of the previous one.
+/// Every n-th circle, with this n, is computed without the result of the previous one.
 const RESTART_EVERY: usize = 16;
 /// A change of the boundary is bracketed between circles at this distance, as a fraction of the reach: more than twice
 /// the shift of a circle.
@@ -19,8 +19,8 @@ const CHANGE_BRACKET: f64 = 2e-8;
 /// Maximum number of circles, and of points between them.
 const MAX_RINGS: usize = 6000;
 const MAX_POINTS: usize = 400_000;
-/// Tolerance of the motion of the ends between the two circles about a change, rad. The boundary does not run along a
-/// circle about B, so a larger jump means that a circle is wrong.
+/// Tolerance of the shift of arc ends between the two circles that bracket a change, rad. The boundary does not run
+/// along a circle about B, so a larger jump means that a circle is wrong.
 const JUMP_TOLERANCE_RAD: f64 = 0.02;
 /// Maximum number of bisections of an edge between two circles.
 const MAX_DEPTH: usize = 24;
@@ -28,7 +28,7 @@ const MAX_DEPTH: usize = 24;
 const CLOSE_ENDS: f64 = 5e-3;
 /// Reach above which the tolerance of chords grows in proportion, m.
 const LARGE_REACH_M: f64 = 5.0;
-/// Tolerance between a curve's end and the end on a circle, as a fraction of the reach.
+/// Tolerance of the distance between the end of a curve and the arc end on its circle, as a fraction of the reach.
 const ENDPOINT_TOLERANCE: f64 = 1e-6;
 
 /// A point where the workspace begins or ends on a circle, counter-clockwise.
@@ -78,8 +78,8 @@ impl Ring {
         arcs.map(|w| w[1] - w[0]).fold(0.0, f64::max)
     }
 
-    /// Returns the index of the end on another circle that continues the first end of this one; `None` unless all ends
-    /// continue in the same order.
+    /// Returns the index of the end, on another circle, that continues the first end of this one. Returns `None` unless
+    /// all ends continue in the same order.
     fn turned_to(&self, other: &Self) -> Option<usize> {
         let n = self.ends.len();
         if n != other.ends.len() || (n == 0 && self.whole != other.whole) {
@@ -93,10 +93,10 @@ impl Ring {
 /// Continuation of the boundary from one circle to the next.
 #[derive(Clone, Debug)]
 pub(super) enum BoundaryStep {
-    /// Every end continues: the first one to end `first` of the next circle. `points` lie between the circles; those of
-    /// end i go up to index `to[i]`.
+    /// Every end continues, the first one to end `first` of the next circle. `points` lie between the circles; those of
+    /// end i stop before index `to[i]`.
     On { first: usize, points: Vec<Vector>, to: Vec<usize> },
-    /// The number or order of the ends changes: both circles count as one.
+    /// The number or order of the ends changes, so both circles are treated as one.
     Changes,
 }
 
@@ -104,11 +104,11 @@ pub(super) enum BoundaryStep {
 #[derive(Clone, Debug)]
 pub(super) struct Rings {
     pub rings: Vec<Ring>,
-    /// One for each two neighbouring circles.
+    /// One step for each pair of neighbouring circles.
     pub steps: Vec<BoundaryStep>,
     /// Area between the boundary and its chords, m².
     pub chord_area: f64,
-    /// Maximum deviation of chords from arcs of circles, m.
+    /// Maximum deviation of chords from the boundary, m.
     pub chord: f64,
     /// Sum of the jumps of the boundary in excess of [`JUMP_TOLERANCE_RAD`], rad; 0 if all circles are consistent.
     pub jumps: f64,
@@ -122,13 +122,13 @@ impl PoseSpace {
         if carried.jumps == 0.0 || self.drives() == 3 {
             return Some(carried);
         }
-        // Some result that was carried from circle to circle was wrong.
+        // Some result that was reused for the next circle was wrong.
         let afresh = self.rings_of(b, chord, [false, true], goes_on)?;
         Some(if afresh.jumps < carried.jumps { afresh } else { carried })
     }
 
-    /// Does the same; with `carries` results of a circle are reused for the next, with `careful` poses are searched for
-    /// carefully.
+    /// Returns the circles. If `carries` is set, results of a circle are reused for the next; if `careful` is set,
+    /// poses are searched for carefully.
     fn rings_of(
         &self,
         b: f64,
@@ -214,7 +214,7 @@ impl Sweep<'_> {
     fn ring_of(&self, (r, covered): (f64, BCoverage)) -> (Ring, BCoverage) {
         let n = covered.ends.len();
         let whole = covered.gaps.iter().all(|gap| *gap);
-        // The angle falls as b rises.
+        // The angle decreases as b increases.
         let end = |i: usize| {
             let [before, after] = [covered.gaps[(i + n - 1) % n], covered.gaps[i]];
             let c = &covered.ends[i];
@@ -288,7 +288,7 @@ impl Sweep<'_> {
         self.bisected(&CriticalPoint { t: 0.5 * (from + to), ..spots[0] }, [from, to], ends, MAX_DEPTH, edge)
     }
 
-    /// Does the same between two parameters t, given the middle, by bisection.
+    /// Adds the points of a curve between two parameters t, given its middle, by bisection.
     fn bisected(
         &self,
         middle: &CriticalPoint,

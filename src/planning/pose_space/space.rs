@@ -1,7 +1,7 @@
 //! [`PoseSpace`]: coordinates (a, b) of the poses of any machine that has a pose constant.
 //!
-//! Three drives with limits of both relative angles have [`Planes`], with most answers in closed form; such a space
-//! uses them. Only this module chooses between the two methods.
+//! For three drives with limits of both relative angles, [`Planes`] gives most results in closed form, and a pose space
+//! uses it.
 
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -24,12 +24,13 @@ pub struct PoseSpace {
     pub(super) arms: PerDrive,
     pub(super) lambda: PerDrive,
     pub(super) lambda_sum: f64,
-    /// Ordered as a tree: each comes after the joint that leads to its nearer drive.
+    /// Without planes, ordered as a tree: each follows the joint that leads to its nearer drive. With planes, in the
+    /// machine's order.
     pub(super) joints: Box<[RelativeJoint]>,
     pub(super) lead: GuidanceMode,
     inertia: f64,
     is_reactionless: bool,
-    /// Cache for these arms and joints; a space with other ones needs its own.
+    /// Cache of the patterns of these arms and joints; a space with different ones needs a new cache.
     pub(super) patterns: Patterns,
     /// The closed forms, or why there are none.
     planes: Result<Arc<Planes>, PlaneError>,
@@ -41,11 +42,11 @@ pub enum GuidanceMode {
     /// Each step minimises the kinetic energy.
     #[default]
     LeastEnergy,
-    /// A drive keeps its angle, and so its links their orientation, as long as that is feasible.
+    /// One drive keeps its angle, so its links keep their orientation, as long as that is feasible.
     Keep(usize),
     /// Each step minimises a weighted norm; the matrix is the inverse of the weight, row by row.
     Weighed(Box<[[f64; MAX_DRIVES]; MAX_DRIVES]>),
-    /// The pose moves to the one nearest to the midpoints of all ranges.
+    /// The pose moves to the one nearest to the midpoints of all joint ranges.
     Middle,
 }
 
@@ -93,7 +94,7 @@ impl PoseSpace {
         let reach: f64 = arms.iter().map(|c| c.abs()).sum();
         let mut joints = joints(machine)?;
         match &planes {
-            // Planes have checks of their own, and order the angles as the machine does.
+            // [`PlaneMap`] has checked λ and the arms already, and orders the angles as the machine does.
             Ok(_) => joints.sort_by_key(|joint| joint.angle),
             Err(_) if lambda_sum.partial_cmp(&1e-9) != Some(std::cmp::Ordering::Greater) => {
                 return Err(NoPoseSpace::Sum { sum: lambda_sum });
@@ -120,7 +121,7 @@ impl PoseSpace {
         Self { lead, ..self }
     }
 
-    /// Returns the same space whose paths keep off change points, or may cross them. Without planes it has no effect.
+    /// Returns the same space with paths that avoid change points, or may cross them. Without planes it has no effect.
     #[must_use]
     pub fn keeping_off_change_points(self, keep_off: bool) -> Self {
         let kept = |planes: Arc<Planes>| match planes.keep_off_change_points() == keep_off {
@@ -139,7 +140,7 @@ impl PoseSpace {
         self.planes.as_ref()
     }
 
-    /// Returns Eqs (13)–(16) in closed form, where available.
+    /// Returns the coordinate map of Eqs (13)–(16); `None` without planes.
     #[inline]
     pub(super) fn map(&self) -> Option<&PlaneMap> {
         self.planes.as_ref().ok().map(|planes| planes.map())
@@ -155,12 +156,12 @@ impl PoseSpace {
         self.arms.len()
     }
 
-    /// Returns c_k, m: the end effector is Σ_k c_k e^{iq_k}.
+    /// Returns the arms c_k, m: the end effector is Σ_k c_k e^{iq_k}.
     pub fn arms(&self) -> &PerDrive {
         &self.arms
     }
 
-    /// Returns λ_k.
+    /// Returns the weights λ_k of b = Σ_k λ_k q_k, Eq. (13).
     pub fn lambda(&self) -> &PerDrive {
         &self.lambda
     }
@@ -170,7 +171,7 @@ impl PoseSpace {
         self.lambda_sum
     }
 
-    /// Returns D_1, kg m²: the base moment is n_B = −D_1 b̈.
+    /// Returns the inertia D_1, kg m²: the base moment is n_B = −D_1 b̈.
     pub fn inertia(&self) -> f64 {
         self.inertia
     }
@@ -185,8 +186,8 @@ impl PoseSpace {
         &self.joints
     }
 
-    /// Whether the workspace at fixed b is an area, and the b of a point form intervals. Otherwise it is a curve or a
-    /// point, and each point has single values of b.
+    /// Whether the workspace at fixed b is an area, so that the b of a point form intervals. Otherwise it is a curve or
+    /// a point, and each point has single values of b.
     pub fn reaches_area(&self) -> bool {
         self.joints.len() > 1
     }
@@ -199,7 +200,8 @@ impl PoseSpace {
         if self.reaches_area() { Ok(()) } else { Err(NotFollowable { drives: self.drives() }) }
     }
 
-    /// Returns the period of b, 2π Σλ, rad: one turn of all drives adds it to b and changes nothing else.
+    /// Returns the period of b, 2π Σλ, rad: one turn of all drives changes b by a period and leaves the end effector in
+    /// place.
     pub fn period(&self) -> f64 {
         TAU * self.lambda_sum
     }
@@ -225,7 +227,7 @@ impl PoseSpace {
         DriveAngles(q)
     }
 
-    /// Returns the drive rates for rates of the relative angles and ḃ.
+    /// Returns the drive rates for rates of the relative angles and ḃ, in their unit.
     pub fn lift_rates(&self, ad: &[f64], bd: f64) -> PerDrive {
         if let Some(map) = self.map() {
             return PerDrive::from(map.lift_rates([ad[0], ad[1]], bd));
@@ -239,7 +241,7 @@ impl PoseSpace {
         qd
     }
 
-    /// Returns the rates of the relative angles for drive rates.
+    /// Returns the rates of the relative angles for drive rates, in their unit.
     pub fn angle_rates(&self, qd: &[f64]) -> PerDrive {
         if let Some(map) = self.map() {
             return PerDrive::from(map.project_rates(qd).0);
@@ -287,12 +289,12 @@ impl PoseSpace {
         (self.angles(q), self.b(q))
     }
 
-    /// Returns the rates of the relative angles and ḃ for drive rates.
+    /// Returns the rates of the relative angles and ḃ for drive rates, in their unit.
     pub fn project_rates(&self, qd: &[f64]) -> (PerDrive, f64) {
         (self.angle_rates(qd), self.b(qd))
     }
 
-    /// Returns the end effector of relative angles and b, m.
+    /// Returns the position of the end effector from B for relative angles and b, m.
     pub fn forward(&self, a: &[f64], b: f64) -> Vector {
         match self.map() {
             Some(map) => map.forward([a[0], a[1]], b),
@@ -300,7 +302,7 @@ impl PoseSpace {
         }
     }
 
-    /// Returns the end effector of a pose, m.
+    /// Returns the position of the end effector of a pose from B, m.
     pub fn end_effector(&self, q: &[f64]) -> Vector {
         self.arms.iter().zip(q).map(|(c, q)| *c * unit(*q)).sum()
     }
@@ -352,7 +354,7 @@ fn joints(machine: &Machine) -> Result<Vec<RelativeJoint>, NoPoseSpace> {
     }
 }
 
-/// Returns the limits as they are, or [−π, π] if there are none.
+/// Returns the given limits, or [−π, π] if one of them is infinite.
 fn window(min: f64, max: f64) -> [f64; 2] {
     if min.is_finite() && max.is_finite() { [min, max] } else { [-PI, PI] }
 }

@@ -12,7 +12,7 @@ const LIMIT_SAMPLES: usize = 4;
 /// Number of Newton steps from a sample to the extremum beside it.
 const PEAK_STEPS: usize = 4;
 
-/// Returns a table for each leg of a path; `None` if the rows depend on each other at a pose.
+/// Returns a table for each leg of a path; `None` if the constraint rows are linearly dependent at a pose.
 pub(super) fn tables(held: &PoseConstraint<'_>, stations: &Stations, q: &[PerDrive]) -> Option<Vec<PathTable>> {
     stations.legs.iter().map(|leg| table(held, leg, &q[leg.first..=leg.last()])).collect()
 }

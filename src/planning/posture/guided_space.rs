@@ -1,4 +1,4 @@
-//! Pose spaces with the rule of a posture for dragging, and whether their paths avoid change points.
+//! [`GuidedSpace`]: query for pose spaces in which a posture determines the redundant freedoms while dragging.
 
 use std::sync::Arc;
 
@@ -7,8 +7,8 @@ use crate::pose_space::{GuidanceMode, PoseSpace};
 use stillbase_mechanics::machine::Machine;
 use stillbase_query::{ByIdentity, QuickQuery};
 
-/// Query for a pose space of a machine with the rule of a posture for dragging. Its paths avoid change points or cross
-/// them.
+/// Query for a machine's pose space with the guidance mode of a posture. If requested, its paths avoid change points;
+/// otherwise they may cross them.
 pub struct GuidedSpace;
 
 impl QuickQuery for GuidedSpace {
@@ -21,7 +21,7 @@ impl QuickQuery for GuidedSpace {
     }
 }
 
-/// Returns a pose space with the rule of a posture for dragging; without free degrees of freedom it is unchanged.
+/// Returns a pose space with the guidance mode of a posture; without redundant freedoms it is unchanged.
 fn with_posture_guidance(space: PoseSpace, machine: &Machine, posture: Posture) -> PoseSpace {
     if !space.leaves_freedoms() {
         return space;

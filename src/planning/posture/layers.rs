@@ -1,4 +1,4 @@
-//! [`Layers`]: samples, at stations along a path, of the poses that can be reached from the start of the path.
+//! [`Layers`]: samples, at stations along a path, of poses that can be reached from the start of the path.
 //!
 //! # Method
 //! The first layer begins with at least one pose on every connected component of the set of poses. A layer is filled
@@ -201,7 +201,7 @@ fn filled(
         let free = free_directions(space, &lifted(space, &a, b));
         let mut ways: Vec<PerDrive> = free.clone();
         if free.len() > 1 {
-            // Random directions between the axes as well.
+            // Add random directions between those of the basis.
             for _ in 0..free.len() {
                 let mixed = free.iter().fold(PerDrive::zeros(a.len()), |sum, z| sum.plus(noise(&mut seed), z));
                 let size = mixed.dot(&mixed).sqrt();

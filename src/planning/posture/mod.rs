@@ -1,18 +1,18 @@
-//! Use of the degrees of freedom that four drives and more have at a given point and b.
+//! Use of the redundant freedoms of machines with four and more drives at a given point and b.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | q′ | dq/ds, s the fraction of the whole path length | rad |
-//! | T | motor torques are T q̈ from rest: A⁻ᵀ H | kg m² |
+//! | T | A⁻ᵀ H; the motor torques from rest are T q̈ | kg m² |
 //! | x_i | relative angle a_i scaled to −1 and 1 at its limits; 0 if it has none | 1 |
 //!
 //! # Method
 //! The search optimises the whole path at once. It samples the set of poses of (p, b) at stations along the path
-//! (`layers`), finds the cheapest route through the samples (`route`), and refines it to a local optimum (`refine`).
+//! (`layers`). It finds the cheapest route through the samples (`route`), and refines it to a local optimum (`refine`).
 //! The objective is ∫ |q′|² ds, ∫ |T q̈|² dt by the time law, or ∫ ½ Σ x_i² ds (`goal`). Each objective also starts
 //! from the results of the others, and the path with the least objective is taken. The layers find an existing path
-//! unless it has a passage narrower than the distance of the samples.
+//! unless it has a passage narrower than the spacing of the samples.
 
 mod emit;
 mod envelope;
@@ -33,7 +33,7 @@ pub use weights::PostureWeights;
 use stillbase_settings::word::words;
 
 words! {
-    /// Use of the degrees of freedom that are left at a given point and b.
+    /// Use of the redundant freedoms at a given point and b.
     pub enum Posture {
         /// Least ∫ |q′|² ds.
         LeastRates = "least-rates", "Drives turn least", "The drives turn as little as they can";

@@ -1,10 +1,10 @@
 //! Refinement of a path to a local optimum: Newton's method over all its poses at once.
 //!
 //! # Method
-//! The poses q_i keep (p_i, b), so a step is Z_i z_i with a null space basis Z_i of each. The reduced Hessian is Zᵀ
-//! (∇²f + diag(ν·c_k e^{iq_k})) Z, a banded matrix, because ∂²p/∂q_k² = −c_k e^{iq_k} and ν are the multipliers of p.
-//! An augmented Lagrangian keeps the limits: their multipliers grow until no limit is passed. Every step is projected
-//! back onto (p, b).
+//! The poses q_i keep (p_i, b), so a step is Z_i z_i, with a null space basis Z_i at each pose. The reduced Hessian is
+//! Zᵀ (∇²f + diag(ν·c_k e^{iq_k})) Z, a banded matrix, because ∂²p/∂q_k² = −c_k e^{iq_k} and ν are the multipliers of
+//! p. An augmented Lagrangian keeps the limits: their multipliers grow until no limit is passed. Every step is
+//! projected back onto (p, b).
 
 use super::envelope::Envelope;
 use super::goal::{PostureCost, times};
@@ -153,8 +153,8 @@ impl RefinementProblem<'_> {
         sum
     }
 
-    /// Calls `what` for each limit of each pose with the index of the limit, the distance beyond it, rad, the index of
-    /// the pose, and sign and gradient of the angle.
+    /// Calls `what` for each limit of each pose. Its arguments are the index of the limit, the distance beyond it, rad,
+    /// the index of the pose, and the sign of the limit with the gradient of the angle.
     fn each_limit(&self, q: &[PerDrive], mut what: impl FnMut(usize, f64, usize, (f64, &PerDrive))) {
         let count = self.bounds.len();
         for (i, q) in q.iter().enumerate() {

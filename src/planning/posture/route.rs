@@ -13,12 +13,12 @@ const NEXT_POSE_FACTOR: f64 = 1.25;
 const MAX_TRIES: usize = 40;
 /// Approximate maximum number of start poses that are tried for closed paths.
 const MAX_STARTS: usize = 60;
-/// Maximum length of a step of the path, as a factor of its share of a step of the route.
+/// Maximum step of a path between stations, as a multiple of the mean step of the route there.
 const STRETCH_FACTOR: f64 = 4.0;
 /// Amount added to this maximum, rad.
 const STRETCH_SLACK_RAD: f64 = 0.02;
 
-/// Cost of a step of a route: index of the layer that it leaves, start pose and end pose.
+/// Cost of a step of a route, given the index of the layer that it leaves, its start pose and its end pose.
 pub(super) type StepCost<'a> = &'a dyn Fn(usize, &PerDrive, &PerDrive) -> f64;
 
 /// Steps between layers, by layer and pose: index of the next pose, and the cost.
@@ -111,7 +111,7 @@ impl Layers<'_> {
         Some((way, costs[end]))
     }
 
-    /// Finds the cheapest closed route, as [`cheapest`](Self::cheapest).
+    /// Finds the cheapest closed route, in the form returned by [`cheapest`](Self::cheapest).
     fn cheapest_round(&self, steps: &Steps, banned: &HashSet<(usize, usize, usize)>) -> Option<(Vec<usize>, f64)> {
         let count = self.all[0].poses.len();
         let every = count.div_ceil(MAX_STARTS);

@@ -104,7 +104,8 @@ impl PoseConstraint<'_> {
         None
     }
 
-    /// Returns the q′ and q″ nearest to given ones that follow a curve with the derivatives `way`, m.
+    /// Returns the q′ and q″, nearest to given ones, with which the end effector follows a curve with the derivatives
+    /// `way`, m.
     pub fn along(
         &self,
         q: &PerDrive,
@@ -120,7 +121,7 @@ impl PoseConstraint<'_> {
             [off.re, off.im, -self.scale() * self.space.lambda().dot(rates), hand]
         };
         let first = first.plus(1.0, &rows.least(&residual(first, way[0])));
-        // p″ = J q″ − Σ c e q′².
+        // p″ = J q″ − Σ c_k e^{iq_k} q_k′².
         let pull: Vector = (0..n).map(|k| arms[k] * first[k] * first[k]).sum();
         let second = second.plus(1.0, &rows.least(&residual(second, way[1] + pull)));
         Some((first, second))

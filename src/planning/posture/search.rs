@@ -16,8 +16,8 @@ use crate::timing::TimeLaw;
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
 
-/// Resolutions of the search, each tried if the one before finds no path: number of layers, factor on
-/// [`POSE_SPACING_RAD`], and maximum number of poses of a layer.
+/// Resolutions of the search, each tried if the one before finds no path. Each gives the number of layers, the factor
+/// on [`POSE_SPACING_RAD`], and the maximum number of poses of a layer.
 const RESOLUTIONS: [(usize, f64, usize); 3] = [(24, 1.0, 200), (48, 0.5, 500), (96, 0.25, 1200)];
 /// Distance between neighbouring poses with one, two … degrees of freedom, rad.
 const POSE_SPACING_RAD: [f64; 5] = [0.2, 0.35, 0.5, 0.7, 0.9];
@@ -53,7 +53,7 @@ const SAME_PATH_BELOW_RAD: f64 = 0.02;
 const RATE_WEIGHTS_IN_MID_RANGE: [f64; 3] = [1e-2, 1e-4, 1e-6];
 /// Weight of smoothness in the torque objective.
 const SMOOTHNESS_WEIGHT: f64 = 120.0;
-/// Weight of every drive in the smoothness term of the torque objective, so that light drives count as well.
+/// Weight of every drive in the smoothness term of the torque objective, so that light drives are smoothed too.
 const LIGHT_DRIVE_WEIGHT: f64 = 1e-4;
 /// Weight of rates in the torque objective.
 const RATE_WEIGHT_IN_TORQUE: f64 = 1e-6;
@@ -90,7 +90,7 @@ pub struct PosturePaths {
 /// Why the search found no path.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NoPosturePath {
-    /// The poses that can be reached from the start end before the path does.
+    /// No continuous motion of the joints from the start reaches the end of the path.
     #[error("no way of the joints within their limits goes farther than {:.1} % along", 100.0 * .share)]
     Ends {
         /// Fraction of the path that can be reached, 0 to 1.
@@ -120,7 +120,7 @@ impl NoPosturePath {
 enum Missed {
     /// It misses its curve in the marked intervals, by leg.
     Between(Vec<Vec<bool>>),
-    /// The refinement fails, or passes limits.
+    /// The refinement fails, or exceeds limits.
     Elsewhere,
 }
 
@@ -157,9 +157,9 @@ impl PostureRequest<'_> {
     /// # Errors
     /// Why no path was found, and up to which fraction of the path poses reach.
     pub fn path(&self, posture: Posture) -> Result<PosturePaths, NoPosturePath> {
-        self.searched(&RESOLUTIONS, posture, |ways, turned| match posture {
-            Posture::Orientation => Some(self.finest(turned, posture)?.1),
-            _ => self.least_of_all(ways, turned, posture),
+        self.searched(&RESOLUTIONS, posture, |ways, oriented| match posture {
+            Posture::Orientation => Some(self.finest(oriented, posture)?.1),
+            _ => self.least_of_all(ways, oriented, posture),
         })
     }
 
@@ -168,13 +168,13 @@ impl PostureRequest<'_> {
     /// # Errors
     /// As [`path`](Self::path).
     pub fn quick_path(&self, posture: Posture) -> Result<PosturePaths, NoPosturePath> {
-        self.searched(&RESOLUTIONS[..1], posture, |ways, turned| {
-            Some(self.finest(if posture == Posture::Orientation { turned } else { ways }, posture)?.1)
+        self.searched(&RESOLUTIONS[..1], posture, |ways, oriented| {
+            Some(self.finest(if posture == Posture::Orientation { oriented } else { ways }, posture)?.1)
         })
     }
 
-    /// Searches at several resolutions and returns the best path that `best` selects from the unrestricted paths and
-    /// those of constant orientation.
+    /// Searches at several resolutions and returns the path that `best` selects from the unrestricted paths and those
+    /// of constant orientation.
     fn searched(
         &self,
         details: &[(usize, f64, usize)],
@@ -189,12 +189,12 @@ impl PostureRequest<'_> {
                 Err(at) => NoPosturePath::Ends { share: rough.stations.done(at) },
                 Ok(layers) => {
                     let is_held = posture == Posture::Orientation;
-                    let turned = rough.oriented(&layers, self.hand.1.filter(|_| is_held));
-                    let ways = if is_held { Vec::new() } else { rough.ways(&layers, turned.first()) };
-                    if let Some(way) = best(&ways, &turned) {
+                    let oriented = rough.oriented(&layers, self.hand.1.filter(|_| is_held));
+                    let ways = if is_held { Vec::new() } else { rough.ways(&layers, oriented.first()) };
+                    if let Some(way) = best(&ways, &oriented) {
                         return Ok(PosturePaths { tables: way.tables });
                     }
-                    if is_held && turned.is_empty() { NoPosturePath::Turns } else { NoPosturePath::Abrupt }
+                    if is_held && oriented.is_empty() { NoPosturePath::Turns } else { NoPosturePath::Abrupt }
                 }
             };
             refused = if why.rank() > refused.rank() { why } else { refused };
@@ -205,12 +205,12 @@ impl PostureRequest<'_> {
     /// Returns the path with the least objective of a posture. The candidates are the best paths by every objective,
     /// those of constant orientation, and their refinements by the other objectives. They are the same for every
     /// posture.
-    fn least_of_all(&self, ways: &[Way], turned: &[Way], posture: Posture) -> Option<Way> {
+    fn least_of_all(&self, ways: &[Way], oriented: &[Way], posture: Posture) -> Option<Way> {
         let closes = ways.iter().any(|way| way.closed);
-        let turned: Vec<Way> = turned.iter().filter(|way| way.closed || !closes).cloned().collect();
+        let oriented: Vec<Way> = oriented.iter().filter(|way| way.closed || !closes).cloned().collect();
         let mut all: Vec<Way> = Vec::new();
         for own in [Posture::LeastRates, Posture::LeastTorque, Posture::MidRange, Posture::Orientation] {
-            let Some((fine, way)) = self.finest(if own == Posture::Orientation { &turned } else { ways }, own) else {
+            let Some((fine, way)) = self.finest(if own == Posture::Orientation { &oriented } else { ways }, own) else {
                 continue;
             };
             let others = (0..GOALS.len()).filter(|goal| GOALS[*goal] != own);
@@ -221,8 +221,8 @@ impl PostureRequest<'_> {
         all.into_iter().min_by(|x, y| x.values[goal].total_cmp(&y.values[goal]))
     }
 
-    /// Refines the best of rough paths finely and returns the search with its stations; adds stations where a path
-    /// misses its curve.
+    /// Refines the best rough paths finely and returns the search with the final stations, and the best path. Adds
+    /// stations where a path misses its curve.
     fn finest(&self, ways: &[Way], posture: Posture) -> Option<(Search<'_>, Way)> {
         let mut fine = Search::on(self, Stations::of(self.curves, self.law, FINE_INTERVALS), FINE_STEP_TOLERANCE_RAD);
         for _ in 0..=MAX_DIVISIONS {
@@ -259,15 +259,15 @@ impl<'a> Search<'a> {
         let all = even(n);
         let rates = goal(vec![CostTerm::rates(&stations, all), CostTerm::smooth(&stations, all, 1.0)]);
         let torque = weights.torque;
-        let slow: WeightMatrix =
+        let smoothness: WeightMatrix =
             std::array::from_fn(|k| std::array::from_fn(|l| torque[k][l] + LIGHT_DRIVE_WEIGHT * all[k][l]));
         let torques = goal(vec![
             CostTerm::accelerations(&stations, torque),
             CostTerm::rates(&stations, scaled(&all, RATE_WEIGHT_IN_TORQUE)),
-            CostTerm::smooth(&stations, slow, SMOOTHNESS_WEIGHT),
+            CostTerm::smooth(&stations, smoothness, SMOOTHNESS_WEIGHT),
         ]);
-        let middle = RATE_WEIGHTS_IN_MID_RANGE.map(|beside| {
-            let own = scaled(&all, beside);
+        let middle = RATE_WEIGHTS_IN_MID_RANGE.map(|rate_weight| {
+            let own = scaled(&all, rate_weight);
             goal(vec![
                 CostTerm::places(&stations, weights.ranges()),
                 CostTerm::rates(&stations, own),
@@ -294,7 +294,7 @@ impl<'a> Search<'a> {
 
     /// Returns refined paths over the layers, and those refined from one of constant orientation. For closed curves
     /// these are closed paths, if there are any.
-    fn ways(&self, layers: &Layers<'_>, turned: Option<&Way>) -> Vec<Way> {
+    fn ways(&self, layers: &Layers<'_>, oriented: Option<&Way>) -> Vec<Way> {
         let closings: &[bool] = if self.asked.closed { &[true, false] } else { &[false] };
         for closed in closings {
             let mut ways: Vec<Way> = Vec::new();
@@ -305,14 +305,15 @@ impl<'a> Search<'a> {
             if ways.is_empty() {
                 continue;
             }
-            ways.extend(turned.filter(|way| !closed || way.closed).cloned());
+            ways.extend(oriented.filter(|way| !closed || way.closed).cloned());
             self.crossed(&mut ways, *closed);
             return ways;
         }
         Vec::new()
     }
 
-    /// Adds refinements of the best paths of each objective by every other objective, until no path is added.
+    /// Refines each path by every objective unless it is close to the best by that objective, and adds the results.
+    /// Repeats this up to three times, until no path is added.
     fn crossed(&self, ways: &mut Vec<Way>, closed: bool) {
         let mut tried: Vec<(usize, usize)> = Vec::new();
         for _ in 0..3 {
@@ -338,17 +339,17 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Refines the cheapest rough paths on these stations and returns the best. If `turned`, each keeps its
+    /// Refines the cheapest rough paths on these stations and returns the best. If `oriented`, each keeps its
     /// orientation.
-    fn finest(&self, ways: &[Way], goal: usize, turned: bool) -> Result<Way, Missed> {
+    fn finest(&self, ways: &[Way], goal: usize, oriented: bool) -> Result<Way, Missed> {
         let mut order: Vec<&Way> = ways.iter().collect();
         order.sort_by(|x, y| x.values[goal].total_cmp(&y.values[goal]));
         let mut best: Option<Way> = None;
         let mut missed = Missed::Elsewhere;
-        let (mut dearest, mut count) = (f64::INFINITY, 0);
+        let (mut max_cost, mut count) = (f64::INFINITY, 0);
         let mut before: Vec<&Way> = Vec::new();
         for way in order {
-            if way.values[goal] > dearest || count >= MAX_REFINED {
+            if way.values[goal] > max_cost || count >= MAX_REFINED {
                 break;
             }
             if before.iter().any(|other| apart(&other.q, &way.q) < SAME_PATH_BELOW_RAD) {
@@ -357,9 +358,9 @@ impl<'a> Search<'a> {
             before.push(way);
             let held = PoseConstraint { hand: way.hand, ..self.held() };
             let Some(start) = self.placed(way, &held) else { continue };
-            match self.refined(&if turned { held } else { self.held() }, goal, &start, way.closed) {
+            match self.refined(&if oriented { held } else { self.held() }, goal, &start, way.closed) {
                 Ok(made) => {
-                    dearest = dearest.min((1.0 + MAX_COST_EXCESS) * way.values[goal]);
+                    max_cost = max_cost.min((1.0 + MAX_COST_EXCESS) * way.values[goal]);
                     count += 1;
                     let better = best.as_ref().is_none_or(|best| made.values[goal] < best.values[goal]);
                     best = if better { Some(made) } else { best };

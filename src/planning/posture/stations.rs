@@ -21,7 +21,7 @@ pub(super) struct PathLeg {
     pub first: usize,
     /// s of each station, from 0 at the start of this curve to 1 at its end.
     pub s: Vec<f64>,
-    /// Point of the curve at each station, with its derivatives by this s.
+    /// Point of the curve at each station, with its derivatives with respect to this s.
     pub points: Vec<CurvePoint>,
     /// Midpoints between the stations, where the path is checked as well: s and the point of the curve, m.
     pub between: Vec<(f64, Vector)>,
@@ -82,8 +82,8 @@ impl Stations {
         Self::at(curves, law, curves.iter().zip(&shares).map(grid).collect())
     }
 
-    /// Returns stations with marked intervals divided in four and their neighbours in two. `marked` has one per leg
-    /// and interval.
+    /// Returns stations with marked intervals divided in four and their neighbours in two. `marked` has one flag per
+    /// leg and interval.
     pub fn parted(&self, curves: &[Curve], law: Option<TimeLaw>, marked: &[Vec<bool>]) -> Self {
         let grid = |(leg, marked): (&PathLeg, &Vec<bool>)| {
             let is_marked = |i: usize| marked.get(i).copied().unwrap_or(false);

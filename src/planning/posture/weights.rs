@@ -1,4 +1,4 @@
-//! [`PostureWeights`]: weights of motor torques and of ranges.
+//! [`PostureWeights`]: weights of motor torques and of joint ranges.
 
 use nalgebra::SMatrix;
 
@@ -51,7 +51,8 @@ impl<'a> PostureWeights<'a> {
         })
     }
 
-    /// Returns ½ Σ x_i², the squared distance of the relative angles from the middle of their ranges.
+    /// Returns ½ Σ x_i², where x_i is the deviation of a relative angle from its midpoint, as a fraction of half its
+    /// range.
     pub fn off_middle(&self, q: &DriveAngles) -> f64 {
         let (a, middle) = (self.space.angles(q), self.space.middle());
         (0..a.len()).map(|i| 0.5 * ((a[i] - middle[i]) / half_range(self.space, i)).powi(2)).sum()

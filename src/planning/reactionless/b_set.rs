@@ -8,15 +8,15 @@ const MERGE_TOLERANCE_RAD: f64 = 1e-11;
 /// A set of pose constants: disjoint closed intervals on the circle of b.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BSet {
-    /// [b_min, b_max] ascending, rad: b_min in [0, period), b_max ≥ b_min may exceed it; the whole circle is [0,
-    /// period].
+    /// [b_min, b_max] ascending, rad: b_min in [0, period), b_max ≥ b_min, possibly beyond the period. The set of all b
+    /// is [0, period].
     pub intervals: Vec<[f64; 2]>,
     /// Circumference of the circle, 2π Σλ, rad.
     pub period: f64,
 }
 
 impl BSet {
-    /// Returns the union of intervals [low, high] anywhere on the real line, rad.
+    /// Returns the union, modulo the period, of intervals [low, high] anywhere on the real line, rad.
     pub(crate) fn union(mut parts: Vec<[f64; 2]>, period: f64) -> Self {
         for part in &mut parts {
             let width = (part[1] - part[0]).min(period);
@@ -91,8 +91,8 @@ impl BSet {
         Self { intervals: self.intervals.iter().map(|i| lift(*i)).collect(), period: self.period }
     }
 
-    /// Moves b towards the middle of the interval that contains it or is nearest, by a fraction of the distance. Poses
-    /// at the end of an interval may be infeasible within rounding.
+    /// Moves b towards the middle of the interval that contains it or is nearest, by a fraction of the distance. At the
+    /// bounds of an interval, rounding may make poses infeasible.
     pub fn moved_inside(&self, b: f64, share: f64) -> f64 {
         let middles =
             self.shifted_near(b).intervals.into_iter().map(|[low, high]| (0.5 * (low + high), 0.5 * (high - low)));
@@ -100,8 +100,8 @@ impl BSet {
         nearest.map_or(b, |(middle, _)| b + share * (middle - b))
     }
 
-    /// Returns the value of the set, shifted by whole periods, that is nearest to b on the real line; b itself if the
-    /// set contains it.
+    /// Returns the value of the set, shifted by whole periods, that is nearest to b on the real line. This is b itself
+    /// if the set contains it; `None` if the set is empty.
     pub fn nearest(&self, b: f64) -> Option<f64> {
         let step = |[low, high]: &[f64; 2]| {
             let (past, width) = (wrap(b - low, self.period), high - low);

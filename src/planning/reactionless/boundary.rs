@@ -4,10 +4,11 @@
 //! and a_2. Its boundary is a subset of the images of the limits and of det ∂(x, y)/∂(a_1, a_2) = 0; b only turns it,
 //! by b* = b/Σλ, (15), (16).
 //!
-//! The number of poses of a point changes by one across the image of a limit and by two across a fold. Oriented with
-//! the side of more poses on the left, these images are a cycle whose winding number about a point is its number of
-//! poses. The images are split where they intersect. The parts with no pose on their right are the boundary: outer
-//! loops run counter-clockwise, holes clockwise. Areas follow by Green's theorem along the exact curves.
+//! The number of poses of a point changes by one across the image of a limit and by two across a fold, the image of det
+//! = 0. Oriented with the side of more poses on the left, these images form a cycle. Its winding number about a point
+//! is the point's number of poses. The images are split where they intersect. The parts with no pose on their right are
+//! the boundary: outer loops run counter-clockwise, holes clockwise. Areas follow by Green's theorem along the exact
+//! curves.
 //!
 //! | quantity | unit |
 //! |---|---|
@@ -38,7 +39,7 @@ use span::Surface;
 use super::PlaneMap;
 use stillbase_mechanics::planar::{Vector, cross, dot, unit};
 
-/// A region narrower than this has no area, only a curve, rad.
+/// A region narrower than this is treated as a curve without area, rad.
 const MIN_WIDTH_RAD: f64 = 1e-9;
 
 /// The boundary of a reactionless workspace, computed once for all b.
@@ -52,7 +53,7 @@ pub struct Boundary {
     area: f64,
     sheet_area: f64,
     interior_singularity: bool,
-    /// The workspace has no area; the loops are a curve traversed back and forth.
+    /// Whether the workspace has no area; its loop is then a curve traversed back and forth.
     flat: bool,
 }
 
@@ -169,7 +170,7 @@ impl Boundary {
     /// Returns the bounds in x and y of the workspace turned by b, m.
     pub fn extent(&self, b: f64) -> BoundingBox {
         let turn = unit(self.on.map.turn(b));
-        // A direction w of the turned workspace is w turned back in the unturned one.
+        // A direction in the turned workspace, turned back, is the same direction in the unturned one.
         let most = |x: f64, y: f64| self.support(Vector::new(x, y) * turn.conj());
         BoundingBox { x_min: -most(-1.0, 0.0), x_max: most(1.0, 0.0), y_min: -most(0.0, -1.0), y_max: most(0.0, 1.0) }
     }
@@ -217,8 +218,8 @@ impl Boundary {
         winding > 0
     }
 
-    /// Returns the boundary point at which the end effector stays for a target p outside, on the plane b: a local
-    /// minimum of the distance from p, m, that is reached from the present position `from`, m, downhill along one loop.
+    /// Returns the boundary point at which the end effector stays on the plane b for a target p, m, outside. It is the
+    /// local minimum of the distance from p that a descent along one loop reaches from the present position `from`, m.
     ///
     /// If `from` is inside, the end effector first moves straight towards p up to the boundary, then along it.
     pub fn nearest(&self, p: Vector, b: f64, from: Vector) -> Nearest {
@@ -311,7 +312,7 @@ fn falling_zero(f: impl Fn(f64) -> f64, from: f64, to: f64) -> Option<f64> {
     if !(at_low >= 0.0 && at_high <= 0.0) {
         return None;
     }
-    // Regula falsi with the Illinois modification: superlinear, and never leaves the bracket.
+    // Regula falsi that halves the value at the retained bound: superlinear, and never leaves the bracket.
     for _ in 0..60 {
         if at_low == at_high {
             break;

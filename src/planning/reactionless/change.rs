@@ -11,7 +11,7 @@ use super::plane::{AngleLimit, PlaneMap};
 /// The pairs (k, l) of drives, counted from 0, in the order of sides and sines.
 pub const DRIVE_PAIRS: [[usize; 2]; 3] = [[0, 1], [1, 2], [0, 2]];
 
-/// Poses this near to a change point count as on it, rad.
+/// Poses at most this far from a change point are treated as on it, rad.
 pub(super) const CHANGE_POINT_MARGIN: f64 = 1e-9;
 
 /// The difference q_l − q_k = n · a + δ of a pair of drives.
@@ -32,7 +32,7 @@ impl AngleDifference {
         self.n[0] * a[0] + self.n[1] * a[1] + self.delta
     }
 
-    /// Returns n · a at a number of half turns, rad.
+    /// Returns n · a where the difference is a given number of half turns, rad.
     pub fn level(&self, half_turns: f64) -> f64 {
         half_turns * PI - self.delta
     }
@@ -69,8 +69,8 @@ impl AngleDifference {
 }
 
 impl PlaneMap {
-    /// Returns sin(q_l − q_k) of each pair of [`DRIVE_PAIRS`], the same for every b: 0 at a change point; its sign is the
-    /// side.
+    /// Returns sin(q_l − q_k) of each pair of [`DRIVE_PAIRS`], the same for every b: 0 at a change point, with opposite
+    /// signs on its two sides.
     #[inline]
     pub fn sines(&self, a: [f64; 2]) -> [f64; 3] {
         [0, 1, 2].map(|pair| AngleDifference::of(self, pair).at(a).sin())
@@ -81,8 +81,8 @@ impl PlaneMap {
         self.sines(a).iter().fold(1.0, |least: f64, s| least.min(s.abs()))
     }
 
-    /// Returns the side of a pose for each pair of [`DRIVE_PAIRS`]: m with mπ ≤ q_l − q_k < (m + 1)π. The straight line in
-    /// (a_1, a_2) between two poses with equal sides crosses no change point.
+    /// Returns the side of a pose for each pair of [`DRIVE_PAIRS`]: m with mπ ≤ q_l − q_k < (m + 1)π. The straight line
+    /// in (a_1, a_2) between two poses with equal sides crosses no change point.
     pub fn sides(&self, a: [f64; 2]) -> [i32; 3] {
         [0, 1, 2].map(|pair| (AngleDifference::of(self, pair).at(a) / PI).floor() as i32)
     }

@@ -22,7 +22,7 @@ impl Decimal {
         Self { value: format!("{x:.decimals$}").parse().unwrap_or(x) + 0.0, decimals }
     }
 
-    /// Returns the number that is `steps` units of the last decimal greater.
+    /// Returns this number plus `steps` units of its last decimal.
     #[must_use]
     pub fn stepped(self, steps: i32) -> Self {
         Self::nearest(self.value + f64::from(steps) * 10f64.powi(-(self.decimals as i32)), self.decimals)
@@ -64,14 +64,14 @@ impl BSet {
         Decimal::that(b, least, |x| sets.iter().any(|s| inside(*s, x)))
     }
 
-    /// Describes the set: `b from 2.2158 to 2.6610 rad`, with the ends rounded inwards, so that they are in the set.
+    /// Describes the set: `b from 2.2158 to 2.6610 rad`, with the bounds rounded inwards, so that they are in the set.
     pub fn in_words(&self) -> String {
         let ranges: Vec<String> = self.intervals.iter().map(|[low, high]| describe_interval(*low, *high)).collect();
         format!("b {} rad", ranges.join(" or "))
     }
 }
 
-/// Describes an interval: `from 2.216 to 2.661`, with its ends rounded inwards to as many decimals as keep it
+/// Describes an interval: `from 2.216 to 2.661`, with its bounds rounded inwards to as many decimals as keep it
 /// non-empty.
 pub fn describe_interval(low: f64, high: f64) -> String {
     let ends = (4..=MAX_DECIMALS).find_map(|decimals| {

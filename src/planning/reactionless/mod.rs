@@ -1,7 +1,7 @@
 //! The geometry of reactionless planes: pose constants, workspaces, and all that follows from (13)–(16).
 //!
-//! For three coaxial drives with two relative joint angles, the geometry of a plane b = const follows from a few
-//! numbers, a [`PlaneMap`]; masses and links do not enter.
+//! For three coaxial drives with two relative joint angles, the geometry of a plane b = const follows from the few
+//! numbers of a [`PlaneMap`], without masses and links.
 //!
 //! # Symbols
 //! | letter | meaning | unit |

@@ -43,7 +43,7 @@ pub struct PlanePoint {
     pub b: f64,
 }
 
-/// Eqs (13)–(16) of a machine.
+/// The coordinate map of a machine, Eqs (13)–(16).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneMap {
     c: [f64; 3],
@@ -64,10 +64,10 @@ pub enum NotAPlaneMap {
         "the relative joint angles do not determine the pose on a plane: want two angles that join all three drives"
     )]
     Dependent,
-    /// A number is not finite, or Σλ is zero.
+    /// A number is not finite, Σλ is not above 0, or limits are not in order.
     #[error("λ, lengths, offsets and limits must be finite, with Σλ above 0 and min ≤ max")]
     OutOfRange,
-    /// The range of an angle holds too many whole turns, which are counted one by one.
+    /// The range of an angle contains too many whole turns, which are counted one by one.
     #[error("a{} may turn by {width:.2} rad: want limits at most eight turns apart, {} rad", .angle + 1, MAX_LIMIT_RANGE)]
     TooWide {
         /// Which angle: 0 for a_1, 1 for a_2.
@@ -100,11 +100,11 @@ const MIN_DET: f64 = 1e-5;
 /// Below this fraction, |det| is treated as zero.
 const ZERO_DET: f64 = 1e-15;
 
-/// Maximum distance of limits, rad: slightly more than eight turns, so that ±4 turns are allowed.
+/// Maximum distance between the limits of an angle, rad: slightly more than eight turns, so that ±4 turns are allowed.
 pub const MAX_LIMIT_RANGE: f64 = 50.4;
 
 impl PlaneMap {
-    /// Returns the map of these numbers after checks.
+    /// Checks these numbers and returns their map.
     ///
     /// # Errors
     /// If a number is out of range, or (a_1, a_2, b) does not determine q.
@@ -153,7 +153,7 @@ impl PlaneMap {
         self.c
     }
 
-    /// Returns λ_k.
+    /// Returns the weights λ_k of b = Σ_k λ_k q_k, (13).
     pub fn lambda(&self) -> [f64; 3] {
         self.lambda
     }
@@ -163,12 +163,12 @@ impl PlaneMap {
         self.lambda_sum
     }
 
-    /// Returns u_k.
+    /// Returns u_k of q_k = b* + u_k · a + v_k.
     pub fn u(&self) -> [[f64; 2]; 3] {
         self.u
     }
 
-    /// Returns v_k, rad.
+    /// Returns v_k of the same equation, rad.
     pub fn v(&self) -> [f64; 3] {
         self.v
     }
@@ -222,7 +222,7 @@ impl PlaneMap {
         [0, 1, 2].map(|k| turn + self.local(k, at.a))
     }
 
-    /// Returns the drive rates for rates (ȧ_1, ȧ_2) and ḃ.
+    /// Returns the drive rates for rates (ȧ_1, ȧ_2) and ḃ, in their unit.
     #[inline]
     pub fn lift_rates(&self, ad: [f64; 2], bd: f64) -> [f64; 3] {
         let turn = self.turn(bd);
@@ -238,7 +238,7 @@ impl PlaneMap {
         }
     }
 
-    /// Returns (ȧ_1, ȧ_2) and ḃ for drive rates.
+    /// Returns (ȧ_1, ȧ_2) and ḃ for drive rates, in their unit.
     pub fn project_rates(&self, qd: &[f64]) -> ([f64; 2], f64) {
         let ad = self.angles.map(|a| qd[a.to] - qd[a.from]);
         (ad, self.lambda.iter().zip(qd).map(|(l, q)| l * q).sum())
@@ -255,13 +255,13 @@ impl PlaneMap {
         [0, 1, 2].map(|k| self.c[k] * unit(self.local(k, a)))
     }
 
-    /// Returns the end effector at b = 0 of (16), m.
+    /// Returns the position of the end effector from B at b = 0, m, (16).
     #[inline]
     pub fn forward_unturned(&self, a: [f64; 2]) -> Vector {
         self.arms(a).iter().sum()
     }
 
-    /// Returns the end effector, m, (16).
+    /// Returns the position of the end effector from B, m, (16).
     #[inline]
     pub fn forward(&self, a: [f64; 2], b: f64) -> Vector {
         self.forward_unturned(a) * unit(self.turn(b))

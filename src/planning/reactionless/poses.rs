@@ -19,8 +19,8 @@ const FOLD_TOLERANCE: f64 = 1e-12;
 /// Tolerance of the position of poses clamped to the limits, as a fraction of the reach.
 const CLAMPED_TOLERANCE: f64 = 10.0 * LIMIT_SLACK;
 
-/// Poses nearer to each other than this are equal, rad: where two merge at a fold, their difference is of the order of
-/// the square root of the rounding error.
+/// Poses nearer to each other than this are equal, rad. Where two poses merge at a fold, they differ by about the
+/// square root of the rounding error.
 const SAME_POSE_RAD: f64 = 1e-7;
 
 /// All poses of a point on a plane, sorted by a_1; dereferences to a slice.
@@ -28,7 +28,7 @@ const SAME_POSE_RAD: f64 = 1e-7;
 pub struct Poses {
     len: usize,
     few: [PlanePoint; INLINE],
-    /// All of them, if they are more than fit inline; only limits of many turns allow so many.
+    /// All poses, if there are more than fit inline; this only occurs for limits many turns apart.
     many: Vec<PlanePoint>,
 }
 
@@ -94,12 +94,12 @@ impl Poses {
 }
 
 impl PlaneMap {
-    /// Returns all poses within the limits that put the end effector on `p`, m, on the plane `b`, rad: each elbow and
-    /// each sheet.
+    /// Returns all poses within the limits that put the end effector on `p`, m, on the plane `b`, rad, over all elbow
+    /// configurations and sheets.
     ///
-    /// b is not wrapped: Σ λ_k q_k of the lifted pose is `b`. Limits may be exceeded by [`LIMIT_SLACK`]; the poses returned
-    /// keep them. The result is empty if there is no pose; [`reach`](Self::reach) gives the reason. Poses that form a
-    /// continuum (the end effector is moved by one arm only) are not listed.
+    /// b is not wrapped: Σ λ_k q_k of the lifted pose is `b`. Poses that exceed limits by up to [`LIMIT_SLACK`] are
+    /// included, moved onto the limits. The result is empty if there is no pose; [`reach`](Self::reach) gives the
+    /// reason. Poses that form a continuum (the end effector is moved by one arm only) are not listed.
     pub fn poses(&self, p: Vector, b: f64) -> Poses {
         let mut poses = Poses::new(b);
         if !(p.re.is_finite() && p.im.is_finite() && b.is_finite()) {

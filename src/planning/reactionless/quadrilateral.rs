@@ -1,10 +1,11 @@
-//! The quadrilateral of the three arms and the vector from B to a point. Its configurations are the curve of poses that
-//! keep the end effector on the point (the self-motion), split into arcs along which b is monotone.
+//! The quadrilateral of the three arms and the vector from B to a point. Its configurations form the curve of poses
+//! that keep the end effector on the point (the self-motion). The curve is split into arcs along which b is monotone.
 //!
 //! In a frame with the arm that both relative angles share on the real axis, the curve is the level set
 //! |m + x e^{iα} + y e^{iβ}| = |p|. For each α the law of cosines gives two β, so the curve consists of two graphs,
 //! along which b has a closed form without jumps. The split points have closed forms too. They are the turning points
-//! of α, the intersections with the joint limits, and the folds det = 0; cos α of the folds are the roots of a cubic.
+//! of α, the intersections with the joint limits, and the folds det = 0. The values of cos α at the folds are roots of
+//! a cubic.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -50,7 +51,7 @@ pub(super) struct Quadrilateral {
     b_0: f64,
     /// Bounds of α and β.
     limits: [AngleLimit; 2],
-    /// Index of the relative angle that α is, and of the one that β is.
+    /// Index of the relative angle that corresponds to α, and of the one that corresponds to β.
     index: [usize; 2],
     /// α = sign a + shift, and the same for β.
     sign: [f64; 2],

@@ -41,14 +41,16 @@ pub enum NoReach {
 
 /// The poses within the limits with the end effector on a point.
 enum SelfMotion {
-    /// The point is B: these (a_1, a_2) hold it at every b.
+    /// The point is B: these (a_1, a_2) put the end effector there at every b.
     EveryB(Vec<[f64; 2]>),
-    /// Arcs along which b varies; and (a_1, a_2) at their ends that rounding may have removed from them.
+    /// Arcs along which b varies, and (a_1, a_2) of corners of the limits and of flat poses, which rounding may have
+    /// removed from the arcs.
     Curve(Quadrilateral, Vec<MonotoneArc>, Vec<[f64; 2]>),
 }
 
 impl PlaneMap {
-    /// Returns all b at which the end effector can be on `p`, m, within the limits, over all elbows and sheets.
+    /// Returns all b at which the end effector can be on `p`, m, within the limits, over all elbow configurations and
+    /// sheets.
     ///
     /// # Errors
     /// If there are none: the reason.
@@ -97,7 +99,7 @@ impl PlaneMap {
         }
     }
 
-    /// Returns the self-motion that holds the end effector on `p`, m: each connected branch as a polyline, closed if
+    /// Returns the self-motion that keeps the end effector on `p`, m. Each connected branch is a polyline, closed if
     /// its first and last poses are equal; Fig. 3 shows q_1 over b. Empty if the point cannot be reached at any b.
     ///
     /// b is continuous along a branch and starts in [0, period). A branch has `samples` points, denser towards its
@@ -229,7 +231,7 @@ impl Step {
     }
 }
 
-/// Joins arcs end to end to branches.
+/// Joins arcs end to end into branches.
 fn branches(mut arcs: Vec<MonotoneArc>) -> Vec<Vec<Step>> {
     // Rounding can leave a single point beside an arc that begins there.
     let meets = |s: &Site, t: &Site| (s.alpha - t.alpha).abs().max((s.beta - t.beta).abs()) < 1e-9;

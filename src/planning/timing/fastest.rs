@@ -23,8 +23,7 @@ pub const GRID_INTERVALS: usize = 600;
 
 /// Finds the fastest motion on a path within a machine's limits, including those on jerk if `smooth`. On a curve the
 /// grid begins with [`stations`] of [`GRID_INTERVALS`] and the path's own places. It is refined where limited
-/// quantities change much. Finally the motion is slowed down by as much as limits are exceeded between stations, so
-/// that it keeps them everywhere.
+/// quantities change much. Finally the motion is slowed down until it keeps the limits between stations too.
 ///
 /// # Errors
 /// If no limit acts on the motion, or no motion keeps the limits.
@@ -38,7 +37,8 @@ pub fn fastest(
     planned(path, model, around, limits, smooth, None)
 }
 
-/// Returns stations s = u² (3 − 2 u) at even u. They are densest at the ends, where a motion from rest to rest is slow.
+/// Returns stations s = u² (3 − 2 u) at evenly spaced u. They are densest at the ends, where a motion from rest to rest
+/// is slow.
 pub fn stations(spaces: usize) -> Vec<f64> {
     let at = |i: usize| {
         let u = i as f64 / spaces as f64;
@@ -48,7 +48,7 @@ pub fn stations(spaces: usize) -> Vec<f64> {
 }
 
 /// Finds the fastest motion as [`fastest`] on a fixed grid of stations that rise from 0 to 1. Limits other than those
-/// on jerk are kept at the stations, and between them to second order in their spacing.
+/// on jerk are kept at the stations. Between them, the error is of second order in their spacing.
 ///
 /// # Errors
 /// As [`fastest`], and if the stations do not rise from 0 to 1.
@@ -95,7 +95,7 @@ fn planned(
         None => dense(path),
     };
     let grid = PathConstraints::new(path, &constraints, nodes);
-    let (grid, timed, glances) = match stations {
+    let (grid, timed, phase_bounds) = match stations {
         Some(_) => {
             let timed = curved(path, &grid, grid.fastest(), &constraints);
             (grid, timed, None)
@@ -110,8 +110,8 @@ fn planned(
         return smooth::smooth(path, model, around, &constraints, &grid, bound);
     }
     let found = bound?;
-    let Some(glances) = glances else { return Ok(found) };
-    let factor = greatest_of(glances, |at: &PathProgress| constraints.stretches(path, at));
+    let Some(phase_bounds) = phase_bounds else { return Ok(found) };
+    let factor = greatest_of(phase_bounds, |at: &PathProgress| constraints.stretches(path, at));
     let profile = slow_to_keep(&found.profile, factor).ok_or(TimeError::Stuck { s: 0.0 })?;
     Ok(FastestMotion { profile, ..found })
 }
@@ -132,23 +132,23 @@ fn mended(
             Ok(timed) => timed,
             error => return (grid, error, None),
         };
-        let glances = glanced(&timed.profile, &grid, &jumps, stretches);
+        let phase_bounds = bounds_of_phases(&timed.profile, &grid, &jumps, stretches);
         let enough = 1.0 + REPAIR_THRESHOLD;
-        let closer = |glance: &PhaseBound| match glance.bound > enough {
-            true => glance.closer(enough, stretches)[0],
-            false => glance.seen,
+        let closer = |phase_bound: &PhaseBound| match phase_bound.bound > enough {
+            true => phase_bound.closer(enough, stretches)[0],
+            false => phase_bound.seen,
         };
-        let past: Vec<f64> = glances.iter().map(closer).collect();
+        let past: Vec<f64> = phase_bounds.iter().map(closer).collect();
         let is_kept = past.iter().all(|past| *past <= enough);
         if is_kept || past.len() + 1 != grid.s.len() || refinements.next().is_none() {
-            return (grid, Ok(timed), Some(glances));
+            return (grid, Ok(timed), Some(phase_bounds));
         }
         (grid, found) = grid.mended(path, constraints, &past);
     }
 }
 
 /// Samples each phase. Limited quantities are known at the stations, except where they may jump.
-fn glanced(
+fn bounds_of_phases(
     profile: &Profile,
     grid: &PathConstraints,
     jumps: &[f64],
@@ -158,7 +158,7 @@ fn glanced(
         jumps[jumps.partition_point(|jump| *jump < s - S_TOLERANCE)..].first().is_some_and(|j| *j <= s + S_TOLERANCE)
     };
     let has_stations = profile.phases().count() + 1 == grid.s.len();
-    let glance = |(i, phase): (usize, (PathProgress, f64))| {
+    let phase_bound = |(i, phase): (usize, (PathProgress, f64))| {
         if !has_stations || may_jump(grid.s[i]) || may_jump(grid.s[i + 1]) {
             return PhaseBound::of(phase, &stretches);
         }
@@ -166,10 +166,10 @@ fn glanced(
         let ends = [grid.stretches(i, &from), grid.stretches(i + 1, &after(&from, time))];
         PhaseBound::between(phase, ends.each_ref(), &stretches)
     };
-    profile.phases().enumerate().map(glance).collect()
+    profile.phases().enumerate().map(phase_bound).collect()
 }
 
-/// Returns the rising s at which q′ or q″ may jump: none for a table, in which both are continuous.
+/// Returns the ascending s at which q′ or q″ may jump: none for a table, in which both are continuous.
 fn jumps(path: &Path) -> Vec<f64> {
     match path {
         Path::Table(_) => Vec::new(),
@@ -292,7 +292,7 @@ fn explain(grid: &PathConstraints, constraints: &Constraints, blocked: NoTiming)
     TimeError::Stuck { s: grid.s[i] }
 }
 
-/// Returns the active limits with their fractions of the duration, the greatest first.
+/// Returns each limit with the fraction of the duration during which it is used most, the greatest first.
 fn leading(path: &Path, grid: &PathConstraints, constraints: &Constraints, x: &[f64]) -> Vec<(DriveLimit, f64)> {
     let mut shares = TimeShares::default();
     for i in 0..x.len().saturating_sub(1) {

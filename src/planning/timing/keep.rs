@@ -10,16 +10,16 @@ use stillbase_mechanics::machine::Inertia;
 
 /// Number of intervals of a phase that is sampled finely.
 const FINE_INTERVALS: usize = 16;
-/// Distance of samples from the ends of a phase, as a fraction of it: at a jump of a path's derivatives, rounding would
-/// decide which side is evaluated.
+/// Distance of samples from the ends of a phase, as a fraction of it. Without it, rounding would decide which side of a
+/// jump of the path's derivatives is evaluated.
 const END_MARGIN_SHARE: f64 = 1e-6;
 /// Relative margin against rounding.
 const ROUNDING: f64 = 1e-9;
 /// Maximum relative excess of the slowdown over the necessary one.
 const NEGLIGIBLE: f64 = 1e-7;
 
-/// Three samples within a phase of several quantities that are each smooth there. Their maximum is not smooth where one
-/// takes over from another, so each is assessed separately.
+/// Three samples, within a phase, of several quantities. Each quantity is smooth there, but their maximum need not be,
+/// so each is assessed separately.
 pub(super) struct PhaseBound {
     phase: (PathProgress, f64),
     /// Maximum over the three samples.
@@ -47,29 +47,31 @@ impl PhaseBound {
         of: impl Fn(&PathProgress) -> [f64; N],
     ) -> Self {
         let middle = within(&phase, 0.5, &of);
-        let mut glance = Self { phase, seen: 0.0, bound: 0.0, likeliest: (0, [0.0; 3]), others: 0.0 };
+        let mut phase_bound = Self { phase, seen: 0.0, bound: 0.0, likeliest: (0, [0.0; 3]), others: 0.0 };
         for k in 0..N {
             let own = [from[k], middle[k], to[k]];
             let greatest = own[0].max(own[1]).max(own[2]);
             let spread = greatest - own[0].min(own[1]).min(own[2]);
-            glance.seen = glance.seen.max(greatest);
+            phase_bound.seen = phase_bound.seen.max(greatest);
             if spread > ROUNDING * greatest {
                 let bound = crest(own).max(greatest) + 0.25 * spread;
-                if bound > glance.bound {
-                    (glance.others, glance.bound, glance.likeliest) = (glance.bound, bound, (k, own));
+                if bound > phase_bound.bound {
+                    (phase_bound.others, phase_bound.bound, phase_bound.likeliest) =
+                        (phase_bound.bound, bound, (k, own));
                 } else {
-                    glance.others = glance.others.max(bound);
+                    phase_bound.others = phase_bound.others.max(bound);
                 }
             }
         }
-        glance.bound = glance.bound.max(glance.seen);
-        glance
+        phase_bound.bound = phase_bound.bound.max(phase_bound.seen);
+        phase_bound
     }
 
     /// Samples the phase more finely. Returns the maximum that is found and an upper estimate, which is at most
     /// `enough` or equal to the maximum.
     pub(super) fn closer<const N: usize>(&self, enough: f64, of: impl Fn(&PathProgress) -> [f64; N]) -> [f64; 2] {
-        // The error of the parabola at two more samples bounds the error of the parabolas through all five.
+        // The error of the parabola at two more samples bounds the error of the three parabolas through neighbouring
+        // samples.
         let (k, [a, b, c]) = self.likeliest;
         let [p, q] = [0.25, 0.75].map(|u| within(&self.phase, u, &of)[k]);
         let off = (p - 0.125 * (3.0 * a + 6.0 * b - c)).abs().max((q - 0.125 * (3.0 * c + 6.0 * b - a)).abs());
@@ -103,20 +105,23 @@ pub(super) fn greatest<const N: usize>(
     greatest_of(phases.map(|phase| PhaseBound::of(phase, &of)).collect(), of)
 }
 
-/// Returns the maximum of all quantities over sampled phases, or a negligible excess. It samples finely the phases that
-/// may contain the maximum, the likeliest first.
-pub(super) fn greatest_of<const N: usize>(mut glances: Vec<PhaseBound>, of: impl Fn(&PathProgress) -> [f64; N]) -> f64 {
-    let mut found_max = glances.iter().map(|glance| glance.seen).fold(0.0, f64::max);
+/// Returns the maximum of all quantities over sampled phases, or slightly more. It samples finely those phases that may
+/// contain the maximum, the likeliest first.
+pub(super) fn greatest_of<const N: usize>(
+    mut phase_bounds: Vec<PhaseBound>,
+    of: impl Fn(&PathProgress) -> [f64; N],
+) -> f64 {
+    let mut found_max = phase_bounds.iter().map(|phase_bound| phase_bound.seen).fold(0.0, f64::max);
     let mut upper = found_max;
-    glances.retain(|glance| glance.bound > found_max);
-    glances.sort_unstable_by(|x, y| y.bound.total_cmp(&x.bound));
-    for glance in glances {
+    phase_bounds.retain(|phase_bound| phase_bound.bound > found_max);
+    phase_bounds.sort_unstable_by(|x, y| y.bound.total_cmp(&x.bound));
+    for phase_bound in phase_bounds {
         let enough = found_max * (1.0 + NEGLIGIBLE);
-        if glance.bound <= enough {
-            upper = upper.max(glance.bound);
+        if phase_bound.bound <= enough {
+            upper = upper.max(phase_bound.bound);
             break;
         }
-        let [found, bound] = glance.closer(enough, &of);
+        let [found, bound] = phase_bound.closer(enough, &of);
         (found_max, upper) = (found_max.max(found), upper.max(bound));
     }
     found_max.max(upper)
@@ -126,7 +131,7 @@ pub(super) fn greatest_of<const N: usize>(mut glances: Vec<PhaseBound>, of: impl
 /// samples.
 fn crest([a, b, c]: [f64; 3]) -> f64 {
     let (slope, bend) = (0.5 * (c - a), a - 2.0 * b + c);
-    // A vertex further out is not in this phase.
+    // A vertex beyond the outer samples is not in this phase.
     if bend < 0.0 && slope.abs() <= -bend { b - 0.5 * slope * slope / bend } else { a.max(b).max(c) }
 }
 

@@ -2,7 +2,7 @@
 
 use stillbase_settings::word::words;
 
-/// Position s on a path with its derivatives by time.
+/// Position s on a path with its time derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathProgress {
     /// 0 at the start, 1 at the end.
@@ -31,7 +31,7 @@ struct Law {
     peak: f64,
     /// Fractions of T at which s̈ or its slope jumps.
     kinks: &'static [f64],
-    /// Returns s and its first three derivatives by u = t/T, for u from 0 to 1.
+    /// Returns s and its first three derivatives with respect to u = t/T, for u from 0 to 1.
     at: fn(f64) -> [f64; 4],
 }
 
@@ -83,8 +83,8 @@ words! {
             kinks: &[0.0, 0.5, 1.0],
             at: |u| mirrored(u, |u| [2.0 * u * u, 4.0 * u, 4.0, 0.0]),
         };
-        /// For a given T: s⃛ is 32, −32, 32 for a quarter, a half, a quarter of it, the least peak of all laws; the
-        /// peak of acceleration is 8.
+        /// For a given T: s⃛ is 32, −32 and 32 over a quarter, a half and a quarter of T, the least peak of all laws.
+        /// The peak of acceleration is 8.
         FastestSmooth = "fastest-smooth", "Fastest, smooth", "The same with limits on jerk" => Law {
             is_fastest: true,
             peak: 8.0,

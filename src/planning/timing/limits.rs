@@ -126,8 +126,8 @@ impl ConstraintRow {
 }
 
 impl ConstraintRow {
-    /// Returns the factor on the duration with which the limit is just met: a u + c x falls with its square. The factor
-    /// is infinite if g alone reaches the limit on the side of a u + c x, and 0 if a u + c x = 0.
+    /// Returns the factor on the duration with which the limit is just met; a u + c x is inversely proportional to its
+    /// square. The factor is infinite if g alone reaches the limit on the side of a u + c x, and 0 if a u + c x = 0.
     #[inline]
     pub(super) fn stretch(&self, u: f64, x: f64) -> f64 {
         let moving = self.a * u + self.c * x;

@@ -13,7 +13,8 @@ pub struct FastestMotion {
     /// T/T* − 1, where T* is the least time without limits on jerk: an upper bound of the relative gain of a better
     /// motion. `None` unless jerk is limited and other limits act as well.
     pub gap: Option<f64>,
-    /// Limits that are used furthest, with their fractions of T, the greatest first.
+    /// Each limit with the fraction of T during which its utilisation is the highest of all, the greatest fraction
+    /// first.
     pub active_limits: Vec<(DriveLimit, f64)>,
 }
 

@@ -1,5 +1,4 @@
-//! Timings s(t): a time law over a duration, phases of constant jerk, both from rest to rest, or s proportional to
-//! time.
+//! Timings s(t): a time law over a duration, phases of constant jerk, s proportional to time, or a sequence of these.
 
 use crate::timing::law::{PathProgress, TimeLaw};
 
@@ -34,7 +33,7 @@ struct Leg {
     start: f64,
     /// s at its start.
     from: f64,
-    /// Difference of s over it.
+    /// Increase of s over it.
     run: f64,
     profile: Profile,
 }
@@ -244,8 +243,8 @@ impl Profile {
         }
     }
 
-    /// Returns the timing stretched by a factor on time. Rates fall with its first power, accelerations with its
-    /// second, jerks with its third.
+    /// Returns the timing stretched by a factor on time. Rates are inversely proportional to the factor, accelerations
+    /// to its square, jerks to its cube.
     #[must_use]
     pub fn stretched(&self, factor: f64) -> Self {
         let duration = factor * self.duration;
@@ -268,8 +267,8 @@ impl Profile {
         }
     }
 
-    /// Returns the rising times at which s̈ or its slope jumps, with both ends, s: a simulation step must end there.
-    /// Small jumps, such as between the stations of a timing along a curve, are omitted.
+    /// Returns the ascending times, s, at which s̈ or its slope jumps, including both ends: a simulation step must end
+    /// there. Small jumps, such as between the stations of a timing along a curve, are omitted.
     pub fn kinks(&self) -> Vec<f64> {
         let whole = self.duration;
         match &self.shape {

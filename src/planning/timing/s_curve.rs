@@ -18,7 +18,7 @@ pub fn s_curve(v: f64, a: f64, j: f64) -> Option<[JerkPhase; 7]> {
         (0.25 * j).cbrt()
     };
     let peak = v.min(free);
-    // s̈ reaches a, or falls again before.
+    // Either s̈ reaches a, or it falls again before that.
     let up = if j.is_infinite() { 0.0 } else { (peak / j).sqrt().min(a / j) };
     let constant = if a.is_infinite() { 0.0 } else { (peak / a - up).max(0.0) };
     // There is a phase of constant ṡ only if v bounds the rate, regardless of rounding.

@@ -1,8 +1,8 @@
 //! Limits on jerk along a curve: a motion near the optimum, checked against its limits, and its gap to a bound.
 //!
-//! With limits on jerk, the fastest motion on a curve is not a convex problem. [`crate::timing::jerk`] finds
-//! a local optimum on nodes, which are dense where the motion without these limits is slow and where the path bends. If
-//! the motion exceeds a limit between nodes, the whole motion is slowed down until it keeps the limit.
+//! With limits on jerk, the fastest motion on a curve is not a convex problem. [`crate::timing::jerk`] finds a local
+//! optimum on nodes. They are dense where the motion without these limits is slow and where the path bends. If the
+//! motion exceeds a limit between nodes, the whole motion is slowed down until it keeps the limit.
 
 use crate::Motion;
 use crate::curves::path::Path;
@@ -20,13 +20,13 @@ use stillbase_mechanics::machine::Inertia;
 
 /// Number of samples from which the active limits are determined.
 const USAGE_SAMPLES: usize = 2000;
-/// Number of intervals between nodes in proportion to the time of the motion without limits on jerk.
+/// Number of intervals distributed in proportion to the time of the motion without limits on jerk.
 const INTERVALS_BY_TIME: f64 = 200.0;
-/// Number of intervals in proportion to θ.
+/// Number of intervals distributed evenly over θ.
 const INTERVALS_BY_THETA: f64 = 80.0;
-/// Number of intervals for each interval of the grid of that motion.
+/// Number of intervals added for each interval of the grid of that motion.
 const INTERVALS_BY_GRID: f64 = 0.1;
-/// Number of intervals for each factor e of the distance of θ to an end.
+/// Number of intervals over which the distance of θ from an end grows by the factor e.
 const INTERVALS_BY_ENDS: f64 = 4.0;
 /// Distance of θ to an end below which this density no longer grows.
 const END_DISTANCE: f64 = 0.003;
@@ -138,7 +138,7 @@ fn refined(nodes: &[f64], past: &[f64]) -> Vec<f64> {
     fine
 }
 
-/// Places the nodes θ with the density that the constants above define, at least at all joints of the path.
+/// Places the nodes θ with the density that the constants above define, and at all joints of the path.
 fn nodes(path: &Path, grid: &PathConstraints, bound: Option<&Profile>) -> Vec<f64> {
     // Cumulative number of intervals over the grid.
     let thetas: Vec<f64> = grid.s.iter().map(|s| uneased(*s)).collect();

@@ -13,7 +13,7 @@ use crate::curves::path::Path;
 use crate::timing::law::PathProgress;
 use crate::timing::limits::{ConstraintRow, Constraints, MAX_ROWS, Stretches, stretches};
 
-/// An x of this or more counts as unlimited, 1/s².
+/// An x of this or more is treated as unlimited, 1/s².
 pub(super) const UNLIMITED: f64 = 1e20;
 
 /// Maximum change of a limited quantity over an interval due to the path, as a fraction of its limit; above it the
@@ -28,12 +28,12 @@ const MIN_INTERVAL: f64 = 1e-9;
 /// Maximum number of intervals.
 const MAX_INTERVALS: usize = 60_000;
 
-/// Number of parts into which an interval is divided in which a limit is exceeded.
+/// Number of parts into which an interval with an exceeded limit is divided.
 const PARTS_IF_EXCEEDED: usize = 4;
 /// Relative excess of the factor on time from which an interval is divided.
 pub(super) const REPAIR_THRESHOLD: f64 = 1e-4;
 
-/// The constraints of a path at every station; at least two.
+/// The constraints of a path at all stations, at least two.
 pub(super) struct PathConstraints {
     pub(super) s: Vec<f64>,
     /// Number of rows per station.
@@ -234,8 +234,8 @@ impl PathConstraints {
         Ok(x)
     }
 
-    /// Estimates the rise of u over each interval from its neighbours: the smaller of both slopes, or zero if they
-    /// differ in sign, as where u switches.
+    /// Estimates the rise of u over each interval from its neighbours. It is given by the smaller of both slopes, or
+    /// zero if their signs differ, as where u switches.
     fn rises(&self, x: &[f64]) -> Vec<f64> {
         let spaces = x.len() - 1;
         let u = |i: usize| (x[i + 1] - x[i]) / (2.0 * (self.s[i + 1] - self.s[i]));
@@ -273,8 +273,8 @@ struct Strip {
     slope: f64,
 }
 
-/// Maximum number of strips of one interval: the rows of both its ends, the interval to arrive in, the middle, and
-/// spares.
+/// Maximum number of strips of one interval: the rows at both ends, the controllable x at its end, the speeds in its
+/// middle, and spares.
 const MAX_STRIPS: usize = 2 * MAX_ROWS + 4;
 /// Maximum number of iterations of a search; each discards at least one pair of lines.
 const MAX_ITERATIONS: usize = 4 * MAX_STRIPS;

@@ -8,7 +8,7 @@ use stillbase_mechanics::dynamics::{Surroundings, holding_torque, inverse};
 use stillbase_mechanics::machine::Inertia;
 use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive};
 
-/// A limit counts as active when at least this fraction of it is used.
+/// A limit is active if at least this fraction of it is used.
 pub const ACTIVE_SHARE: f64 = 1.0 - 1e-3;
 
 /// Utilisation of the limits by a motion.
@@ -22,7 +22,8 @@ pub struct Usage {
     pub time_of_max_s: f64,
     /// Limit of the maximum; `None` without limits.
     pub limit: Option<DriveLimit>,
-    /// Limits that are used furthest, with their fractions of T, the greatest first.
+    /// Each limit with the fraction of T during which its utilisation is the highest of all, the greatest fraction
+    /// first.
     pub active_limits: Vec<(DriveLimit, f64)>,
 }
 
@@ -138,9 +139,9 @@ impl Demand {
         furthest
     }
 
-    /// Returns the factors on time with which the instant just keeps each limit. Rates fall with the first power of a
-    /// factor, accelerations and the torque of motion with the second, jerks with the third. A factor is infinite if
-    /// holding still already takes the whole torque.
+    /// Returns the factors on time with which the instant just keeps each limit. Rates are inversely proportional to a
+    /// factor, accelerations and the torque of motion to its square, jerks to its cube. A factor is infinite if holding
+    /// still already requires the whole torque.
     pub(super) fn stretches(&self, limits: &DriveLimits) -> [f64; 4 * MAX_DRIVES] {
         let mut factors = [0.0; 4 * MAX_DRIVES];
         for (k, of) in factors.chunks_exact_mut(4).enumerate().take(self.speed.len()) {

@@ -1,5 +1,5 @@
-//! [`RecordedFronts`]: the Pareto front of added mass and inertia, as in the design view of the window, with the point of the
-//! machine.
+//! [`RecordedFronts`]: the Pareto front of added mass and inertia, with the point of the present machine, as in the
+//! window's design view.
 
 use crate::rerun::{EntityPath, LineStrips2D, Points2D, Radius};
 
@@ -15,7 +15,7 @@ use stillbase_session::design::DesignBrief;
 /// Number of points of a Pareto front.
 const FRONT_POINTS: usize = 13;
 
-/// Width and height of the drawing, without unit; y points down, as in the viewer.
+/// Width and height of the drawing, dimensionless; y points down, as in the viewer.
 const SIZE: [f64; 2] = [2.2, 1.0];
 /// Margin around all points, as a fraction of their range.
 const MARGIN_FRACTION: f64 = 0.07;

@@ -9,16 +9,17 @@ use stillbase_mechanics::planar::{Vector, cross, dot};
 
 /// Intersections on a span are equal if their parameters differ by less than this.
 const INTERSECTION_TOLERANCE: f64 = 1e-11;
-/// Ends within this distance are joined, as a fraction of the unit of the map; so are the next two lengths.
+/// Ends within this distance are joined, as a fraction of the unit of the map.
 const JOIN_TOLERANCE: f64 = 1e-9;
-/// Parts below this length whose chords are still not separated touch without crossing.
+/// Parts shorter than this, as a fraction of the unit of the map, touch without crossing if their chords are still not
+/// separated.
 const MIN_LENGTH: f64 = 1e-9;
 /// Maximum number of pairs of parts that are tested for two spans; beyond it, the spans are taken to overlap.
 const MAX_PAIRS: usize = 3000;
 /// Number of remaining pairs at which the spans are tested for an overlap.
 const OVERLAP_CHECK_AT: usize = MAX_PAIRS - 100;
-/// Curves with a common end touch there, or enclose a sliver of negligible area: crossings within this distance of the
-/// end are ignored, as a fraction of the reach.
+/// Crossings within this distance of a common end of two curves are ignored, as a fraction of the reach. The curves
+/// touch there, or enclose a sliver of negligible area.
 const TOUCH_RADIUS: f64 = 1e-4;
 /// Points within this distance of a curve lie on it, as a fraction of the unit of the map.
 const ON_CURVE_TOLERANCE: f64 = 1e-11;
@@ -95,11 +96,11 @@ impl<'a> Arrangement<'a> {
             // The longest parts first: short ones may lie in a sliver that is too narrow to separate its sides.
             let mut order: Vec<(f64, &SpanPart)> = parts.iter().map(|p| (self.chord(p), p)).collect();
             order.sort_by(|a, b| b.0.total_cmp(&a.0));
-            let mut verdicts = order.iter().take(5).map(|(_, portion)| self.sides(portion));
-            let first = verdicts.next().unwrap_or(Err([0; 2]));
+            let mut samples = order.iter().take(5).map(|(_, portion)| self.sides(portion));
+            let first = samples.next().unwrap_or(Err([0; 2]));
             // If curves coincide no sample is valid, and the first one is taken.
             let [left, right] = first
-                .or_else(|unresolved| verdicts.find_map(Result::ok).ok_or(unresolved))
+                .or_else(|unresolved| samples.find_map(Result::ok).ok_or(unresolved))
                 .unwrap_or_else(|unresolved| unresolved);
             Strand { parts, left, right }
         };
@@ -108,7 +109,7 @@ impl<'a> Arrangement<'a> {
         strands
     }
 
-    /// Determines the sides that no sample separated from those of the neighbouring strands.
+    /// Determines the sides that no sample could separate, from the sides of the neighbouring strands.
     fn settle(&self, strands: &mut [Strand]) {
         let weight = |s: &Strand| self.spans[s.parts[0].span].weight();
         if strands.iter().all(|s| s.left - s.right == weight(s)) {
@@ -122,7 +123,7 @@ impl<'a> Arrangement<'a> {
                 nodes.len() - 1
             })
         };
-        let mut course = |s: &Strand| {
+        let mut edge = |s: &Strand| {
             let (first, last) = (s.parts[0], s.parts[s.parts.len() - 1]);
             CurveEdge {
                 ends: [node(&first, first.from), node(&last, last.to)],
@@ -131,10 +132,10 @@ impl<'a> Arrangement<'a> {
                 length: s.parts.iter().map(|p| self.chord(p)).sum(),
             }
         };
-        let mut courses: Vec<CurveEdge> = strands.iter().map(&mut course).collect();
-        balance::resolve_sides(&mut courses);
-        for (strand, course) in strands.iter_mut().zip(courses) {
-            [strand.left, strand.right] = course.sides;
+        let mut edges: Vec<CurveEdge> = strands.iter().map(&mut edge).collect();
+        balance::resolve_sides(&mut edges);
+        for (strand, edge) in strands.iter_mut().zip(edges) {
+            [strand.left, strand.right] = edge.sides;
         }
     }
 
@@ -143,7 +144,7 @@ impl<'a> Arrangement<'a> {
         (self.on.at(span, p.to) - self.on.at(span, p.from)).norm()
     }
 
-    /// Splits all curves at their intersections.
+    /// Returns the pieces of all curves between their intersections.
     fn uncrossed(&self) -> Vec<Vec<SpanPart>> {
         let mut strands: Vec<Vec<SpanPart>> = Vec::new();
         let mut open = false;
@@ -159,7 +160,7 @@ impl<'a> Arrangement<'a> {
             intersections.push(1.0);
             intersections.sort_by(f64::total_cmp);
             intersections.dedup_by(|next, last| *next - *last < INTERSECTION_TOLERANCE);
-            // The exact end is kept.
+            // Keep the exact end, which may have been removed as a duplicate.
             if let Some(last) = intersections.last_mut() {
                 *last = 1.0;
             }
@@ -175,13 +176,13 @@ impl<'a> Arrangement<'a> {
         strands
     }
 
-    /// Returns the number of poses on the left and on the right of a part; an error with the last sample if another
-    /// curve is too close.
+    /// Returns the number of poses on the left and on the right of a part. If another curve is too close, the error
+    /// contains the last sample.
     fn sides(&self, portion: &SpanPart) -> Result<[i32; 2], [i32; 2]> {
         let span = &self.spans[portion.span];
         let (mut unresolved, mut alike) = ([0; 2], 0);
-        // Offsets small enough that no other curve lies between, even near a tangency. If one does, other offsets and
-        // places are tried.
+        // The offsets are so small that usually no other curve lies between, even near a tangency. Otherwise further
+        // offsets and places are tried.
         for reach in [1e-11, 1e-12, 1e-9].map(|share| share * self.unit) {
             for share in [0.5, 0.31, 0.77, 0.13, 0.91] {
                 let jet = self.on.jet(span, portion.from + share * (portion.to - portion.from));
@@ -345,7 +346,7 @@ impl<'a> Arrangement<'a> {
         }
     }
 
-    /// Whether two spans overlap: two common points, and common points between them.
+    /// Whether two spans overlap: they share two points, and the samples between these points.
     fn run_along(&self, i: usize, j: usize) -> bool {
         let (a, b) = (&self.spans[i], &self.spans[j]);
         let on_both = |t: f64| self.foot(b, self.on.at(a, t)).1 < ON_CURVE_TOLERANCE * self.unit;

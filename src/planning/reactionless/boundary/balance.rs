@@ -1,9 +1,9 @@
-//! Numbers of poses on the sides of curves in slivers that are too thin to be sampled, from the curves around them.
+//! Derives the numbers of poses on both sides of curves in slivers too thin to be sampled, from the curves around them.
 //!
 //! The curves that bound the points of at least n poses are closed: at each node as many of them end as begin. If a
 //! fold cuts off a corner of the limits, the sides of the long curves around it are known. This leaves few solutions
-//! for the short curves between. The one nearest to the samples beside the sliver is right, since of two curves in one
-//! sliver the longer also runs where the other does not.
+//! for the short curves between. The one nearest to the samples is right: of two curves in a sliver, the longer extends
+//! beyond the other, where it can be sampled.
 
 /// Maximum number of unresolved curves; only machines with coinciding curves have more.
 const MAX_UNCLEAR: usize = 12;
@@ -33,17 +33,17 @@ impl CurveEdge {
     }
 }
 
-/// Resolves the sides of unclear courses such that the curves of every level close; leaves them unchanged if that is
+/// Resolves the sides of unclear curves such that the curves of every level close; leaves them unchanged if that is
 /// impossible.
-pub(super) fn resolve_sides(courses: &mut [CurveEdge]) {
-    let mut unclear: Vec<usize> = (0..courses.len()).filter(|&i| courses[i].is_unclear()).collect();
+pub(super) fn resolve_sides(edges: &mut [CurveEdge]) {
+    let mut unclear: Vec<usize> = (0..edges.len()).filter(|&i| edges[i].is_unclear()).collect();
     if unclear.is_empty() || unclear.len() > MAX_UNCLEAR {
         return;
     }
     // The longest first: they contribute most to the change, so that branches are pruned early.
-    unclear.sort_by(|&i, &j| courses[j].length.total_cmp(&courses[i].length));
-    let levels = courses.iter().flat_map(|c| c.sides).max().unwrap_or(0).max(0) as usize + 3;
-    let nodes = courses.iter().flat_map(|c| c.ends).max().map_or(0, |last| last + 1);
+    unclear.sort_by(|&i, &j| edges[j].length.total_cmp(&edges[i].length));
+    let levels = edges.iter().flat_map(|c| c.sides).max().unwrap_or(0).max(0) as usize + 3;
+    let nodes = edges.iter().flat_map(|c| c.ends).max().map_or(0, |last| last + 1);
     let mut search = Search {
         levels,
         net: vec![0; nodes * levels],
@@ -52,43 +52,43 @@ pub(super) fn resolve_sides(courses: &mut [CurveEdge]) {
         best: None,
         remaining_choices: MAX_CHOICES,
     };
-    for course in courses.iter().filter(|c| !c.is_unclear()) {
-        search.put(course, course.sides[1], 1);
+    for edge in edges.iter().filter(|c| !c.is_unclear()) {
+        search.put(edge, edge.sides[1], 1);
     }
     for &i in &unclear {
-        courses[i].ends.into_iter().for_each(|node| search.open[node] += 1);
+        edges[i].ends.into_iter().for_each(|node| search.open[node] += 1);
     }
-    // If a node does not close where no unclear course ends, there is no solution.
-    let touched = |node: usize| unclear.iter().any(|&i| courses[i].ends.contains(&node));
+    // If a node without unclear curves does not close, there is no solution.
+    let touched = |node: usize| unclear.iter().any(|&i| edges[i].ends.contains(&node));
     if (0..nodes).any(|node| !touched(node) && !search.closes(node)) {
         return;
     }
-    let list: Vec<CurveEdge> = unclear.iter().map(|&i| courses[i]).collect();
+    let list: Vec<CurveEdge> = unclear.iter().map(|&i| edges[i]).collect();
     search.from(&list, 0, 0.0);
     if let Some((_, rights)) = search.best {
         for (&i, right) in unclear.iter().zip(rights) {
-            courses[i].sides = [right + courses[i].weight, right];
+            edges[i].sides = [right + edges[i].weight, right];
         }
     }
 }
 
 struct Search {
     levels: usize,
-    /// For each node and level, the number of courses that begin there minus that of those that end.
+    /// For each node and level, the number of curves that begin there minus the number that end there.
     net: Vec<i32>,
-    /// Number of undecided courses at each node.
+    /// Number of undecided curves at each node.
     open: Vec<usize>,
     chosen: Vec<i32>,
-    /// The least change, and the number of poses on the right of each course.
+    /// The least change, and the number of poses on the right of each unclear curve.
     best: Option<(f64, Vec<i32>)>,
     remaining_choices: usize,
 }
 
 impl Search {
-    fn put(&mut self, course: &CurveEdge, right: i32, sign: i32) {
-        for level in right.max(0)..(right + course.weight).min(self.levels as i32) {
-            self.net[course.ends[0] * self.levels + level as usize] += sign;
-            self.net[course.ends[1] * self.levels + level as usize] -= sign;
+    fn put(&mut self, edge: &CurveEdge, right: i32, sign: i32) {
+        for level in right.max(0)..(right + edge.weight).min(self.levels as i32) {
+            self.net[edge.ends[0] * self.levels + level as usize] += sign;
+            self.net[edge.ends[1] * self.levels + level as usize] -= sign;
         }
     }
 
@@ -101,22 +101,22 @@ impl Search {
             return;
         }
         self.remaining_choices -= 1;
-        let Some(course) = list.get(place) else {
+        let Some(edge) = list.get(place) else {
             self.best = Some((change, self.chosen.clone()));
             return;
         };
-        let most = course.sides[0].max(course.sides[1]) + 1;
-        let least = (course.sides[0].min(course.sides[1]) - course.weight).max(0);
-        course.ends.into_iter().for_each(|node| self.open[node] -= 1);
-        // The highest numbers first: among equal changes, a sliver has one pose more rather than one less.
+        let most = edge.sides[0].max(edge.sides[1]) + 1;
+        let least = (edge.sides[0].min(edge.sides[1]) - edge.weight).max(0);
+        edge.ends.into_iter().for_each(|node| self.open[node] -= 1);
+        // The highest numbers first, so that among equal changes the one with more poses is chosen.
         for right in (least..=most).rev() {
-            self.put(course, right, 1);
+            self.put(edge, right, 1);
             self.chosen[place] = right;
-            if course.ends.iter().all(|&node| self.open[node] > 0 || self.closes(node)) {
-                self.from(list, place + 1, change + course.change(right));
+            if edge.ends.iter().all(|&node| self.open[node] > 0 || self.closes(node)) {
+                self.from(list, place + 1, change + edge.change(right));
             }
-            self.put(course, right, -1);
+            self.put(edge, right, -1);
         }
-        course.ends.into_iter().for_each(|node| self.open[node] += 1);
+        edge.ends.into_iter().for_each(|node| self.open[node] += 1);
     }
 }

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use crate::reactionless::PlaneMap;
 use stillbase_mechanics::planar::{Vector, cross};
 
-/// Limits that coincide with a straight fold are moved inwards by this, rad, so that a sheet lies beside them.
+/// Limits that coincide with a straight fold are moved inwards by this, rad, so that det has a sign on them.
 pub(super) const FOLD_INSET: f64 = 4e-10;
 
 #[derive(Clone, Copy, Debug)]
@@ -54,8 +54,8 @@ impl Determinant {
         g
     }
 
-    /// Returns (C, S, Q) with det = C + S sin y + Q cos y along the line `from` + y `way`. Along the line, one
-    /// coordinate or the sum or difference in one of the terms must be constant.
+    /// Returns (C, S, Q) with det = C + S sin y + Q cos y along the line `from` + y `way`. The line must keep one
+    /// coordinate, or the sum or difference in one of the terms, constant.
     fn along(&self, from: [f64; 2], way: [f64; 2]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for t in &self.terms {

@@ -1,8 +1,8 @@
 //! The curves det = 0 within the limits, as spans.
 //!
-//! A quadtree over (a_1, a_2): the intersections of the curve with the sides of a cell have a closed form. A cell with
-//! two of them holds one span. No closed curve lies inside a cell: each passes through two points at which all arms are
-//! in line, and these are π apart.
+//! A quadtree over (a_1, a_2) isolates the spans. The intersections of the curves with the sides of a cell have a
+//! closed form. A cell with two of them contains one span. No closed curve lies inside a cell: each passes through two
+//! points at which all arms are in line, and these are π apart.
 
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
@@ -14,8 +14,8 @@ use super::span::{BoundaryCurve, BoundarySpan, Surface};
 const MAX_STEP_RAD: f64 = 0.35;
 /// Zeros within this distance of a corner of the limits are treated as the corner, rad.
 const CORNER_TOLERANCE_RAD: f64 = 1e-10;
-/// Maximum number of bisections of a cell; then the rest of a node is treated as straight: 1e-5 rad off a fold moves
-/// the image by 1e-10 m.
+/// Maximum number of bisections of a cell. In the smallest cells, 1e-5 rad wide, curves are treated as straight, which
+/// moves their image by 1e-10 m.
 const MAX_DEPTH: usize = 15;
 
 /// Offset of the grid lines, and place at which cells are split, for each angle, as fractions of a cell.
@@ -26,7 +26,7 @@ const SPLIT: [f64; 2] = [0.471_404, 0.524_579];
 #[derive(Clone, Debug, Default)]
 struct Side(Vec<f64>);
 
-/// A cell, with the sides a_2 least, a_2 greatest, a_1 least, a_1 greatest.
+/// A cell, whose sides are at the least a_2, the greatest a_2, the least a_1 and the greatest a_1.
 #[derive(Clone, Debug)]
 struct Cell {
     low: [f64; 2],
@@ -62,8 +62,9 @@ pub(super) fn zeros_on(on: &Surface, [from, way]: [[f64; 2]; 2], range: [f64; 2]
     found
 }
 
-/// Returns the lines of the grid. Their places, and those at which cells are split, are no simple fractions and differ
-/// for both angles. Straight folds, as in degenerate machines, then never run along a line or through a corner.
+/// Returns the grid lines of an axis, rad. Their places, and those at which cells are split, are not simple fractions
+/// and differ between the axes. Straight folds, as in degenerate machines, then never run along a line or through a
+/// corner.
 fn lines(axis: usize, range: [f64; 2]) -> Vec<f64> {
     let width = range[1] - range[0];
     let n = (width / MAX_STEP_RAD).ceil().max(1.0);
@@ -190,9 +191,9 @@ impl Cell {
         }
     }
 
-    /// Pairs the zeros of a very small cell: each inwards crossing with any outwards one.
+    /// Joins the zeros of a very small cell in pairs: each inward crossing with some outward one.
     fn join(&self, on: &Surface, spans: &mut Vec<BoundarySpan>) {
-        // Whether det > 0 on the left of the way from a to b, by the gradient at a given point.
+        // Whether det > 0 on the left of the line from a to b, by the gradient at a given point.
         let forward = |a: [f64; 2], b: [f64; 2], at: [f64; 2]| {
             let [g1, g2] = on.det.gradient(at);
             g2 * (b[0] - a[0]) - g1 * (b[1] - a[1]) > 0.0

@@ -7,8 +7,8 @@ use stillbase_mechanics::planar::{Vector, cross, unit};
 
 /// Maximum deviation of chords from the curve, m.
 const CHORD_TOLERANCE_M: f64 = 0.8e-5;
-/// Least and greatest tolerance as a fraction of the unit of the map: small machines need a smaller one, and for large
-/// ones a fixed tolerance would need too many chords.
+/// Least and greatest tolerance as a fraction of the unit of the map. Small machines need a smaller tolerance than
+/// [`CHORD_TOLERANCE_M`]; large ones would need too many chords with it.
 const MIN_CHORD_FRACTION: f64 = 1e-3 * CHORD_TOLERANCE_M;
 const MAX_CHORD_FRACTION: f64 = CHORD_TOLERANCE_M;
 
@@ -37,8 +37,7 @@ pub struct BoundaryLoop {
     area: f64,
 }
 
-/// A curve of the workspace, with chords that deviate by at most 1e-5 m. Across folds and limits, more poses are on its
-/// left.
+/// A curve of the workspace, with chords that deviate by at most 1e-5 m. A fold or a limit has more poses on its left.
 #[derive(Clone, Debug)]
 pub struct BoundaryLine {
     vertices: Vec<BoundaryVertex>,
@@ -46,8 +45,8 @@ pub struct BoundaryLine {
 }
 
 impl BoundaryLoop {
-    /// Returns the points of the curve; chords deviate by at most 1e-5 m, by at most 1e-5 of the reach below a metre,
-    /// and 1e-8 of it above a kilometre.
+    /// Returns the points of the curve. Chords deviate by at most 1e-5 m; for a reach below a metre by 1e-5 of it,
+    /// above a kilometre by 1e-8 of it.
     pub fn vertices(&self) -> &[BoundaryVertex] {
         &self.vertices
     }
@@ -60,8 +59,8 @@ impl BoundaryLoop {
     pub(super) fn of(on: &Surface, spans: &[BoundarySpan], chain: &[SpanPart]) -> Self {
         let (vertices, portions) = chords(on, spans, chain);
         let swept: f64 = chain.iter().map(|p| on.swept(&spans[p.span], p.from, p.to)).sum();
-        // Slivers too thin to separate their sides leave gaps. The area that a gap sweeps about the base is much larger
-        // than that of the sliver.
+        // Slivers too thin to separate their sides leave gaps. The area that a gap sweeps about the base is added, as
+        // it is much larger than the sliver.
         let [starts, ends] = [0, 1].map(|end| move |p: &SpanPart| on.at(&spans[p.span], [p.from, p.to][end]));
         let after = chain.iter().cycle().skip(1);
         let gaps: f64 = chain.iter().zip(after).map(|(p, next)| 0.5 * cross(ends(p), starts(next))).sum();

@@ -23,7 +23,7 @@ pub(super) struct HalfPlane {
 struct Edge {
     curve: BoundaryCurve,
     ends: [[f64; 2]; 2],
-    /// The half-plane on whose line the edge lies; `None` on a limit, along which zeros of det are found differently.
+    /// The half-plane on whose line the edge lies; `None` if the edge lies on a limit.
     half_plane: Option<HalfPlane>,
 }
 

@@ -15,7 +15,7 @@ use crate::reactionless::change::{AngleDifference, CHANGE_POINT_MARGIN, DRIVE_PA
 pub struct ChangeCurve {
     /// Index of the pair in [`DRIVE_PAIRS`].
     pub pair: usize,
-    /// m, where q_l − q_k = mπ.
+    /// Number m of half turns: q_l − q_k = mπ.
     pub half_turns: i32,
     /// Ends (a_1, a_2), rad.
     pub ends: [[f64; 2]; 2],
@@ -47,8 +47,8 @@ impl Boundary {
         (!region.is_thin(MIN_WIDTH_RAD)).then(|| Self::over(on, &region))
     }
 
-    /// Returns the sides of the change points of a pair on which poses within the limits are. Side m is
-    /// mπ ≤ q_l − q_k ≤ (m + 1)π. Empty if there is no such pair.
+    /// Returns the sides of a pair's change points on which there are poses within the limits. Side m is mπ ≤ q_l − q_k
+    /// ≤ (m + 1)π. Empty if there is no such pair.
     pub fn sides(&self, pair: usize) -> RangeInclusive<i32> {
         if pair >= DRIVE_PAIRS.len() {
             return RangeInclusive::new(1, 0);

@@ -35,7 +35,7 @@ pub(super) struct BoundarySpan {
     chart: usize,
     pub ends: [[f64; 2]; 2],
     pub at: [Vector; 2],
-    /// Derivative of the other coordinate by the chart coordinate, at the ends.
+    /// Derivative of the other coordinate with respect to the chart coordinate, at the ends.
     slopes: [f64; 2],
     /// Whether the other coordinate solves det = 0; else it varies linearly too.
     solved: bool,
@@ -43,7 +43,7 @@ pub(super) struct BoundarySpan {
     pub deviation: f64,
 }
 
-/// A point of a span: plane coordinates, position, and derivative of the position by the parameter.
+/// A point of a span: plane coordinates, position, and derivative of the position with respect to the parameter.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SpanPoint {
     pub a: [f64; 2],
@@ -165,7 +165,8 @@ impl Surface {
         there.then_some(t)
     }
 
-    /// Returns the parameters of the cusps of a fold's image: the null vector of the Jacobian is tangent to the curve.
+    /// Returns the parameters of the cusps of a fold's image, where the null vector of the Jacobian is tangent to the
+    /// fold.
     pub fn cusps(&self, span: &BoundarySpan) -> Vec<f64> {
         // On the fold both columns are parallel, so that the component along one of them gives the sense of motion.
         let columns = |t: f64| self.map.columns(&self.map.arms(self.point(span, t)));
@@ -307,14 +308,14 @@ impl BoundarySpan {
     fn guess(&self, t: f64) -> f64 {
         let other = 1 - self.chart;
         let run = self.ends[1][self.chart] - self.ends[0][self.chart];
-        // In this form a straight span keeps its other coordinate exactly.
+        // In this form, a coordinate that is constant along the span stays exact.
         let (rise, s) = (self.ends[1][other] - self.ends[0][other], 1.0 - t);
         let bulge = (self.slopes[0] * run - rise) * s - (self.slopes[1] * run - rise) * t;
         self.ends[0][other] + rise * t + t * s * bulge
     }
 
     /// Returns the contribution of the part from `from` to `to` to the winding number about p, as signed crossings of
-    /// the ray from p towards +x; `None` if p lies on it.
+    /// the ray from p towards +x. Returns `None` if p lies on the part.
     pub fn crossings(&self, on: &Surface, from: (f64, Vector), to: (f64, Vector), p: Vector) -> Option<i32> {
         let (a, b) = (from.1, to.1);
         let unit = on.map.unit();

@@ -24,7 +24,7 @@ pub(super) struct GraphCut {
 }
 
 impl Quadrilateral {
-    /// Returns all of them.
+    /// Returns all points at which the graphs are split.
     pub(super) fn cuts(&self) -> SmallList<GraphCut, CUTS> {
         let mut cuts = SmallList::new(GraphCut { alpha: 0.0, beta: None, edge: false });
         self.limit_crossings(|alpha, beta| cuts.push(GraphCut { alpha, beta: Some(beta), edge: true }));

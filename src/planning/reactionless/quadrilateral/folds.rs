@@ -13,8 +13,8 @@ impl Quadrilateral {
 
     /// Finds the points of the curve with det = 0, where b turns back. β is `None` if only an approximate α is known.
     pub(super) fn folds(&self, mut push: impl FnMut(f64, Option<f64>)) {
-        // Both conditions are linear in (cos β, sin β). Solving them and requiring a unit vector gives, after the
-        // fourth powers cancel, a cubic in cos α:
+        // The conditions |w| = r and det = 0 are linear in (cos β, sin β). Solving them and requiring a unit vector
+        // gives, after the fourth powers cancel, a cubic in cos α:
         //     P² + sin²α L² = D²,   cos β = P/D,   sin β = sin α L/D.
         let Self { m, x, y, r, .. } = *self;
         let (xx, yy, t) = (m * x, m * y, x * y);

@@ -1,6 +1,6 @@
 //! s as a function of θ, with zero first and second derivatives at both ends.
 
-/// Returns s and its first three derivatives by θ.
+/// Returns s and its first three derivatives with respect to θ.
 pub fn eased(theta: f64) -> [f64; 4] {
     let (v, w) = (theta, 1.0 - theta);
     let s = v * v * v * (10.0 + v * (-15.0 + 6.0 * v));

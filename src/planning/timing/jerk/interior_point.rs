@@ -10,8 +10,8 @@ impl JerkProgram {
         own + self.sides.iter().map(|s| s.multiplier[0] * s.slack[0] + s.multiplier[1] * s.slack[1]).sum::<f64>()
     }
 
-    /// Computes the trial slacks of all limits. Returns whether each exceeds `share` times the present one. If `share`
-    /// is 0, they become the present ones.
+    /// Computes the trial slacks of all limits. Returns whether each exceeds `share` times the present slack. If
+    /// `share` is 0, the trial slacks become the present ones.
     pub(super) fn compute_slacks(&mut self, c: &[f64], share: f64) -> bool {
         for (place, sides) in self.places.iter().zip(self.sides.chunks_exact_mut(self.each)) {
             let c = &c[place.first..];
@@ -53,26 +53,26 @@ impl JerkProgram {
             let (root, r) = (y.cbrt(), rate / y);
             let steep = 1.0 / (3.0 * root * root);
             let mut sum = [0.0; 6];
-            let (mut bow, mut curl) = (4.0 / 9.0 * place.weight / (y * y * root), 0.0);
+            let (mut y_curvature, mut slope_curvature) = (4.0 / 9.0 * place.weight / (y * y * root), 0.0);
             for (i, side) in sides.iter_mut().enumerate() {
                 let v = side.v;
                 if i < linear {
                     let by = [(1.0 - side.g) * steep, (1.0 + side.g) * steep];
                     side.slope =
                         [[0, 1, 2].map(|k| by[0] * place.y[k] - v[k]), [0, 1, 2].map(|k| by[1] * place.y[k] + v[k])];
-                    bow += 2.0 / 3.0 / y * (side.multiplier[0] * by[0] + side.multiplier[1] * by[1]);
+                    y_curvature += 2.0 / 3.0 / y * (side.multiplier[0] * by[0] + side.multiplier[1] * by[1]);
                 } else {
                     let g = side.g;
                     let up = [0, 1, 2].map(|k| v[k] - g * r * (2.0 * place.slope[k] - r * place.y[k]));
                     side.slope = [up.map(|x| -x), up];
                     // Of the two limits, only the convex one adds curvature; that of the other is omitted.
-                    curl += 2.0 / y * if g > 0.0 { g * side.multiplier[1] } else { -g * side.multiplier[0] };
+                    slope_curvature += 2.0 / y * if g > 0.0 { g * side.multiplier[1] } else { -g * side.multiplier[0] };
                 }
                 add(&mut sum, side.multiplier[0] / side.slack[0], &side.slope[0]);
                 add(&mut sum, side.multiplier[1] / side.slack[1], &side.slope[1]);
             }
-            add(&mut sum, bow, &place.y);
-            add(&mut sum, curl, &[0, 1, 2].map(|k| place.slope[k] - r * place.y[k]));
+            add(&mut sum, y_curvature, &place.y);
+            add(&mut sum, slope_curvature, &[0, 1, 2].map(|k| place.slope[k] - r * place.y[k]));
             band.add(place.first, &sum);
         }
     }

@@ -4,19 +4,19 @@
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | θ | parameter in place of s, s = 10 θ³ − 15 θ⁴ + 6 θ⁵: ds/dθ = 0 at both ends | |
-//! | y, y′, y″ | θ̇³ and its derivatives by θ | 1/s³ |
-//! | q′, q″, q‴ | derivatives of q by θ | rad |
+//! | y, y′, y″ | θ̇³ and its derivatives with respect to θ | 1/s³ |
+//! | q′, q″, q‴ | derivatives of q with respect to θ | rad |
 //! | c_i | coefficients of y, a quadratic spline over the nodes θ_i | 1/s³ |
 //!
 //! # Method
 //! With θ̇ = y^⅓, θ̈ = y′/(3 y^⅓) and θ⃛ = y″/3 − y′²/(9 y), T = ∫ y^−⅓ dθ is convex in y. A limit on a u + c x + g is
-//! |a y′/3 + c y + g y^⅓| ≤ y^⅓, convex, and so is one on speed. Jerk is q′ y″/3 + q″ y′ + q‴ y − q′ y′²/(9 y): linear
-//! except for its last term, which makes one of its two sides non-convex. With θ as parameter, rest at both ends is not
-//! a singularity: y stays above 0 there.
+//! |a y′/3 + c y + g y^⅓| ≤ y^⅓. This is convex, and so is a limit on speed. Jerk is q′ y″/3 + q″ y′ + q‴ y − q′ y′²/(9
+//! y): linear except for its last term, which makes one of its two sides non-convex. With θ as parameter, rest at both
+//! ends is not a singularity: y stays above 0 there.
 //!
-//! A primal-dual interior-point method goes from a slow feasible motion to the fastest through feasible ones
-//! (Mehrotra's predictor and corrector; the curvature of non-convex sides is omitted). Each row contains three
-//! neighbouring coefficients, so the cost of a step is proportional to the number of nodes. It finds a local optimum.
+//! A primal-dual interior-point method (Mehrotra's predictor and corrector) improves a slow feasible motion through
+//! feasible ones to the fastest. It omits the curvature of non-convex sides. Each row contains three neighbouring
+//! coefficients, so the cost of a step is proportional to the number of nodes. It finds a local optimum.
 
 mod band;
 mod easing;

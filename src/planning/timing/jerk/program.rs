@@ -14,7 +14,7 @@ const GAUSS_PLACES: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9
 /// weight.
 const END_PLACES: [(f64, f64); 5] =
     [(0.01, 0.0), (GAUSS_PLACES[0], 0.5), (0.5, 0.0), (GAUSS_PLACES[1], 0.5), (0.99, 0.0)];
-/// Number of intervals at each end that count as near it.
+/// Number of intervals at each end that are treated as near the end.
 const END_INTERVALS: usize = 4;
 
 /// A two-sided limit at a point: |v · c + g y^⅓| ≤ y^⅓, or |v · c − k y′²/y| ≤ 1 for speed and jerk. Here y is θ̇³ and
@@ -66,7 +66,7 @@ pub struct JerkProgram {
     pub(super) sides: Vec<TwoSidedLimit>,
     /// Number of two-sided limits at each point.
     pub(super) each: usize,
-    /// Number of those on torque and acceleration, which come first; then come one on speed and those on jerk.
+    /// Number of those on torque and acceleration, which come first, followed by one on speed and those on jerk.
     pub(super) linear: usize,
     /// Multipliers of the constraints c_i ≥ 0, whose slacks are the coefficients.
     pub(super) multiplier: Vec<f64>,
@@ -119,7 +119,7 @@ impl JerkProgram {
     }
 }
 
-/// Returns the path with its derivatives by θ instead of s, and its third derivative.
+/// Returns the path with its derivatives with respect to θ instead of s, and its third derivative.
 fn by_theta(path: &Path, theta: f64) -> (PathPoint, PerDrive) {
     let [s, a, b, c] = eased(theta);
     let (point, third) = (path.at(s), path.third(s));

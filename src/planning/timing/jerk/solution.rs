@@ -35,15 +35,15 @@ impl JerkProgram {
             }
         }
         let mut c = best?.1;
-        let many = (2 * self.sides.len() + count) as f64;
+        let limit_count = (2 * self.sides.len() + count) as f64;
         if !self.compute_slacks(&c, 0.0) {
             return None;
         }
         let mut time = self.time(&c);
         for side in &mut self.sides {
-            side.multiplier = side.slack.map(|slack| time / many / slack);
+            side.multiplier = side.slack.map(|slack| time / limit_count / slack);
         }
-        self.multiplier.iter_mut().zip(&c).for_each(|(multiplier, c)| *multiplier = time / many / c);
+        self.multiplier.iter_mut().zip(&c).for_each(|(multiplier, c)| *multiplier = time / limit_count / c);
         let mut gap = self.gap(&c);
         let mut band = Band::new(count);
         let (mut step, mut next) = (vec![0.0; count], c.clone());
@@ -57,7 +57,7 @@ impl JerkProgram {
             band.solve(&mut step);
             let (primal, dual) = self.step_lengths(&c, &step, 0.0, 1.0);
             let predicted = self.predicted_gap(&c, &step, primal, dual);
-            let centre = (predicted / gap).powi(3).clamp(MIN_CENTRING, 1.0) * gap / many;
+            let centre = (predicted / gap).powi(3).clamp(MIN_CENTRING, 1.0) * gap / limit_count;
             self.set_corrections(&c, &step);
             self.right_side(&c, centre, &mut step);
             band.solve(&mut step);
