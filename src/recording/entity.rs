@@ -443,7 +443,7 @@ fn circle(radius: f32) -> impl Iterator<Item = [f32; 3]> {
 }
 
 impl Strokes {
-    /// Whether both have the same style.
+    /// Returns whether both have the same style.
     fn is_alike(&self, other: &Self) -> bool {
         (self.width, self.rgba, self.dash) == (other.width, other.rgba, other.dash)
     }

@@ -55,7 +55,7 @@ impl Eye {
         }
     }
 
-    /// Whether the eye looks at a drawing from straight above.
+    /// Returns whether the eye looks at a drawing from straight above.
     pub fn is_above(&self) -> bool {
         self.thickness != 1.0
     }

@@ -101,7 +101,7 @@ impl Preview {
 /// Path of the comparison of the machines of several cases.
 pub const DESIGNS_PATH: &str = "comparison/designs";
 
-/// Whether the machines of several cases differ.
+/// Returns whether the machines of several cases differ.
 pub fn machines_differ(cases: &[Preview]) -> bool {
     cases.iter().any(|case| !case.candidate.is_alike(&cases[0].candidate))
 }

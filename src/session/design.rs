@@ -31,7 +31,7 @@ const PLACE_TOLERANCE_M: f64 = 1e-6;
 
 impl DesignBrief {
     /// Returns a brief for counterweights like those of a machine: steel discs of their maximum thickness. If one lies
-    /// farther behind the root than its link is long, its distance becomes the bound.
+    /// farther behind the root than its link is long, the largest distance becomes the bound.
     pub fn of(machine: &Machine) -> Self {
         let weights = &machine.spec().counterweights;
         let plates = weights.iter().filter(|weight| weight.radius > 0.0);
@@ -215,8 +215,8 @@ pub fn brief_edit(scenario: &Scenario, change: &Table) -> Result<Edit, String> {
     Ok(Edit::Set { change: join(follows, change) })
 }
 
-/// Returns the edit that turns the machine into another one with the same links: its edit sets the properties of links,
-/// the lengths, and the counterweights. Returns `None` if nothing differs.
+/// Returns the edit that turns the machine into another one with the same links. It sets the properties of links, the
+/// lengths, and the counterweights. Returns `None` if nothing differs.
 pub fn machine_edit(scenario: &Scenario, of: &Machine) -> Option<Edit> {
     let (was, is) = (scenario.machine.spec(), of.spec());
     let links = was.links.iter().zip(&is.links).flat_map(|(was, is)| {

@@ -266,7 +266,7 @@ impl Run {
         Ok(())
     }
 
-    /// Whether the planned motion has not begun.
+    /// Returns whether the planned motion has not begun.
     fn is_untouched(&self) -> bool {
         self.simulation.step_count() == 0 && matches!(self.simulation.guide(), Guide::Motion { .. })
     }
@@ -304,7 +304,7 @@ impl Run {
         Ok(())
     }
 
-    /// Whether the rest of the planned motion would leave new joint limits where it keeps the present ones.
+    /// Returns whether the rest of the planned motion would leave new joint limits where it keeps the present ones.
     fn leaves_limits(&self, changed: &Scenario) -> bool {
         let Guide::Motion { motion, start } = self.simulation.guide() else { return false };
         let done = motion.profile.at(self.simulation.time() - start).s;

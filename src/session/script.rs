@@ -52,7 +52,7 @@ impl Script {
         self.last.as_ref().map(|entry| &entry.timed)
     }
 
-    /// Whether it holds the same edits as another.
+    /// Returns whether it holds the same edits as another.
     pub fn is(&self, other: &Self) -> bool {
         let mut pairs = self.entries().zip(other.entries());
         // Before a shared entry all entries are shared.
@@ -65,7 +65,7 @@ impl Script {
         self.count
     }
 
-    /// Whether the user drags the machine off its planned motion.
+    /// Returns whether the user drags the machine off its planned motion.
     pub fn is_dragged(&self) -> bool {
         self.last.as_ref().is_some_and(|entry| entry.is_dragged)
     }

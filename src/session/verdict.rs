@@ -77,7 +77,8 @@ fn over(limits: &DriveLimits, peaks: &Peaks) -> Option<(DriveLimit, f64)> {
     all.filter(|(_, factor)| *factor > MAX_LIMIT_RATIO).max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Whether samples of drive angles guide the machine and the user does not drag it; the target is then only their end.
+/// Returns whether samples of drive angles guide the machine and the user does not drag it; the target is then only
+/// their end.
 fn gives_drives(scenario: &Scenario, frame: &Frame) -> bool {
     let task = &scenario.task;
     let columns = task.samples.as_ref().map(Samples::columns);
@@ -122,7 +123,7 @@ impl Verdict {
         }
     }
 
-    /// Whether the arm transmits nothing, or a wheel keeps all of it from the base, and no audit has failed.
+    /// Returns whether the arm transmits nothing, or a wheel keeps all of it from the base, and no audit has failed.
     pub fn spares_base(&self) -> bool {
         self.fault.is_none() && (self.reactionless || self.is_base_unloaded)
     }

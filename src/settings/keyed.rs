@@ -205,7 +205,7 @@ macro_rules! keyed {
                 $(.when($where))?,
             )+)?];
 
-            /// Whether a key of this part has an effect as things are, as far as the part itself can tell.
+            /// Returns whether a key of this part has an effect as things are, as far as the part itself can tell.
             #[allow(dead_code, reason = "many parts have no key that waits for another")]
             pub fn uses(&self, key: &str) -> bool {
                 $($($(

@@ -40,7 +40,8 @@ pub(super) fn tables(
         poses_facing(scenario, space, &task.points(), 0, &space.middle(), None)?;
     }
     let hand = (link.0, angle.map(|angle| angle - link.1));
-    let request = PostureRequest { machine: &scenario.machine, space, b: task.b, curves, law, closed: task.closed, hand };
+    let request =
+        PostureRequest { machine: &scenario.machine, space, b: task.b, curves, law, closed: task.closed, hand };
     // Minimum-norm rates from the pose nearest to the middle mostly keep the limits. If they do not, a search is
     // needed.
     let local = || locally(scenario, space, curves).ok().filter(|tables| keep_limits(space, tables));

@@ -97,7 +97,7 @@ impl DesignBrief {
         Disc { density: self.density, thickness: self.thickness }
     }
 
-    /// Whether a key of this part has an effect in the design view of a machine.
+    /// Returns whether a key of this part has an effect in the design view of a machine.
     pub(super) fn serves(&self, key: &str, machine: &Machine) -> bool {
         let spec = machine.spec();
         let is_link = |name: &str| spec.links.iter().any(|link| link.name == name);
@@ -145,7 +145,7 @@ fn body_of(key: &str) -> Option<(&str, &str)> {
     known.then_some((kind, name))
 }
 
-/// Whether a part has its default value.
+/// Returns whether a part has its default value.
 pub(super) fn is_default<T: Default + PartialEq>(part: &T) -> bool {
     *part == T::default()
 }

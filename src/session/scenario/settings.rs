@@ -256,13 +256,13 @@ impl Scenario {
         if used { None } else { key_of(path).map(|key| key.when) }
     }
 
-    /// Whether samples of two values are the angles of two drives.
+    /// Returns whether samples of two values are the angles of two drives.
     fn gives_two_drives(&self) -> bool {
         let samples = self.task.samples.as_ref().map(Samples::columns);
         samples == Some(2) && samples == Some(self.machine.drives()) && self.task.kind == TaskKind::Given
     }
 
-    /// Whether a force is held at the end effector at any time.
+    /// Returns whether a force is held at the end effector at any time.
     fn is_pushed(&self) -> bool {
         self.plant.force != [0.0; 2] || self.edits.iter().any(|timed| timed.edit.pushes())
     }

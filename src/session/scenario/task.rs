@@ -219,7 +219,7 @@ impl Task {
         self.is_curved() && is_straight && (self.closed || !self.via.is_empty())
     }
 
-    /// Whether more than three drives would have freedoms left.
+    /// Returns whether more than three drives would have freedoms left.
     fn has_freedoms(&self) -> bool {
         match self.columns() {
             None => self.kind == TaskKind::Reactionless && self.shape() != PathShape::JointLine,
