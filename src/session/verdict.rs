@@ -3,8 +3,8 @@
 //!
 //! | quantity | meaning |
 //! |---|---|
-//! | n_B, f_B | moment and force that the arm transmits to its base: they decide whether the run is called reactionless |
-//! | moment past the wheel | n_B less the moment of a reaction wheel: with f_B it decides whether the base is unloaded |
+//! | n_B, f_B | moment and force that the arm transmits to its base: they decide whether a run is reactionless |
+//! | moment past the wheel | n_B less the moment of a wheel: with f_B it decides whether the base is unloaded |
 
 mod statements;
 
