@@ -109,12 +109,12 @@ impl PictureSeries {
         self.wanted.is_some()
     }
 
-    /// Returns why there are no pictures, if they were requested.
+    /// Returns the reason why there are no pictures, if they were requested.
     pub fn notes(&self) -> Vec<String> {
         self.note.iter().cloned().collect()
     }
 
-    /// Returns whether a picture is due at this instant: the step is the one nearest to its time.
+    /// Returns whether a picture is due at this instant: the step is nearest to the time of the next picture.
     pub fn is_due(&mut self, frame: &Frame, step: f64) -> bool {
         if frame.step == 0 {
             self.taken = 0;
