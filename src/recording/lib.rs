@@ -25,8 +25,8 @@
 //! Each item of the [`Scene`](stillbase_picture::scene::Scene) that the window opens with is an entity with the name of
 //! the item. The plots are the [`charts`](stillbase_picture::charts) of the window. So a new item of the scene, or a
 //! new signal in a chart, is recorded without a change here. Options that are off by default in the window are not
-//! recorded: snapshots of the arm, and pin forces, which pictures show with the option `pin_forces`. Hints at what can
-//! be dragged are not recorded either.
+//! recorded: snapshots of the arm, and pin forces. Pictures show pin forces with the option `pin_forces`. Hints at what
+//! can be dragged are not recorded either.
 //!
 //! Each change of the machine in a session is a row of the design, at the step at which it was made. Such recordings
 //! have a further time line, `edit`.

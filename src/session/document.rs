@@ -124,7 +124,7 @@ impl Document {
         let mut script = document.script.to_vec();
         script.retain(|e| !e.edit.is_replaced_by(&timed.edit));
         if timed.edit.sets_path() && document.script.is_dragged() {
-            // A new plan puts a dragged machine back on its path: drags and later changes of b are dropped, and all
+            // A new plan puts a dragged machine back on its path. Drags and later changes of b are dropped, and all
             // other edits move to step 0.
             let mut kept: Vec<TimedEdit> = Vec::with_capacity(script.len());
             for e in script.drain(..).filter(|e| !e.edit.is_drag()) {

@@ -158,8 +158,8 @@ impl Edit {
         self.settings().is_some_and(|change| change.keys().any(|key| parts.contains(&key.as_str())))
     }
 
-    /// Returns whether the edit changes any setting of the task except its time, and so changes the path or sends a
-    /// dragged machine back to it.
+    /// Returns whether the edit changes any setting of the task except its time. Such an edit changes the path, or
+    /// sends a dragged machine back to it.
     pub fn sets_path(&self) -> bool {
         self.part("task").is_some_and(|task| task.is_empty() || task.keys().any(|key| key != "time"))
     }

@@ -20,7 +20,7 @@ const DIRECTION_RAD: f64 = 0.3 * PI;
 /// Durations of the motion, s. The first one that exceeds no limit of a drive is used.
 const DURATIONS_S: [f64; 4] = [2.0, 4.0, 8.0, 16.0];
 
-/// Returns a scenario with a small motion near the middle of the joint limits: reactionless if the machine can do that,
+/// Returns a scenario with a small motion near the middle of the joint limits. The motion is reactionless if possible,
 /// otherwise along a straight line. If all trials fail, returns one of them; the planner or the run then reports the
 /// reason.
 ///

@@ -129,8 +129,8 @@ impl Session {
         if self.is_dragged() { done } else { done.max(self.run.planned_time()) }
     }
 
-    /// Returns the b to which a dragged machine moves, if the newest frame is on display, otherwise the reference b of
-    /// the frame on display, rad.
+    /// Returns the reference b of the frame on display, rad. If this is the newest frame of a dragged machine, returns
+    /// the b to which the machine moves.
     pub fn b_aim(&self) -> f64 {
         match self.run.simulation().guide() {
             stillbase_simulation::Guide::Follow(follower) if self.is_at_end() => follower.b_aim(),

@@ -27,7 +27,7 @@ use stillbase_simulation::{Guide, Simulation};
 pub struct WaitReason {
     /// Reason why the task cannot be planned.
     pub why: Refusal,
-    /// Index of each point that the b of the task does not reach, counted from A, and the nearest b that reaches it,
+    /// Points that the b of the task does not reach: index, counted from A, and the nearest b that reaches the point,
     /// rad, as printed.
     pub points: Vec<(usize, Option<Decimal>)>,
 }

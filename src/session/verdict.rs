@@ -77,7 +77,7 @@ fn over(limits: &DriveLimits, peaks: &Peaks) -> Option<(DriveLimit, f64)> {
     all.filter(|(_, factor)| *factor > MAX_LIMIT_RATIO).max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Returns whether samples of drive angles guide the machine and the user does not drag it; the target is then only the
+/// Returns whether samples of drive angles guide the machine and the user does not drag it. The target is then only the
 /// end of the samples.
 fn gives_drives(scenario: &Scenario, frame: &Frame) -> bool {
     let task = &scenario.task;

@@ -8,8 +8,8 @@
 //!
 //! All angles are relative to the base, q_k − θ, as encoders read them. Gains and torques refer to the motors; a motor
 //! in a joint uses the angle relative to its stator, q_k − q_on. With equal gains on all drives and an exact model, Σ
-//! D_k e_k decays independently of other errors: errors that start on the plane stay on it and transmit no moment. With
-//! unequal gains they leave the plane.
+//! D_k e_k decays independently of other errors. So errors that start on the plane stay on it and transmit no moment.
+//! With unequal gains they leave the plane.
 
 use crate::plant::{DriveValues, MovingBody};
 use stillbase_mechanics::dynamics::{by_drives, leading_entries, torques};

@@ -75,8 +75,8 @@ impl Peaks {
         REACTIONLESS_SHARE * self.inertial_pull + ROUNDING * self.weight
     }
 
-    /// Returns whether the arm transmits no reaction. The peak |n_B| must be at most 1e-6 of the peak Σ|τ_k|, and the
-    /// peak dynamic |f_B| at most 1e-6 of the peak Σ m_j |a_cj|. Both tolerances include rounding of weight.
+    /// Returns whether the arm transmits no reaction. The peak |n_B| must be at most 1e-6 of the peak Σ|τ_k|. The peak
+    /// dynamic |f_B| must be at most 1e-6 of the peak Σ m_j |a_cj|. Both tolerances include rounding of weight.
     pub fn is_reactionless(&self) -> bool {
         self.arm_moment <= self.no_moment() && self.force <= self.no_force()
     }

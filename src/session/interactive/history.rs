@@ -85,8 +85,8 @@ impl Session {
         Ok(())
     }
 
-    /// Goes to the document of an undo or redo entry: in motion by `edit` at the present step, paused or at rest by
-    /// restoring the document.
+    /// Goes to the document of an undo or redo entry: in motion by applying `edit`, paused or at rest by restoring the
+    /// document.
     fn go_to(&mut self, change: &HistoryStep, edit: Option<&Edit>, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
         match (edit, change.beside) {
             (_, Some(kept)) => {

@@ -55,8 +55,8 @@ fn directly(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusa
     }
 }
 
-/// Completes the refusal of a task that leaves its plane, if its b does not reach A: adds the nearest b at which the
-/// task can be planned.
+/// Completes the refusal of a task that leaves its plane. If the task's b does not reach A, proposes the nearest b at
+/// which the task can be planned.
 fn with_nearest_b(scenario: &Scenario, space: &PoseSpace, refusal: Refusal) -> Refusal {
     // The path does not depend on the time law.
     let law = TimeLaw::Quintic;

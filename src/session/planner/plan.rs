@@ -76,8 +76,8 @@ impl Plan {
         self.cycles.iter().skip(1).filter_map(move |q| Some(q.0.minus(&first?.0).max_abs()))
     }
 
-    /// Returns a plan at rest for a run that waits: in a pose of A, at the b of the task or otherwise at the nearest b.
-    /// If no b reaches A, the joints are in the middle of their ranges.
+    /// Returns a plan at rest for a run that waits. The pose is one of A, at the b of the task or otherwise at the
+    /// nearest b. If no b reaches A, the joints are in the middle of their ranges.
     pub fn rest(scenario: &Scenario, space: Option<&PoseSpace>) -> Self {
         let (task, machine) = (&scenario.task, &scenario.machine);
         let p = task.points()[0];

@@ -17,7 +17,7 @@ pub(super) fn minimum_norm(scenario: &Scenario, space: PlannerSpace<'_>) -> Resu
     by_least_rates(scenario, start, &curves(task, &points)?, None)
 }
 
-/// Moves the end effector as on the joint line from A to B, while drive 1 turns to an angle set by the task; the other
+/// Moves the end effector as on the joint line from A to B. Drive 1 turns to an angle that the task sets, and the other
 /// drives follow.
 pub(super) fn same_tip(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<PathSegments, Refusal> {
     let (task, machine) = (&scenario.task, &scenario.machine);

@@ -1,5 +1,5 @@
 //! [`Statements`]: separate assessments of a machine, of its plan and of its run. A balanced machine still reacts on
-//! its base if its path leaves the plane b = const, and only a run shows the reactions that are transmitted.
+//! its base if its path leaves the plane b = const. Only a run shows the reactions that are transmitted.
 //!
 //! | statement | good | bad | open |
 //! |---|---|---|---|

@@ -13,8 +13,8 @@
 //!
 //! # Method
 //! A moving base is treated as one more drive, with g_0 = m_b ρ, C_00 = m_b |ρ|², J_0 = I_b. Its translation drops out
-//! of the equations if everything is referred to R: the kinetic energy is |P|²/2M_t + ½ q̇ᵀ H' q̇ with H' formed from
-//! C'. So π̇_k = ∂T/∂q_k + Q_k, and only outer forces change P and L: on a free base without outer forces both are
+//! of the equations if everything is referred to R. The kinetic energy is then |P|²/2M_t + ½ q̇ᵀ H' q̇, with H' formed
+//! from C'. So π̇_k = ∂T/∂q_k + Q_k, and only outer forces change P and L. On a free base without outer forces both are
 //! constant to the last digit. Gravity has no lever about R.
 
 use super::{Base, BaseKind, Contacts, Friction, SlipDirections, Slope, State};
@@ -297,7 +297,7 @@ impl MovingBody {
         torque
     }
 
-    /// Returns the generalised forces of weight, of the force at the end effector and of the support, N m; the last
+    /// Returns the generalised forces of weight, of the force at the end effector and of the support, N m. The last
     /// entry is the moment on a moving base. Weight has no lever about R, the reference point on a moving base.
     #[inline(always)]
     pub(super) fn outer<const N: usize, const MOVES: bool>(
