@@ -41,7 +41,7 @@ pub enum Edit {
         /// m.
         y: f64,
     },
-    /// Moves the pose constant to b, rad, while time passes: the base feels n_B = −D_1 b̈.
+    /// Moves the pose constant to b, rad, while time passes: n_B = −D_1 b̈ acts on the base.
     SlideB {
         /// rad.
         b: f64,

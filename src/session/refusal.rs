@@ -121,7 +121,7 @@ pub enum Refusal {
         /// Steps of the run.
         steps: u64,
     },
-    /// The session holds the maximum number of frames.
+    /// The session contains the maximum number of frames.
     #[error(
         "a session keeps {MAX_FRAMES} frames and an hour at most, and this one is full at {time:.3} s: want an earlier \
          instant, or the start, to go on from; `simulate` and `headless` run longer"

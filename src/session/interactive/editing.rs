@@ -110,7 +110,7 @@ impl Session {
         Ok(())
     }
 
-    /// Applies an edit before the first step, so that a setting holds during the whole run.
+    /// Applies an edit before the first step, so that a setting applies to the whole run.
     fn amend(&mut self, edit: Edit, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
         let (before, inverse) = (self.document.clone(), self.run.inverse_of(&edit));
         let timed = TimedEdit { step: 0, edit };

@@ -101,7 +101,7 @@ impl Session {
         }
     }
 
-    /// Repeats the change that was undone last.
+    /// Redoes the change that was undone last.
     ///
     /// # Errors
     /// If it cannot apply; then nothing has changed.

@@ -132,7 +132,7 @@ impl Scenario {
 
     /// Sets the step size, s; edits keep their times.
     fn step_by(&mut self, step: f64) {
-        // Step numbers of edits refer to the step size that the last edit of it sets.
+        // Step numbers of edits refer to the last step size that an edit sets.
         let own = self.edits.iter().rev().find_map(|timed| timed.edit.own_number("step")).unwrap_or(self.step);
         self.edits.retain_mut(|timed| timed.edit.take("step").is_none() || !timed.edit.sets_nothing());
         let ratio = own / step;

@@ -3,7 +3,7 @@
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | v | sliding rate: q̇_k − θ̇ in a bearing, q̇_k − q̇_on with the stator on drive on; q̇_l − q̇_k in a pin | rad/s |
+//! | v | sliding rate: in a bearing q̇_k less the rate of the stator (θ̇ on the base), in a pin q̇_l − q̇_k | rad/s |
 //! | f | friction torque against v: c v + τ_C sgn v while sliding, any |f| ≤ τ_C while stuck | N m |
 //!
 //! Friction acts between two parts with equal and opposite torques. Coulomb friction is not smoothed: a contact either

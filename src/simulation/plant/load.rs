@@ -39,7 +39,8 @@ impl Load {
         self.mass > 0.0 || self.inertia > 0.0
     }
 
-    /// Returns whether the payload is held at a time, s. With a `slack` of half a step, s, both times round to steps.
+    /// Returns whether the payload is held at a time, s. With a `slack` of half a step, s, pick-up and release are
+    /// rounded to whole steps.
     pub fn is_held(&self, time: f64, slack: f64) -> bool {
         self.is_some() && time >= self.from - slack && self.until.is_none_or(|until| time < until - slack)
     }
