@@ -14,13 +14,13 @@ use super::store::{Instant, RowTimes, Store, StoreError};
 use super::style::{CombinedArchetypes, colour, solid};
 use stillbase_picture::scene::{Area, ItemChanges, Mesh, MeshSet, Rgba, Strips, Transform};
 
-/// Grid cells of a workspace along each angle.
+/// Number of grid cells of a workspace along each angle.
 const CELLS: u32 = 40;
 /// Maximum number of dashes and gaps of a constant line.
 const MAX_DASHES_CONSTANT: f32 = 400.0;
 /// Maximum number of dashes and gaps of a line that changes.
 const MAX_DASHES_CHANGING: f32 = 13.0;
-/// Tolerance for equality of poses, m and components of the unit vector.
+/// Tolerance for equality of poses: m for translations, and components of the unit vector for rotations.
 const POSE_TOLERANCE: f32 = 2e-6;
 
 /// A rotation about z, as cosine and sine, and a translation, m.
@@ -164,11 +164,11 @@ pub struct Entity {
     pub shape: Option<EntityShape>,
     /// Pose in the current scene.
     pub pose: Option<(Rigid, ItemChanges)>,
-    /// Pose and vertical stretch of each solid of one name.
+    /// Pose and vertical scale factor of each solid with the name of this entity.
     pub placed: Vec<(Rigid, f32)>,
-    /// Centres of the rings of one name, and their radius.
+    /// Centres of the rings with the name of this entity, and their common radius, m.
     pub rings: (Vec<[f32; 3]>, f32),
-    /// Whether the current scene contains it.
+    /// Whether the current scene contains the entity.
     pub is_there: bool,
     /// Constant components that have been written.
     pub written: Option<StaticShape>,
@@ -238,8 +238,8 @@ impl Entity {
         }
     }
 
-    /// Writes constant components of the current scene that are new, and buffers rows of changing ones. `outer` is the
-    /// pose of its nearest ancestor with a pose.
+    /// Writes new constant components of the current scene, from `since` on or for all times, and buffers rows of
+    /// changing ones. `outer` is the pose of the nearest ancestor that has a pose.
     pub fn note(
         &mut self,
         store: &mut Store,
@@ -263,7 +263,7 @@ impl Entity {
         let mut stands = None;
         if let Some((pose, changes)) = self.pose {
             let pose = pose.within(outer);
-            // Within an ancestor, equal poses differ by rounding errors.
+            // Relative to an ancestor, equal poses may differ by rounding errors.
             let is_part = *outer != Rigid::IDENTITY;
             let same = |last: &Rigid| if is_part { last.is_near(&pose) } else { *last == pose };
             let known = self.poses.last().is_some_and(same);
@@ -443,7 +443,7 @@ fn circle(radius: f32) -> impl Iterator<Item = [f32; 3]> {
 }
 
 impl Strokes {
-    /// Whether both have the same style.
+    /// Returns whether two sets of lines have the same style.
     fn is_alike(&self, other: &Self) -> bool {
         (self.width, self.rgba, self.dash) == (other.width, other.rgba, other.dash)
     }

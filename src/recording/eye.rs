@@ -7,11 +7,11 @@ use crate::rerun::blueprint::components::Eye3DKind;
 
 use stillbase_picture::scene::camera::{Camera, FlatCamera, Orbit};
 
-/// Half the height of the picture at a distance of 1; the viewer has a field of view of 55°.
+/// Half the height of the picture, as a fraction of the eye's distance, for the viewer's field of view of 55°.
 const HALF_HEIGHT: f64 = 0.5206;
 
-/// Assumed pixels from the centre of the picture to its top, in a window of usual size. They are fewer than the actual
-/// ones, because the viewer draws labels in boxes.
+/// Assumed number of pixels from the centre of the picture to its top. It is smaller than in a usual window, because
+/// the viewer draws labels in boxes.
 const HALF_PIXELS: f64 = 240.0;
 
 /// An eye that looks at a point.
@@ -55,7 +55,7 @@ impl Eye {
         }
     }
 
-    /// Whether the eye looks at a drawing from straight above.
+    /// Returns whether the eye looks at a drawing from straight above.
     pub fn is_above(&self) -> bool {
         self.thickness != 1.0
     }
@@ -65,7 +65,7 @@ impl Eye {
         Camera::Orbit(self.orbit)
     }
 
-    /// Size of a pixel at the centre of the picture, m.
+    /// Returns the size of a pixel at the centre of the picture, m.
     pub fn pixel(&self) -> f32 {
         (self.orbit.distance * HALF_HEIGHT / HALF_PIXELS) as f32
     }

@@ -23,10 +23,10 @@
 //! | `view` | offscreen pictures |
 //!
 //! Each item of the [`Scene`](stillbase_picture::scene::Scene) that the window opens with is an entity with the name of
-//! the item. The plots are the [`charts`](stillbase_picture::charts) of the window. So a new item of the scene, or a new
-//! signal in a chart, is recorded without a change here. Options that are off by default in the window are not
-//! recorded: snapshots of the arm, and pin forces (pictures can show the latter, `pin_forces`). Hints at what can be
-//! dragged are not recorded either.
+//! the item. The plots are the [`charts`](stillbase_picture::charts) of the window. So a new item of the scene, or a
+//! new signal in a chart, is recorded without a change here. Options that are off by default in the window are not
+//! recorded: snapshots of the arm, and pin forces. Pictures show pin forces with the option `pin_forces`. Hints at what
+//! can be dragged are not recorded either.
 //!
 //! Each change of the machine in a session is a row of the design, at the step at which it was made. Such recordings
 //! have a further time line, `edit`.
@@ -93,7 +93,7 @@ pub struct Recording {
     pub verdict: Verdict,
     /// Statements about machine, plan and run.
     pub statements: Statements,
-    /// Notes for the user: why there are no pictures.
+    /// Notes for the user, such as the reason why there are no pictures.
     pub notes: Vec<String>,
 }
 
@@ -251,7 +251,7 @@ fn write(
         cases.push(Preview::of(scenario, &mut tick).map_err(refused)?);
         before += steps(scenario);
     }
-    // The exact number of steps.
+    // From here on the exact number of steps is known.
     let total: u64 = cases.iter().map(|case| case.steps).sum();
     before = total;
     check_pictures(scenarios, &cases, options)?;

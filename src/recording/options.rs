@@ -16,8 +16,8 @@ pub struct Pictures {
 /// Options of a recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Options {
-    /// Pictures, if any. Without a usable adapter there are no pictures, which is said in the
-    /// [`notes`](super::Recording::notes).
+    /// Pictures, if requested. Without a usable graphics adapter none are made, and the
+    /// [`notes`](super::Recording::notes) say so.
     pub pictures: Option<Pictures>,
     /// Whether an existing file is replaced.
     pub force: bool,

@@ -104,17 +104,17 @@ impl PictureSeries {
         self.note = Some(format!("recorded without pictures: {why}"));
     }
 
-    /// Whether there will be pictures.
+    /// Returns whether there will be pictures.
     pub fn is_wanted(&self) -> bool {
         self.wanted.is_some()
     }
 
-    /// Returns why there are no pictures, if they were requested.
+    /// Returns the reason why there are no pictures, if they were requested.
     pub fn notes(&self) -> Vec<String> {
         self.note.iter().cloned().collect()
     }
 
-    /// Whether a picture is due at this instant: the step is the one nearest to its time.
+    /// Returns whether a picture is due at this instant: the step is nearest to the time of the next picture.
     pub fn is_due(&mut self, frame: &Frame, step: f64) -> bool {
         if frame.step == 0 {
             self.taken = 0;
@@ -146,7 +146,7 @@ impl PictureSeries {
         Ok(())
     }
 
-    /// Whether the buffered pictures should be written.
+    /// Returns whether the buffered pictures should be written.
     pub fn is_full(&self) -> bool {
         self.pictures.iter().map(Vec::len).sum::<usize>() > MAX_BUFFERED_BYTES
     }

@@ -19,14 +19,14 @@ use stillbase_simulation::frame::Peaks;
 use stillbase_simulation::signals::{Signal, signals};
 use stillbase_study::comparison::DesignCandidate;
 
-/// Extreme values of a run, and the views and charts that follow from them.
+/// Extreme values of a run, and the views and charts that they determine.
 #[derive(Debug)]
 pub struct Preview {
     /// Name of the scenario.
     pub name: String,
     /// Title of the case.
     pub title: String,
-    /// Path of its entities.
+    /// Path of the scenario's entities.
     pub root: EntityPath,
     /// Number of steps.
     pub steps: u64,
@@ -101,7 +101,7 @@ impl Preview {
 /// Path of the comparison of the machines of several cases.
 pub const DESIGNS_PATH: &str = "comparison/designs";
 
-/// Whether the machines of several cases differ.
+/// Returns whether the machines of several cases differ.
 pub fn machines_differ(cases: &[Preview]) -> bool {
     cases.iter().any(|case| !case.candidate.is_alike(&cases[0].candidate))
 }

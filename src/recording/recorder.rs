@@ -81,7 +81,7 @@ struct Recorder<'a> {
     root: &'a EntityPath,
     palette: Palette,
     options: ViewOptions,
-    /// Whether the constant parts of the views do not change during the run.
+    /// Whether the constant parts of the views stay valid during the whole run.
     constant_views: bool,
     /// Number of edits that have been applied.
     edits: usize,
@@ -98,7 +98,7 @@ struct Recorder<'a> {
     events: Events,
 }
 
-/// Views of the run, without and with the present base and payload.
+/// Views of the run: `made` without, `views` with the present base and payload.
 struct Drawn {
     made: Arc<Views>,
     views: Arc<Views>,

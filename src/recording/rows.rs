@@ -11,7 +11,7 @@ pub struct SparseRows<T> {
 }
 
 impl<T: Clone + PartialEq> SparseRows<T> {
-    /// Returns an empty track.
+    /// Returns an empty list of rows.
     pub fn new() -> Self {
         Self { clock: RowTimes::default(), rows: Vec::new(), last: None }
     }
@@ -36,7 +36,8 @@ impl<T: Clone + PartialEq> SparseRows<T> {
     }
 }
 
-/// Keeps every n-th item, and at most `most` of them: if there are more, it drops every other one and doubles n.
+/// A list of every n-th item, with at most `most` items: if there are more, every other one is dropped and n is
+/// doubled.
 #[derive(Debug)]
 pub struct Thinned<T> {
     items: Vec<T>,

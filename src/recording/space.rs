@@ -1,5 +1,5 @@
-//! One space of a recording, drawn from its [`Scene`]s: each item of a scene is an entity; items of one name share it.
-//! Parts of an item marked as constant are written once, other parts when they change.
+//! One space of a recording, drawn from its [`Scene`]s: each item of a scene is an entity; items with the same name
+//! share one entity. Parts of an item marked as constant are written once, other parts when they change.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -14,7 +14,7 @@ use super::style::under;
 use stillbase_picture::scene::palette::mix;
 use stillbase_picture::scene::{Anchor, Area, ItemChanges, Label, Marker, MeshSet, Polyline, Rgba, Scene, Solid};
 
-/// Height between consecutive lines that are drawn over everything, px.
+/// Difference in height between consecutive lines that are drawn over everything, px.
 const LINE_SPACING_PX: f32 = 0.1;
 /// Factor from the row spacing of labels in the window to that in the viewer, which draws labels in boxes.
 const ROW_SPACING: f32 = 1.4;
@@ -50,8 +50,8 @@ impl RecordingSpace {
         }
     }
 
-    /// Sets replacements of paths, as pairs of old and new prefix. If the name of an item is the old prefix or below
-    /// it, the path of its entity has the new prefix instead. Of several matching pairs, the first applies.
+    /// Sets replacements of paths, as pairs of old and new prefix. If the name of an item is the old prefix or lies
+    /// below it, the path of its entity has the new prefix instead. Of several matching pairs, the first applies.
     pub fn rename(&mut self, renamed: Vec<(&'static str, String)>) {
         self.renamed = renamed;
     }

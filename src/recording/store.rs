@@ -2,7 +2,7 @@
 //!
 //! A separate thread encodes and writes chunks in order, while the next chunk is made. It returns its error, so that
 //! the caller learns of a full disk; the stream of the SDK only prints it to standard error. Identifiers of chunks
-//! count up from that of the recording, so that equal data give equal chunks.
+//! count up from a number derived from the digest, so that equal data give equal chunks.
 
 use std::io::Write;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -104,7 +104,7 @@ impl RowTimes {
         both.map(move |(i, (step, nanos))| Instant { step: *step as u64, nanos: *nanos, edit: edit(i) })
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.steps.len()
     }
@@ -184,7 +184,7 @@ impl Store {
         }
     }
 
-    /// Returns the error for which the writer has stopped.
+    /// Returns the error that stopped the writer.
     fn why(&mut self) -> StoreError {
         match self.writer.take().map(JoinHandle::join) {
             Some(Ok(Err(error))) => error,
@@ -213,7 +213,7 @@ impl Store {
         Ok(Chunk::builder_with_id(id, path.clone()).with_archetype(row, at, what).build()?)
     }
 
-    /// Writes components that hold at all times.
+    /// Writes components that apply at all times.
     pub fn fixed(&mut self, path: &EntityPath, what: &dyn AsComponents) -> Result<(), StoreError> {
         let chunk = self.row(TimePoint::default(), path, what)?;
         self.append(self.recording.clone(), &chunk)
@@ -231,7 +231,7 @@ impl Store {
         self.append(self.recording.clone(), &chunk)
     }
 
-    /// Writes components that hold from an instant on, or at all times.
+    /// Writes components that apply from an instant on, or at all times.
     pub fn shape(
         &mut self,
         since: Option<Instant>,

@@ -36,7 +36,7 @@ pub fn brief(x: f64) -> String {
     }
 }
 
-/// Returns a mesh in one colour, in the axes of an eye. For a drawing seen from above, only faces that look up are
+/// Returns a mesh in one colour, in the axes of an eye. For a drawing seen from above, only faces that point up are
 /// included, without shading.
 pub fn solid(mesh: &Mesh, rgba: Rgba, eye: &Eye) -> Mesh3D {
     if eye.is_above() {
@@ -48,7 +48,7 @@ pub fn solid(mesh: &Mesh, rgba: Rgba, eye: &Eye) -> Mesh3D {
         .with_albedo_factor(colour(rgba).0)
 }
 
-/// Returns the faces of a mesh that look up, without normals.
+/// Returns the faces of a mesh that point up, without normals.
 fn drawn(mesh: &Mesh, rgba: Rgba, eye: &Eye) -> Mesh3D {
     let is_up = |triangle: &&[u32; 3]| triangle.iter().all(|v| mesh.normals[*v as usize][2] > 0.05);
     let mut places = vec![None; mesh.positions.len()];

@@ -1,5 +1,5 @@
 //! Topics: signals that share an entity. Each row of an entity has an identifier and two times, which take 18 bytes in
-//! the file, while a value takes 8; signals of one entity share them.
+//! the file, while a value takes 8. The signals of one entity share identifier and times.
 
 use crate::rerun::{EntityPath, Scalars, SeriesLines};
 
@@ -10,8 +10,8 @@ use stillbase_picture::scene::palette::Palette;
 use stillbase_simulation::frame::{Frame, Peaks};
 use stillbase_simulation::signals::Signal;
 
-/// Entities of several groups of signals. Any other group is a separate entity with its own name. So is a signal that
-/// is compared between cases, because a legend names all series of an entity, even hidden ones.
+/// Entities of several groups of signals. Any other group is a separate entity with its own name. A signal that is
+/// compared between cases is a separate entity too, because a legend names all series of an entity, even hidden ones.
 const TOPICS: [(&str, &[&str]); 4] = [
     ("drives", &["torque", "friction", "angle", "reference", "error", "rate", "acceleration", "joint", "pose"]),
     (
@@ -41,7 +41,7 @@ const TOPICS: [(&str, &[&str]); 4] = [
 pub struct Topic {
     /// Name of the entity under `signals`.
     pub name: String,
-    /// Its series, in the order of the table of signals.
+    /// Signals of the entity, in the order of the table of signals.
     pub signals: Vec<Signal>,
     /// Buffered values, row by row.
     values: Vec<f64>,
@@ -65,7 +65,7 @@ impl Topic {
         topics
     }
 
-    /// Path of the entity in the recording.
+    /// Returns the path of the entity in the recording.
     pub fn path(&self, root: &EntityPath) -> EntityPath {
         under(root, &format!("signals/{}", self.name))
     }

@@ -9,8 +9,8 @@ use stillbase_planning::posed::carried_points;
 use stillbase_query::{Queries, QuickWork};
 use stillbase_settings::range::shortened;
 
-/// Returns the scenario with the settings or the push of an edit. Nothing is planned or checked; see [`checked`]. Drags
-/// and poses do not change the scenario.
+/// Returns the scenario with the settings or the push of an edit applied. Nothing is planned or checked; see
+/// [`checked`]. Drags and poses do not change the scenario.
 pub(super) fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refusal> {
     let mut scenario = scenario.clone();
     match edit {

@@ -23,15 +23,15 @@ const MASS_PENALTY_PER_KG: f64 = 1.0;
 /// Penalty on a change of the place of a counterweight, 1/m.
 const PLACE_PENALTY_PER_M: f64 = 5.0;
 
-/// Weight of a kilogram in the objective, relative to a kg m² of Σ |D_k|: enough that no useless mass is added.
+/// Weight of mass in the objective, in kg m² of Σ |D_k| for each kg: enough that no useless mass is added.
 const MASS_WEIGHT: f64 = 1e-3;
 
-/// A counterweight may be this much farther behind the root, m, because of rounding.
+/// A counterweight may exceed its bound behind the root by this much, m, because of rounding.
 const PLACE_TOLERANCE_M: f64 = 1e-6;
 
 impl DesignBrief {
-    /// Returns a brief for counterweights like those of a machine: discs of steel of their thickness, as far behind the
-    /// root as the farthest of them.
+    /// Returns a brief for counterweights like those of a machine: steel discs of their maximum thickness. If one lies
+    /// farther behind the root than its link is long, the largest distance becomes the bound.
     pub fn of(machine: &Machine) -> Self {
         let weights = &machine.spec().counterweights;
         let plates = weights.iter().filter(|weight| weight.radius > 0.0);
@@ -56,11 +56,11 @@ impl DesignBrief {
         }
     }
 
-    /// Returns a change of a machine as an edit. If the machine is kept balanced, all free numbers follow, each as near
-    /// as possible to its value in `start`.
+    /// Returns a change of a machine as an edit. If the machine is kept balanced, the edit also adjusts all free
+    /// numbers, each as near as possible to its value in `start`.
     ///
     /// # Errors
-    /// If there is no such machine, or none that is balanced: what prevents it, and what would be feasible.
+    /// If the changed machine is invalid or cannot be balanced. The error states the obstacle and what is feasible.
     pub fn edit(&self, machine: &Machine, start: &Machine, change: &Table) -> Result<Edit, String> {
         self.followed(machine, start, change).map(|change| Edit::Set { change })
     }
@@ -73,7 +73,7 @@ impl DesignBrief {
         let named: Vec<String> = leaves(change).into_iter().map(|(key, _)| key).collect();
         let problem = self.free_numbers(&changed, start, &named);
         let kept = rebalance(&changed, &problem).map_err(|why| why.to_string())?;
-        // All numbers that are free, changed or not, so that the next edit of a drag replaces this one.
+        // The edit sets all free numbers, changed or not, so that the next edit of a drag replaces it.
         let follows = problem.parameters.iter().zip(&kept.values).filter(|(one, _)| one.hold != ParameterBounds::Fixed);
         let follows = follows.map(|(one, value)| (one.parameter.key(&changed), *value));
         let discs = kept.machine.spec().counterweights.iter().enumerate();
@@ -81,8 +81,8 @@ impl DesignBrief {
         Ok(follows.chain(discs).fold(change.clone(), |all, (key, value)| join(all, &single_change(&key, value))))
     }
 
-    /// Returns the numbers that may change: mass and place of counterweights if one is not fixed, otherwise the centres
-    /// of mass of links. Numbers named by the edit are fixed.
+    /// Returns the numbers that may change: mass and place of counterweights if at least one is not fixed, otherwise
+    /// the centres of mass of links. Numbers named by the edit are fixed.
     fn free_numbers(&self, machine: &Machine, start: &Machine, named: &[String]) -> RebalanceRequest {
         let spec = machine.spec();
         let free: Vec<(Parameter, &str)> = match spec.counterweights.iter().all(|weight| weight.fixed) {
@@ -127,8 +127,8 @@ impl DesignBrief {
         keep.measured_from(start)
     }
 
-    /// Returns the range of places of a counterweight, m: that of the Pareto front, widened to its present place and to
-    /// that at the start. The counterweight stays clear of pins in this range.
+    /// Returns the range of places of a counterweight, m: that of the Pareto front, widened to include its present
+    /// place and its place in `start`. If the counterweight is clear of pins now, it stays clear in this range.
     fn along(&self, machine: &Machine, start: &Machine, i: usize) -> ParameterBounds {
         let weights = [machine, start].map(|machine| machine.spec().counterweights.get(i));
         let link = weights[0].and_then(|weight| machine.links().iter().position(|link| link.name == weight.link));
@@ -154,7 +154,7 @@ impl DesignBrief {
     /// Returns the Pareto front of added mass against inertia, for counterweights alone, as `count` machines.
     ///
     /// # Errors
-    /// If nothing within the bounds balances it.
+    /// If no counterweights within the bounds balance the machine.
     pub fn front(&self, machine: &Machine, count: usize) -> Result<Front, CounterweightError> {
         front(machine, &self.weighing(machine), count)
     }
@@ -163,7 +163,7 @@ impl DesignBrief {
     /// base.
     ///
     /// # Errors
-    /// If nothing within the bounds balances the machine.
+    /// If no counterweights and ratios within the bounds balance the machine.
     pub fn stillest(&self, machine: &Machine) -> Result<Placed, CounterweightError> {
         let objective = Objective { momentum: 1.0, mass: MASS_WEIGHT, ..Objective::mass() };
         let drives = machine.spec().drives.iter().enumerate();
@@ -174,7 +174,7 @@ impl DesignBrief {
         place_weights(machine, &CounterweightSpec { objective, rotors: rotors.collect(), ..self.weighing(machine) })
     }
 
-    /// Returns the problem of the lightest counterweights for a machine within the bounds of the brief.
+    /// Returns the optimisation problem of the lightest counterweights for a machine, within the bounds of the brief.
     pub fn weighing(&self, machine: &Machine) -> CounterweightSpec {
         let spec = machine.spec();
         let free = machine.resolved_links().iter().enumerate();
@@ -204,7 +204,7 @@ pub fn length_edit(link: &Link, to: f64) -> Edit {
 /// machine.
 ///
 /// # Errors
-/// If the brief cannot be changed so, or nothing balances the machine: what prevents it, and what would be feasible.
+/// If the change is invalid, or nothing balances the machine. The error states the obstacle and what is feasible.
 pub fn brief_edit(scenario: &Scenario, change: &Table) -> Result<Edit, String> {
     let next = scenario.with_settings(change).map_err(|why| why.to_string())?;
     let begins = next.design.keep_balanced && !scenario.design.keep_balanced;
@@ -215,15 +215,15 @@ pub fn brief_edit(scenario: &Scenario, change: &Table) -> Result<Edit, String> {
     Ok(Edit::Set { change: join(follows, change) })
 }
 
-/// Returns the edit that turns the machine into another one with the same links: numbers of links, lengths, and
-/// counterweights. Returns `None` if nothing differs.
+/// Returns the edit that turns the machine into another one with the same links. It sets the properties of links, the
+/// lengths, and the counterweights. Returns `None` if nothing differs.
 pub fn machine_edit(scenario: &Scenario, of: &Machine) -> Option<Edit> {
     let (was, is) = (scenario.machine.spec(), of.spec());
     let links = was.links.iter().zip(&is.links).flat_map(|(was, is)| {
         let [before, after] = [was, is].map(|link| Table::try_from(link).unwrap_or_default());
         let keys: BTreeSet<String> = before.keys().chain(after.keys()).cloned().collect();
         let changed = keys.into_iter().filter(|key| before.get(key) != after.get(key));
-        // A key that is left out counts as zero.
+        // An omitted key means zero.
         let value = |key: &str| after.get(key).cloned().unwrap_or_else(|| 0.0.into());
         changed.map(|key| at(&["link", &was.name, &key], value(&key))).collect::<Vec<_>>()
     });
@@ -238,8 +238,8 @@ pub fn machine_edit(scenario: &Scenario, of: &Machine) -> Option<Edit> {
     (!change.is_empty()).then_some(Edit::Set { change })
 }
 
-/// Returns the edit that gives a machine the counterweights, the payload mass and the rotor ratios of another. Holds of
-/// numbers of counterweights are removed if the counterweights are on other links.
+/// Returns the edit that gives a machine the counterweights, the payload mass and the rotor ratios of another. Bounds
+/// on numbers of counterweights are removed if the counterweights are on other links.
 pub fn counterweights_edit(scenario: &Scenario, of: &Machine) -> Edit {
     let machine = &scenario.machine;
     let weights = of.spec().counterweights.iter().filter_map(|weight| Value::try_from(weight).ok());

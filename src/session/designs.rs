@@ -14,15 +14,15 @@ use stillbase_mechanics::machine::{Machine, is_of_machine};
 pub struct DesignVersion {
     /// Number of changes of the machine up to this state.
     pub changes: usize,
-    /// Step from which it holds.
+    /// Step from which the machine is in this state.
     pub step: u64,
-    /// Description of the change that made it; empty for the first state, the machine of the scenario.
+    /// Description of the change that led to this state; empty for the first state, the machine of the scenario.
     pub words: String,
     /// The machine.
     pub machine: Machine,
 }
 
-/// Maximum number of states that are kept; of more, the first and the newest.
+/// Maximum number of states that are kept: the first one and the newest.
 const MAX_STATES: usize = 200;
 
 /// Returns the states of a scenario's machine in the order of its edits, beginning before the first edit. All edits of
@@ -52,7 +52,7 @@ pub fn designs(scenario: &Scenario) -> Result<Vec<DesignVersion>, Refusal> {
     Ok(all)
 }
 
-/// Whether an edit belongs to a drag that the next edit continues. `step` is the step size, s.
+/// Returns whether an edit belongs to a drag that the next edit continues. `step` is the step size, s.
 fn is_dragged_on(timed: &TimedEdit, next: &TimedEdit, step: f64) -> bool {
     let later = next.step - timed.step;
     later > 0 && later as f64 * step <= GESTURE_PAUSE + 1e-9 && timed.edit.is_replaced_by(&next.edit)

@@ -76,7 +76,7 @@ impl Document {
     }
 
     /// Runs the document from its first to its last step, reusing the query cache of a `known` run, if there is one. If
-    /// `patient` and the task does not fit its machine, the run waits at its first step instead of failing.
+    /// `patient` is true and the task does not fit its machine, the run waits at its first step instead of failing.
     pub fn perform(
         &self,
         known: Option<&Run>,
@@ -94,8 +94,8 @@ impl Document {
         Ok(DocumentRun { run, frames, machines })
     }
 
-    /// Compares scenario and script with those of another document. Returns `None` if more differs than settings on
-    /// which no frame depends. Otherwise returns the scenario of the run with these settings as in `self`.
+    /// Compares scenario and script with those of another document. If they differ only in settings on which no frame
+    /// depends, returns the scenario of the run with these settings from `self`. Otherwise returns `None`.
     pub fn aside_of(&self, other: &Self) -> Option<Scenario> {
         fn moving(document: &Document) -> impl Iterator<Item = &TimedEdit> {
             document.script.in_order().into_iter().filter(|timed| !timed.edit.is_aside())
@@ -124,7 +124,8 @@ impl Document {
         let mut script = document.script.to_vec();
         script.retain(|e| !e.edit.is_replaced_by(&timed.edit));
         if timed.edit.sets_path() && document.script.is_dragged() {
-            // A new plan puts a dragged machine back on its path: edits that drag it are dropped, others go to step 0.
+            // A new plan puts a dragged machine back on its path. Drags and later changes of b are dropped, and all
+            // other edits move to step 0.
             let mut kept: Vec<TimedEdit> = Vec::with_capacity(script.len());
             for e in script.drain(..).filter(|e| !e.edit.is_drag()) {
                 if e.step > 0 && matches!(e.edit, Edit::PoseB { .. }) {

@@ -41,7 +41,7 @@ pub enum Edit {
         /// m.
         y: f64,
     },
-    /// Moves the pose constant to b, rad, while time passes: the base feels n_B = −D_1 b̈.
+    /// Moves the pose constant to b, rad, while time passes: n_B = −D_1 b̈ acts on the base.
     SlideB {
         /// rad.
         b: f64,
@@ -87,7 +87,7 @@ impl TimedEdit {
     /// Reads an `[[edit]]` entry of a file.
     ///
     /// # Errors
-    /// If it is not a valid edit: what is wrong, and what would be right.
+    /// If it is not a valid edit; the error states what is wrong, and what is valid.
     pub fn from_table(mut table: Table) -> Result<Self, String> {
         let step = table.remove("step").ok_or("missing field `step`")?;
         let step = step.as_integer().and_then(|n| u64::try_from(n).ok()).filter(|n| *n <= MAX_STEPS);
@@ -124,7 +124,7 @@ impl Edit {
         Self::Set { change: Table::from_iter([(part.to_owned(), change.into())]) }
     }
 
-    /// Returns the settings that it changes.
+    /// Returns the settings that the edit changes, if it is a [`Set`](Self::Set).
     fn settings(&self) -> Option<&Table> {
         match self {
             Self::Set { change } => Some(change),
@@ -132,48 +132,49 @@ impl Edit {
         }
     }
 
-    /// Returns the settings of one part that it changes.
+    /// Returns the settings of one part that the edit changes.
     pub fn part(&self, part: &str) -> Option<&Table> {
         self.settings()?.get(part)?.as_table()
     }
 
-    /// Returns the number that it gives to a key of the scenario itself, such as `step`.
+    /// Returns the number that the edit gives to a key of the scenario itself, such as `step`.
     pub(super) fn own_number(&self, key: &str) -> Option<f64> {
         change::number(self.settings()?.get(key)?)
     }
 
-    /// Removes a key of the scenario itself from the edit. Returns the key as a change of its own, if it was there.
+    /// Removes a key of the scenario itself from the edit. Returns the key with its value as a change, if it was there.
     pub(super) fn take(&mut self, key: &str) -> Option<Table> {
         let Self::Set { change } = self else { return None };
         Some(Table::from_iter([(key.to_owned(), change.remove(key)?)]))
     }
 
-    /// Whether it is a [`Set`](Self::Set) without settings.
+    /// Returns whether the edit is a [`Set`](Self::Set) without settings.
     pub(super) fn sets_nothing(&self) -> bool {
         self.settings().is_some_and(Table::is_empty)
     }
 
-    /// Whether it changes a setting of one of these parts.
+    /// Returns whether the edit changes a setting of one of these parts.
     pub fn sets(&self, parts: &[&str]) -> bool {
         self.settings().is_some_and(|change| change.keys().any(|key| parts.contains(&key.as_str())))
     }
 
-    /// Whether it changes the path, or sends a dragged machine back to it: any setting of the task except its time.
+    /// Returns whether the edit changes any setting of the task except its time. Such an edit changes the path, or
+    /// sends a dragged machine back to it.
     pub fn sets_path(&self) -> bool {
         self.part("task").is_some_and(|task| task.is_empty() || task.keys().any(|key| key != "time"))
     }
 
-    /// Returns the largest effect of its keys; `Motion` for an edit that is not of settings.
+    /// Returns the largest effect of the edit's keys, or `Motion` for an edit other than of settings.
     pub fn effect(&self) -> Effect {
         self.settings().map_or(Effect::Motion, effect_of)
     }
 
-    /// Whether no frame depends on its settings; they then hold for the whole run.
+    /// Returns whether no frame depends on the edit's settings, so that they apply to the whole run.
     pub fn is_aside(&self) -> bool {
         self.effect() == Effect::NoFrame
     }
 
-    /// Returns the settings that it changes and on which no frame depends, if there are any.
+    /// Returns the edit with only those settings on which no frame depends, if there are any.
     pub(super) fn asides(&self) -> Option<Self> {
         let change = self.settings()?;
         let aside = |(part, value): &(&String, &Value)| effect_in(part, value) == Effect::NoFrame;
@@ -181,7 +182,7 @@ impl Edit {
         (!change.is_empty()).then_some(Self::Set { change })
     }
 
-    /// Whether it changes the machine.
+    /// Returns whether the edit changes the machine.
     pub fn sets_machine(&self) -> bool {
         self.sets(&MACHINE_TABLES)
     }
@@ -203,21 +204,23 @@ impl Edit {
         found.into_iter().find(|check| !check.ok).map_or(Ok(()), Err)
     }
 
-    /// Whether its settings hold for the whole run: those of the plan, and those on which no frame depends.
+    /// Returns whether the edit's settings apply to the whole run: those of the plan, and those on which no frame
+    /// depends.
     pub fn is_of_the_whole(&self) -> bool {
         self.is_of_the_start() || self.is_aside()
     }
 
-    /// Refusal of an edit [of the start](Self::is_of_the_start) after the first step.
+    /// Reason for refusing an edit [of the start](Self::is_of_the_start) after the first step.
     pub(super) const START_ONLY_REASON: &str =
         "task, time, base and step can change only before the first step: want step = 0";
 
-    /// Whether it changes the plan of the motion, so that it is allowed only before the first step.
+    /// Returns whether the edit changes the plan of the motion, so that it is allowed only before the first step.
     pub(super) fn is_of_the_start(&self) -> bool {
         self.effect() == Effect::Plan
     }
 
-    /// Whether a later edit overwrites everything that this one sets, so that only the last edit of a drag is kept.
+    /// Returns whether a later edit overwrites everything that this one sets, so that only the last edit of a drag is
+    /// kept.
     pub fn is_replaced_by(&self, later: &Self) -> bool {
         match (self, later) {
             (Self::Set { change: earlier }, Self::Set { change: later }) => change::covers(later, earlier),
@@ -225,7 +228,7 @@ impl Edit {
         }
     }
 
-    /// Returns the name of the part of the scenario that it changes, for messages.
+    /// Returns the name of the part of the scenario that the edit changes, for messages.
     pub(super) fn name(&self) -> &str {
         match self {
             Self::DragTarget { .. } => "target",
@@ -241,23 +244,23 @@ impl Edit {
         }
     }
 
-    /// Whether it drags the machine: by the target, the angles, a link, or the slider of b.
+    /// Returns whether the edit drags the machine: by the target, the angles, a link, or the slider of b.
     pub fn is_drag(&self) -> bool {
         matches!(self, Self::DragTarget { .. } | Self::DragAngles { .. } | Self::PullLink { .. } | Self::SlideB { .. })
     }
 
-    /// Whether it changes joint limits.
+    /// Returns whether the edit changes joint limits.
     pub fn sets_limits(&self) -> bool {
         self.sets(&["limits"])
     }
 
-    /// Returns key and value of the first joint limit that it changes, as the user would type them.
+    /// Returns key and value of the first joint limit that the edit changes, as the user would type them.
     pub(super) fn limits(&self) -> Option<(String, String)> {
         let (name, value) = self.part("limits")?.iter().next()?;
         Some((format!("limits.{name}"), change::typed(value)))
     }
 
-    /// Whether it changes the force at the end effector.
+    /// Returns whether the edit changes the force at the end effector.
     pub fn pushes(&self) -> bool {
         match self {
             Self::Push { .. } => true,
@@ -312,7 +315,7 @@ fn title_of(change: &Table) -> String {
         let back = value.as_str() == Some(change::DEFAULT_WORD);
         match (path.as_str(), number) {
             ("task.time", Some(time)) => format!("motion time to {time:.3} s"),
-            // Most edits are of the task, so its name is left out.
+            // Most edits change the task, so its name is omitted.
             (path, number) => {
                 let words = match is_of_machine(path) {
                     true => path.to_owned(),

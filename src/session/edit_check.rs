@@ -8,7 +8,7 @@ use crate::scenario::Scenario;
 /// Checks numbers and settings of every edit of a scenario, in the order of steps.
 ///
 /// # Errors
-/// The index of the first wrong entry, and what is wrong with it.
+/// If an entry is wrong: the index of the first such entry, and a description of the fault.
 pub(crate) fn check_edits(scenario: &Scenario) -> Result<(), (usize, String)> {
     let edits = &scenario.edits;
     if edits.is_empty() {

@@ -26,7 +26,7 @@ pub enum EventKind {
     Within,
     /// The target goes out of reach.
     Beyond,
-    /// Something is at its limit, or the base begins to feel the arm.
+    /// A quantity reaches its limit, or reactions begin to reach the base.
     Warning,
     /// |n_B| has its peak.
     Peak,
@@ -45,13 +45,14 @@ pub struct Event {
     pub kind: EventKind,
 }
 
-/// Edits form one gesture while they follow each other within this time, s; a drag sends one for each picture.
+/// Maximum time between successive edits of one gesture, s; a drag sends one edit for each picture.
 pub(super) const GESTURE_PAUSE: f64 = 0.25;
 
-/// The base has to feel nothing for this long, s, before an event says so, because a moment may only pass through zero.
+/// Minimum time without reactions before an event reports their end, s, because a moment may only pass through zero.
 const MIN_QUIET_S: f64 = 0.05;
 
-/// A motor is at its torque limit from this fraction of it on, until it is below the second fraction (hysteresis).
+/// A motor counts as at its torque limit from this fraction of the limit on, until its torque is below
+/// [`AT_LIMIT_UNTIL`] (hysteresis).
 const AT_LIMIT_FROM: f64 = 0.999;
 /// See [`AT_LIMIT_FROM`].
 const AT_LIMIT_UNTIL: f64 = 0.98;
@@ -85,7 +86,7 @@ pub struct Gestures {
     /// Step size, s.
     step: f64,
     all: Vec<Gesture>,
-    /// The last gesture without the newest edit, if that edit continues it.
+    /// The last gesture without its newest edit, if that edit continues an earlier one.
     before: Option<Gesture>,
 }
 
@@ -207,9 +208,9 @@ struct Seen {
     past: bool,
     /// Motors at their limits, one bit for each.
     limited: u32,
-    /// Whether the base has felt the arm: at any time, and recently.
+    /// Whether reactions have reached the base: at any time, and since the last quiet period.
     felt: [bool; 2],
-    /// Step since which the base has felt nothing.
+    /// Step since which no reaction has reached the base.
     quiet: Option<u64>,
     /// Step at which |n_B| was largest, and its value there, N m.
     peak: (u64, f64),
@@ -249,7 +250,7 @@ impl IncrementalQuery for EventLog {
             *self = Self::begin(input);
             return;
         }
-        // There is a frame a step.
+        // Each step has one frame.
         self.truncate(usize::try_from(self.machines.differ_from(machines)).unwrap_or(usize::MAX));
         self.machines = machines.clone();
     }
@@ -328,7 +329,7 @@ impl EventLog {
         }
     }
 
-    /// Adds events of motors that come to their torque limits, and of the first joint that passes its limit.
+    /// Adds events of motors that reach their torque limits, and of the first joint that passes its limit.
     fn limits(&mut self, frame: &Frame, machine: &Machine) {
         let drives = &machine.spec().drives;
         for (k, (torque, drive)) in frame.torque.iter().zip(drives).enumerate() {
@@ -350,7 +351,7 @@ impl EventLog {
         }
     }
 
-    /// Adds events at which the base begins to feel the arm or feels nothing again. `dt` is the step size, s.
+    /// Adds events when reactions begin or cease to reach the base. `dt` is the step size, s.
     fn base(&mut self, frame: &Frame, dt: f64) {
         let [ever, of_late] = self.now.felt;
         if !frame.is_base_unloaded() && !frame.peaks.is_base_unloaded() {

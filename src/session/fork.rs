@@ -23,8 +23,8 @@ impl LeftBranch {
     }
 }
 
-/// Query for the differences between branches and a run, the oldest branch first, each with a title of its own. The
-/// input is the branches, the edits of the run and the number of its steps.
+/// Query for the differences between branches and a run, the oldest branch first, each with a unique title. The input
+/// consists of the branches, the edits of the run and the number of its steps.
 #[derive(Debug)]
 pub(super) struct Forks;
 
@@ -48,10 +48,10 @@ impl QuickQuery for Forks {
 
 impl Fork {
     /// Compares the edits of a branch, which ends at step `end`, with those of another run, which ends at step
-    /// `other_end`. `led`: the user has dragged the machine of the branch off its planned motion. `step` is the step
-    /// size, s.
+    /// `other_end`. `dragged` says whether the user has dragged the machine of the branch off its planned motion.
+    /// `step` is the step size, s.
     pub fn of(
-        (edits, end, led): (&[&TimedEdit], u64, bool),
+        (edits, end, dragged): (&[&TimedEdit], u64, bool),
         (others, other_end): (&Sequence<TimedEdit>, u64),
         step: f64,
     ) -> Self {
@@ -59,7 +59,7 @@ impl Fork {
         let first = [edits.get(same).copied(), others.get(same)].into_iter().flatten().map(|timed| timed.step).min();
         let title = match first_gesture(&edits[same..], step) {
             Some(event) => event.words,
-            None if led => match last_gesture(edits, step) {
+            None if dragged => match last_gesture(edits, step) {
                 Some(event) => format!("{} at {:.3} s, then left alone", event.words, event.step as f64 * step),
                 None => "left alone".into(),
             },

@@ -8,20 +8,21 @@ use stillbase_mechanics::kinematics::end_effector;
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, unit};
 
-/// Place of each relative angle within its limits in the middle of the motion, as a fraction of their width. In the
-/// very middle parallelograms go flat.
+/// Each relative angle in the middle of the motion, as a fraction of the range between its limits. At a fraction of one
+/// half, parallelograms go flat.
 const MID_POSE_FRACTION: f64 = 0.6;
-/// Fractions of the width of its limits through which each relative angle turns, in the order of the trials.
+/// Turn of each relative angle, as a fraction of the range between its limits, in the order of the trials.
 const SPAN_FRACTIONS: [f64; 4] = [0.3, 0.2, 0.1, 0.04];
 /// Maximum turn of a relative angle, rad.
 const MAX_SPAN_RAD: f64 = 0.8;
 /// Direction of the end effector from the base pin in the middle of the motion, rad.
 const DIRECTION_RAD: f64 = 0.3 * PI;
-/// Durations of the motion, s; the first at which no limit of a drive is exceeded is taken.
+/// Durations of the motion, s. The first one that exceeds no limit of a drive is used.
 const DURATIONS_S: [f64; 4] = [2.0, 4.0, 8.0, 16.0];
 
-/// Returns a scenario with a small motion near the middle of the joint limits: reactionless if the machine can do that,
-/// otherwise along a straight line. If no trial succeeds, returns the last trial; the planner or the run then says why.
+/// Returns a scenario with a small motion near the middle of the joint limits. The motion is reactionless if possible,
+/// otherwise along a straight line. If all trials fail, returns one of them; the planner or the run then reports the
+/// reason.
 ///
 /// # Errors
 /// If no task can be stated for the machine.
@@ -90,7 +91,8 @@ fn middle(machine: &Machine) -> PerDrive {
     spread(machine, beside, FRAC_PI_3)
 }
 
-/// Returns changes of the drive angles, rad, by which relative angles turn in alternating directions and b stays.
+/// Returns changes of the drive angles, rad, by which relative angles turn in alternating directions while b stays
+/// constant.
 fn step(machine: &Machine, lambda: &PerDrive, span: f64) -> PerDrive {
     let turned = |i: usize| {
         let limits = &machine.angles()[i].limits;
@@ -108,7 +110,7 @@ fn step(machine: &Machine, lambda: &PerDrive, span: f64) -> PerDrive {
 }
 
 /// Returns drive angles that give every relative angle i the difference `of(i)`, rad. A drive in no relative angle
-/// differs by `loose`, rad, from the one before it.
+/// differs by `loose`, rad, from the drive before it.
 fn spread(machine: &Machine, of: impl Fn(usize) -> f64, loose: f64) -> PerDrive {
     let n = machine.drives();
     let mut known: Vec<Option<f64>> = vec![None; n];

@@ -2,7 +2,7 @@
 //!
 //! The window owns one and only sends it [`Edit`](super::Edit)s and transport commands (play, pause, seek);
 //! [`replay`](super::replay()) carries out the same edits without a window. Because a run is a function of scenario and
-//! edits, undo, scrubbing and saving need no snapshots of state: the run is made again.
+//! edits, undo, scrubbing and saving need no snapshots of state: the run is computed again.
 
 mod bookmarks;
 mod branches;
@@ -39,9 +39,9 @@ pub struct Session {
     playing: bool,
     undo: Vec<Arc<HistoryStep>>,
     redo: Vec<Arc<HistoryStep>>,
-    /// Whether a gesture lasts; edits of one kind then join into one undo entry.
+    /// Whether a gesture is in progress; its edits of one kind join into one undo entry.
     gesture: bool,
-    /// Whether settings changed in the gesture apply at the present step; its first edit decides.
+    /// Whether settings changed in the gesture apply at the present step; the first edit of the gesture decides.
     gesture_now: Option<bool>,
     /// Run before the last edit of the script, kept until the next step. The next edit of the gesture in the same step
     /// starts from it.
@@ -91,28 +91,29 @@ impl Session {
         queries.grow(&(self.scenario().step, self.machines.clone()), &self.frames, at_most)
     }
 
-    /// Whether the session is playing, not paused.
+    /// Returns whether the session is playing, not paused.
     pub fn is_playing(&self) -> bool {
         self.playing
     }
 
-    /// Whether the display will change by itself.
+    /// Returns whether the display will change by itself.
     pub fn is_moving(&self) -> bool {
         self.playing && self.run.waiting().is_none() && !(self.is_at_end() && self.is_settled())
     }
 
-    /// Whether there can be one more frame.
+    /// Returns whether one more frame can be computed.
     fn has_room(&self) -> bool {
         let goes_on = self.frames.last().is_some_and(Frame::is_finite);
         goes_on && !self.is_full() && self.run.waiting().is_none()
     }
 
-    /// Whether it holds the maximum number of frames, or has reached the maximum time; it then has to start over.
+    /// Returns whether the session has the maximum number of frames, or has reached the maximum time, so that it has to
+    /// start over.
     pub fn is_full(&self) -> bool {
         self.frames.len() >= MAX_FRAMES || self.run.simulation().time() >= MAX_TIME
     }
 
-    /// Whether the newest frame is on display.
+    /// Returns whether the newest frame is on display.
     pub fn is_at_end(&self) -> bool {
         self.cursor + 1 == self.frames.len()
     }
@@ -128,8 +129,8 @@ impl Session {
         if self.is_dragged() { done } else { done.max(self.run.planned_time()) }
     }
 
-    /// Returns the b to which a dragged machine moves, if the newest frame is on display, otherwise the reference b of
-    /// the frame on display, rad.
+    /// Returns the reference b of the frame on display, rad. If this is the newest frame of a dragged machine, returns
+    /// the b to which the machine moves.
     pub fn b_aim(&self) -> f64 {
         match self.run.simulation().guide() {
             stillbase_simulation::Guide::Follow(follower) if self.is_at_end() => follower.b_aim(),
@@ -142,7 +143,7 @@ impl Session {
     pub fn nearest_feasible_b(&self, b: f64) -> Option<f64> {
         let task = &self.scenario().task;
         if task.samples.as_ref().is_some_and(|samples| samples.columns() != 2) {
-            // Samples of the drives have a b of their own.
+            // Samples of drive angles determine b.
             return Some(task.b);
         }
         // If each point is reached at a single b, points turn with b.
@@ -167,12 +168,12 @@ impl Session {
         Some(common.moved_inside(nearest, 1e-6))
     }
 
-    /// Whether the user has dragged the machine off its planned motion.
+    /// Returns whether the user has dragged the machine off its planned motion.
     pub fn is_dragged(&self) -> bool {
         self.document.script.is_dragged()
     }
 
-    /// Whether the user can drag the machine: it has a b to hold, and the run does not wait.
+    /// Returns whether the user can drag the machine: it has a b to hold, and the run does not wait.
     pub fn can_be_dragged(&self) -> bool {
         self.run.waiting().is_none() && self.run.pose_space().is_ok()
     }

@@ -1,10 +1,10 @@
-//! Reads settings in sessions of earlier versions, which have a kind of edit for each part.
+//! Reads settings in sessions of earlier versions, which have a separate kind of edit for each part of a scenario.
 
 use toml::{Table, Value};
 
 use stillbase_settings::change;
 
-/// Takes the settings of such an edit out of its entry; returns `None` for any other edit.
+/// Extracts the settings of such an edit from its entry; returns `None` for any other edit.
 pub fn settings(table: &mut Table) -> Result<Option<Table>, String> {
     let Some(word) = table.get("do").and_then(Value::as_str).map(str::to_owned) else { return Ok(None) };
     let mut take = |key: &str| table.remove(key);

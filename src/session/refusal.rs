@@ -1,4 +1,4 @@
-//! [`Refusal`]: why a scenario cannot start, or an edit cannot apply.
+//! [`Refusal`]: the reason why a scenario cannot start, or an edit cannot apply.
 
 use thiserror::Error;
 
@@ -16,7 +16,7 @@ use stillbase_planning::timing::TimeError;
 use stillbase_settings::number::ShortNumber;
 use stillbase_settings::range::{RangeCheck, Requirement, range_error};
 
-/// Why a scenario cannot start or an edit cannot apply; nothing has changed then.
+/// Reason why a scenario cannot start or an edit cannot apply; in either case nothing has changed.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Refusal {
     /// The machine has no reactionless planes of the kind the task needs.
@@ -30,7 +30,7 @@ pub enum Refusal {
     Unreachable {
         /// `A`, `1`, `2` … `B`.
         point: String,
-        /// Reason, and which b would reach the point.
+        /// Reason, and values of b that reach the point.
         #[source]
         unreachable: Unreachable,
     },
@@ -54,7 +54,7 @@ pub enum Refusal {
     /// Settings of the task contradict each other or do not fit the machine.
     #[error("{0}")]
     Task(String),
-    /// The settings are consistent, but there is no such motion.
+    /// The settings are consistent, but no motion satisfies them.
     #[error("{0}")]
     NoWay(String),
     /// The reaction of a change of b is not defined.
@@ -78,13 +78,13 @@ pub enum Refusal {
              friction"
     )]
     Diverged {
-        /// s.
+        /// Time of divergence, s.
         time: f64,
     },
     /// An audit of the run has failed.
     #[error("audit failed: {why}; want a smaller step")]
     Untrusted {
-        /// Which audit, and by how much it failed.
+        /// Audit that failed, and by how much.
         why: String,
     },
     /// The motion in progress does not fit into new limits.
@@ -108,26 +108,26 @@ pub enum Refusal {
     /// The motion takes longer than the maximum.
     #[error("the motion would take {}: want at most {MAX_TIME} s, with higher limits or a shorter way", seconds(*time))]
     TooLong {
-        /// s.
+        /// Duration of the motion, s.
         time: f64,
     },
     /// The run has more steps than the maximum.
     #[error("{} s in steps of {} s are {steps} steps: want at most {MAX_STEPS}, with longer steps or a shorter duration", ShortNumber(*time), ShortNumber(*step))]
     TooManySteps {
-        /// s.
+        /// Duration of the run, s.
         time: f64,
-        /// s.
+        /// Step size, s.
         step: f64,
         /// Steps of the run.
         steps: u64,
     },
-    /// The session holds the maximum number of frames.
+    /// The session contains the maximum number of frames.
     #[error(
         "a session keeps {MAX_FRAMES} frames and an hour at most, and this one is full at {time:.3} s: want an earlier \
          instant, or the start, to go on from; `simulate` and `headless` run longer"
     )]
     Full {
-        /// s.
+        /// Time of the newest frame, s.
         time: f64,
     },
     /// The output would be too large.
@@ -157,7 +157,7 @@ pub enum Refusal {
         step: u64,
         /// Description of the edit.
         title: String,
-        /// Why it cannot apply.
+        /// Reason why the edit cannot apply.
         #[source]
         refusal: Box<Refusal>,
     },
@@ -168,7 +168,7 @@ fn seconds(time: f64) -> String {
     if time < 1e9 { format!("{time:.0} s") } else { "more than 1e9 s".into() }
 }
 
-/// Checks a duration, s, that the planner has found against the upper bound of given durations.
+/// Checks a duration, s, that the planner has found against the maximum duration of a run.
 ///
 /// # Errors
 /// If it is longer than [`MAX_TIME`], or not a number.
@@ -193,7 +193,7 @@ impl Refusal {
         }
     }
 
-    /// Returns the same b as it is shown: rounded so that it is still feasible.
+    /// Returns the same b rounded for display, in such a way that it is still feasible.
     pub fn displayed_b(&self) -> Option<Decimal> {
         match self {
             Self::Edit { refusal, .. } => refusal.displayed_b(),

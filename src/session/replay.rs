@@ -7,7 +7,8 @@ use stillbase_query::Queries;
 use stillbase_simulation::audit::AuditFigure;
 use stillbase_simulation::frame::Frame;
 
-/// Applies the edits at step 0 before the first drag. Returns the scenario without the other edits, and their number.
+/// Applies the edits at step 0 before the first drag. Returns the scenario without the other edits, and the number of
+/// the others.
 ///
 /// # Errors
 /// If an edit cannot apply.
@@ -22,12 +23,12 @@ pub fn with_start_edits(scenario: &Scenario) -> Result<(Scenario, usize), Refusa
 /// its last step.
 ///
 /// # Errors
-/// If it cannot start, or an edit cannot apply.
+/// If the scenario cannot start, or an edit cannot apply.
 pub fn replay(scenario: &Scenario, see: impl FnMut(&Run, &Frame)) -> Result<Run, Refusal> {
     replay_if(scenario, |_| Ok(()), see)
 }
 
-/// Does the same as [`replay`]. Before the run begins, `allow` gets the number of the last step, and may refuse it.
+/// Does the same as [`replay`]. Before the run begins, `allow` receives the number of the last step, and may refuse it.
 ///
 /// # Errors
 /// As [`replay`], and the refusal of `allow`.
@@ -46,7 +47,7 @@ pub fn replay_if(
 /// Does the same as [`replay`]; `see` returns whether the run is to go on.
 ///
 /// # Errors
-/// As [`replay`], and [`Refusal::Stopped`] if it is not.
+/// As [`replay`], and [`Refusal::Stopped`] if `see` ends the run early.
 pub fn replay_while(scenario: &Scenario, see: impl FnMut(&Run, &Frame) -> bool) -> Result<Run, Refusal> {
     whole(scenario, |_| Ok(()), see)
 }
@@ -64,8 +65,8 @@ fn whole(
     done.map_err(|failed| failed.named(&scenario.edits))
 }
 
-/// Returns the dynamic f_Bx and f_By, N, and the moment that the base feels, N m, at every step of a scenario. Also
-/// returns the first audit that the run has failed.
+/// Returns the dynamic f_Bx and f_By, N, and the net moment on the base, N m, at every step of a scenario. Also returns
+/// the first audit that failed, if any.
 ///
 /// # Errors
 /// As [`replay`].
@@ -79,9 +80,9 @@ pub fn base_loads(scenario: &Scenario) -> Result<([Vec<f64>; 3], Option<AuditFig
     Ok((course, run.frame().first_violation()))
 }
 
-/// Runs a scenario with a script in the order of steps to the step that `end` returns. Calls `see` with every frame,
-/// which returns whether the run is to go on. A task that does not fit its machine is refused or, if `patient`, waits
-/// at its first step.
+/// Runs a scenario with a script in the order of steps to the step that `end` returns. Calls `see` with every frame;
+/// `see` returns whether the run is to go on. If the task does not fit its machine, the run is refused or, if `patient`
+/// is true, waits at its first step.
 pub(super) fn perform(
     scenario: &Scenario,
     script: &[TimedEdit],

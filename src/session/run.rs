@@ -22,12 +22,12 @@ use stillbase_settings::key::Effect;
 use stillbase_simulation::frame::Frame;
 use stillbase_simulation::{Guide, Simulation};
 
-/// Why a run waits: its task does not fit its machine.
+/// Reason why a run waits: its task does not fit its machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaitReason {
-    /// Why the task cannot be planned.
+    /// Reason why the task cannot be planned.
     pub why: Refusal,
-    /// Index of each point that the b of the task does not reach, counted from A, and the nearest b that reaches it,
+    /// Points that the b of the task does not reach: index, counted from A, and the nearest b that reaches the point,
     /// rad, as printed.
     pub points: Vec<(usize, Option<Decimal>)>,
 }
@@ -51,10 +51,10 @@ impl WaitReason {
 #[derive(Clone, Debug)]
 pub struct Run {
     scenario: Arc<Scenario>,
-    /// The pose space, in which the user can drag the machine while b is held, or why there is none.
+    /// The pose space, in which the user can drag the machine while b is held, or the reason why there is none.
     space: Result<Arc<PoseSpace>, NoPoseSpace>,
     plan: Arc<Plan>,
-    /// Set if the task cannot be planned; the plan is then to rest.
+    /// Set if the task cannot be planned; the plan is then to stay at rest.
     waiting: Option<WaitReason>,
     simulation: Simulation,
     /// Cache of queries about the run, which copies share.
@@ -62,7 +62,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// Returns a run at rest at the start of the scenario's task. Edits are left to the caller.
+    /// Returns a run at rest at the start of the scenario's task. The caller applies the edits.
     ///
     /// # Errors
     /// If the task cannot be planned.
@@ -71,7 +71,7 @@ impl Run {
     }
 
     /// Applies the edits at step 0 before the first drag. Returns a run at rest at the start of the task, and the
-    /// number of these edits. The task is planned once after all of them, so states between them need not be feasible.
+    /// number of these edits. The task is planned once after all of them, so intermediate states need not be feasible.
     /// Queries of a `known` run are reused.
     ///
     /// # Errors
@@ -108,7 +108,7 @@ impl Run {
         Ok(Self { scenario, space, plan, waiting, simulation, queries: queries.clone() })
     }
 
-    /// Returns why the run waits, if its task does not fit its machine.
+    /// Returns the reason why the run waits, if its task does not fit its machine.
     pub fn waiting(&self) -> Option<&WaitReason> {
         self.waiting.as_ref()
     }
@@ -136,7 +136,7 @@ impl Run {
     /// Returns the pose space, in which the user can drag the machine while b is held.
     ///
     /// # Errors
-    /// Why there is none.
+    /// If there is none; the error is the reason.
     pub fn pose_space(&self) -> Result<&Arc<PoseSpace>, &NoPoseSpace> {
         self.space.as_ref()
     }
@@ -251,7 +251,7 @@ impl Run {
                 follower.pose_at(*b);
                 self.simulation.move_to_reference(Guide::Follow(follower));
             }
-            // No motion depends on it.
+            // No motion depends on this edit.
             edit if edit.effect() == Effect::Picture => {
                 self.scenario = Arc::new(checked(changed(&self.scenario, edit)?, edit)?)
             }
@@ -260,13 +260,13 @@ impl Run {
         Ok(())
     }
 
-    /// Takes over those settings of a scenario on which no frame depends.
+    /// Adopts those settings of a scenario on which no frame depends.
     pub(super) fn set_asides(&mut self, scenario: &Scenario) -> Result<(), Refusal> {
         self.scenario = Arc::new(self.scenario.with_asides_of(scenario)?);
         Ok(())
     }
 
-    /// Whether the planned motion has not begun.
+    /// Returns whether the planned motion has not begun.
     fn is_untouched(&self) -> bool {
         self.simulation.step_count() == 0 && matches!(self.simulation.guide(), Guide::Motion { .. })
     }
@@ -291,7 +291,7 @@ impl Run {
                 let lambda = *map.lambda();
                 let mut follower = Follower::new(map, bounds, scenario.step, self.simulation.reference());
                 follower.set_target(old.target().at);
-                // With another λ, b is another quantity.
+                // If λ has changed, b is a different quantity.
                 if lambda == *old.map().lambda() {
                     follower.set_b(old.b_aim());
                 }
@@ -304,7 +304,8 @@ impl Run {
         Ok(())
     }
 
-    /// Whether the rest of the planned motion would leave new joint limits where it keeps the present ones.
+    /// Returns whether the rest of the planned motion exceeds the new joint limits anywhere that it keeps the present
+    /// ones.
     fn leaves_limits(&self, changed: &Scenario) -> bool {
         let Guide::Motion { motion, start } = self.simulation.guide() else { return false };
         let done = motion.profile.at(self.simulation.time() - start).s;
@@ -343,8 +344,8 @@ impl Run {
 }
 
 impl Run {
-    /// Returns the edit that undoes an edit if applied after it, or `None` if there is no such edit. Call it before the
-    /// edit.
+    /// Returns the edit that undoes an edit if applied after it, or `None` if there is no such edit. Has to be called
+    /// before the edit is applied.
     pub fn inverse_of(&self, edit: &Edit) -> Option<Edit> {
         let scenario = &self.scenario;
         let frame = self.frame();
@@ -383,8 +384,8 @@ const ANGLES_OF_THREE: &str =
 const NO_FREEDOMS: &str =
     "with the end effector and b held, fewer than four drives cannot move: want the target dragged instead";
 
-/// Returns bounds of the follower on |ä| and |b̈|. They exceed no torque limit, in any direction of ä and also while b
-/// changes.
+/// Returns bounds of the follower on |ä| and |b̈|, rad/s². Within them no torque exceeds its limit, for any direction
+/// of ä and also while b changes.
 fn bounds(scenario: &Scenario, map: &PoseSpace) -> Bounds {
     // Upper bound of |ä|, also without torque limits.
     const MAX_ACCELERATION_RAD_S2: f64 = 30.0;
@@ -392,8 +393,8 @@ fn bounds(scenario: &Scenario, map: &PoseSpace) -> Bounds {
     const MAX_SLIDE_FRACTION: f64 = 0.5;
     let machine = &scenario.machine;
     let inertia = Inertia::of(machine);
-    // Torque of each motor, also through gears, for accelerations of the relative angles and of b. Couplings are left
-    // out: on a machine with a pose constant they are rounding errors of either sign.
+    // Torque of each motor, also through gears, for accelerations of the relative angles and of b. Couplings are
+    // omitted: on a machine with a pose constant they are only rounding errors.
     let torques_of = |of: &PerDrive, bdd: f64| {
         let (n, u) = (machine.drives(), map.lift_rates(of, bdd));
         let h = PerDrive::from_fn(n, |k| (0..n).map(|l| inertia.constant(k, l) * u[l]).sum());
@@ -442,11 +443,11 @@ impl Run {
     }
 }
 
-/// Returns the pose space of a scenario's machine, to be dragged by the posture of the task and its rule on change
+/// Returns the pose space of a scenario's machine. Drags in it follow the posture of the task and its rule on change
 /// points.
 fn space_of(scenario: &Scenario, queries: &Queries) -> Result<Arc<PoseSpace>, NoPoseSpace> {
     let task = &scenario.task;
     let space = Result::clone(&queries.ask::<QuickWork<PoseSpaceQuery>>(&scenario.machine))?;
-    let led = (ByIdentity(space), scenario.machine.clone(), task.posture, task.keep_off_change_points);
-    Ok(Arc::clone(&queries.ask::<QuickWork<GuidedSpace>>(&led)))
+    let guided = (ByIdentity(space), scenario.machine.clone(), task.posture, task.keep_off_change_points);
+    Ok(Arc::clone(&queries.ask::<QuickWork<GuidedSpace>>(&guided)))
 }

@@ -1,5 +1,5 @@
-//! [`Script`]: the edits of a document, in the order of steps. Versions share their common beginning, so one more
-//! version costs only the edits that it adds.
+//! [`Script`]: the edits of a document, in the order of steps. Versions of a script share their common beginning, so
+//! another version stores only the edits that it adds.
 
 use std::sync::Arc;
 
@@ -52,10 +52,10 @@ impl Script {
         self.last.as_ref().map(|entry| &entry.timed)
     }
 
-    /// Whether it holds the same edits as another.
+    /// Returns whether the script contains the same edits as another.
     pub fn is(&self, other: &Self) -> bool {
         let mut pairs = self.entries().zip(other.entries());
-        // Before a shared entry all entries are shared.
+        // All entries before a shared entry are shared too.
         let same = pairs.find(|(own, other)| Arc::ptr_eq(own, other) || own.timed != other.timed);
         self.count == other.count && same.is_none_or(|(own, other)| Arc::ptr_eq(own, other))
     }
@@ -65,7 +65,7 @@ impl Script {
         self.count
     }
 
-    /// Whether the user drags the machine off its planned motion.
+    /// Returns whether the user has dragged the machine off its planned motion.
     pub fn is_dragged(&self) -> bool {
         self.last.as_ref().is_some_and(|entry| entry.is_dragged)
     }

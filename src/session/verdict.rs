@@ -1,10 +1,10 @@
 //! [`Verdict`]: the assessment of a run in one word, with remarks. Command line, window and recording show the same
-//! one.
+//! verdict.
 //!
 //! | quantity | meaning |
 //! |---|---|
-//! | n_B, f_B | moment and force that the arm transmits to its base: they decide whether it is called reactionless |
-//! | moment past the wheel | n_B less the moment that a reaction wheel takes up: with f_B it decides whether the base feels nothing |
+//! | n_B, f_B | moment and force that the arm transmits to its base: they decide whether a run is reactionless |
+//! | moment past the wheel | n_B less the moment of a wheel: with f_B it decides whether the base is unloaded |
 
 mod statements;
 
@@ -18,14 +18,14 @@ use stillbase_settings::number::{ShortNumber, fixed, significant};
 use stillbase_simulation::audit::AuditFigure;
 use stillbase_simulation::frame::{Frame, Peaks, Phase, Reach};
 
-/// An end effector misses its target if it ends farther from it than this, m.
+/// Maximum final distance of the end effector from its target, m, at which the target counts as reached.
 pub const TARGET_TOLERANCE: f64 = 1e-4;
 
-/// A joint is past its limit if it exceeds the limit by more than this, rad.
+/// A joint counts as past its limit if it exceeds the limit by more than this, rad.
 pub const LIMIT_TOLERANCE: f64 = 1e-6;
 
-/// A drive is past its limit above this ratio of peak to limit. Control adds less to a motion that just keeps the
-/// limit.
+/// A drive is past its limit above this ratio of peak to limit. Feedback adds less than this to a motion that just
+/// keeps the limit.
 const MAX_LIMIT_RATIO: f64 = 1.0 + 1e-3;
 
 /// Smaller tilting moments are treated as zero, N m.
@@ -39,7 +39,7 @@ const MIN_RATE_RAD_S: f64 = 1e-9;
 pub struct Verdict {
     /// Whether the arm transmits nothing, neither n_B nor dynamic f_B, and no audit has failed.
     pub reactionless: bool,
-    /// Whether the base feels nothing, past a reaction wheel if it has one.
+    /// Whether no reaction acts on the base, after compensation by a reaction wheel if there is one.
     pub is_base_unloaded: bool,
     /// Whether the arm has moved at all.
     pub moved: bool,
@@ -49,7 +49,7 @@ pub struct Verdict {
     pub past_wheel: Option<f64>,
     /// Largest dynamic |f_B|, N.
     pub force: f64,
-    /// Largest moment that tilts the base, from heights along the axis, N m: outside of the verdict.
+    /// Largest moment that tilts the base, from heights along the axis, N m; the verdict does not depend on it.
     pub tilt: f64,
     /// Distance of the end effector from its target, m; for samples of drive angles the target is where they end.
     pub target_distance: f64,
@@ -77,7 +77,8 @@ fn over(limits: &DriveLimits, peaks: &Peaks) -> Option<(DriveLimit, f64)> {
     all.filter(|(_, factor)| *factor > MAX_LIMIT_RATIO).max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Whether samples of drive angles guide the machine and the user does not drag it; the target is then only their end.
+/// Returns whether samples of drive angles guide the machine and the user does not drag it. The target is then only the
+/// end of the samples.
 fn gives_drives(scenario: &Scenario, frame: &Frame) -> bool {
     let task = &scenario.task;
     let columns = task.samples.as_ref().map(Samples::columns);
@@ -117,17 +118,17 @@ impl Verdict {
             never_held: Some([frame.time, scenario.plant.payload.from]).filter(|[end, from]| {
                 scenario.plant.payload.is_some() && *from >= end - 0.5 * scenario.step && *from > 0.0
             }),
-            // The window marks a target out of reach at the target itself.
+            // A target out of reach needs no remark: the window marks it at the target itself.
             ended: frame.phase == Phase::Rest && !matches!(frame.target.reach, Reach::Outside { .. }),
         }
     }
 
-    /// Whether the arm transmits nothing, or a wheel keeps all of it from the base, and no audit has failed.
+    /// Returns whether no audit has failed, and the arm transmits no reaction or a wheel compensates all of it.
     pub fn spares_base(&self) -> bool {
         self.fault.is_none() && (self.reactionless || self.is_base_unloaded)
     }
 
-    /// `reactionless`, `not reactionless`, `reactionless past the wheel`, or `untrusted`.
+    /// Returns `reactionless`, `not reactionless`, `reactionless past the wheel`, or `untrusted`.
     pub fn word(&self) -> &'static str {
         match (&self.fault, self.reactionless, self.is_base_unloaded) {
             (Some(_), ..) => "untrusted",
@@ -137,7 +138,7 @@ impl Verdict {
         }
     }
 
-    /// The answer to "reactionless?" for a cell of a table: `yes`, `no`, `untrusted`, with the remarks.
+    /// Returns the answer to "reactionless?" for a cell of a table: `yes`, `no`, `untrusted`, with the remarks.
     pub fn answer(&self) -> String {
         let word = match (&self.fault, self.reactionless) {
             (Some(_), _) => "untrusted",
@@ -205,7 +206,8 @@ impl Verdict {
         all
     }
 
-    /// `reactionless: peak |n_B| 1.2e-15 N m, peak |f_B| 3.1e-14 N; ends 0.0200 m from its target`.
+    /// Returns one line, such as `reactionless: peak |n_B| 1.2e-15 N m, peak |f_B| 3.1e-14 N; ends 0.0200 m from its
+    /// target`.
     pub fn sentence(&self) -> String {
         let mut text = format!("{}: peak |n_B| {} N m", self.word(), significant(self.arm_moment));
         if let Some(past_wheel) = self.past_wheel {

@@ -28,7 +28,7 @@ pub fn merged_keys<T: Serialize>(value: &T, change: &Table) -> Result<Table, Str
         return Err(format!("{} is not a finite number: want one", quote_clipped(&key)));
     }
     let mut table = Table::try_from(value).map_err(|e| e.to_string())?;
-    lay(&mut table, change);
+    apply_change(&mut table, change);
     Ok(table)
 }
 
@@ -66,8 +66,8 @@ pub fn at(path: &[&str], value: impl Into<Value>) -> Table {
     outer.iter().rev().fold(innermost, |inner, key| Table::from_iter([((*key).to_owned(), Value::Table(inner))]))
 }
 
-/// Reads a value as a file would state it. What TOML cannot read is text; several numbers separated by commas are a
-/// list.
+/// Reads a value as a file would state it. Several numbers separated by commas become a list; anything else that TOML
+/// cannot read becomes a string.
 pub fn value(text: &str) -> Value {
     let read = |text: &str| {
         let table: Option<Table> = format!("x = {text}").parse().ok();
@@ -154,21 +154,21 @@ pub fn typed(value: &Value) -> String {
     }
 }
 
-fn lay(table: &mut Table, change: &Table) {
+fn apply_change(table: &mut Table, change: &Table) {
     for (key, value) in change {
         match (value, table.get_mut(key)) {
             (Value::String(word), _) if word == DEFAULT_WORD => {
                 table.remove(key);
             }
             (Value::Table(change), Some(Value::Table(inner))) => {
-                lay(inner, change);
+                apply_change(inner, change);
                 if inner.is_empty() {
                     table.remove(key);
                 }
             }
             (Value::Table(change), _) => {
                 let mut inner = Table::new();
-                lay(&mut inner, change);
+                apply_change(&mut inner, change);
                 if !inner.is_empty() {
                     table.insert(key.clone(), Value::Table(inner));
                 }

@@ -1,5 +1,5 @@
 //! [`Key`]: one setting of a scenario and its description. Each key is defined once, in the table of its part. Files,
-//! `--set`, edits, the window's rows with their ranges and tips, and the reference of all keys read it there.
+//! `--set`, edits, the window's rows with their ranges and tips, and the reference of all keys use this definition.
 
 use std::fmt;
 
@@ -11,7 +11,7 @@ use super::range::{Range, RangeCheck};
 /// One setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Key {
-    /// Parts of the key joined by dots; `*` stands for the name of a link, a length, a drive or an angle.
+    /// Parts of the key joined by dots; `*` is a placeholder for the name of a link, a length, a drive or an angle.
     pub path: &'static str,
     /// Type and range of the value.
     pub holds: KeyType,
@@ -22,13 +22,13 @@ pub struct Key {
     pub words: &'static str,
     /// Condition under which the key has an effect; empty for always.
     pub when: &'static str,
-    /// What applies if the key has no value.
+    /// Description of what applies if the key has no value.
     pub instead: &'static str,
-    /// What a change of the key affects.
+    /// Part of a run that a change of the key affects.
     pub effect: Effect,
 }
 
-/// What a change of a key affects, from the least to the most.
+/// Part of a run that a change of a key affects, from the least to the most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Effect {
     /// No frame of the run, but only studies, designs or recordings. Such a key applies to the whole run.
@@ -58,7 +58,7 @@ pub enum KeyType {
     Choice(&'static [&'static str]),
     /// `true` or `false`.
     Switch,
-    /// How an optimisation may vary a number: the word `fixed` or `free`, or its lower and upper bound.
+    /// Bounds on a number in an optimisation: the word `fixed` or `free`, or its lower and upper bound.
     Bounds(Range),
     /// Distribution of a value: `normal:` or `uniform:` and an amount, in its unit or in percent.
     Spread(&'static str),
@@ -88,7 +88,7 @@ impl Key {
         Self { when, ..self }
     }
 
-    /// Returns the key with what applies if it is absent.
+    /// Returns the key with a description of what applies if it is absent.
     #[must_use]
     pub const fn instead(self, instead: &'static str) -> Self {
         Self { instead, ..self }
@@ -100,7 +100,7 @@ impl Key {
         Self { effect, ..self }
     }
 
-    /// Returns the keys with one effect for all.
+    /// Returns the keys, all with the same effect.
     #[must_use]
     pub const fn all_reaching<const N: usize>(effect: Effect, keys: &[Self]) -> [Self; N] {
         let mut all = [keys[0]; N];
@@ -131,7 +131,7 @@ impl Key {
         names(self.path, path)
     }
 
-    /// Returns the range of its numbers, if it holds any.
+    /// Returns the range of the key's numbers, if its value contains any.
     pub const fn range(&self) -> Option<Range> {
         match self.holds {
             KeyType::Number(range)
@@ -144,7 +144,7 @@ impl Key {
         }
     }
 
-    /// Returns the unit of its numbers.
+    /// Returns the unit of the key's numbers.
     pub const fn unit(&self) -> &'static str {
         match self.holds {
             KeyType::Spread(unit) => unit,
@@ -156,11 +156,11 @@ impl Key {
     }
 }
 
-/// Words for how a number may vary, in place of bounds.
+/// Words that may replace the bounds on a number.
 pub const HOLD_WORDS: [&str; 2] = ["fixed", "free"];
 
 impl KeyType {
-    /// Returns this type with its numbers in a range, if it holds any.
+    /// Returns this type with its numbers limited to a range, if it contains any.
     #[must_use]
     pub const fn within(self, range: Range) -> Self {
         match self {
@@ -216,7 +216,7 @@ impl fmt::Display for KeyType {
     }
 }
 
-/// Returns whether a path matches a pattern, in which `*` stands for any name.
+/// Returns whether a path matches a pattern, in which `*` matches any name.
 pub fn names(pattern: &str, path: &str) -> bool {
     let (mut pattern, mut path) = (pattern.split('.'), path.split('.'));
     loop {
@@ -241,7 +241,7 @@ pub fn checks(key_of: impl Fn(&str) -> Option<&'static Key>, table: &Table) -> V
 
 fn numbers(path: &str, value: &Value, range: Range, list: &mut Vec<RangeCheck>) {
     match value {
-        // Each point of a list is named by its index, from 1.
+        // Each point of a list is named by its index, counted from 1.
         Value::Array(items) if items.iter().any(Value::is_array) => {
             items.iter().enumerate().for_each(|(i, item)| numbers(&format!("{path}[{}]", i + 1), item, range, list));
         }

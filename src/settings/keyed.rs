@@ -7,20 +7,20 @@ use super::range::Range;
 
 /// A type that the field of a key may have.
 pub trait HasKeyType {
-    /// Type of the value of its key. The row of the key states the range of its numbers, if it holds any.
+    /// Type of the value of the key. If the value contains numbers, the row of the key states their range.
     const HOLDS: KeyType;
 }
 
-/// A type with a default that can be typed.
+/// A type whose default can be given as text.
 pub trait DefaultFromText: HasKeyType {
     /// Returns the value that the text of a default states; zero, `false` or the first choice if the text states none.
     fn typed(default: &str) -> Self;
 }
 
-/// Range of a row that states none.
+/// Range of the numbers of a row that states no range.
 pub const ANY_NUMBER: Range = Range::either_way(f64::MAX, "");
 
-/// A row states its range where it holds numbers.
+/// Implements [`HasKeyType`] for types. The range is a placeholder for that of a key's row.
 macro_rules! holds {
     ($($type:ty: $holds:expr;)+) => {
         $(impl HasKeyType for $type {
@@ -88,7 +88,7 @@ impl DefaultFromText for Vec<[f64; 2]> {
     }
 }
 
-/// Returns a doc comment, whose lines each begin with a space, without the first space.
+/// Returns a doc comment without its first space; each line of it begins with a space.
 pub const fn sentence(doc: &'static str) -> &'static str {
     match doc.as_bytes() {
         [b' ', ..] => doc.split_at(1).1,
@@ -107,19 +107,19 @@ pub const fn sentence(doc: &'static str) -> &'static str {
 /// * `instead`: what applies if the default is no value ([`Key::NONE`](super::key::Key::NONE));
 /// * `when`: the condition under which the key has an effect, in words, and a function that evaluates it if the part
 ///   alone suffices;
-/// * `usual`: the field's value if the part is given, but not the key, and the default of the key is no value;
+/// * `usual`: the field's value if the part is given without the key, and the default of the key is no value;
 /// * `reaching`: what a change of the key affects, if that is not the motion;
 /// * `saved: always` if a file states the key even at its default.
 ///
 /// A struct without `at` is for keys without a common prefix.
 ///
-/// After `named:` follow rows that hold a value under each of several names, for which `*` stands in the key. The
-/// default of such a row is that of one value; initially there are no names. After `tables:` follow fields that have
-/// keys of their own below this part.
+/// Rows after `named:` contain a value for each of several names, which replace the `*` in the key. The default of such
+/// a row applies to one value; initially there are no names. Fields after `tables:` are nested parts with separate
+/// keys.
 ///
 /// The macro generates the struct with its documentation, `KEYS`, `Default`, and reading and writing of files. A field
-/// that is omitted has its default; an unknown one is an error. It also generates `uses`: whether a key has an effect
-/// in the present state.
+/// that is omitted has its default; an unknown one is an error. It also generates `uses`, which returns whether a key
+/// has an effect in the present state.
 #[macro_export]
 #[doc(hidden)]
 macro_rules! keyed {
@@ -205,7 +205,8 @@ macro_rules! keyed {
                 $(.when($where))?,
             )+)?];
 
-            /// Whether a key of this part has an effect as things are, as far as the part itself can tell.
+            /// Returns whether a key of this part has an effect in the present state, as far as the part alone
+            /// determines it.
             #[allow(dead_code, reason = "many parts have no key that waits for another")]
             pub fn uses(&self, key: &str) -> bool {
                 $($($(

@@ -1,4 +1,4 @@
-//! How a value is named, bounded and shown: keys with their fields, words of choices, changes by key, ranges, typed
+//! Names, bounds and formats of values: keys with their fields, words of choices, changes by key, ranges, typed
 //! numbers, and external text.
 //!
 //! Others reach this crate as `stillbase::settings`; `stillbase` alone follows semantic versioning.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// A number with as many digits as it needs; powers of ten below 1e-5 and from 1e7 on.
+/// A number that is formatted with as many digits as it needs, and with a power of ten below 1e-5 and from 1e7 on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShortNumber(pub f64);
 

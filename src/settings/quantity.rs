@@ -39,7 +39,7 @@ impl Quantity {
     }
 }
 
-/// Why a typed text is no number of the requested unit.
+/// Reason why a typed text is not a number in the requested unit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum QuantityError {
     /// A character or word without a meaning here.
@@ -85,8 +85,8 @@ pub fn read(text: &str, unit: &str) -> Result<f64, QuantityError> {
     if !typed.has_unit {
         return Ok(typed.value);
     }
-    // If several units are listed, `m, rad`, any of them is accepted. A unit that is only a word, such as counts, takes
-    // plain numbers.
+    // If several units are listed, `m, rad`, any of them is accepted. For a unit that is only a word, such as counts,
+    // plain numbers are accepted.
     let mut wanted: Vec<Quantity> = unit.split(',').filter_map(|unit| parse(unit).ok()).collect();
     if wanted.is_empty() {
         wanted.push(Quantity::plain(1.0));
@@ -264,7 +264,7 @@ fn is_of_word(c: char) -> bool {
     (c.is_alphabetic() && !"⁰¹²³⁴⁵⁶⁷⁸⁹".contains(c)) || matches!(c, '°' | '%' | '′')
 }
 
-/// Returns the quantity that a word stands for.
+/// Returns the quantity that a word denotes.
 fn meaning(word: &str) -> Option<Quantity> {
     let (m, kg, s, rad) = ([1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]);
     let (newton, joule, per_s) = ([1, 1, -2, 0], [2, 1, -2, 0], [0, 0, -1, 0]);

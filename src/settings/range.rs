@@ -1,4 +1,4 @@
-//! [`Range`]: the interval of a key's number. Each key states it once; checks and messages read it.
+//! [`Range`]: the interval in which a key's number has to lie. Each key states it once; checks and messages read it.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -74,7 +74,7 @@ pub struct RangeCheck {
     pub value: f64,
     /// Whether the number is accepted.
     pub ok: bool,
-    /// What is accepted.
+    /// Condition under which the number is accepted.
     pub want: Requirement,
 }
 
@@ -96,7 +96,7 @@ impl RangeCheck {
     }
 }
 
-/// What is accepted.
+/// Condition under which a number is accepted.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Requirement {
     /// A number in an interval.
@@ -105,7 +105,7 @@ pub enum Requirement {
     Words(&'static str),
     /// A condition that depends on other numbers, in words.
     Said(String),
-    /// Another number of items in a list.
+    /// A condition on the number of items in a list.
     Count {
         /// Noun for an item of the list: `number`, `point`.
         of: &'static str,
@@ -114,7 +114,7 @@ pub enum Requirement {
     },
 }
 
-/// Returns the message for a number that is not accepted: its key, its value, and what is accepted.
+/// Returns the message for a number that is not accepted: its key, its value, and the accepted values.
 pub fn range_error(key: &str, value: f64, want: &Requirement) -> String {
     match want {
         Requirement::Count { of, want } => format!("{key} has {}: want {want}", counted(value, of)),

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-/// Maximum size of a text that is read, bytes: a session of 100,000 edits has half of it.
+/// Maximum size of a text that is read, bytes: a session of 100,000 edits takes half of it.
 pub const MAX_TEXT_BYTES: u64 = 16 << 20;
 
 /// Returns text for a terminal: characters that control a terminal or change the writing direction are escaped.
@@ -34,11 +34,12 @@ fn steers(c: char) -> bool {
     turns || c == '\u{feff}' || (c.is_control() && c != '\n')
 }
 
-/// Maximum length of a message in characters, and the length of the end that is kept of a longer one.
+/// Maximum length of a message, characters.
 const MAX_MESSAGE_CHARS: usize = 1600;
+/// Number of characters that are kept from the end of a longer message.
 const MESSAGE_END_CHARS: usize = 400;
 
-/// Returns a message of readable length: the middle of a longer one is left out.
+/// Returns a message of readable length: the middle of a longer one is omitted.
 pub fn shorten_message(text: &str) -> Cow<'_, str> {
     // A text has at most as many characters as bytes.
     if text.len() <= MAX_MESSAGE_CHARS {

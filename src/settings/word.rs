@@ -21,21 +21,21 @@ pub trait Choice: Copy + PartialEq + Send + Sync + 'static {
     /// Returns the words of this variant.
     fn words(self) -> ChoiceWords;
 
-    /// Returns the variant with a word in files.
+    /// Returns the variant that a word in files denotes.
     fn of_word(word: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|choice| choice.words().file == word)
     }
 }
 
-/// Declares an enum whose variants are chosen by words. A row of it is
+/// Declares an enum whose variants are chosen by words. A row of it has the form
 ///
 /// ```text
 /// Variant = "word-in-files", "Words on the screen", "What it means";
 /// ```
 ///
-/// with further documentation above it, if there is any. Files, the choices of a key, those of the command line and the
-/// menus of the window follow from it. If each variant has further data, their type stands behind the enum's name, and
-/// the data behind the words: `Variant = …, …, … => data;`. The method `data` returns them.
+/// Further documentation may precede a row. Files, the choices of a key, those of the command line and the menus of the
+/// window use the words. If each variant has further data, their type follows the enum's name, and the data follow the
+/// words: `Variant = …, …, … => data;`. The method `data` returns them.
 #[macro_export]
 #[doc(hidden)]
 macro_rules! words {

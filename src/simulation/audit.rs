@@ -36,9 +36,9 @@ pub struct AuditFigure {
     pub name: &'static str,
     /// Compared quantities, in words.
     pub meaning: &'static str,
-    /// Its magnitude.
+    /// Magnitude of the figure.
     pub value: f64,
-    /// Its tolerance; `None` for a figure that is only informative.
+    /// Tolerance of the figure; `None` if the figure is only informative.
     pub limit: Option<f64>,
     /// SI unit.
     pub unit: &'static str,

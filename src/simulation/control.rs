@@ -7,8 +7,9 @@
 //! | PD | D̂_k (K_d ė_k + K_p e_k), D̂_k the inertia that the motor drives |
 //!
 //! All angles are relative to the base, q_k − θ, as encoders read them. Gains and torques refer to the motors; a motor
-//! in a joint uses its own angle, q_k − q_on. With equal gains on all drives and an exact model, Σ D_k e_k decays on
-//! its own: errors that start on the plane stay on it and transmit no moment. With unequal gains they leave the plane.
+//! in a joint uses the angle relative to its stator, q_k − q_on. With equal gains on all drives and an exact model, Σ
+//! D_k e_k decays independently of other errors. So errors that start on the plane stay on it and transmit no moment.
+//! With unequal gains they leave the plane.
 
 use crate::plant::{DriveValues, MovingBody};
 use stillbase_mechanics::dynamics::{by_drives, leading_entries, torques};
@@ -37,10 +38,11 @@ keyed! {
         /// How often torques are computed, and held between; a whole number of steps lies between two, and 0 is all the
         /// time.
         rate: f64 = "0", range: Range::new(0.0, 1e5, "Hz");
-        // Sampled at every step if no rate is given. Until the first torque arrives the motors hold the start pose.
+        // Encoders are sampled at every step if no rate is given. Until the first torque arrives, the motors hold the
+        // start pose.
         /// From reading the encoders to the torque, a whole number of steps.
         delay: f64 = "0", range: DELAY_RANGE;
-        // Control knows the drive angles only to whole counts; other instruments measure the base exactly.
+        // Control reads drive angles only in whole counts; the motion of the base is measured exactly.
         /// Counts of the encoders in a turn, 16 or more; rates are their differences, and 0 is exact.
         encoder: f64 = "0", range: Range::new(0.0, 1e12, "counts");
     }
@@ -119,17 +121,17 @@ fn delays(delay: f64, step: f64) -> String {
 /// Measurements for a controller.
 #[derive(Clone, Copy, Debug)]
 pub struct Reading<'a> {
-    /// q_k − θ, rad.
+    /// Drive angles relative to the base, q_k − θ, rad.
     pub q: DriveAngles,
-    /// q̇_k − θ̇, rad/s.
+    /// Drive rates relative to the base, q̇_k − θ̇, rad/s.
     pub qd: PerDrive,
     /// Unit vectors e(q) of all rotational coordinates, in inertial axes.
     pub e: &'a UnitVectors,
     /// Absolute rates q̇ of all rotational coordinates, rad/s.
     pub rates: &'a PerDrive,
-    /// p_B and θ.
+    /// Position p_B of B, m, and angle θ of the base, rad.
     pub base: Pose2,
-    /// ṗ_B, m/s.
+    /// Velocity ṗ_B of B, m/s.
     pub velocity: Vector,
 }
 
@@ -170,14 +172,14 @@ impl Controller {
         self.models[0].arm()
     }
 
-    /// Returns the motor torques, N m; `loaded` while the plant holds its payload.
+    /// Returns the motor torques, N m; `loaded` says whether the plant holds its payload.
     pub fn torque(&self, reference: &Reference, reading: &Reading, loaded: bool) -> PerDrive {
         let size = reading.rates.len();
         by_drives!(size, size > reading.q.len(), torque_of(self, reference, reading, loaded))
     }
 
-    /// Returns the motor torques, N m, for a compile-time size `N`, with q and q̇ relative to the base, which `MOVES`
-    /// or not. Entries beyond the drives are zero.
+    /// Returns the motor torques, N m, for a compile-time size `N`; `MOVES` says whether the base moves. The angles `q`
+    /// and rates `qd` are relative to the base, `e` and `rate` are absolute. Entries beyond the drives are zero.
     #[inline(always)]
     pub(crate) fn torque_at<const N: usize, const MOVES: bool>(
         &self,
@@ -210,7 +212,7 @@ impl Controller {
         } else if model.moves() {
             model.torque_for(&wanted, e, rate, base, velocity)
         } else {
-            // The model takes the base to be fixed: use the base's own axes.
+            // The model assumes a fixed base, so vectors are expressed in the axes of the base.
             let turn = e[N - 1].conj();
             let mut torque = torques(model.arm(), &e.map(|e| e * turn), qd, &wanted, model.around());
             torque[N - 1] = 0.0;
@@ -220,7 +222,7 @@ impl Controller {
         torque
     }
 
-    /// Computes the feedback from the errors of the motors' own angles.
+    /// Computes the feedback from the errors of the motor angles.
     #[inline(never)]
     fn by_motors<const N: usize>(
         &self,

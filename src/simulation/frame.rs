@@ -1,4 +1,4 @@
-//! A [`Frame`]: all quantities of a run at one instant. Plots, scene and recording read it and compute nothing.
+//! A [`Frame`]: all quantities of a run at one instant. Plots, scene and recording only read it and compute nothing.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,13 +24,13 @@ pub struct Frame {
     pub time: f64,
     /// Drive angles q, absolute, rad.
     pub q: DriveAngles,
-    /// q̇, rad/s.
+    /// Drive rates q̇, absolute, rad/s.
     pub qd: PerDrive,
-    /// q̈, rad/s².
+    /// Drive accelerations q̈, absolute, rad/s².
     pub qdd: PerDrive,
     /// Motor torques τ, N m.
     pub torque: PerDrive,
-    /// Friction of the bearings against the motor torques, N m: n_B = −Σ (τ_k − friction_k).
+    /// Friction torques in the bearings, N m, positive against positive rates: n_B = −Σ (τ_k − friction_k).
     pub friction: PerDrive,
     /// Reference of the drive angles relative to the base, rad.
     pub q_reference: DriveAngles,
@@ -40,11 +40,11 @@ pub struct Frame {
     pub b_reference: f64,
     /// Relative joint angles a_1, a_2 …, rad, in the machine's order.
     pub a: PerDrive,
-    /// Pose of the base, p_B and θ; a fixed base stays at the origin.
+    /// Pose of the base: position p_B of B, m, and angle θ, rad. A fixed base stays at the origin.
     pub base: Pose2,
-    /// ṗ_B, m/s.
+    /// Velocity ṗ_B of B, m/s.
     pub base_velocity: Vector,
-    /// θ̇, rad/s.
+    /// Rate θ̇ of the base, rad/s.
     pub base_rate: f64,
     /// Wrench of the manipulator on its base.
     pub wrench: BaseWrench,
@@ -52,7 +52,8 @@ pub struct Frame {
     pub wheel: WheelState,
     /// Linear momentum of all moving parts, including a moving base, kg m/s.
     pub momentum: Vector,
-    /// Angular momentum of all moving parts without the wheel about the origin, where B is at the start, kg m²/s.
+    /// Angular momentum of all moving parts except the wheel, kg m²/s, about the origin, which is the position of B at
+    /// the start.
     pub angular_momentum: f64,
     /// Centre of mass of manipulator and payload, m.
     pub com: Vector,

@@ -1,4 +1,4 @@
-//! [`Peaks`]: peak values of a run, and whether they count as zero.
+//! [`Peaks`]: peak values of a run, and tests of whether they count as zero.
 
 use stillbase_mechanics::planar::PerDrive;
 
@@ -44,7 +44,7 @@ impl Peaks {
         }
     }
 
-    /// Includes one more instant, given as peaks of its own.
+    /// Includes the values of one more instant, of which torques and rates may be negative.
     pub(crate) fn include(&mut self, now: &Self) {
         for (peak, t) in self.torque.iter_mut().zip(now.torque.iter()) {
             *peak = worse(*peak, t.abs());
@@ -64,18 +64,19 @@ impl Peaks {
         }
     }
 
-    /// Returns the moment up to which a moment counts as zero, N m: a fraction of the torques plus rounding of weight.
+    /// Returns the tolerance up to which a moment counts as zero, N m: a fraction of the torques plus rounding of
+    /// weight.
     pub(super) fn no_moment(&self) -> f64 {
         REACTIONLESS_SHARE * self.torque_sum + ROUNDING * self.weight
     }
 
-    /// Returns the force up to which a force counts as zero, N.
+    /// Returns the tolerance up to which a force counts as zero, N.
     pub(super) fn no_force(&self) -> f64 {
         REACTIONLESS_SHARE * self.inertial_pull + ROUNDING * self.weight
     }
 
-    /// Returns whether the arm transmits no reaction: peak |n_B| is at most 1e-6 of peak Σ|τ_k|, and peak dynamic |f_B|
-    /// at most 1e-6 of peak Σ m_j |a_cj|, both plus rounding of weight.
+    /// Returns whether the arm transmits no reaction. The peak |n_B| must be at most 1e-6 of the peak Σ|τ_k|. The peak
+    /// dynamic |f_B| must be at most 1e-6 of the peak Σ m_j |a_cj|. Both tolerances include rounding of weight.
     pub fn is_reactionless(&self) -> bool {
         self.arm_moment <= self.no_moment() && self.force <= self.no_force()
     }
@@ -105,5 +106,6 @@ fn worse(a: f64, b: f64) -> f64 {
 /// Peaks below this fraction of torques or inertial forces count as zero.
 pub const REACTIONLESS_SHARE: f64 = 1e-6;
 
-/// Relative rounding error of weight that is not carried, as in free fall; for moments per metre of lever.
+/// Rounding error relative to the weight: in free fall, weight cancels in the dynamic force only up to this error. For
+/// moments, a lever of 1 m is assumed.
 const ROUNDING: f64 = 1e-12;

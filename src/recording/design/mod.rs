@@ -73,7 +73,7 @@ impl RecordedDesign {
         })
     }
 
-    /// Number of drives of the machine.
+    /// Returns the number of drives of the machine.
     pub fn drives(&self) -> usize {
         self.states[0].of.machine.drives()
     }

@@ -14,9 +14,9 @@ pub struct DesignState {
     pub at: Instant,
     /// The machine, and the change that led to it.
     pub of: DesignVersion,
-    /// Contributions of its parts to (7) and (8).
+    /// Contributions of the machine's parts to (7) and (8).
     pub breakdown: Breakdown,
-    /// Cost of balance relative to a reference machine, and the name of that.
+    /// Cost of balance relative to a reference machine, with the name of that machine.
     pub measures: Option<(&'static str, Measures)>,
 }
 
@@ -27,8 +27,8 @@ impl DesignState {
     }
 }
 
-/// Returns the cost of balance relative to the machine without its counterweights, as in the window, otherwise relative
-/// to the machine at the start.
+/// Returns the cost of balance relative to the machine without its counterweights, as in the window. A machine without
+/// counterweights is compared with the machine at the start.
 fn measured(of: &DesignVersion, first: &Machine, motion: &Motion) -> Option<(&'static str, Measures)> {
     let motion = Some(motion);
     match bare(&of.machine) {

@@ -89,7 +89,7 @@ impl Session {
         Some(title)
     }
 
-    /// Returns a branch as a scenario of its own.
+    /// Returns a branch as a separate scenario.
     pub fn branch(&self, branch: usize) -> Option<Scenario> {
         let left = self.document.branches.get(branch)?;
         let mut scenario = Scenario::clone(&self.document.scenario);
@@ -104,7 +104,7 @@ impl Session {
         self.document.branches.iter().map(saved).collect()
     }
 
-    /// Takes saved bookmarks and branches over.
+    /// Adopts saved bookmarks and branches.
     pub(super) fn keep_beside(&mut self, mut bookmarks: Vec<Bookmark>, branches: &[Branch]) {
         bookmarks.sort_by(|a, b| a.time.total_cmp(&b.time));
         let left = |branch: &Branch| {

@@ -12,20 +12,20 @@ pub(super) struct HistoryStep {
     pub edit: Option<TimedEdit>,
     /// Edit that undoes the change while the machine moves.
     pub inverse: Option<Edit>,
-    /// Description.
+    /// Description of the change.
     pub title: String,
     /// Set if only bookmarks or only branches have changed.
     pub beside: Option<AnnotationKind>,
 }
 
 impl HistoryStep {
-    /// Whether it changes path or base: the motion is then planned anew, so the edit is allowed only before the first
-    /// step.
+    /// Returns whether the change affects path or base: the motion is then planned anew, so the edit is allowed only
+    /// before the first step.
     pub fn plans(&self) -> bool {
         self.edit.as_ref().is_some_and(|e| e.edit.sets_path() || e.edit.sets(&["base"]))
     }
 
-    /// Whether no frame depends on the change.
+    /// Returns whether no frame depends on the change.
     pub fn is_aside(&self) -> bool {
         self.edit.as_ref().is_some_and(|e| e.edit.is_aside())
     }

@@ -12,7 +12,7 @@ impl Session {
     /// rest, settings and poses change the start, and the run so far is computed again.
     ///
     /// # Errors
-    /// If it cannot apply; then nothing has changed. Joint limits always apply: where the task does not fit into them,
+    /// If the edit cannot apply; then nothing has changed. Joint limits always apply: if the task does not fit them,
     /// the run waits.
     pub fn apply(&mut self, edit: Edit) -> Result<(), Refusal> {
         self.apply_while(edit, &mut |_| true)
@@ -43,7 +43,7 @@ impl Session {
         Ok(())
     }
 
-    /// Whether an edit applies at the present step rather than to the run as a whole.
+    /// Returns whether an edit applies at the present step rather than to the run as a whole.
     pub(super) fn concerns_now(&self, edit: &Edit) -> bool {
         match edit {
             edit if edit.is_drag() => true,
@@ -58,7 +58,7 @@ impl Session {
         }
     }
 
-    /// Whether the newest frame is on display and time passes.
+    /// Returns whether the newest frame is on display and time passes.
     pub(super) fn is_running(&self) -> bool {
         self.is_moving() && self.is_at_end()
     }
@@ -81,7 +81,8 @@ impl Session {
         let joins = self.gesture
             && remade.is_none()
             && document.script.last().is_some_and(|e| e.step == timed.step && e.edit.is_replaced_by(&timed.edit));
-        // An edit that replaces the one before starts from the run before both, as if the first had not been made.
+        // An edit that replaces the previous edit starts from the run before both, as if the previous one had not been
+        // made.
         let unedited = match (&remade, &self.unedited) {
             (Some(remade), _) => remade.run.clone(),
             (None, Some(run)) if joins => {
@@ -109,7 +110,7 @@ impl Session {
         Ok(())
     }
 
-    /// Applies an edit before the first step, so that a setting holds during the whole run.
+    /// Applies an edit before the first step, so that a setting applies to the whole run.
     fn amend(&mut self, edit: Edit, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
         let (before, inverse) = (self.document.clone(), self.run.inverse_of(&edit));
         let timed = TimedEdit { step: 0, edit };
@@ -156,9 +157,9 @@ impl Session {
         Ok(())
     }
 
-    /// Runs a document and shows the same instant as before, if there is a frame. If `patient`, a task that does not
-    /// fit its machine waits. The document stays complete, so that the run goes on where it was once the task fits
-    /// again.
+    /// Runs a document and shows the same instant as before, if there is a frame. If `patient` is true and the task
+    /// does not fit its machine, the run waits. The document stays complete, so that the run continues where it was
+    /// once the task fits again.
     pub(super) fn restore(
         &mut self,
         document: Document,

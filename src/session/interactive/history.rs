@@ -30,14 +30,14 @@ impl Session {
         self.gesture = true;
     }
 
-    /// Ends a gesture: the next edit has an undo entry of its own.
+    /// Ends a gesture: the next edit gets a separate undo entry.
     pub fn end_gesture(&mut self) {
         self.gesture = false;
         self.gesture_now = None;
         self.unedited = None;
     }
 
-    /// Whether the last change belongs to a gesture that goes on.
+    /// Returns whether the last change belongs to a gesture in progress.
     pub fn is_in_gesture(&self) -> bool {
         self.gesture
     }
@@ -62,8 +62,8 @@ impl Session {
         self.undo.iter().chain(self.redo.iter().rev()).map(|change| change.title.as_str())
     }
 
-    /// Takes the last change back: in motion by the inverse edit at the present step, paused or at rest by restoring
-    /// the document before it.
+    /// Undoes the last change: in motion by the inverse edit at the present step, paused or at rest by restoring the
+    /// document before the change.
     ///
     /// # Errors
     /// If that document cannot be restored; then nothing has changed.
@@ -85,8 +85,8 @@ impl Session {
         Ok(())
     }
 
-    /// Goes to the document of an undo or redo entry: in motion by `edit` at the present step, paused or at rest by
-    /// restoring the document.
+    /// Goes to the document of an undo or redo entry: in motion by applying `edit`, paused or at rest by restoring the
+    /// document.
     fn go_to(&mut self, change: &HistoryStep, edit: Option<&Edit>, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
         match (edit, change.beside) {
             (_, Some(kept)) => {
@@ -101,7 +101,7 @@ impl Session {
         }
     }
 
-    /// Brings back the change that undo took back.
+    /// Redoes the change that was undone last.
     ///
     /// # Errors
     /// If it cannot apply; then nothing has changed.
@@ -123,15 +123,15 @@ impl Session {
         Ok(())
     }
 
-    /// Returns a document of history with the present end, and the scenario of its run, if the present frames fit it
-    /// too.
+    /// Returns a document of the history with the present end, and the scenario of its run, if the present frames are
+    /// also valid for it.
     fn aside(&self, before: &Document) -> Option<(Document, Scenario)> {
         let document = Document { end: self.document.end, ..before.clone() };
         let scenario = document.aside_of(&self.document)?;
         Some((document, scenario))
     }
 
-    /// Goes to that document without running it again. Returns whether this was possible.
+    /// Goes to a document of the history without running it again. Returns whether this was possible.
     fn go_aside(&mut self, before: &Document) -> bool {
         let Some((document, scenario)) = self.aside(before) else { return false };
         if self.run.set_asides(&scenario).is_err() {
@@ -164,16 +164,16 @@ impl Session {
         Ok(())
     }
 
-    /// Replaces everything by another scenario; undo brings this one back.
+    /// Replaces the session by that of another scenario; undo restores the present one.
     ///
     /// # Errors
-    /// If it cannot start; then nothing has changed.
+    /// If the scenario cannot start; then nothing has changed.
     pub fn switch(&mut self, scenario: Scenario) -> Result<(), Refusal> {
         self.take_over(Self::open(scenario)?);
         Ok(())
     }
 
-    /// Replaces everything by another session that has just been opened; undo brings this one back.
+    /// Replaces the session by another one that has just been opened; undo restores the present one.
     pub fn take_over(&mut self, mut next: Self) {
         let title = format!("open {}", next.document.scenario.title);
         next.undo = std::mem::take(&mut self.undo);

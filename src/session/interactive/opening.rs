@@ -11,10 +11,11 @@ use crate::script::Script;
 use stillbase_query::ProgressCallback;
 
 impl Session {
-    /// Opens a scenario; its saved edits are replayed up to its duration, and the cursor stands at the start.
+    /// Opens a scenario; its saved edits are replayed up to its duration, and the first frame is on display.
     ///
     /// # Errors
-    /// If it cannot start, or one of its edits cannot apply. A session that was saved while it waited waits again.
+    /// If the scenario cannot start, or one of its edits cannot apply. A session that was saved while it waited waits
+    /// again.
     pub fn open(scenario: Scenario) -> Result<Self, Refusal> {
         Self::open_while(scenario, &mut |_| true)
     }
@@ -29,8 +30,8 @@ impl Session {
         Self::opened(scenario, patient, watch)
     }
 
-    /// Does the same as [`open`](Self::open), but a task that does not fit its machine waits, and [`Run::waiting`] says
-    /// why.
+    /// Does the same as [`open`](Self::open), but waits if the task does not fit its machine; [`Run::waiting`] then
+    /// says why.
     ///
     /// # Errors
     /// If a value is out of range, the machine has no reactionless planes, or one of its edits cannot apply.

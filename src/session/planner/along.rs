@@ -29,7 +29,7 @@ pub(super) fn along_parts(
     let (own, pace) = motion(scenario)?;
     let has_corners = !task.via.is_empty() || task.closed;
     if task.law.is_fastest() && task.corners == Corners::Blend && has_corners {
-        // A tightly blended corner may take longer than a stop at it.
+        // A tightly blended corner may take more time than a stop at the corner.
         let resting = Scenario { task: Task { corners: Corners::Stop, ..task.clone() }, ..scenario.clone() };
         if let Ok((rests, pace)) = motion(&resting)
             && rests.duration() < own.duration()
@@ -41,8 +41,8 @@ pub(super) fn along_parts(
     Ok(Plan { pace, ..Plan::of(scenario, own) })
 }
 
-/// Times the parts of a path, each from rest to rest. A time law gives each part a share of the time of the task in
-/// proportion to its length. The fastest laws find the least time of each part.
+/// Times the parts of a path, each from rest to rest. The fastest laws find the minimum time of each part. Other laws
+/// divide the time of the task in proportion to the lengths of the parts.
 pub(super) fn timed(
     scenario: &Scenario,
     parts: Vec<(Path, f64)>,
@@ -58,7 +58,7 @@ pub(super) fn timed(
             let fastest = fastest(path, &model, &around, &limits, task.law == TimeLaw::FastestSmooth)?;
             let profile = fastest.profile;
             let time = profile.duration();
-            // A part without motion has no gap: its least time is 0.
+            // A part without motion has no optimality gap: its minimum time is 0.
             let least = fastest.gap.map(|gap| time / (1.0 + gap)).or((time == 0.0).then_some(0.0));
             let pace = pace.get_or_insert(TimingBottleneck { unlimited: Some(0.0), ..TimingBottleneck::default() });
             pace.unlimited = pace.unlimited.zip(least).map(|(sum, least)| sum + least);
@@ -121,7 +121,7 @@ pub fn curves(task: &Task, points: &[Vector]) -> Result<Vec<Curve>, Refusal> {
     })
 }
 
-/// Follows curves from a start pose with least joint rates. `held` is the pose space on which b is held, if it is.
+/// Follows curves from a start pose with least joint rates. With a pose space `held`, b stays constant.
 pub(super) fn by_least_rates(
     scenario: &Scenario,
     start: DriveAngles,
@@ -143,7 +143,7 @@ pub(super) fn by_least_rates(
 }
 
 /// Plans all cycles of a closed path, or an open path once. `round` returns the parts and the end pose of one cycle,
-/// from its start pose and its number, counted from 1.
+/// given its start pose and its number, counted from 1.
 pub(super) fn in_rounds(
     scenario: &Scenario,
     start: DriveAngles,

@@ -15,7 +15,7 @@ use stillbase_planning::posed::{PoseAngles, nearest_poses};
 use stillbase_planning::timing::{DriveLimits, Profile, TimeLaw};
 use stillbase_planning::{Forecast, Motion};
 
-/// Plans a motion from A at the b of the task to B at another b; a limit on |n_B| bounds the time from below.
+/// Plans a motion from A at the b of the task to B at another b; a limit on |n_B| sets a minimum duration.
 pub(super) fn change_b(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
     goes_straight(&scenario.task)?;
     let space = match space {
@@ -37,12 +37,13 @@ fn goes_straight(task: &Task) -> Result<(), Refusal> {
     Err(Refusal::Task("change-b goes straight from A to B: want no points between and an open path".into()))
 }
 
-/// Moves along the joint line between two poses. The fastest law with a limit on |n_B| uses a bang-bang b̈ instead.
+/// Plans the motion along the joint line between two poses. The fastest law with a limit on |n_B| uses a bang-bang b̈
+/// instead.
 fn changed(scenario: &Scenario, space: &PoseSpace, ends: &[PoseAngles; 2]) -> Result<Plan, Refusal> {
     let (task, line) = (&scenario.task, joint_line(ends));
     let (model, around) = dynamics_of(scenario);
     let price = Price::of(&model, ends[1].b - ends[0].b)?;
-    // Only if b changes: at T² = `square` · (peak |s̈| for T = 1 s) the peak of |n_B| equals its limit.
+    // If b changes, the peak of |n_B| equals its limit at T² = `square` · (peak |s̈| for T = 1 s).
     let moves = price.delta_b().abs() > 1e-9;
     let square = task.moment_limit.filter(|_| moves).map(|limit| price.inertia() * price.delta_b().abs() / limit);
     let limits = DriveLimits::of(&scenario.machine);
@@ -84,12 +85,12 @@ fn ends(task: &Task, space: &PoseSpace) -> Result<[PoseAngles; 2], Refusal> {
     let b_set = |i: usize, p: Vector| space.reach(p).map_err(|reason| no_b_refusal(task, i, p, reason));
     let own = b_set(0, a)?;
     let a_reached = space.reaches(a, task.b);
-    // If each point has a single b and the task leaves b out, stored as 0, the b of A is used.
+    // If each point has a single b and the task omits b (which is then 0), the b of A is used.
     if !a_reached && (space.reaches_area() || task.b != 0.0) {
         return Err(unreached(0, task.b));
     }
     let other = b_set(last, b)?;
-    // If A is reached at the b of the task, the nearest b of B; otherwise the pair with the least change of b.
+    // If the b of the task reaches A, take the nearest b that reaches B; otherwise the pair with the least change of b.
     let pair =
         if a_reached { other.nearest(task.b).map(|b| [task.b, b]) } else { nearest_planes(&own, &other, task.b) };
     let inwards = |[from, to]: [f64; 2], share: f64| match a_reached {

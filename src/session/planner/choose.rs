@@ -18,14 +18,14 @@ use crate::scenario::{Scenario, Task, TaskKind};
 /// Plans the task of a scenario.
 ///
 /// # Errors
-/// Which point, part of the path or setting is infeasible, and what would be feasible.
+/// If the task is infeasible: the error names the point, part of the path or setting, and a feasible alternative.
 pub fn plan(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     let given = task.samples.is_some();
     let leaves_plane = !given && matches!(task.kind, TaskKind::MinimumNorm | TaskKind::LeastReaction);
     let plan = directly(scenario, space).map_err(|refusal| match space {
         // With planes, other values of b can be tried quickly.
-        Ok(space) if leaves_plane && space.planes().is_ok() => elsewhere(scenario, space, refusal),
+        Ok(space) if leaves_plane && space.planes().is_ok() => with_nearest_b(scenario, space, refusal),
         _ => refusal,
     })?;
     let finds_time = task.law.is_fastest() || (task.kind == TaskKind::ChangeB && task.moment_limit.is_some());
@@ -41,7 +41,7 @@ pub fn plan(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusa
     check_time(time).map(|()| plan)
 }
 
-/// Plans the task of a scenario, without the proposals of [`elsewhere`].
+/// Plans the task of a scenario, without the proposals of [`with_nearest_b`].
 fn directly(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
     match scenario.task.kind {
         _ if scenario.task.samples.is_some() => given(scenario, space),
@@ -55,9 +55,9 @@ fn directly(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusa
     }
 }
 
-/// Completes the refusal of a task that leaves its plane, if its b does not reach A. Proposes the nearest b at which
-/// the task can be planned.
-fn elsewhere(scenario: &Scenario, space: &PoseSpace, refusal: Refusal) -> Refusal {
+/// Completes the refusal of a task that leaves its plane. If the task's b does not reach A, proposes the nearest b at
+/// which the task can be planned.
+fn with_nearest_b(scenario: &Scenario, space: &PoseSpace, refusal: Refusal) -> Refusal {
     // The path does not depend on the time law.
     let law = TimeLaw::Quintic;
     let at = |b: f64| Scenario { task: Task { b, law, ..scenario.task.clone() }, ..scenario.clone() };

@@ -1,5 +1,5 @@
-//! Motions given by samples: drive angles are taken as they are; for samples of the end effector the redundancy is
-//! resolved.
+//! Motions given by samples: samples of drive angles are used unchanged; for samples of the end effector the redundancy
+//! is resolved.
 
 use super::held::along_curves;
 use super::plan::{Plan, PlannerSpace, PlanningEffort, dynamics_of, keeps_rules};

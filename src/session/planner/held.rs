@@ -1,4 +1,4 @@
-//! Paths with the b of their task held, so that nothing reaches the base.
+//! Paths with the b of their task held, so that no reaction reaches the base.
 
 use super::along::{PathSegments, along_parts, by_least_rates, curves};
 use super::plan::{Plan, PlannerSpace, PlanningEffort};
@@ -15,7 +15,7 @@ use stillbase_planning::pose_space::{NoPoseSpace, Planes, PoseSpace};
 use stillbase_planning::posed::PoseAngles;
 use stillbase_planning::timing::TimeLaw;
 
-/// Plans a motion with b held. A refusal proposes only what has been tried.
+/// Plans a motion with b held. A refusal proposes only alternatives that have been tried.
 pub(super) fn held(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     along_parts(scenario, &|scenario| reactionless(scenario, space, PlanningEffort::Whole)).map_err(|refusal| {
@@ -23,7 +23,7 @@ pub(super) fn held(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan,
         // The path does not depend on the time law.
         let own = |task: &Task| Scenario { task: Task { law: TimeLaw::Quintic, ..task.clone() }, ..scenario.clone() };
         let try_path = |task: &Task, effort| match known.planes() {
-            // A path that is followed on a plane keeps the limits.
+            // A path found on a plane already keeps the joint limits.
             Ok(_) => reactionless(&own(task), space, effort).map(|_| ()),
             Err(_) => along_parts(&own(task), &|scenario| reactionless(scenario, space, effort)).map(|_| ()),
         };
@@ -77,12 +77,12 @@ pub(super) fn along_curves(
         let tables = posture::tables(scenario, space, curves, law, effort)?;
         return Ok(tables.into_iter().map(Path::Table).zip(lengths).collect());
     }
-    // Without freedoms there is one motion for each b.
+    // Without remaining freedoms, there is one motion for each b.
     let start = posed(&scenario.task, space, &scenario.task.points()[..1], 0, &space.middle())?;
     by_least_rates(scenario, start, curves, Some(space))
 }
 
-/// Finds the path of a machine that turns its base in no motion; b is not held.
+/// Finds the path of a machine that turns its base in no motion, so that b need not be held.
 fn free(scenario: &Scenario, space: &PoseSpace, points: &[Vector]) -> Result<PathSegments, Refusal> {
     let task = &scenario.task;
     if task.shape() != PathShape::JointLine {
@@ -142,7 +142,7 @@ fn joint_lines(scenario: &Scenario, space: &PoseSpace, mut poses: Vec<PoseAngles
     poses.extend(task.closed.then(|| poses[0]));
     let way = |i: usize| poses[i].way(space, &poses[i + 1]);
     let line = |i: usize| (Path::JointLine { from: poses[i].q, to: poses[i + 1].q }, way(i).max(1e-12));
-    // A point that repeats the one before gives no path.
+    // A point equal to the previous one adds no part to the path.
     let moving = (0..poses.len() - 1).filter(|i| poses.len() == 2 || way(*i) > 1e-12);
     Ok(moving.map(line).collect())
 }

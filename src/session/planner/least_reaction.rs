@@ -20,8 +20,8 @@ use stillbase_planning::{Forecast, Motion};
 use stillbase_settings::number::nine_digits;
 use stillbase_settings::word::Choice;
 
-/// Plans the motion with the least reaction. On planes, b changes as little as its feasible corridor allows; on other
-/// machines b is held, if that is feasible.
+/// Plans the motion with the least reaction. On machines with planes, b changes as little as its feasible corridor
+/// allows; on others b is held, if that is feasible.
 pub(super) fn least_reaction(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
     if !scenario.machine.is_redundant() {
         let why = "along a path of the end effector one or two drives have no b to choose: want minimum-norm, which is the \
@@ -47,8 +47,8 @@ fn smooth(task: &Task) -> Result<TimeLaw, Refusal> {
     Err(Refusal::Task(format!("least-reaction wants a {kind}: {}", serving.join(" or "))))
 }
 
-/// Joins all curves to one function of u = t/T, with derivatives by u. The law times each curve, in a share of T in
-/// proportion to its length.
+/// Joins all curves to one function of u = t/T, with derivatives by u. The law times each curve, which takes a share of
+/// T in proportion to its length.
 fn whole(curves: &[Curve], law: TimeLaw) -> impl Fn(f64) -> CurvePoint {
     let total: f64 = curves.iter().map(Curve::length).sum();
     let profile =
@@ -98,8 +98,8 @@ fn in_corridor(scenario: &Scenario, space: &PoseSpace, planes: &Planes, law: Tim
     }
 }
 
-/// Plans the motion with b held, if that is feasible; nothing reaches the base then. The corridor of b is known on
-/// planes only.
+/// Plans the motion with b held, if that is feasible; no reaction then reaches the base. The corridor of b is known
+/// only for machines with planes.
 fn holding_b(scenario: &Scenario, space: &PoseSpace, lacking: &PlaneError) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     if let Some(b_to) = task.b_to.filter(|b_to| *b_to != task.b) {
@@ -144,7 +144,7 @@ fn holding_b(scenario: &Scenario, space: &PoseSpace, lacking: &PlaneError) -> Re
     )))
 }
 
-/// Returns the comparison for a motion with b held: no reaction, against that of the minimum-norm motion.
+/// Compares a motion with b held, which has no reaction, with the minimum-norm motion.
 fn verdicts_of_held_b(scenario: &Scenario, space: &PoseSpace) -> Result<Verdicts, Refusal> {
     let usual = minimum_norm(scenario, Ok(space)).and_then(|parts| Ok(timed(scenario, parts)?.0));
     let minimum_norm = match usual {

@@ -1,5 +1,5 @@
-//! Motions at zero angular momentum. Two drives have one such curve through each pose; three drives and more follow any
-//! curve of the end effector.
+//! Motions at zero angular momentum. Two drives have one such curve through each pose; three drives and more can follow
+//! any curve of the end effector.
 
 use std::f64::consts::TAU;
 
@@ -16,10 +16,10 @@ use stillbase_planning::off_plane::null_space::MomentumFreedom;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_settings::number::fixed;
 
-/// A point lies on the curve of two drives if its distance is at most this fraction of the reach. Nine printed digits
-/// of a point are enough for that.
+/// Tolerance for a point to lie on the curve of two drives, as a fraction of the reach. Coordinates printed with nine
+/// decimals are within it.
 const CURVE_TOLERANCE: f64 = 1e-6;
-/// Number of intervals of that curve in the search for its point nearest to a given one.
+/// Number of intervals of the curve in the search for its point nearest to a given point.
 const CURVE_INTERVALS: usize = 720;
 
 /// Plans a motion at zero angular momentum.
@@ -72,8 +72,8 @@ fn along_curve(scenario: &Scenario, integral: &BIntegral) -> Result<Plan, Refusa
     let mut points = task.points();
     points.extend(task.closed.then(|| points[0]));
     let starts = elbows(task, &space, 0, points[0])?;
-    // The first pose of A from which all points are reached; if there is none, the refusal of the pose that gets
-    // farthest.
+    // Take the first pose of A from which all points are reached. If there is none, return the refusal of the pose that
+    // gets farthest.
     let mut refused: Option<(usize, Refusal)> = None;
     for start in &starts {
         match deltas_along(task, &space, integral, *start, &points) {
@@ -85,7 +85,7 @@ fn along_curve(scenario: &Scenario, integral: &BIntegral) -> Result<Plan, Refusa
                         let table = integral.motion(&q, *to);
                         let table = table.ok_or_else(|| Refusal::NoWay("A and B are too far apart".into()))?;
                         q = table.nodes().last().map_or(q, |last| last.q);
-                        // A point that repeats the one before gives no path.
+                        // A point equal to the previous one adds no part to the path.
                         if far > 1e-12 || turns.len() == 1 {
                             parts.push((Path::Table(table), far.max(1e-12)));
                         }

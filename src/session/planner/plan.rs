@@ -15,7 +15,7 @@ use stillbase_planning::timing::limits::DriveLimit;
 use stillbase_planning::timing::{DriveLimits, TimeLaw};
 use stillbase_planning::{Forecast, Motion};
 
-/// The pose space of a machine, or why its b cannot be held.
+/// The pose space of a machine, or the reason why its b cannot be held.
 pub(super) type PlannerSpace<'a> = Result<&'a PoseSpace, &'a NoPoseSpace>;
 
 /// Effort spent on the search for a path and for proposals.
@@ -50,7 +50,7 @@ pub struct Plan {
 /// A closed path closes in joint space if no drive ends farther from its start than this, rad.
 const CLOSURE_TOLERANCE_RAD: f64 = 1e-6;
 
-/// Duration of the fastest motion, and what holds it back.
+/// Duration of the fastest motion, and the limit that determines it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TimingBottleneck {
     /// Duration T, s.
@@ -76,7 +76,8 @@ impl Plan {
         self.cycles.iter().skip(1).filter_map(move |q| Some(q.0.minus(&first?.0).max_abs()))
     }
 
-    /// Returns a plan at rest for a run that waits, with the end effector as near to A as the b of the task allows.
+    /// Returns a plan at rest for a run that waits. The pose is one of A, at the b of the task or otherwise at the
+    /// nearest b. If no b reaches A, the joints are in the middle of their ranges.
     pub fn rest(scenario: &Scenario, space: Option<&PoseSpace>) -> Self {
         let (task, machine) = (&scenario.task, &scenario.machine);
         let p = task.points()[0];
@@ -114,8 +115,8 @@ impl Plan {
     }
 }
 
-/// Refuses a motion that passes a joint limit, or a change point if the task forbids these. Planning by rates does not
-/// check either.
+/// Refuses a motion that passes a joint limit, or a change point if the task forbids these. Planning by joint rates
+/// checks neither.
 pub(super) fn keeps_rules(scenario: &Scenario, motion: &Motion) -> Result<(), Refusal> {
     const MIN_SAMPLES: usize = 1000;
     let samples = (100 * motion.path.parts()).clamp(MIN_SAMPLES, 100_000);

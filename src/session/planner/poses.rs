@@ -18,9 +18,9 @@ pub(super) fn poses_at_b(task: &Task, space: &PoseSpace, points: &[Vector]) -> R
     posed::poses_of_points(space, points, task.b).map_err(|(i, unreachable)| refusal(task, i, unreachable))
 }
 
-/// Returns a pose of the first point. If points are reached by ranges of b, the pose is at the b of the task; with
-/// planes it is on one sheet with the other points, if possible. Otherwise it is at the nearest b that reaches the
-/// point.
+/// Returns a pose of the first point. If intervals of b reach a point, the pose is at the b of the task. On machines
+/// with planes it is also on the same sheet as the other points, if possible. Otherwise the pose is at the nearest b
+/// that reaches the point.
 pub(super) fn start(scenario: &Scenario, space: PlannerSpace<'_>, points: &[Vector]) -> Result<DriveAngles, Refusal> {
     let task = &scenario.task;
     match space {
@@ -56,8 +56,8 @@ pub(super) fn posed(
     space.poses(points[i], task.b, near).first().copied().ok_or_else(none)
 }
 
-/// Does the same as [`posed()`], with the orientation of the last link, if the task sets one. `kept` is the angle of
-/// its drive at the first point, rad, which the drive has to keep.
+/// Returns the same pose as [`posed()`] or, if the task sets the orientation of the last link, a pose with this
+/// orientation. `kept` is the angle of the last link's drive at the first point, rad, which the drive has to keep.
 pub(super) fn poses_facing(
     scenario: &Scenario,
     space: &PoseSpace,

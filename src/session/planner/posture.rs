@@ -14,17 +14,18 @@ use stillbase_planning::posture::{Posture, PostureRequest};
 use stillbase_planning::timing::TimeLaw;
 use stillbase_settings::number::nine_digits;
 
-/// Number of intervals of each curve. At a proposed b, the end effector has to reach the ends of all intervals.
+/// Number of intervals of each curve. At a proposed b, the end effector has to reach the end points of all intervals.
 const INTERVALS_PER_CURVE: usize = 16;
 /// An angle may exceed its limit by this much, rad, because of rounding.
 const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
-/// Amounts by which limits are widened at either end, rad, in the order of the trials.
+/// Amounts by which both limits of an angle are widened, rad, in the order of the trials.
 const WIDENINGS_RAD: [f64; 3] = [0.1, 0.4, 1.0];
 
-/// Returns a path along each curve; `law` as [`PostureRequest::law`].
+/// Returns a path along each curve; `law` is that of [`PostureRequest::law`].
 ///
 /// # Errors
-/// If there is no whole path: how far it can be followed, and with [`PlanningEffort::Whole`] a proposal.
+/// If no path covers all curves. The error states how far they can be followed and, with [`PlanningEffort::Whole`], a
+/// proposal.
 pub(super) fn tables(
     scenario: &Scenario,
     space: &PoseSpace,
@@ -39,16 +40,18 @@ pub(super) fn tables(
         poses_facing(scenario, space, &task.points(), 0, &space.middle(), None)?;
     }
     let hand = (link.0, angle.map(|angle| angle - link.1));
-    let asked = PostureRequest { machine: &scenario.machine, space, b: task.b, curves, law, closed: task.closed, hand };
-    // Minimum-norm rates from the pose nearest to the middle mostly keep the limits. If not, the search is needed.
+    let request =
+        PostureRequest { machine: &scenario.machine, space, b: task.b, curves, law, closed: task.closed, hand };
+    // Minimum-norm rates from the pose nearest to the middle mostly keep the limits. If they do not, a search is
+    // needed.
     let local = || locally(scenario, space, curves).ok().filter(|tables| keep_limits(space, tables));
     let is_local = task.posture == Posture::LeastRates && !task.closed;
     if let Some(tables) = is_local.then(local).flatten() {
         return Ok(tables);
     }
     let search = match effort {
-        PlanningEffort::Trial => asked.quick_path(task.posture),
-        PlanningEffort::Whole => asked.path(task.posture),
+        PlanningEffort::Trial => request.quick_path(task.posture),
+        PlanningEffort::Whole => request.path(task.posture),
     };
     let why = match search {
         Ok(found) => return Ok(found.tables),
@@ -57,7 +60,7 @@ pub(super) fn tables(
     if let Some(tables) = (task.posture != Posture::Orientation && !is_local).then(local).flatten() {
         return Ok(tables);
     }
-    let tried = (effort == PlanningEffort::Whole).then(|| proposal(&asked, task)).flatten();
+    let tried = (effort == PlanningEffort::Whole).then(|| proposal(&request, task)).flatten();
     let proposed = tried.unwrap_or_else(|| "another path, or wider limits".into());
     Err(Refusal::NoWay(format!("at b = {} rad {why}: want {proposed}", nine_digits(task.b))))
 }
@@ -74,7 +77,7 @@ fn locally(scenario: &Scenario, space: &PoseSpace, curves: &[Curve]) -> Result<V
     Ok(tables)
 }
 
-/// Whether all nodes of paths are within the limits.
+/// Returns whether all nodes of paths are within the joint limits.
 fn keep_limits(space: &PoseSpace, tables: &[PathTable]) -> bool {
     let keeps = |node: &PathPoint| {
         space.joints().iter().all(|joint| {
@@ -85,43 +88,43 @@ fn keep_limits(space: &PoseSpace, tables: &[PathTable]) -> bool {
     tables.iter().flat_map(|table| table.nodes()).all(keeps)
 }
 
-/// Whether a quick search finds the whole path.
-fn is_feasible(asked: &PostureRequest<'_>, posture: Posture) -> bool {
-    asked.quick_path(posture).is_ok()
+/// Returns whether a quick search finds the whole path.
+fn is_feasible(request: &PostureRequest<'_>, posture: Posture) -> bool {
+    request.quick_path(posture).is_ok()
 }
 
 /// Finds a posture, a b or a limit with which the whole path is feasible.
-fn proposal(asked: &PostureRequest<'_>, task: &Task) -> Option<String> {
+fn proposal(request: &PostureRequest<'_>, task: &Task) -> Option<String> {
     if task.posture == Posture::Orientation {
-        let free = PostureRequest { hand: (asked.hand.0, None), ..*asked };
-        if asked.hand.1.is_some() && is_feasible(&free, Posture::Orientation) {
+        let free = PostureRequest { hand: (request.hand.0, None), ..*request };
+        if request.hand.1.is_some() && is_feasible(&free, Posture::Orientation) {
             return Some("no orientation, so that it keeps the one that serves".into());
         }
-        if is_feasible(asked, Posture::LeastRates) {
+        if is_feasible(request, Posture::LeastRates) {
             return Some("posture = least-rates".into());
         }
     }
     let at = |curve: &Curve| {
         (0..=INTERVALS_PER_CURVE).map(|i| curve.at(i as f64 / INTERVALS_PER_CURVE as f64).p).collect::<Vec<_>>()
     };
-    let points: Vec<Vector> = asked.curves.iter().flat_map(at).collect();
-    let another = common_b_set(asked.space, &points).and_then(|serving| {
-        let near = serving.nearest(asked.b)?;
-        let serves = |b: f64| b != asked.b && is_feasible(&PostureRequest { b, ..*asked }, task.posture);
+    let points: Vec<Vector> = request.curves.iter().flat_map(at).collect();
+    let another = common_b_set(request.space, &points).and_then(|serving| {
+        let near = serving.nearest(request.b)?;
+        let serves = |b: f64| b != request.b && is_feasible(&PostureRequest { b, ..*request }, task.posture);
         inner_values(&serving, near).find(|b| serves(b.value()))
     });
-    another.map(|b| format!("b = {b} rad")).or_else(|| wider(asked, task.posture))
+    another.map(|b| format!("b = {b} rad")).or_else(|| wider(request, task.posture))
 }
 
-/// Finds the first of the trial widenings of the limits of one angle with which the path is feasible at the same b.
-fn wider(asked: &PostureRequest<'_>, posture: Posture) -> Option<String> {
+/// Proposes the smallest trial widening of one angle's limits that makes the path feasible at the same b.
+fn wider(request: &PostureRequest<'_>, posture: Posture) -> Option<String> {
     WIDENINGS_RAD.into_iter().find_map(|by| {
-        asked.machine.angles().iter().find_map(|angle| {
+        request.machine.angles().iter().find_map(|angle| {
             let key = format!("limits.{}", angle.name);
             let value = format!("{:.2},{:.2}", angle.limits.start() - by, angle.limits.end() + by);
-            let machine = asked.machine.set(&key, &value).ok()?;
+            let machine = request.machine.set(&key, &value).ok()?;
             let space = PoseSpace::of(&machine).ok()?;
-            let wide = PostureRequest { machine: &machine, space: &space, ..*asked };
+            let wide = PostureRequest { machine: &machine, space: &space, ..*request };
             is_feasible(&wide, posture).then(|| format!("{key} = {value} rad at this b"))
         })
     })

@@ -1,4 +1,4 @@
-//! Refusals that propose only what has been tried.
+//! Refusals that propose only alternatives that have been tried.
 
 use super::plan::PlanningEffort;
 use crate::refusal::Refusal;
@@ -11,7 +11,7 @@ use stillbase_planning::reactionless::{BSet, Decimal};
 
 /// Depths inside an interval of b at which values are tried, as fractions of half its width.
 const TRIAL_DEPTHS: [f64; 8] = [1e-3, 0.1, 0.3, 0.6, 1.0, 1.4, 1.7, 1.9];
-/// Number of decimals of these values.
+/// Number of decimals of the values tried.
 const DECIMALS: usize = 4;
 
 /// Returns the refusal with only those proposals that `try_path` finds feasible. Points that share a b may still have
@@ -100,7 +100,7 @@ pub(super) fn tried_refusal(
     made(format!("another path: {at}{}", said.strip_prefix(&at).unwrap_or(&said)), None, None)
 }
 
-/// Yields values of b farther and farther inside a set, rad, from the end nearest to `near` towards the other end.
+/// Yields values of b, rad, ever farther inside a set, from the bound nearest to `near` towards the opposite bound.
 pub(super) fn inner_values(set: &BSet, near: f64) -> impl Iterator<Item = Decimal> + use<'_> {
     TRIAL_DEPTHS.into_iter().filter_map(move |share| set.decimal(set.moved_inside(near, share), DECIMALS))
 }

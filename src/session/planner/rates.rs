@@ -1,4 +1,4 @@
-//! Motions of the end effector that do not hold b: with least joint rates, and with drive 1 on a course of its own.
+//! Motions of the end effector that do not hold b: with least joint rates, or with the motion of drive 1 chosen freely.
 
 use super::along::{PathSegments, by_least_rates, curves};
 use super::plan::PlannerSpace;
@@ -17,8 +17,8 @@ pub(super) fn minimum_norm(scenario: &Scenario, space: PlannerSpace<'_>) -> Resu
     by_least_rates(scenario, start, &curves(task, &points)?, None)
 }
 
-/// Moves the end effector as on the joint line from A to B, with drive 1 on a course of its own; the other drives
-/// follow.
+/// Moves the end effector as on the joint line from A to B. Drive 1 turns to an angle that the task sets, and the other
+/// drives follow.
 pub(super) fn same_tip(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<PathSegments, Refusal> {
     let (task, machine) = (&scenario.task, &scenario.machine);
     if !machine.is_redundant() {

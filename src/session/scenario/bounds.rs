@@ -5,7 +5,7 @@ use stillbase_settings::range::Range;
 /// Maximum duration of a run, s.
 pub const MAX_TIME: f64 = 3600.0;
 
-/// Maximum number of steps of a run: an hour of 1 ms each, and some to spare.
+/// Maximum number of steps of a run: more than an hour in steps of 1 ms.
 pub const MAX_STEPS: u64 = 4_000_000;
 
 /// Range of the step size.

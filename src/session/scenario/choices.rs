@@ -1,4 +1,4 @@
-//! The choices of a task: its kind, what joins its points, what happens at corners and what is kept small.
+//! The choices of a task: its kind, the shape of its path, the motion at corners, and the quantity to minimise.
 
 use stillbase_settings::word::words;
 
@@ -13,10 +13,10 @@ words! {
         /// b changes as little as its corridor allows.
         LeastReaction = "least-reaction", "Least reaction", "Any path, b changing as little as it must";
         ChangeB = "change-b", "Change b, at a price", "From A on one plane to B on another: n_B = −D₁ b̈";
-        /// A closed path is run through again and again.
+        /// A closed path may be repeated several times.
         ZeroMomentum =
             "zero-momentum", "Zero momentum", "Reactionless on any machine; on a closed path the joints may drift";
-        /// Drive angles are followed as they are, the end effector on the plane b = const.
+        /// Samples of drive angles are followed unchanged, those of the end effector on the plane b = const.
         Given = "given", "As given", "By samples over time, from a file: stillbase import";
     }
 }

@@ -21,7 +21,7 @@ pub struct Scenario {
     pub title: String,
     /// Nominal machine, which control assumes.
     pub machine: Machine,
-    /// Differences of the machine that moves from the nominal one.
+    /// Differences of the plant, the machine that moves, from the nominal machine.
     pub plant: PlantDifferences,
     /// Base on which the machine stands.
     pub base: Base,
@@ -53,7 +53,7 @@ impl Scenario {
     /// Checks every number, and the machine that moves. Errors name `file`.
     ///
     /// # Errors
-    /// The first number that is out of range, or why the machine that moves is not valid.
+    /// If a number is out of range, or the machine that moves is not valid.
     pub fn check(&self, file: &str) -> Result<(), ScenarioError> {
         if let Some(RangeCheck { key, value, want, .. }) = self.checks().into_iter().find(|check| !check.ok) {
             return Err(ScenarioError::OutOfRange { file: file.into(), line: None, key: key.into(), value, want });

@@ -36,7 +36,7 @@ keyed! {
         keep_balanced: bool = "false";
         /// How dear it is to move each centre of mass while the balance is kept, Eq. (10).
         penalties: Preset = "minimum-norm", when: "nine links and no counterweights";
-        // Those of `Disc::STEEL`.
+        // The defaults of density and thickness are those of `Disc::STEEL`.
         /// Density of what counterweights are made of, discs of one plate.
         density: f64 = "7850", range: DENSITY_RANGE;
         /// Thickness of the plate that the discs are cut from.
@@ -66,12 +66,13 @@ keyed! {
         /// Whether a link stays as it is: neither what keeps the balance nor new counterweights change it.
         fixed: NameSet = "false", when: LINK;
         tables:
-        /// Holds of single numbers by key, such as `link.5.mass`: fixed, free, or within bounds. They override `fixed`.
+        /// Bounds on single numbers by key, such as `link.5.mass`: fixed, free, or within an interval. They override
+        /// `fixed`.
         hold: BoundsByKey;
     }
 }
 
-/// Keys of the numbers that can be held.
+/// Keys of the bounds on single numbers.
 pub const BOUND_KEYS: [Key; 5] = [
     held("design.hold.link.*.mass", ranges::LOAD, "How a link's mass is held while the balance is kept.").when(LINK),
     held("design.hold.link.*.com", ranges::PLACE, "How a link's centre of mass along it is held.").when(LINK),
@@ -86,7 +87,7 @@ const fn held(path: &'static str, range: Range, words: &'static str) -> Key {
     Key::new(path, KeyType::Bounds(range), Key::NONE, words).instead("it follows if its kind does")
 }
 
-/// Returns the key of a held number without its prefix `design.hold.`.
+/// Returns the key of the bounds on a number without its prefix `design.hold.`.
 fn bare(key: &Key) -> &'static str {
     key.path.trim_start_matches("design.hold.")
 }
@@ -97,7 +98,7 @@ impl DesignBrief {
         Disc { density: self.density, thickness: self.thickness }
     }
 
-    /// Whether a key of this part has an effect in the design view of a machine.
+    /// Returns whether a key of this part has an effect in the design view of a machine.
     pub(super) fn serves(&self, key: &str, machine: &Machine) -> bool {
         let spec = machine.spec();
         let is_link = |name: &str| spec.links.iter().any(|link| link.name == name);
@@ -137,7 +138,7 @@ impl DesignBrief {
     }
 }
 
-/// Returns kind and name of the body of a held number, or `None` if no such number can be held.
+/// Returns kind and name of the body to which a bounded number belongs, or `None` if the number cannot be bounded.
 fn body_of(key: &str) -> Option<(&str, &str)> {
     let (kind, rest) = key.split_once('.')?;
     let (name, what) = rest.rsplit_once('.')?;
@@ -145,12 +146,12 @@ fn body_of(key: &str) -> Option<(&str, &str)> {
     known.then_some((kind, name))
 }
 
-/// Whether a part has its default value.
+/// Returns whether a part has its default value.
 pub(super) fn is_default<T: Default + PartialEq>(part: &T) -> bool {
     *part == T::default()
 }
 
-/// A set of names; a file has a switch for each.
+/// A set of names; a file states each one as a key with the value `true`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "BTreeMap<String, bool>", into = "BTreeMap<String, bool>")]
 pub struct NameSet(pub BTreeSet<String>);
@@ -178,7 +179,7 @@ impl From<NameSet> for BTreeMap<String, bool> {
     }
 }
 
-/// Holds of numbers by key; nested tables in a file, such as `link.5.mass`.
+/// Bounds on numbers by key, such as `link.5.mass`; in a file they are nested tables.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Table", into = "Table")]
 pub struct BoundsByKey(pub BTreeMap<String, ParameterBounds>);
@@ -218,7 +219,7 @@ impl TryFrom<Table> for BoundsByKey {
     }
 }
 
-/// Returns a hold as a file states it.
+/// Returns the bounds on a number as a file states them.
 pub fn to_value(hold: ParameterBounds) -> Value {
     match hold {
         ParameterBounds::Fixed => HOLD_WORDS[0].into(),

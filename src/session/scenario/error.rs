@@ -7,7 +7,7 @@ use stillbase_mechanics::machine::{FileError, MachineError};
 use stillbase_settings::range::{Requirement, range_error};
 use stillbase_settings::text::MAX_TEXT_BYTES;
 
-/// Why a file is not a scenario.
+/// Reason why a file is not a valid scenario.
 #[derive(Debug, Error)]
 pub enum ScenarioError {
     /// The file cannot be read.
@@ -25,7 +25,7 @@ pub enum ScenarioError {
         file: String,
         /// Line, counted from 1.
         line: Option<usize>,
-        /// What is wrong.
+        /// Description of the error.
         message: String,
     },
     /// A number out of range.
@@ -42,14 +42,14 @@ pub enum ScenarioError {
         /// Allowed values.
         want: Requirement,
     },
-    /// Its machine is not valid.
+    /// The machine of the scenario is not valid.
     #[error("{file}{}: machine: {error}", at(*line))]
     Machine {
         /// The file.
         file: String,
         /// Line, counted from 1, where it is known.
         line: Option<usize>,
-        /// What is wrong.
+        /// Description of the error.
         #[source]
         error: MachineError,
     },
@@ -62,15 +62,15 @@ pub enum ScenarioError {
         line: Option<usize>,
         /// Number of the edit, counted from 1.
         entry: usize,
-        /// What is wrong.
+        /// Description of the error.
         message: String,
     },
-    /// The file of its machine is wrong.
+    /// The file of the scenario's machine is wrong.
     #[error(transparent)]
     MachineFile(#[from] FileError),
 }
 
-/// Formats a line number, to follow the name of its file.
+/// Formats a line number as it follows the name of a file.
 fn at(line: Option<usize>) -> String {
     line.map(|line| format!(":{line}")).unwrap_or_default()
 }

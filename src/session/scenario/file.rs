@@ -104,7 +104,7 @@ impl Scenario {
     /// Reads a scenario from text. Errors name `label`; `find`, if given, looks up the machine by its name.
     ///
     /// # Errors
-    /// If it is not a scenario.
+    /// If the text is not a valid scenario.
     pub fn parse(text: &str, label: &str, find: Option<FindMachine>) -> Result<Self, ScenarioError> {
         let file: File = toml::from_str(text).map_err(|e| ScenarioError::Syntax {
             file: label.into(),
@@ -193,7 +193,7 @@ impl Scenario {
         Ok(scenario)
     }
 
-    /// Adds the line of its key in a text to an error of [`check`](Self::check).
+    /// Adds the line of the wrong key in a text to an error of [`check`](Self::check).
     fn with_line(&self, error: ScenarioError, text: &str) -> ScenarioError {
         let line_of = |place: KeyPath| machine::line_of_place(text, &place);
         match error {
@@ -203,7 +203,7 @@ impl Scenario {
             }
             ScenarioError::Machine { file, error, .. } => {
                 let file = file.trim_end_matches(": plant").to_owned();
-                // Keys of the plant name links and lengths; they do not use their indices in the machine.
+                // Keys of the plant contain names of links and lengths instead of indices in the machine.
                 let place = error.place().map_or_else(KeyPath::default, |place| match place.0.as_slice() {
                     [link, KeyStep::Named(_, name), rest @ ..] => {
                         let named = [link.clone(), KeyStep::Key(name.clone())];

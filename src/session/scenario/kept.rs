@@ -70,7 +70,7 @@ impl Bookmark {
 /// Checks the bookmarks of a file.
 ///
 /// # Errors
-/// The index of the first wrong bookmark, and why it is wrong.
+/// If a bookmark is wrong: the index of the first wrong one, and the reason.
 pub(super) fn check_bookmarks(bookmarks: &[Bookmark]) -> Result<(), (usize, String)> {
     if bookmarks.len() > MAX_BOOKMARKS {
         return Err((MAX_BOOKMARKS, format!("want at most {MAX_BOOKMARKS} bookmarks")));
@@ -82,7 +82,7 @@ pub(super) fn check_bookmarks(bookmarks: &[Bookmark]) -> Result<(), (usize, Stri
 /// Reads the branches of a file. `check` tests the edits of one branch, and returns the index of a wrong one.
 ///
 /// # Errors
-/// The index of the first wrong branch, and why it is wrong.
+/// If a branch is wrong: the index of the first wrong one, and the reason.
 pub(super) fn branches(
     stated: Vec<StatedBranch>,
     check: impl Fn(&[TimedEdit]) -> Result<(), (usize, String)>,

@@ -43,8 +43,8 @@ impl Task {
         Some(Self { from, via: places.collect(), to, ..self.clone() })
     }
 
-    /// Returns the change that moves a point to `to`, m. This change and those below are `None` if the task follows
-    /// samples.
+    /// Returns the change that moves a point to `to`, m. This and the next three methods return `None` if the task
+    /// follows samples.
     pub fn moving(&self, point: usize, to: Vector) -> Option<TaskChange> {
         let mut points = self.movable()?;
         *points.get_mut(point)? = to;

@@ -17,21 +17,21 @@ use stillbase_settings::change::{self, DEFAULT_WORD};
 use stillbase_settings::key::{self, Effect, Key, KeyType};
 use stillbase_settings::range::{RangeCheck, quote_clipped};
 
-/// Why settings cannot be applied to a scenario.
+/// Reason why settings cannot be applied to a scenario.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SettingError {
-    /// A part is wrong.
+    /// A part of the scenario is not valid.
     #[error("{part}: {why}")]
     Part {
-        /// Such as `plant`.
+        /// Name of the part, such as `plant`.
         part: String,
-        /// What is wrong, and what would be right.
+        /// Description of the error, and of valid values.
         why: String,
     },
     /// A message that names the key.
     #[error("{0}")]
     Said(String),
-    /// A value that a key does not take.
+    /// A value that a key does not accept.
     #[error("{path} is {value:?}: want {want}")]
     Value {
         /// The key.
@@ -58,25 +58,25 @@ impl Scenario {
     /// changes, edits keep their times.
     ///
     /// # Errors
-    /// Which key or value is wrong, and what would be right.
+    /// If a key or value is wrong; the error names it and states what is valid.
     pub fn with_settings(&self, change: &Table) -> Result<Self, SettingError> {
         let mut scenario = self.clone();
         let none = |value: &Value| value.as_str() == Some(Key::NONE);
         match change::leaves(change).into_iter().any(|(_, value)| none(value)) {
-            true => scenario.lay(&freed("", change))?,
-            false => scenario.lay(change)?,
+            true => scenario.apply_change(&none_as_default("", change))?,
+            false => scenario.apply_change(change)?,
         }
         Ok(scenario)
     }
 
-    fn lay(&mut self, change: &Table) -> Result<(), SettingError> {
+    fn apply_change(&mut self, change: &Table) -> Result<(), SettingError> {
         let (of_machine, own): (Table, Table) = change.clone().into_iter().partition(|(key, _)| is_of_machine(key));
         if !of_machine.is_empty() {
             self.machine = self.machine.with_settings(&of_machine)?;
         }
         for (part, value) in &own {
             let wrong = |why: String| {
-                blame(part, value).unwrap_or_else(|| match why.starts_with(&format!("{part}.")) {
+                first_value_error(part, value).unwrap_or_else(|| match why.starts_with(&format!("{part}.")) {
                     true => SettingError::Said(why),
                     false => SettingError::Part { part: part.clone(), why },
                 })
@@ -90,14 +90,14 @@ impl Scenario {
                     return Err(SettingError::Part { part: part.clone(), why: why.into() });
                 }
                 ("task", _) => return Err(wrong("want its keys with their values".into())),
-                ("control", _) => self.control = laid(&self.control, value).map_err(wrong)?,
-                ("plant", _) => self.plant = laid(&self.plant, value).map_err(wrong)?,
-                ("base", _) => self.base = laid(&self.base, value).map_err(wrong)?,
+                ("control", _) => self.control = part_with_change(&self.control, value).map_err(wrong)?,
+                ("plant", _) => self.plant = part_with_change(&self.plant, value).map_err(wrong)?,
+                ("base", _) => self.base = part_with_change(&self.base, value).map_err(wrong)?,
                 ("tolerance", Value::Table(change)) => {
                     self.tolerance = change::with_changes(&self.tolerance, &Tolerance::flat(change)).map_err(wrong)?;
                 }
-                ("design", _) => self.design = laid(&self.design, value).map_err(wrong)?,
-                ("tolerance", _) => self.tolerance = laid(&self.tolerance, value).map_err(wrong)?,
+                ("design", _) => self.design = part_with_change(&self.design, value).map_err(wrong)?,
+                ("tolerance", _) => self.tolerance = part_with_change(&self.tolerance, value).map_err(wrong)?,
                 _ => {
                     let unknown = || SettingError::Unknown { key: quote_clipped(part) };
                     let key = ScenarioSettings::KEYS.iter().find(|key| key.path == part).ok_or_else(unknown)?;
@@ -115,7 +115,7 @@ impl Scenario {
         ScenarioSettings { step, duration, pose_acceleration, compare_b }
     }
 
-    /// Sets one of these keys to a number, or to its default if none is given.
+    /// Sets a key that belongs to no part to a number, or to its default if no number is given.
     fn lay_own(&mut self, part: &str, given: Option<f64>) -> Result<(), String> {
         let mut stated = Table::try_from(self.own()).map_err(|why| why.to_string())?;
         match given {
@@ -132,7 +132,7 @@ impl Scenario {
 
     /// Sets the step size, s; edits keep their times.
     fn step_by(&mut self, step: f64) {
-        // Edits are counted in steps of the size that the last of them sets.
+        // Step numbers of edits refer to the last step size that an edit sets.
         let own = self.edits.iter().rev().find_map(|timed| timed.edit.own_number("step")).unwrap_or(self.step);
         self.edits.retain_mut(|timed| timed.edit.take("step").is_none() || !timed.edit.sets_nothing());
         let ratio = own / step;
@@ -156,7 +156,7 @@ impl Scenario {
             *tolerance = Tolerance::flat(tolerance);
         }
         let mut stated = self.stated();
-        // Samples may be long, so they are added only if the change is of them.
+        // Samples may be long, so they are added only if they change.
         if change::leaves(&own).iter().any(|(path, _)| path == "task.samples") {
             stated.insert("task".into(), Table::try_from(&self.task).ok()?.into());
         }
@@ -167,7 +167,7 @@ impl Scenario {
         Some(now)
     }
 
-    /// Returns its settings as a file states them, without machine, samples and edits.
+    /// Returns the scenario's settings as a file states them, without machine, samples and edits.
     fn stated(&self) -> Table {
         let task = if self.task.samples.is_some() {
             Table::try_from(&Task { samples: None, ..self.task.clone() })
@@ -200,7 +200,7 @@ impl Scenario {
         }
         let key = key_of(path)?;
         let found = match path.strip_prefix("tolerance.") {
-            // A key of this part is one word.
+            // A key of this part is a single word with dots.
             Some(key) => stated.get("tolerance").and_then(|part| part.get(key)),
             None => {
                 let (first, rest) = path.split_once('.').unwrap_or((path, ""));
@@ -215,7 +215,8 @@ impl Scenario {
         })
     }
 
-    /// Returns every setting of this scenario with its key and its value; `*` becomes each name of its machine.
+    /// Returns every setting of this scenario with its key and its value; each matching name of the machine replaces
+    /// `*`.
     pub fn settings(&self) -> Vec<(String, &'static Key, Value)> {
         let spec = self.machine.spec();
         let names = |pattern: &str| -> Vec<String> {
@@ -241,7 +242,7 @@ impl Scenario {
         paths.filter_map(|(path, key)| Some((path.clone(), key, self.value_in(&stated, &path)?))).collect()
     }
 
-    /// Returns the condition for a key to have an effect, if it has none now.
+    /// Returns the condition for a key to have an effect, if it has no effect now.
     pub fn condition_for_effect(&self, path: &str) -> Option<&'static str> {
         let used = match path.split_once('.') {
             Some(("task", key @ ("posture" | "orientation"))) => self.machine.redundancy() > 1 && self.task.uses(key),
@@ -256,19 +257,19 @@ impl Scenario {
         if used { None } else { key_of(path).map(|key| key.when) }
     }
 
-    /// Whether samples of two values are the angles of two drives.
+    /// Returns whether samples of two values are the angles of two drives.
     fn gives_two_drives(&self) -> bool {
         let samples = self.task.samples.as_ref().map(Samples::columns);
         samples == Some(2) && samples == Some(self.machine.drives()) && self.task.kind == TaskKind::Given
     }
 
-    /// Whether a force is held at the end effector at any time.
+    /// Returns whether a force is held at the end effector at any time.
     fn is_pushed(&self) -> bool {
         self.plant.force != [0.0; 2] || self.edits.iter().any(|timed| timed.edit.pushes())
     }
 
-    /// Returns the given keys that have no effect, each with the condition for one. Keys that files always state are
-    /// left out.
+    /// Returns the given keys that have no effect, each with the condition for an effect. Keys that files always state
+    /// are omitted.
     pub fn ineffective_keys(&self) -> Vec<(String, &'static str)> {
         const ALWAYS_STATED: [&str; 7] =
             ["task.kind", "task.from", "task.to", "task.b", "task.time", "task.law", "control.knows_base"];
@@ -282,7 +283,7 @@ impl Scenario {
             .collect()
     }
 
-    /// Checks every number against its range and the others.
+    /// Checks every number against its range and against related numbers.
     pub(super) fn checks(&self) -> Vec<RangeCheck> {
         let n = self.machine.drives();
         let stated = self.stated();
@@ -312,7 +313,7 @@ impl Scenario {
 }
 
 /// Returns a part with settings changed; the word `default` removes all of its keys.
-fn laid<T: Serialize + DeserializeOwned + Default>(now: &T, value: &Value) -> Result<T, String> {
+fn part_with_change<T: Serialize + DeserializeOwned + Default>(now: &T, value: &Value) -> Result<T, String> {
     match value {
         Value::Table(change) => change::with_changes(now, change),
         Value::String(word) if word == DEFAULT_WORD => Ok(T::default()),
@@ -324,22 +325,22 @@ fn laid<T: Serialize + DeserializeOwned + Default>(now: &T, value: &Value) -> Re
 }
 
 /// Replaces `none` in a change by `default`, for keys whose default is `none`.
-fn freed(at: &str, change: &Table) -> Table {
-    let freed = |(key, value): (&String, &Value)| {
+fn none_as_default(at: &str, change: &Table) -> Table {
+    let none_as_default = |(key, value): (&String, &Value)| {
         let path = if at.is_empty() { key.clone() } else { format!("{at}.{key}") };
         let none = || key_of(&path).is_some_and(|key| key.default == Key::NONE);
         let value = match value {
-            Value::Table(inner) => Value::Table(self::freed(&path, inner)),
+            Value::Table(inner) => Value::Table(self::none_as_default(&path, inner)),
             Value::String(word) if word == Key::NONE && none() => DEFAULT_WORD.into(),
             value => value.clone(),
         };
         (key.clone(), value)
     };
-    change.iter().map(freed).collect()
+    change.iter().map(none_as_default).collect()
 }
 
-/// Returns the error of the first value in a part that its key does not take.
-fn blame(part: &str, value: &Value) -> Option<SettingError> {
+/// Returns an error for the first value in a part that its key does not accept.
+fn first_value_error(part: &str, value: &Value) -> Option<SettingError> {
     let whole = change::single_change(part, value.clone());
     change::leaves(&whole).into_iter().find_map(|(path, value)| {
         let said = |want: String| {

@@ -45,7 +45,7 @@ const BLENDED: &str = "corners = blend, and three points or more, or a closed pa
 const TURNED: &str = "four drives or more, the kind reactionless, and the posture orientation or the shape joint-line";
 
 keyed! {
-    /// What the machine is to do. A task that is read from a file has yet to be completed by what the file leaves out.
+    /// The task of the machine. A task read from a file has to be completed with the keys that the file omits.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Task at "task" {
         /// What becomes of the redundancy of three drives over two coordinates of the end effector.
@@ -53,8 +53,8 @@ keyed! {
         /// What joins the points.
         shape: Option<PathShape> = Key::NONE, instead: "joint-line for reactionless, line for the other kinds",
             when: CURVED => Task::is_curved;
-        // All drive angles for `given`; x and y for `given`, `reactionless` and `minimum-norm`. With two drives,
-        // `given` takes two values as drive angles. Points, shape and law have no effect then.
+        // Samples contain all drive angles for `given`, or x and y for `given`, `reactionless` and `minimum-norm`. With
+        // two drives, `given` reads two values as drive angles. With samples, points, shape and law have no effect.
         /// The motion over time: rows of t, s, and all drive angles, rad, or of t, x, y, m.
         samples: Option<Samples> = Key::NONE, instead: "points and a law say where to be when";
         /// By how much samples of drive angles are turned as a whole.
@@ -116,7 +116,7 @@ keyed! {
 struct Ends {
     /// A and B, m.
     places: [[f64; 2]; 2],
-    /// Pose constant at A, rad, where samples have their own.
+    /// Pose constant at A, rad, if the samples determine it.
     b: Option<f64>,
 }
 
@@ -140,10 +140,10 @@ fn ends_of(kind: TaskKind, samples: &Samples, turn: f64, machine: &Machine) -> O
 
 impl Task {
     /// Returns a task given by samples. Samples of the end effector are followed at `b`, rad; samples of drive angles
-    /// have their own b.
+    /// determine b.
     ///
     /// # Errors
-    /// Which key is missing: `b` for samples of the end effector without one.
+    /// If a key is missing, its name: `b` for samples of the end effector without one.
     pub fn sampled(kind: TaskKind, samples: Samples, b: Option<f64>, machine: &Machine) -> Result<Self, &'static str> {
         let stated = |key: &str| key == "kind" || (key == "b" && b.is_some());
         let task = Self { kind, samples: Some(samples), b: b.unwrap_or_default(), ..Self::default() };
@@ -153,7 +153,7 @@ impl Task {
     /// Returns the task with missing keys filled in from its samples. `stated` returns whether a key is given.
     ///
     /// # Errors
-    /// Which key is missing.
+    /// If a key is missing, its name.
     pub(super) fn completed(self, stated: impl Fn(&str) -> bool, machine: &Machine) -> Result<Self, &'static str> {
         if !stated("kind") {
             return Err("kind");
@@ -188,7 +188,7 @@ impl Task {
         Some(task)
     }
 
-    /// Checks the time against the step size, s, and the number of points.
+    /// Checks the time against the step size, s, and the number of points against its maximum.
     pub(super) fn fits(&self, step: f64) -> Vec<RangeCheck> {
         let (count, enough) = (self.via.len(), self.via.len() <= MAX_POINTS);
         let want = || format!("one step or more, {} to {} s", ShortNumber(step), ShortNumber(MOTION_TIME_RANGE.high()));
@@ -204,7 +204,7 @@ impl Task {
         absent.chain(TaskChange::try_from(self).unwrap_or_default()).collect()
     }
 
-    /// Returns the number of values in each of its samples.
+    /// Returns the number of values in each sample.
     fn columns(&self) -> Option<usize> {
         self.samples.as_ref().map(Samples::columns)
     }
@@ -219,7 +219,7 @@ impl Task {
         self.is_curved() && is_straight && (self.closed || !self.via.is_empty())
     }
 
-    /// Whether more than three drives would have freedoms left.
+    /// Returns whether this task would leave freedoms to machines of more than three drives.
     fn has_freedoms(&self) -> bool {
         match self.columns() {
             None => self.kind == TaskKind::Reactionless && self.shape() != PathShape::JointLine,
@@ -256,9 +256,9 @@ impl Task {
     /// a key.
     ///
     /// # Errors
-    /// Which key or value is wrong, and what would be right.
+    /// If a key or value is wrong; the error names it and states what is valid.
     pub fn with_change(&self, change: &TaskChange, machine: &Machine) -> Result<Self, String> {
-        // There may be many samples, so they are serialised only if the change is of them.
+        // There may be many samples, so they are serialised only if they change.
         let kept = if change.contains_key("samples") { None } else { self.samples.clone() };
         let plain = if kept.is_some() { &Self { samples: None, ..self.clone() } } else { self };
         let stated = change::merged_keys(plain, change)?;
@@ -268,7 +268,7 @@ impl Task {
         completed.map_err(|key| format!("missing field `{key}`"))
     }
 
-    /// Returns the present values of these keys, with which [`with_change`](Self::with_change) undoes a change.
+    /// Returns the present values of the keys of a change, with which [`with_change`](Self::with_change) undoes it.
     pub fn present_values(&self, change: &TaskChange) -> TaskChange {
         change::present_values(self, change)
     }

@@ -48,7 +48,7 @@ struct Row {
     at: At,
 }
 
-/// Access to a field: what reads it and what writes it.
+/// Access to a field: a function that reads it, and one that returns it for writing.
 enum At {
     Whole(fn(&Tolerance) -> Option<u64>, fn(&mut Tolerance) -> &mut Option<u64>),
     Number(fn(&Tolerance) -> Option<f64>, fn(&mut Tolerance) -> &mut Option<f64>),
@@ -93,7 +93,8 @@ struct Varies {
     has: fn(&MachineSpec) -> bool,
 }
 
-/// Makes a row from path, unit and meaning of a key, with a default spread and whether a machine has such a number.
+/// Makes a row from path, unit and meaning of a key. A default spread may follow, with a function that returns whether
+/// a machine has such a number.
 macro_rules! varies {
     ($path:literal, $unit:literal, $words:literal) => {
         Varies { key: spread($path, $unit, $words).instead("it does not"), usual: None, has: |_| true }
@@ -175,7 +176,7 @@ impl Tolerance {
         flat
     }
 
-    /// Whether nothing is set.
+    /// Returns whether nothing is set.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }

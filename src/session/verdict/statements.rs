@@ -1,5 +1,5 @@
-//! [`Statements`]: assessments of a machine, of its plan and of its run, each on its own. A balanced machine still
-//! reacts on its base if its path leaves the plane b = const, and only a run shows what is transmitted.
+//! [`Statements`]: separate assessments of a machine, of its plan and of its run. A balanced machine still reacts on
+//! its base if its path leaves the plane b = const. Only a run shows the reactions that are transmitted.
 //!
 //! | statement | good | bad | open |
 //! |---|---|---|---|
@@ -7,7 +7,7 @@
 //! | plan | b stays constant, (13) | b changes | there is no plan, or no b |
 //! | run | f_B and n_B vanish, or a wheel took n_B up | they do not, or an audit failed | nothing has moved |
 //!
-//! Window, reports of commands and recordings show these.
+//! Window, reports of commands and recordings show these statements.
 
 use serde::Serialize;
 
@@ -25,7 +25,7 @@ const B_TOLERANCE: f64 = 1e-6;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StatusLight {
-    /// The condition for a base that feels nothing is met.
+    /// The condition for a base without reactions is met.
     Good,
     /// The condition is not met.
     Bad,
@@ -131,7 +131,7 @@ impl Statement {
         }
     }
 
-    /// States what a run up to a frame has transmitted to its base.
+    /// States the reactions that a run up to a frame has transmitted to its base.
     fn of_run(run: &Run, frame: &Frame, [machine, plan]: [&Self; 2]) -> Self {
         let (verdict, peaks) = (Verdict::of(run.scenario(), frame), &frame.peaks);
         if let Some(figure) = &verdict.fault {
@@ -200,7 +200,7 @@ impl Statements {
         [("machine", &self.machine), ("plan", &self.plan), ("run", &self.run)]
     }
 
-    /// `machine: balanced · plan: holds b · run: none yet`.
+    /// Returns all statements in one line, such as `machine: balanced · plan: holds b · run: none yet`.
     pub fn line(&self) -> String {
         self.named().map(|(name, statement)| format!("{name}: {}", statement.words)).join(" · ")
     }

@@ -26,7 +26,8 @@ keyed! {
         payload: Load;
         /// Friction.
         friction: Friction;
-        /// True values of named lengths, m: bars that share one stay equal, so that parallelograms stay closed.
+        /// True values of named lengths, m. Bars that share a named length stay equal, so that parallelograms stay
+        /// closed.
         length: BTreeMap<String, f64>;
         /// Links with true values that differ from the model.
         link: BTreeMap<String, LinkDifference>;

@@ -50,14 +50,14 @@ impl DriveValues {
         }
     }
 
-    /// Returns a failed check if this is a list of another length than `n`.
+    /// Returns a failed check of the setting `key` if this is a list whose length is not `n`.
     pub(crate) fn misfit(&self, n: usize, key: &'static str) -> Option<RangeCheck> {
         let count = self.values().len();
         let fits = matches!(self, Self::All(_)) || count == n;
         (!fits).then(|| RangeCheck::count(key, count, "number", format!("one for all drives, or {n}, one for each")))
     }
 
-    /// Returns a copy with the value of drive `k` of `n` changed.
+    /// Returns a copy for `n` drives with the value of drive `k` changed; equal values become one number.
     #[must_use]
     pub fn with(&self, n: usize, k: usize, value: f64) -> Self {
         let mut list = self.of(n);
@@ -70,7 +70,7 @@ impl DriveValues {
         }
     }
 
-    /// Returns the value as in a file.
+    /// Returns the value as a file states it: a number or a list.
     pub fn to_value(self) -> toml::Value {
         match self {
             Self::All(x) => x.into(),

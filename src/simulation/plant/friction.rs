@@ -3,12 +3,12 @@
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | v | sliding rate: q̇_k − θ̇ in the bearing of drive k, or q̇_k − q̇_on; q̇_l − q̇_k in a pin | rad/s |
-//! | f | friction torque against it: c v + τ_C sgn v while sliding, any |f| ≤ τ_C while stuck | N m |
+//! | v | sliding rate: in a bearing q̇_k less the rate of the stator (θ̇ on the base), in a pin q̇_l − q̇_k | rad/s |
+//! | f | friction torque against v: c v + τ_C sgn v while sliding, any |f| ≤ τ_C while stuck | N m |
 //!
 //! Friction acts between two parts with equal and opposite torques. Coulomb friction is not smoothed: a contact either
 //! slides in one direction or is stuck. A stuck contact transmits exactly the torque that keeps it stuck
-//! ([`Contacts::hold`]). So there is no creep or chatter at rest, independently of the step size.
+//! ([`Contacts::hold`]). So there is neither creep nor chatter at rest, at any step size.
 
 use super::each::DriveValues;
 use super::load::MAX_PAYLOAD;
@@ -36,7 +36,7 @@ keyed! {
     }
 }
 
-/// Maximum number of contacts: eight drives on the base, and every pair of drives.
+/// Maximum number of contacts: a bearing for each drive, and the pins between each pair of drives.
 pub const MAX_CONTACTS: usize = MAX_DRIVES + MAX_DRIVES * (MAX_DRIVES - 1) / 2;
 
 /// A contact with friction between two rotational coordinates.
@@ -50,7 +50,7 @@ struct Contact {
     viscous: f64,
     /// Coulomb torque τ_C, N m.
     coulomb: f64,
-    /// Number of pins that it represents; 0 for a bearing.
+    /// Number of pins that the contact represents; 0 for a bearing.
     pins: f64,
 }
 
@@ -65,7 +65,7 @@ pub struct Contacts {
 }
 
 impl Contacts {
-    /// A contact with a sliding rate below this does not slide, rad/s.
+    /// Sliding rate below which a contact counts as stuck, rad/s.
     pub(crate) const STICTION_SPEED: f64 = 1e-12;
 
     /// Returns the slip directions of all contacts for given rates, rad/s.
@@ -118,10 +118,10 @@ impl Contacts {
         qd[c.plus] - qd.get(c.minus).copied().unwrap_or(0.0)
     }
 
-    /// Returns the reduced inertia of a contact, kg m²; `alone` gives the inertia of each rotational coordinate.
-    pub fn resists(&self, i: usize, alone: impl Fn(usize) -> f64) -> f64 {
+    /// Returns the reduced inertia of a contact, kg m²; `inertia_of` returns the inertia of a rotational coordinate.
+    pub fn resists(&self, i: usize, inertia_of: impl Fn(usize) -> f64) -> f64 {
         let c = &self.list[i];
-        let (a, b) = (alone(c.plus), if c.minus < MAX_DRIVES { alone(c.minus) } else { f64::INFINITY });
+        let (a, b) = (inertia_of(c.plus), if c.minus < MAX_DRIVES { inertia_of(c.minus) } else { f64::INFINITY });
         1.0 / (1.0 / a + 1.0 / b)
     }
 
@@ -140,9 +140,9 @@ impl Contacts {
         self.list[i].coulomb
     }
 
-    /// Returns the friction torque of one pin between links that follow drives `from` and `to`, N m, against q̇_to −
-    /// q̇_from. `stuck_torque` holds the torques of stuck contacts, N m. Pins between the same two drives share the
-    /// torque equally.
+    /// Returns the friction torque in one pin between links of drives `from` and `to`, N m; it is positive against
+    /// q̇_to − q̇_from. `stuck_torque` contains the torques of stuck contacts, N m. Pins between the same two drives
+    /// share the torque equally.
     pub fn couple(
         &self,
         from: usize,
@@ -169,8 +169,8 @@ impl Contacts {
         }
     }
 
-    /// Adds the friction of sliding contacts to generalised forces, N m, and that of bearings also to `bearing`, by
-    /// drive. Returns the dissipated power, W.
+    /// Adds the friction torques of sliding contacts to the generalised forces `force`, N m. Those of bearings are also
+    /// added to `bearing`, indexed by drive. Returns the dissipated power, W.
     #[inline]
     pub fn slide(&self, slip: &SlipDirections, qd: &[f64], force: &mut [f64], bearing: &mut [f64]) -> f64 {
         let mut lost = 0.0;
@@ -186,11 +186,11 @@ impl Contacts {
         lost
     }
 
-    /// Computes the torques of stuck contacts by projected Gauss–Seidel sweeps and adds them to `force`. Each satisfies
-    /// |f| ≤ τ_C with v̇ = 0, or is at its bound against v̇. `solve` returns accelerations for generalised forces; `free` are
-    /// the accelerations without these torques. `stuck_torque` contains a first guess before and the result after.
-    /// Returns the dissipated power, W, which is zero unless a contact has begun to slide since the step began. The
-    /// number of sweeps is bounded; one is exact if contacts do not interact.
+    /// Computes the torques of stuck contacts by projected Gauss–Seidel sweeps and adds them to `force`. Each torque
+    /// either satisfies |f| ≤ τ_C with v̇ = 0, or is at its bound, against v̇. `solve` returns accelerations for
+    /// generalised forces; `free` are the accelerations without these torques. `stuck_torque` contains the first guess
+    /// on entry and the result on return. Returns the dissipated power, W, which is zero unless a contact has begun to
+    /// slide since the step began. The number of sweeps is bounded; one sweep is exact if contacts do not interact.
     pub fn hold(
         &self,
         slip: &SlipDirections,
@@ -246,7 +246,7 @@ impl Contacts {
     }
 }
 
-/// Returns the two drives that the sides of every pin follow.
+/// Returns, for every pin between links of different drives, the indices of the two drives.
 fn pins(machine: &Machine) -> Vec<(usize, usize)> {
     let drive = |j: usize| machine.resolved_links()[j].drive;
     let attachments = machine.resolved_links().iter().filter_map(|part| Some((drive(part.parent?), part.drive)));

@@ -5,7 +5,7 @@ use stillbase_settings::key::Key;
 use stillbase_settings::keyed::keyed;
 use stillbase_settings::range::Range;
 
-/// Maximum mass of the temporary payload, kg; also the bound of its inertia, kg m², and of friction.
+/// Maximum mass of the temporary payload, kg; also the maximum of its inertia, kg m², and of friction, N m and N m s.
 pub const MAX_PAYLOAD: f64 = 1e4;
 
 const TIME_RANGE: Range = Range::new(0.0, 1e6, "s");
@@ -13,7 +13,7 @@ const PLACE_RANGE: Range = Range::either_way(1e3, "m");
 const WHEN_PAYLOAD: &str = "plant.payload.mass or plant.payload.inertia above 0";
 
 keyed! {
-    /// A payload that the model does not contain, and the time in which it is held.
+    /// A payload that the model does not contain, and the time interval in which it is held.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Load at "plant.payload" {
         /// Mass of a payload that control does not know of; it adds to the machine's own and unbalances it.
@@ -24,7 +24,7 @@ keyed! {
         offset: [f64; 2] = "0,0", range: PLACE_RANGE, when: WHEN_PAYLOAD => Load::is_some;
         /// Height of the payload's centre of mass along the drives' axis.
         axial: f64 = "0", range: PLACE_RANGE, when: WHEN_PAYLOAD => Load::is_some;
-        // Rates do not change at pick-up.
+        // The hand moves along, so that rates do not change at pick-up.
         /// When the payload is picked up, by a hand that moves with it.
         from: f64 = "0", range: TIME_RANGE, when: WHEN_PAYLOAD => Load::is_some;
         /// When the payload is let go.
@@ -39,12 +39,13 @@ impl Load {
         self.mass > 0.0 || self.inertia > 0.0
     }
 
-    /// Returns whether the payload is held at a time, s; `slack` is half a step, s.
+    /// Returns whether the payload is held at a time, s. With a `slack` of half a step, s, pick-up and release are
+    /// rounded to whole steps.
     pub fn is_held(&self, time: f64, slack: f64) -> bool {
         self.is_some() && time >= self.from - slack && self.until.is_none_or(|until| time < until - slack)
     }
 
-    /// Returns it as a payload of a machine.
+    /// Returns this load as the payload of a machine.
     pub fn payload(&self) -> Payload {
         Payload { mass: self.mass, inertia: self.inertia, offset: self.offset, axial: self.axial }
     }

@@ -1,7 +1,7 @@
 //! The plant: its differences from the model of control, and its base.
 //!
 //! [`PlantDifferences`], [`Base`] and [`Wheel`] (a reaction wheel) are plain data, as in files and edits. A
-//! [`MovingBody`] contains the constants of all moving parts that follow from them.
+//! [`MovingBody`] contains the constants of all moving parts, computed from these data.
 
 mod base;
 mod differences;

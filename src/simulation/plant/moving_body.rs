@@ -3,19 +3,19 @@
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | n, N | number of drives; of rotational coordinates: N = n on a fixed base, n + 1 on a moving one, θ last | |
+//! | n, N | numbers of drives and of rotational coordinates: N = n on a fixed base, n + 1 on a moving one, θ last | |
 //! | M_t | mass of all moving parts, m_b + M | kg |
-//! | R, P | centre of mass of all moving parts, their momentum M_t Ṙ | m, kg m/s |
+//! | R, P | centre of mass of all moving parts, and their momentum M_t Ṙ | m, kg m/s |
 //! | p_B | position of B, R − Σ g_k e_k / M_t | m |
 //! | C'_kl | couplings about R: C_kl − ḡ_k g_l / M_t | kg m² |
-//! | π_k | momenta H q̇, with C' on a base that moves | kg m²/s |
+//! | π_k | momenta H q̇; on a moving base, H is formed from C' | kg m²/s |
 //! | L | angular momentum about R, Σ π_k; stored in place of π_θ | kg m²/s |
 //!
 //! # Method
-//! A base is treated as one more drive, with g_0 = m_b ρ, C_00 = m_b |ρ|², J_0 = I_b. Its translation drops out of the
-//! equations if everything is referred to R: the kinetic energy is |P|²/2M_t + ½ q̇ᵀ H' q̇ with H' formed from C'. So
-//! π̇_k = ∂T/∂q_k + Q_k, and only outer forces change P and L: on a free base both are constant to the last digit.
-//! Gravity has no lever about R.
+//! A moving base is treated as one more drive, with g_0 = m_b ρ, C_00 = m_b |ρ|², J_0 = I_b. Its translation drops out
+//! of the equations if everything is referred to R. The kinetic energy is then |P|²/2M_t + ½ q̇ᵀ H' q̇, with H' formed
+//! from C'. So π̇_k = ∂T/∂q_k + Q_k, and only outer forces change P and L. On a free base without outer forces both are
+//! constant to the last digit. Gravity has no lever about R.
 
 use super::{Base, BaseKind, Contacts, Friction, SlipDirections, Slope, State};
 use stillbase_mechanics::dynamics::{BaseWrench, Surroundings, assemble, matrix_times};
@@ -35,19 +35,19 @@ pub(super) struct Support {
     preload: (Vector, f64),
 }
 
-/// All moving parts.
+/// Constants of all moving parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovingBody {
     /// The manipulator with its payload.
     pub(super) arm: Inertia,
-    /// All rotating parts: about B on a fixed base, about R on a moving one.
+    /// Inertia of all rotating parts: about B on a fixed base, about R on a moving one.
     pub(super) rotating: Inertia,
     pub(super) moves: bool,
-    /// Whether the base is free, so that weight is not carried.
+    /// Whether the base is free, so that it carries no weight.
     is_free: bool,
     /// M_t, kg.
     pub(super) mass: f64,
-    /// Position of B relative to R, as a chain, m.
+    /// Position of B relative to R as a chain, m: the coefficients of the unit vectors e_k.
     pub(super) base_chain: [Vector; MAX_DRIVES],
     /// Position of the end effector as a chain, m: relative to B on a fixed base, to R on a moving one.
     pub(super) end_effector_chain: [Vector; MAX_DRIVES],
@@ -144,7 +144,7 @@ impl MovingBody {
         self
     }
 
-    /// Returns the body with the preload of another.
+    /// Returns the body with the preload of another body's support.
     #[must_use]
     pub fn preloaded_as(mut self, other: &Self) -> Self {
         if self.moves && other.moves {
@@ -199,7 +199,8 @@ impl MovingBody {
         State { q, momenta, position: place, momentum, wheel: 0.0, work: 0.0, lost: 0.0, impulse }
     }
 
-    /// Returns the position of a chain's point, m, and its velocity, m/s.
+    /// Returns the position and velocity of the point that a chain describes, m and m/s, relative to the chain's
+    /// origin.
     #[inline(always)]
     fn seen(&self, chain: &[Vector; MAX_DRIVES], e: &UnitVectors, qd: &PerDrive) -> (Vector, Vector) {
         (0..self.rotating.drives).fold(Default::default(), |(p, v), k| {
@@ -208,8 +209,8 @@ impl MovingBody {
         })
     }
 
-    /// Returns the wrench of the manipulator on its base, static and dynamic part. On a free base weight is not
-    /// carried: it belongs to the dynamic part, where free fall cancels it.
+    /// Returns the static and dynamic parts of the wrench of the manipulator on its base. A free base carries no
+    /// weight: the weight then belongs to the dynamic part, where it cancels in free fall.
     pub fn transmitted(&self, x: &Slope) -> BaseWrench {
         let mut wrench = x.wrench;
         if self.is_free {
@@ -237,8 +238,8 @@ impl MovingBody {
             + 0.5 * (kx * p.re * p.re + ky * p.im * p.im + kt * angle * angle)
     }
 
-    /// Returns the momentum of all moving parts, kg m/s, and their angular momentum about the origin, kg m²/s, from
-    /// rates.
+    /// Returns the momentum of all moving parts, kg m/s, and their angular momentum about the origin, kg m²/s, computed
+    /// from rates.
     pub fn momentum(&self, x: &Slope) -> (Vector, f64) {
         let (p, h) = self.arm_momentum(x);
         if !self.moves {
@@ -266,15 +267,15 @@ impl MovingBody {
         (p, h + cross(x.base.at, p) + cross(lever, x.base_velocity))
     }
 
-    /// Returns I_b + m_b |ρ|², kg m².
+    /// Returns the inertia of the base about B, I_b + m_b |ρ|², kg m².
     fn base_spin(&self) -> f64 {
         let n = self.arm.drives;
         let g = -self.base_chain[n] * self.mass;
         self.rotating.c[n][n].re + self.rotating.spin[n] - self.arm.spin[n] + g.norm_sqr() / self.mass
     }
 
-    /// Returns the torques that give the drives commanded accelerations relative to a moving base, rad/s², in a given
-    /// state of motion (inverse dynamics). Entries beyond the drives are zero.
+    /// Returns the torques, N m, that give the drives commanded accelerations relative to a moving base, rad/s²
+    /// (inverse dynamics). Entries beyond the drives are zero.
     #[inline]
     pub(crate) fn torque_for<const N: usize>(
         &self,
@@ -296,17 +297,17 @@ impl MovingBody {
         torque
     }
 
-    /// Returns the generalised forces of weight, of the force at the end effector and of the support, N m; the last
-    /// entry is the moment on a moving base. Weight has no lever about R, to which a moving base is referred.
+    /// Returns the generalised forces of weight, of the force at the end effector and of the support, N m. The last
+    /// entry is the moment on a moving base. Weight has no lever about R, the reference point on a moving base.
     #[inline(always)]
     pub(super) fn outer<const N: usize, const MOVES: bool>(
         &self,
         e: &[Vector; N],
-        (hold, moment): (Vector, f64),
+        (support_force, moment): (Vector, f64),
     ) -> [f64; N] {
         let Surroundings { gravity, force } = self.around;
         let mut outer = std::array::from_fn(|k| match MOVES {
-            true => cross(self.end_effector_chain[k] * e[k], force) + cross(self.base_chain[k] * e[k], hold),
+            true => cross(self.end_effector_chain[k] * e[k], force) + cross(self.base_chain[k] * e[k], support_force),
             false => cross(self.arm.g[k] * e[k], gravity) + cross(e[k] * self.arm.end_effector[k], force),
         });
         if MOVES {
@@ -333,7 +334,7 @@ impl MovingBody {
         h.solve(&self.own_momenta(state))
     }
 
-    /// Returns π_k, including that of the base in place of L, kg m²/s.
+    /// Returns the momenta π_k, kg m²/s; on a moving base the last entry is π_θ instead of L.
     fn own_momenta(&self, state: &State) -> PerDrive {
         let mut momenta = state.momenta;
         if self.moves {
@@ -350,7 +351,7 @@ impl MovingBody {
 
     /// Returns a state in which stuck contacts have exactly zero sliding rate. Internal impulses between the two sides
     /// remove the residual rate; they do not change the total momentum. The residual is rounding and integration error.
-    /// Its energy is not booked, so that the audits show it if it is larger.
+    /// The energy removed is not counted as lost, so that the audits show any larger residual.
     #[must_use]
     pub fn with_stuck_stopped(&self, mut state: State, slip: &SlipDirections) -> State {
         let still = |i: &usize| self.contacts.sticks(*i) && slip[*i] == 0;

@@ -1,8 +1,8 @@
 //! [`RungeKuttaStage`]: evaluation of the equations of motion at a state, with arrays of compile-time size. Integration
 //! steps consist of stages: padding to [`MAX_DRIVES`] and copying would cost more than the arithmetic.
 //!
-//! Unit vectors and mass matrix are computed once and used for rates, torques, accelerations and base wrench. Whether
-//! the base moves is a compile-time parameter.
+//! Unit vectors and mass matrix are computed once and used for rates, torques, accelerations and base wrench. A
+//! compile-time parameter says whether the base moves.
 
 use super::{MAX_CONTACTS, MovingBody, SlipDirections, Slope, State, WheelState};
 use stillbase_mechanics::dynamics::{
@@ -29,9 +29,9 @@ pub(crate) struct StateRates<const N: usize> {
     pub position: Vector,
     pub momentum: Vector,
     pub wheel: f64,
-    /// Power, W.
+    /// Power of motors, wheel and outer force, W.
     pub work: f64,
-    /// Lost power, W.
+    /// Power lost in friction and dampers, W.
     pub lost: f64,
     /// Dynamic f_B, N, and its moment about the origin, N m.
     pub impulse: (Vector, f64),
@@ -69,7 +69,7 @@ impl<const N: usize> ReducedState<N> {
         Self { q: *state.q.array(), momenta: *state.momenta.array(), position, momentum, wheel }
     }
 
-    /// Returns the point at `h` seconds after a state along given rates, on a base that `MOVES` or not.
+    /// Returns the state that follows a state after `h` seconds at constant rates; `MOVES` says whether the base moves.
     #[inline(always)]
     pub fn along<const MOVES: bool>(from: &State, x: &StateRates<N>, h: f64) -> Self {
         let (q, momenta) = (from.q.array::<N>(), from.momenta.array::<N>());
@@ -127,13 +127,14 @@ fn impulse(wrench: &BaseWrench, at: Vector) -> (Vector, f64) {
     (force, wrench.dynamic.moment + cross(at, force))
 }
 
-/// Returns i v.
+/// Returns i v, the vector turned counter-clockwise by 90°.
 #[inline(always)]
 fn turned(v: Vector) -> Vector {
     Vector::new(-v.im, v.re)
 }
 
-/// Returns the velocity terms of the momentum rates, ∂T/∂q, and those of the accelerations, V(q, q̇).
+/// Returns the velocity terms of the momentum rates, ∂T/∂q, and those of the accelerations, V(q, q̇). `im` contains the
+/// imaginary parts of the couplings.
 #[inline(always)]
 fn velocity_terms<const N: usize>(im: &[[f64; N]; N], rate: &[f64; N]) -> ([f64; N], [f64; N]) {
     let (mut gain, mut v) = ([0.0; N], [0.0; N]);
@@ -150,7 +151,7 @@ fn velocity_terms<const N: usize>(im: &[[f64; N]; N], rate: &[f64; N]) -> ([f64;
 }
 
 /// Motion of the base; zero if the base is fixed.
-struct Afloat<const N: usize> {
+struct BaseMotion<const N: usize> {
     base: Pose2,
     /// Velocity of B, m/s.
     velocity: Vector,
@@ -162,7 +163,7 @@ struct Afloat<const N: usize> {
     base_chain: [Vector; N],
 }
 
-impl<const N: usize> Default for Afloat<N> {
+impl<const N: usize> Default for BaseMotion<N> {
     #[inline(always)]
     fn default() -> Self {
         let still = Vector::default();
@@ -205,8 +206,9 @@ impl MovingBody {
         by_drives!(self.rotating.drives, self.moves, still_of(self, state))
     }
 
-    /// Computes rates, torques, accelerations and base wrench of a state, on a base that `MOVES` or not. `control`
-    /// returns the torques for unit vectors and rates of all rotational coordinates, and pose and velocity of B.
+    /// Computes rates, torques, accelerations and base wrench of a state; `MOVES` says whether the base moves.
+    /// `control` returns the torques. Its arguments are the unit vectors and rates of all rotational coordinates, the
+    /// pose of the base, and the velocity of B.
     #[inline]
     pub(crate) fn stage<const N: usize, const MOVES: bool>(
         &self,
@@ -226,20 +228,20 @@ impl MovingBody {
         }
         let rate = factors.solve(momenta);
         let (gain, v) = velocity_terms(&im, &rate);
-        let Afloat { base, velocity, turning, drift, base_chain } = match MOVES {
-            true => self.afloat(at, &e, &rate),
-            false => Afloat::default(),
+        let BaseMotion { base, velocity, turning, drift, base_chain } = match MOVES {
+            true => self.base_motion(at, &e, &rate),
+            false => BaseMotion::default(),
         };
         let Actuation { torque, spin, rotor } = control(&e, &rate, base, velocity);
 
         // Generalised forces: outer forces, whose sum changes L, and torques between the drives and the base.
         let tip = |k: usize| if MOVES { self.end_effector_chain[k] * e[k] } else { e[k] * self.arm.end_effector[k] };
-        let (mut hold, mut moment) = Default::default();
+        let (mut support_force, mut moment) = Default::default();
         if MOVES {
-            (hold, moment) = self.support_reaction(base, velocity, turning);
+            (support_force, moment) = self.support_reaction(base, velocity, turning);
             moment -= spin.torque;
         }
-        let mut force = self.outer::<N, MOVES>(&e, (hold, moment));
+        let mut force = self.outer::<N, MOVES>(&e, (support_force, moment));
         let external: f64 = force.iter().sum();
         let tip_velocity: Vector = (0..N).map(|k| turned(tip(k)) * rate[k]).sum();
         let mut power = dot(self.around.force, tip_velocity + drift) + spin.torque * (spin.rate - turning);
@@ -256,7 +258,7 @@ impl MovingBody {
             force[N - 1] -= torque[..N - 1].iter().sum::<f64>();
             let c = &self.support.damping;
             loss += c[0] * velocity.re.powi(2) + c[1] * velocity.im.powi(2) + c[2] * turning * turning;
-            momentum_rate = self.mass * self.around.gravity + self.around.force + hold;
+            momentum_rate = self.mass * self.around.gravity + self.around.force + support_force;
         }
         if !self.contacts.is_empty() {
             loss += self.rub(slip, (&rate, &v), &factors, &mut force, &mut friction, stuck_torque);
@@ -326,12 +328,12 @@ impl MovingBody {
 
     /// Returns the motion of a moving base.
     #[inline(always)]
-    fn afloat<const N: usize>(&self, at: &ReducedState<N>, e: &[Vector; N], rate: &[f64; N]) -> Afloat<N> {
+    fn base_motion<const N: usize>(&self, at: &ReducedState<N>, e: &[Vector; N], rate: &[f64; N]) -> BaseMotion<N> {
         let drift = at.momentum / self.mass;
         let base_chain: [Vector; N] = std::array::from_fn(|k| self.base_chain[k] * e[k]);
         let lever: Vector = base_chain.iter().sum();
         let swing: Vector = (0..N).map(|k| turned(base_chain[k]) * rate[k]).sum();
-        Afloat {
+        BaseMotion {
             base: Pose2 { at: at.position + lever, angle: at.q[N - 1] },
             velocity: drift + swing,
             turning: rate[N - 1],
@@ -380,8 +382,8 @@ impl MovingBody {
         power
     }
 
-    /// Adds friction to generalised forces, and that of the bearings to `friction`. `v` are the velocity terms. Returns
-    /// the dissipated power, W.
+    /// Adds friction torques to the generalised forces `force`, and those of the bearings also to `friction`, N m. `v`
+    /// are the velocity terms. Returns the dissipated power, W.
     #[inline(never)]
     fn rub<const N: usize>(
         &self,

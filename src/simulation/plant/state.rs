@@ -9,13 +9,13 @@ use stillbase_mechanics::planar::{DriveAngles, PerDrive, Pose2, UnitVectors, Vec
 pub struct State {
     /// Absolute angles of the drives and, last, of a moving base, rad.
     pub q: PerDrive,
-    /// π_k, kg m²/s; on a moving base the last entry is L.
+    /// Momenta π_k, kg m²/s; on a moving base the last entry is the angular momentum L about R.
     pub momenta: PerDrive,
-    /// R, m.
+    /// Centre of mass R of all moving parts, m.
     pub position: Vector,
-    /// P, kg m/s.
+    /// Momentum P of all moving parts, kg m/s.
     pub momentum: Vector,
-    /// Ω of a wheel, rad/s.
+    /// Rate Ω of the wheel, rad/s.
     pub wheel: f64,
     /// Work done by motors and by the force at the end effector, J.
     pub work: f64,
@@ -36,15 +36,15 @@ pub struct Slope {
     pub qdd: PerDrive,
     /// Motor torques, N m.
     pub torque: PerDrive,
-    /// Friction of the bearings against the motor torques, N m.
+    /// Friction torques in the bearings, N m, positive against positive sliding rates.
     pub friction: PerDrive,
     /// State of the wheel.
     pub spin: WheelState,
-    /// p_B and θ.
+    /// Position p_B of B, m, and angle θ of the base, rad.
     pub base: Pose2,
-    /// ṗ_B, m/s.
+    /// Velocity ṗ_B of B, m/s.
     pub base_velocity: Vector,
-    /// p̈_B, m/s².
+    /// Acceleration p̈_B of B, m/s².
     pub base_acceleration: Vector,
     /// Wrench of the manipulator on its base.
     pub wrench: BaseWrench,
