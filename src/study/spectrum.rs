@@ -35,15 +35,15 @@ pub enum WindowFunction {
     /// Hann window ½ (1 − cos(2π n/N)), periodic: little leakage to distant frequencies.
     #[default]
     Hann,
-    /// No window: all samples have the same weight. Right for a motion from rest to rest that the record contains as a
-    /// whole.
+    /// No window: all samples have the same weight. Suits a motion from rest to rest that lies entirely within the
+    /// record.
     Rectangular,
 }
 
 impl WindowFunction {
-    fn weight(self, n: usize, of: usize) -> f64 {
+    fn weight(self, n: usize, count: usize) -> f64 {
         match self {
-            Self::Hann => 0.5 * (1.0 - (std::f64::consts::TAU * n as f64 / of as f64).cos()),
+            Self::Hann => 0.5 * (1.0 - (std::f64::consts::TAU * n as f64 / count as f64).cos()),
             Self::Rectangular => 1.0,
         }
     }
@@ -60,7 +60,7 @@ impl FromStr for WindowFunction {
     }
 }
 
-/// Why there is no spectrum.
+/// Reason that there is no spectrum.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SpectrumError {
     /// Too few samples to resolve frequencies.
@@ -215,7 +215,7 @@ impl JitterLimit {
         Some(v0 * (v1 / v0).powf(share))
     }
 
-    /// Returns frequencies, Hz, and limits, unit/√Hz, of the points; one point holds at every frequency.
+    /// Returns frequencies, Hz, and limits, unit/√Hz, of the points; a single point applies at every frequency.
     pub fn points(&self) -> &[(f64, f64)] {
         &self.points
     }

@@ -11,8 +11,8 @@
 //!
 //! # At the maximum rate
 //! Ω never exceeds its limit, not even within a step: in each step of h seconds the torque is at most J (Ω_top − Ω)/h
-//! in either direction, which brings the wheel to the limit at the end of the step. So the step in which the limit is
-//! reached has the right impulse, and later steps give no torque beyond the limit.
+//! in either direction, which brings the wheel to the limit at the end of the step. Thus the impulse is right even in
+//! the step that reaches the limit, and later steps give no torque beyond it.
 
 use stillbase_settings::key::Key;
 use stillbase_settings::keyed::keyed;
@@ -39,13 +39,13 @@ pub struct WheelState {
     pub rate: f64,
     /// τ_w, N m.
     pub torque: f64,
-    /// Whether the torque is less than wanted.
+    /// True if a limit makes the torque smaller than the controller wants.
     pub saturated: bool,
 }
 
 impl Wheel {
-    /// Returns the minimum and maximum torque, N m, for a step of given length, s, that begins at a rate, rad/s. It is
-    /// computed once per step, so that the limits do not jump within it.
+    /// Returns the minimum and maximum torque, N m, for a step of given length, s, that begins at a rate, rad/s. Call
+    /// this once per step, so that the bounds do not jump within the step.
     pub fn room(&self, rate: f64, step: f64) -> [f64; 2] {
         let limit = self.torque_limit.unwrap_or(f64::INFINITY);
         let top = self.speed_limit.unwrap_or(f64::INFINITY);

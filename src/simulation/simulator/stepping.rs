@@ -10,9 +10,9 @@
 //! such as those of saturated motors, cost more substeps only where they occur.
 //!
 //! Control corrects errors of forces and torques; position errors may accumulate. So every [`HALVING_PERIOD_STEPS`]-th
-//! step is also integrated with twice as many substeps. The resulting differences of end effector and base are assumed
-//! for every step and summed. The larger of this sum and the worst difference of slopes is the figure `step` of the
-//! audit. All decisions depend on the run alone, so that a replay takes the same substeps.
+//! step is also integrated with twice as many substeps. The resulting position differences of end effector and base are
+//! assumed for every step and summed. The larger of this sum and the worst difference of slopes is the figure `step` of
+//! the audit. All decisions depend on the run alone, so that a replay takes the same substeps.
 
 use super::guide::Guide;
 use super::simulation::Simulation;
@@ -32,9 +32,9 @@ const MAX_SUBSTEPS: u32 = 64;
 const HALVING_PERIOD_STEPS: u64 = 64;
 /// Maximum number of segments of a step.
 const MAX_SEGMENTS: usize = 64;
-/// A kink nearer to an end of a segment than this fraction of a step counts as at the end.
+/// Tolerance, as a fraction of a step, within which a kink counts as lying at an end of a segment.
 const KINK_TOLERANCE: f64 = 1e-7;
-/// Distance from a kink at which the reference beside it is evaluated, as a fraction of a step.
+/// Distance from a kink, as a fraction of a step, at which the reference on one side of it is evaluated.
 const KINK_OFFSET: f64 = 1e-8;
 /// A jump of q̈ below this fraction of its peak is ignored.
 const MIN_JUMP_RATIO: f64 = 1e-6;
@@ -113,7 +113,7 @@ impl Simulation {
         }
     }
 
-    /// Returns the last kink at a time of the motion, s, within the tolerance.
+    /// Returns the last kink that lies within the tolerance of a time of the motion, s.
     fn kink_at(&self, t: f64) -> Option<f64> {
         let (kinks, near) = (&self.step_control.kinks, KINK_TOLERANCE * self.dt);
         let next = kinks.partition_point(|kink| *kink <= t + near);
@@ -180,8 +180,8 @@ impl Simulation {
         let mut error = off;
         // While motors are saturated, feedback corrects no errors: the tolerance is 50 times tighter.
         let full = self.control_loop.is_full(&from.slope.torque) || self.control_loop.is_full(&reached.slope.torque);
-        let fine = if full { 0.02 * ERROR_TOLERANCE } else { ERROR_TOLERANCE };
-        while off.share(measure) > fine && error.share(measure) > fine && substeps < MAX_SUBSTEPS {
+        let tolerance = if full { 0.02 * ERROR_TOLERANCE } else { ERROR_TOLERANCE };
+        while off.share(measure) > tolerance && error.share(measure) > tolerance && substeps < MAX_SUBSTEPS {
             substeps *= 2;
             if count(substeps) == count(substeps / 2) {
                 continue;
@@ -205,7 +205,7 @@ impl Simulation {
             drift.angle += each * (a.base.angle - b.base.angle).abs();
         }
         // Half as many substeps give about eight times the difference.
-        if off.share(measure) < fine / 16.0 { (substeps / 2).max(1) } else { substeps }
+        if off.share(measure) < tolerance / 16.0 { (substeps / 2).max(1) } else { substeps }
     }
 
     /// Integrates a segment in equal substeps and returns the maximum error estimate.
@@ -270,7 +270,7 @@ impl Simulation {
         here.slope = by_drives!(size, self.body().moves(), slope_of(self, here));
     }
 
-    /// Evaluates a stage at a point with a reference.
+    /// Evaluates a Runge–Kutta stage at a state, for a reference.
     fn stage<const N: usize, const MOVES: bool>(
         &self,
         at: &ReducedState<N>,
@@ -360,8 +360,8 @@ fn represented_steps(step: u64) -> Option<f64> {
     }
 }
 
-/// Returns the reference of a motion at a time, s, extrapolated from within a window of times. Where q̈ differs by at
-/// most `level`, rad/s², it returns the plain reference.
+/// Returns the reference of a motion at a time, s. Outside the window it is extrapolated from the nearest bound, unless
+/// q̈ differs there by at most `level`, rad/s².
 #[inline]
 fn beside(motion: &Motion, t: f64, [after, before]: [f64; 2], level: f64) -> Reference {
     let within = t.max(after).min(before);

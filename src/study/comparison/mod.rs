@@ -40,7 +40,7 @@ impl ComparedRun {
     /// Runs a scenario.
     ///
     /// # Errors
-    /// If it cannot start, or one of its edits cannot apply.
+    /// If the scenario cannot start, or one of its edits cannot be applied.
     pub fn of(scenario: Scenario) -> Result<Self, Refusal> {
         Self::of_while(scenario, &mut |_| true)
     }

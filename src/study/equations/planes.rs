@@ -8,11 +8,11 @@ use super::symbol::{indexed_symbol, symbol_of_name};
 use stillbase_mechanics::kinematics::end_effector;
 use stillbase_mechanics::machine::{Machine, RelativeAngle};
 
-/// Tolerance of lines on the plane, as a fraction of the sum of |terms|: that of a simulated motion that counts as
-/// reactionless.
+/// Tolerance of these equations, as a fraction of the sum of |terms|: simulated motions that count as reactionless meet
+/// it.
 const PLANE_TOLERANCE: f64 = 1e-6;
 
-/// The equations of the plane of a pose constant; λ of the machine, or why it has no b.
+/// Equations of the plane of a pose constant. `lambda` has the machine's λ, or the reason that it has no b.
 pub(super) struct PlaneEquations<'a> {
     pub instant: &'a Reactions<'a>,
     pub lambda: Result<Vec<f64>, String>,

@@ -17,7 +17,7 @@ pub struct DriveState {
     pub q: DriveAngles,
     /// Drive rates, rad/s.
     pub qd: PerDrive,
-    /// Drive accelerations, rad/s².
+    /// Drive accelerations, rad/s²; in a frame of a run they are absolute.
     pub qdd: PerDrive,
     /// The required b, rad: the control's reference, or that of the start of the motion; `None` if there is none.
     pub b: Option<f64>,
@@ -36,7 +36,7 @@ pub enum InstantKind {
     Given,
 }
 
-/// Why a scenario has no state at a time.
+/// Reason that a scenario has no state at a time.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoInstant {
     /// The scenario cannot be run up to this time.
@@ -52,7 +52,8 @@ pub enum NoInstant {
 
 /// Rates and accelerations below this, rad/s and rad/s², count as rest.
 const REST_BELOW: f64 = 1e-4;
-/// Fraction of a motion's duration at which it is evaluated instead: rates and accelerations are both large there.
+/// While a run is at rest, its planned motion is evaluated at this fraction of its duration, where rates and
+/// accelerations are both large.
 const PLAN_FRACTION: f64 = 0.25;
 
 impl DriveState {
@@ -97,7 +98,7 @@ impl DriveState {
         }
     }
 
-    /// Returns the state of a frame; while the run is at rest, that of a quarter of its planned motion.
+    /// Returns the state of a frame; while the run is at rest, the state at a quarter of its planned motion.
     pub fn of(run: &Run, frame: &Frame) -> Self {
         let rests = frame.qd.max_abs().max(frame.qdd.max_abs()) < REST_BELOW;
         match run.motion().filter(|_| rests) {

@@ -1,4 +1,4 @@
-//! Symbols with indices. As text, `_{…}` encloses an index, `l_{c1}`, and a transpose is `ᵀ`.
+//! Symbols with indices. In text, `_{…}` encloses an index, as in `l_{c1}`, and `ᵀ` marks a transpose.
 
 /// Vertical position of a piece of a symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -14,7 +14,7 @@ use stillbase_session::Refusal;
 
 /// Minimum integration step of a proposal's scenario, s.
 const MIN_STEP: f64 = 1e-4;
-/// Number of instants at which a motion is evaluated: per sample, and its lower and upper bound.
+/// Number of instants at which a motion is evaluated: number per sample, minimum and maximum.
 const INSTANTS_PER_SAMPLE: usize = 8;
 const MIN_INSTANTS: usize = 4000;
 const MAX_INSTANTS: usize = 200_000;
