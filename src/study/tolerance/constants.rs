@@ -4,7 +4,7 @@
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | θ | Re g_1, Im g_1, Re g_2 … ; H_11, H_22 … ; Re C_12, Im C_12, Re C_13 … | kg m; kg m² |
-//! | a_jk | coefficients of the centre of mass of body j, Σ_k a_jk e(q_k); bodies are the links, the payload and the counterweights | complex, m |
+//! | a_jk | coefficients of the centre of mass Σ_k a_jk e(q_k) of body j (link, payload, counterweight) | complex, m |
 //! | δ | deviations of the parameters | unit of the parameter |
 
 use super::deviate::CHUNK;

@@ -19,12 +19,12 @@ pub enum RegressorSource {
     Windows {
         /// Half width of a window, s.
         half: f64,
-        /// Root mean square noise of the accelerations relative to their root mean square; of the worst drive.
+        /// Root mean square noise of the accelerations relative to their root mean square; for the worst drive.
         noise: f64,
     },
 }
 
-/// Equations for f_x, f_y and n in the unknowns, row by row; each motion less its straight line over time.
+/// Equations for f_x, f_y and n in the unknowns, row by row; the straight line over time is removed from each motion.
 #[derive(Clone, Debug)]
 pub struct Regressor {
     /// The unknowns.
@@ -121,14 +121,14 @@ impl Regressor {
         let all = || recording.motions.iter();
         let squares = |k: usize| all().flat_map(|m| &m.qdd).map(|a| a[k] * a[k]).sum::<f64>();
         let fastest = (0..machine.drives()).map(squares).fold(0.0, f64::max);
-        let stands = |k: usize| {
+        let is_still = |k: usize| {
             let turns = |m: &MeasuredMotion| spread(m.q.iter().map(|q| q[k]));
             all().map(turns).fold(0.0, f64::max) <= STILL_RANGE_RAD
                 && squares(k) <= STILL_ACCELERATION.powi(2) * fastest
         };
-        let moves: Vec<bool> = (0..machine.drives()).map(|k| !stands(k)).collect();
+        let moves: Vec<bool> = (0..machine.drives()).map(|k| !is_still(k)).collect();
         let mut made = Making::of(machine);
-        for motion in all().map(|motion| held(motion, &moves)) {
+        for motion in all().map(|motion| with_fixed_still_drives(motion, &moves)) {
             for i in 0..motion.t.len() {
                 let e = DriveAngles(motion.q[i]).units();
                 made.next(motion.t[i] - motion.t[0], motion.force[i], motion.moment[i]);
@@ -220,7 +220,7 @@ fn spread(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Returns the motion with constant angles for drives that count as still.
-fn held(motion: &MeasuredMotion, moves: &[bool]) -> MeasuredMotion {
+fn with_fixed_still_drives(motion: &MeasuredMotion, moves: &[bool]) -> MeasuredMotion {
     let mut motion = motion.clone();
     for k in (0..moves.len()).filter(|k| !moves[*k]) {
         let mean = motion.q.iter().map(|q| q[k]).sum::<f64>() / motion.q.len() as f64;

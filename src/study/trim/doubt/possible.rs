@@ -25,8 +25,8 @@ const EIGENVALUE_ROUNDING: f64 = 1e-6;
 /// Maximum number of iterations of the eigenvalue solver.
 const MAX_ITERATIONS: usize = 10_000;
 
-/// Returns up to three unknowns whose values are impossible together, the most involved first; empty if positive masses
-/// explain them.
+/// Returns up to three unknowns whose values are impossible together, the largest contribution first; empty if positive
+/// masses can explain all values.
 pub(super) fn impossible_numbers(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
     let (inertia, n) = (Inertia::of(machine), machine.drives());
     let unknowns = &fit.unknowns;
@@ -42,7 +42,7 @@ pub(super) fn impossible_numbers(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
         let conditions = unknowns.conditions().iter().enumerate();
         conditions.filter(|(_, c)| used(c)).all(|(i, _)| fit.identifiable[2 * i] && fit.identifiable[2 * i + 1])
     };
-    // Each drive alone, then all drives with all moments, if these are identifiable.
+    // First each drive alone, then all drives with their first moments, if all these unknowns are identifiable.
     let alone = drives.iter().map(|k| (vec![*k], false));
     let groups = alone.chain(Some((drives.clone(), true)).filter(|(of, _)| whole(of)));
     for (of, moments) in groups {
