@@ -115,7 +115,7 @@ impl Query for Fronts {
         let Some(of) = self.asked.machines.get(known) else {
             return Portion::Done(std::mem::take(&mut self.done));
         };
-        // For each machine the search counts as one half of the work, the measures as the other.
+        // For each machine, the search is one half of the work and the measures are the other.
         let share = |half: f64| (known as f64 + 0.5 * half) / all;
         let outcome = match &mut self.now {
             Stage::Search(search) => match search.go_on(&mut |found| goes_on(share(found))) {

@@ -12,8 +12,7 @@ use stillbase_planning::Motion;
 pub struct Measures {
     /// M − M_bare, kg.
     pub added_mass: f64,
-    /// Σ D_k less Σ D_k of the bare machine, kg m²; both as if all C_kl vanished, so that the value does not depend on
-    /// the pose.
+    /// Σ D_k less Σ D_k of the bare machine, kg m². Both are for zero C_kl, so the value does not depend on the pose.
     pub added_inertia: f64,
     /// M/M_bare + Σ D_k/Σ D_k of the bare machine; 2 if nothing was added. `None` if Σ D_k of the bare machine is not
     /// above 0.

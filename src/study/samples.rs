@@ -68,7 +68,7 @@ impl IncrementalQuery for SignalSamples {
 
 impl SignalSamples {
     /// Builds samples from sampling times, s, and series by path. Series whose length differs from the number of times
-    /// are left out.
+    /// are omitted.
     pub fn of(times: Vec<f64>, signals: impl IntoIterator<Item = (String, Series)>) -> Self {
         let series = signals.into_iter().filter(|(_, series)| series.values().len() == times.len()).collect();
         Self { times, series, signals: Vec::new() }

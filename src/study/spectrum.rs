@@ -13,9 +13,8 @@
 //!
 //! By Parseval's theorem the last r is the window-weighted RMS, √(Σ (w x)² / Σ w²). Without a window it is the RMS of
 //! the samples; with the Hann window, the middle of the record has the largest weight. The mean is not removed: it
-//! appears at f = 0 and, with the Hann window, at the next frequency too. A motion that happens once is not a
-//! stationary signal: its density falls as the record grows longer. So densities are comparable only between records of
-//! one length.
+//! appears at f = 0 and, with the Hann window, at the next frequency too. A single motion is not a stationary signal:
+//! its density falls as the record grows longer. So densities are comparable only between records of one length.
 //!
 //! # Source
 //! P. D. Welch, *The use of fast Fourier transform for the estimation of power spectra* (1967), with one segment;

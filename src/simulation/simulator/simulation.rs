@@ -188,7 +188,7 @@ impl Simulation {
         &self.reference
     }
 
-    /// Changes the source of the reference. The machine keeps its state, and control corrects the difference.
+    /// Changes the source of the reference. The machine keeps its state, and control corrects the tracking error.
     pub fn set_guide(&mut self, guide: Guide) {
         self.guide = guide;
         self.prepare();
@@ -246,8 +246,8 @@ impl Simulation {
         self.begin();
     }
 
-    /// Returns whether the run is at its end: the guide has arrived, the machine is at rest, and no payload is still to
-    /// be taken up or released.
+    /// Returns whether the run is at its end: the guide has arrived, the machine is at rest, and no change of the
+    /// payload is pending.
     pub fn is_settled(&self) -> bool {
         let e = PerDrive::from_fn(self.drives, |k| self.relative(k) - self.reference.q[k]);
         let still = self.now.qd.max_abs() < 1e-7 && self.now.base_velocity.norm() < 1e-7;

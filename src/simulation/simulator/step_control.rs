@@ -87,7 +87,7 @@ pub(super) struct StepControl {
     pub(super) worst: Mismatch,
     /// Sum of the differences that step halving has found.
     pub(super) drift: Stray,
-    /// Peaks that the reference requires, used before the run has peaks of its own.
+    /// Estimated peaks of the reference motion, used until the run has reached its own peaks.
     pub(super) expected: Peaks,
     /// Time until which the expected peaks are used, s.
     pub(super) until: f64,

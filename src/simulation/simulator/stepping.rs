@@ -1,13 +1,13 @@
 //! Integration of a step: in segments that end at the kinks of the reference, each with as many substeps as it needs.
 //!
 //! # Method
-//! The classical fourth-order Runge–Kutta method gives two slopes at the end of a substep: that of its last stage, and
-//! that of the final state, with which the next substep begins anyway. Their difference exceeds the error of the
-//! substep and so is an error estimate at almost no cost. If it exceeds [`ERROR_TOLERANCE`] of the peaks of the
-//! displayed quantities, the segment is integrated again with twice as many substeps, up to [`MAX_SUBSTEPS`]. This ends
-//! when the estimate, or the difference between two such integrations, is small enough. The next step begins with the
-//! same number of substeps and reduces it when possible. So stiff gains, springs and friction, and unforeseen kinks
-//! such as those of saturated motors, cost more substeps only where they occur.
+//! The classical fourth-order Runge–Kutta method gives two slopes at the end of a substep: those of its last stage and
+//! of its final state. The next substep needs the latter anyway. Their difference exceeds the error of the substep and
+//! so is an error estimate at almost no cost. If it exceeds [`ERROR_TOLERANCE`] of the peaks of the displayed
+//! quantities, the segment is integrated again with twice as many substeps, up to [`MAX_SUBSTEPS`]. Doubling ends when
+//! the estimate, or the difference between two such integrations, is small enough. The next step begins with the same
+//! number of substeps and reduces it when possible. So stiff gains, springs and friction, and unforeseen kinks such as
+//! those of saturated motors, cost more substeps only where they occur.
 //!
 //! Control corrects errors of forces and torques; position errors may accumulate. So every [`HALVING_PERIOD_STEPS`]-th
 //! step is also integrated with twice as many substeps. The resulting position differences of end effector and base are
@@ -95,7 +95,7 @@ impl Simulation {
             Guide::Motion { motion, start } => {
                 // The end of the step equals the beginning of the next one exactly.
                 let time = if at >= self.dt { (self.step + 1) as f64 * self.dt } else { self.time() + at };
-                beside(motion, time - start, segment.window, self.step_control.level)
+                one_sided_reference(motion, time - start, segment.window, self.step_control.level)
             }
             Guide::Follow(follower) => follower.reference(at),
         }
@@ -107,7 +107,7 @@ impl Simulation {
             Guide::Motion { motion, start } => {
                 let t = self.time() - start;
                 let after = self.kink_at(t).map_or(f64::NEG_INFINITY, |kink| kink + KINK_OFFSET * self.dt);
-                beside(motion, t, [after, f64::INFINITY], self.step_control.level)
+                one_sided_reference(motion, t, [after, f64::INFINITY], self.step_control.level)
             }
             Guide::Follow(follower) => follower.reference(0.0),
         }
@@ -126,17 +126,17 @@ impl Simulation {
         let Guide::Motion { start, .. } = &self.guide else {
             return (Segment { from, to: none.0, window: all }, none.1);
         };
-        let (t0, near, beside) = (self.time() - start, KINK_TOLERANCE * self.dt, KINK_OFFSET * self.dt);
+        let (t0, near, offset) = (self.time() - start, KINK_TOLERANCE * self.dt, KINK_OFFSET * self.dt);
         let mut window = all;
         if let Some(kink) = self.kink_at(t0 + from) {
-            window[0] = kink + beside;
+            window[0] = kink + offset;
         }
         let kinks = &self.step_control.kinks;
         let next = kinks.get(kinks.partition_point(|kink| *kink <= t0 + from + near));
         let Some(kink) = next.filter(|kink| **kink <= t0 + self.dt + near) else {
             return (Segment { from, to: self.dt, window }, false);
         };
-        window[1] = kink - beside;
+        window[1] = kink - offset;
         let to = if *kink >= t0 + self.dt - near { self.dt } else { kink - t0 };
         (Segment { from, to, window }, true)
     }
@@ -284,7 +284,7 @@ impl Simulation {
     }
 }
 
-/// Storage for the slopes of stages, if wanted.
+/// Storage for the slopes of stages, if they are requested.
 type Kept<'a> = Option<&'a mut [Slope; 3]>;
 
 #[inline(never)]
@@ -350,8 +350,8 @@ fn tip(body: &MovingBody, x: &Slope) -> Vector {
     x.base.at + end_effector(&body.arm().end_effector, &x.e)
 }
 
-/// Returns the number of steps that an error measured at this step represents; `None` if it is not measured here. Early
-/// steps are measured more often, so that short runs are assessed too.
+/// Returns the number of steps that an error measured at this step represents; `None` if no error is measured at this
+/// step. Early steps are measured more often, so that short runs are assessed too.
 fn represented_steps(step: u64) -> Option<f64> {
     match step {
         0 => Some(1.0),
@@ -363,7 +363,7 @@ fn represented_steps(step: u64) -> Option<f64> {
 /// Returns the reference of a motion at a time, s. Outside the window it is extrapolated from the nearest bound, unless
 /// q̈ differs there by at most `level`, rad/s².
 #[inline]
-fn beside(motion: &Motion, t: f64, [after, before]: [f64; 2], level: f64) -> Reference {
+fn one_sided_reference(motion: &Motion, t: f64, [after, before]: [f64; 2], level: f64) -> Reference {
     let within = t.max(after).min(before);
     let reference = motion.at(t);
     if within == t {

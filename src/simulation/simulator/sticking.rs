@@ -1,5 +1,5 @@
 //! Stick and slip: substeps end at the instants at which a Coulomb contact (friction torque τ_C) stops, reverses or
-//! breaks loose, so that the result does not depend on the step size.
+//! breaks loose. So the result does not depend on the step size.
 //!
 //! | event | condition | consequence |
 //! |---|---|---|
@@ -166,12 +166,12 @@ impl Simulation {
 
     /// Shortens a substep to the instant at which the state of contact i ends, by bracketing.
     fn shortened(&self, i: usize, from: &StepState, substep: Substep, segment: &Segment) -> Substep {
-        let holds = from.slip[i] == 0;
-        let scale = if holds { self.body().contacts().coulomb(i) } else { 1.0 };
+        let is_stuck = from.slip[i] == 0;
+        let scale = if is_stuck { self.body().contacts().coulomb(i) } else { 1.0 };
         let mut low = (from.at, self.margin(i, &from.slip, from).max(0.0));
         let mut high = (substep.end.at, self.margin(i, &from.slip, &substep.end));
         let mut best = substep;
-        let (near, width) = if holds { (1e-8, 1e-10) } else { (1e-15, 1e-14) };
+        let (near, width) = if is_stuck { (1e-8, 1e-10) } else { (1e-15, 1e-14) };
         let mut side = 0;
         for n in 0..60 {
             if high.0 - low.0 <= width * self.dt() || high.1.abs() <= near * scale {
@@ -193,7 +193,7 @@ impl Simulation {
                 low = (to, margin);
                 high.1 *= if side == 1 { 0.5 } else { 1.0 };
                 side = 1;
-                if !holds && margin <= near {
+                if !is_stuck && margin <= near {
                     best = there;
                     break;
                 }
@@ -217,12 +217,13 @@ impl Simulation {
             }
         }
         if changed {
-            self.hold(reached, segment);
+            self.stop_stuck(reached, segment);
         }
         changed
     }
 
-    /// Updates the contacts after a substep: those that have stopped stick, and those that cannot hold slide.
+    /// Updates the contacts after a substep: contacts that have stopped stick, and stuck contacts that cannot hold
+    /// slide.
     fn update_contacts(&self, reached: &mut StepState, segment: &Segment) {
         if !self.stick_stopped(reached, segment) {
             self.release(&reached.slope, &mut reached.slip, &reached.stuck_torque);
@@ -230,7 +231,7 @@ impl Simulation {
     }
 
     /// Stops stuck contacts exactly, evaluates the slope again, and releases contacts that cannot hold.
-    fn hold(&self, reached: &mut StepState, segment: &Segment) {
+    fn stop_stuck(&self, reached: &mut StepState, segment: &Segment) {
         reached.state = self.body().with_stuck_stopped(reached.state, &reached.slip);
         self.reevaluate(reached, segment);
         self.release(&reached.slope, &mut reached.slip, &reached.stuck_torque);

@@ -148,7 +148,7 @@ impl Equation {
         Some(self.lines.as_ref().ok()?.iter().all(Equality::holds))
     }
 
-    /// Returns whether the equation selects the optimum among many solutions, so that not meeting it is no fault.
+    /// Returns whether the equation selects the optimum among many solutions, so that a residual is no fault.
     pub fn is_choice(&self) -> bool {
         self.number == "10"
     }

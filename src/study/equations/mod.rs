@@ -1,8 +1,8 @@
 //! Every numbered equation of the paper with its present values: its meaning, its terms, their values, and the links
 //! that contribute.
 //!
-//! The two sides of an equation are computed independently: one link by link, the other by the closed forms that the
-//! rest of the program uses. So their agreement is a check.
+//! The two sides of an equation are computed independently: one as a sum over links, the other by the program's closed
+//! forms. So their agreement is a check.
 //!
 //! # Source
 //! Papadopoulos and Abu-Abed. The sign of gravity in (4) and the weight of (10) are corrected; notes state the

@@ -24,7 +24,7 @@ struct Joint {
     /// Value, rad.
     value: f64,
     offset: f64,
-    /// Coefficient for each drive, ±1 or 0: q_k − q_1 = Σ way (a − offset).
+    /// Coefficient w for each drive, ±1 or 0: q_k − q_1 = Σ w_k (a − offset).
     ways: Vec<f64>,
 }
 

@@ -12,7 +12,7 @@ struct Product {
     /// Multiplicity: 2 for the mixed term of a square.
     count: usize,
     lengths: Vec<String>,
-    /// Whether an l_c is a factor; then the product belongs to this mass alone.
+    /// Whether an l_c is a factor, so that the product belongs to this mass alone.
     is_own: bool,
     mass: (usize, String),
     part: (Origin, f64),

@@ -19,7 +19,7 @@ pub struct DriveState {
     pub qd: PerDrive,
     /// Drive accelerations, rad/s²; in a frame of a run they are absolute.
     pub qdd: PerDrive,
-    /// The required b, rad: the control's reference, or that of the start of the motion; `None` if there is none.
+    /// The required b, rad: the reference of control, or b at the start of the planned motion; `None` if there is none.
     pub b: Option<f64>,
     /// Time of the instant.
     pub when: InstantKind,
@@ -82,7 +82,7 @@ impl DriveState {
     /// Runs a scenario, with its edits, to a time, s, and returns the state there.
     ///
     /// # Errors
-    /// Fails if the scenario cannot be run up to this time, or the run ends before.
+    /// Fails if the scenario cannot be run up to this time, or the run ends earlier.
     pub fn at(scenario: &Scenario, time: f64) -> Result<Self, NoInstant> {
         let (mut found, mut end) = (None, 0.0);
         let done = replay_while(scenario, |_, frame| {

@@ -11,7 +11,7 @@ pub enum Level {
     Raised,
 }
 
-/// Splits a symbol into pieces. The T of a transpose is a piece of its own, because few fonts have it as a superscript.
+/// Splits a symbol into pieces. The T of a transpose is a separate piece, because few fonts have it as a superscript.
 pub fn pieces(symbol: &str) -> impl Iterator<Item = (&str, Level)> {
     symbol.split("_{").enumerate().flat_map(|(i, piece)| {
         let (index, rest) = if i == 0 { ("", piece) } else { piece.split_once('}').unwrap_or((piece, "")) };

@@ -60,9 +60,9 @@ pub struct MotionEffects {
 /// A proposed motion, simulated.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Proposal {
-    /// How it was obtained: `same-tip`, `turned`, `on-plane` or `as-given`.
+    /// Method by which it was found: `same-tip`, `turned`, `on-plane` or `as-given`.
     pub way: &'static str,
-    /// Why this motion was chosen, in words.
+    /// Reason for choosing this motion, in words.
     pub why: String,
     /// Mean pose constant, rad.
     pub b: f64,

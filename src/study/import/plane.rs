@@ -14,8 +14,8 @@ use stillbase_session::scenario::{Task, TaskKind};
 /// Number of points of a path at which the reachable b are computed.
 const PATH_POINTS: usize = 257;
 
-/// Returns the initial pose for minimum-norm rates, and the motion on the plane of the requested b, rad, or of a b that
-/// reaches the path.
+/// Returns the initial pose for minimum-norm rates, and the motion on a plane. Its b, rad, is the requested one, or one
+/// that reaches the path.
 pub(super) fn held_plane_motion(
     requested: Option<f64>,
     judge: &MotionEvaluator,

@@ -35,7 +35,7 @@ pub struct Request {
 /// Reason that a motion cannot be imported.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum MotionImportError {
-    /// The joint angles of a motion of the end effector were to be kept.
+    /// The request keeps the joint angles of a motion that is given by the end effector.
     #[error("x and y give no joint angles to be kept")]
     NoJoints,
     /// No spline goes through the samples.

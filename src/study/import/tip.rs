@@ -16,7 +16,7 @@ use stillbase_settings::number::{counted, fixed};
 
 /// Fraction of the work for the search for a b; the rest is the assessment of minimum-norm rates.
 const SEARCH_SHARE: f64 = 0.6;
-/// Maximum deviation of b along the motion from its mean, rad, for a path that counts as lying on the curve of one b.
+/// Maximum deviation of b from its mean, rad, up to which a path is taken as lying on the curve of one b.
 const MAX_B_DEVIATION_RAD: f64 = 1e-3;
 
 /// Returns the minimum-norm motion for samples of the end effector, and candidates at constant b.
@@ -29,7 +29,7 @@ pub(super) fn of_tip(
 ) -> Result<MotionProposals, MotionImportError> {
     let curve = samples.curve().ok_or(MotionImportError::TooDense)?;
     let reaches_area = space.reaches_area();
-    let (start, held) = if reaches_area {
+    let (start, constant_b) = if reaches_area {
         let mut searching = part(goes_on, [0.0, SEARCH_SHARE]);
         let (start, candidates) = match space.planes() {
             Ok(planes) => plane::held_plane_motion(request.b, judge, space, planes, samples, &curve),
@@ -41,7 +41,7 @@ pub(super) fn of_tip(
     };
     let min_norm = start.and_then(|q| minimum_norm_curve(judge.machine.end_effector(), q, &curve).ok());
     let given = min_norm.map(|path| judge.given(timed_path(path, samples), &mut part(goes_on, [SEARCH_SHARE, 1.0])));
-    let candidates = held.unwrap_or_else(|| on_curve(judge, space, samples, given.as_ref()));
+    let candidates = constant_b.unwrap_or_else(|| on_curve(judge, space, samples, given.as_ref()));
     Ok(MotionProposals { given, candidates })
 }
 

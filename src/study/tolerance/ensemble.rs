@@ -1,8 +1,8 @@
 //! [`Ensemble`]: random machines around a nominal one on one motion, a million per second.
 //!
 //! With perfect tracking of the motion, the wrench is linear in the constants θ of the machine. The factors that depend
-//! on the motion are tabulated once; each machine then costs its θ and one sum per instant. Several machines are
-//! evaluated side by side, so that a vector instruction processes one value of each.
+//! on the motion are tabulated once; each machine then requires only its θ and one sum per instant. Several machines
+//! are evaluated side by side, so that a vector instruction processes one value of each.
 //!
 //! # Symbols
 //! | letter | meaning | unit |

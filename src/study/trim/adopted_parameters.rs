@@ -1,4 +1,4 @@
-//! [`adopt_parameters`]: decides which unknowns of balance are taken from the measurement, and which from the machine's
+//! [`adopt_parameters`]: decides which unknowns of balance come from the measurement, and which from the machine's
 //! file.
 
 use nalgebra::{DMatrix, DVector};
@@ -11,7 +11,7 @@ use stillbase_mechanics::planar::Vector;
 pub struct AdoptedParameters {
     /// Values of all unknowns.
     pub values: DVector<f64>,
-    /// Covariance of the values, given those that are taken from the file.
+    /// Covariance of the values, conditional on the values from the file.
     pub covariance: DMatrix<f64>,
     /// Half width of the 95 % interval of each value, by that covariance; zero for values from the file.
     pub half_widths: Vec<f64>,
@@ -36,9 +36,9 @@ impl AdoptedParameters {
 const ROUNDING_TOLERANCE: f64 = 1e-10;
 
 /// Selects the unknowns of (7) and (8) to take from the measurement by backward elimination. The least significant
-/// difference from the file is set to zero and the others are estimated again, until every remaining difference exceeds
-/// the half width of its interval. So noise is not mistaken for imbalance, and a well-determined sum is kept even if
-/// its parts are not well determined.
+/// difference from the file is set to zero and the others are estimated again. This ends when every remaining
+/// difference exceeds the half width of its interval. So noise is not mistaken for imbalance, and a well-determined sum
+/// is kept even if its parts are not well determined.
 pub fn adopt_parameters(fit: &Fit) -> AdoptedParameters {
     let count = fit.unknowns.of_balance();
     let (values, covariance, inverse) = (fit.measured.clone(), fit.covariance.clone(), fit.inverse.clone());

@@ -58,7 +58,7 @@ pub(super) fn bartlett_lags(residuals: &[&[f64]], motions: &[usize], least: usiz
     wanted.max(least).clamp(1, longest.div_ceil(2))
 }
 
-/// Returns the ratio of the half width of a 95 % interval to the standard deviation, if the window covers the fraction
+/// Returns the ratio of the half width of a 95 % interval to the standard deviation. The window covers the fraction
 /// `share` of the data.
 pub(super) fn t_quantile(share: f64) -> f64 {
     let b = share.clamp(0.0, 1.0);

@@ -116,8 +116,8 @@ pub fn correct_machine(
 }
 
 /// Returns the machine as built, before any correction, and the residuals of (7) and (8), by line, that it does not
-/// reproduce. The identified balance is reproduced by the least change of the links' centres of mass, along and across,
-/// and the identified D_k by the links' inertias.
+/// reproduce. The least change of the links' centres of mass, along and across, gives the identified balance; the
+/// links' inertias give the identified D_k.
 ///
 /// # Errors
 /// Fails if there is no such machine.
@@ -165,7 +165,7 @@ pub fn corrected_as_built(
     Machine::new(spec)
 }
 
-/// Scales the inertias of each drive's links so that D_k has the wanted value. Inertias that would become negative are
+/// Scales the inertias of each drive's links so that D_k has the given value. Inertias that would become negative are
 /// not changed.
 fn set_momenta(spec: &mut MachineSpec, machine: &Machine, momenta: &[Option<f64>]) {
     let inertia = Inertia::of(machine);

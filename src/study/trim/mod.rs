@@ -1,10 +1,9 @@
 //! Trim balancing: identifies the residuals of (7) and (8) of a built machine from measured base forces, and corrects
 //! them.
 //!
-//! For known drive angles, the force and the moment on the base are linear in the first moments g_k, the couplings C_kl
-//! and the momenta D_k. A few measured motions and least squares therefore identify them with their uncertainty. They
-//! also yield the least change of counterweights that corrects the balance, and the motion that would add most
-//! information.
+//! For known drive angles, force and moment on the base are linear in first moments g_k, couplings C_kl and momenta
+//! D_k. A few measured motions and least squares therefore identify them with their uncertainty. They also yield the
+//! least change of counterweights that corrects the balance, and the motion that would add most information.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -18,8 +17,8 @@
 //! | σ | standard deviation of the residuals of force or moment | N, N m |
 //!
 //! # Method
-//! If rates and accelerations are given, each sample is a row. Otherwise no data are differentiated twice: with a
-//! window φ, ∫ φ f = ∫ φ̇ p + const and ∫ φ n = ∫ φ̇ h + ∫ φ (Σ g e × gravity) + const. Both sides are averaged with
+//! If rates and accelerations are given, each sample is a row. Otherwise windows φ avoid a second differentiation of
+//! the data: ∫ φ f = ∫ φ̇ p + const and ∫ φ n = ∫ φ̇ h + ∫ φ (Σ g e × gravity) + const. Both sides are averaged with
 //! the same window, so a wide window loses information but causes no bias. p and h need q̇, from five neighbouring
 //! samples (error h⁴). Noise in the angles biases the least-squares estimate towards 0; the bias is removed to first
 //! order.

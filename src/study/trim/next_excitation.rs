@@ -206,7 +206,7 @@ impl Sines {
             let together = self.rate[angle.to] == self.rate[angle.from];
             let (to, from) = (self.signed[angle.to], self.signed[angle.from]);
             let most = if together { (to - from).abs() } else { to.abs() + from.abs() };
-            // If the middle itself violates the limits, so did the measurement, and they are not applied.
+            // If the middle itself violates the limits, so did the measurement; then the limits are not applied.
             !angle.limits.contains(&middle)
                 || (angle.limits.contains(&(middle - most)) && angle.limits.contains(&(middle + most)))
         })
@@ -263,8 +263,8 @@ impl Known {
         identifiable.then(|| (0..self.values.len()).filter(known).map(|i| part(i) / self.values[i]).sum())
     }
 
-    /// Returns the logarithm of the product of the first unknowns' variances; 1 replaces the variance of one that is
-    /// not identifiable.
+    /// Returns the logarithm of the product of the first `count` variances, with 1 for unknowns that are not
+    /// identifiable.
     fn log_volume(&self, count: usize) -> f64 {
         (0..count).map(|i| self.variance(i).unwrap_or(1.0).max(f64::MIN_POSITIVE).ln()).sum()
     }

@@ -74,7 +74,7 @@ pub struct Number {
     /// Half width of the 95 % interval.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub half_width: Option<f64>,
-    /// Whether it differs significantly from the machine's file, given the values used for the others.
+    /// Whether the unknown differs significantly from the machine's file, given the values used for the others.
     pub off: bool,
     /// Value used: for (7) and (8), measured if `off`, else that of the file; for a momentum, measured if identifiable.
     pub taken: f64,

@@ -61,7 +61,7 @@ impl Unknowns {
         self.drives
     }
 
-    /// Returns the lines of (7) and (8), in order.
+    /// Returns the conditions (7), then (8), in their order.
     pub fn conditions(&self) -> &[Condition] {
         &self.conditions
     }

@@ -137,7 +137,7 @@ impl DoubtSearch {
         let best = self.likely.first().map_or(0.0, |first| first.ranks);
         self.likely.retain(|one| one.ranks > best - MAX_LOG_ODDS_BEHIND);
         let Self { given: FitTrial { fit, .. }, infeasible, likely, .. } = &self;
-        let said = |place: usize| MeasuredValue {
+        let measured_value = |place: usize| MeasuredValue {
             name: fit.unknowns.at(place).name(machine),
             unit: fit.unknowns.at(place).unit(),
             value: fit.measured[place],
@@ -160,8 +160,8 @@ impl DoubtSearch {
         causes.truncate(MAX_NAMED);
         Some(Doubt {
             causes,
-            impossible: infeasible.iter().filter_map(place).map(said).collect(),
-            furthest: furthest.map(said),
+            impossible: infeasible.iter().filter_map(place).map(measured_value).collect(),
+            furthest: furthest.map(measured_value),
             noise: fit.noise,
             shares: shares(fit),
             leaves: self.given.leaves,

@@ -65,8 +65,8 @@ impl Fault {
     }
 
     /// Returns all faults that are tested. For force and moment: signs, order and units. For the angles: signs, the
-    /// exchange of any two, cyclic exchanges of three (up to four drives only), degrees for radians and the reverse,
-    /// and relative angles. With eight drives there are at most 63.
+    /// exchange of any two, degrees for radians and the reverse, and relative angles. With up to four drives also
+    /// cyclic exchanges of three. With eight drives there are at most 63.
     pub fn all(machine: &Machine) -> Vec<Self> {
         let n = machine.drives();
         let mut all = frames();

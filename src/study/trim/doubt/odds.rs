@@ -20,7 +20,7 @@ const COUNTED_FRACTION: f64 = 0.5;
 /// Residuals below this fraction of the largest possible reaction are rounding errors, of the arithmetic or of printed
 /// digits.
 const ROUNDING_LEVEL: f64 = 1e-10;
-/// Lower bound on relative residuals: below it, they are errors of the finite differences and no evidence.
+/// Lower bound on relative residuals: smaller residuals are errors of the finite differences, and no evidence.
 const MIN_RELATIVE_RESIDUAL: f64 = 1e-6;
 
 /// A fit, its degrees of freedom as a fraction of the effective rows, and its violation of the joint limits, rad.
@@ -62,7 +62,7 @@ pub(super) fn likelihood_ratio(tolerances: &Tolerances, given: &FitTrial, other:
     };
     let common = residuals(0) + residuals(1) + limits;
     let momenta = 0.5 * p * ((before.momenta + scale) / (after.momenta + scale)).ln();
-    // A distance below its expected value p counts as p.
+    // A distance below its expected value p is replaced by p.
     let all = 0.5 * p * (before.all.max(p) / after.all.max(p)).ln();
     let far = before.known.zip(after.known).map_or(f64::NEG_INFINITY, |([was, p], [now, more])| {
         let p = p.max(more);
