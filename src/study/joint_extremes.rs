@@ -57,7 +57,7 @@ pub struct Transmission {
     pub angle: f64,
     /// Time of the smallest value, s.
     pub time: f64,
-    /// Number of change points passed between two steps.
+    /// Number of change points passed between consecutive steps.
     pub passed: u64,
 }
 

@@ -71,7 +71,7 @@ pub struct PlanCost {
     /// Cost of a change of b.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub price: Option<PriceOfB>,
-    /// Three ways to perform the same motion of the end effector.
+    /// Comparison of three ways to perform the same motion of the end effector.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub alternatives: Option<Verdicts>,
     /// The limit of a drive that is exceeded most, and the ratio of the peak to it.

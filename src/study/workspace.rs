@@ -1,4 +1,4 @@
-//! [`WorkspaceReport`]: the reactionless workspace at a b: boundary, area, interior curves, and given points.
+//! [`WorkspaceReport`]: boundary, area and interior curves of the reactionless workspace at a b, and given points.
 
 use serde::Serialize;
 

@@ -231,7 +231,7 @@ impl Simulation {
         self.include();
     }
 
-    /// Moves the machine to the pose and rates of the reference without motion in between.
+    /// Places the machine at the pose and rates of the reference, without simulating a motion to it.
     pub fn move_to_reference(&mut self, guide: Guide) {
         self.guide = guide;
         let reference = self.guide.at(self.time());

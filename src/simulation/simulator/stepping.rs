@@ -141,7 +141,7 @@ impl Simulation {
         (Segment { from, to, window }, true)
     }
 
-    /// Integrates a whole step. Returns whether the slope at its end is that with which the next step begins.
+    /// Integrates a whole step. Returns whether the next step can begin with the slope at its end.
     pub(super) fn take_step(&mut self, reached: &mut StepState) -> bool {
         let measure = self.measure();
         let measured = represented_steps(self.step);

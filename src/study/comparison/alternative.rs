@@ -68,8 +68,8 @@ impl Alternative {
         }
     }
 
-    /// Returns the scenario of this method, with the same points, machine, plant, base and control. Unless as given,
-    /// only [`Wheel`](Self::Wheel) has a reaction wheel.
+    /// Returns the scenario of this method, with the same points, machine, plant, base and control. Except for
+    /// [`AsGiven`](Self::AsGiven), only [`Wheel`](Self::Wheel) has a reaction wheel.
     pub fn of(self, scenario: &Scenario) -> Scenario {
         if self == Self::AsGiven {
             return scenario.clone();

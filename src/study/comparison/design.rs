@@ -121,7 +121,7 @@ impl DesignCandidate {
         self.machine == other.machine
     }
 
-    /// Returns why one motion of the drives cannot perform both tasks; `None` if it can.
+    /// Returns the difference due to which one motion of the drives cannot perform both tasks, if there is one.
     fn differs(&self, first: &Self) -> Option<&'static str> {
         if self.machine.end_effector() != first.machine.end_effector() {
             return Some("the arm's length");

@@ -95,7 +95,7 @@ impl ComparedRun {
 pub fn alternatives(scenario: &Scenario) -> Vec<(Alternative, Scenario)> {
     let mut all: Vec<(Alternative, Scenario)> =
         Alternative::ALL.into_iter().filter(|way| way.is_of(scenario)).map(|way| (way, way.of(scenario))).collect();
-    // A wheel does not change the task, so a scenario with a wheel still counts as given.
+    // Wheels are not compared, because a wheel does not change the task.
     let given = |s: &Scenario| s.task == scenario.task && s.base.kind == scenario.base.kind;
     if scenario.edits.is_empty() && all.iter().skip(1).any(|(_, s)| given(s)) {
         all.remove(0);

@@ -151,7 +151,7 @@ impl PlaneEquations<'_> {
         let spec = self.machine();
         let mut ways: Vec<Option<Vec<f64>>> = vec![None; n];
         ways[0] = Some(vec![0.0; angles.len()]);
-        // n passes suffice: no path is longer.
+        // n passes suffice, because no path has more than n − 1 angles.
         for _ in 0..n {
             for (i, angle) in angles.iter().enumerate() {
                 for (from, to, sign) in [(angle.from, angle.to, 1.0), (angle.to, angle.from, -1.0)] {

@@ -22,7 +22,7 @@ const POSTURES: [Posture; 4] = [Posture::LeastRates, Posture::MidRange, Posture:
 /// Returns the initial pose for minimum-norm rates, and the motion at the requested b, rad, or at a b that reaches the
 /// whole path.
 pub(super) fn held_b_motion(
-    requested: Option<f64>,
+    fixed_b: Option<f64>,
     judge: &MotionEvaluator,
     space: &PoseSpace,
     samples: &Samples,
@@ -31,7 +31,7 @@ pub(super) fn held_b_motion(
 ) -> (Option<DriveAngles>, Result<Vec<MotionCandidate>, Advice>) {
     let start = |b: f64| space.pose_at_nearest_b(samples.point(0), b);
     let points: Vec<Vector> = (0..PATH_POINTS).map(|i| curve.at(i as f64 / (PATH_POINTS - 1) as f64).p).collect();
-    let (mut tried, range) = match (requested, widest(space, &points)) {
+    let (mut tried, range) = match (fixed_b, widest(space, &points)) {
         (Some(b), _) => (vec![b], None),
         (None, Ok([low, high])) => (B_FRACTIONS.map(|share| low + share * (high - low)).to_vec(), Some([low, high])),
         (None, Err(why)) => return (start(0.0), Err(why.into())),

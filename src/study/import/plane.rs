@@ -17,7 +17,7 @@ const PATH_POINTS: usize = 257;
 /// Returns the initial pose for minimum-norm rates, and the motion on a plane. Its b, rad, is the requested one, or one
 /// that reaches the path.
 pub(super) fn held_plane_motion(
-    requested: Option<f64>,
+    fixed_b: Option<f64>,
     judge: &MotionEvaluator,
     space: &PoseSpace,
     planes: &Planes,
@@ -25,7 +25,7 @@ pub(super) fn held_plane_motion(
     curve: &Curve,
 ) -> (Option<DriveAngles>, Result<Vec<MotionCandidate>, Advice>) {
     let (map, curves) = (planes.map(), std::slice::from_ref(curve));
-    let (b, why) = match requested {
+    let (b, why) = match fixed_b {
         Some(b) => (b, "b is the one asked for".to_owned()),
         None => {
             let widest = |set: BSet| set.intervals.into_iter().max_by(|x, y| (x[1] - x[0]).total_cmp(&(y[1] - y[0])));
@@ -39,7 +39,7 @@ pub(super) fn held_plane_motion(
         }
     };
     let follow = |b: f64| trace::follow(map, curves, b, None, Rule::default()).map(|_| b);
-    let followed = follow(b).map(|b| (b, why)).or_else(|stop| match (stop.nearest_b.zip(stop.displayed_b), requested) {
+    let followed = follow(b).map(|b| (b, why)).or_else(|stop| match (stop.nearest_b.zip(stop.displayed_b), fixed_b) {
         (Some((b, shown)), None) => {
             follow(b).map(|b| (b, format!("b = {shown} rad is one at which all of it can be followed")))
         }

@@ -194,7 +194,8 @@ impl UncertainParameter {
     pub(super) fn deviate(&self, u: &mut [f64]) {
         match self.spread {
             Spread::Normal(_) => {
-                // Sample the upper fraction 1 − cut of the distribution: take (0, 1 − cut) and mirror it.
+                // Sample the upper fraction 1 − cut of the distribution: draw quantiles from (0, 1 − cut) and negate
+                // them.
                 let (keep, scale) = (1.0 - self.cut, -self.scale);
                 u.iter_mut().for_each(|u| *u *= keep);
                 inverse_normal(u);

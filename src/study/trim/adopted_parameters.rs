@@ -32,7 +32,7 @@ impl AdoptedParameters {
     }
 }
 
-/// Differences from the file below this fraction of the largest value are rounding.
+/// Differences from the file below this fraction of the largest value are rounding errors.
 const ROUNDING_TOLERANCE: f64 = 1e-10;
 
 /// Selects the unknowns of (7) and (8) to take from the measurement by backward elimination. The least significant

@@ -7,7 +7,7 @@ use stillbase_settings::number::{counted, fixed};
 /// Reason that a measurement cannot be evaluated.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum TrimError {
-    /// The number of measured angles differs from the number of drives.
+    /// The number of measured drives differs from that of the machine.
     #[error("angles of {}: want those of all {want} of the machine", counted(got, "drive"))]
     Drives {
         /// Number of drives measured.

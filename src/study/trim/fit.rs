@@ -56,7 +56,7 @@ const MAX_ITERATIONS: usize = 10_000;
 const ROUNDING_LEVEL: f64 = 1e-14;
 /// Minimum degrees of freedom, as a fraction of the effective number of rows.
 const MIN_FREEDOM: f64 = 0.1;
-/// Residuals below this fraction of the measured values are treated as rounding.
+/// Residuals below this fraction of the measured values are treated as rounding errors.
 const EXACT_BELOW: f64 = 1e-9;
 
 /// Fits the unknowns by least squares about the machine's file, with weights from the residuals of force and moment.

@@ -1,4 +1,4 @@
-//! [`correct_machine`]: finds the least change of counterweights that removes the measured imbalance.
+//! [`correct_machine`]: finds the least change of counterweights or links that removes the measured imbalance.
 
 use serde::Serialize;
 use thiserror::Error;

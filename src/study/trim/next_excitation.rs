@@ -13,7 +13,7 @@ use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 /// A motion to measure next: each drive moves as a sine about the middle of its measured range.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Excitation {
-    /// Drives that move, from 0, and their senses, ±1.
+    /// Indices of the drives that move, and their senses, ±1.
     #[serde(skip)]
     pub drives: Vec<(usize, f64)>,
     /// Amplitude of each drive, rad.
@@ -212,7 +212,7 @@ impl Sines {
         })
     }
 
-    /// Returns the information Σ xᵀ x over time, divided by the densities of the noise.
+    /// Returns the information Σ xᵀ x over time, divided by the noise densities of force and moment.
     fn information(&self, machine: &Machine, unknowns: &Unknowns, duration: f64, fit: &Fit) -> DMatrix<f64> {
         let p = unknowns.count();
         let mut rows = [0, 1, 2].map(|_| DMatrix::zeros(INSTANTS, p));

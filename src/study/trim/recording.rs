@@ -49,7 +49,7 @@ impl MeasuredMotion {
 /// Measured motions of one machine on a fixed base.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeasurementSet {
-    /// Motions, each with its own sensor offsets.
+    /// Motions, each with its own offset and drift of the sensors.
     pub motions: Vec<MeasuredMotion>,
 }
 

@@ -300,7 +300,7 @@ impl<'a> Smooth<'a> {
         (0..=count).map(move |i| start + step * i as f64)
     }
 
-    /// Returns σ of an averaged acceleration if the underlying samples have σ = 1.
+    /// Returns the ratio of σ of an averaged acceleration to σ of the underlying samples.
     fn gain(&self, window: &SmoothingWindow) -> f64 {
         if self.measured {
             return window.rate.iter().map(|d| d * d).sum::<f64>().sqrt();

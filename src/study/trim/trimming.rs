@@ -72,13 +72,13 @@ pub enum NoTrim {
 /// Relative noise of the accelerations above which it is reported.
 const MAX_ANGLE_NOISE: f64 = 0.02;
 
-/// Fractions of the work done once rows are built, faults are tested, unknowns are fitted, and a next motion is found.
+/// Fractions of the work done after rows are built, faults tested, unknowns fitted, and the next motion found.
 const MADE_AT: f64 = 0.05;
 const TRIED_AT: f64 = 0.8;
 const FITTED_AT: f64 = 0.9;
 const SEARCHED_AT: f64 = 0.95;
 
-/// Evaluates a measurement: builds its rows, tests for faults, one in each portion, fits the unknowns and finds the
+/// Evaluates a measurement: builds its rows, tests for faults (one in each portion), fits the unknowns and finds the
 /// correction.
 pub struct TrimQuery {
     request: TrimRequest,

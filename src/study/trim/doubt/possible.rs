@@ -16,7 +16,7 @@ use stillbase_mechanics::balance::Condition;
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::Vector;
 
-/// Upper bound on M, as a multiple of that of the file.
+/// Upper bound on M, as a multiple of the mass in the file.
 const MAX_MASS_FACTOR: f64 = 2.0;
 /// Number of half widths of its 95 % interval by which an eigenvalue must lie below zero to count as negative.
 const MIN_HALF_WIDTHS: f64 = 3.0;
