@@ -3,7 +3,7 @@
 //! ones. Machines: counterweights, Pareto fronts, the equations of the paper with present values, and the trim of a
 //! built machine from measured base forces.
 //!
-//! Other programs use this crate as `stillbase::study`; only `stillbase` follows semantic versioning.
+//! Others reach this crate as `stillbase::study`; `stillbase` alone follows semantic versioning.
 
 pub mod advice;
 pub mod balance_constants;
