@@ -18,7 +18,7 @@ pub struct Signal {
     pub label: String,
     /// SI unit, `1` for none.
     pub unit: &'static str,
-    /// Drive whose colour it has, counted from 0.
+    /// Drive whose colour the signal has, counted from 0; `None` if it belongs to no single drive.
     pub drive: Option<usize>,
     quantity: Quantity,
 }
@@ -185,7 +185,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
     table
 }
 
-/// Returns the signals of pin forces, if they can be determined, of tilting moments and of change points.
+/// Returns the signals of pin forces (if they can be determined), tilting moments, transmission and change points.
 fn inside(machine: &Machine) -> Vec<Signal> {
     let mut table = Vec::new();
     let mut add = |path: String, symbol: String, label: String, unit, drive, quantity| {

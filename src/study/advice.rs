@@ -1,5 +1,5 @@
-//! [`Advice`]: a sentence that may name remedies. The place that shows it supplies their names: an option of a command,
-//! a control of a panel.
+//! [`Advice`]: a sentence that may name remedies. The interface that shows it supplies their names, such as an option
+//! of a command or a control of a panel.
 
 use std::fmt::{self, Display};
 

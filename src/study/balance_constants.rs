@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use stillbase_mechanics::machine::Inertia;
 
-/// Constants of the balance conditions. Of complex coefficients the real parts; pairs in the order (1,2), (1,3), (2,3)
-/// …
+/// Constants of the balance conditions. Complex coefficients are represented by their real parts; pairs have the order
+/// (1,2), (1,3), (2,3) …
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BalanceConstants {
     /// Coefficients g_k of the first moment, kg m.
@@ -14,7 +14,7 @@ pub struct BalanceConstants {
     pub coupling_coefficients: Vec<f64>,
     /// Diagonal of the mass matrix, H_kk, kg m².
     pub h: Vec<f64>,
-    /// D_k as it is when all C_kl vanish, kg m²; differs from H_kk with gears.
+    /// D_k if all C_kl vanish, kg m²; equal to H_kk unless the machine has gears.
     pub d: Vec<f64>,
     /// Coefficients λ_k of the pose constant.
     pub lambda: Vec<f64>,

@@ -12,11 +12,11 @@ use stillbase_settings::number::fixed;
 /// One value for each component of the base wrench.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PerAxis<T> {
-    /// For the dynamic f_Bx.
+    /// Value for the dynamic f_Bx.
     pub force_x: T,
-    /// For the dynamic f_By.
+    /// Value for the dynamic f_By.
     pub force_y: T,
-    /// For the moment on the base: n_B, less what a reaction wheel takes up.
+    /// Value for the net moment on the base: n_B less the torque of a reaction wheel.
     pub moment: T,
 }
 
@@ -65,7 +65,7 @@ pub struct BaseSpectrum {
     pub fault: Option<String>,
 }
 
-/// Why there is no spectrum, or no comparison with a limit.
+/// Reason for a missing spectrum or a missing comparison with a limit.
 #[derive(Debug, Error)]
 pub enum NoBaseSpectrum {
     /// The scenario cannot be run.

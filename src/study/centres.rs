@@ -1,5 +1,5 @@
-//! Balance by moving the centres of mass of the links, with a report: [`design_centres`] from scratch, or [`rebalance_report`] with the
-//! least change.
+//! Balance by moving the links' centres of mass, with a report: [`design_centres`] places them all anew, and
+//! [`rebalance_report`] changes the machine as little as possible.
 
 use serde::Serialize;
 
@@ -56,8 +56,8 @@ pub struct RebalanceChange {
     pub unit: &'static str,
 }
 
-/// Balances a machine by the centres of mass of its links with the least Σ (p l_c)², and reports on it. A motion has as
-/// many drives as the machine.
+/// Balances a machine by the centres of mass of its links with the least Σ (p l_c)², and reports on it. The motion must
+/// have as many drives as the machine.
 ///
 /// # Errors
 /// As [`design`].
@@ -75,17 +75,17 @@ pub fn design_centres(
     Ok((designed, report))
 }
 
-/// Balances a machine with the least change of the given parameters, and reports on it. A motion has as many drives as
-/// the machine.
+/// Balances a machine with the least change of the given parameters, and reports on it. The motion must have as many
+/// drives as the machine.
 ///
 /// # Errors
 /// As [`rebalance`].
 pub fn rebalance_report(
     machine: &Machine,
-    asked: &RebalanceRequest,
+    request: &RebalanceRequest,
     motion: Option<&Motion>,
 ) -> Result<(Machine, RebalanceReport), RebalanceError> {
-    let kept = rebalance(machine, asked)?;
+    let rebalanced = rebalance(machine, request)?;
     let change = |(one, value): (&ListedParameter, &f64)| RebalanceChange {
         key: one.parameter.key(machine),
         from: one.parameter.value(machine.spec()).unwrap_or_default(),
@@ -94,11 +94,11 @@ pub fn rebalance_report(
         unit: if one.parameter.quantity == BodyQuantity::Mass { "kg" } else { "m" },
     };
     let report = RebalanceReport {
-        changes: asked.parameters.iter().zip(&kept.values).map(change).collect(),
-        cost: kept.cost,
-        certified: kept.certified,
-        measures: Measures::of(machine, &kept.machine, motion),
-        balance: BalanceConstants::of(&Inertia::of(&kept.machine)),
+        changes: request.parameters.iter().zip(&rebalanced.values).map(change).collect(),
+        cost: rebalanced.cost,
+        certified: rebalanced.certified,
+        measures: Measures::of(machine, &rebalanced.machine, motion),
+        balance: BalanceConstants::of(&Inertia::of(&rebalanced.machine)),
     };
-    Ok((kept.machine, report))
+    Ok((rebalanced.machine, report))
 }

@@ -1,4 +1,5 @@
-//! [`balance_by_weights`]: balances a machine by counterweights, if requested with other link lengths, and reports on it.
+//! [`balance_by_weights`]: balances a machine by counterweights, optionally with optimised link lengths, and reports on
+//! it.
 
 use serde::Serialize;
 use thiserror::Error;
@@ -19,7 +20,7 @@ const PAYLOAD_SAMPLES: usize = 11;
 /// Request for counterweights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CounterweightRequest {
-    /// Sites of the counterweights, and the objective. A search for lengths uses its own instead.
+    /// Sites of the counterweights, and the objective. A search for lengths uses its own sites and objective instead.
     pub weighing: CounterweightSpec,
     /// Link lengths to optimise together with the counterweights.
     pub lengths: Option<LengthSearch>,
@@ -27,7 +28,7 @@ pub struct CounterweightRequest {
     pub front: Option<usize>,
 }
 
-/// Why there are no counterweights.
+/// Reason that there are no counterweights.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoCounterweights {
     /// The search for lengths failed.
@@ -58,7 +59,7 @@ pub struct CounterweightReport {
     /// Counterweights of the given machine that were removed first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub taken_off: Vec<Counterweight>,
-    /// Upper bound on how far the minimum lies below the objective's value.
+    /// Upper bound on the difference between the objective's value and its minimum.
     pub gap: f64,
     /// Whether the gap is within rounding.
     pub certified: bool,
@@ -77,7 +78,7 @@ pub struct CounterweightReport {
     /// Residuals of balance over the range of payloads.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub payload: Vec<Residual>,
-    /// Whether (7) and (8) hold. Over a range of payloads they may fail to hold, within the given bounds.
+    /// Whether (7) and (8) hold. With a range of payloads they need not hold: see [`payload`](Self::payload).
     pub is_balanced: bool,
     /// Balance constants of the new machine.
     #[serde(flatten)]
@@ -97,7 +98,7 @@ pub struct LengthsReport {
     pub agreeing: usize,
     /// Number of machines evaluated.
     pub machines: usize,
-    /// Sum of the arms' lengths, m.
+    /// Reach of the arm, Σ |L_k|, m.
     pub reach: f64,
     /// Area of the reactionless workspace, m²; only for a machine with three drives and a b.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -127,12 +128,12 @@ pub fn removed_weights(machine: &Machine) -> Vec<Counterweight> {
 /// Fails if no counterweights balance the machine, or the request is invalid.
 pub fn balance_by_weights(
     machine: &Machine,
-    asked: &CounterweightRequest,
+    request: &CounterweightRequest,
     motion: Option<&Motion>,
     go_on: &mut dyn FnMut(SearchProgress) -> bool,
 ) -> Result<(Machine, CounterweightReport), NoCounterweights> {
-    let mut weighing = asked.weighing.clone();
-    let (placed, sought) = match &asked.lengths {
+    let mut weighing = request.weighing.clone();
+    let (placed, sought) = match &request.lengths {
         None => (place_weights(machine, &weighing).map_err(NoCounterweights::Weights)?, None),
         Some(lengths) => {
             let found = search(machine, lengths, go_on).map_err(NoCounterweights::Lengths)?;
@@ -143,9 +144,9 @@ pub fn balance_by_weights(
             (found.placed, Some(sought))
         }
     };
-    // With other lengths, the front starts from the machine with these lengths.
+    // If lengths were optimised, the front is that of the machine with these lengths.
     let base = if sought.is_some() { &placed.machine } else { machine };
-    let front = match asked.front {
+    let front = match request.front {
         Some(count) => front(base, &weighing, count).map_err(NoCounterweights::Front)?.points,
         None => Vec::new(),
     };
@@ -157,8 +158,8 @@ pub fn balance_by_weights(
 }
 
 impl LengthsReport {
-    fn of(asked: &LengthSearch, found: &FoundLengths) -> Self {
-        let names = asked.lengths.iter().map(|free| free.name.clone());
+    fn of(request: &LengthSearch, found: &FoundLengths) -> Self {
+        let names = request.lengths.iter().map(|free| free.name.clone());
         let [starts, agreeing] = found.starts;
         Self {
             lengths: names.zip(found.lengths.iter().copied()).collect(),
@@ -177,7 +178,7 @@ impl CounterweightReport {
         placed: &Placed,
         front_points: Vec<FrontPoint>,
         motion: Option<&Motion>,
-        asked: &CounterweightSpec,
+        request: &CounterweightSpec,
     ) -> Result<Self, MachineError> {
         // The bare machine includes the present payload, so that it does not count as added mass.
         let bare = placed.machine.without_counterweights()?;
@@ -187,7 +188,7 @@ impl CounterweightReport {
             let found = drive.rotor.unwrap_or_default();
             ChosenRotor { drive: drive.name.clone(), inertia: found.inertia, ratio: found.ratio }
         };
-        let payload = asked.payload.map(|ends| over_payloads(machine, ends, PAYLOAD_SAMPLES)).transpose()?;
+        let payload = request.payload.map(|ends| over_payloads(machine, ends, PAYLOAD_SAMPLES)).transpose()?;
         Ok(Self {
             measures: Measures::of(&bare, machine, motion),
             torque: motion.and_then(|motion| FrontPoint::of(placed, Some(motion), false).torque),
@@ -198,7 +199,7 @@ impl CounterweightReport {
             front: front_points.iter().map(FrontPoint::measures).collect(),
             front_points,
             sought: None,
-            rotors: asked.rotors.iter().map(chosen).collect(),
+            rotors: request.rotors.iter().map(chosen).collect(),
             payload: payload.unwrap_or_default(),
             is_balanced: inertia.is_balanced(),
             balance: BalanceConstants::of(&inertia),

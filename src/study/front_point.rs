@@ -52,7 +52,8 @@ impl FrontMeasure {
         }
     }
 
-    /// Returns the measure of one machine; `None` where it is not defined. A motion has as many drives as the machine.
+    /// Returns the measure of one machine; `None` where it is not defined. The motion must have as many drives as the
+    /// machine.
     pub fn of(self, placed: &Placed, motion: Option<&Motion>) -> Option<f64> {
         let point = FrontPoint::of(placed, motion.filter(|_| self == Self::Torque), self == Self::Workspace);
         match self {
@@ -69,8 +70,8 @@ impl FrontPoint {
         [self.added_mass, self.inertia]
     }
 
-    /// Returns the measures of one machine; a motion has as many drives as the machine. The workspace is computed only
-    /// if requested, because it takes longer than all other measures.
+    /// Returns the measures of one machine. The motion must have as many drives as the machine. The workspace is
+    /// computed only if requested, because it takes longer than all other measures.
     pub fn of(placed: &Placed, motion: Option<&Motion>, workspace: bool) -> Self {
         let machine = &placed.machine;
         Self {

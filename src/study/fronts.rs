@@ -24,7 +24,7 @@ pub struct FrontCase {
 impl FrontCase {
     /// Builds the request from a brief, which states the same bounds for machines with different links.
     pub fn of(name: impl Into<String>, machine: &Machine, brief: &DesignBrief) -> Self {
-        // Counterweights are removed here, so that the request stays equal while they change.
+        // Counterweights are removed here, so that changing them does not change the request.
         let machine = machine.without_counterweights().unwrap_or_else(|_| machine.clone());
         Self { name: name.into(), asked: brief.weighing(&machine), machine }
     }
@@ -73,9 +73,9 @@ impl Serialize for MachineFront {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("machine", &self.name)?;
         match &self.outcome {
-            Ok(told) => {
-                map.serialize_entry("front", &told.measures())?;
-                map.serialize_entry("front_points", &told.points)?;
+            Ok(measured) => {
+                map.serialize_entry("front", &measured.measures())?;
+                map.serialize_entry("front_points", &measured.points)?;
             }
             Err(why) => map.serialize_entry("refused", &why.to_string())?,
         }
@@ -83,8 +83,8 @@ impl Serialize for MachineFront {
     }
 }
 
-/// Query for the Pareto fronts of several machines, in their order. A machine that cannot be balanced gets the reason;
-/// the others are unaffected.
+/// Query for the Pareto fronts of several machines, in their order. For a machine that cannot be balanced, the answer
+/// has the reason in place of a front.
 #[derive(Debug)]
 pub struct Fronts {
     asked: FrontsRequest,
@@ -115,7 +115,7 @@ impl Query for Fronts {
         let Some(of) = self.asked.machines.get(known) else {
             return Portion::Done(std::mem::take(&mut self.done));
         };
-        // For each machine the search counts as one half of the work, the measures as the other.
+        // For each machine, the search is one half of the work and the measures are the other.
         let share = |half: f64| (known as f64 + 0.5 * half) / all;
         let outcome = match &mut self.now {
             Stage::Search(search) => match search.go_on(&mut |found| goes_on(share(found))) {

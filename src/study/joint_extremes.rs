@@ -57,7 +57,7 @@ pub struct Transmission {
     pub angle: f64,
     /// Time of the smallest value, s.
     pub time: f64,
-    /// Number of change points passed between two steps.
+    /// Number of change points passed between consecutive steps.
     pub passed: u64,
 }
 
@@ -66,14 +66,14 @@ pub struct Transmission {
 pub struct TiltExtremes {
     /// Whether all heights are zero, so that the planar model has no tilting moments.
     pub flat: bool,
-    /// |n_x|, N m.
+    /// Largest |n_x|, N m.
     pub x: Extreme,
-    /// |n_y|, N m.
+    /// Largest |n_y|, N m.
     pub y: Extreme,
-    /// Magnitude of the part that comes from motion alone, N m.
+    /// Largest magnitude of the part that comes from motion alone, N m.
     pub motion: Extreme,
-    /// Largest |s_k − z̄ g_k|, kg m²: the weighted first moment about the height of the centre of mass. At 0 no motion
-    /// tilts the base.
+    /// Largest |s_k − z̄ g_k|, kg m²: the height-weighted first moment, relative to the height z̄ of the centre of
+    /// mass. If it is 0, no motion tilts the base.
     pub residual: f64,
 }
 

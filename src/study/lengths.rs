@@ -35,7 +35,7 @@ pub struct LengthSearch {
     pub weighing: CounterweightSpec,
     /// Whether bounds of sites that are at plus or minus the length of a link change with this length.
     pub anywhere: bool,
-    /// Lower bound on the sum of the arms' lengths, Σ |L_k|, m.
+    /// Lower bound on the reach Σ |L_k|, m.
     pub least_reach: Option<f64>,
     /// Lower bound on the area of the reactionless workspace, m².
     pub least_workspace: Option<f64>,
@@ -69,7 +69,7 @@ pub struct SearchProgress {
     pub best: f64,
 }
 
-/// Why the search found no machine.
+/// Reason that the search found no machine.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoLengths {
     /// The machine has no such length.
@@ -101,7 +101,7 @@ pub enum NoLengths {
     None {
         /// Number of machines evaluated.
         machines: usize,
-        /// Why there is none with the first start's lengths, or how far the nearest machine violates the bounds.
+        /// Reason that the first start's lengths give no machine, or else the bound violations of the nearest machine.
         why: String,
     },
     /// The counterweights have no solution.
@@ -109,7 +109,7 @@ pub enum NoLengths {
     Weights(#[from] CounterweightError),
 }
 
-/// Lower bound on the penalty value of an infeasible machine, above that of any feasible one. The value grows with the
+/// Smallest objective value assigned to an infeasible machine, above that of any feasible one. The value grows with the
 /// constraint violation.
 const INFEASIBLE: f64 = 1e30;
 
@@ -164,14 +164,14 @@ pub fn search(
         best: None,
         least_violations: [f64::INFINITY; 2],
     };
-    let present = asked.lengths.iter().map(|free| share(free.ends, length(machine.spec(), &free.name)));
+    let present = asked.lengths.iter().map(|free| fraction_of_interval(free.ends, length(machine.spec(), &free.name)));
     let present: Vec<f64> = present.collect();
     let mut draws = ChaCha8Rng::seed_from_u64(asked.seed);
-    let mut ends = Vec::new();
+    let mut final_values = Vec::new();
     for start in 0..asked.starts {
         let drawn = present.iter().map(|_| (draws.next_u64() >> 11) as f64 / (1_u64 << 53) as f64).collect();
         let from = if start == 0 { present.clone() } else { drawn };
-        ends.push(downhill(&mut seen, from));
+        final_values.push(nelder_mead(&mut seen, from));
         seen.ended += 1;
         if seen.stopped {
             break;
@@ -181,12 +181,12 @@ pub fn search(
     let Some((value, lengths, placed)) = seen.best else {
         let why = match seen.asked.at(machine, &present) {
             Err(why) => why,
-            Ok(_) => short(seen.least_violations),
+            Ok(_) => describe_violations(seen.least_violations),
         };
         return Err(NoLengths::None { machines, why });
     };
-    let alike = ends.iter().filter(|end| (**end - value).abs() <= 1e-3 * value.abs()).count();
-    Ok(FoundLengths { placed, lengths, starts: [ends.len(), alike], machines })
+    let alike = final_values.iter().filter(|end| (**end - value).abs() <= 1e-3 * value.abs()).count();
+    Ok(FoundLengths { placed, lengths, starts: [final_values.len(), alike], machines })
 }
 
 fn check(machine: &Machine, asked: &LengthSearch) -> Result<(), NoLengths> {
@@ -218,7 +218,7 @@ fn check(machine: &Machine, asked: &LengthSearch) -> Result<(), NoLengths> {
     Ok(())
 }
 
-fn is_of(link: &Link, name: &str) -> bool {
+fn has_length(link: &Link, name: &str) -> bool {
     match &link.length {
         Length::Named(shared) => shared == name,
         Length::Metres(_) => link.name == name,
@@ -229,7 +229,7 @@ fn length(spec: &MachineSpec, name: &str) -> f64 {
     spec.own_lengths().find(|(own, _)| *own == name).map(|(_, length)| length).unwrap_or_default()
 }
 
-fn share([from, to]: [f64; 2], x: f64) -> f64 {
+fn fraction_of_interval([from, to]: [f64; 2], x: f64) -> f64 {
     ((x - from) / (to - from)).clamp(0.0, 1.0)
 }
 
@@ -259,7 +259,7 @@ impl LengthSearch {
         for (FreeLength { name, ends: [from, to] }, share) in self.lengths.iter().zip(shares) {
             let (was, now) = (length(&spec, name), from + (to - from) * share);
             let scale = now / was;
-            for link in spec.links.iter_mut().filter(|link| is_of(link, name)) {
+            for link in spec.links.iter_mut().filter(|link| has_length(link, name)) {
                 link.mass *= scale;
                 link.com *= scale;
                 link.com_normal *= scale;
@@ -276,8 +276,8 @@ impl LengthSearch {
         Ok((lengths, Machine::new(spec).map_err(|why| why.to_string())?))
     }
 
-    /// Returns lengths, machine with counterweights, and constraint violations of reach, m, and area, m²; or why there
-    /// is no machine.
+    /// Returns lengths, machine with counterweights, and constraint violations of reach, m, and area, m²; or the reason
+    /// that there is no machine.
     fn at(&self, machine: &Machine, shares: &[f64]) -> Result<(Vec<f64>, Placed, [f64; 2]), String> {
         let (lengths, changed) = self.changed(machine, shares)?;
         let mut violations = [(self.least_reach.unwrap_or(0.0) - changed.reach()).max(0.0), 0.0];
@@ -297,7 +297,7 @@ impl LengthSearch {
 }
 
 /// Returns the constraint violations of the nearest machine in words.
-fn short([reach, area]: [f64; 2]) -> String {
+fn describe_violations([reach, area]: [f64; 2]) -> String {
     let missing = [(reach, "m", "reach"), (area, "m²", "workspace")];
     let missing = missing.iter().filter(|(by, ..)| *by > 0.0).map(|(by, unit, of)| format!("{by:.4} {unit} of {of}"));
     format!("the nearest is {} short", missing.collect::<Vec<_>>().join(" and "))
@@ -353,7 +353,7 @@ impl Seen<'_> {
 }
 
 /// Runs Nelder–Mead within the box of fractions 0 to 1; returns the smallest value it finds.
-fn downhill(seen: &mut Seen<'_>, from: Vec<f64>) -> f64 {
+fn nelder_mead(seen: &mut Seen<'_>, from: Vec<f64>) -> f64 {
     let n = from.len();
     let mut corners: Vec<(f64, Vec<f64>)> = vec![(seen.value(&from), from.clone())];
     for i in 0..n {
@@ -370,7 +370,7 @@ fn downhill(seen: &mut Seen<'_>, from: Vec<f64>) -> f64 {
         let worst = corners[n].clone();
         let centroid: Vec<f64> =
             (0..n).map(|i| corners[..n].iter().map(|(_, at)| at[i]).sum::<f64>() / n as f64).collect();
-        // The worst corner, reflected through the centroid of the others and scaled by a factor.
+        // The worst corner, reflected through the centroid of the others at a distance scaled by a factor.
         let reflected = |by: f64| -> Vec<f64> {
             centroid.iter().zip(&worst.1).map(|(m, w)| (m + by * (m - w)).clamp(0.0, 1.0)).collect()
         };

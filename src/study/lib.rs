@@ -1,7 +1,7 @@
-//! Studies built on runs and machines. Runs side by side, around a nominal machine, and by frequency; signals and joint
-//! loads of one run. Cost of a plan, contents of a workspace, counterweights, and Pareto fronts of several machines.
-//! Imported motions and the nearest ones without reactions; the equations of the paper with present values; and the
-//! trim of a built machine from measured base forces.
+//! Studies built on runs and machines: comparisons of runs, tolerances around a nominal machine, spectra, signals, and
+//! joint loads. Plans: their cost, the contents of a workspace, and imported motions with the nearest reactionless
+//! ones. Machines: counterweights, Pareto fronts, the equations of the paper with present values, and the trim of a
+//! built machine from measured base forces.
 //!
 //! Others reach this crate as `stillbase::study`; `stillbase` alone follows semantic versioning.
 

@@ -7,13 +7,12 @@ use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{PerDrive, Vector};
 use stillbase_planning::Motion;
 
-/// Comparison of a machine with the one that it was made from, the bare machine.
+/// Comparison of a machine with the bare machine, from which it was made.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Measures {
     /// M − M_bare, kg.
     pub added_mass: f64,
-    /// Σ D_k less Σ D_k of the bare machine, kg m²; both as if all C_kl vanished, so that the value does not depend on
-    /// the pose.
+    /// Σ D_k less Σ D_k of the bare machine, kg m². Both are for zero C_kl, so the value does not depend on the pose.
     pub added_inertia: f64,
     /// M/M_bare + Σ D_k/Σ D_k of the bare machine; 2 if nothing was added. `None` if Σ D_k of the bare machine is not
     /// above 0.
@@ -24,8 +23,8 @@ pub struct Measures {
     pub beta: Option<Beta>,
 }
 
-/// Ratios to the bare machine in the same motion of its drives, each of root mean squares over time. 0 if nothing
-/// remains, 1 if nothing is gained; `None` if the bare machine's value is zero.
+/// Ratios of root mean squares over time to those of the bare machine, in the same motion of the drives. 0 if nothing
+/// remains, 1 if nothing changes; `None` if the bare machine's value is zero.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Beta {
     /// Ratio of the dynamic |f_B|.
@@ -46,7 +45,7 @@ const SAMPLES: usize = 2000;
 const ZERO_BELOW: f64 = 1e-12;
 
 impl Measures {
-    /// Compares a machine with the bare one; a motion has as many drives as both.
+    /// Compares a machine with the bare one. The motion must have as many drives as both.
     pub fn of(bare: &Machine, machine: &Machine, motion: Option<&Motion>) -> Self {
         let (before, after) = (Inertia::of(bare), Inertia::of(machine));
         let [was, is] = [&before, &after].map(|inertia| inertia.total_momentum());

@@ -1,4 +1,4 @@
-//! [`PlanSummary`]: cost of a planned task, or why it cannot be planned, and what would make it feasible.
+//! [`PlanSummary`]: cost of a planned task, or the obstacle to the plan with changes that would make it feasible.
 
 use serde::Serialize;
 
@@ -18,7 +18,7 @@ use stillbase_session::{Refusal, Run};
 pub struct PlanSummary {
     /// Whether the task can be planned.
     pub feasible: bool,
-    /// Why it cannot be planned.
+    /// Reason that the task cannot be planned.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
     /// Name of the scenario.
@@ -28,12 +28,12 @@ pub struct PlanSummary {
     /// Whether the machine has a b.
     #[serde(skip)]
     pub has_b: bool,
-    /// Intervals of b that serve all points of the task, rad.
+    /// Intervals of b at which all points of the task can be reached, rad.
     pub b_common: Vec<[f64; 2]>,
     /// Cost of the plan.
     #[serde(flatten)]
     pub cost: Option<PlanCost>,
-    /// What prevents the plan.
+    /// Obstacle to the plan, if it is not feasible.
     #[serde(flatten)]
     pub obstacle: Option<Obstacle>,
 }
@@ -65,16 +65,16 @@ pub struct PlanCost {
     /// For the fastest smooth motion: T/T* − 1, where T* has no limits on jerk.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gap: Option<f64>,
-    /// T with rounded corners, s, if the motion stops at the corners because that is faster.
+    /// Duration with rounded corners, s; given only if the motion stops at the corners because that is faster.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub blended: Option<f64>,
     /// Cost of a change of b.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub price: Option<PriceOfB>,
-    /// Three ways to perform the same motion of the end effector.
+    /// Comparison of three ways to perform the same motion of the end effector.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub alternatives: Option<Verdicts>,
-    /// The limit of a drive that is exceeded most, and by what factor.
+    /// The limit of a drive that is exceeded most, and the ratio of the peak to it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub over: Option<(String, f64)>,
     /// Angles of the drives at the start and after each cycle, rad.
@@ -97,7 +97,7 @@ pub struct PriceOfB {
     pub base_turn: Option<f64>,
 }
 
-/// What prevents a plan, and what would make it feasible.
+/// Obstacle to a plan, and changes that would make the task feasible.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Obstacle {
     /// Point at which the path is blocked.
@@ -113,7 +113,7 @@ pub struct Obstacle {
 
 impl PlanSummary {
     /// Summarises the task of a scenario, from its run or from the reason that there is none. `space` is the pose space
-    /// of its machine, if that has a b. With `base`, a change of b is assessed for that freely floating base.
+    /// of its machine, if the machine has a b. With `base`, a change of b is assessed for that freely floating base.
     ///
     /// # Errors
     /// Fails if the parameters of the base are invalid.

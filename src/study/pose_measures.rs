@@ -33,8 +33,8 @@ pub struct PoseMeasures {
 const ZERO_SINE_BELOW: f64 = 1e-9;
 
 impl PoseMeasures {
-    /// Returns all poses that reach a point, m, at b, rad; with four drives or more, the one nearest to the middle of
-    /// the joint limits.
+    /// Returns all poses that reach a point, m, at b, rad. With four drives or more, returns the pose nearest to the
+    /// middle of the joint limits.
     pub fn all(machine: &Machine, space: &PoseSpace, p: Vector, b: f64) -> Vec<Self> {
         match space.planes() {
             Ok(planes) => planes.map().poses(p, b).iter().map(|pose| Self::on_plane(planes.map(), *pose)).collect(),

@@ -12,7 +12,7 @@ use stillbase_simulation::signals::Signal;
 #[derive(Clone, Debug, Default)]
 pub struct SignalSamples {
     times: Vec<f64>,
-    /// Series by the path of the signal.
+    /// Series, each with the path of its signal.
     series: Vec<(String, Series)>,
     /// Signal of each series; empty if the series do not grow.
     signals: Vec<Signal>,
@@ -67,7 +67,8 @@ impl IncrementalQuery for SignalSamples {
 }
 
 impl SignalSamples {
-    /// Returns signals by path with their sampling times, s. Signals with more or fewer samples are left out.
+    /// Builds samples from sampling times, s, and series by path. Series whose length differs from the number of times
+    /// are omitted.
     pub fn of(times: Vec<f64>, signals: impl IntoIterator<Item = (String, Series)>) -> Self {
         let series = signals.into_iter().filter(|(_, series)| series.values().len() == times.len()).collect();
         Self { times, series, signals: Vec::new() }
@@ -97,7 +98,7 @@ impl SignalSamples {
 
     /// Returns the line of a signal over time, reduced for drawing in `columns` columns of pixels. Each column keeps
     /// its first, smallest, largest and last sample, so that no peak is lost and the picture equals that of all
-    /// samples. Columns are fixed in time while the interval moves.
+    /// samples. Columns keep their times while the interval moves.
     pub fn line(&self, path: &str, shown: [f64; 2], columns: usize) -> Vec<[f64; 2]> {
         let Some(series) = self.series(path) else { return Vec::new() };
         let range = self.beyond(shown);

@@ -1,8 +1,9 @@
 //! [`Series`]: the samples of one signal, with fast extremes and statistics of any range.
 //!
-//! Above the samples stands a pyramid of blocks: of 16 samples, of 16 such blocks, and so on. Each block stores its
-//! smallest and largest sample, sum and sum of squares. A range of a million samples then consists of some hundred
-//! blocks, and no peak is lost. Sums are formed block by block, without cancellation.
+//! A pyramid of blocks summarises the samples: blocks of 16 samples, of 16 such blocks, and so on. Each block stores
+//! its smallest and largest sample, sum and sum of squares. A range of a million samples then consists of some hundred
+//! blocks, and no peak is lost. Sums are added block by block, never as differences of running sums, so that nothing
+//! cancels.
 
 use std::ops::Range;
 

@@ -13,9 +13,8 @@
 //!
 //! By Parseval's theorem the last r is the window-weighted RMS, √(Σ (w x)² / Σ w²). Without a window it is the RMS of
 //! the samples; with the Hann window, the middle of the record has the largest weight. The mean is not removed: it
-//! appears at f = 0 and, with the Hann window, at the next frequency too. A motion that happens once is not a
-//! stationary signal: its density falls as the record grows longer. So densities are comparable only between records of
-//! one length.
+//! appears at f = 0 and, with the Hann window, at the next frequency too. A single motion is not a stationary signal:
+//! its density falls as the record grows longer. So densities are comparable only between records of one length.
 //!
 //! # Source
 //! P. D. Welch, *The use of fast Fourier transform for the estimation of power spectra* (1967), with one segment;
@@ -35,15 +34,15 @@ pub enum WindowFunction {
     /// Hann window ½ (1 − cos(2π n/N)), periodic: little leakage to distant frequencies.
     #[default]
     Hann,
-    /// No window: all samples have the same weight. Right for a motion from rest to rest that the record contains as a
-    /// whole.
+    /// No window: all samples have the same weight. Suits a motion from rest to rest that lies entirely within the
+    /// record.
     Rectangular,
 }
 
 impl WindowFunction {
-    fn weight(self, n: usize, of: usize) -> f64 {
+    fn weight(self, n: usize, count: usize) -> f64 {
         match self {
-            Self::Hann => 0.5 * (1.0 - (std::f64::consts::TAU * n as f64 / of as f64).cos()),
+            Self::Hann => 0.5 * (1.0 - (std::f64::consts::TAU * n as f64 / count as f64).cos()),
             Self::Rectangular => 1.0,
         }
     }
@@ -60,7 +59,7 @@ impl FromStr for WindowFunction {
     }
 }
 
-/// Why there is no spectrum.
+/// Reason that there is no spectrum.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SpectrumError {
     /// Too few samples to resolve frequencies.
@@ -215,7 +214,7 @@ impl JitterLimit {
         Some(v0 * (v1 / v0).powf(share))
     }
 
-    /// Returns frequencies, Hz, and limits, unit/√Hz, of the points; one point holds at every frequency.
+    /// Returns frequencies, Hz, and limits, unit/√Hz, of the points; a single point applies at every frequency.
     pub fn points(&self) -> &[(f64, f64)] {
         &self.points
     }

@@ -1,4 +1,4 @@
-//! [`WorkspaceReport`]: the reactionless workspace at a b: boundary, area, interior curves, and given points.
+//! [`WorkspaceReport`]: boundary, area and interior curves of the reactionless workspace at a b, and given points.
 
 use serde::Serialize;
 
@@ -8,7 +8,7 @@ use stillbase_mechanics::planar::{Vector, unit};
 use stillbase_planning::pose_space::{Outline, Planes, PoseSpace};
 use stillbase_planning::reactionless::{Boundary, ChangeCurve, DRIVE_PAIRS, PlaneMap};
 
-/// Region that the end effector reaches while b is held.
+/// Region that the end effector reaches at constant b.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WorkspaceReport {
     /// Area, m²; 0 if the workspace is a curve.
@@ -185,7 +185,7 @@ fn drives(pair: usize) -> [usize; 2] {
     DRIVE_PAIRS[pair].map(|k| k + 1)
 }
 
-/// Returns the parts on the sides of each pair of drives that has change points inside.
+/// Returns the parts into which change points divide the workspace, for each pair of drives that has any inside.
 fn sides(map: &PlaneMap, boundary: &Boundary, changes: &[ChangeCurve]) -> Vec<AreaOfSide> {
     let divided = (0..DRIVE_PAIRS.len()).filter(|&pair| changes.iter().any(|c| c.pair == pair));
     let part = |(pair, half_turns): (usize, i32)| {

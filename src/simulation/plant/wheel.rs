@@ -10,9 +10,10 @@
 //! τ_k. The wheel saturates where τ_w or Ω would exceed their limits; the remaining moment acts on the base.
 //!
 //! # At the maximum rate
-//! Ω never exceeds its limit, not even within a step: in each step of h seconds the torque is at most J (Ω_top − Ω)/h
-//! in either direction, which brings the wheel to the limit at the end of the step. So the step in which the limit is
-//! reached has the right impulse, and later steps give no torque beyond the limit.
+//! Ω never exceeds its limit Ω_top, not even within a step. In a step of h seconds, the torque is at most J (Ω_top −
+//! Ω)/h. With this torque, the wheel reaches the limit at the end of the step. The other direction has the
+//! corresponding limit. Thus the impulse is right even in the step that reaches the limit, and later steps give no
+//! torque beyond it.
 
 use stillbase_settings::key::Key;
 use stillbase_settings::keyed::keyed;
@@ -39,25 +40,25 @@ pub struct WheelState {
     pub rate: f64,
     /// τ_w, N m.
     pub torque: f64,
-    /// Whether the torque is less than wanted.
+    /// True if a limit makes the torque smaller than the controller wants.
     pub saturated: bool,
 }
 
 impl Wheel {
-    /// Returns the minimum and maximum torque, N m, for a step of given length, s, that begins at a rate, rad/s. It is
-    /// computed once per step, so that the limits do not jump within it.
+    /// Returns the minimum and maximum torque, N m, for a step of given length, s, that begins at a rate, rad/s. Call
+    /// this once per step, so that the bounds do not jump within the step.
     pub fn room(&self, rate: f64, step: f64) -> [f64; 2] {
         let limit = self.torque_limit.unwrap_or(f64::INFINITY);
         let top = self.speed_limit.unwrap_or(f64::INFINITY);
-        let to = |end: f64| self.inertia * (end - rate) / step;
-        [to(-top).clamp(-limit, 0.0), to(top).clamp(0.0, limit)]
+        let torque_to = |end_rate: f64| self.inertia * (end_rate - rate) / step;
+        [torque_to(-top).clamp(-limit, 0.0), torque_to(top).clamp(0.0, limit)]
     }
 
-    /// Returns the state of the wheel for a wanted torque, N m, at a rate, rad/s, with the torque limited to `room`, N
-    /// m.
+    /// Returns the state of the wheel for a requested torque, N m, at a rate, rad/s. The torque is limited to the
+    /// interval `room`, N m.
     #[inline]
     pub fn give(&self, wanted: f64, rate: f64, room: [f64; 2]) -> WheelState {
-        // In a run that diverges the torque becomes NaN, so that the run counts as failed.
+        // In a run that diverges, the torque becomes NaN, so that the run is recognised as failed.
         let torque = if rate.is_finite() { wanted.max(room[0]).min(room[1]) } else { f64::NAN };
         WheelState { rate, torque, saturated: torque != wanted }
     }

@@ -7,11 +7,12 @@
 //! | q̇_k − θ̇ | from the last two readings of the encoders; until there are two, the rate of the reference |
 //! | p_B, θ and their rates | by other instruments (gyroscopes, a star tracker), exactly, at the same instants |
 //!
-//! Control uses only these measurements, also for e(q) and q̇ at which it evaluates its model.
+//! Control uses only these measurements, and evaluates its model at the measured e(q) and q̇.
 //!
 //! # Before the first torque
-//! A torque takes effect `delay` after its reading. Until the first one does, the motors hold the pose against the
-//! weight of the model. If control is changed in motion, the motors keep the last torque.
+//! A torque takes effect one `delay` after the reading from which it is computed. Until the first torque takes effect,
+//! the motors hold the pose against the weight of the model. If control is changed in motion, they keep the last torque
+//! until then.
 
 use std::collections::VecDeque;
 
@@ -44,11 +45,11 @@ struct Sampling {
     count: f64,
     /// Step, s.
     step: f64,
-    /// Newest reading with its step. After an edit a step may be read again.
+    /// Newest reading and its step. After an edit, the same step may be read again.
     last: Option<(u64, DriveAngles)>,
-    /// Reading before it, at an earlier step.
+    /// Reading before the newest one, at an earlier step.
     before: Option<(u64, DriveAngles)>,
-    /// Torques that are not yet in effect, with the steps at which they will be.
+    /// Torques that are not yet in effect, N m, each with the step at which it takes effect.
     pending: VecDeque<(u64, PerDrive)>,
     /// Torque in effect, N m.
     held: Option<PerDrive>,
@@ -140,12 +141,13 @@ impl ControlLoop {
         self.limits.is_some_and(|limits| torque.iter().zip(limits.iter()).any(|(t, limit)| t.abs() >= *limit))
     }
 
-    /// Returns whether control is continuous, so that the slope at the end of a step is that at the start of the next.
+    /// Returns whether control is continuous and without a wheel. Then the slope at the end of a step is also the slope
+    /// at the start of the next.
     pub fn is_steady(&self) -> bool {
         self.sampling.is_none() && self.wheel.is_none()
     }
 
-    /// Discards readings and pending torques, because the machine is moved without motion.
+    /// Discards readings and torques, which no longer apply once the machine has been placed elsewhere.
     pub fn forget(&mut self) {
         if let Some(sampling) = &mut self.sampling {
             (sampling.last, sampling.before, sampling.held) = (None, None, None);
@@ -158,8 +160,8 @@ impl ControlLoop {
         self.wheel.map_or(0.0, |wheel| wheel.inertia)
     }
 
-    /// Returns the commands of motors and wheel at this instant for exact angles and rates, with compile-time size `N`,
-    /// on a base that `MOVES` or not.
+    /// Returns the commands of motors and wheel at the exact state `at`, with unit vectors and rates in `motion`. `N`
+    /// is the number of rotational coordinates; `MOVES` says whether the base moves.
     #[inline(always)]
     pub(super) fn command<const N: usize, const MOVES: bool>(
         &self,
@@ -194,8 +196,8 @@ impl ControlLoop {
         Actuation { torque, spin, rotor: self.rotor() }
     }
 
-    /// Returns the moment that the base exerts on the motors' stators, N m, including gears at the reference
-    /// accelerations.
+    /// Returns the moment that the base exerts on the motors' stators, N m. Geared rotors contribute as at the
+    /// reference accelerations.
     #[inline(always)]
     fn on_base<const N: usize, const MOVES: bool>(&self, torque: &[f64; N], reference: &Reference) -> f64 {
         let n = if MOVES { N - 1 } else { N };

@@ -19,7 +19,7 @@ pub enum Guide {
         /// Time at which it began, s.
         start: f64,
     },
-    /// The pointer and the slider.
+    /// A follower of the pointer and of the slider b.
     Follow(Follower),
 }
 

@@ -43,7 +43,7 @@ pub struct Simulation {
     pub(super) stuck_torque: [f64; MAX_CONTACTS],
     pub(super) now: Slope,
     pub(super) reference: Reference,
-    /// Energy and momenta less their sources at the start.
+    /// Energy and momenta at the start, less their sources.
     baseline: Baseline,
     pub(super) peaks: Peaks,
     pub(super) totals: Totals,
@@ -51,7 +51,7 @@ pub struct Simulation {
     pub(super) step_control: StepControl,
 }
 
-/// Values from which audits measure.
+/// Energy and momenta that audits subtract: J, kg m/s, kg m²/s.
 #[derive(Clone, Copy, Debug, Default)]
 struct Baseline {
     energy: f64,
@@ -81,7 +81,8 @@ impl Simulation {
     /// Builds a simulation with a given machine as plant, in place of the one that the setup derives from the model.
     ///
     /// # Errors
-    /// If it cannot hold the plant's payload, or if a moving base exceeds the maximum number of rotational coordinates.
+    /// If the machine cannot hold the plant's payload, or if a moving base exceeds the maximum number of rotational
+    /// coordinates.
     pub fn of_machine(setup: &Setup, machine: Machine, guide: Guide) -> Result<Self, MachineError> {
         let reference = guide.at(0.0);
         let (plant, load) = (setup.plant, setup.plant.payload);
@@ -187,7 +188,7 @@ impl Simulation {
         &self.reference
     }
 
-    /// Changes the source of the reference. The machine keeps its state, and control corrects the difference.
+    /// Changes the source of the reference. The machine keeps its state, and control corrects the tracking error.
     pub fn set_guide(&mut self, guide: Guide) {
         self.guide = guide;
         self.prepare();
@@ -230,7 +231,7 @@ impl Simulation {
         self.include();
     }
 
-    /// Moves the machine to the pose and rates of the reference without motion in between.
+    /// Places the machine at the pose and rates of the reference, without simulating a motion to it.
     pub fn move_to_reference(&mut self, guide: Guide) {
         self.guide = guide;
         let reference = self.guide.at(self.time());
@@ -245,14 +246,15 @@ impl Simulation {
         self.begin();
     }
 
-    /// Returns whether the run is at its end: the guide has arrived, the machine stands still on it, and no payload is
-    /// due.
+    /// Returns whether the run is at its end: the guide has arrived, the machine is at rest, and no change of the
+    /// payload is pending.
     pub fn is_settled(&self) -> bool {
         let e = PerDrive::from_fn(self.drives, |k| self.relative(k) - self.reference.q[k]);
         let still = self.now.qd.max_abs() < 1e-7 && self.now.base_velocity.norm() < 1e-7;
         let coming = self.load.is_some() && self.time() < self.load.until.unwrap_or(self.load.from);
         self.has_arrived() && still && !coming && {
-            // A machine on the reference that accelerates away from it is not at rest.
+            // A machine with zero rates that accelerates is not at rest; at the reference, a small acceleration is
+            // allowed.
             let pull = self.now.qdd.max_abs();
             pull < 1e-7 || (e.max_abs() < 1e-7 && pull < 1e-3)
         }
@@ -349,13 +351,14 @@ impl Simulation {
         self.totals.include(x, &wrench, now.force, time);
     }
 
-    /// Returns gravity and outer force in axes that move with the base: its acceleration is subtracted from gravity.
+    /// Returns gravity and outer force in axes that move with the base: the acceleration of the base is subtracted from
+    /// gravity.
     pub(super) fn field(&self) -> Surroundings {
         let around = *self.body().around();
         Surroundings { gravity: around.gravity - self.now.base_acceleration, ..around }
     }
 
-    /// Returns the figures that should be zero now; `plane` is b − b_ref, rad.
+    /// Returns the present audit figures, which should be zero; `plane` is b − b_ref, rad.
     fn audited(&self, plane: f64) -> Audit {
         let off = self.sources(self.body(), &self.now).less(&self.baseline);
         let gap = |chain: &[f64; MAX_DRIVES]| stillbase_mechanics::machine::place_of(chain, &self.now.e).norm();

@@ -25,7 +25,7 @@ pub(super) struct Segment {
     pub(super) from: f64,
     /// Its end, s since the step began.
     pub to: f64,
-    /// Interval of motion time in which the reference is evaluated, else extrapolated, s.
+    /// Interval of motion time in which the reference is evaluated, s; outside, it is extrapolated.
     pub(super) window: [f64; 2],
 }
 
@@ -38,7 +38,7 @@ impl Mismatch {
     /// Larger than any tolerance.
     pub const INFINITE: Self = Self([f64::INFINITY; 4]);
 
-    /// Returns the larger entries of both; NaN counts as larger.
+    /// Returns the larger of each pair of entries; NaN counts as larger.
     #[inline]
     pub fn worse(self, other: Self) -> Self {
         Self(std::array::from_fn(
@@ -87,13 +87,13 @@ pub(super) struct StepControl {
     pub(super) worst: Mismatch,
     /// Sum of the differences that step halving has found.
     pub(super) drift: Stray,
-    /// Peaks that the reference requires, used before the run has peaks of its own.
+    /// Estimated peaks of the reference motion, used until the run has reached its own peaks.
     pub(super) expected: Peaks,
-    /// Time until which these are used, s.
+    /// Time until which the expected peaks are used, s.
     pub(super) until: f64,
     /// Times of the motion at which the reference or its derivatives jump, s.
     pub(super) kinks: Vec<f64>,
-    /// A jump of q̈ of the reference up to this is ignored, rad/s².
+    /// Largest jump of the reference's q̈ that is ignored, rad/s².
     pub(super) level: f64,
 }
 
@@ -126,6 +126,6 @@ pub(super) struct Substep {
     pub end: StepState,
     /// Slopes of the second, third and fourth stage.
     pub stages: [Slope; 3],
-    /// Difference between the last stage and the end.
+    /// Difference between the last stage and the final state.
     pub off: Mismatch,
 }

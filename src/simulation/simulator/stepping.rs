@@ -1,18 +1,18 @@
 //! Integration of a step: in segments that end at the kinks of the reference, each with as many substeps as it needs.
 //!
 //! # Method
-//! The classical fourth-order Runge–Kutta method gives two slopes at the end of a substep: that of its last stage, and
-//! that of the final state, with which the next substep begins anyway. Their difference exceeds the error of the
-//! substep and so is an error estimate at almost no cost. If it exceeds [`ERROR_TOLERANCE`] of the peaks of the
-//! displayed quantities, the segment is integrated again with twice as many substeps, up to [`MAX_SUBSTEPS`]. This ends
-//! when the estimate, or the difference between two such integrations, is small enough. The next step begins with the
-//! same number of substeps and reduces it when possible. So stiff gains, springs and friction, and unforeseen kinks
-//! such as those of saturated motors, cost more substeps only where they occur.
+//! The classical fourth-order Runge–Kutta method gives two slopes at the end of a substep: those of its last stage and
+//! of its final state. The next substep needs the latter anyway. Their difference exceeds the error of the substep and
+//! so is an error estimate at almost no cost. If it exceeds [`ERROR_TOLERANCE`] of the peaks of the displayed
+//! quantities, the segment is integrated again with twice as many substeps, up to [`MAX_SUBSTEPS`]. Doubling ends when
+//! the estimate, or the difference between two such integrations, is small enough. The next step begins with the same
+//! number of substeps and reduces it when possible. So stiff gains, springs and friction, and unforeseen kinks such as
+//! those of saturated motors, cost more substeps only where they occur.
 //!
 //! Control corrects errors of forces and torques; position errors may accumulate. So every [`HALVING_PERIOD_STEPS`]-th
-//! step is also integrated with twice as many substeps. The resulting differences of end effector and base are assumed
-//! for every step and summed. The larger of this sum and the worst difference of slopes is the figure `step` of the
-//! audit. All decisions depend on the run alone, so that a replay takes the same substeps.
+//! step is also integrated with twice as many substeps. The resulting position differences of end effector and base are
+//! assumed for every step and summed. The larger of this sum and the worst difference of slopes is the figure `step` of
+//! the audit. All decisions depend on the run alone, so that a replay takes the same substeps.
 
 use super::guide::Guide;
 use super::simulation::Simulation;
@@ -32,9 +32,9 @@ const MAX_SUBSTEPS: u32 = 64;
 const HALVING_PERIOD_STEPS: u64 = 64;
 /// Maximum number of segments of a step.
 const MAX_SEGMENTS: usize = 64;
-/// A kink nearer to an end of a segment than this fraction of a step counts as at the end.
+/// Tolerance, as a fraction of a step, within which a kink counts as lying at an end of a segment.
 const KINK_TOLERANCE: f64 = 1e-7;
-/// Distance from a kink at which the reference beside it is evaluated, as a fraction of a step.
+/// Distance from a kink, as a fraction of a step, at which the reference on one side of it is evaluated.
 const KINK_OFFSET: f64 = 1e-8;
 /// A jump of q̈ below this fraction of its peak is ignored.
 const MIN_JUMP_RATIO: f64 = 1e-6;
@@ -95,7 +95,7 @@ impl Simulation {
             Guide::Motion { motion, start } => {
                 // The end of the step equals the beginning of the next one exactly.
                 let time = if at >= self.dt { (self.step + 1) as f64 * self.dt } else { self.time() + at };
-                beside(motion, time - start, segment.window, self.step_control.level)
+                one_sided_reference(motion, time - start, segment.window, self.step_control.level)
             }
             Guide::Follow(follower) => follower.reference(at),
         }
@@ -107,13 +107,13 @@ impl Simulation {
             Guide::Motion { motion, start } => {
                 let t = self.time() - start;
                 let after = self.kink_at(t).map_or(f64::NEG_INFINITY, |kink| kink + KINK_OFFSET * self.dt);
-                beside(motion, t, [after, f64::INFINITY], self.step_control.level)
+                one_sided_reference(motion, t, [after, f64::INFINITY], self.step_control.level)
             }
             Guide::Follow(follower) => follower.reference(0.0),
         }
     }
 
-    /// Returns the last kink at a time of the motion, s, within the tolerance.
+    /// Returns the last kink that lies within the tolerance of a time of the motion, s.
     fn kink_at(&self, t: f64) -> Option<f64> {
         let (kinks, near) = (&self.step_control.kinks, KINK_TOLERANCE * self.dt);
         let next = kinks.partition_point(|kink| *kink <= t + near);
@@ -126,22 +126,22 @@ impl Simulation {
         let Guide::Motion { start, .. } = &self.guide else {
             return (Segment { from, to: none.0, window: all }, none.1);
         };
-        let (t0, near, beside) = (self.time() - start, KINK_TOLERANCE * self.dt, KINK_OFFSET * self.dt);
+        let (t0, near, offset) = (self.time() - start, KINK_TOLERANCE * self.dt, KINK_OFFSET * self.dt);
         let mut window = all;
         if let Some(kink) = self.kink_at(t0 + from) {
-            window[0] = kink + beside;
+            window[0] = kink + offset;
         }
         let kinks = &self.step_control.kinks;
         let next = kinks.get(kinks.partition_point(|kink| *kink <= t0 + from + near));
         let Some(kink) = next.filter(|kink| **kink <= t0 + self.dt + near) else {
             return (Segment { from, to: self.dt, window }, false);
         };
-        window[1] = kink - beside;
+        window[1] = kink - offset;
         let to = if *kink >= t0 + self.dt - near { self.dt } else { kink - t0 };
         (Segment { from, to, window }, true)
     }
 
-    /// Integrates a whole step. Returns whether the slope at its end is that with which the next step begins.
+    /// Integrates a whole step. Returns whether the next step can begin with the slope at its end.
     pub(super) fn take_step(&mut self, reached: &mut StepState) -> bool {
         let measure = self.measure();
         let measured = represented_steps(self.step);
@@ -180,8 +180,8 @@ impl Simulation {
         let mut error = off;
         // While motors are saturated, feedback corrects no errors: the tolerance is 50 times tighter.
         let full = self.control_loop.is_full(&from.slope.torque) || self.control_loop.is_full(&reached.slope.torque);
-        let fine = if full { 0.02 * ERROR_TOLERANCE } else { ERROR_TOLERANCE };
-        while off.share(measure) > fine && error.share(measure) > fine && substeps < MAX_SUBSTEPS {
+        let tolerance = if full { 0.02 * ERROR_TOLERANCE } else { ERROR_TOLERANCE };
+        while off.share(measure) > tolerance && error.share(measure) > tolerance && substeps < MAX_SUBSTEPS {
             substeps *= 2;
             if count(substeps) == count(substeps / 2) {
                 continue;
@@ -205,7 +205,7 @@ impl Simulation {
             drift.angle += each * (a.base.angle - b.base.angle).abs();
         }
         // Half as many substeps give about eight times the difference.
-        if off.share(measure) < fine / 16.0 { (substeps / 2).max(1) } else { substeps }
+        if off.share(measure) < tolerance / 16.0 { (substeps / 2).max(1) } else { substeps }
     }
 
     /// Integrates a segment in equal substeps and returns the maximum error estimate.
@@ -270,7 +270,7 @@ impl Simulation {
         here.slope = by_drives!(size, self.body().moves(), slope_of(self, here));
     }
 
-    /// Evaluates a stage at a point with a reference.
+    /// Evaluates a Runge–Kutta stage at a state, for a reference.
     fn stage<const N: usize, const MOVES: bool>(
         &self,
         at: &ReducedState<N>,
@@ -284,7 +284,7 @@ impl Simulation {
     }
 }
 
-/// Storage for the slopes of stages, if wanted.
+/// Storage for the slopes of stages, if they are requested.
 type Kept<'a> = Option<&'a mut [Slope; 3]>;
 
 #[inline(never)]
@@ -350,8 +350,8 @@ fn tip(body: &MovingBody, x: &Slope) -> Vector {
     x.base.at + end_effector(&body.arm().end_effector, &x.e)
 }
 
-/// Returns the number of steps that an error measured at this step represents; `None` if it is not measured here. Early
-/// steps are measured more often, so that short runs are assessed too.
+/// Returns the number of steps that an error measured at this step represents; `None` if no error is measured at this
+/// step. Early steps are measured more often, so that short runs are assessed too.
 fn represented_steps(step: u64) -> Option<f64> {
     match step {
         0 => Some(1.0),
@@ -360,10 +360,10 @@ fn represented_steps(step: u64) -> Option<f64> {
     }
 }
 
-/// Returns the reference of a motion at a time, s, extrapolated from within a window of times. Where q̈ differs by at
-/// most `level`, rad/s², it returns the plain reference.
+/// Returns the reference of a motion at a time, s. Outside the window it is extrapolated from the nearest bound, unless
+/// q̈ differs there by at most `level`, rad/s².
 #[inline]
-fn beside(motion: &Motion, t: f64, [after, before]: [f64; 2], level: f64) -> Reference {
+fn one_sided_reference(motion: &Motion, t: f64, [after, before]: [f64; 2], level: f64) -> Reference {
     let within = t.max(after).min(before);
     let reference = motion.at(t);
     if within == t {

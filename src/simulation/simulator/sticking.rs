@@ -1,13 +1,13 @@
-//! Stick and slip: substeps end at the instants at which a Coulomb contact stops, reverses or breaks loose, so that the
-//! result does not depend on the step size.
+//! Stick and slip: substeps end at the instants at which a Coulomb contact (friction torque τ_C) stops, reverses or
+//! breaks loose. So the result does not depend on the step size.
 //!
 //! | event | condition | consequence |
 //! |---|---|---|
 //! | a sliding contact stops | its rate of sliding passes zero | sticks if τ_C can hold it, else slides the other way |
 //! | a stuck contact breaks loose | its holding torque exceeds τ_C | it slides |
 //!
-//! A substep is shortened to end at the first such instant, and this is repeated for each. A substep in which a contact
-//! reverses twice is halved until the first reversal is found.
+//! A substep is shortened to end at the first such event; the rest of the step is integrated in the same way. A substep
+//! in which a contact reverses twice is halved until the first reversal is found.
 
 use super::simulation::Simulation;
 use super::step_control::{Mismatch, Segment, StepState, Substep};
@@ -18,9 +18,9 @@ const MAX_PARTS: usize = 100;
 
 /// Contact event in a substep.
 enum Event {
-    /// At or before its end a contact stops or breaks loose.
+    /// The contact of this index stops or breaks loose at or before the end of the substep.
     Passed(usize),
-    /// A contact changes and changes back within it.
+    /// A contact changes its state and changes back within the substep.
     Between,
 }
 
@@ -29,7 +29,7 @@ enum Event {
 enum Cut {
     /// A substep at whose end the first contact stops or breaks loose.
     Here(Substep),
-    /// Another event is earlier: at most at this time since the step began, s.
+    /// Another event is earlier: try a substep that ends at this time since the step began, s.
     Sooner(f64),
 }
 
@@ -44,7 +44,7 @@ impl Simulation {
         limit - stuck_torque[i].abs() - away
     }
 
-    /// Lets stuck contacts slide that cannot hold.
+    /// Releases the stuck contacts whose holding torque exceeds τ_C, so that they slide.
     pub(super) fn release(&self, slope: &Slope, slip: &mut SlipDirections, stuck_torque: &[f64; MAX_CONTACTS]) {
         let contacts = self.body().contacts();
         for i in (0..contacts.len()).filter(|i| contacts.sticks(*i)) {
@@ -69,14 +69,15 @@ impl Simulation {
         self.margin(i, slip, at) < tolerance
     }
 
-    /// Returns whether a contact's state has ended by more than contacts that end simultaneously may differ.
+    /// Returns whether a contact's state ended clearly before the end of the substep, by more than the tolerance for
+    /// simultaneous events.
     fn is_long_over(&self, i: usize, slip: &SlipDirections, at: &StepState) -> bool {
         let tolerance =
             if slip[i] == 0 { -1e-6 * self.body().contacts().coulomb(i) } else { -Contacts::STICTION_SPEED };
         self.margin(i, slip, at) < tolerance
     }
 
-    /// Returns the contact event in a substep, if there is one, with the contact that is estimated to be first.
+    /// Returns the event in a substep, if any. If several contacts change, linear interpolation estimates the first.
     fn event(&self, from: &StepState, substep: &Substep) -> Option<Event> {
         let contacts = self.body().contacts();
         let able = || (0..contacts.len()).filter(|i| contacts.sticks(*i));
@@ -165,18 +166,19 @@ impl Simulation {
 
     /// Shortens a substep to the instant at which the state of contact i ends, by bracketing.
     fn shortened(&self, i: usize, from: &StepState, substep: Substep, segment: &Segment) -> Substep {
-        let holds = from.slip[i] == 0;
-        let scale = if holds { self.body().contacts().coulomb(i) } else { 1.0 };
+        let is_stuck = from.slip[i] == 0;
+        let scale = if is_stuck { self.body().contacts().coulomb(i) } else { 1.0 };
         let mut low = (from.at, self.margin(i, &from.slip, from).max(0.0));
         let mut high = (substep.end.at, self.margin(i, &from.slip, &substep.end));
         let mut best = substep;
-        let (near, width) = if holds { (1e-8, 1e-10) } else { (1e-15, 1e-14) };
+        let (near, width) = if is_stuck { (1e-8, 1e-10) } else { (1e-15, 1e-14) };
         let mut side = 0;
         for n in 0..60 {
             if high.0 - low.0 <= width * self.dt() || high.1.abs() <= near * scale {
                 break;
             }
-            // Illinois variant of regula falsi; bisection from a start at rest, until the contact has moved.
+            // Illinois variant of regula falsi. Bisection in every eighth iteration, and until a contact at rest has
+            // moved.
             let straight = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
             let halving = low.1 <= Contacts::STICTION_SPEED * scale || n % 8 == 7;
             let to = if halving { 0.5 * (low.0 + high.0) } else { straight.clamp(low.0, high.0) };
@@ -191,7 +193,7 @@ impl Simulation {
                 low = (to, margin);
                 high.1 *= if side == 1 { 0.5 } else { 1.0 };
                 side = 1;
-                if !holds && margin <= near {
+                if !is_stuck && margin <= near {
                     best = there;
                     break;
                 }
@@ -201,7 +203,7 @@ impl Simulation {
     }
 
     /// Makes contacts stick whose sliding rate is zero and whose acceleration does not point in the slip direction.
-    /// Contacts that cannot hold then slide the other way. Returns whether there was one.
+    /// Contacts that cannot hold then slide the other way. Returns whether any contact stopped.
     fn stick_stopped(&self, reached: &mut StepState, segment: &Segment) -> bool {
         let contacts = self.body().contacts();
         let mut changed = false;
@@ -215,12 +217,13 @@ impl Simulation {
             }
         }
         if changed {
-            self.hold(reached, segment);
+            self.stop_stuck(reached, segment);
         }
         changed
     }
 
-    /// Updates the contacts after a substep: those that have stopped stick, and those that cannot hold slide.
+    /// Updates the contacts after a substep: contacts that have stopped stick, and stuck contacts that cannot hold
+    /// slide.
     fn update_contacts(&self, reached: &mut StepState, segment: &Segment) {
         if !self.stick_stopped(reached, segment) {
             self.release(&reached.slope, &mut reached.slip, &reached.stuck_torque);
@@ -228,7 +231,7 @@ impl Simulation {
     }
 
     /// Stops stuck contacts exactly, evaluates the slope again, and releases contacts that cannot hold.
-    fn hold(&self, reached: &mut StepState, segment: &Segment) {
+    fn stop_stuck(&self, reached: &mut StepState, segment: &Segment) {
         reached.state = self.body().with_stuck_stopped(reached.state, &reached.slip);
         self.reevaluate(reached, segment);
         self.release(&reached.slope, &mut reached.slip, &reached.stuck_torque);

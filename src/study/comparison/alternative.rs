@@ -39,7 +39,7 @@ impl Alternative {
     pub const ALL: [Self; 6] =
         [Self::AsGiven, Self::Reactionless, Self::StraightLine, Self::OtherPose, Self::Wheel, Self::Slowly];
 
-    /// Returns whether a machine has this method; without redundancy, the end effector's motion determines drive 1.
+    /// Returns whether the scenario's machine can use this method: only a redundant machine can take another pose.
     pub fn is_of(self, scenario: &Scenario) -> bool {
         self != Self::OtherPose || scenario.machine.is_redundant()
     }
@@ -68,7 +68,8 @@ impl Alternative {
         }
     }
 
-    /// Returns the scenario of this method: the same points, machine, plant, base and control.
+    /// Returns the scenario of this method, with the same points, machine, plant, base and control. Except for
+    /// [`AsGiven`](Self::AsGiven), only [`Wheel`](Self::Wheel) has a reaction wheel.
     pub fn of(self, scenario: &Scenario) -> Scenario {
         if self == Self::AsGiven {
             return scenario.clone();
@@ -136,8 +137,8 @@ impl Alternative {
     }
 }
 
-/// Returns the angle of drive 1 at A and the task's b, rad, if the machine has planes or free drives at a point and a
-/// b.
+/// Returns the angle of drive 1 at A and the task's b, rad. `None` if the machine has neither planes nor free drives at
+/// a given point and b.
 fn start_of_first_drive(scenario: &Scenario) -> Option<f64> {
     let points = scenario.task.points();
     let space = PoseSpace::of(&scenario.machine).ok()?;

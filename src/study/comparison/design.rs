@@ -24,16 +24,16 @@ pub struct DesignCandidate {
 /// Measures of a machine, and its comparison with another one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignMeasures {
-    /// kg.
+    /// Mass of the machine, kg.
     pub mass: f64,
-    /// Σ D_k, kg m².
+    /// Inertia of all drives, Σ D_k, kg m².
     pub inertia: f64,
-    /// Residuals: of (7), largest |g_k|, kg m; and of (8), largest |C_kl|, kg m².
+    /// Residuals of the balance conditions: of (7), largest |g_k|, kg m; of (8), largest |C_kl|, kg m².
     pub residuals: [f64; 2],
     /// Comparison with the machine of the first run, in the first run's motion; without β if that motion does not
     /// apply.
     pub beside: Option<Measures>,
-    /// Why a comparison is missing.
+    /// Reason for a missing comparison.
     pub apart: Option<String>,
 }
 
@@ -121,7 +121,7 @@ impl DesignCandidate {
         self.machine == other.machine
     }
 
-    /// Returns why one motion of the drives cannot perform both tasks; `None` if it can.
+    /// Returns the difference due to which one motion of the drives cannot perform both tasks, if there is one.
     fn differs(&self, first: &Self) -> Option<&'static str> {
         if self.machine.end_effector() != first.machine.end_effector() {
             return Some("the arm's length");

@@ -19,9 +19,9 @@ pub struct ComparisonEntry {
     pub outcome: Result<Arc<ComparedRun>, String>,
     /// Whether the run is overlaid on plots and scene.
     pub shown: bool,
-    /// Whether the user added the row; it then stays when the task changes.
+    /// Whether the user added the row, which then remains when the task changes.
     pub kept: bool,
-    /// Comparison of its machine with that of the first run in the table.
+    /// Comparison of the run's machine with the machine of the first run in the table.
     pub design: Option<DesignMeasures>,
 }
 
@@ -35,7 +35,7 @@ impl ComparisonEntry {
     }
 }
 
-/// Table of runs: the alternatives for one task, and the runs that the user kept.
+/// Table of runs: the alternatives for one task, and the runs that the user added.
 #[derive(Clone, Debug)]
 pub struct Comparison {
     task: Scenario,
@@ -93,8 +93,8 @@ impl Comparison {
         }
     }
 
-    /// Replaces the alternatives by those of another task, unless the table shows them already. Kept rows, overlays and
-    /// the sort order stay.
+    /// Replaces the alternatives by those of another task, unless the table shows them already. Rows that the user
+    /// added, overlays and the sort order remain.
     pub fn follow(&mut self, found: &Arc<<AlternativeRuns as Query>::Answer>) {
         if self.ways.as_ref().is_some_and(|ways| Arc::ptr_eq(ways, found)) {
             return;
@@ -157,7 +157,7 @@ impl Comparison {
         self.beside.differ()
     }
 
-    /// Removes a kept run.
+    /// Removes a run that the user added.
     pub fn remove(&mut self, entry: usize) {
         if self.entries.get(entry).is_some_and(|e| e.kept) {
             self.entries.remove(entry);

@@ -40,7 +40,7 @@ impl ComparedRun {
     /// Runs a scenario.
     ///
     /// # Errors
-    /// If it cannot start, or one of its edits cannot apply.
+    /// If the scenario cannot start, or one of its edits cannot be applied.
     pub fn of(scenario: Scenario) -> Result<Self, Refusal> {
         Self::of_while(scenario, &mut |_| true)
     }
@@ -95,7 +95,7 @@ impl ComparedRun {
 pub fn alternatives(scenario: &Scenario) -> Vec<(Alternative, Scenario)> {
     let mut all: Vec<(Alternative, Scenario)> =
         Alternative::ALL.into_iter().filter(|way| way.is_of(scenario)).map(|way| (way, way.of(scenario))).collect();
-    // A wheel does not change the task, so a scenario with a wheel still counts as given.
+    // Wheels are not compared, because a wheel does not change the task.
     let given = |s: &Scenario| s.task == scenario.task && s.base.kind == scenario.base.kind;
     if scenario.edits.is_empty() && all.iter().skip(1).any(|(_, s)| given(s)) {
         all.remove(0);

@@ -14,7 +14,7 @@ pub struct ComparisonRow {
     pub way: Option<&'static str>,
     /// Results, or why there are none.
     pub outcome: Result<Summary, String>,
-    /// Comparison of its machine with that of the first run.
+    /// Comparison of the run's machine with the machine of the first run.
     pub design: Option<DesignMeasures>,
 }
 

@@ -35,7 +35,7 @@ pub struct Summary {
     pub miss: f64,
     /// Largest |τ_k| of any drive, N m.
     pub peak_torque: f64,
-    /// ∫ Σ |τ_k (q̇_k − θ̇)| dt, the wheel's too, J.
+    /// Energy of the motors without recuperation, ∫ Σ |τ_k (q̇_k − θ̇)| dt including the wheel, J.
     pub energy: f64,
     /// Largest rate of a reaction wheel, rad/s.
     pub wheel_rate: Option<f64>,
@@ -88,7 +88,7 @@ pub const SUMMARY_COLUMNS: [SummaryColumn; 15] = [
 ];
 
 impl SummaryColumn {
-    /// Returns the name in a CSV file, next to the unit; there the angle of the base is called an angle, not a tilt.
+    /// Returns the name in a CSV file, which calls the angle of the base an angle, not a tilt.
     pub fn name(&self) -> &'static str {
         if self.key == "base_tilt" { "base_angle" } else { self.key }
     }

@@ -113,7 +113,7 @@ impl BalanceEquations<'_> {
             let by = a[(row, j)] / link.mass;
             let on_it = |mass: &&BodyMass| mass.origin.link() == Some(j) && !is_payload(mass.origin);
             let parts = self.bodies.masses.iter().filter(on_it);
-            let parts = parts.map(|mass| (mass.origin, by * mass.kilograms * own(mass)));
+            let parts = parts.map(|mass| (mass.origin, by * mass.kilograms * com_distance(mass)));
             let symbol = format!("A_{{{},{}}} {}", row + 1, link.name, indexed_symbol("l", format!("c{}", link.name)));
             Term::plain(symbol, a[(row, j)] * link.com).from(parts.collect())
         };
@@ -263,7 +263,7 @@ impl BalanceEquations<'_> {
 }
 
 /// Returns the distance of a body's centre of mass from the root of its link, along the link, m.
-fn own(mass: &BodyMass) -> f64 {
+fn com_distance(mass: &BodyMass) -> f64 {
     mass.arms.iter().filter(|arm| arm.is_own).map(|arm| arm.value).sum()
 }
 

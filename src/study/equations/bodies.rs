@@ -4,9 +4,9 @@
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | m_j, l_cj, I_j | mass, centre of mass along it, and inertia of link j without what it carries | kg, m, kg m² |
+//! | m_j, l_cj, I_j | mass, distance of the centre of mass along the link, and inertia of link j alone | kg, m, kg m² |
 //! | w_j, x_j | mass and place of a counterweight of link j | kg, m |
-//! | m_p, x_p | the payload, and how far beyond the end effector it is | kg, m |
+//! | m_p, x_p | mass of the payload, and its distance beyond the end effector | kg, m |
 //! | r_cj | Σ_k a_jk e(q_k) | m |
 
 use super::equation::Origin;
@@ -25,7 +25,7 @@ pub(super) struct Arm {
     pub symbol: String,
     /// Length of the step, m.
     pub value: f64,
-    /// Whether it is the body's own l_c, as opposed to a length of a link.
+    /// Whether the length is the body's own l_c rather than a length of a link.
     pub is_own: bool,
 }
 
@@ -39,10 +39,10 @@ pub(super) struct BodyMass {
     /// Moment of inertia, kg m².
     pub inertia: f64,
     pub mass_symbol: String,
-    /// Empty if it has no inertia of its own.
+    /// Empty if the moment of inertia is zero.
     pub inertia_symbol: String,
     pub arms: Vec<Arm>,
-    /// Distance off its link's axis, m.
+    /// Distance of the centre of mass from its link's axis, m, positive to the left.
     pub normal: f64,
     /// Coefficients a_k, m.
     pub a: [Vector; MAX_DRIVES],
@@ -131,12 +131,12 @@ fn mass(
     origin: Origin,
     link: usize,
     [kilograms, inertia, along, normal]: [f64; 4],
-    [mass_symbol, inertia_symbol, own]: [String; 3],
+    [mass_symbol, inertia_symbol, com_symbol]: [String; 3],
     root: &[Arm],
 ) -> BodyMass {
     let part = &machine.resolved_links()[link];
     let mut arms = root.to_vec();
-    arms.push(Arm { drive: part.drive, sign: part.sign, symbol: own, value: along, is_own: true });
+    arms.push(Arm { drive: part.drive, sign: part.sign, symbol: com_symbol, value: along, is_own: true });
     let mut a = [Vector::default(); MAX_DRIVES];
     for arm in &arms {
         a[arm.drive] += arm.sign * arm.value;
@@ -197,7 +197,7 @@ const I: Vector = Vector::new(0.0, 1.0);
 impl BodyMotion {
     pub fn of(state: &DriveState) -> Self {
         let mut e = [Vector::default(); MAX_DRIVES];
-        // Computed independently of the closed forms' unit vectors, so that the two sides are independent.
+        // Computed here rather than taken from the closed forms, so that the two sides are independent.
         e.iter_mut().zip(state.q.iter()).for_each(|(e, q)| *e = Vector::new(q.cos(), q.sin()));
         Self { n: state.q.len(), e, qd: *state.qd.padded(), qdd: *state.qdd.padded() }
     }
@@ -206,7 +206,7 @@ impl BodyMotion {
         (0..self.n).map(of).sum()
     }
 
-    /// e(q_k).
+    /// Returns the unit vector e(q_k).
     pub fn unit(&self, k: usize) -> Vector {
         self.e[k]
     }
@@ -246,7 +246,7 @@ impl BodyMotion {
         (0..self.n).map(|k| rotor.rates[k] * self.qdd[k]).sum()
     }
 
-    /// Returns τ_k by virtual work: the work of all bodies when drive k alone turns, N m.
+    /// Returns τ_k, N m, by virtual work: the work of all bodies per radian that drive k alone turns.
     pub fn torque(&self, bodies: &Bodies, k: usize, gravity: Vector) -> f64 {
         let body = |mass: &BodyMass| {
             let turns = if mass.drive == k { mass.inertia * self.qdd[k] } else { 0.0 };

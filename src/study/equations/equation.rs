@@ -3,17 +3,17 @@
 use stillbase_mechanics::balance::Body;
 use stillbase_mechanics::machine::Machine;
 
-/// Body that a part of a term comes from.
+/// Body that contributes a part of a term.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// A body, and the link that it is or is mounted on, from 0.
+    /// A body, and the index of the link that it is or that carries it.
     Body(Body, usize),
-    /// The rotor of a drive's motor, from 0.
+    /// The rotor of the motor of the drive with this index.
     Rotor(usize),
 }
 
 impl Origin {
-    /// Returns the link that the body is or is mounted on.
+    /// Returns the index of the link that the body is or that carries it; `None` for a rotor.
     pub fn link(self) -> Option<usize> {
         match self {
             Self::Body(_, link) => Some(link),
@@ -96,8 +96,7 @@ pub struct Equality {
 const ROUNDING_TOLERANCE: f64 = 1e-12;
 
 impl Equality {
-    /// Returns a line whose sides agree within rounding; `scale` is the sum of the absolute values that were summed in
-    /// the terms.
+    /// Returns a line whose sides agree within rounding; `scale` is the sum of the absolute values of all summands.
     pub(super) fn new(
         name: impl Into<String>,
         unit: &'static str,
@@ -139,7 +138,7 @@ pub struct Equation {
     pub form: &'static str,
     /// Notes: deviations from the printed equation, omissions.
     pub notes: Vec<String>,
-    /// Lines of the equation, or why it does not apply to this machine.
+    /// Lines of the equation, or the reason that it does not apply to this machine.
     pub lines: Result<Vec<Equality>, String>,
 }
 
@@ -149,7 +148,7 @@ impl Equation {
         Some(self.lines.as_ref().ok()?.iter().all(Equality::holds))
     }
 
-    /// Returns whether the equation selects the optimum among many solutions, so that not meeting it is no fault.
+    /// Returns whether the equation selects the optimum among many solutions, so that a residual is no fault.
     pub fn is_choice(&self) -> bool {
         self.number == "10"
     }

@@ -1,8 +1,8 @@
 //! Every numbered equation of the paper with its present values: its meaning, its terms, their values, and the links
 //! that contribute.
 //!
-//! The two sides of an equation are computed independently: one link by link, the other by the closed forms that the
-//! rest of the program uses. So their agreement is a check.
+//! The two sides of an equation are computed independently: one as a sum over links, the other by the program's closed
+//! forms. So their agreement is a check.
 //!
 //! # Source
 //! Papadopoulos and Abu-Abed. The sign of gravity in (4) and the weight of (10) are corrected; notes state the
@@ -34,8 +34,8 @@ pub use written::{EquationCell, cells};
 pub const EQUATION_NUMBERS: [&str; 19] =
     ["1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13", "14", "15", "16", "A1", "A2", "A3"];
 
-/// Returns all equations for a machine at an instant, in the order of [`EQUATION_NUMBERS`]. The state has as many drives as the
-/// machine. Penalties are those of (10); if they do not fit the machine, all are 1.
+/// Returns all equations for a machine at an instant, in the order of [`EQUATION_NUMBERS`]. The state must have as many
+/// drives as the machine. `penalties` are those of (10); if they do not fit the machine, all are 1.
 pub fn equations(machine: &Machine, state: &DriveState, penalties: Preset) -> Vec<Equation> {
     let inertia = Inertia::of(machine);
     let bodies = bodies::Bodies::of(machine);
@@ -69,7 +69,7 @@ pub fn equations(machine: &Machine, state: &DriveState, penalties: Preset) -> Ve
 /// Couplings up to this fraction of the total inertia are attributed to the rounding of a table.
 const COUPLING_TOLERANCE: f64 = 1e-3;
 
-/// Returns why the mass matrix is not constant; `None` if it is.
+/// Returns the reason if the mass matrix is not constant, else `None`.
 fn not_constant(inertia: &Inertia) -> Option<String> {
     (inertia.pose_dependence() > COUPLING_TOLERANCE).then(|| {
         let left = ShortNumber((inertia.invariance_residual() * 1e4).round() * 1e-4);

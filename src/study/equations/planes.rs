@@ -8,11 +8,11 @@ use super::symbol::{indexed_symbol, symbol_of_name};
 use stillbase_mechanics::kinematics::end_effector;
 use stillbase_mechanics::machine::{Machine, RelativeAngle};
 
-/// Tolerance of lines on the plane, as a fraction of the sum of |terms|: that of a simulated motion that counts as
-/// reactionless.
+/// Tolerance of these equations, as a fraction of the sum of |terms|: simulated motions that count as reactionless meet
+/// it.
 const PLANE_TOLERANCE: f64 = 1e-6;
 
-/// The equations of the plane of a pose constant; λ of the machine, or why it has no b.
+/// Equations of the plane of a pose constant. `lambda` has the machine's λ, or the reason that it has no b.
 pub(super) struct PlaneEquations<'a> {
     pub instant: &'a Reactions<'a>,
     pub lambda: Result<Vec<f64>, String>,
@@ -24,7 +24,7 @@ struct Joint {
     /// Value, rad.
     value: f64,
     offset: f64,
-    /// Coefficient for each drive, ±1 or 0: q_k − q_1 = Σ way (a − offset).
+    /// Coefficient w for each drive, ±1 or 0: q_k − q_1 = Σ w_k (a − offset).
     ways: Vec<f64>,
 }
 
@@ -151,7 +151,7 @@ impl PlaneEquations<'_> {
         let spec = self.machine();
         let mut ways: Vec<Option<Vec<f64>>> = vec![None; n];
         ways[0] = Some(vec![0.0; angles.len()]);
-        // n passes suffice: no path is longer.
+        // n passes suffice, because no path has more than n − 1 angles.
         for _ in 0..n {
             for (i, angle) in angles.iter().enumerate() {
                 for (from, to, sign) in [(angle.from, angle.to, 1.0), (angle.to, angle.from, -1.0)] {

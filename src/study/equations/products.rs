@@ -12,7 +12,7 @@ struct Product {
     /// Multiplicity: 2 for the mixed term of a square.
     count: usize,
     lengths: Vec<String>,
-    /// Whether an l_c is a factor; then the product belongs to this mass alone.
+    /// Whether an l_c is a factor, so that the product belongs to this mass alone.
     is_own: bool,
     mass: (usize, String),
     part: (Origin, f64),
@@ -75,7 +75,7 @@ fn product(at: usize, mass: &BodyMass, value: f64, sign: f64, arms: &[&Arm]) -> 
 fn grouped(products: impl Iterator<Item = Product>) -> Vec<Term> {
     let mut groups: BTreeMap<(Vec<String>, bool, usize), Vec<Product>> = BTreeMap::new();
     for product in products {
-        // A product with an l_c forms a group of its own, together only with the equal mixed product of a square.
+        // A product with an l_c is grouped only with the equal mixed product of the same square.
         let own = if product.is_own { product.mass.0 } else { usize::MAX };
         let group = groups.entry((product.lengths.clone(), product.sign < 0.0, own)).or_default();
         match group.iter_mut().find(|known| known.mass.0 == product.mass.0) {

@@ -17,9 +17,9 @@ pub struct DriveState {
     pub q: DriveAngles,
     /// Drive rates, rad/s.
     pub qd: PerDrive,
-    /// Drive accelerations, rad/s².
+    /// Drive accelerations, rad/s²; in a frame of a run they are absolute.
     pub qdd: PerDrive,
-    /// The required b, rad: the control's reference, or that of the start of the motion; `None` if there is none.
+    /// The required b, rad: the reference of control, or b at the start of the planned motion; `None` if there is none.
     pub b: Option<f64>,
     /// Time of the instant.
     pub when: InstantKind,
@@ -36,7 +36,7 @@ pub enum InstantKind {
     Given,
 }
 
-/// Why a scenario has no state at a time.
+/// Reason that a scenario has no state at a time.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoInstant {
     /// The scenario cannot be run up to this time.
@@ -52,7 +52,8 @@ pub enum NoInstant {
 
 /// Rates and accelerations below this, rad/s and rad/s², count as rest.
 const REST_BELOW: f64 = 1e-4;
-/// Fraction of a motion's duration at which it is evaluated instead: rates and accelerations are both large there.
+/// While a run is at rest, its planned motion is evaluated at this fraction of its duration, where rates and
+/// accelerations are both large.
 const PLAN_FRACTION: f64 = 0.25;
 
 impl DriveState {
@@ -81,7 +82,7 @@ impl DriveState {
     /// Runs a scenario, with its edits, to a time, s, and returns the state there.
     ///
     /// # Errors
-    /// Fails if the scenario cannot be run up to this time, or the run ends before.
+    /// Fails if the scenario cannot be run up to this time, or the run ends earlier.
     pub fn at(scenario: &Scenario, time: f64) -> Result<Self, NoInstant> {
         let (mut found, mut end) = (None, 0.0);
         let done = replay_while(scenario, |_, frame| {
@@ -97,7 +98,7 @@ impl DriveState {
         }
     }
 
-    /// Returns the state of a frame; while the run is at rest, that of a quarter of its planned motion.
+    /// Returns the state of a frame; while the run is at rest, the state at a quarter of its planned motion.
     pub fn of(run: &Run, frame: &Frame) -> Self {
         let rests = frame.qd.max_abs().max(frame.qdd.max_abs()) < REST_BELOW;
         match run.motion().filter(|_| rests) {

@@ -44,7 +44,7 @@ pub struct StatedEquation {
     pub form: String,
     /// Notes: deviations from the printed equation, omissions.
     pub notes: Vec<String>,
-    /// Why it does not apply to this machine.
+    /// Reason that the equation does not apply to this machine.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why_not: Option<String>,
     /// Whether every line holds; `None` if there are no lines.
@@ -80,7 +80,7 @@ pub struct StatedTerm {
     pub symbol: String,
     /// Value, with its sign.
     pub value: f64,
-    /// Contributions of bodies that are not zero.
+    /// Non-zero contributions of bodies.
     pub parts: Vec<StatedPart>,
 }
 

@@ -1,4 +1,4 @@
-//! Symbols with indices. As text, `_{…}` encloses an index, `l_{c1}`, and a transpose is `ᵀ`.
+//! Symbols with indices. In text, `_{…}` encloses an index, as in `l_{c1}`, and `ᵀ` marks a transpose.
 
 /// Vertical position of a piece of a symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,7 +11,7 @@ pub enum Level {
     Raised,
 }
 
-/// Splits a symbol into pieces. The T of a transpose is a piece of its own, because few fonts have it as a superscript.
+/// Splits a symbol into pieces. The T of a transpose is a separate piece, because few fonts have it as a superscript.
 pub fn pieces(symbol: &str) -> impl Iterator<Item = (&str, Level)> {
     symbol.split("_{").enumerate().flat_map(|(i, piece)| {
         let (index, rest) = if i == 0 { ("", piece) } else { piece.split_once('}').unwrap_or((piece, "")) };

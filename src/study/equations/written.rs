@@ -19,7 +19,7 @@ pub struct EquationCell<'a> {
 }
 
 /// Lays out a line with a number of decimals: terms of the left side, `=`, terms of the right side. If the right side
-/// is 0, the value of the left side is written below it.
+/// is 0, the value of the left side is written below the 0.
 pub fn cells(line: &Equality, decimals: usize) -> Vec<EquationCell<'_>> {
     let left = line.left.iter().enumerate().map(|(i, term)| of_term(term, i == 0, decimals));
     let mut all: Vec<EquationCell<'_>> = left.collect();

@@ -11,12 +11,12 @@ use stillbase_query::{ProgressCallback, part};
 use stillbase_session::scenario::{Task, TaskKind};
 use stillbase_settings::number::counted;
 
-/// Fraction of the progress that the assessment of the given motion counts for; the rest is the search.
+/// Fraction of the work for the assessment of the given motion; the rest is the search.
 const ACCOUNT_SHARE: f64 = 0.3;
 
 /// Returns the motion given by drive angles, and candidates for a proposal, the best first.
 pub(super) fn of_drives(
-    asked: &Request,
+    request: &Request,
     judge: &MotionEvaluator,
     space: &PoseSpace,
     samples: &Samples,
@@ -25,13 +25,13 @@ pub(super) fn of_drives(
     let path = samples.path(0.0).ok_or(MotionImportError::TooDense)?;
     let given = judge.given(timed_path(path, samples), &mut part(goes_on, [0.0, ACCOUNT_SHARE]));
     let mean = given.account.b_mean;
-    // All drives turned by whole turns give the same pose; choose the equivalent b nearest to the motion.
-    let wanted = asked.b.map_or(mean, |b| b + space.period() * ((mean - b) / space.period()).round());
-    let which = if asked.b.is_some() { "the b asked for" } else { "the mean b" };
+    // Whole turns of all drives change b but not the pose: choose the equivalent b nearest to the motion's mean.
+    let wanted = request.b.map_or(mean, |b| b + space.period() * ((mean - b) / space.period()).round());
+    let which = if request.b.is_some() { "the b asked for" } else { "the mean b" };
     let task = |samples: Samples| Task::sampled(TaskKind::Given, samples, None, &judge.machine).ok();
     let mut candidates = Vec::new();
-    let mut lost = None;
-    if asked.keep != Some(PreservedPath::Joints) {
+    let mut path_refusal = None;
+    if request.keep != Some(PreservedPath::Joints) {
         let mut add = |b: f64, why: String| match same_tip(space, &judge.model, samples, b, Rule::default()) {
             Ok(moved) => {
                 let made = moved.and_then(task).map(|task| MotionCandidate { way: "same-tip", why, task });
@@ -42,9 +42,9 @@ pub(super) fn of_drives(
         };
         let near =
             || nearest_b(space, &judge.model, samples, Rule::default(), &mut part(goes_on, [ACCOUNT_SHARE, 1.0]));
-        lost = if let Err(NotFollowable { drives }) = space.follows_curves() {
+        path_refusal = if let Err(NotFollowable { drives }) = space.follows_curves() {
             Some(format!("{} held to a b move the end effector along one curve of their own", counted(drives, "drive")))
-        } else if let Some((b, _)) = asked.b.is_none().then(near).flatten() {
+        } else if let Some((b, _)) = request.b.is_none().then(near).flatten() {
             let why = "of all b that reach every point of its path, the one that moves the drives least";
             // Between the samples that determined b, the path may leave the workspace slightly.
             let stop = match add(b, why.into()) {
@@ -56,14 +56,14 @@ pub(super) fn of_drives(
             add(wanted, format!("{which} reaches every point of its path")).map(|stop| stop.to_string())
         };
     }
-    if asked.keep == Some(PreservedPath::Tip) {
-        let candidates = match lost {
+    if request.keep == Some(PreservedPath::Tip) {
+        let candidates = match path_refusal {
             Some(why) if candidates.is_empty() => Err(why.into()),
             _ => Ok(candidates),
         };
         return Ok(MotionProposals { given: Some(given), candidates });
     }
-    let why = match (asked.keep, lost) {
+    let why = match (request.keep, path_refusal) {
         (Some(_), _) => "the relative joint angles are to be kept".into(),
         (None, Some(stop)) => format!("the end effector's path cannot be kept: {stop}"),
         (None, None) => "the end effector's path cannot be kept within the rules".into(),

@@ -1,5 +1,5 @@
-//! A motion of the end effector at constant b, for machines with free drives at a point and a b: the first posture that
-//! can be planned.
+//! A motion of the end effector at constant b, for machines with free drives at a point and a b. The first posture that
+//! can be planned is used.
 
 use super::judge::{MotionCandidate, MotionEvaluator};
 use crate::advice::Advice;
@@ -14,15 +14,15 @@ use stillbase_settings::number::fixed;
 
 /// Number of points of a path at which the reachable b are computed.
 const PATH_POINTS: usize = 25;
-/// The b to try, the best first, as fractions of the interval of those that reach all of the path.
+/// Values of b to try, the best first, as fractions of the interval of b that reaches the whole path.
 const B_FRACTIONS: [f64; 5] = [0.5, 0.3, 0.7, 0.1, 0.9];
 /// Postures to try at each b, the best first.
 const POSTURES: [Posture; 4] = [Posture::LeastRates, Posture::MidRange, Posture::LeastTorque, Posture::Orientation];
 
-/// Returns the initial pose for minimum-norm rates, and the motion at the requested b, rad, or at one that serves the
-/// path.
+/// Returns the initial pose for minimum-norm rates, and the motion at the requested b, rad, or at a b that reaches the
+/// whole path.
 pub(super) fn held_b_motion(
-    asked: Option<f64>,
+    fixed_b: Option<f64>,
     judge: &MotionEvaluator,
     space: &PoseSpace,
     samples: &Samples,
@@ -31,7 +31,7 @@ pub(super) fn held_b_motion(
 ) -> (Option<DriveAngles>, Result<Vec<MotionCandidate>, Advice>) {
     let start = |b: f64| space.pose_at_nearest_b(samples.point(0), b);
     let points: Vec<Vector> = (0..PATH_POINTS).map(|i| curve.at(i as f64 / (PATH_POINTS - 1) as f64).p).collect();
-    let (mut tried, range) = match (asked, widest(space, &points)) {
+    let (mut tried, range) = match (fixed_b, widest(space, &points)) {
         (Some(b), _) => (vec![b], None),
         (None, Ok([low, high])) => (B_FRACTIONS.map(|share| low + share * (high - low)).to_vec(), Some([low, high])),
         (None, Err(why)) => return (start(0.0), Err(why.into())),
@@ -66,7 +66,7 @@ pub(super) fn held_b_motion(
     (start(tried[0]), Err(refused.unwrap_or_default().into()))
 }
 
-/// Returns the widest interval of b that reach all points, or the reason that there is none.
+/// Returns the widest interval of b that reaches all points, or the reason that there is none.
 fn widest(space: &PoseSpace, points: &[Vector]) -> Result<[f64; 2], String> {
     let mut sets = Vec::with_capacity(points.len());
     for (i, p) in points.iter().enumerate() {

@@ -22,8 +22,8 @@ pub struct GivenMotion {
 }
 
 impl GivenMotion {
-    /// Builds a motion from samples of a machine's drive angles or end effector. Whole turns are added to single drives
-    /// if that brings the first pose within the joint limits, because angles may have been wrapped.
+    /// Builds a motion from samples of a machine's drive angles or end effector. Angles may have been wrapped: whole
+    /// turns are added to a drive if they bring the first pose within the joint limits.
     pub fn new(machine: &Machine, coordinates: Coordinates, names: Vec<String>, samples: Samples) -> Self {
         let mut lifted = vec![0.0; samples.columns()];
         let first = samples.values(0);

@@ -14,7 +14,7 @@ use stillbase_settings::number::fixed;
 pub struct ImportedMotion {
     /// Name of the machine.
     pub machine: String,
-    /// What the samples give: `drives` or `tip`.
+    /// Coordinates that the samples give: `drives` or `tip`.
     pub content: &'static str,
     /// Number of samples.
     pub samples: usize,
@@ -30,16 +30,17 @@ pub struct ImportedMotion {
     pub smoothed_by: Option<f64>,
     /// Uncertainty of the second derivative of each column, rad/s² or m/s².
     pub uncertainty: Vec<f64>,
-    /// Smallest and largest b at the samples, rad; the spline between them may exceed these. `None` for the end
-    /// effector.
+    /// Smallest and largest b at the samples, rad; the spline between the samples may exceed these. `None` for samples
+    /// of the end effector.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub b_samples: Option<[f64; 2]>,
-    /// Assessment of the given motion; for the end effector, it is that of minimum-norm rates. `None` if these fail.
+    /// Assessment of the given motion; for samples of the end effector, of minimum-norm rates. `None` if these cannot
+    /// follow the samples.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub given: Option<MotionEffects>,
     /// Whether there is a proposal.
     pub feasible: bool,
-    /// Why there is no proposal.
+    /// Reason that there is no proposal.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<Advice>,
     /// The nearest motion without reactions.
@@ -56,7 +57,7 @@ pub struct ImportedMotion {
     pub as_given: Option<Scenario>,
 }
 
-/// A second derivative with more uncertainty than this fraction of its peak is remarked on.
+/// A note is made if the uncertainty of a second derivative exceeds this fraction of its peak.
 const MAX_UNCERTAINTY: f64 = 0.05;
 /// Peaks of a second derivative below this, rad/s² or m/s², count as rest.
 const MIN_PEAK: f64 = 1e-9;
@@ -94,7 +95,7 @@ impl ImportedMotion {
     }
 
     fn notes_of(&self, motion: &GivenMotion) -> Vec<Advice> {
-        // Without a spline there are no second derivatives, and no motion to remark on.
+        // Without a spline there are no second derivatives, and no motion that a note could be about.
         let Some(peaks) = motion.second_derivatives() else { return Vec::new() };
         let is_of_drives = motion.coordinates == Coordinates::Drives;
         let unit = if is_of_drives { "rad/s²" } else { "m/s²" };

@@ -14,11 +14,12 @@ use stillbase_session::Refusal;
 
 /// Minimum integration step of a proposal's scenario, s.
 const MIN_STEP: f64 = 1e-4;
-/// Number of instants at which a motion is evaluated: per sample, and its lower and upper bound.
+/// Number of instants at which a motion is evaluated: number per sample, minimum and maximum.
 const INSTANTS_PER_SAMPLE: usize = 8;
 const MIN_INSTANTS: usize = 4000;
 const MAX_INSTANTS: usize = 200_000;
-/// Fractions of the work done once the machine is analysed, and once candidates are found; the rest is simulating them.
+/// Fractions of the work done when the machine has been analysed, and when candidates have been found. Their simulation
+/// is the rest.
 const ANALYSED_AT: f64 = 0.05;
 const SEARCHED_AT: f64 = 0.5;
 

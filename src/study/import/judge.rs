@@ -37,7 +37,7 @@ pub struct MotionEffects {
     pub peak_torque: Vec<f64>,
     /// Largest |rate| of each motor, rad/s.
     pub peak_speed: Vec<f64>,
-    /// The limit of a drive that is exceeded most, and by what factor.
+    /// The limit of a drive that is exceeded most, and the ratio of the peak to it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub over: Option<(String, f64)>,
     /// Largest violation of the limits of a relative angle, rad; 0 if there is none.
@@ -52,7 +52,7 @@ pub struct MotionEffects {
     pub angular_momentum_end: f64,
     /// Largest |q̇_k| at the end, rad/s.
     pub speed_end: f64,
-    /// Points of n_B over time, for drawing: s, N m.
+    /// Samples of n_B over time, for drawing: s and N m.
     #[serde(skip)]
     pub moment: Vec<[f64; 2]>,
 }
@@ -60,9 +60,9 @@ pub struct MotionEffects {
 /// A proposed motion, simulated.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Proposal {
-    /// How it was obtained: `same-tip`, `turned`, `on-plane` or `as-given`.
+    /// Method by which it was found: `same-tip`, `turned`, `on-plane` or `as-given`.
     pub way: &'static str,
-    /// Why this motion was chosen, in words.
+    /// Reason for choosing this motion, in words.
     pub why: String,
     /// Mean pose constant, rad.
     pub b: f64,
@@ -101,7 +101,7 @@ pub(super) struct AssessedMotion {
 
 /// A machine with everything needed to assess its motions.
 pub(super) struct MotionEvaluator {
-    /// The scenario, whose task is not used.
+    /// The scenario; its task is not used.
     pub scenario: Scenario,
     pub machine: Machine,
     pub model: Inertia,
@@ -111,7 +111,7 @@ pub(super) struct MotionEvaluator {
 }
 
 impl MotionEvaluator {
-    /// Builds the assessor of a scenario's machine, which evaluates motions at a number of instants.
+    /// Builds the evaluator of a scenario's machine, which evaluates motions at a number of instants.
     pub fn new(scenario: &Scenario, instants: usize) -> Self {
         let scenario = Scenario { compare_b: None, edits: Vec::new(), ..scenario.clone() };
         let machine = scenario.machine.clone();
@@ -196,8 +196,8 @@ impl MotionEvaluator {
         Scenario { task, step, title, ..self.scenario.clone() }
     }
 
-    /// Returns a scenario that runs a given motion; for the end effector with minimum-norm rates from the pose at b,
-    /// rad. `None` if the samples give no valid task.
+    /// Returns a scenario that runs a given motion; for samples of the end effector, with minimum-norm rates from the
+    /// pose at b, rad. `None` if the samples give no valid task.
     pub fn as_given(&self, motion: &GivenMotion, b: f64, step: f64) -> Option<Scenario> {
         let sampled = |kind, b| Task::sampled(kind, motion.samples.clone(), Some(b), &self.machine).ok();
         let task = match motion.coordinates {
@@ -243,7 +243,7 @@ impl MotionEvaluator {
         })
     }
 
-    /// Returns why constant b does not make the proposal reactionless.
+    /// Returns the reason that the proposal is not reactionless despite its constant b, with a remedy.
     pub fn why_not_reactionless(&self, proposal: &Proposal, given: Option<&MotionEffects>) -> Advice {
         let most = |a: &MotionEffects| a.peak_torque.iter().fold(0.0, |m: f64, x| m.max(*x));
         if given.is_some_and(|given| most(&proposal.account) < 1e-6 * most(given)) {

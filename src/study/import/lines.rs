@@ -3,7 +3,7 @@
 use super::imported::ImportedMotion;
 use super::judge::{MotionEffects, Proposal};
 
-/// A value of both motions.
+/// A value of the given and of the proposed motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ComparedNumber {
     /// Name of the value.

@@ -1,8 +1,8 @@
 //! Motions given by samples: the reactions of such a motion, and the nearest motion without reactions.
 //!
-//! A quintic spline interpolates all samples. The proposal keeps the timing and holds b constant: with the same motion
-//! of the end effector if possible, else with the arm turned as a whole. It counts as reactionless only after a
-//! simulation.
+//! A quintic spline interpolates all samples. The proposal has the same timing and a constant b. It keeps the motion of
+//! the end effector if possible; otherwise the arm is turned as a whole. It counts as reactionless only if a simulation
+//! confirms this.
 //!
 //! | what | type |
 //! |---|---|

@@ -1,4 +1,5 @@
-//! A motion of the end effector on a plane b = const, for machines with closed-form planes: followed on one sheet.
+//! A motion of the end effector on a plane b = const, for machines with closed-form planes. The path is followed on one
+//! sheet of the plane.
 
 use super::judge::{MotionCandidate, MotionEvaluator};
 use crate::advice::Advice;
@@ -13,10 +14,10 @@ use stillbase_session::scenario::{Task, TaskKind};
 /// Number of points of a path at which the reachable b are computed.
 const PATH_POINTS: usize = 257;
 
-/// Returns the initial pose for minimum-norm rates, and the motion on the requested plane, rad, or on one that serves
-/// the path.
+/// Returns the initial pose for minimum-norm rates, and the motion on a plane. Its b, rad, is the requested one, or one
+/// that reaches the path.
 pub(super) fn held_plane_motion(
-    asked: Option<f64>,
+    fixed_b: Option<f64>,
     judge: &MotionEvaluator,
     space: &PoseSpace,
     planes: &Planes,
@@ -24,13 +25,13 @@ pub(super) fn held_plane_motion(
     curve: &Curve,
 ) -> (Option<DriveAngles>, Result<Vec<MotionCandidate>, Advice>) {
     let (map, curves) = (planes.map(), std::slice::from_ref(curve));
-    let (b, why) = match asked {
+    let (b, why) = match fixed_b {
         Some(b) => (b, "b is the one asked for".to_owned()),
         None => {
-            let serves = |set: BSet| set.intervals.into_iter().max_by(|x, y| (x[1] - x[0]).total_cmp(&(y[1] - y[0])));
-            let all = serves(trace::common_b(map, curves, PATH_POINTS));
-            // If no b serves all points, the b of the first point yields the reason.
-            let first = map.reach(samples.point(0)).ok().and_then(serves);
+            let widest = |set: BSet| set.intervals.into_iter().max_by(|x, y| (x[1] - x[0]).total_cmp(&(y[1] - y[0])));
+            let all = widest(trace::common_b(map, curves, PATH_POINTS));
+            // If no b reaches all points, the attempt at a b that reaches the first point yields the reason.
+            let first = map.reach(samples.point(0)).ok().and_then(widest);
             let what = if all.is_some() { "all of the path" } else { "its first point" };
             let range = all.or(first).unwrap_or([0.0; 2]);
             let b = 0.5 * (range[0] + range[1]);
@@ -38,7 +39,7 @@ pub(super) fn held_plane_motion(
         }
     };
     let follow = |b: f64| trace::follow(map, curves, b, None, Rule::default()).map(|_| b);
-    let followed = follow(b).map(|b| (b, why)).or_else(|stop| match (stop.nearest_b.zip(stop.displayed_b), asked) {
+    let followed = follow(b).map(|b| (b, why)).or_else(|stop| match (stop.nearest_b.zip(stop.displayed_b), fixed_b) {
         (Some((b, shown)), None) => {
             follow(b).map(|b| (b, format!("b = {shown} rad is one at which all of it can be followed")))
         }

@@ -7,7 +7,7 @@ use stillbase_planning::pose_space::NoPoseSpace;
 use stillbase_query::Shared;
 use stillbase_session::scenario::Scenario;
 
-/// What the proposal keeps of given drive angles.
+/// Property of given drive angles that the proposal keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PreservedPath {
     /// The end effector's motion.
@@ -19,23 +19,23 @@ pub enum PreservedPath {
 /// A given motion, and requirements on the proposal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
-    /// Machine, base and control; the task and the edits are ignored. Scenarios of proposals have its name, and its
-    /// title followed by what they keep.
+    /// Machine, base and control; the task and the edits are ignored. The scenario of the proposal has its name, and
+    /// its title followed by the proposal's [`way`](super::Proposal::way).
     pub scenario: Shared<Scenario>,
     /// The given motion.
     pub motion: Shared<GivenMotion>,
-    /// Pose constant of the proposal, rad. By default the one that moves the drives least, or the middle of those that
+    /// Pose constant of the proposal, rad. By default, the b that moves the drives least, or the middle of those that
     /// reach all points of the end effector's path.
     pub b: Option<f64>,
-    /// What the proposal keeps of given drive angles. By default the end effector's motion, if some plane reaches all
-    /// of it.
+    /// Property of given drive angles that the proposal keeps. By default, the end effector's motion if some plane
+    /// reaches all of it.
     pub keep: Option<PreservedPath>,
 }
 
-/// Why a motion cannot be imported.
+/// Reason that a motion cannot be imported.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum MotionImportError {
-    /// The joint angles of a motion of the end effector were to be kept.
+    /// The request keeps the joint angles of a motion that is given by the end effector.
     #[error("x and y give no joint angles to be kept")]
     NoJoints,
     /// No spline goes through the samples.

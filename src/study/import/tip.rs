@@ -16,12 +16,12 @@ use stillbase_settings::number::{counted, fixed};
 
 /// Fraction of the work for the search for a b; the rest is the assessment of minimum-norm rates.
 const SEARCH_SHARE: f64 = 0.6;
-/// Maximum deviation of b along the motion from its mean, rad, for a path that counts as lying on the curve of one b.
+/// Maximum deviation of b from its mean, rad, up to which a path is taken as lying on the curve of one b.
 const MAX_B_DEVIATION_RAD: f64 = 1e-3;
 
 /// Returns the minimum-norm motion for samples of the end effector, and candidates at constant b.
 pub(super) fn of_tip(
-    asked: &Request,
+    request: &Request,
     judge: &MotionEvaluator,
     space: &PoseSpace,
     samples: &Samples,
@@ -29,19 +29,19 @@ pub(super) fn of_tip(
 ) -> Result<MotionProposals, MotionImportError> {
     let curve = samples.curve().ok_or(MotionImportError::TooDense)?;
     let reaches_area = space.reaches_area();
-    let (start, held) = if reaches_area {
+    let (start, constant_b) = if reaches_area {
         let mut searching = part(goes_on, [0.0, SEARCH_SHARE]);
         let (start, candidates) = match space.planes() {
-            Ok(planes) => plane::held_plane_motion(asked.b, judge, space, planes, samples, &curve),
-            Err(_) => freedoms::held_b_motion(asked.b, judge, space, samples, &curve, &mut searching),
+            Ok(planes) => plane::held_plane_motion(request.b, judge, space, planes, samples, &curve),
+            Err(_) => freedoms::held_b_motion(request.b, judge, space, samples, &curve, &mut searching),
         };
         (start, Some(candidates))
     } else {
-        (space.pose_at_nearest_b(samples.point(0), asked.b.unwrap_or(0.0)), None)
+        (space.pose_at_nearest_b(samples.point(0), request.b.unwrap_or(0.0)), None)
     };
-    let usual = start.and_then(|q| minimum_norm_curve(judge.machine.end_effector(), q, &curve).ok());
-    let given = usual.map(|path| judge.given(timed_path(path, samples), &mut part(goes_on, [SEARCH_SHARE, 1.0])));
-    let candidates = held.unwrap_or_else(|| on_curve(judge, space, samples, given.as_ref()));
+    let min_norm = start.and_then(|q| minimum_norm_curve(judge.machine.end_effector(), q, &curve).ok());
+    let given = min_norm.map(|path| judge.given(timed_path(path, samples), &mut part(goes_on, [SEARCH_SHARE, 1.0])));
+    let candidates = constant_b.unwrap_or_else(|| on_curve(judge, space, samples, given.as_ref()));
     Ok(MotionProposals { given, candidates })
 }
 

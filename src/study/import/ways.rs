@@ -13,7 +13,7 @@ use stillbase_session::scenario::{Task, TaskKind};
 
 /// The given motion, and candidates for the proposal.
 pub(super) struct MotionProposals {
-    /// The given motion; for the end effector with minimum-norm rates, if these can follow it.
+    /// The given motion; for samples of the end effector, with minimum-norm rates if these can follow them.
     pub given: Option<AssessedMotion>,
     /// Candidates, or why there are none.
     pub candidates: Result<Vec<MotionCandidate>, Advice>,
@@ -24,15 +24,15 @@ pub(super) fn timed_path(path: PathTable, samples: &Samples) -> Motion {
     Motion { path: Path::Table(path), profile: Profile::running(samples.duration()) }
 }
 
-/// Returns the given motion as its own candidate: for machines whose every motion is reactionless, or that have no
-/// proposal.
+/// Returns the given motion as its own candidate: for machines whose every motion is reactionless, or for which there
+/// is no proposal.
 pub(super) fn unchanged_motion(
     judge: &MotionEvaluator,
     samples: &Samples,
-    drives: bool,
+    is_of_drives: bool,
     goes_on: ProgressCallback<'_>,
 ) -> Result<MotionProposals, MotionImportError> {
-    let path = match drives {
+    let path = match is_of_drives {
         true => Some(samples.path(0.0).ok_or(MotionImportError::TooDense)?),
         false => {
             let curve = samples.curve().ok_or(MotionImportError::TooDense)?;
@@ -40,7 +40,7 @@ pub(super) fn unchanged_motion(
             start.and_then(|q| minimum_norm_curve(judge.machine.end_effector(), q, &curve).ok())
         }
     };
-    let kind = if drives { TaskKind::Given } else { TaskKind::MinimumNorm };
+    let kind = if is_of_drives { TaskKind::Given } else { TaskKind::MinimumNorm };
     let task = Task::sampled(kind, samples.clone(), Some(0.0), &judge.machine).ok();
     let why = "every motion of this machine is reactionless".into();
     let candidates = match (&path, task) {

@@ -1,9 +1,9 @@
 //! Spread of n_B(t) and |f_B|(t) over the random machines: exact where possible, to first order, and sampled.
 //!
 //! The mean and the variance of n_B and of the components of f_B are exact, from the moments of the constants. The mean
-//! and the standard deviation of |f_B| have no such closed form: a norm is not linear, and where the nominal f_B is
-//! zero it has no first-order expansion. They are sampled; so are all percentiles. [`Agreement`] says where first-order
-//! and other results differ.
+//! and the standard deviation of |f_B| have no such closed form. A norm is not linear, and it has no first-order
+//! expansion where the nominal f_B is zero. So these two and all percentiles are sampled. [`Agreement`] compares
+//! first-order with other results.
 
 use serde::Serialize;
 
@@ -19,7 +19,7 @@ pub const PERCENTILES: [f64; 5] = [5.0, 25.0, 50.0, 75.0, 95.0];
 pub struct Bands {
     /// Instants, s.
     pub time: Vec<f64>,
-    /// Number of machines sampled for percentiles: the first ones of the seed.
+    /// Number of machines sampled for percentiles: the first ones that the seed gives.
     pub samples: u64,
     /// n_B, N m.
     pub moment: MomentBand,
@@ -55,7 +55,7 @@ pub struct ForceBand {
     pub rms: Vec<f64>,
     /// Root mean square with the components of f_B to first order.
     pub first_order_rms: Vec<f64>,
-    /// First-order standard deviation of the component along the nominal f_B; 0 where that is zero.
+    /// First-order standard deviation of the component along the nominal f_B; 0 where the nominal f_B is zero.
     pub first_order_deviation: Vec<f64>,
     /// Sampled mean.
     pub sampled_mean: Vec<f64>,
@@ -68,7 +68,7 @@ pub struct ForceBand {
 /// Maximum number of machines sampled for percentiles.
 const MAX_MACHINES: u64 = 4096;
 
-/// Maximum number of stored values, machines times instants; at least a hundred machines are sampled all the same.
+/// Maximum number of stored values, machines times instants; exceeded if it would allow fewer than a hundred machines.
 const MAX_STORED_VALUES: u64 = 4_000_000;
 
 impl Bands {
@@ -118,7 +118,7 @@ impl Sampled {
     }
 }
 
-/// Transposes percentiles by instant to instants by percentile.
+/// Returns the percentiles by level, then by instant.
 fn by_percentile(sampled: &[Sampled]) -> Vec<Vec<f64>> {
     (0..PERCENTILES.len()).map(|i| sampled.iter().map(|s| s.percentiles[i]).collect()).collect()
 }
@@ -162,7 +162,7 @@ impl ForceBand {
             }),
             first_order_deviation: at(&|s| {
                 let ([_, x, y], f) = (ensemble.slopes_at(s), ensemble.nominal()[s].1);
-                // The nominal f_B of a balanced machine is rounding and has no direction.
+                // The nominal f_B of a balanced machine consists of rounding errors and has no direction.
                 let all = first_order(ensemble, |p| x[p].hypot(y[p])).sqrt();
                 if f.norm() <= 1e-9 * all {
                     return 0.0;
@@ -177,7 +177,7 @@ impl ForceBand {
     }
 }
 
-/// Difference of two results over time, in standard deviations at each instant.
+/// Difference of two results over time, in standard deviations at each instant unless stated otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct BandDifference {
     /// Largest difference.
@@ -199,13 +199,13 @@ pub struct Agreement {
     pub moment_mean: BandDifference,
     /// Standard deviation of n_B: first-order against exact.
     pub moment_deviation: BandDifference,
-    /// Root mean square of |f_B|: components to first order against exact.
+    /// Root mean square of |f_B|: with first-order components against exact, as a fraction of the exact one.
     pub force_rms: BandDifference,
     /// Mean of |f_B|: nominal against sampled.
     pub force_mean: BandDifference,
     /// Standard deviation of |f_B|: first-order against sampled.
     pub force_deviation: BandDifference,
-    /// Mean of n_B: sampled against exact. This is the sampling error, independent of the order.
+    /// Mean of n_B: sampled against exact. This is the sampling error alone, without first-order errors.
     pub sampling: BandDifference,
 }
 

@@ -4,7 +4,7 @@
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | θ | Re g_1, Im g_1, Re g_2 … ; H_11, H_22 … ; Re C_12, Im C_12, Re C_13 … | kg m; kg m² |
-//! | a_jk | centre of mass of body j: Σ_k a_jk e(q_k); bodies are the links, the payload and the counterweights | complex, m |
+//! | a_jk | coefficients of the centre of mass Σ_k a_jk e(q_k) of body j (link, payload, counterweight) | complex, m |
 //! | δ | deviations of the parameters | unit of the parameter |
 
 use super::deviate::CHUNK;
@@ -29,7 +29,7 @@ pub(super) fn diagonal(n: usize, k: usize) -> usize {
 
 /// Returns the index of Re C_kl, k < l; Im C_kl follows.
 pub(super) fn coupling(n: usize, k: usize, l: usize) -> usize {
-    // Pairs that start with a drive before k, and pairs (k, m) with m < l.
+    // The pairs before (k, l): those whose first drive precedes k, and (k, m) with m < l.
     3 * n + 2 * (k * (2 * n - k - 1) / 2 + (l - k - 1))
 }
 
@@ -52,7 +52,7 @@ pub(super) fn unit(n: usize, i: usize, like: &Inertia) -> Inertia {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct UncertainNumber {
     pub nominal: f64,
-    /// The parameter whose deviation is added.
+    /// Index of the parameter whose deviation is added; `None` if the number is fixed.
     pub parameter: Option<usize>,
 }
 
@@ -69,11 +69,11 @@ pub(super) struct LinkConstants {
     pub root: [f64; MAX_DRIVES],
     /// Drives that the position depends on, including the body's own.
     pub on: Vec<usize>,
-    /// Lengths that vary: parameter, drive, change of the root's coefficient per change of length.
+    /// Lengths that vary: indices of parameter and drive, and change of the root's coefficient per change of length.
     pub stretch: Vec<(usize, usize, f64)>,
 }
 
-/// Returns the bodies with any variation.
+/// Returns the bodies that some parameter affects.
 ///
 /// # Errors
 /// Fails if a length cannot vary alone, because a closure of a loop fixes it.
@@ -106,7 +106,7 @@ pub(super) fn bodies(machine: &Machine, parameters: &[UncertainParameter]) -> Re
         on: Vec::new(),
         stretch: Vec::new(),
     });
-    // Counterweights vary only in the position of their link.
+    // Counterweights have no parameters of their own: only the position of their link varies.
     let carrier = |link: &str| spec.links.iter().position(|l| l.name == link);
     let carriers: Vec<usize> = spec.counterweights.iter().filter_map(|weight| carrier(&weight.link)).collect();
     bodies.extend(spec.counterweights.iter().zip(&carriers).map(|(weight, j)| {
@@ -127,7 +127,7 @@ pub(super) fn bodies(machine: &Machine, parameters: &[UncertainParameter]) -> Re
         if !matches!(parameter.quantity, VariedQuantity::Length(_)) {
             continue;
         }
-        // A root is affine in every length, so doubling the length gives the slope, except for rounding.
+        // The coefficients of a root are affine in every length, so doubling a length gives the slope up to rounding.
         let longer = parameter.changed(machine, 2.0 * parameter.nominal)?;
         let parts = longer.resolved_links();
         let roots = parts.iter().map(|part| &part.root).chain([longer.end_effector()]);
@@ -157,10 +157,10 @@ pub(super) fn bodies(machine: &Machine, parameters: &[UncertainParameter]) -> Re
     Ok(bodies)
 }
 
-/// Number of machines evaluated together: four vectors of baseline x86-64.
+/// Number of machines evaluated together: they fill four 128-bit vectors of baseline x86-64.
 pub(super) const BLOCK_MACHINES: usize = 8;
 
-/// One value for each of these machines.
+/// One value for each machine of a block.
 pub(super) type Lanes = [f64; BLOCK_MACHINES];
 
 #[inline(always)]
@@ -168,8 +168,8 @@ fn each(f: impl Fn(usize) -> f64) -> Lanes {
     std::array::from_fn(f)
 }
 
-/// Computes θ of the bodies that vary, for one block of machines, into `theta`; `deviations` by parameter, then by
-/// machine.
+/// Computes θ of the bodies that vary, for one block of machines, into `theta`. `deviations` are ordered by parameter,
+/// then by machine.
 #[inline]
 pub(super) fn evaluate(
     n: usize,
@@ -215,7 +215,7 @@ pub(super) fn evaluate(
             for &l in &body.on[i + 1..] {
                 let at = coupling(n, k, l);
                 add(at, &|w| m[w] * (a[k][w] * a[l][w]));
-                // Im(conj(a_k) a_l): only the coefficient of the body's own drive has a part off the axis.
+                // Im(conj(a_k) a_l): only the coefficient of the body's own drive has an imaginary part.
                 if k == d {
                     add(at + 1, &|w| -m[w] * (off[w] * a[l][w]));
                 } else if l == d {

@@ -1,15 +1,15 @@
 //! [`Ensemble`]: random machines around a nominal one on one motion, a million per second.
 //!
 //! With perfect tracking of the motion, the wrench is linear in the constants θ of the machine. The factors that depend
-//! on the motion are tabulated once; each machine then costs its θ and one sum per instant. Several machines are
-//! evaluated side by side, so that the compiler's vectors hold one value of each.
+//! on the motion are tabulated once; each machine then requires only its θ and one sum per instant. Several machines
+//! are evaluated side by side, so that a vector instruction processes one value of each.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | t_s | instants (s + ½) T / S, over which means are taken (midpoint rule), and both ends, for peaks | s |
 //! | δθ | θ of a machine less θ of the nominal one | kg m; kg m² |
-//! | φ_i(t) | n_B(t) of the machine of which only θ_i = 1 | N m per unit of θ_i |
+//! | φ_i(t) | n_B(t) of a machine with θ_i = 1 and all other constants 0 | N m per unit of θ_i |
 //! | ψ_i(t) | dynamic f_B(t) of that machine | N per unit of θ_i |
 //! | n_B(t) | n_B(t) of the nominal machine + Σ φ_i δθ_i | N m |
 //!
@@ -69,13 +69,13 @@ struct MotionTable {
     force: Vec<usize>,
     /// For each instant: n_B, f_Bx, f_By of the nominal machine, then all φ, then ψ_x and ψ_y alternating.
     rows: Vec<f64>,
-    /// θ of the bodies that vary, without deviations; it is subtracted.
+    /// Nominal θ of the bodies that vary, which is subtracted to give δθ.
     offset: Vec<f64>,
 }
 
 impl Ensemble {
-    /// Builds the machines around `machine` drawn by `seed`, on a motion at `instants` midpoints, at least one. Both
-    /// ends are added, because the weight may load the base most there.
+    /// Builds the ensemble around `machine` that `seed` determines, on a motion at `instants` midpoints, at least one.
+    /// Both ends of the motion are added, because the weight may load the base most there.
     ///
     /// # Errors
     /// Fails if nothing varies, a key or spread is wrong, or a length cannot vary alone.
@@ -153,7 +153,7 @@ impl Ensemble {
     /// Returns the machine with given deviations, in the order of the parameters.
     ///
     /// # Errors
-    /// Does not fail for deviations that were drawn.
+    /// Fails if the machine is not valid, which does not occur for drawn deviations.
     pub fn machine_of(&self, deviations: &[f64]) -> Result<Machine, MachineError> {
         let mut spec = self.machine.spec().clone();
         for (parameter, deviation) in self.parameters.iter().zip(deviations) {
@@ -244,7 +244,7 @@ impl MotionTable {
     }
 }
 
-/// Draws and evaluates machines, a chunk at a time, without further allocation.
+/// Draws and evaluates machines, one chunk at a time.
 #[derive(Clone, Debug)]
 pub struct Sampler<'a> {
     ensemble: &'a Ensemble,
@@ -293,7 +293,7 @@ impl Sampler<'_> {
         &self.outcomes
     }
 
-    /// Draws the machines of a chunk and calls `see` with instant, machine, n_B, N m, and |f_B|, N.
+    /// Draws the machines of a chunk and calls `see` with the indices of instant and machine, n_B, N m, and |f_B|, N.
     pub fn courses(&mut self, chunk: u64, mut see: impl FnMut(usize, usize, f64, f64)) {
         self.draw(chunk);
         let table = &self.ensemble.table;
@@ -320,7 +320,7 @@ impl Sampler<'_> {
 /// Maximum number of constants of a machine.
 const MAX_CONSTANTS: usize = count(MAX_DRIVES);
 
-/// Copies δθ of the constants that matter.
+/// Computes δθ of the constants in `which`.
 fn gather(theta: &[Lanes], which: &[usize], offset: &[f64], out: &mut [Lanes]) {
     for (out, &i) in out.iter_mut().zip(which) {
         *out = theta[i].map(|x| x - offset[i]);
@@ -358,7 +358,7 @@ fn sweep(rows: &[f64], moment: &[Lanes], force: &[Lanes]) -> [Lanes; 4] {
         let weight = if s == 0 || s == last { 0.0 } else { 1.0 };
         for w in 0..BLOCK_MACHINES {
             let (n, f) = (n[w] * n[w], fx[w] * fx[w] + fy[w] * fy[w]);
-            // Not f64::max: its treatment of NaN, which does not occur here, takes longer than the rest.
+            // Not f64::max: its treatment of NaN, which does not occur here, takes longer than the rest of the loop.
             peak_n[w] = if n > peak_n[w] { n } else { peak_n[w] };
             peak_f[w] = if f > peak_f[w] { f } else { peak_f[w] };
             sum_n[w] += weight * n;

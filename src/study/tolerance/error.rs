@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use stillbase_mechanics::machine::MachineError;
 
-/// Why a study of tolerances cannot be made.
+/// Reason that a study of tolerances cannot be made.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ToleranceError {
     /// A key names no parameter of the machine.
@@ -16,7 +16,7 @@ pub enum ToleranceError {
         /// The key.
         key: String,
     },
-    /// A spread in percent of zero.
+    /// A spread is stated in percent of a nominal value of zero.
     #[error("{key} is 0, and percent of 0 is nothing: want a spread in its own unit")]
     PercentOfZero {
         /// The key.
@@ -50,7 +50,7 @@ pub enum ToleranceError {
         /// Unit of the value.
         unit: &'static str,
     },
-    /// A varied machine is not valid, such as by a length that a closure fixes.
+    /// A varied machine is not valid, for example because a loop closure fixes the varied length.
     #[error("a varied machine would not be valid: {0}")]
     Machine(#[source] MachineError),
 }

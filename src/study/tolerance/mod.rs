@@ -6,10 +6,10 @@
 //!
 //! # Limits of linearity
 //! With perfect tracking of the motion, the wrench is linear in g, C and the mass matrix diagonal H. [`Ensemble`] is
-//! exact for large deviations too. The wrench is *not* linear in masses and lengths (m a_k a_l), nor is the norm
-//! |f_B| or a peak over time. Tracking is not perfect with finite feedback gains if the model differs from the
-//! machine. Nor is it with torque limits, unequal gains, uncompensated friction, or a moving base. All alter the motion
-//! itself; then [`simulate()`] simulates each machine.
+//! exact for large deviations too. The wrench is *not* linear in masses and lengths (m a_k a_l). Nor is the norm of
+//! f_B, or a peak over time. Tracking is not perfect with finite feedback gains if the model differs from the
+//! machine. Nor is it with torque limits, unequal gains, uncompensated friction, or a moving base. All these effects
+//! alter the motion itself, so [`simulate()`] then simulates each machine.
 //!
 //! | what | modules |
 //! |---|---|

@@ -18,7 +18,7 @@ use nalgebra::{DMatrix, DVector};
 use super::constants::{LinkConstants, UncertainNumber, count, coupling, diagonal, first};
 use super::parameter::UncertainParameter;
 
-/// Parameters of a monomial, ascending, each repeated to its power; [`NONE`] fills the rest.
+/// Indices of a monomial's parameters, ascending, each repeated as often as its power; [`NONE`] fills the rest.
 type Monomial = [u16; 3];
 
 const NONE: u16 = u16::MAX;
@@ -57,7 +57,7 @@ impl Polynomial {
     }
 }
 
-/// Returns the expectation of a product of deviations; the factors are ascending.
+/// Returns the expectation of a product of deviations; the indices of the factors are ascending.
 fn expectation(factors: &[u16], parameters: &[UncertainParameter]) -> f64 {
     let present = factors.iter().position(|f| *f == NONE).map_or(factors, |end| &factors[..end]);
     present.chunk_by(|a, b| a == b).map(|same| parameters[usize::from(same[0])].moments[same.len()]).product()

@@ -68,12 +68,12 @@ pub struct UncertainParameter {
     pub spread: Spread,
     /// Standard deviation of the drawn values.
     pub deviation: f64,
-    /// Fraction of the stated distribution that is impossible, such as a mass below zero. The truncated rest is drawn
-    /// from, as if every impossible draw were repeated; mean and deviation refer to it.
+    /// Fraction of the stated distribution that is impossible, such as a mass below zero. Values are drawn from the
+    /// truncated distribution, to which mean and deviation refer.
     pub cut: f64,
     pub(super) quantity: VariedQuantity,
     /// Number of the random stream, counted over all numbers that could vary, so that draws of one parameter do not
-    /// depend on the others.
+    /// depend on which others vary.
     pub(super) stream: u64,
     /// Parameter of the distribution, σ or h, in the parameter's unit.
     scale: f64,
@@ -103,7 +103,8 @@ fn everything(spec: &MachineSpec) -> Vec<(VariedQuantity, String, f64)> {
 /// Returns the parameters of a machine that vary; if several keys match one, the key with the fewest `*` applies.
 ///
 /// # Errors
-/// Fails if a key matches nothing, a spread is relative to zero, or too much of it is impossible.
+/// Fails if a key matches no number, a relative spread refers to zero, or too large a fraction of a distribution is
+/// impossible.
 pub(super) fn parameters(
     machine: &Machine,
     spreads: &BTreeMap<String, Spread>,
@@ -141,7 +142,7 @@ pub(super) fn parameters(
 /// Maximum fraction of a distribution that may be impossible.
 const MAX_TRUNCATED: f64 = 0.1;
 
-/// Maximum absolute value of a machine's number, which nominal value and nine times the scale must not exceed.
+/// Maximum of |nominal value| plus nine times the scale, in the unit of the parameter.
 const MAX_VALUE: f64 = 1e6;
 
 /// Serialised as key, unit, nominal value, spread, and the statistics of the drawn values.
@@ -193,7 +194,8 @@ impl UncertainParameter {
     pub(super) fn deviate(&self, u: &mut [f64]) {
         match self.spread {
             Spread::Normal(_) => {
-                // Sample the upper fraction 1 − cut of the distribution: take (0, 1 − cut) and mirror it.
+                // Sample the upper fraction 1 − cut of the distribution: draw quantiles from (0, 1 − cut) and negate
+                // them.
                 let (keep, scale) = (1.0 - self.cut, -self.scale);
                 u.iter_mut().for_each(|u| *u *= keep);
                 inverse_normal(u);
@@ -232,7 +234,7 @@ impl UncertainParameter {
     /// Returns a machine with this number changed.
     ///
     /// # Errors
-    /// Fails if the machine is not valid then.
+    /// Fails if the changed machine is not valid.
     pub(super) fn changed(&self, machine: &Machine, value: f64) -> Result<Machine, MachineError> {
         let mut spec = machine.spec().clone();
         self.set(&mut spec, value);
@@ -248,7 +250,7 @@ fn normal_moments(sigma: f64, bound: Option<f64>) -> (f64, [f64; 5]) {
         false => (0.0, 0.0),
     };
     let ratio = density / (1.0 - cut);
-    // Without density at α, the terms with α vanish.
+    // If the density at α is 0, the terms with α vanish.
     let alpha = if ratio > 0.0 { alpha } else { 0.0 };
     let mut z = [1.0, ratio, 0.0, 0.0, 0.0];
     for k in 2..5 {

@@ -39,7 +39,7 @@ pub struct PartReport {
     pub simulated: bool,
     /// Number of machines in the whole study.
     pub samples: u64,
-    /// First sample number of this part, and one after its last.
+    /// First sample number of this part, and its last plus one.
     pub shard: [u64; 2],
     /// Seed of the random machines.
     pub seed: u64,
@@ -70,7 +70,7 @@ impl PartReport {
     /// Returns the report on assessed machines, with the limits of a tolerance; `None` if there are no machines.
     ///
     /// # Errors
-    /// Fails if machines were simulated, and the one without deviations cannot be.
+    /// Fails if the machines were simulated, but the nominal machine cannot be.
     pub fn of(part: &EnsemblePart<'_>, tolerance: &Tolerance) -> Result<Option<Self>, Refusal> {
         let EnsemblePart { run, ensemble, samples, first, outcomes, tracking, simulated } = *part;
         let Some(distributions) = Distributions::of(outcomes) else { return Ok(None) };

@@ -48,16 +48,16 @@ impl Shares {
         let (mut slopes, mut sums) = (vec![[0.0_f64; 2]; parameters.len()], vec![[0.0; 2]; parameters.len()]);
         let mut exact = [0.0; 2];
         for s in 0..ensemble.time().len() {
-            let counts = f64::from(u8::from(ensemble.between().contains(&s)));
+            let weight = f64::from(u8::from(ensemble.between().contains(&s)));
             let [n, x, y] = ensemble.slopes_at(s);
             for p in 0..parameters.len() {
                 let [n, f] = [n[p] * n[p], x[p] * x[p] + y[p] * y[p]];
                 slopes[p] = [slopes[p][0].max(n), slopes[p][1].max(f)];
-                let variance = counts * parameters[p].deviation.powi(2);
+                let variance = weight * parameters[p].deviation.powi(2);
                 sums[p] = [sums[p][0] + n * variance, sums[p][1] + f * variance];
             }
             let [n, x, y] = ensemble.variance_at(s);
-            exact = [exact[0] + counts * n, exact[1] + counts * (x + y)];
+            exact = [exact[0] + weight * n, exact[1] + weight * (x + y)];
         }
         let total = [0, 1].map(|i| sums.iter().map(|sum| sum[i]).sum::<f64>());
         let part = |x: f64, of: f64| if of > 0.0 { x / of } else { 0.0 };

@@ -13,7 +13,7 @@ use stillbase_simulation::{Guide, Setup, Simulation};
 pub fn simulate(planned: &Run, plant: &Machine) -> Result<SampleOutcome, Refusal> {
     let scenario = planned.scenario();
     let guide = Guide::Motion { motion: planned.plan().motion.clone(), start: 0.0 };
-    // A payload held from the start is part of the varied machine; one that comes later is not.
+    // A payload held from the start is part of the varied machine; a payload taken up later is not.
     let load = scenario.plant.payload;
     let payload = if load.is_held(0.0, 0.5 * scenario.step) { Load::default() } else { load };
     let rest = PlantDifferences { payload, ..scenario.plant.clone() };

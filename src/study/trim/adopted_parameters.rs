@@ -1,4 +1,4 @@
-//! [`adopt_parameters`]: decides which unknowns of balance are taken from the measurement, and which from the machine's
+//! [`adopt_parameters`]: decides which unknowns of balance come from the measurement, and which from the machine's
 //! file.
 
 use nalgebra::{DMatrix, DVector};
@@ -11,14 +11,14 @@ use stillbase_mechanics::planar::Vector;
 pub struct AdoptedParameters {
     /// Values of all unknowns.
     pub values: DVector<f64>,
-    /// Covariance of the values, given that the others are as in the file.
+    /// Covariance of the values, conditional on the values from the file.
     pub covariance: DMatrix<f64>,
     /// Half width of the 95 % interval of each value, by that covariance; zero for values from the file.
     pub half_widths: Vec<f64>,
     /// Whether each unknown of (7) and (8) is taken from the measurement.
     pub measured: Vec<bool>,
-    /// Whether each unknown differs significantly from the file. Of (7) and (8), exactly these are taken from the
-    /// measurement.
+    /// Whether each unknown differs significantly from the file. Of the unknowns of (7) and (8), exactly these are
+    /// taken from the measurement.
     pub off: Vec<bool>,
     /// D_k of each drive if it is identifiable, kg m².
     pub momenta: Vec<Option<f64>>,
@@ -32,12 +32,13 @@ impl AdoptedParameters {
     }
 }
 
-/// Differences from the file below this fraction of the largest value are rounding.
+/// Differences from the file below this fraction of the largest value are rounding errors.
 const ROUNDING_TOLERANCE: f64 = 1e-10;
 
 /// Selects the unknowns of (7) and (8) to take from the measurement by backward elimination. The least significant
-/// difference from the file is set to zero and the others are estimated again, until every remaining one exceeds its
-/// interval. So noise is not balanced out, and a well-known sum is kept even if its parts are not known.
+/// difference from the file is set to zero and the others are estimated again. This ends when every remaining
+/// difference exceeds the half width of its interval. So noise is not mistaken for imbalance, and a well-determined sum
+/// is kept even if its parts are not well determined.
 pub fn adopt_parameters(fit: &Fit) -> AdoptedParameters {
     let count = fit.unknowns.of_balance();
     let (values, covariance, inverse) = (fit.measured.clone(), fit.covariance.clone(), fit.inverse.clone());
@@ -53,11 +54,11 @@ pub fn adopt_parameters(fit: &Fit) -> AdoptedParameters {
         if certainty(least) > 1.0 {
             break;
         }
-        known.hold(least, fit.nominal[least]);
+        known.fix(least, fit.nominal[least]);
         measured[least] = false;
     }
     let Known { mut values, mut covariance, .. } = known;
-    // Unknowns that are not identifiable are independent of the others.
+    // Unknowns that are not identifiable have the values of the file, without uncertainty.
     for i in (0..count).filter(|i| !fit.identifiable[*i]) {
         values[i] = fit.nominal[i];
         covariance.row_mut(i).fill(0.0);
@@ -81,7 +82,7 @@ struct Known {
 
 impl Known {
     /// Fixes one unknown at a value and updates the estimate.
-    fn hold(&mut self, i: usize, value: f64) {
+    fn fix(&mut self, i: usize, value: f64) {
         let own = self.inverse[(i, i)];
         if own > f64::MIN_POSITIVE {
             let gain = self.inverse.column(i) / own;

@@ -7,11 +7,12 @@ use stillbase_session::Edit;
 use stillbase_session::design::machine_edit;
 use stillbase_session::scenario::Scenario;
 
-/// Returns the edit that replaces the session's machine by the identified one, as built or with its correction; `None`
-/// if it is that already. `measured` is the machine of the file with which the measurement was evaluated.
+/// Returns the edit that replaces the session's machine by the identified one: as built, or with its correction if
+/// `mends` is set. `None` if the session has that machine already. `measured` is the machine of the file with which the
+/// measurement was evaluated.
 ///
 /// # Errors
-/// Fails if the session's machine has other links, or there is no such machine.
+/// Fails if the session's machine has other links, or the new machine is not valid.
 pub fn adopting_edit(
     scenario: &Scenario,
     measured: &Machine,

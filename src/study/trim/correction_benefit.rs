@@ -1,16 +1,16 @@
-//! [`correction_benefit`]: effect of a change on the identified imbalance, and whether it is a significant reduction.
+//! [`correction_benefit`]: effect of a change on the identified imbalance, with a test of its significance.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | x, V | measured first moments and couplings, and their covariance | |
 //! | Δ | effect of the change on x | |
-//! | W | mean of ℓ² X_fᵀ X_f + X_nᵀ X_n, X rows of the regressor: J = xᵀ W x is the mean square of ℓ f and n | |
+//! | W | mean of ℓ² X_fᵀ X_f + X_nᵀ X_n over the regressor's rows X: J = xᵀ W x is the mean of ℓ² f² + n² | |
 //! | ℓ | radius of gyration of the machine, the weight of force against moment | m |
 //!
-//! The gain J(x) − J(x + Δ) = −2 Δᵀ W x − Δᵀ W Δ is linear in x, so its variance is 4 Δᵀ W V W Δ for every x. Δ
-//! was chosen from x, in the coordinates adopted from the measurement; their number is the degrees of freedom of χ².
-//! By Scheffé (1953), an interval valid for any such choice uses the root of the 95 % quantile of χ² instead of 1.96.
+//! The gain J(x) − J(x + Δ) = −2 Δᵀ W x − Δᵀ W Δ is linear in x, so its variance is 4 Δᵀ W V W Δ for every x. Δ was
+//! chosen for x, in the coordinates adopted from the measurement; their number is the degrees of freedom of χ². By
+//! Scheffé (1953), an interval valid for any such choice uses the root of the 95 % quantile of χ² instead of 1.96.
 
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;

@@ -3,7 +3,7 @@
 //! # Source
 //! Lagrange's interpolation polynomials through neighbouring samples, at times that need not be evenly spaced.
 
-/// Number of samples in the stencil of a rate; its error falls with the fourth power of the spacing.
+/// Number of samples in the stencil of a rate; the error of the rate falls with the fourth power of the spacing.
 const STENCIL_POINTS: usize = 5;
 
 /// Returns the stencil of the rate at sample i: its first sample, and the weights, 1/s.

@@ -4,10 +4,10 @@ use thiserror::Error;
 
 use stillbase_settings::number::{counted, fixed};
 
-/// Why a measurement cannot be evaluated.
+/// Reason that a measurement cannot be evaluated.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum TrimError {
-    /// The angles have another number of drives.
+    /// The number of measured drives differs from that of the machine.
     #[error("angles of {}: want those of all {want} of the machine", counted(got, "drive"))]
     Drives {
         /// Number of drives measured.
@@ -20,10 +20,10 @@ pub enum TrimError {
     Motion {
         /// Index of the motion, from 0.
         motion: usize,
-        /// What is wrong, and what is accepted.
+        /// The error, and the accepted input.
         what: &'static str,
     },
-    /// Fewer rows than unknowns.
+    /// Too few rows for the unknowns.
     #[error(
         "{} for {} that have to be found: want more, ten for each or better",
         counted(rows, "row"),

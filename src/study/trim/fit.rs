@@ -17,7 +17,7 @@ pub struct Fit {
     pub nominal: DVector<f64>,
     /// Measured values; nominal where the data do not identify them.
     pub measured: DVector<f64>,
-    /// Covariance of the measured values; zero for those that are not identifiable.
+    /// Covariance of the measured values, over the identifiable directions only.
     pub covariance: DMatrix<f64>,
     /// Ratio of the half width of a 95 % interval to the standard deviation.
     pub critical: f64,
@@ -30,7 +30,7 @@ pub struct Fit {
     pub noise: [f64; 2],
     /// Root mean square of the measured force, N, and moment, N m, without offset and drift.
     pub size: [f64; 2],
-    /// Largest root mean square force, N, and moment, N m, of a machine of this size in these motions.
+    /// Largest root mean square force, N, and moment, N m, that a machine of this size could have in these motions.
     pub(super) largest: [f64; 2],
     /// Effective number of independent rows of force and of moment.
     pub effective: [f64; 2],
@@ -56,7 +56,7 @@ const MAX_ITERATIONS: usize = 10_000;
 const ROUNDING_LEVEL: f64 = 1e-14;
 /// Minimum degrees of freedom, as a fraction of the effective number of rows.
 const MIN_FREEDOM: f64 = 0.1;
-/// Residuals below this fraction of the measured values are treated as rounding.
+/// Residuals below this fraction of the measured values are treated as rounding errors.
 const EXACT_BELOW: f64 = 1e-9;
 
 /// Fits the unknowns by least squares about the machine's file, with weights from the residuals of force and moment.
@@ -74,7 +74,7 @@ pub fn fit(machine: &Machine, rows: &Regressor) -> Result<Fit, TrimError> {
 /// A fit, without a check of the degrees of freedom.
 pub(super) struct Estimate {
     pub fit: Fit,
-    /// Number of identifiable parameters, including the lines of the sensors.
+    /// Number of identifiable parameters, including offset and drift of the sensors.
     pub rank: usize,
     /// Degrees of freedom as a fraction of the effective number of rows; negative if the rows are too few.
     pub share: f64,
@@ -88,7 +88,7 @@ pub(super) fn estimate(machine: &Machine, rows: &Regressor) -> Result<Estimate, 
     let (inertia, p) = (Inertia::of(machine), rows.unknowns.count());
     let nominal = DVector::from_vec(rows.unknowns.nominal(&inertia));
     let scales = DVector::from_vec(rows.unknowns.scales(&inertia));
-    // The deviation from the nominal machine is fitted, so that what is not identifiable stays nominal.
+    // The deviation from the nominal machine is fitted, so that unidentifiable directions stay nominal.
     let deviation = |channel: &Channel| DVector::from_column_slice(&channel.y) - &channel.x * &nominal;
     let [fx, fy, n] = rows.channels.each_ref().map(deviation);
     let deviations = [fx, fy, n];
@@ -291,7 +291,7 @@ impl Solved {
     /// identifiable.
     fn confounded(&self, p: usize) -> (Vec<Vec<usize>>, Vec<bool>) {
         let mut rows: Vec<DVector<f64>> = self.free.column_iter().map(|c| c.clone_owned()).collect();
-        let told: Vec<bool> = (0..p).map(|j| self.free.row(j).norm() < IDENTIFIABLE_BELOW).collect();
+        let identifiable: Vec<bool> = (0..p).map(|j| self.free.row(j).norm() < IDENTIFIABLE_BELOW).collect();
         // Gauss–Jordan elimination, so that each unobservable direction involves few unknowns.
         let mut at = 0;
         for j in 0..p {
@@ -315,9 +315,9 @@ impl Solved {
         }
         let group = |row: &DVector<f64>| {
             let most = row.amax();
-            (0..p).filter(|j| row[*j].abs() > 10.0 * IDENTIFIABLE_BELOW * most && !told[*j]).collect::<Vec<_>>()
+            (0..p).filter(|j| row[*j].abs() > 10.0 * IDENTIFIABLE_BELOW * most && !identifiable[*j]).collect::<Vec<_>>()
         };
         let groups = rows.iter().map(group).filter(|group| !group.is_empty()).collect();
-        (joined(groups), told)
+        (joined(groups), identifiable)
     }
 }

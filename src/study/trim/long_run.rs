@@ -8,7 +8,8 @@
 use nalgebra::DMatrix;
 
 /// Returns Σ over lags of Bartlett's weight times Σ_i s_i s_{i+lag}ᵀ, where s_i are the rows of `scores`, summed motion
-/// by motion. From each motion `fitted` parameters were removed; the result is corrected for that.
+/// by motion. For each motion, `fitted` parameters were fitted; the result is corrected for the variance that this
+/// removed.
 pub(super) fn long_run(scores: &DMatrix<f64>, motions: &[usize], lags: usize, fitted: i32) -> DMatrix<f64> {
     let p = scores.ncols();
     let mut sum = DMatrix::zeros(p, p);
@@ -57,8 +58,8 @@ pub(super) fn bartlett_lags(residuals: &[&[f64]], motions: &[usize], least: usiz
     wanted.max(least).clamp(1, longest.div_ceil(2))
 }
 
-/// Returns the ratio of the half width of a 95 % interval to the standard deviation, if the window covers this fraction
-/// of the data.
+/// Returns the ratio of the half width of a 95 % interval to the standard deviation. The window covers the fraction
+/// `share` of the data.
 pub(super) fn t_quantile(share: f64) -> f64 {
     let b = share.clamp(0.0, 1.0);
     1.96 + b * (2.9694 + b * (0.4160 - 0.5324 * b))

@@ -1,4 +1,4 @@
-//! [`correct_machine`]: finds the least change of counterweights that removes the measured imbalance.
+//! [`correct_machine`]: finds the least change of counterweights or links that removes the measured imbalance.
 
 use serde::Serialize;
 use thiserror::Error;
@@ -22,7 +22,7 @@ pub struct ParameterChange {
     pub from: f64,
     /// New value, rounded so that it can be set: to 0.1 g or 0.1 mm.
     pub to: f64,
-    /// Exact new value.
+    /// New value before rounding.
     pub exact: f64,
     /// Unit of the number.
     pub unit: &'static str,
@@ -49,13 +49,13 @@ impl MachineCorrection {
     }
 }
 
-/// Why a machine cannot be corrected.
+/// Reason that a machine cannot be corrected.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoCorrection {
     /// The numbers that may change do not suffice.
     #[error(transparent)]
     Kept(#[from] RebalanceError),
-    /// No new counterweights correct it.
+    /// No new counterweights correct the machine.
     #[error(transparent)]
     Weights(#[from] CounterweightError),
     /// The result is no valid machine.
@@ -65,11 +65,11 @@ pub enum NoCorrection {
 
 /// Resolution to which masses, kg, and positions, m, can be set: 0.1 g and 0.1 mm.
 const SETTING_STEP: f64 = 1e-4;
-/// New counterweights lighter than this fraction of the heaviest are left out.
+/// New counterweights lighter than this fraction of the heaviest are omitted.
 const NEGLIGIBLE_MASS: f64 = 1e-3;
 
-/// Finds the least change that removes the identified imbalance. An imbalance that no change on the axes of the links
-/// removes stays; it is part of [`MachineCorrection::residuals`].
+/// Finds the least change that removes the identified imbalance. The part of the imbalance that no change on the axes
+/// of the links can remove is included in [`MachineCorrection::residuals`].
 ///
 /// # Errors
 /// Fails if the bounds permit no solution.
@@ -79,22 +79,22 @@ pub fn correct_machine(
     way: &TrimMethod,
 ) -> Result<MachineCorrection, NoCorrection> {
     let nominal = balance_residuals(machine);
-    let beyond: Vec<Vector> = taken.residuals().iter().zip(&nominal).map(|(real, nominal)| real - nominal).collect();
+    let deviation: Vec<Vector> = taken.residuals().iter().zip(&nominal).map(|(real, nominal)| real - nominal).collect();
     let (exact, rounded) = match way {
-        TrimMethod::Change(asked) => {
-            let stays = unreachable_by_changes(machine, asked, &beyond)?;
-            let kept = rebalance_with(machine, asked, &difference(&beyond, &stays))?;
-            let parameters: Vec<Parameter> = asked.parameters.iter().map(|one| one.parameter).collect();
-            let spec = rounded(machine, kept.machine.spec(), &parameters);
-            (kept.machine.spec().clone(), spec)
+        TrimMethod::Change(request) => {
+            let unreachable = unreachable_by_changes(machine, request, &deviation)?;
+            let rebalanced = rebalance_with(machine, request, &difference(&deviation, &unreachable))?;
+            let parameters: Vec<Parameter> = request.parameters.iter().map(|one| one.parameter).collect();
+            let spec = rounded(machine, rebalanced.machine.spec(), &parameters);
+            (rebalanced.machine.spec().clone(), spec)
         }
-        TrimMethod::Add(asked) => {
-            let stays = unreachable_by_weights(machine, asked, &beyond)?;
-            let placed = place_weights_with(machine, asked, &difference(&beyond, &stays))?;
+        TrimMethod::Add(request) => {
+            let unreachable = unreachable_by_weights(machine, request, &deviation)?;
+            let placed = place_weights_with(machine, request, &difference(&deviation, &unreachable))?;
             let mut spec = placed.machine.spec().clone();
             for weight in &mut spec.counterweights {
                 (weight.mass, weight.at) = (to_step(weight.mass), to_step(weight.at));
-                weight.radius = asked.disc.radius(weight.mass);
+                weight.radius = request.disc.radius(weight.mass);
             }
             let heaviest = spec.counterweights.iter().map(|weight| weight.mass).fold(0.0, f64::max);
             spec.counterweights.retain(|weight| weight.mass > NEGLIGIBLE_MASS * heaviest);
@@ -102,8 +102,8 @@ pub fn correct_machine(
         }
     };
     let changes = match way {
-        TrimMethod::Change(asked) => {
-            asked.parameters.iter().filter_map(|one| change(machine, one.parameter, &exact, &rounded)).collect()
+        TrimMethod::Change(request) => {
+            request.parameters.iter().filter_map(|one| change(machine, one.parameter, &exact, &rounded)).collect()
         }
         TrimMethod::Add(_) => {
             exact.counterweights.iter().filter_map(|weight| added(weight, &rounded)).flatten().collect()
@@ -111,13 +111,13 @@ pub fn correct_machine(
     };
     let machine = Machine::new(rounded).map_err(|why| NoCorrection::Machine(why.to_string()))?;
     let now = balance_residuals(&machine);
-    let left = now.iter().zip(&beyond).map(|(now, beyond)| now + beyond).collect();
+    let left = now.iter().zip(&deviation).map(|(now, deviation)| now + deviation).collect();
     Ok(MachineCorrection { changes, machine, residuals: left, by: difference(&now, &nominal) })
 }
 
 /// Returns the machine as built, before any correction, and the residuals of (7) and (8), by line, that it does not
-/// reproduce. The identified balance is reproduced by the least change of the links' centres of mass, along and across,
-/// and the identified D_k by the links' inertias.
+/// reproduce. The least change of the links' centres of mass, along and across, gives the identified balance; the
+/// links' inertias give the identified D_k.
 ///
 /// # Errors
 /// Fails if there is no such machine.
@@ -126,16 +126,17 @@ pub fn identified_machine(
     taken: &AdoptedParameters,
 ) -> Result<(Machine, Vec<Vector>), NoCorrection> {
     let links = 0..machine.links().len();
-    let mut asked = RebalanceRequest::default();
+    let mut request = RebalanceRequest::default();
     for (link, quantity) in links.flat_map(|j| [(j, BodyQuantity::Along), (j, BodyQuantity::Across)]) {
-        asked.hold(machine, Parameter::new(Body::Link(link), quantity), ParameterBounds::Free);
+        request.hold(machine, Parameter::new(Body::Link(link), quantity), ParameterBounds::Free);
     }
-    // With the negative of the identified imbalance as offset, balance is reached where the machine has that imbalance.
+    // With the negative of the identified imbalance as offset, the balance conditions hold for a machine with that
+    // imbalance.
     let wanted: Vec<Vector> = taken.residuals().iter().map(|left| -left).collect();
-    let misses = unreachable_by_changes(machine, &asked, &wanted)?;
-    let kept = rebalance_with(machine, &asked, &difference(&wanted, &misses))?;
-    let mut spec = kept.machine.spec().clone();
-    set_momenta(&mut spec, &kept.machine, &taken.momenta);
+    let misses = unreachable_by_changes(machine, &request, &wanted)?;
+    let rebalanced = rebalance_with(machine, &request, &difference(&wanted, &misses))?;
+    let mut spec = rebalanced.machine.spec().clone();
+    set_momenta(&mut spec, &rebalanced.machine, &taken.momenta);
     let machine = Machine::new(spec).map_err(|why| NoCorrection::Machine(why.to_string()))?;
     Ok((machine, misses.iter().map(|miss| -miss).collect()))
 }
@@ -164,7 +165,7 @@ pub fn corrected_as_built(
     Machine::new(spec)
 }
 
-/// Scales the inertias of each drive's links so that D_k has the wanted value. Inertias that would become negative are
+/// Scales the inertias of each drive's links so that D_k has the given value. Inertias that would become negative are
 /// not changed.
 fn set_momenta(spec: &mut MachineSpec, machine: &Machine, momenta: &[Option<f64>]) {
     let inertia = Inertia::of(machine);
@@ -216,7 +217,7 @@ fn change(
     Some(ParameterChange { key: parameter.key(machine), unit, from, exact: parameter.value(exact)?, to })
 }
 
-/// Returns the mass and position of a new counterweight; `None` if it was too light and left out.
+/// Returns the mass and position of a new counterweight; `None` if it was omitted as too light.
 fn added(weight: &Counterweight, rounded: &MachineSpec) -> Option<[ParameterChange; 2]> {
     let place = rounded.counterweights.iter().position(|own| own.link == weight.link)?;
     let own = &rounded.counterweights[place];

@@ -1,10 +1,9 @@
 //! Trim balancing: identifies the residuals of (7) and (8) of a built machine from measured base forces, and corrects
 //! them.
 //!
-//! For known drive angles, the force and the moment on the base are linear in the first moments g_k, the couplings C_kl
-//! and the momenta D_k. A few measured motions and least squares therefore identify them with their uncertainty. They
-//! also yield the least change of counterweights that corrects the balance, and the motion that would add most
-//! information.
+//! For known drive angles, force and moment on the base are linear in first moments g_k, couplings C_kl and momenta
+//! D_k. A few measured motions and least squares therefore identify them with their uncertainty. They also yield the
+//! least change of counterweights that corrects the balance, and the motion that would add most information.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -13,18 +12,19 @@
 //! | p | Σ i g_k q̇_k e_k, linear momentum: f = −ṗ + a constant | kg m/s |
 //! | h | Σ D_k q̇_k + Σ_{k<l} Re(C_kl e^{i(q_l − q_k)}) (q̇_k + q̇_l): n = −ḣ + Σ g_k e_k × gravity + a constant | kg m²/s |
 //! | x | g_k and C_kl, along and across, then D_k: the unknowns | kg m, kg m² |
-//! | X | rows of f_x, f_y, n per unit of x, for each motion less its straight line over time: sensors have an offset and a drift | |
+//! | X | rows of f_x, f_y, n per unit of x, without each motion's straight line over time (sensor offset, drift) | |
 //! | φ, w | window (1 − u²)⁴ for averaging rows if accelerations are not given, and its half width | , s |
 //! | σ | standard deviation of the residuals of force or moment | N, N m |
 //!
 //! # Method
-//! If rates and accelerations are given, each sample is a row. Otherwise no data are differentiated twice: with a
-//! window φ, ∫ φ f = ∫ φ̇ p + const and ∫ φ n = ∫ φ̇ h + ∫ φ (Σ g e × gravity) + const. Both sides are averaged with
-//! the same window, so its width costs information but causes no bias. p and h need q̇, from five neighbouring samples
-//! (error h⁴). Noise in the angles biases the least-squares estimate towards 0; the bias is removed to first order.
+//! If rates and accelerations are given, each sample is a row. Otherwise windows φ avoid a second differentiation of
+//! the data: ∫ φ f = ∫ φ̇ p + const and ∫ φ n = ∫ φ̇ h + ∫ φ (Σ g e × gravity) + const. Both sides are averaged with
+//! the same window, so a wide window loses information but causes no bias. p and h need q̇, from five neighbouring
+//! samples (error h⁴). Noise in the angles biases the least-squares estimate towards 0; the bias is removed to first
+//! order.
 //!
 //! Intervals have a confidence of 95 %. The covariance is the sandwich (XᵀX)⁻¹ S (XᵀX)⁻¹ with Bartlett's window over
-//! the autocorrelation of the scores. The critical value grows with that window's fraction of the data.
+//! the autocorrelation of the scores. The critical value grows with the fraction of the data that this window covers.
 //!
 //! # Source
 //! Newey and West (1987) for S; Andrews (1991) for the width of its window; Kiefer and Vogelsang (2005) for critical

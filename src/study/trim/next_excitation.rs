@@ -13,7 +13,7 @@ use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 /// A motion to measure next: each drive moves as a sine about the middle of its measured range.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Excitation {
-    /// Drives that move, from 0, and their senses, ±1.
+    /// Indices of the drives that move, and their senses, ±1.
     #[serde(skip)]
     pub drives: Vec<(usize, f64)>,
     /// Amplitude of each drive, rad.
@@ -36,12 +36,12 @@ impl Excitation {
     /// Describes the motion in words, with the names of the drives.
     pub fn words(&self, machine: &Machine) -> String {
         let names: Vec<&str> = self.drives.iter().map(|(k, _)| machine.spec().drives[*k].name.as_str()).collect();
-        let apart = self.frequency.windows(2).any(|w| w[0] != w[1]);
+        let own_frequencies = self.frequency.windows(2).any(|w| w[0] != w[1]);
         let [rest @ .., last] = names.as_slice() else { return String::new() };
         let all = if rest.is_empty() { (*last).to_owned() } else { format!("{} and {last}", rest.join(", ")) };
         match self.drives.as_slice() {
             [_] => format!("drive {all} alone"),
-            _ if apart => format!("drives {all}, each at its own frequency"),
+            _ if own_frequencies => format!("drives {all}, each at its own frequency"),
             both if both.iter().any(|(_, sign)| *sign < 0.0) => format!("drives {all} against each other"),
             _ => format!("drives {all} in step"),
         }
@@ -65,14 +65,15 @@ pub struct NextMeasurement {
 const INSTANTS: usize = 160;
 /// Maximum number of iterations of the eigenvalue solver.
 const MAX_ITERATIONS: usize = 10_000;
-/// Amplitude for drives that did not move, rad, at most that of the widest drive.
+/// Amplitude for drives that did not move, rad; limited to the largest measured amplitude.
 const DEFAULT_AMPLITUDE_RAD: f64 = 0.5;
 /// Acceleration if none was measured, rad/s².
 const DEFAULT_ACCELERATION: f64 = 5.0;
 
 /// Assesses candidates: each drive alone, every pair in step and against each other, all drives in step, and all at
 /// different frequencies. Amplitudes are those measured; accelerations are the largest measured, unless they are given,
-/// rad/s². The uncertainty after each is predicted from the information that its rows add at the identified noise.
+/// rad/s². The uncertainty after each candidate is predicted from the information that its rows add at the identified
+/// noise.
 pub fn next_excitation(
     machine: &Machine,
     recording: &MeasurementSet,
@@ -88,8 +89,8 @@ pub fn next_excitation(
     let half_width = if fit.identifiable[worst] { fit.half_width(worst) } else { f64::INFINITY };
     let duration = recording.motions.iter().map(MeasuredMotion::duration).sum::<f64>() / recording.motions.len() as f64;
     let now = Known::of(&fit.information, &scales);
-    let assessed = |drives: Vec<(usize, f64)>, apart: bool| {
-        let motion = limits.motion(machine, &drives, apart);
+    let assessed = |drives: Vec<(usize, f64)>, own_frequencies: bool| {
+        let motion = limits.motion(machine, &drives, own_frequencies);
         let more = motion.information(machine, &rows.unknowns, duration, fit);
         let then = Known::of(&(&fit.information + more), &scales);
         let half_width = match (fit.identifiable[worst], then.variance(worst)) {
@@ -152,26 +153,26 @@ impl Limits {
     }
 
     /// Returns sines of some drives, as large as the joint limits permit.
-    fn motion(&self, machine: &Machine, drives: &[(usize, f64)], apart: bool) -> Sines {
+    fn motion(&self, machine: &Machine, drives: &[(usize, f64)], own_frequencies: bool) -> Sines {
         let n = machine.drives();
         let signs: Vec<f64> =
             (0..n).map(|k| drives.iter().find(|(own, _)| *own == k).map_or(0.0, |(_, sign)| *sign)).collect();
         let mut scale = 1.0;
-        let mut sines = self.sines(&signs, apart, scale);
+        let mut sines = self.sines(&signs, own_frequencies, scale);
         while scale > 0.02 && !sines.keeps_limits(machine) {
             scale *= 0.8;
-            sines = self.sines(&signs, apart, scale);
+            sines = self.sines(&signs, own_frequencies, scale);
         }
         sines
     }
 
-    fn sines(&self, signs: &[f64], apart: bool, scale: f64) -> Sines {
+    fn sines(&self, signs: &[f64], own_frequencies: bool, scale: f64) -> Sines {
         let moving = || (0..signs.len()).filter(|k| signs[*k] != 0.0);
         let amplitude: Vec<f64> = (0..signs.len()).map(|k| scale * self.reach[k]).collect();
         let own = |k: usize| (self.acceleration[k] / amplitude[k]).sqrt();
         // In step, the drives move at the frequency of the slowest.
         let slowest = moving().map(own).fold(f64::INFINITY, f64::min);
-        let rate = |k: usize| if apart { own(k) * (1.0 - 0.13 * k as f64) } else { slowest };
+        let rate = |k: usize| if own_frequencies { own(k) * (1.0 - 0.13 * k as f64) } else { slowest };
         Sines {
             middle: self.middle.clone(),
             rate: (0..signs.len()).map(rate).collect(),
@@ -205,13 +206,13 @@ impl Sines {
             let together = self.rate[angle.to] == self.rate[angle.from];
             let (to, from) = (self.signed[angle.to], self.signed[angle.from]);
             let most = if together { (to - from).abs() } else { to.abs() + from.abs() };
-            // If the middle itself violates the limits, so did the measurement.
+            // If the middle itself violates the limits, so did the measurement; then the limits are not applied.
             !angle.limits.contains(&middle)
                 || (angle.limits.contains(&(middle - most)) && angle.limits.contains(&(middle + most)))
         })
     }
 
-    /// Returns the information Σ xᵀ x over time, divided by the densities of the noise.
+    /// Returns the information Σ xᵀ x over time, divided by the noise densities of force and moment.
     fn information(&self, machine: &Machine, unknowns: &Unknowns, duration: f64, fit: &Fit) -> DMatrix<f64> {
         let p = unknowns.count();
         let mut rows = [0, 1, 2].map(|_| DMatrix::zeros(INSTANTS, p));
@@ -262,7 +263,8 @@ impl Known {
         identifiable.then(|| (0..self.values.len()).filter(known).map(|i| part(i) / self.values[i]).sum())
     }
 
-    /// Returns the logarithm of the product of the first unknowns' variances; one that is not identifiable counts as 1.
+    /// Returns the logarithm of the product of the first `count` variances, with 1 for unknowns that are not
+    /// identifiable.
     fn log_volume(&self, count: usize) -> f64 {
         (0..count).map(|i| self.variance(i).unwrap_or(1.0).max(f64::MIN_POSITIVE).ln()).sum()
     }

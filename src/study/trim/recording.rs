@@ -26,7 +26,7 @@ impl MeasuredMotion {
         self.t.last().unwrap_or(&0.0) - self.t.first().unwrap_or(&0.0)
     }
 
-    fn wrong(&self, drives: usize) -> Option<&'static str> {
+    fn inconsistency(&self, drives: usize) -> Option<&'static str> {
         let n = self.t.len();
         let optional = |list: &[PerDrive]| list.is_empty() || list.len() == n;
         let lengths = [self.q.len(), self.force.len(), self.moment.len()].iter().all(|own| *own == n);
@@ -49,7 +49,7 @@ impl MeasuredMotion {
 /// Measured motions of one machine on a fixed base.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeasurementSet {
-    /// Motions, each with its own sensor offsets.
+    /// Motions, each with its own offset and drift of the sensors.
     pub motions: Vec<MeasuredMotion>,
 }
 
@@ -62,13 +62,13 @@ impl MeasurementSet {
     /// Checks that the recording can be used for a machine with a number of drives.
     ///
     /// # Errors
-    /// Says what is wrong.
+    /// Fails with the first inconsistency found.
     pub fn check(&self, drives: usize) -> Result<(), TrimError> {
         for (motion, of) in self.motions.iter().enumerate() {
             if let Some(got) = of.q.first().map(|q| q.len()).filter(|got| *got != drives) {
                 return Err(TrimError::Drives { got, want: drives });
             }
-            if let Some(what) = of.wrong(drives) {
+            if let Some(what) = of.inconsistency(drives) {
                 return Err(TrimError::Motion { motion, what });
             }
         }

@@ -39,7 +39,7 @@ pub struct TrimReport {
     pub unidentifiable: Vec<Vec<String>>,
     /// Proposed changes.
     pub changes: Vec<ParameterChange>,
-    /// Effect of the change over these motions, also if it is not significant and therefore not proposed.
+    /// Effect of the change over these motions, even if it is not significant and therefore not proposed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub worth: Option<TrimImprovement>,
     /// Proposal for the next measurement.
@@ -74,9 +74,9 @@ pub struct Number {
     /// Half width of the 95 % interval.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub half_width: Option<f64>,
-    /// Whether it differs significantly from the machine's file, given the values used for the others.
+    /// Whether the unknown differs significantly from the machine's file, given the values used for the others.
     pub off: bool,
-    /// Value used for the change: measured if `off`, else that of the file.
+    /// Value used: for (7) and (8), measured if `off`, else that of the file; for a momentum, measured if identifiable.
     pub taken: f64,
     /// Half width of the 95 % interval of that value; 0 if it is from the file.
     pub taken_half_width: f64,
@@ -136,7 +136,7 @@ impl TrimReport {
         self.changes.iter().filter(|change| change.to != change.from)
     }
 
-    /// Returns in words why nothing changes; valid if nothing does.
+    /// Returns in words the reason that nothing changes; meaningful only if nothing changes.
     pub fn why_no_change(&self) -> String {
         let off = self.numbers.iter().any(|number| number.balance && number.off);
         match self.worth.filter(|_| off) {

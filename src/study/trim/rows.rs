@@ -19,12 +19,12 @@ pub enum RegressorSource {
     Windows {
         /// Half width of a window, s.
         half: f64,
-        /// Root mean square noise of the accelerations relative to their root mean square; of the worst drive.
+        /// Root mean square noise of the accelerations relative to their root mean square; for the worst drive.
         noise: f64,
     },
 }
 
-/// Equations for f_x, f_y and n in the unknowns, row by row; each motion less its straight line over time.
+/// Equations for f_x, f_y and n in the unknowns, row by row; the straight line over time is removed from each motion.
 #[derive(Clone, Debug)]
 pub struct Regressor {
     /// The unknowns.
@@ -64,10 +64,9 @@ const ROWS_PER_HALF_WIDTH: f64 = 4.0;
 const ACCEPTED_NOISE: f64 = 2e-3;
 /// A drive counts as still if the relative noise of its acceleration is at least this for all windows.
 const STILL_NOISE: f64 = 0.2;
-/// A drive counts as still if its range, rad, is at most this.
+/// Range, rad, up to which a drive counts as still.
 const TURNING_ABOVE_RAD: f64 = 1e-9;
-/// With measured accelerations, a drive counts as still if its range, rad, is at most this, and its acceleration
-/// satisfies the next bound.
+/// Range, rad, up to which a drive counts as still if accelerations are measured and satisfy the next bound.
 const STILL_RANGE_RAD: f64 = 1e-3;
 /// Upper bound on the root mean square acceleration of a still drive, as a fraction of that of the fastest drive.
 const STILL_ACCELERATION: f64 = 1e-2;
@@ -121,14 +120,14 @@ impl Regressor {
         let all = || recording.motions.iter();
         let squares = |k: usize| all().flat_map(|m| &m.qdd).map(|a| a[k] * a[k]).sum::<f64>();
         let fastest = (0..machine.drives()).map(squares).fold(0.0, f64::max);
-        let stands = |k: usize| {
+        let is_still = |k: usize| {
             let turns = |m: &MeasuredMotion| spread(m.q.iter().map(|q| q[k]));
             all().map(turns).fold(0.0, f64::max) <= STILL_RANGE_RAD
                 && squares(k) <= STILL_ACCELERATION.powi(2) * fastest
         };
-        let moves: Vec<bool> = (0..machine.drives()).map(|k| !stands(k)).collect();
+        let moves: Vec<bool> = (0..machine.drives()).map(|k| !is_still(k)).collect();
         let mut made = Making::of(machine);
-        for motion in all().map(|motion| held(motion, &moves)) {
+        for motion in all().map(|motion| with_fixed_still_drives(motion, &moves)) {
             for i in 0..motion.t.len() {
                 let e = DriveAngles(motion.q[i]).units();
                 made.next(motion.t[i] - motion.t[0], motion.force[i], motion.moment[i]);
@@ -220,7 +219,7 @@ fn spread(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Returns the motion with constant angles for drives that count as still.
-fn held(motion: &MeasuredMotion, moves: &[bool]) -> MeasuredMotion {
+fn with_fixed_still_drives(motion: &MeasuredMotion, moves: &[bool]) -> MeasuredMotion {
     let mut motion = motion.clone();
     for k in (0..moves.len()).filter(|k| !moves[*k]) {
         let mean = motion.q.iter().map(|q| q[k]).sum::<f64>() / motion.q.len() as f64;
@@ -301,7 +300,7 @@ impl<'a> Smooth<'a> {
         (0..=count).map(move |i| start + step * i as f64)
     }
 
-    /// Returns σ of an averaged acceleration if the underlying samples have σ = 1.
+    /// Returns the ratio of σ of an averaged acceleration to σ of the underlying samples.
     fn gain(&self, window: &SmoothingWindow) -> f64 {
         if self.measured {
             return window.rate.iter().map(|d| d * d).sum::<f64>().sqrt();

@@ -8,7 +8,7 @@ use stillbase_session::scenario::DesignBrief;
 /// Numbers that may change in a correction.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TrimMethod {
-    /// Numbers of the machine.
+    /// Present numbers of the machine.
     Change(RebalanceRequest),
     /// New counterweights.
     Add(CounterweightSpec),
@@ -16,7 +16,7 @@ pub enum TrimMethod {
 
 impl TrimMethod {
     /// Returns the numbers that a brief permits to change: the machine's counterweights and the numbers that the brief
-    /// frees; new counterweights if there are none.
+    /// frees. If there are none, returns new counterweights.
     pub fn of(brief: &DesignBrief, machine: &Machine) -> Self {
         let is_movable = |weight: &Counterweight| !weight.fixed && !brief.fixed.contains(&weight.link);
         let mut keep = RebalanceRequest::default();

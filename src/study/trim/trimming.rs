@@ -36,11 +36,11 @@ pub struct TrimRequest {
 /// Result of the evaluation.
 #[derive(Clone, Debug)]
 pub struct TrimOutcome {
-    /// Relative noise of the accelerations from noisy angles, if it is so large that results may be inaccurate.
+    /// Relative noise of the accelerations due to noisy angles, if it is so large that results may be inaccurate.
     pub angle_noise: Option<f64>,
-    /// Suspected fault, if the measurement was accepted as given all the same.
+    /// Suspected fault of a measurement that was nevertheless accepted as given.
     pub doubt: Option<Doubt>,
-    /// The identified machine, or why there is none.
+    /// The identified machine, or the reason that there is none.
     pub outcome: Result<TrimResult, NoTrim>,
 }
 
@@ -51,11 +51,11 @@ pub struct TrimResult {
     pub report: TrimReport,
     /// The machine as identified.
     pub taken: AdoptedParameters,
-    /// Correction, without changes if none is significant; or why there is none.
+    /// Correction, without changes if none is significant; or the reason that there is none.
     pub mended: Result<MachineCorrection, NoCorrection>,
 }
 
-/// Why a measurement has no result.
+/// Reason that a measurement has no result.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoTrim {
     /// The recording cannot be used.
@@ -72,13 +72,13 @@ pub enum NoTrim {
 /// Relative noise of the accelerations above which it is reported.
 const MAX_ANGLE_NOISE: f64 = 0.02;
 
-/// Fractions of the work done once rows are built, faults are tested, unknowns are fitted, and a next motion is found.
+/// Fractions of the work done after rows are built, faults tested, unknowns fitted, and the next motion found.
 const MADE_AT: f64 = 0.05;
 const TRIED_AT: f64 = 0.8;
 const FITTED_AT: f64 = 0.9;
 const SEARCHED_AT: f64 = 0.95;
 
-/// Evaluates a measurement: builds its rows, tests for faults, one in each portion, fits the unknowns and finds the
+/// Evaluates a measurement: builds its rows, tests for faults (one in each portion), fits the unknowns and finds the
 /// correction.
 pub struct TrimQuery {
     request: TrimRequest,

@@ -43,7 +43,7 @@ impl Unknown {
     }
 }
 
-/// The unknowns for n drives: along and across of each line of (7), then of (8), then every D_k.
+/// The unknowns for n drives: the parts along and across of each line of (7), then of (8), then every D_k.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unknowns {
     drives: usize,
@@ -61,7 +61,7 @@ impl Unknowns {
         self.drives
     }
 
-    /// Returns the lines of (7) and (8), in order.
+    /// Returns the conditions (7), then (8), in their order.
     pub fn conditions(&self) -> &[Condition] {
         &self.conditions
     }
@@ -103,8 +103,7 @@ impl Unknowns {
         (0..self.count()).map(of).collect()
     }
 
-    /// Computes force (x, y) and moment per unit of each unknown at a state; the dynamic force, the moment with the
-    /// weight.
+    /// Computes the dynamic force (x, y) and the moment, weight included, per unit of each unknown at a state.
     pub fn reaction(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, gravity: Vector, out: [&mut [f64]; 3]) {
         let [fx, fy, n] = out;
         self.still(e, gravity, n);
@@ -154,7 +153,7 @@ impl Unknowns {
     }
 }
 
-/// Writes a vector times the real and times the imaginary unit.
+/// Writes the components of v and i v, which belong to the real and the imaginary part of the i-th condition.
 fn complex(v: Vector, i: usize, x: &mut [f64], y: &mut [f64]) {
     (x[2 * i], x[2 * i + 1]) = (v.re, -v.im);
     (y[2 * i], y[2 * i + 1]) = (v.im, v.re);

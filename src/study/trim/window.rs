@@ -34,7 +34,8 @@ impl SmoothingWindow {
             return None;
         }
         let u: Vec<f64> = samples.clone().map(|j| (t[j] - centre) / half).collect();
-        // Half the distance between the two neighbours; at the ends of the record, half that to the only neighbour.
+        // Half the distance between the two neighbours; at the ends of the record, half the distance to the only
+        // neighbour.
         let place = |j: usize| t[j.min(t.len() - 1)];
         let space = |j: usize| 0.5 * (place(j + 1) - place(j.saturating_sub(1))) / half;
         let phi: Vec<f64> = samples.clone().zip(&u).map(|(j, u)| space(j) * (1.0 - u * u).powi(4)).collect();

@@ -18,14 +18,14 @@ const MIN_LOG_ODDS: f64 = 9.21;
 const EQUAL_BELOW: f64 = 1e-3;
 /// Penalty on ln Λ for each further independent mistake that a fault consists of.
 const LOG_ODDS_PER_MISTAKE: f64 = 2.3;
-/// Maximum distance in ln Λ from the best fault at which a fault is still named.
+/// A fault is named if its ln Λ is at most this far below that of the best fault.
 const MAX_LOG_ODDS_BEHIND: f64 = 6.9;
 /// Maximum number of faults that are named.
 const MAX_NAMED: usize = 5;
 /// Maximum number of samples times the square of the number of unknowns.
 const MAX_WORK: usize = 4_000_000;
 
-/// Tests a measurement for faults; `None` if it is plausible as given. Of a long recording, parts are tested.
+/// Tests a measurement for faults; `None` if it is plausible as given. Only parts of a long recording are tested.
 ///
 /// # Errors
 /// Fails if the recording cannot be used.
@@ -42,7 +42,7 @@ pub struct DoubtSearch {
     rows: Regressor,
     given: FitTrial,
     tolerances: Tolerances,
-    /// Unknowns whose values no machine can have, by the measurement as given.
+    /// Unknowns whose values, fitted to the measurement as given, no machine can have.
     infeasible: Vec<Unknown>,
     faults: Vec<Fault>,
     /// Number of faults tested.
@@ -114,7 +114,8 @@ impl DoubtSearch {
         transformed.transform(|force, moment| fault.undo(force, moment));
         let other = try_fit(machine, &transformed, violation).ok()?;
         let [decides, ranks] = likelihood_ratio(&self.tolerances, as_given.as_ref().unwrap_or(given), &other)?;
-        // If the values as given are impossible, any fault with possible values and a positive rank explains them.
+        // If the values as given are impossible, any fault with possible values and a positive ranking ln Λ explains
+        // them.
         let explains = match self.infeasible.as_slice() {
             [] => decides > MIN_LOG_ODDS,
             _ => ranks > 0.0,
@@ -136,7 +137,7 @@ impl DoubtSearch {
         let best = self.likely.first().map_or(0.0, |first| first.ranks);
         self.likely.retain(|one| one.ranks > best - MAX_LOG_ODDS_BEHIND);
         let Self { given: FitTrial { fit, .. }, infeasible, likely, .. } = &self;
-        let said = |place: usize| MeasuredValue {
+        let measured_value = |place: usize| MeasuredValue {
             name: fit.unknowns.at(place).name(machine),
             unit: fit.unknowns.at(place).unit(),
             value: fit.measured[place],
@@ -159,8 +160,8 @@ impl DoubtSearch {
         causes.truncate(MAX_NAMED);
         Some(Doubt {
             causes,
-            impossible: infeasible.iter().filter_map(place).map(said).collect(),
-            furthest: furthest.map(said),
+            impossible: infeasible.iter().filter_map(place).map(measured_value).collect(),
+            furthest: furthest.map(measured_value),
             noise: fit.noise,
             shares: shares(fit),
             leaves: self.given.leaves,
@@ -200,7 +201,7 @@ fn limit_violation(machine: &Machine, recording: &MeasurementSet) -> f64 {
     most
 }
 
-/// Returns a recording short enough for many fits: of a long one, some motions, each with its first samples.
+/// Returns a recording short enough for many fits: a long one is reduced to the first samples of some of its motions.
 fn shortened(machine: &Machine, recording: &MeasurementSet) -> MeasurementSet {
     let unknowns = Unknowns::of(machine.drives()).count();
     let most = (MAX_WORK / unknowns.pow(2)).clamp(1_000, 20_000);
@@ -227,7 +228,8 @@ fn shortened(machine: &Machine, recording: &MeasurementSet) -> MeasurementSet {
 }
 
 impl Regressor {
-    /// Transforms the measured force and moment; the straight line over time stays removed.
+    /// Transforms the measured force and moment. Their straight lines over time stay removed, because the
+    /// transformation is linear.
     fn transform(&mut self, transformation: impl Fn(Vector, f64) -> (Vector, f64)) {
         let [fx, fy, n] = &mut self.channels;
         for ((fx, fy), n) in fx.y.iter_mut().zip(&mut fy.y).zip(&mut n.y) {

@@ -3,7 +3,7 @@
 //! # Symbols
 //! | letter | meaning |
 //! |---|---|
-//! | A, b | the true angles are A q + b of the given q; rates are A q̇, accelerations A q̈ |
+//! | A, b | the true angles are A q + b, where q are the given angles; rates are A q̇, accelerations A q̈ |
 //! | u | the true force is u f or u conj(f), where f is the given force as a complex number |
 //! | s | the true moment is s n, where n is the given moment |
 
@@ -65,8 +65,8 @@ impl Fault {
     }
 
     /// Returns all faults that are tested. For force and moment: signs, order and units. For the angles: signs, the
-    /// exchange of any two, cycles of three with up to four drives, degrees for radians and the reverse, and relative
-    /// angles. With eight drives there are 64.
+    /// exchange of any two, degrees for radians and the reverse, and relative angles. With up to four drives also
+    /// cyclic exchanges of three. With eight drives there are at most 63.
     pub fn all(machine: &Machine) -> Vec<Self> {
         let n = machine.drives();
         let mut all = frames();
@@ -169,7 +169,7 @@ fn frames() -> Vec<Fault> {
 }
 
 fn units() -> Vec<Fault> {
-    // The force of imbalance may have any size, so it is weak evidence on its unit.
+    // The force of imbalance may have any size, so it is weak evidence of its unit.
     let scaled = |what: &str, want: &str, force: f64, moment: f64| {
         let mistakes = if force == 1.0 { 1 } else { 3 };
         channels(what, want, mistakes, (Vector::new(force, 0.0), false), moment)
@@ -205,7 +205,7 @@ fn reversed(n: usize, which: impl Fn(usize) -> bool, what: &str) -> Fault {
     of_angles(what.into(), format!("{} times −1, with rates and accelerations", list(&names)), angles)
 }
 
-/// Returns the possible orders of columns: the true angle of drive k is in column `order[k]`.
+/// Returns the orders of columns that are tested: the true angle of drive k is in column `order[k]`.
 fn orders(n: usize) -> Vec<Vec<usize>> {
     let exchanged = |moves: &[(usize, usize)]| {
         let mut order: Vec<usize> = (0..n).collect();
@@ -235,8 +235,8 @@ fn reordered(order: &[usize]) -> Fault {
     of_angles(what, format!("the columns {here} named {there} in the header, with rates and accelerations"), angles)
 }
 
-fn degrees(n: usize, scale: f64, are: bool) -> Fault {
-    let [is, not, unit] = if are { ["degrees", "radians", "deg"] } else { ["radians", "degrees", "rad"] };
+fn degrees(n: usize, scale: f64, are_degrees: bool) -> Fault {
+    let [is, not, unit] = if are_degrees { ["degrees", "radians", "deg"] } else { ["radians", "degrees", "rad"] };
     let angles = Angles::linear(n, |k, l| if k == l { scale } else { 0.0 });
     of_angles(
         format!("the angles are in {is}, not in {not}"),
@@ -245,7 +245,7 @@ fn degrees(n: usize, scale: f64, are: bool) -> Fault {
     )
 }
 
-/// Returns the fault that each angle is relative to the drive before.
+/// Returns the fault that each angle is relative to the preceding drive.
 fn relative(n: usize) -> Fault {
     let names: Vec<String> = (1..n).map(|k| format!("q{}", k + 1)).collect();
     let what = format!("{} are relative angles, each seen from the drive before", list(&names));
@@ -257,7 +257,7 @@ fn relative(n: usize) -> Fault {
     )
 }
 
-/// Returns the fault that the columns after the first hold the relative angles of the machine's file, in its order;
+/// Returns the fault that the columns after the first contain the relative angles of the machine's file, in its order;
 /// `None` if these do not determine all drives.
 fn relative_of_file(machine: &Machine) -> Option<Fault> {
     let (n, angles) = (machine.drives(), machine.angles());
@@ -266,7 +266,7 @@ fn relative_of_file(machine: &Machine) -> Option<Fault> {
     }
     let mut known: Vec<Option<(PerDrive, f64)>> = vec![None; n];
     known[0] = Some((PerDrive::from_fn(n, |l| if l == 0 { 1.0 } else { 0.0 }), 0.0));
-    // Each pass finds at least one more drive, or there is none left to find.
+    // Each pass finds at least one more drive, unless no further drive can be found.
     for _ in 1..n {
         for (i, angle) in angles.iter().enumerate() {
             let own = |by: f64| PerDrive::from_fn(n, |l| if l == i + 1 { by } else { 0.0 });

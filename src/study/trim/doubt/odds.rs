@@ -8,18 +8,19 @@ use stillbase_mechanics::machine::Machine;
 
 /// Contribution to ln Λ if only one of both fits keeps the joint limits: ln 10⁶.
 const LIMITS_LOG_ODDS: f64 = 13.8;
-/// Factor by which d² must decrease to be evidence of a fault. Errors beyond the tolerances
-/// decrease it by less.
+/// Factor by which d² must decrease to be evidence of a fault. Mere deviations beyond the tolerances decrease it by
+/// less.
 const MIN_IMPROVEMENT: f64 = 30.0;
-/// Joint limits count as violated beyond this, rad.
+/// Violation above which the joint limits count as violated, rad.
 pub(super) const LIMIT_LEFT_BEYOND: f64 = 0.1;
-/// Joint limits count as kept up to this violation, rad.
+/// Violation up to which the joint limits count as kept, rad.
 pub(super) const LIMIT_KEPT_WITHIN: f64 = 0.02;
 /// Fraction of the effective rows that is counted, because the correlation of few rows is uncertain.
 const COUNTED_FRACTION: f64 = 0.5;
-/// Residuals below this fraction of the largest possible reaction are rounding errors, or those of printed digits.
+/// Residuals below this fraction of the largest possible reaction are rounding errors, of the arithmetic or of printed
+/// digits.
 const ROUNDING_LEVEL: f64 = 1e-10;
-/// Lower bound on relative residuals: below it, they are errors of the finite differences and no evidence.
+/// Lower bound on relative residuals: smaller residuals are errors of the finite differences, and no evidence.
 const MIN_RELATIVE_RESIDUAL: f64 = 1e-6;
 
 /// A fit, its degrees of freedom as a fraction of the effective rows, and its violation of the joint limits, rad.
@@ -61,7 +62,7 @@ pub(super) fn likelihood_ratio(tolerances: &Tolerances, given: &FitTrial, other:
     };
     let common = residuals(0) + residuals(1) + limits;
     let momenta = 0.5 * p * ((before.momenta + scale) / (after.momenta + scale)).ln();
-    // A distance below its expected value p counts as p.
+    // A distance below its expected value p is replaced by p.
     let all = 0.5 * p * (before.all.max(p) / after.all.max(p)).ln();
     let far = before.known.zip(after.known).map_or(f64::NEG_INFINITY, |([was, p], [now, more])| {
         let p = p.max(more);

@@ -16,7 +16,7 @@ use stillbase_mechanics::balance::Condition;
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::Vector;
 
-/// Upper bound on M, as a multiple of that of the file.
+/// Upper bound on M, as a multiple of the mass in the file.
 const MAX_MASS_FACTOR: f64 = 2.0;
 /// Number of half widths of its 95 % interval by which an eigenvalue must lie below zero to count as negative.
 const MIN_HALF_WIDTHS: f64 = 3.0;
@@ -25,8 +25,8 @@ const EIGENVALUE_ROUNDING: f64 = 1e-6;
 /// Maximum number of iterations of the eigenvalue solver.
 const MAX_ITERATIONS: usize = 10_000;
 
-/// Returns up to three unknowns whose values are impossible together, the most involved first; empty if positive masses
-/// explain them.
+/// Returns up to three unknowns whose values are impossible together, the largest contribution first; empty if positive
+/// masses can explain all values.
 pub(super) fn impossible_numbers(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
     let (inertia, n) = (Inertia::of(machine), machine.drives());
     let unknowns = &fit.unknowns;
@@ -34,7 +34,7 @@ pub(super) fn impossible_numbers(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
     let rotors = |k: usize| inertia.rotors[..n].iter().map(|rotor| rotor.inertia * rotor.rates[k]).sum::<f64>();
     let drives: Vec<usize> = (0..n).filter(|k| fit.identifiable[from + k]).collect();
     let size = |k: usize| (inertia.momentum(k) - rotors(k)).abs().max(1e-9 * inertia.diagonal(k)).sqrt();
-    let whole = |of: &[usize]| {
+    let all_identifiable = |of: &[usize]| {
         let used = |condition: &Condition| match condition {
             Condition::Force(k) => of.contains(k),
             Condition::Coupling(k, l) => of.contains(k) && of.contains(l),
@@ -42,23 +42,23 @@ pub(super) fn impossible_numbers(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
         let conditions = unknowns.conditions().iter().enumerate();
         conditions.filter(|(_, c)| used(c)).all(|(i, _)| fit.identifiable[2 * i] && fit.identifiable[2 * i + 1])
     };
-    // Each drive alone, then all drives with all moments, if these are identifiable.
+    // First each drive alone, then all drives with their first moments, if all these unknowns are identifiable.
     let alone = drives.iter().map(|k| (vec![*k], false));
-    let groups = alone.chain(Some((drives.clone(), true)).filter(|(of, _)| whole(of)));
+    let groups = alone.chain(Some((drives.clone(), true)).filter(|(of, _)| all_identifiable(of)));
     for (of, moments) in groups {
-        let heavy = usize::from(moments);
-        let scale = |i: usize| match i.checked_sub(heavy) {
+        let offset = usize::from(moments);
+        let scale = |i: usize| match i.checked_sub(offset) {
             Some(i) => 1.0 / size(of[i]),
             None => 1.0 / (MAX_MASS_FACTOR * inertia.mass()).sqrt(),
         };
-        let place = |k: &usize| of.iter().position(|own| own == k).map(|i| i + heavy);
-        let mut z = DMatrix::<Vector>::zeros(of.len() + heavy, of.len() + heavy);
+        let place = |k: &usize| of.iter().position(|own| own == k).map(|i| i + offset);
+        let mut z = DMatrix::<Vector>::zeros(of.len() + offset, of.len() + offset);
         if moments {
             z[(0, 0)] = Vector::new(1.0, 0.0);
         }
         for (i, k) in of.iter().enumerate() {
             let own = fit.measured[from + k] - rotors(*k);
-            z[(i + heavy, i + heavy)] = Vector::new(own * scale(i + heavy).powi(2), 0.0);
+            z[(i + offset, i + offset)] = Vector::new(own * scale(i + offset).powi(2), 0.0);
         }
         // Row and column in Z of each condition: g_k for (7), C_kl for (8).
         let places: Vec<Option<(usize, usize)>> = unknowns
@@ -81,7 +81,7 @@ pub(super) fn impossible_numbers(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
         // Derivative of the eigenvalue with respect to the unknowns, at fixed eigenvector.
         let mut slope = DVector::zeros(unknowns.count());
         for (i, k) in of.iter().enumerate() {
-            slope[from + k] = v[i + heavy].norm_sqr() * scale(i + heavy).powi(2);
+            slope[from + k] = v[i + offset].norm_sqr() * scale(i + offset).powi(2);
         }
         for (i, at) in places.iter().enumerate() {
             if let Some((a, b)) = *at {
@@ -92,9 +92,9 @@ pub(super) fn impossible_numbers(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
         let half = fit.critical * slope.dot(&(&fit.covariance * &slope)).max(0.0).sqrt();
         if value + MIN_HALF_WIDTHS * half < -EIGENVALUE_ROUNDING {
             // Contribution of each unknown to the eigenvalue.
-            let pull = |i: usize| slope[i] * (fit.measured[i] - if i < from { 0.0 } else { rotors(i - from) });
-            let mut all: Vec<usize> = (0..unknowns.count()).filter(|i| pull(*i) < 0.0).collect();
-            all.sort_by(|a, b| pull(*a).total_cmp(&pull(*b)));
+            let contribution = |i: usize| slope[i] * (fit.measured[i] - if i < from { 0.0 } else { rotors(i - from) });
+            let mut all: Vec<usize> = (0..unknowns.count()).filter(|i| contribution(*i) < 0.0).collect();
+            all.sort_by(|a, b| contribution(*a).total_cmp(&contribution(*b)));
             return all.into_iter().take(3).map(|i| unknowns.at(i)).collect();
         }
     }

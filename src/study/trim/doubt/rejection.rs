@@ -1,11 +1,11 @@
-//! [`Doubt`]: why a measurement is rejected, in numbers and in words.
+//! [`Doubt`]: the reason for rejecting a measurement, in numbers and in words.
 
 use std::fmt;
 
 use super::odds::{LIMIT_KEPT_WITHIN, LIMIT_LEFT_BEYOND};
 use stillbase_settings::number::shown;
 
-/// Why a measurement is rejected.
+/// Reason for rejecting a measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Doubt {
     /// Possible faults, the most likely first; empty if no known fault explains the measurement.
@@ -35,7 +35,7 @@ pub struct Cause {
     pub noise: [f64; 2],
     /// These residuals as fractions of the corrected measured values.
     pub shares: [f64; 2],
-    /// Value after correction of the unknown with the largest deviation.
+    /// Value, after correction, of the unknown with the largest deviation.
     pub furthest: Option<f64>,
     /// Violation of the limits of relative angles after correction, rad; 0 if there is none.
     pub leaves: f64,
@@ -90,7 +90,7 @@ impl fmt::Display for Doubt {
         }
         if let Some(then) = then {
             for (i, unit) in ["N", "N m"].into_iter().enumerate() {
-                // A residual that only changed its unit is no evidence.
+                // A residual that changed only because its unit changed is no evidence.
                 if self.shares[i] > 1.1 * then.shares[i] {
                     write!(f, "\n  As given, {} {unit} are not explained;", number(self.noise[i]))?;
                     write!(f, " without the fault {}.", number(then.noise[i]))?;

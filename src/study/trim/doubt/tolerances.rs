@@ -1,4 +1,5 @@
-//! [`Tolerances`]: expected deviations of a built machine from its file, and the distance of a measured one from it.
+//! [`Tolerances`]: expected deviations of a built machine from its file, and the distance of a measured machine from
+//! the file.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -22,8 +23,8 @@ use stillbase_mechanics::planar::Vector;
 
 /// Relative tolerance of a link's mass, counterweights included.
 const MASS_TOLERANCE: f64 = 0.03;
-/// Tolerance of a centre of mass along its link, as a fraction of the link's length or a fifth of the reach, whichever
-/// is larger; half of it across.
+/// Tolerance of a centre of mass along its link, as a fraction of the link's length or of a fifth of the reach,
+/// whichever is larger. Half as much across.
 const COM_TOLERANCE: f64 = 0.01;
 /// Relative tolerance of inertias.
 const INERTIA_TOLERANCE: f64 = 0.05;
@@ -63,8 +64,8 @@ pub(super) struct Distance {
     pub known: Option<[f64; 2]>,
 }
 
-/// Returns whether the file's value of each unknown differs from that of a balanced machine. That holds for each D, and
-/// for both parts of first moments and couplings above a thousandth of mass times reach, or mass times reach squared.
+/// Returns whether the file's value of each unknown differs from that of a balanced machine. That is true of each D,
+/// and of both parts of first moments and couplings above a thousandth of mass times reach (couplings: reach squared).
 pub(super) fn known_numbers(machine: &Machine) -> Vec<bool> {
     let (unknowns, inertia) = (Unknowns::of(machine.drives()), Inertia::of(machine));
     let nominal = unknowns.nominal(&inertia);
