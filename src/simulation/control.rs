@@ -25,25 +25,25 @@ keyed! {
     /// Settings of control.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Control at "control" {
-        /// What control computes: torques from the model, the same with the payload in it while it is held, or PD from
-        /// the errors alone.
+        /// Computation of the torques: from the model, from the model with the payload while it is held, or PD from the
+        /// errors alone.
         law: ControlLaw = "computed-torque";
-        /// Position gain K_p, at most 1/step², 1e6 at 1 ms; equal on all drives, errors stay on the plane.
+        /// Position gain K_p, at most 1/step², 1e6 at 1 ms; if equal on all drives, it keeps errors on the plane.
         kp: DriveValues = "400", range: Range::new(0.0, 1e10, "s⁻²"), saved: always;
-        /// Velocity gain K_d, at most 2/step, 2000 at 1 ms; equal on all drives, errors stay on the plane.
+        /// Velocity gain K_d, at most 2/step, 2000 at 1 ms; if equal on all drives, it keeps errors on the plane.
         kd: DriveValues = "40", range: Range::new(0.0, 2e5, "s⁻¹"), saved: always;
         // A wheel in the base is not part of the model.
         /// Whether the model of control includes the base that moves; otherwise control takes the base to be fixed.
         knows_base: bool = "true", when: "base.kind = free or compliant: a fixed base does not move";
-        /// How often torques are computed, and held between; a whole number of steps lies between two, and 0 is all the
-        /// time.
+        /// Rate at which torques are computed; between samples, a whole number of steps, they stay constant, and 0
+        /// means continuous control.
         rate: f64 = "0", range: Range::new(0.0, 1e5, "Hz");
         // Encoders are sampled at every step if no rate is given. Until the first torque arrives, the motors hold the
         // start pose.
-        /// From reading the encoders to the torque, a whole number of steps.
+        /// Delay from reading the encoders to the torque, a whole number of steps.
         delay: f64 = "0", range: DELAY_RANGE;
         // Control reads drive angles only in whole counts; the motion of the base is measured exactly.
-        /// Counts of the encoders in a turn, 16 or more; rates are their differences, and 0 is exact.
+        /// Encoder counts in a turn, 16 or more; rates are differences of counts, and 0 means exact angles.
         encoder: f64 = "0", range: Range::new(0.0, 1e12, "counts");
     }
 }

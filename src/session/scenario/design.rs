@@ -31,39 +31,39 @@ keyed! {
     /// ```
     #[derive(Clone, Debug, PartialEq)]
     pub struct DesignBrief at "design" {
-        /// Whether, whatever is changed in the design view, what is free follows so that (7) and (8) hold, each as little
-        /// as it can; a fixed link stays.
+        /// Whether each change in the design view also adjusts the free numbers, as little as possible, so that (7) and
+        /// (8) hold; fixed links stay.
         keep_balanced: bool = "false";
-        /// How dear it is to move each centre of mass while the balance is kept, Eq. (10).
+        /// Penalty on moving each centre of mass while the balance is kept, Eq. (10).
         penalties: Preset = "minimum-norm", when: "nine links and no counterweights";
         // The defaults of density and thickness are those of `Disc::STEEL`.
-        /// Density of what counterweights are made of, discs of one plate.
+        /// Density of the plate from which the discs of counterweights are cut.
         density: f64 = "7850", range: DENSITY_RANGE;
-        /// Thickness of the plate that the discs are cut from.
+        /// Thickness of the plate from which the discs are cut.
         thickness: f64 = "0.03", range: THICKNESS_RANGE;
-        /// How far behind the root of its link a counterweight may sit.
+        /// Maximum distance of a counterweight behind the root of its link.
         behind_root: Option<f64> = Key::NONE, range: Range::new(0.0, 100.0, "m"),
             instead: "as far as the link is long";
-        /// How heavy a counterweight may be.
+        /// Maximum mass of a counterweight.
         heaviest: Option<f64> = Key::NONE, range: Range::new(1e-3, 1e5, "kg"), instead: "any mass";
-        /// How far the edge of a disc stays from the middle of every pin of its link.
+        /// Minimum distance between the edge of a disc and the centre of every pin of its link.
         clearance: Option<f64> = Key::NONE, range: Range::new(0.0, 1.0, "m"), instead: "discs may cover pins";
-        /// Counterweights leave the least worst residual over all that the end effector may hold, from the first to the
-        /// second; to balance one payload exactly, hold it and leave this out.
+        /// Counterweights minimise the largest residual over all payloads from the first to the second mass; to balance
+        /// one payload exactly, set it and omit this key.
         payload: Option<[f64; 2]> = Key::NONE, range: ranges::LOAD, instead: "what the end effector holds";
-        /// How far the arms reach together at least, Σ |L_k|, where lengths are sought.
+        /// Minimum reach of the arms together, Σ |L_k|, if lengths are sought.
         reach: Option<f64> = Key::NONE, range: Range::new(0.0, 1e6, "m"), instead: "any reach", when: SOUGHT;
-        /// How large the reactionless workspace is at least where lengths are sought.
+        /// Minimum area of the reactionless workspace, if lengths are sought.
         workspace: Option<f64> = Key::NONE, range: Range::new(0.0, 1e12, "m²"), instead: "any workspace", when: SOUGHT;
         named:
-        /// This length is sought from the first to the second, with the counterweights that are least: a name under
-        /// `[lengths]`, or a link that shares its length with no other.
+        /// Bounds of a length that is optimised with the counterweights: a name under `[lengths]`, or a link that
+        /// shares its length with no other.
         length: BTreeMap<String, [f64; 2]> = Key::NONE, range: ranges::LENGTH, instead: "it stays",
             when: "a length of this name, or such a link";
-        /// The rotor's ratio may be chosen from the first to the second; below 0 it turns the other way.
+        /// Bounds of the rotor's ratio, if it may be chosen; below 0 the rotor turns the other way.
         ratio: BTreeMap<String, [f64; 2]> = Key::NONE, range: ranges::RATIO, instead: "it stays",
             when: "a drive of this name whose rotor has inertia";
-        /// Whether a link stays as it is: neither what keeps the balance nor new counterweights change it.
+        /// Whether a link stays unchanged, both when the balance is kept and when counterweights are placed.
         fixed: NameSet = "false", when: LINK;
         tables:
         /// Bounds on single numbers by key, such as `link.5.mass`: fixed, free, or within an interval. They override

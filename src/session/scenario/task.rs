@@ -48,16 +48,16 @@ keyed! {
     /// The task of the machine. A task read from a file has to be completed with the keys that the file omits.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Task at "task" {
-        /// What becomes of the redundancy of three drives over two coordinates of the end effector.
+        /// How the redundancy of three drives over two coordinates of the end effector is resolved.
         kind: TaskKind = Key::REQUIRED, saved: always;
-        /// What joins the points.
+        /// Shape of the path between the points.
         shape: Option<PathShape> = Key::NONE, instead: "joint-line for reactionless, line for the other kinds",
             when: CURVED => Task::is_curved;
         // Samples contain all drive angles for `given`, or x and y for `given`, `reactionless` and `minimum-norm`. With
         // two drives, `given` reads two values as drive angles. With samples, points, shape and law have no effect.
         /// The motion over time: rows of t, s, and all drive angles, rad, or of t, x, y, m.
         samples: Option<Samples> = Key::NONE, instead: "points and a law say where to be when";
-        /// By how much samples of drive angles are turned as a whole.
+        /// Angle by which samples of drive angles are turned as a whole.
         turn: f64 = "0", range: ANGLE, when: "samples of drive angles" => |task| task.columns().is_some_and(|n| n != 2);
         /// The point A; by default where samples begin.
         from: [f64; 2] = Key::REQUIRED, range: POINT_RANGE, when: SAMPLED => |task| task.samples.is_none(), saved: always;
@@ -69,7 +69,7 @@ keyed! {
         closed: bool = "false";
         /// Whether the motion rests at corners or rounds them off.
         corners: Corners = "stop", when: CORNERED => Task::has_corners;
-        /// How far from a corner its blend begins: in m, for joint lines in rad.
+        /// Distance from a corner at which its blend begins: in m, for joint lines in rad.
         blend: f64 = "0.03", range: Range::new(0.0, 1.0, "m, rad"),
             when: BLENDED => |task| task.has_corners() && task.corners == Corners::Blend;
         /// Keeps to one side of every change point, where two drives are parallel and pin forces grow without bound.
@@ -84,22 +84,21 @@ keyed! {
             instead: "for change-b the one that B allows with the least change, for least-reaction free",
             when: "the kind change-b or least-reaction"
                 => |task| matches!(task.kind, TaskKind::ChangeB | TaskKind::LeastReaction);
-        /// Bound on |n_B| while b changes; the motion takes as long as that wants, T or longer.
+        /// Bound on |n_B| while b changes; the motion takes T, or longer if the bound requires it.
         moment_limit: Option<f64> = Key::NONE, range: Range::new(1e-9, 1e9, "N m"), instead: "no bound",
             when: "the kind change-b" => |task| task.kind == TaskKind::ChangeB;
-        /// How often a closed path is run through.
+        /// Number of times that a closed path is followed.
         cycles: u32 = "1", range: Range::new(1.0, 100.0, ""),
             when: "the kind zero-momentum" => |task| task.kind == TaskKind::ZeroMomentum;
-        /// What to keep small: the root of the mean square of n_B, or its peak.
+        /// Quantity to minimise: the root of the mean square of n_B, or its peak.
         least: ReactionObjective = "mean-square", when: "the kind least-reaction" => |task| task.kind == TaskKind::LeastReaction;
-        /// How four drives and more use the freedoms that a point leaves while b is held: they turn least, the last
-        /// link keeps its orientation, the motors need the least torques, or joints stay near the middle of their
-        /// ranges.
+        /// Use of the freedoms of four drives and more while b is held: least rates, constant orientation of the last
+        /// link, least torques, or joints near the middle of their ranges.
         posture: Posture = "least-rates", when: FREE => Task::has_freedoms;
-        /// Which way the last link points all along the path, from root to tip, counted from the x axis.
+        /// Angle of the last link along the whole path, from root to tip, counted from the x axis.
         orientation: Option<f64> = Key::NONE, range: ANGLE, instead: "with the posture orientation as it does at A",
             when: TURNED => Task::keeps_orientation;
-        /// Where drive 1 ends.
+        /// Final angle of drive 1.
         first_drive_to: Option<f64> = Key::NONE, range: ANGLE, instead: "where it began",
             when: "the kind same-tip" => |task| task.kind == TaskKind::SameTip;
         /// Duration T from A to B; by default 1 s, or as long as samples take, and another T stretches them.

@@ -17,7 +17,7 @@ keyed! {
     /// Differences of the plant from the model of control.
     #[derive(Clone, Debug, PartialEq)]
     pub struct PlantDifferences at "plant" {
-        /// Whether motors give no more than the drives' torque limits, whatever control asks for.
+        /// Whether motors give no more than the drives' torque limits, whatever control commands.
         torque_limits: bool = "false";
         /// A constant force F at the end effector, along the axes of the base as they are at the start.
         force: [f64; 2] = "0,0", range: Range::either_way(1e6, "N");

@@ -27,7 +27,7 @@ keyed! {
     pub struct Friction at "plant.friction" {
         /// Viscous friction in the bearings of the drives: a torque against the rate relative to the base.
         viscous: DriveValues = "0", range: VISCOUS_RANGE;
-        /// Coulomb friction in the bearings of the drives; a drive at rest sticks until more than this pulls.
+        /// Coulomb friction in the bearings of the drives; a drive at rest sticks until a larger torque acts on it.
         coulomb: DriveValues = "0", range: TORQUE_RANGE;
         /// Viscous friction in every pin, against the rate between its two links.
         pin_viscous: f64 = "0", range: VISCOUS_RANGE;

@@ -25,9 +25,9 @@ keyed! {
         /// Height of the payload's centre of mass along the drives' axis.
         axial: f64 = "0", range: PLACE_RANGE, when: WHEN_PAYLOAD => Load::is_some;
         // The hand moves along, so that rates do not change at pick-up.
-        /// When the payload is picked up, by a hand that moves with it.
+        /// Time at which the payload is picked up, by a hand that moves with it.
         from: f64 = "0", range: TIME_RANGE, when: WHEN_PAYLOAD => Load::is_some;
-        /// When the payload is let go.
+        /// Time at which the payload is released.
         until: Option<f64> = Key::NONE, range: TIME_RANGE, instead: "it is held to the end",
             when: WHEN_PAYLOAD => Load::is_some;
     }
