@@ -27,8 +27,8 @@ Examples:
 
 Units are SI and angles are radians. Exit status: 0 done, 1 the question has no answer, 2 wrong input.";
 
-/// Sets an unset runtime folder to one that does not exist. Graphics libraries that look for a display there would
-/// print on standard error that it is not set.
+/// Sets `XDG_RUNTIME_DIR`, if unset, to a folder that does not exist. Otherwise graphics libraries that look for a
+/// display there print on standard error that the variable is not set.
 fn name_runtime_folder() {
     const FOLDER: &str = "XDG_RUNTIME_DIR";
     if cfg!(target_os = "linux") && std::env::var_os(FOLDER).is_none_or(|folder| folder.is_empty()) {

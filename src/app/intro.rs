@@ -68,7 +68,7 @@ fn hint(i: usize, session: &Session) -> Option<(String, String)> {
     Some((title, why))
 }
 
-/// Rest of the run at its end before it starts over, wall time, s, and maximum number of restarts.
+/// Pause at the end of the run before it starts over, wall time, s, and maximum number of restarts.
 const REST_AT_END_S: f64 = 1.2;
 const MAX_RESTARTS: u32 = 20;
 /// Compliance of the drawn mount of the base, rad/(N m); it is soft, so that the rotation can be seen.
@@ -115,7 +115,7 @@ impl Intro {
         self.straight.is_some()
     }
 
-    /// Adds wall time, s, to the rest at the end of the run; returns whether the run must start over.
+    /// Adds wall time, s, to the pause at the end of the run; returns whether the run must start over.
     pub fn rests(&mut self, session: &Session, wall: f64) -> bool {
         let waits = self.straight.is_some()
             && session.is_playing()

@@ -33,7 +33,7 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
         .flat_map(|action| action.keys.iter().map(move |key| (action, key)))
         .collect();
     all.sort_by_key(|(_, key)| !(key.modifiers.shift || key.modifiers.alt));
-    // After a key that opens a text field, no other key of this pass is a shortcut, since the user may already type
+    // After a key that opens a text field, no other key of this pass is a shortcut, as the user may already be typing
     // text.
     if let Some((action, _)) = all.iter().find(|(_, key)| asks_for_text(key) && pressed(key)) {
         commands.extend(action.command(session, view_state));

@@ -13,7 +13,7 @@ use stillbase_picture::scene::views::{ViewKind, Views};
 use stillbase_session::design::length_edit;
 use stillbase_session::{Edit, Session};
 
-/// Distance within which the tip can be grabbed during the demonstration, points.
+/// Distance from the target within which it can be grabbed during the demonstration, points.
 const DEMO_GRAB_DISTANCE_PT: f64 = 60.0;
 /// Smaller changes of the pushing force send no new edit, N.
 const MIN_FORCE_CHANGE_N: f64 = 0.02;
@@ -62,7 +62,7 @@ impl<'a> ScenePointer<'a> {
         self.remove_point(view_state, commands);
     }
 
-    /// Returns the arm of the demonstration if it is near a position.
+    /// Returns the target of the demonstration if a position is on a link or near the target.
     fn arm(&self, pos: Pos2) -> Option<Pick> {
         let near = || self.views.pick_arm(self.shown, &self.spot.pointer(pos), DEMO_GRAB_DISTANCE_PT);
         self.catches_arm.then(near).flatten()

@@ -32,7 +32,7 @@ fn starts(name: &[char], i: usize) -> bool {
 fn whole(word: &[char], name: &[char]) -> Option<i32> {
     let starts = |i: usize| starts(name, i);
     let whole = name.windows(word.len()).enumerate().filter(|(_, part)| **part == *word).map(|(i, _)| i);
-    // A whole word scores more than the beginning of a word, which scores more than the middle of one.
+    // At one place, a whole word scores more than a beginning, a beginning more than a middle. Later places score less.
     let ends = |i: usize| name.get(i + word.len()).is_none_or(|c| !c.is_alphanumeric());
     let best = whole.map(|i| 60 + 40 * i32::from(starts(i)) + 10 * i32::from(starts(i) && ends(i)) - i.min(30) as i32);
     best.max()

@@ -67,46 +67,55 @@ impl From<FileError> for Failure {
         Self::wrong_input(e)
     }
 }
+
 impl From<ScenarioError> for Failure {
     fn from(e: ScenarioError) -> Self {
         Self::wrong_input(e)
     }
 }
+
 impl From<TableError> for Failure {
     fn from(e: TableError) -> Self {
         Self::wrong_input(e.worded(option))
     }
 }
+
 impl From<WriteError> for Failure {
     fn from(e: WriteError) -> Self {
         Self::wrong_input(e)
     }
 }
+
 impl From<MachineError> for Failure {
     fn from(e: MachineError) -> Self {
         Self::wrong_input(e)
     }
 }
+
 impl From<PlaneError> for Failure {
     fn from(e: PlaneError) -> Self {
         Self::no_answer(e)
     }
 }
+
 impl From<NoPoseSpace> for Failure {
     fn from(e: NoPoseSpace) -> Self {
         Self::no_answer(e)
     }
 }
+
 impl From<Unreachable> for Failure {
     fn from(e: Unreachable) -> Self {
         Self::no_answer(e)
     }
 }
+
 impl From<JointsError> for Failure {
     fn from(e: JointsError) -> Self {
         Self::no_answer(e)
     }
 }
+
 impl From<DesignError> for Failure {
     fn from(e: DesignError) -> Self {
         match e {
@@ -115,6 +124,7 @@ impl From<DesignError> for Failure {
         }
     }
 }
+
 impl From<Refusal> for Failure {
     fn from(e: Refusal) -> Self {
         let whole = e.to_string();

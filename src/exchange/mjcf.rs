@@ -47,6 +47,7 @@ pub enum MjcfError {
 const MIN_MASS_OR_INERTIA: f64 = 1e-12;
 /// Mass of a rotor's body, kg: the rotor's real mass belongs to the link that carries it.
 const ROTOR_MASS_KG: f64 = 1e-11;
+
 /// Returns the model of a machine as text; its keyframe `start` is the pose `q`, rad, with motors at rest.
 ///
 /// # Errors

@@ -27,6 +27,7 @@ use stillbase_mechanics::machine::{Machine, Payload, RelativeAngle};
 const AUXILIARY_MASS_FRACTION: f64 = 1e-13;
 /// Limit written for an unlimited torque, N m, or rate, rad/s, because URDF requires one.
 const UNLIMITED: f64 = 1e9;
+
 /// Returns the model of a machine as text.
 pub fn urdf(machine: &Machine) -> String {
     Model::of(machine).text()

@@ -43,6 +43,7 @@ macro_rules! by_drives {
         }
     };
 }
+
 pub use by_drives;
 
 /// External loads: the field of gravity, and a force at the end effector.

@@ -13,7 +13,7 @@ pub fn signed(x: f64, decimals: usize) -> String {
     if x < 0.0 && !zero { format!("−{text}") } else { text }
 }
 
-/// Formats with three significant digits, without trailing zeros.
+/// Formats with three significant digits, or as an integer from 1000 on; no trailing decimal zeros. NaN and ∞ give 0.
 pub fn three_digits(x: f64) -> String {
     if x == 0.0 || !x.is_finite() {
         return "0".into();
@@ -50,7 +50,7 @@ pub fn round_ticks(low: f64, high: f64, count: f64) -> (Vec<f64>, f64) {
 /// Maximum number of characters of a tick label beside a small plot.
 const MAX_TICK_CHARS: usize = 7;
 
-/// Formats the tick labels of an axis so that they fit beside a small plot: plain numbers, else in thousands (k),
+/// Formats the tick labels of an axis so that they fit beside a small plot. Numbers are plain, else in thousands (k),
 /// millions (M) or billions (G), else with a power of ten.
 pub fn ticks(values: &[f64], step: f64) -> Vec<String> {
     let fits = |texts: &[String]| texts.iter().all(|text| text.chars().count() <= MAX_TICK_CHARS);
@@ -82,8 +82,8 @@ fn power(x: f64, step: f64) -> String {
     format!("{x:.digits$e}").replace('-', "−")
 }
 
-/// Formats a number to the resolution `step`: with as many decimals as resolve `step`, or with a power of ten if `step`
-/// is outside 1e-6.5 to 1e6.5.
+/// Formats a number with as many decimals as resolve `step`. If `step` is outside 10^−6.5 to 10^6.5, uses a power of
+/// ten.
 pub fn at_step(x: f64, step: f64) -> String {
     if !x.is_finite() {
         return "–".into();

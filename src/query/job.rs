@@ -129,6 +129,6 @@ pub enum Poll<T> {
     Working,
     /// The result; it is returned once.
     Done(T),
-    /// The job ended without a result.
+    /// The job ended without a result, or its result has been returned already.
     Broken,
 }

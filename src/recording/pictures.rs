@@ -62,7 +62,7 @@ pub struct PictureSeries {
     note: Option<String>,
     #[cfg(feature = "render")]
     painter: Option<Painter>,
-    /// Number of pictures of the current case.
+    /// Index of the next picture of the current case: it is due at this number divided by the frame rate.
     taken: u64,
     clock: RowTimes,
     pictures: Vec<Vec<u8>>,

@@ -216,7 +216,7 @@ pub fn brief_edit(scenario: &Scenario, change: &Table) -> Result<Edit, String> {
 }
 
 /// Returns the edit that turns the machine into another one with the same links. It sets the properties of links, the
-/// lengths, and the counterweights. Returns `None` if nothing differs.
+/// lengths, the counterweights, the payload mass and the rotor ratios. Returns `None` if nothing differs.
 pub fn machine_edit(scenario: &Scenario, of: &Machine) -> Option<Edit> {
     let (was, is) = (scenario.machine.spec(), of.spec());
     let links = was.links.iter().zip(&is.links).flat_map(|(was, is)| {

@@ -46,6 +46,8 @@ pub struct Frame {
     pub base_velocity: Vector,
     /// Rate θ̇ of the base, rad/s.
     pub base_rate: f64,
+    /// Angular acceleration θ̈ of the base, rad/s².
+    pub base_angular_acceleration: f64,
     /// Wrench of the manipulator on its base.
     pub wrench: BaseWrench,
     /// State of a reaction wheel in the base.

@@ -276,6 +276,7 @@ fn folded_distance(bencher: Bencher) {
     let boundary = Boundary::of(&folded([[0.0, std::f64::consts::TAU]; 2]));
     bencher.bench_local(|| boundary.distance(black_box(Vector::new(0.2, 0.4)), black_box(2.4)));
 }
+
 /// The line of the end effector in case 1.
 fn tip_path() -> Path {
     let start = DriveAngles::from([1.6875182179, 3.7146223682, 2.1801769897]);

@@ -252,5 +252,5 @@ fn impossible_paths_are_refused() {
         assert!(distance(&Path::Table(line).at(1.0).q, &Q_A) < 1e-14);
     }
     let error = SameTip::new(tip(), Q_A.into(), Q_B.into(), 5.0).expect_err("too far round").to_string();
-    assert!(error.contains("links 5 and 9 cannot reach the end effector's path at s = 0."), "{error}");
+    assert!(error.contains("drives 2 and 3 cannot keep the end effector on its path at s = 0."), "{error}");
 }

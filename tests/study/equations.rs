@@ -6,8 +6,8 @@ use stillbase::mechanics::dynamics::mass_matrix;
 use stillbase::mechanics::machine::{Counterweight, Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
 use stillbase::planning::Reference;
-use stillbase::session::Session;
 use stillbase::session::scenario::Scenario;
+use stillbase::session::{Session, replay};
 use stillbase::study::equations::{
     DriveState, EQUATION_NUMBERS, Equality, Equation, InstantKind, NoInstant, StatedEquations, Term, cells, equations,
     plain,
@@ -386,6 +386,25 @@ fn momenta_are_counted_by_the_first_drive_that_has_one() {
     assert_eq!(written(&ratios[0].left), "λ₁");
     assert!(ratios[0].holds() && ratios[0].sides() == [0.0, 0.0], "{:?}", ratios[0]);
     assert!(written(&ratios[0].right).ends_with("/D₂"), "{}", written(&ratios[0].right));
+}
+
+/// On a base that turns, accelerations are relative to it, as angles and rates are: they are the slopes of its rates.
+#[test]
+fn on_a_turning_base_accelerations_are_relative_to_it() {
+    let mut scenario = Scenario::builtin("spacecraft").expect("built in");
+    scenario.step = 1e-4;
+    let at = |time: f64| DriveState::at(&scenario, time).expect("within the run");
+    let mut most = 0.0_f64;
+    replay(&scenario, |_, frame| most = most.max(frame.base_angular_acceleration.abs())).expect("it runs");
+    assert!(most > 0.05, "the base turns with {most} rad/s² at most: too little to tell");
+    for time in [0.1, 0.25, 0.4] {
+        let h = 2e-4;
+        let (before, now, after) = (at(time - h), at(time), at(time + h));
+        for k in 0..now.q.len() {
+            let slope = (after.qd[k] - before.qd[k]) / (2.0 * h);
+            assert!((slope - now.qdd[k]).abs() < 1e-4, "drive {}: {slope} and {}", k + 1, now.qdd[k]);
+        }
+    }
 }
 
 /// The b that is aimed at, where there is one.

@@ -21,6 +21,7 @@ macro_rules! tests {
         &[$((concat!(module_path!(), "::", stringify!($name)), $name)),+]
     };
 }
+
 use tests;
 
 pub const TESTS: [&[Test]; 4] = [hands::TESTS, keyboard::TESTS, loss::TESTS, portal::TESTS];

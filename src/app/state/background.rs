@@ -184,6 +184,7 @@ impl AppState {
         activity.cancelled().into()
     }
 }
+
 /// Returns the message for background work that panicked.
 pub(super) fn fault(what: &str) -> String {
     format!("{what} broke off: this is a fault of the program")

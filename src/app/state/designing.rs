@@ -29,8 +29,8 @@ impl AppState {
         if edit.part("design").is_some() { brief_edit(scenario, change) } else { Ok(edit) }
     }
 
-    /// Stops unfinished searches for Pareto fronts that are not on display any more. Without other machines, their
-    /// fronts are removed from the cache.
+    /// Stops unfinished searches for Pareto fronts that are not on display any more. If no other machine's front is
+    /// listed, the cached fronts of other machines are removed.
     pub(super) fn refresh_fronts(&mut self) {
         if self.view_state.view != ViewKind::Design || self.view_state.arrangement.learns {
             studio::leave(self.queries());

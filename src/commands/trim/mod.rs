@@ -27,8 +27,8 @@ use super::sites::{range, sites};
 
 /// Identify the unbalance of a built machine from measured base forces, and find the smallest change that corrects it
 ///
-/// Each file is CSV with a header: t, the absolute drive angles q1, q2 …, and fx, fy, nz. These are the force on the
-/// base and the moment about B, as a sensor under the machine reads them. Units are s, rad, N, N m, or given as
+/// Each file is CSV with a header: t, the absolute drive angles q1, q2 …, and fx, fy, nz. The last three are force on
+/// the base and moment about B, as a sensor under the machine reads them. Units are s, rad, N, N m, or given as
 /// "q1 (deg)", "nz (mN m)". Rates qd1 … and accelerations qdd1 … are used if both exist. A column `motion`, a jump in
 /// time or a restart of time separates motions, which each have their own sensor offsets. Files that `simulate` and
 /// `export --what simulated` write can be read unchanged.
@@ -62,8 +62,8 @@ pub struct TrimArguments {
     /// Let this parameter change within these bounds only, m or kg
     #[arg(long, value_name = "KEY=LO,HI", value_parser = bound, allow_hyphen_values = true)]
     bound: Vec<(String, [f64; 2])>,
-    /// On a machine without counterweights: a link that may carry a new one, and the bounds of its place, m from the
-    /// root towards the tip. Default: every link
+    /// On a machine without counterweights: a link that may carry a new one, and the bounds of its place, m. Places
+    /// count from the root towards the tip. Default: every link
     #[arg(long, value_name = "LINK=LO,HI", value_parser = range, allow_hyphen_values = true)]
     range: Vec<(String, [f64; 2])>,
     /// Ignore measured rates and accelerations, and compute them from the angles

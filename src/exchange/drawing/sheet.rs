@@ -61,7 +61,7 @@ pub enum SheetShape {
     },
     /// A line of text.
     Words {
-        /// Position of its anchor on the base line.
+        /// Position of its anchor on the baseline.
         at: [f64; 2],
         /// Approximate height of its capitals.
         height: f64,

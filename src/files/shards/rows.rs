@@ -44,8 +44,8 @@ impl fmt::Display for StudyId {
 }
 
 impl StudyId {
-    /// Makes the identifier from everything on which a machine's row depends: the scenario, its tolerances, number of
-    /// samples and seed, the number of instants evaluated, and whether the machines are simulated.
+    /// Makes the identifier from everything on which a machine's row depends: scenario, tolerances, samples, seed,
+    /// instants, mode, and version of the program. `simulated` is the mode: whether the machines are simulated.
     pub fn of(
         scenario: &Scenario,
         tolerance: &Tolerance,

@@ -16,7 +16,7 @@ use stillbase_convex::{NoOptimum, Optimum};
 /// Maximum number of subproblems from choices of intervals between pins.
 const MAX_CHOICES: usize = 4000;
 
-/// Maximum number of cells.
+/// Maximum number of cells, the ranges of mass and position that are searched.
 const MAX_CELLS: usize = 300;
 
 /// Tolerance of the clearance, m: the solver's rounding.
@@ -184,7 +184,7 @@ impl Search<'_> {
         let each = excess.iter().enumerate().flat_map(|(j, [place, own])| [(j, true, *place), (j, false, *own)]);
         let mut order: Vec<(usize, bool, f64)> = each.collect();
         order.sort_by(|a, b| b.2.total_cmp(&a.2));
-        // No counterweight is heavier than the best objective divided by the weight of mass.
+        // No counterweight is heavier than the best objective divided by the coefficient of mass in the objective.
         let heaviest = best.map(|best| best.value / self.asked.objective.mass).filter(|mass| mass.is_finite());
         let halved = order.into_iter().find_map(|(j, by_place, _)| {
             let [w, s] = self.problem.at(self.asked, &least.x, j);

@@ -53,16 +53,19 @@ pub trait AsKeyStep {
     /// Returns the step.
     fn step(&self) -> KeyStep;
 }
+
 impl AsKeyStep for &str {
     fn step(&self) -> KeyStep {
         KeyStep::Key((*self).into())
     }
 }
+
 impl AsKeyStep for String {
     fn step(&self) -> KeyStep {
         KeyStep::Key(self.clone())
     }
 }
+
 impl AsKeyStep for usize {
     fn step(&self) -> KeyStep {
         KeyStep::At(*self)

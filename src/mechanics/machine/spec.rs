@@ -210,9 +210,11 @@ impl Link {
 fn forwards() -> i8 {
     1
 }
+
 fn is_forwards(d: &i8) -> bool {
     *d == 1
 }
+
 fn is_nought(x: &f64) -> bool {
     *x == 0.0
 }

@@ -76,8 +76,8 @@ impl<'a> Sight<'a> {
         super::pointer::dot(self.right, p)
     }
 
-    /// Returns the edge that carries the ticks of axis k, with coordinate k set to 0, and the direction from this edge
-    /// out of the box.
+    /// Returns the edge that carries the ticks of axis k, and the direction from it out of the box. Coordinate k of the
+    /// edge is 0.
     fn edge(&self, k: usize) -> ([f64; 3], [f64; 3]) {
         let middle = [0, 1, 2].map(|i| 0.5 * (self.axes[i].ends[0] + self.axes[i].ends[1]));
         let mut at = match k {

@@ -51,7 +51,7 @@ pub enum PathError {
         s: f64,
     },
     /// Drives 2 and 3 cannot place the end effector for the angle of drive 1.
-    #[error("with drive 1 on that course, links 5 and 9 cannot reach the end effector's path at s = {s:.3}")]
+    #[error("with drive 1 on that course, drives 2 and 3 cannot keep the end effector on its path at s = {s:.3}")]
     Unreachable {
         /// s at which it happens, 0 to 1.
         s: f64,
@@ -224,6 +224,7 @@ impl PathChain {
         own.chain([1.0]).collect()
     }
 }
+
 /// Number of nodes of a table that count as one path.
 const NODES_PER_PATH: usize = 1024;
 /// Half step in s of the difference quotient for q‴, at which rounding and truncation errors are about equal.
@@ -243,8 +244,8 @@ const NODE_INTERVALS: usize = 256;
 /// counts as a singularity. The drift is far smaller where the Jacobian is regular.
 const MAX_DRIFT: f64 = 1e-6;
 
-/// Follows a curve of the end effector with minimum-norm rates, q′ = J⁺ p′, from a pose at its start, by the classical
-/// fourth-order Runge–Kutta method.
+/// Follows a curve of the end effector with minimum-norm rates, q′ = J⁺ p′, from a pose at its start. Integrates by the
+/// classical fourth-order Runge–Kutta method.
 ///
 /// # Errors
 /// If the Jacobian loses rank on the way.
@@ -440,7 +441,7 @@ impl SameTip {
         let own = velocity(tip, &e, &PerDrive::from([q1_rate, 0.0, 0.0]));
         let (d2, d3) = two_link_rates(c2, c3, e[1], e[2], v - own)?;
         let first = PerDrive::from([q1_rate, d2, d3]);
-        // p̈ = J q″ + J̇ q′, with q″_1 = 0.
+        // p″ = J q″ + J′ q′, with q″_1 = 0.
         let (dd2, dd3) = two_link_rates(c2, c3, e[1], e[2], a - acceleration(tip, &e, &first, &zero))?;
         Some(PathPoint { q, first, second: PerDrive::from([0.0, dd2, dd3]) })
     }

@@ -137,7 +137,7 @@ fn closest(
             for (i, x) in rows.into_iter().enumerate() {
                 (square[(n + i, k)], square[(k, n + i)]) = (x, x);
             }
-            // Curvature of the constraint, bounded so that the Hessian stays positive.
+            // Curvature of the constraint, bounded so that the Hessian stays positive definite.
             let bend = -(pull[0] * arm.re + pull[1] * arm.im);
             square[(k, k)] = weight(k) + bend.max(-0.9 * weight(k));
             side[k] = -weight(k) * (q[k] - given[k]);

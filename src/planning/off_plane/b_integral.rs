@@ -4,8 +4,8 @@
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | δ | q_2 − q_1 | rad |
-//! | D_1, D_2 | H_11 + Re Z_12, H_22 + Re Z_12, Z_12 = C_12 e^{iδ} = R e^{i(δ + φ)} | kg m² |
-//! | S | H_11 + H_22, above 2R as H is positive definite | kg m² |
+//! | D_1, D_2 | H_11 + Re Z_12 and H_22 + Re Z_12, where Z_12 = C_12 e^{iδ} = R e^{i(δ + φ)} | kg m² |
+//! | S | H_11 + H_22, where H_kk includes the momentum of rotors; above 2R without rotors | kg m² |
 //!
 //! # Source
 //! D q̇ = (D_1 + D_2) (q̇_1 + D_2/(D_1 + D_2) δ̇), and D_2/(D_1 + D_2) = ½ + ½ (H_22 − H_11)/(S + 2R cos(δ + φ))
@@ -45,7 +45,7 @@ impl BIntegral {
         }
         let (first, second, coupling) = (model.momentum(0), model.momentum(1), model.coupling(0, 1));
         let (sum, twice_coupling) = (first + second, 2.0 * coupling.norm());
-        // With rotors S differs from H_11 + H_22, so S > 2R does not follow from a positive definite H.
+        // With rotors S is not the trace of the mass matrix, so its positive definiteness does not imply S > 2R.
         let definite = model.diagonal(0) * model.diagonal(1) > coupling.norm_sqr() && sum > twice_coupling;
         definite.then(|| Self {
             gain: 0.5 * (second - first) / ((sum - twice_coupling) * (sum + twice_coupling)).sqrt(),

@@ -43,8 +43,8 @@ const MAX_NODES_PER_STATION: usize = 16;
 /// Maximum deviation from the curve, as a fraction of the arm length; beyond it the curve counts as not followed.
 const MAX_DEVIATION: f64 = 1e-6;
 
-/// Maximum number of solutions b(u) with one margin. After each, a station is added to the corridor; after the last,
-/// the margin grows.
+/// Maximum number of solutions b(u) with one margin. After each, a station is added where b leaves the corridor. After
+/// the last, or if b stays within, the margin grows.
 const MAX_CORRIDOR_REFINEMENTS: usize = 4;
 
 /// The objective.
@@ -109,7 +109,7 @@ impl LeastReaction {
     /// is b at the end, rad, if it is not free.
     ///
     /// # Errors
-    /// If the machine has no b, the sheet of the pose does not reach along the motion, or no smooth course fits.
+    /// If the machine has no b, the motion leaves the sheet of the pose or is not at rest at an end, or no course fits.
     pub fn plan(
         map: &PlaneMap,
         model: &Inertia,
@@ -157,7 +157,7 @@ impl LeastReaction {
             }
         }
         let mut refused = None;
-        // If the drives cannot follow close to a fold, increase the margin, which costs reaction.
+        // If the drives cannot follow close to a fold, increase the margin, which increases the base moment.
         for ease in [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, f64::INFINITY] {
             for _ in 0..MAX_CORRIDOR_REFINEMENTS {
                 let course = least_course(&corridor, end, goal == ReactionNorm::Peak, spaces, ease)
@@ -249,7 +249,7 @@ pub struct Verdicts {
     pub least: BaseReaction,
 }
 
-/// Serialised as the base moment of each way, and the t/T from which constant b is infeasible.
+/// Serialised as the base moment of each way, and the first t/T at which constant b is infeasible.
 impl Serialize for Verdicts {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
@@ -273,7 +273,7 @@ impl Serialize for Verdicts {
 pub enum FixedB {
     /// It is feasible, and n_B = 0.
     Serves,
-    /// It is infeasible from some u on.
+    /// It is infeasible at some u; the first is given.
     Leaves {
         /// t/T.
         u: f64,

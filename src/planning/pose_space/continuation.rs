@@ -1,11 +1,11 @@
 //! Poses of a point at a b, by continuation from the critical poses of the point.
 //!
 //! # Method
-//! With p fixed, b is a function on the poses of p, and the poses at one b form connected components. As b rises, a
-//! component first ends, splits or merges at a critical pose, from which b can fall. A descent from that pose reaches
+//! With p fixed, b is a function on the poses of p, and the poses at one b form connected components. As b rises, each
+//! lasts until it ends, splits or merges at a critical pose. From that pose b can fall, and a descent from it reaches
 //! the component without passing another critical pose. The same holds for falling b. So each component is found by
-//! climbing from a critical pose below it or descending from one above it. The exceptions are components along which
-//! b changes without end, such as turns of the whole machine: they have no critical poses.
+//! climbing from a critical pose below it or descending from one above it. The exceptions are components that last as
+//! b changes without end, such as turns of the whole machine: they meet no critical pose.
 //!
 //! From a critical pose, b changes to first order if a joint that leaves its limit changes b in the wanted direction.
 //! Otherwise it changes to second order, along the direction of largest curvature of b among those that keep p. From
@@ -28,11 +28,12 @@ const MIN_STEP_RAD: f64 = 1e-11;
 const RESIDUAL_TOLERANCE: f64 = 1e-13;
 const STALLED_TOLERANCE: f64 = 1e-10;
 /// Values of b within this tolerance, rad, of a critical value may differ from it only by rounding. The critical pose
-/// itself is then the solution, if its residual is below this fraction of the reach.
+/// itself is then the solution, if its residual is below [`CRITICAL_RESIDUAL`] as a fraction of the reach.
 const CRITICAL_B_TOLERANCE_RAD: f64 = 1e-9;
 const CRITICAL_RESIDUAL: f64 = 5e-10;
 /// Newton's iteration stops after more than this number of iterations that reduce the residual by less than half.
 const MAX_SLOW_ITERATIONS: usize = 6;
+
 /// Limits on the work of one continuation in b.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContinuationLimits {

@@ -1,17 +1,17 @@
 //! Inverse kinematics of a dragged end effector while b is held, for any number of redundant freedoms.
 //!
 //! # Method
-//! Each step moves the end effector towards the point, keeps b, and minimises the kinetic energy with the λ of the
-//! drives as weights: Δq = Λ⁻¹Cᵀ(CΛ⁻¹Cᵀ + μ)⁻¹ r. The rows of C are ∂p/∂q, λ, and one for each relative angle at a
+//! Each step moves the end effector towards the point and keeps b, with the least kinetic energy for inertias |λ_k|:
+//! Δq = Λ⁻¹Cᵀ(CΛ⁻¹Cᵀ + μ)⁻¹ r. The rows of C are the end effector's Jacobian J, λ, and one for each relative angle at a
 //! limit that the step would violate. The damping μ (Levenberg, Marquardt) acts on the rows of the point only, and
 //! grows while steps are rejected. If the point is out of reach, Newton's iteration minimises |p − Σ c_k e^{iq_k}|².
-//! Its second derivatives are CᵀC, plus (p − Σ c e)·c_k e_k on the diagonal. It converges to a locally nearest pose.
+//! Half its Hessian is JᵀJ, plus (p − Σ c e)·c_k e_k on the diagonal. It converges to a locally nearest pose.
 
 use super::space::{GuidanceMode, PoseSpace};
 use nalgebra::{SMatrix, SVector};
 use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, dot, unit};
 
-/// Rows of C: two for the point, one for b, one for each relative angle, and the last one for a drive that keeps its
+/// Rows of C: two for the point, one for b, and one for each relative angle. The last is for a drive that keeps its
 /// angle.
 const ROWS: usize = KEPT_ROW + 1;
 const KEPT_ROW: usize = 3 + MAX_DRIVES - 1;

@@ -13,8 +13,8 @@ use stillbase_mechanics::planar::{Vector, unit};
 const INITIAL_CIRCLES: usize = 128;
 /// Every n-th circle, with this n, is computed without the result of the previous one.
 const RESTART_EVERY: usize = 16;
-/// A change of the boundary is bracketed between circles at this distance, as a fraction of the reach: more than twice
-/// the shift of a circle.
+/// A change of the boundary is bracketed between circles at this distance, as a fraction of the reach. It is more than
+/// twice the greatest shift of a circle by [`PoseSpace::covered`].
 const CHANGE_BRACKET: f64 = 2e-8;
 /// Maximum number of circles, and of points between them.
 const MAX_RINGS: usize = 6000;
@@ -160,7 +160,7 @@ impl PoseSpace {
             let covered = self.covered(r, last.as_slice(), &mut sweep.work);
             all.push(covered);
         }
-        // A component found on one circle exists on its neighbours too, as far as it extends.
+        // A gap of b that is feasible on one circle is feasible on the neighbouring circles to which it continues.
         let circles = if carries { 1..all.len() } else { 0..0 };
         for i in circles.clone() {
             let (before, from) = all.split_at_mut(i);
@@ -260,7 +260,7 @@ impl Sweep<'_> {
             let j = (i + first) % n;
             let before = edge.chord_area;
             self.trace([end.spot, to.ends[j].spot], [from.at(i), to.at(j)], &mut edge)?;
-            // The edge of an opening end has the workspace on its left in outward direction.
+            // Seen outwards, the edge of an opening end has the workspace on its left.
             if !end.opens {
                 edge.chord_area = before - (edge.chord_area - before);
             }
@@ -305,7 +305,7 @@ impl Sweep<'_> {
             let length = way.norm();
             if length > 0.0 { ((p - a) * way.conj()).im.abs() / length } else { (p - a).norm() }
         };
-        // Areas between the edge and one, two and four chords, by Richardson extrapolation.
+        // The area between the edge and its one chord or four chords, by Richardson extrapolation from triangles.
         let area = |a: Vector, b: Vector, c: Vector| 0.5 * ((b - a).conj() * (c - a)).im;
         let two = area(start, q2, end);
         let apart = (end - start).norm();

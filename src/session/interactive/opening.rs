@@ -14,8 +14,8 @@ impl Session {
     /// Opens a scenario; its saved edits are replayed up to its duration, and the first frame is on display.
     ///
     /// # Errors
-    /// If the scenario cannot start, or one of its edits cannot apply. A session that was saved while it waited waits
-    /// again.
+    /// If the scenario cannot start, or one of its edits cannot be applied. A session that was saved while waiting is
+    /// no error: it waits again.
     pub fn open(scenario: Scenario) -> Result<Self, Refusal> {
         Self::open_while(scenario, &mut |_| true)
     }
@@ -34,7 +34,7 @@ impl Session {
     /// says why.
     ///
     /// # Errors
-    /// If a value is out of range, the machine has no reactionless planes, or one of its edits cannot apply.
+    /// If a value is out of range, the machine has no reactionless planes, or an edit cannot be applied.
     pub fn open_waiting(scenario: Scenario) -> Result<Self, Refusal> {
         Self::opened(scenario, true, &mut |_| true)
     }

@@ -12,7 +12,7 @@
 //! | L | angular momentum about R, Σ π_k; stored in place of π_θ | kg m²/s |
 //!
 //! # Method
-//! A moving base is treated as one more drive, with g_0 = m_b ρ, C_00 = m_b |ρ|², J_0 = I_b. Its translation drops out
+//! A moving base is treated as one more drive, with g_θ = m_b ρ, C_θθ = m_b |ρ|², J_θ = I_b. Its translation drops out
 //! of the equations if everything is referred to R. The kinetic energy is then |P|²/2M_t + ½ q̇ᵀ H' q̇, with H' formed
 //! from C'. So π̇_k = ∂T/∂q_k + Q_k, and only outer forces change P and L. On a free base without outer forces both are
 //! constant to the last digit. Gravity has no lever about R.

@@ -121,8 +121,8 @@ impl ControlLoop {
         }
     }
 
-    /// Continues another control loop at a step: takes over its readings and pending torques and the present motor
-    /// torque, N m. Its own readings are discarded.
+    /// Continues another control loop at a step: takes over the readings and torques of `other`, and discards its own.
+    /// If `other` is continuous, holds `torque`, the present motor torque, N m.
     pub fn resume(&mut self, other: &Self, step: u64, torque: &PerDrive) {
         self.controller.preload_as(&other.controller);
         self.forget();
@@ -196,7 +196,7 @@ impl ControlLoop {
         Actuation { torque, spin, rotor: self.rotor() }
     }
 
-    /// Returns the moment that the base exerts on the motors' stators, N m. Geared rotors contribute as at the
+    /// Returns the moment that the base exerts on the motors' stators, N m. Geared rotors count as if drives had the
     /// reference accelerations.
     #[inline(always)]
     fn on_base<const N: usize, const MOVES: bool>(&self, torque: &[f64; N], reference: &Reference) -> f64 {

@@ -418,6 +418,7 @@ impl Simulation {
             base: x.base,
             base_velocity: x.base_velocity,
             base_rate: x.qd.get(n).copied().unwrap_or(0.0),
+            base_angular_acceleration: x.qdd.get(n).copied().unwrap_or(0.0),
             wrench: self.body().transmitted(x),
             wheel: x.spin,
             momentum,

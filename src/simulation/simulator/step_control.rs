@@ -61,7 +61,7 @@ impl Mismatch {
     }
 }
 
-/// Lower bound of the scales of moment and force, as a fraction of torques and inertial forces.
+/// Lower bound of scales: moment, force, base shift as a fraction of torques, inertial forces, reach; base angle, rad.
 pub(super) const MIN_SCALE_SHARE: f64 = 1e-4;
 
 /// Scale of end effector errors, as a fraction of the arm length.

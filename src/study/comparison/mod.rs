@@ -90,8 +90,8 @@ impl ComparedRun {
     }
 }
 
-/// Returns the alternatives for a scenario's task, each with its scenario. The scenario as given is included only if it
-/// equals none of the others.
+/// Returns the alternatives for a scenario's task, each with its scenario. The scenario as given is omitted if it has
+/// no edits and another alternative has the same task and kind of base.
 pub fn alternatives(scenario: &Scenario) -> Vec<(Alternative, Scenario)> {
     let mut all: Vec<(Alternative, Scenario)> =
         Alternative::ALL.into_iter().filter(|way| way.is_of(scenario)).map(|way| (way, way.of(scenario))).collect();

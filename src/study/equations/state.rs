@@ -17,7 +17,7 @@ pub struct DriveState {
     pub q: DriveAngles,
     /// Drive rates, rad/s.
     pub qd: PerDrive,
-    /// Drive accelerations, rad/s²; in a frame of a run they are absolute.
+    /// Drive accelerations, rad/s².
     pub qdd: PerDrive,
     /// The required b, rad: the reference of control, or b at the start of the planned motion; `None` if there is none.
     pub b: Option<f64>,
@@ -73,7 +73,7 @@ impl DriveState {
         Self {
             q: DriveAngles(PerDrive::from_fn(n, |k| frame.relative(k))),
             qd: PerDrive::from_fn(n, |k| frame.qd[k] - frame.base_rate),
-            qdd: frame.qdd,
+            qdd: PerDrive::from_fn(n, |k| frame.qdd[k] - frame.base_angular_acceleration),
             b: held(frame),
             when: InstantKind::Run(frame.time),
         }

@@ -13,7 +13,7 @@
 //! | ψ_i(t) | dynamic f_B(t) of that machine | N per unit of θ_i |
 //! | n_B(t) | n_B(t) of the nominal machine + Σ φ_i δθ_i | N m |
 //!
-//! n_B includes the moment of the weight; f_B is the dynamic part only, as everywhere: M g is known in advance.
+//! n_B includes the moment of the weight. f_B is the dynamic part only, without the constant weight M g.
 
 use std::collections::BTreeMap;
 
@@ -74,8 +74,8 @@ struct MotionTable {
 }
 
 impl Ensemble {
-    /// Builds the ensemble around `machine` that `seed` determines, on a motion at `instants` midpoints, at least one.
-    /// Both ends of the motion are added, because the weight may load the base most there.
+    /// Builds the ensemble around `machine` that `seed` determines. The motion is evaluated at the midpoints of
+    /// `instants` intervals, at least one. Both ends are added, because the weight may load the base most there.
     ///
     /// # Errors
     /// Fails if nothing varies, a key or spread is wrong, or a length cannot vary alone.

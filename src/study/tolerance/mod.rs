@@ -1,11 +1,11 @@
 //! Tolerances: random machines around a nominal one, and the reactions on their bases.
 //!
 //! A machine is balanced if its constants have certain values: g_k = 0, C_kl = 0, λ as designed. A built machine has
-//! slightly different ones. This module draws such machines. It computes the size of the base wrench, the fraction of
+//! slightly different ones. This module samples such machines. It computes the size of the base wrench, the fraction of
 //! machines within limits, and the contribution of each tolerance.
 //!
 //! # Limits of linearity
-//! With perfect tracking of the motion, the wrench is linear in g, C and the mass matrix diagonal H. [`Ensemble`] is
+//! With perfect tracking, the wrench is linear in g, C and the diagonal H_kk of the mass matrix. [`Ensemble`] is
 //! exact for large deviations too. The wrench is *not* linear in masses and lengths (m a_k a_l). Nor is the norm of
 //! f_B, or a peak over time. Tracking is not perfect with finite feedback gains if the model differs from the
 //! machine. Nor is it with torque limits, unequal gains, uncompensated friction, or a moving base. All these effects

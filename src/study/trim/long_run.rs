@@ -24,8 +24,8 @@ pub(super) fn long_run(scores: &DMatrix<f64>, motions: &[usize], lags: usize, fi
                 blocks[(i, j)] = running;
             }
         }
-        // Fraction of the variance that remains after the fit, approximately the same factor for each parameter of the
-        // line.
+        // Fraction of the variance that remains after the fit, approximately the same factor for each parameter of a
+        // trend line (offset and drift).
         let share = (lags as f64 / count as f64).min(1.0);
         let remaining = (1.0 - share + share * share / 3.0).powi(fitted);
         sum += blocks.tr_mul(&blocks) / (lags as f64 * remaining);
@@ -38,7 +38,7 @@ pub(super) fn long_run(scores: &DMatrix<f64>, motions: &[usize], lags: usize, fi
 /// than slightly too wide ones.
 const LAG_FACTOR: f64 = 2.0;
 
-/// Returns the number of lags of Bartlett's window for residuals, at least `least`.
+/// Returns the number of lags of Bartlett's window for residuals: at least `least`, at most half the longest motion.
 pub(super) fn bartlett_lags(residuals: &[&[f64]], motions: &[usize], least: usize) -> usize {
     let count: usize = motions.iter().sum();
     let first = |y: &[f64]| {

@@ -12,6 +12,7 @@ use stillbase_mechanics::planar::Vector;
 const CLOSURE_TOLERANCE: f64 = 1e-9;
 /// Maximum number of sides of one loop.
 const MAX_SIDES: usize = 12;
+
 impl CoupledBodies<'_> {
     /// Joins the sets that a loop keeps parallel: opposite sides of parallelograms.
     ///
@@ -32,7 +33,14 @@ impl CoupledBodies<'_> {
         }
         merged.retain(|(_, v)| !is_zero(*v));
         let total: Vector = merged.iter().map(|(_, v)| v).sum();
-        if !is_zero(total) || merged.len() > MAX_SIDES {
+        if merged.len() > MAX_SIDES {
+            return Err(element_error(
+                node,
+                &format!("its loop has {} sides, and at most {MAX_SIDES} are read", merged.len()),
+                "loops of fewer bodies, such as parallelograms",
+            ));
+        }
+        if !is_zero(total) {
             return Err(element_error(
                 node,
                 "its ends are apart in the pose of the file",

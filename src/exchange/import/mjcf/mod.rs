@@ -1,4 +1,4 @@
-//! MJCF reader: loops, tendons and equalities determine which bodies turn together, actuators determine the motors.
+//! MJCF reader: loops, tendons and equalities determine which bodies turn together; actuators determine the motors.
 
 mod actuators;
 mod coupled;

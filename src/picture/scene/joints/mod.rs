@@ -42,7 +42,7 @@ impl JointSpace {
         Self::showing(run, None)
     }
 
-    /// Prepares a whole run whose b lie in the interval `b`, rad. The shown interval is constant and contains `b`; the
+    /// Prepares a whole run with all b in the interval `b`, rad. The shown interval is constant and contains `b`; the
     /// coordinates of the scene are q itself.
     pub fn over(run: &Run, b: [f64; 2]) -> Option<Self> {
         Self::showing(run, Some(b))
@@ -64,7 +64,7 @@ impl JointSpace {
         }
     }
 
-    /// Returns the index of the drive along each axis of the scene, if the machine determines the order; otherwise 0,
+    /// Returns the index of the drive along each axis of the scene for a machine with planes; for other machines 0,
     /// 1, 2.
     pub fn axes(&self) -> [usize; 3] {
         match &self.0 {

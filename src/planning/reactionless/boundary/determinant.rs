@@ -71,8 +71,8 @@ impl Determinant {
         sum
     }
 
-    /// Returns the two y in [0, 2π) at which the determinant is 0 on the line `from` + y `way`; `None` if there are
-    /// none.
+    /// Returns the two y in [0, 2π) at which the determinant is 0 on the line `from` + y `way`. Returns `None` if there
+    /// are none, or if the determinant is constant on the line.
     pub fn zeros(&self, from: [f64; 2], way: [f64; 2]) -> Option<[f64; 2]> {
         let [c, s, q] = self.along(from, way);
         let radius = s.hypot(q);

@@ -59,8 +59,8 @@ impl BoundaryLoop {
     pub(super) fn of(on: &Surface, spans: &[BoundarySpan], chain: &[SpanPart]) -> Self {
         let (vertices, portions) = chords(on, spans, chain);
         let swept: f64 = chain.iter().map(|p| on.swept(&spans[p.span], p.from, p.to)).sum();
-        // Slivers too thin to separate their sides leave gaps. The area that a gap sweeps about the base is added, as
-        // it is much larger than the sliver.
+        // A sliver too thin to separate its sides leaves a gap in the curve. The triangle from the base to the gap is
+        // added, because its area is much larger than that of the sliver.
         let [starts, ends] = [0, 1].map(|end| move |p: &SpanPart| on.at(&spans[p.span], [p.from, p.to][end]));
         let after = chain.iter().cycle().skip(1);
         let gaps: f64 = chain.iter().zip(after).map(|(p, next)| 0.5 * cross(ends(p), starts(next))).sum();

@@ -55,7 +55,7 @@ impl Quadrilateral {
         }
     }
 
-    /// Refines a fold by Newton's iteration on |w| = r and det = 0; `None` if it leaves the start.
+    /// Refines a fold by Newton's iteration on |w| = r and det = 0; `None` if it does not converge near the start.
     fn polished_fold(&self, mut alpha: f64, mut beta: f64) -> Option<[f64; 2]> {
         let Self { m, x, y, r, .. } = *self;
         let [a, b, c] = self.sines();
@@ -88,8 +88,8 @@ impl Quadrilateral {
     }
 }
 
-/// Returns the roots in [−1, 1] of Σ c_i x^i, and those extrema and ends of the interval at which |value| ≤ `near`:
-/// there two roots may have merged.
+/// Returns the roots in [−1, 1] of Σ c_i x^i, and those extrema and ends of the interval at which |value| ≤ `near`.
+/// There two roots may have merged.
 fn cubic_roots(c: [f64; 4], near: f64) -> SmallList<f64, 7> {
     let value = |x: f64| c[0] + x * (c[1] + x * (c[2] + x * c[3]));
     let slope = |x: f64| c[1] + x * (2.0 * c[2] + x * 3.0 * c[3]);

@@ -23,8 +23,8 @@ use stillbase_mechanics::planar::Vector;
 
 /// Relative tolerance of a link's mass, counterweights included.
 const MASS_TOLERANCE: f64 = 0.03;
-/// Tolerance of a centre of mass along its link, as a fraction of the link's length or of a fifth of the reach,
-/// whichever is larger. Half as much across.
+/// Tolerance of a centre of mass along its link, as a fraction of the larger of the link's length and a fifth of the
+/// reach. Half as much across.
 const COM_TOLERANCE: f64 = 0.01;
 /// Relative tolerance of inertias.
 const INERTIA_TOLERANCE: f64 = 0.05;
@@ -60,7 +60,7 @@ pub(super) struct Distance {
     pub all: f64,
     /// p of all unknowns.
     pub numbers: f64,
-    /// d² and p of D with those g and C that are not zero in the file; `None` if there are no such g and C.
+    /// d² and p of D and of those g and C that are not zero in the file. `None` if all of these are zero.
     pub known: Option<[f64; 2]>,
 }
 
