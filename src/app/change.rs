@@ -102,7 +102,7 @@ pub(super) enum Opened {
 pub(super) struct OpenedSession {
     pub session: Session,
     /// A note about the source, for the user.
-    pub said: Option<String>,
+    pub note: Option<String>,
     /// Instant and plots on display when the journal was written, if the journal has them.
     pub left_off: Option<ResumePoint>,
 }
@@ -146,6 +146,6 @@ impl SessionSource {
             // The file may name any time: the run is not extended beyond its length.
             session.seek_while(time.min(session.length()), watch);
         }
-        Ok(Opened::Session(Box::new(OpenedSession { session, said: made, left_off })))
+        Ok(Opened::Session(Box::new(OpenedSession { session, note: made, left_off })))
     }
 }

@@ -78,7 +78,7 @@ impl AppState {
 
     fn around(session: Session, theme: Theme) -> Self {
         let background = Background::default();
-        let views = Views::made(&background.queries, session.run(), None);
+        let views = Views::base_views(&background.queries, session.run(), None);
         let view_state = ViewState::new(theme, &views);
         let mut app_state = Self {
             designed_from: None,
@@ -116,7 +116,7 @@ impl AppState {
         self.saving.recent.clone_from(&liked.recent);
         let usual = Scenario::builtin("case-3").is_some_and(|case| case == *self.session.scenario());
         if liked.hints && usual && liked.layout == Layout::Explore {
-            self.intro = Intro::beside(&self.session).ok();
+            self.intro = Intro::for_session(&self.session).ok();
         }
         self
     }
@@ -287,7 +287,7 @@ impl AppState {
     /// Updates the views for the current run.
     fn refresh_views(&mut self) {
         let (run, queries) = (self.session.run(), self.queries());
-        let made = Views::made(queries, run, None);
+        let made = Views::base_views(queries, run, None);
         let views = Views::completed(&made, queries, run, Some(self.view_state.drives));
         if Arc::ptr_eq(&views, &self.views) {
             return;

@@ -129,8 +129,8 @@ pub fn statements(session: &Session) -> Statements {
 
 /// Draws a statement with its lamp: a disc if it is good, a triangle if it is bad, a ring if it is open.
 pub fn lamp(ui: &mut Ui, (about, statement): (&str, &Statement), size: f32, p: &Palette) {
-    let tone = tone_of(statement.lamp, p);
-    let ink = if statement.lamp == StatusLight::Bad { tone } else { p.ink };
+    let tone = tone_of(statement.outcome, p);
+    let ink = if statement.outcome == StatusLight::Bad { tone } else { p.ink };
     // The words are painted instead of added as a widget, so that a screen reader announces lamp and words as one
     // item.
     let words = format!("{about}: {}", statement.words);
@@ -138,9 +138,9 @@ pub fn lamp(ui: &mut Ui, (about, statement): (&str, &Statement), size: f32, p: &
     let [disc, gap] = [0.8 * size, 0.4 * size];
     let (rect, response) = ui.allocate_exact_size(vec2(disc + gap + words.size().x, words.size().y), Sense::hover());
     let middle = rect.left_center() + vec2(0.5 * disc, 0.0);
-    sign(ui.painter(), egui::Rect::from_center_size(middle, vec2(disc, disc)), statement.lamp, colour(tone));
+    sign(ui.painter(), egui::Rect::from_center_size(middle, vec2(disc, disc)), statement.outcome, colour(tone));
     ui.painter().galley(rect.left_top() + vec2(disc + gap, 0.0), words, colour(ink));
-    let spoken = format!("{about}: {}, {}", statement.words, statement.lamp.name());
+    let spoken = format!("{about}: {}, {}", statement.words, statement.outcome.name());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &spoken));
     response.on_hover_text(&statement.why);
 }

@@ -98,7 +98,7 @@ impl ViewState {
     /// Returns the initial state: a flat view of everything.
     pub fn new(theme: Theme, views: &Views) -> Self {
         Self {
-            arrangement: WindowArrangement::usual(theme),
+            arrangement: WindowArrangement::with_theme(theme),
             open: OpenDialogs::default(),
             said: StatusMessage::default(),
             pointed: HoverTarget::default(),

@@ -14,7 +14,7 @@ use super::{
     status,
 };
 use stillbase_mechanics::planar::{DriveAngles, Vector};
-use stillbase_picture::paint::words::words;
+use stillbase_picture::paint::labels::draw_labels;
 use stillbase_picture::paint::{SceneViewport, paint};
 use stillbase_picture::scene::exaggeration::{DrawnFrame, Exaggeration};
 use stillbase_picture::scene::options::{Handle, OtherRun, ViewOptions, WeightOption};
@@ -105,7 +105,7 @@ pub fn show(
         let spot = SceneViewport { rect, camera: *view_state.camera() };
         // The problem message covers the scene while it lasts.
         covered.extend(status::has_bad_news(session, view_state).then(|| status::news_rect(ui.ctx())).flatten());
-        words(ui, &spot, &scene, &covered);
+        draw_labels(ui, &spot, &scene, &covered);
         corner::show(ui, rect, view_state, views, commands);
         coordinates::show(ui, rect, session, views, view_state, commands);
         let seen = |at: [f64; 3]| spot.screen(at).is_some_and(|at| rect.contains(at));

@@ -38,5 +38,5 @@ pub fn run(scenario: Scenario, theme: Option<Theme>) -> Result<(), WindowError> 
         .with_inner_size(liked.size)
         .with_min_inner_size([960.0, 600.0]);
     let may_break = std::env::var_os("STILLBASE_BREAK_DEVICE").is_some();
-    shell::show(&mut App::new(app_state, Clock::Wall(None)).kept(liked, may_break), place)
+    shell::show(&mut App::new(app_state, Clock::Wall(None)).with_storage(liked, may_break), place)
 }

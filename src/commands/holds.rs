@@ -32,7 +32,7 @@ pub fn hold(
             return Err(Failure::wrong_input(format!("{key} is held in two ways: want one of --fix, --free, --bound")));
         }
         seen.push(parameter);
-        asked.hold(machine, parameter, hold);
+        asked.set_bounds(machine, parameter, hold);
     }
     Ok(())
 }

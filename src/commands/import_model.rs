@@ -12,7 +12,7 @@ use stillbase_session::scenario::Scenario;
 use stillbase_settings::number::{counted, fixed, shown};
 use stillbase_simulation::plant::{Base, BaseKind};
 
-use super::exit::say;
+use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{Settings, read};
 use super::output::{Format, TextTable, check_output, yes};
@@ -92,7 +92,7 @@ impl ImportModelArguments {
             return Err(Failure::wrong_input("-o and --scenario name one file: want two"));
         }
         let name = self.file.display();
-        let found = import(&read(&self.file)?).map_err(|e| Failure::wrong_input(e).of(&name))?;
+        let found = import(&read(&self.file)?).map_err(|e| Failure::wrong_input(e).with_context(&name))?;
         let ImportedMachine { machine, pose, base, mut notes } = found;
         let machine = self.settings.apply(machine)?;
         if let Some(base) = base.filter(|_| self.scenario.is_none()) {
@@ -104,15 +104,15 @@ impl ImportModelArguments {
         }
         let scenario = self.scenario.as_ref().map(|_| scenario(&machine, base)).transpose()?;
         for note in &notes {
-            say(format!("note: {name}: {note}"));
+            print_message(format!("note: {name}: {note}"));
         }
         if let Some(file) = &self.output {
             write_new(file, to_toml(&machine).as_bytes(), self.force)?;
-            say(format!("wrote {}", file.display()));
+            print_message(format!("wrote {}", file.display()));
         }
         if let (Some(file), Some(scenario)) = (&self.scenario, &scenario) {
             write_new(file, scenario.to_toml().as_bytes(), self.force)?;
-            say(format!("wrote {}", file.display()));
+            print_message(format!("wrote {}", file.display()));
         }
         let inertia = Inertia::of(&machine);
         let answer = Answer {

@@ -9,7 +9,7 @@ use stillbase_simulation::frame::Frame;
 use stillbase_study::joint_extremes::{JointExtremes, JointReport};
 
 use super::csv_file::Csv;
-use super::exit::say;
+use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, check_output, check_size};
@@ -46,11 +46,11 @@ impl JointsArguments {
         let scenario = scenario(&self.scenario, &self.settings)?;
         let machine = scenario.plant.machine(&scenario.machine)?;
         let name = machine.name().to_owned();
-        let mut extremes = JointExtremes::of(machine).map_err(|e| Failure::from(e).of(name))?;
+        let mut extremes = JointExtremes::of(machine).map_err(|e| Failure::from(e).with_context(name))?;
         let pins = extremes.pins().to_vec();
         if extremes.left_out() > 0 {
             let all = pins.len() + extremes.left_out();
-            say(format!("a run keeps the first {} of {all} pins; the others are left out", pins.len()));
+            print_message(format!("a run keeps the first {} of {all} pins; the others are left out", pins.len()));
         }
         if let Some(file) = &self.output {
             check_output(file, self.force, &["csv"])?;
@@ -67,7 +67,7 @@ impl JointsArguments {
                 }
             },
         )
-        .map_err(|e| Failure::from(e).of(&scenario.name))?;
+        .map_err(|e| Failure::from(e).with_context(&scenario.name))?;
         written?;
         if let Some(csv) = csv {
             csv.finish()?;

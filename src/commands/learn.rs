@@ -129,7 +129,7 @@ impl LearnArguments {
             Ok(found) if found.made.is_some() => Ok(Subject::Machine(Box::new(machine()?))),
             Ok(found) => {
                 let scenario = overlay_used(found.scenario, &self.settings)?;
-                self.settings.none_of_tolerance()?;
+                self.settings.refuse_tolerances()?;
                 Ok(Subject::Scenario(Box::new(scenario)))
             }
             // A machine for which no task can be made is accepted, too.
@@ -191,7 +191,7 @@ fn text(equation: &Equation) -> String {
 /// States whether both sides of an equation agree.
 fn verdict(equation: &Equation) -> String {
     let Some(worst) = equation.worst() else { return String::new() };
-    let off = worst.off().abs();
+    let off = worst.residual().abs();
     let unit = if worst.unit.is_empty() { String::new() } else { format!(" {}", worst.unit) };
     let name = if worst.name.is_empty() { String::new() } else { format!(" in {}", worst.name) };
     match equation.holds() {

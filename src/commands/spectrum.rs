@@ -8,7 +8,7 @@ use stillbase_files::{NewFile, WriteError};
 use stillbase_study::base_spectrum::{BaseSpectrum, NoBaseSpectrum};
 use stillbase_study::spectrum::{JitterLimit, WindowFunction};
 
-use super::exit::say;
+use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, check_output, yes};
@@ -71,7 +71,7 @@ struct Answer {
 /// Converts an error into a failure; the failure of a run names its scenario.
 fn failed(why: NoBaseSpectrum, scenario: &str) -> Failure {
     match why {
-        NoBaseSpectrum::Run(why) => Failure::from(why).of(scenario),
+        NoBaseSpectrum::Run(why) => Failure::from(why).with_context(scenario),
         NoBaseSpectrum::Spectrum(why) => Failure::no_answer(why),
         beyond @ NoBaseSpectrum::Beyond { .. } => Failure::wrong_input(beyond),
     }
@@ -85,13 +85,13 @@ impl SpectrumArguments {
             check_output(file, self.force, &["csv"])?;
         }
         if scenario.base.wheel.is_some() {
-            say(format!("note: {}: n_B is what the reaction wheel leaves of it for the base", scenario.name));
+            print_message(format!("note: {}: n_B is what the reaction wheel leaves of it for the base", scenario.name));
         }
         let failed = |why| failed(why, &scenario.name);
         let mut of = BaseSpectrum::of(&scenario, self.window).map_err(failed)?;
         if let Some(file) = &self.output {
             write(file, self.force, &of)?;
-            say(format!("wrote {}", file.display()));
+            print_message(format!("wrote {}", file.display()));
         }
         of.judge(self.limit_force.as_ref(), self.limit_moment.as_ref()).map_err(failed)?;
         let file = self.output.as_ref().map(|file| file.display().to_string());

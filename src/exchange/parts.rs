@@ -200,7 +200,7 @@ fn counterweights(machine: &Machine, cut: &Cut) -> PartTable {
             PartCell::Number(weight.radius, 4),
             PartCell::some(thickness, 4),
             PartCell::some(thickness.map(|_| cut.density), 0),
-            PartCell::some(thickness.map(|thickness| cut.weighs(weight.radius, thickness)), 3),
+            PartCell::some(thickness.map(|thickness| cut.disc_mass(weight.radius, thickness)), 3),
         ]
     };
     PartTable {

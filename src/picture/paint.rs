@@ -1,8 +1,8 @@
 //! Paints a scene and its labels with egui: in the window, in figures and in the pictures of recordings.
 
 pub mod figure;
+pub mod labels;
 pub mod portrait;
-pub mod words;
 
 use std::sync::Arc;
 
@@ -141,7 +141,7 @@ pub(super) struct PaintedScene {
 }
 
 /// Makes all scenes appear in draft quality while they change; for software rendering.
-pub fn draw_drafts(ctx: &egui::Context) {
+pub fn enable_draft_quality(ctx: &egui::Context) {
     ctx.data_mut(|data| data.insert_temp(drafts_id(), true));
 }
 

@@ -266,8 +266,8 @@ fn write(
     let done = laid_out.and_then(|()| {
         if preview::machines_differ(&cases) {
             let designs: Vec<_> =
-                cases.iter().map(|c| (c.name.as_str(), c.candidate.beside(&cases[0].candidate))).collect();
-            let table = TextDocument::from_markdown(design::beside(&designs));
+                cases.iter().map(|c| (c.name.as_str(), c.candidate.compared_with(&cases[0].candidate))).collect();
+            let table = TextDocument::from_markdown(design::comparison_table(&designs));
             set.store.fixed(&EntityPath::from(preview::DESIGNS_PATH), &table)?;
         }
         let names: Vec<_> = scenarios.iter().map(|s| s.name.as_str()).collect();

@@ -98,9 +98,9 @@ struct Recorder<'a> {
     events: Events,
 }
 
-/// Views of the run: `made` without, `views` with the present base and payload.
+/// Views of the run: `base_views` without, `views` with the present base and payload.
 struct Drawn {
-    made: Arc<Views>,
+    base_views: Arc<Views>,
     views: Arc<Views>,
 }
 
@@ -188,11 +188,11 @@ impl<'a> Recorder<'a> {
         let force = run.scenario().plant.force;
         self.options.external_force = Some(force).filter(|force| *force != [0.0; 2]);
         let queries = &self.forecast.queries;
-        let made = Views::made(queries, run, Some(self.forecast.b));
+        let made = Views::base_views(queries, run, Some(self.forecast.b));
         let views = Views::completed(&made, queries, run, None);
-        let drawn = self.drawn.replace(Drawn { made: made.clone(), views });
+        let drawn = self.drawn.replace(Drawn { base_views: made.clone(), views });
         match drawn {
-            Some(before) if Arc::ptr_eq(&before.made, &made) => return false,
+            Some(before) if Arc::ptr_eq(&before.base_views, &made) => return false,
             Some(_) => {}
             // Workspaces are named by their b at the start.
             None => self.first_b = frame.b_reference,

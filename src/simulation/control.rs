@@ -72,7 +72,7 @@ impl Control {
     }
 
     /// Returns the checks that depend on the step, s, and on the number `n` of drives.
-    pub fn fits(&self, n: usize, step: f64) -> Vec<RangeCheck> {
+    pub fn range_checks(&self, n: usize, step: f64) -> Vec<RangeCheck> {
         let mut list = Vec::new();
         let at_step = |range: Range| format!("{range} at a step of {} s", ShortNumber(step));
         for (key, gain, most) in [
@@ -80,7 +80,7 @@ impl Control {
             ("control.kd", self.kd, Range::new(0.0, 2.0 / step, "s⁻¹")),
         ] {
             let all = gain.values().into_iter();
-            list.extend(all.map(|x| RangeCheck::said(key, x, most.contains(x), || at_step(most.rounded()))));
+            list.extend(all.map(|x| RangeCheck::depending(key, x, most.contains(x), || at_step(most.rounded()))));
             list.extend(gain.misfit(n, key));
         }
         let whole = |steps: f64| (steps - steps.round()).abs() < 1e-6 * steps.max(1.0);
@@ -89,8 +89,8 @@ impl Control {
         let (delay, encoder) = (self.delay, self.encoder);
         let counts = encoder == 0.0 || encoder >= 16.0;
         list.extend([
-            RangeCheck::said("control.rate", self.rate, period, || rates(steps, step)),
-            RangeCheck::said("control.delay", delay, whole(delay / step), || delays(delay, step)),
+            RangeCheck::depending("control.rate", self.rate, period, || rates(steps, step)),
+            RangeCheck::depending("control.delay", delay, whole(delay / step), || delays(delay, step)),
             RangeCheck::words("control.encoder", encoder, counts, "0, or 16 to 1e12 counts in a turn"),
         ]);
         list

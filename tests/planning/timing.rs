@@ -2,7 +2,7 @@
 //! limits themselves, kept and used.
 
 use proptest::prelude::*;
-use stillbase::mechanics::dynamics::{Surroundings, holding_torque, inverse, mass_matrix};
+use stillbase::mechanics::dynamics::{ExternalLoads, holding_torque, inverse, mass_matrix};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::planning::Motion;
@@ -92,8 +92,8 @@ fn unbalanced() -> Machine {
 }
 
 /// A machine's constants and gravity.
-fn of(machine: &Machine) -> (Inertia, Surroundings) {
-    (Inertia::of(machine), Surroundings { gravity: machine.gravity(), force: Vector::default() })
+fn of(machine: &Machine) -> (Inertia, ExternalLoads) {
+    (Inertia::of(machine), ExternalLoads { gravity: machine.gravity(), force: Vector::default() })
 }
 
 fn even(n: usize) -> Vec<f64> {
@@ -755,7 +755,7 @@ fn drawn(points: &[Vector], shape: usize, blend: f64) -> Option<Vec<Path>> {
 
 /// Every place of a path and many stations, each space cut into as many parts: far denser than is ever planned with.
 fn converged(path: &Path, parts: usize) -> Vec<f64> {
-    let mut all = path.places();
+    let mut all = path.sample_parameters();
     all.extend(stations(300));
     all.sort_by(f64::total_cmp);
     all.dedup_by(|b, a| *b - *a < 1e-9);

@@ -43,7 +43,7 @@ fn the_reaction_is_the_same_in_the_window() {
                     assert_eq!(colours.value(k), packed(seen.colour), "{file} at {step}: {}", seen.text);
                     kinds.insert((k, seen.colour == p.reaction));
                 }
-                let weight = (gravity != 0.0).then(|| frames[*step as usize].wrench.statical.force.norm());
+                let weight = (gravity != 0.0).then(|| frames[*step as usize].wrench.static_part.force.norm());
                 let words = weight.map(|w| format!("and its weight, {w:.1} N"));
                 assert_eq!(
                     words.as_deref(),

@@ -68,7 +68,7 @@ fn words(plot: &Plot<'_>, curve: &PlotCurve<'_>, drawn: &PlotLines, look: &PlotC
         false => signed(curve.scale * value, if thousandths { 2 } else { 3 } - fewer),
     };
     match look.mark.map(|marked| SignalDifference::of(signal, marked, look.now)) {
-        Some(d) => format!("Δ{symbol} {}", shown(d.by())),
+        Some(d) => format!("Δ{symbol} {}", shown(d.difference())),
         None => format!("{symbol} {}", shown(signal.value(look.now))),
     }
 }

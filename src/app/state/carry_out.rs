@@ -87,7 +87,7 @@ impl AppState {
             }
             SessionCommand::NameBookmark(time) => self.name_bookmark(time)?,
             SessionCommand::ToMark(on) => {
-                if let Some(time) = marks::beside(self.queries(), &self.session, on) {
+                if let Some(time) = marks::neighbour(self.queries(), &self.session, on) {
                     self.change(SessionChange::Seek(time));
                 }
             }

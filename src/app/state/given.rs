@@ -30,7 +30,7 @@ impl AppState {
             return;
         }
         let given = self.given.as_ref().filter(|_| self.view_state.below == Some(BottomPanel::Table));
-        match given.and_then(|given| given.asked(self.session.scenario())) {
+        match given.and_then(|given| given.request(self.session.scenario())) {
             None => self.queries().give_up::<AssessmentQuery>(),
             Some(asked) => drop(self.queries().ask_in_background::<AssessmentQuery>(&asked)),
         }

@@ -40,7 +40,7 @@ impl AppState {
             tour.follow(&self.session);
         }
         let beside = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
-        let beside = beside.and_then(Intro::beside_it).or(self.comparison.as_ref());
+        let beside = beside.and_then(Intro::straight_comparison).or(self.comparison.as_ref());
         let queries = self.queries().clone();
         let marks = Marks::of(&queries, &self.session, beside);
         if !marks.is_whole {
@@ -76,7 +76,7 @@ impl AppState {
         let designs = self.view_state.view == ViewKind::Design && !presents;
         let mut chosen = Vec::new();
         if designs {
-            let found = match self.view_state.arrangement.learns {
+            let found = match self.view_state.arrangement.shows_equations {
                 true => studio::DesignFacts::learned(&queries, &self.session),
                 false => studio::DesignFacts::weighed(&queries, &self.session, self.view_state.front_by, &self.fronts),
             };
@@ -96,7 +96,7 @@ impl AppState {
         self.view_state.pointed.panel_object = place::lit(ui.ctx());
         self.view_state.pointed.lit_links = place::lit_links(ui.ctx());
         if self.view_state.arrangement.now().plots.shown && !designs {
-            let beside = contrast.and_then(Intro::beside_it).or(self.comparison.as_ref());
+            let beside = contrast.and_then(Intro::straight_comparison).or(self.comparison.as_ref());
             if std::mem::take(&mut self.focuses_search) {
                 plots::focus(ui.ctx());
             }
@@ -139,7 +139,7 @@ impl AppState {
             self.carry_out(command);
             let held = self.view_state.gesture.grabbed.is_some();
             if let (Some(intro), Some(command)) = (&mut self.intro, seen) {
-                intro.sees(&command, &self.session, held);
+                intro.observe(&command, &self.session, held);
             }
         }
         if self.intro.as_ref().is_some_and(Intro::is_over) {

@@ -25,7 +25,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, view_state: &Vi
     for term in facts.terms.iter() {
         row(ui, p, session, term, hot);
     }
-    if facts.terms.iter().any(|term| term.left[1].abs() > 1e-9) {
+    if facts.terms.iter().any(|term| term.residual[1].abs() > 1e-9) {
         let words = "Some masses lie off the axes of their links; the bars show what they do along them.";
         ui.label(RichText::new(words).font(plain(11.0)).color(colour(p.dim)));
     }
@@ -64,10 +64,10 @@ fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &BalanceBars, hot: Opt
     let below = rect.top() + BAR_HEIGHT_PT + 12.0;
     painter.text(pos2(rect.left(), below), Align2::LEFT_CENTER, term.meaning, plain(10.5), colour(p.dim));
     let tone = colour(if term.is_balanced { p.zero } else { p.reaction });
-    let size = term.left[0].hypot(term.left[1]);
-    let text = match (term.is_balanced, term.left[1] == 0.0) {
+    let size = term.residual[0].hypot(term.residual[1]);
+    let text = match (term.is_balanced, term.residual[1] == 0.0) {
         (true, _) => "0".to_owned(),
-        (false, true) => signed(term.left[0], 4),
+        (false, true) => signed(term.residual[0], 4),
         (false, false) => format!("|{}|", signed(size, 4)),
     };
     painter.text(pos2(rect.right(), middle), Align2::RIGHT_CENTER, &text, bold(12.5), tone);
@@ -90,9 +90,10 @@ fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &BalanceBars, hot: Opt
         }
         // The residual is drawn on the side that predominates.
         if !term.is_balanced {
-            let outweighed = zero - (term.left[0] * scale) as f32;
-            let from = if term.left[0] > 0.0 { ends[1] + (outweighed - zero) } else { ends[0] + (outweighed - zero) };
-            let to = if term.left[0] > 0.0 { ends[1] } else { ends[0] };
+            let outweighed = zero - (term.residual[0] * scale) as f32;
+            let from =
+                if term.residual[0] > 0.0 { ends[1] + (outweighed - zero) } else { ends[0] + (outweighed - zero) };
+            let to = if term.residual[0] > 0.0 { ends[1] } else { ends[0] };
             let left = Rect::from_x_y_ranges(from.min(to)..=from.max(to), bar.bottom() + 2.0..=bar.bottom() + 5.0);
             ui.painter().rect_filled(left, 1.0, colour(p.ink));
         }

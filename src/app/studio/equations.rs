@@ -140,7 +140,7 @@ fn verdict(equation: &Equation) -> String {
         Some(true) => "holds".into(),
         _ if equation.is_choice() => "another choice".into(),
         _ => {
-            let off = worst.off().abs();
+            let off = worst.residual().abs();
             let size = if off > 0.0 { 10f64.powf(off.log10().floor() - 2.0) } else { 1.0 };
             format!("off by {} {}", at_step(off, size), worst.unit).trim_end().to_owned()
         }

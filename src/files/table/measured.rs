@@ -111,7 +111,7 @@ pub(super) fn motions_or(
 }
 
 /// Returns whether a table has a column of a force or a moment on the base.
-pub(super) fn feels(head: &csv::StringRecord) -> bool {
+pub(super) fn has_base_reaction(head: &csv::StringRecord) -> bool {
     let is = |cell: &str, names: &[&str], units: UnitNames| names.contains(&name_and_unit(cell, units).0.as_str());
     head.iter().any(|cell| is(cell, FORCE_X, FORCE) || is(cell, FORCE_Y, FORCE) || is(cell, MOMENT_Z, MOMENT))
 }

@@ -29,7 +29,7 @@ impl FreeSpan {
         let (y, z) = (program.linear.len(), program.linear.len() + 1);
         program.linear.extend([0.0, 0.0]);
         program.above_square(w, 1.0, y);
-        program.above_quotient(z, y, w);
+        program.add_rotated_cone(z, y, w);
         if self.from.is_finite() {
             program.at_most.push(LinearRow::new([(w, self.from + clearance), (z, spread), (s, -1.0)], 0.0));
         }

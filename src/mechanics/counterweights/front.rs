@@ -1,6 +1,6 @@
 //! [`front`]: the Pareto front of added mass and inertia.
 
-use super::place::{Placed, place_weights};
+use super::place::{PlacedCounterweights, place_weights};
 use super::refusal::CounterweightError;
 use super::spec::{CounterweightSpec, Objective};
 use crate::machine::{Inertia, Machine};
@@ -11,7 +11,7 @@ use stillbase_query::{Portion, ProgressCallback, Query, answer_now};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Front {
     /// The points, by increasing mass and decreasing inertia.
-    pub points: Vec<Placed>,
+    pub points: Vec<PlacedCounterweights>,
 }
 
 impl Front {
@@ -21,7 +21,7 @@ impl Front {
     }
 }
 
-fn measures(placed: &Placed) -> [f64; 2] {
+fn measures(placed: &PlacedCounterweights) -> [f64; 2] {
     [placed.added_mass, Inertia::of(&placed.machine).total_momentum()]
 }
 
@@ -46,7 +46,7 @@ pub struct FrontSearch {
     inertia: CounterweightSpec,
     count: usize,
     /// The points found so far, by increasing mass, with their measures.
-    points: Vec<([f64; 2], Placed)>,
+    points: Vec<([f64; 2], PlacedCounterweights)>,
 }
 
 impl Query for FrontSearch {
@@ -103,8 +103,8 @@ impl FrontSearch {
                 };
                 let halfway = |axis: usize| Some(0.5 * (points[i].0[axis] + points[i + 1].0[axis]));
                 let between = match by_mass > by_inertia {
-                    true => CounterweightSpec { most_mass: halfway(0), ..inertia.clone() },
-                    false => CounterweightSpec { most_inertia: halfway(1), ..mass.clone() },
+                    true => CounterweightSpec { max_added_mass: halfway(0), ..inertia.clone() },
+                    false => CounterweightSpec { max_inertia: halfway(1), ..mass.clone() },
                 };
                 (i + 1, between)
             }

@@ -45,7 +45,7 @@ impl CounterweightProblem {
     /// # Errors
     /// If they cannot change one of these conditions.
     pub fn check(&self) -> Result<(), CounterweightError> {
-        for ConditionResidual { of, residual, .. } in &self.conditions {
+        for ConditionResidual { condition: of, residual, .. } in &self.conditions {
             if residual.im.abs() > 1e-9 {
                 let residual = format!("{:.3e} {}", residual.im, of.unit());
                 return Err(CounterweightError::OffAxis { condition: of.name(&self.bare), residual });
@@ -53,12 +53,16 @@ impl CounterweightProblem {
         }
         for condition in self.conditions.iter().filter(|condition| !condition.is_touched()) {
             if condition.residual.re.abs() > 1e-9 {
-                let residual = format!("{:.3e} {}", condition.residual.re, condition.of.unit());
+                let residual = format!("{:.3e} {}", condition.residual.re, condition.condition.unit());
                 let parts = self.bare.links().iter().zip(self.bare.resolved_links());
-                let of = |part| condition.of.by_mass(part) != 0.0 || condition.of.by_moment(part) != 0.0;
+                let of = |part| condition.condition.by_mass(part) != 0.0 || condition.condition.by_moment(part) != 0.0;
                 let would: Vec<&str> = parts.filter(|(_, part)| of(part)).map(|(link, _)| link.name.as_str()).collect();
                 let want = format!("one of {}", would.join(", "));
-                return Err(CounterweightError::Untouched { condition: condition.of.name(&self.bare), residual, want });
+                return Err(CounterweightError::Untouched {
+                    condition: condition.condition.name(&self.bare),
+                    residual,
+                    want,
+                });
             }
         }
         Ok(())
@@ -86,8 +90,8 @@ impl CounterweightProblem {
             && self
                 .conditions
                 .iter()
-                .all(|condition| condition.residual.norm() <= condition.of.tolerance(&self.inertia))
-            && asked.most_inertia.is_none_or(|most| total <= most)
+                .all(|condition| condition.residual.norm() <= condition.condition.tolerance(&self.inertia))
+            && asked.max_inertia.is_none_or(|most| total <= most)
     }
 
     pub fn drives(&self) -> usize {

@@ -122,7 +122,7 @@ impl CounterweightProblem {
         }
         program.linear.push(if balance == BalanceGoal::Nearest { 1.0 } else { 0.0 });
         for condition in &self.conditions {
-            let per = if matches!(condition.of, Condition::Force(_)) { 1.0 } else { self.reach };
+            let per = if matches!(condition.condition, Condition::Force(_)) { 1.0 } else { self.reach };
             for (sign, end) in [-1.0, 1.0].into_iter().flat_map(|sign| condition.ends.map(|end| (sign, end))) {
                 let mut terms = terms(condition, sign);
                 terms.push((worst, -per));
@@ -163,7 +163,7 @@ impl CounterweightProblem {
     fn enter_inertia(&self, asked: &CounterweightSpec, unknowns: &UnknownIndices, program: &mut Program) {
         let parts = self.bare.resolved_links();
         for j in 0..asked.sites.len() {
-            program.above_quotient(unknowns.u(j), unknowns.w(j), unknowns.s(j));
+            program.add_rotated_cone(unknowns.u(j), unknowns.w(j), unknowns.s(j));
             program.above_square(unknowns.v(j), asked.disc.own(), unknowns.w(j));
         }
         for k in 0..self.drives() {
@@ -244,11 +244,11 @@ impl CounterweightProblem {
                 all.push((Bound::Most(link), LinearRow::new([(w, 1.0)], site.most)));
             }
         }
-        if let Some(most) = asked.most_mass {
+        if let Some(most) = asked.max_added_mass {
             let sum = (0..asked.sites.len()).map(|j| (unknowns.w(j), 1.0)).collect::<Vec<_>>();
             all.push((Bound::Mass, LinearRow::new(sum, most)));
         }
-        if let Some(most) = asked.most_inertia {
+        if let Some(most) = asked.max_inertia {
             let mut row = LinearRow::new([], most);
             for k in 0..self.drives() {
                 let [momentum, _] = self.of_rotors(asked, machine, k);
@@ -282,8 +282,8 @@ impl CounterweightSpec {
                 let own = self.sites.iter().find(|site| machine.links()[site.link].name == *link);
                 own.map_or(0.0, |site| site.most)
             }
-            Bound::Mass => self.most_mass.unwrap_or_default(),
-            Bound::Inertia => self.most_inertia.unwrap_or_default(),
+            Bound::Mass => self.max_added_mass.unwrap_or_default(),
+            Bound::Inertia => self.max_inertia.unwrap_or_default(),
             Bound::From(_) | Bound::To(_) => 0.0,
         }
     }

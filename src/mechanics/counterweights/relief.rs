@@ -1,10 +1,10 @@
 //! [`sufficient_reliefs`]: relaxed bounds that make a request for counterweights feasible, with all other bounds
 //! unchanged.
 
-use super::question::CounterweightTask;
 use super::refusal::{BoundKind, BoundRelaxation};
 use super::search_node::SearchNode;
 use super::spec::CounterweightSpec;
+use super::task::CounterweightTask;
 
 /// Factor by which all but the last of several bounds are relaxed beyond their minimum, so that the last needs less
 /// relaxation.
@@ -104,8 +104,8 @@ impl BoundKind {
     fn of(asked: &CounterweightSpec) -> Vec<Self> {
         let set = [
             (Self::Most, asked.sites.iter().any(|site| site.most.is_finite())),
-            (Self::Mass, asked.most_mass.is_some()),
-            (Self::Inertia, asked.most_inertia.is_some()),
+            (Self::Mass, asked.max_added_mass.is_some()),
+            (Self::Inertia, asked.max_inertia.is_some()),
             (Self::Clearance, asked.clearance.is_some()),
         ];
         set.into_iter().filter(|(_, set)| *set).map(|(kind, _)| kind).collect()
@@ -133,8 +133,8 @@ impl BoundRelaxation {
                 let bounded = asked.sites.iter_mut().filter(|site| site.most.is_finite());
                 bounded.for_each(|site| site.most = most);
             }
-            Self::Mass(most) => asked.most_mass = Some(most),
-            Self::Inertia(most) => asked.most_inertia = Some(most),
+            Self::Mass(most) => asked.max_added_mass = Some(most),
+            Self::Inertia(most) => asked.max_inertia = Some(most),
             Self::Clearance(clearance) => asked.clearance = Some(clearance),
         }
     }

@@ -1,14 +1,14 @@
 //! [`ConditionResidual`]: residual of each condition of (7) and (8), and its change with counterweights.
 
 use super::refusal::CounterweightError;
-use super::spec::{CounterweightSpec, Sites};
+use super::spec::{CounterweightSite, CounterweightSpec};
 use crate::balance::Condition;
 use crate::machine::{Inertia, Machine};
 use crate::planar::Vector;
 
 /// The residual of one condition of (7) or (8).
 pub(super) struct ConditionResidual {
-    pub of: Condition,
+    pub condition: Condition,
     /// Residual of the bare machine with the mean payload, kg m or kg m²: the real part along the axes, the imaginary
     /// part across them.
     pub residual: Vector,
@@ -43,10 +43,11 @@ pub(super) fn conditions(
         None => [inertia.clone(), inertia.clone()],
     };
     let of = |(i, condition): (usize, Condition)| {
-        let change = |site: &Sites| [condition.by_mass(&parts[site.link]), condition.by_moment(&parts[site.link])];
+        let change =
+            |site: &CounterweightSite| [condition.by_mass(&parts[site.link]), condition.by_moment(&parts[site.link])];
         let more = beyond.get(i).copied().unwrap_or_default();
         ConditionResidual {
-            of: condition,
+            condition: condition,
             residual: condition.residual(inertia) + more,
             ends: [0, 1].map(|i| (condition.residual(&ends[i]) + more).re),
             changes: asked.sites.iter().map(change).collect(),

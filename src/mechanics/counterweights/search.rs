@@ -134,7 +134,7 @@ impl Search<'_> {
 
     /// Returns a solution with every inertia at its exact value.
     fn with_exact_inertia(&self, least: &Optimum) -> Optimum {
-        let x = self.problem.settled(self.machine, self.asked, &least.x);
+        let x = self.problem.with_exact_values(self.machine, self.asked, &least.x);
         Optimum { value: self.problem.value(self.machine, self.asked, &x), x, gap: 0.0 }
     }
 

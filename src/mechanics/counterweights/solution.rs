@@ -4,13 +4,13 @@ use super::problem::CounterweightProblem;
 use super::refusal::CounterweightError;
 use super::residual::ConditionResidual;
 use super::search_node::{BalanceGoal, SearchNode};
-use super::spec::{CounterweightSpec, RotorFreedom, Sites};
+use super::spec::{CounterweightSite, CounterweightSpec, RotorFreedom};
 use super::unknowns::{AffineForm, UnknownIndices};
 use crate::balance::{LinearEquation, SolutionSpace};
 use crate::machine::{Counterweight, Machine, Rotor};
 
 /// Mass w, kg, and first moment s = w x, kg m, of the counterweight at each site that carries one.
-type Found = Vec<(Sites, [f64; 2])>;
+type Found = Vec<(CounterweightSite, [f64; 2])>;
 
 /// Smallest mass of a counterweight; lighter ones are omitted.
 pub(super) const MIN_MASS_KG: f64 = 1e-7;
@@ -20,7 +20,7 @@ const MIN_RATIO: f64 = 1e-9;
 
 impl CounterweightProblem {
     /// Returns a solution with every inertia, momentum and torque at its exact value instead of a bound.
-    pub fn settled(&self, machine: &Machine, asked: &CounterweightSpec, x: &[f64]) -> Vec<f64> {
+    pub fn with_exact_values(&self, machine: &Machine, asked: &CounterweightSpec, x: &[f64]) -> Vec<f64> {
         let unknowns = UnknownIndices::of(asked, self.drives());
         let mut x = x.to_vec();
         for (i, rotor) in asked.rotors.iter().enumerate() {
@@ -68,7 +68,7 @@ impl CounterweightProblem {
 
     /// Returns the excess of u and v over the exact inertias at each site, kg m².
     pub fn excess(&self, machine: &Machine, asked: &CounterweightSpec, x: &[f64]) -> Vec<[f64; 2]> {
-        let (unknowns, settled) = (UnknownIndices::of(asked, self.drives()), self.settled(machine, asked, x));
+        let (unknowns, settled) = (UnknownIndices::of(asked, self.drives()), self.with_exact_values(machine, asked, x));
         let excess = |i: usize| x[i] - settled[i];
         (0..asked.sites.len()).map(|j| [excess(unknowns.u(j)), excess(unknowns.v(j))]).collect()
     }
@@ -101,7 +101,7 @@ impl CounterweightProblem {
             self.refine(asked, &mut found);
         }
         let mut spec = self.bare.spec().clone();
-        let weight = |(site, [w, s]): &(Sites, [f64; 2])| Counterweight {
+        let weight = |(site, [w, s]): &(CounterweightSite, [f64; 2])| Counterweight {
             link: self.bare.links()[site.link].name.clone(),
             mass: *w,
             at: s / w,
@@ -126,7 +126,8 @@ impl CounterweightProblem {
         if found.is_empty() {
             return;
         }
-        let place = |site: &Sites| asked.sites.iter().position(|other| other.link == site.link).unwrap_or_default();
+        let place =
+            |site: &CounterweightSite| asked.sites.iter().position(|other| other.link == site.link).unwrap_or_default();
         let sites: Vec<usize> = found.iter().map(|(site, _)| place(site)).collect();
         let residual = self.conditions.iter().map(|condition| {
             let changed = sites.iter().zip(found.iter()).map(|(j, (_, [w, s]))| {

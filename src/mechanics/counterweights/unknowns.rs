@@ -20,7 +20,7 @@ pub(super) struct UnknownIndices {
 
 impl UnknownIndices {
     pub fn of(asked: &CounterweightSpec, drives: usize) -> Self {
-        let inertia = asked.objective.depends_on_inertia() || asked.most_inertia.is_some();
+        let inertia = asked.objective.depends_on_inertia() || asked.max_inertia.is_some();
         let (rotors, momentum) = (asked.rotors.len(), asked.objective.momentum > 0.0);
         Self { sites: asked.sites.len(), inertia, drives, rotors, momentum }
     }

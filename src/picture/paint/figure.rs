@@ -26,7 +26,7 @@ pub fn items(painter: &Painter, origin: Pos2, axes: &Axes, items: &[FigureItem])
             FigureItem::Dot { at: place, radius, colour: tone } => {
                 painter.circle_filled(at(*place), *radius, colour(*tone));
             }
-            FigureItem::Area { sides: [left, top, right, bottom], colour: tone } => {
+            FigureItem::Rectangle { sides: [left, top, right, bottom], colour: tone } => {
                 painter.rect_filled(Rect::from_min_max(at([*left, *top]), at([*right, *bottom])), 0.0, colour(*tone));
             }
             FigureItem::Text { at: place, anchor: [across, down], words } => {

@@ -358,8 +358,8 @@ impl Stage {
         snapshots::snapshots(&mut scene, linkage, &palette, options);
         snapshots::others(&mut scene, linkage, &palette, options);
         let blocked = self.plan.as_ref().and_then(PlannedPath::blocked);
-        path::by_hand(&mut scene, &palette, options, blocked, z);
-        reaction::draw(&mut scene, linkage, &palette, shown, options, self.base.rest(options));
+        path::draw_user_curves(&mut scene, &palette, options, blocked, z);
+        reaction::draw(&mut scene, linkage, &palette, shown, options, self.base.static_force_name(options));
         if options.pin_forces {
             self.pins.draw(&mut scene, linkage, &palette, shown);
         }

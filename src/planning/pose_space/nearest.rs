@@ -86,7 +86,8 @@ impl PoseSpace {
             let (place, columns) = self.columns(&self.lift(&a, b));
             let down = PerDrive::from_fn(n, |i| wish.weight[i] * (wish.angles[i] - a[i]) / weight[i]);
             let range = within(windows, &a, MAX_STEP_RAD);
-            let (step, nu) = BoxedStep { columns: &columns, weight: &weight, wish: &down, range }.step(p - place);
+            let (step, nu) =
+                BoxedStep { columns: &columns, weight: &weight, unconstrained: &down, range }.step(p - place);
             if step.max_abs() < STEP_TOLERANCE_RAD {
                 break;
             }

@@ -124,7 +124,7 @@ impl DesignBrief {
     }
 
     /// Checks that no lower bound is above its upper bound.
-    pub(super) fn fits(&self) -> Vec<RangeCheck> {
+    pub(super) fn range_checks(&self) -> Vec<RangeCheck> {
         let holds = self.hold.iter().filter_map(|(key, hold)| match hold {
             ParameterBounds::Within(ends) => Some((format!("design.hold.{key}"), *ends)),
             ParameterBounds::Fixed | ParameterBounds::Free => None,

@@ -401,7 +401,7 @@ impl MovingBody {
             padded[..N].copy_from_slice(&factors.solve(*leading_entries::<N, _>(x)));
             padded
         };
-        loss + self.contacts.hold(slip, (rate, &free), solve, force, friction, stuck_torque)
+        loss + self.contacts.solve_stuck(slip, (rate, &free), solve, force, friction, stuck_torque)
     }
 }
 

@@ -83,7 +83,7 @@ impl ControlLoop {
     /// Begins a step: computes the torque range of the wheel and, at a sampling instant, takes a reading and computes
     /// the torques.
     pub fn sample(&mut self, step: u64, reference: &Reference, reading: &Reading, loaded: bool, wheel_rate: f64) {
-        self.wheel_range = self.wheel.map_or([0.0; 2], |wheel| wheel.room(wheel_rate, self.step));
+        self.wheel_range = self.wheel.map_or([0.0; 2], |wheel| wheel.torque_range(wheel_rate, self.step));
         let Some(sampling) = &mut self.sampling else { return };
         if sampling.held.is_none() || step.is_multiple_of(sampling.period) {
             let (mut e, mut rates, mut seen) = (*reading.e, *reading.rates, *reading);
@@ -189,7 +189,7 @@ impl ControlLoop {
         let spin = match &self.wheel {
             Some(wheel) => {
                 let moment = self.on_base::<N, MOVES>(&torque, reference);
-                wheel.give(-moment, at.wheel, self.wheel_range)
+                wheel.command(-moment, at.wheel, self.wheel_range)
             }
             None => WheelState::default(),
         };

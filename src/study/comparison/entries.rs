@@ -41,7 +41,7 @@ pub struct Comparison {
     task: Scenario,
     entries: Vec<ComparisonEntry>,
     sort: Option<(usize, bool)>,
-    beside: BaselineMachines,
+    baseline: BaselineMachines,
     /// The alternatives that the table shows.
     ways: Option<Arc<<AlternativeRuns as Query>::Answer>>,
 }
@@ -88,7 +88,7 @@ impl Comparison {
             task: scenario.clone(),
             entries: Vec::new(),
             sort: None,
-            beside: BaselineMachines::default(),
+            baseline: BaselineMachines::default(),
             ways: None,
         }
     }
@@ -109,7 +109,7 @@ impl Comparison {
             ComparisonEntry { title, outcome, shown, kept: false, design: None }
         });
         self.entries = own.chain(kept).collect();
-        self.set_beside();
+        self.compare_with_baseline();
     }
 
     /// Returns the scenario whose alternatives the table shows.
@@ -141,27 +141,27 @@ impl Comparison {
         run.scenario.name.clone_from(&title);
         run.summary.name.clone_from(&title);
         self.entries.push(ComparisonEntry { title, outcome: Ok(Arc::new(run)), shown: true, kept: true, design: None });
-        self.set_beside();
+        self.compare_with_baseline();
     }
 
     /// Compares every machine with that of the first run.
-    fn set_beside(&mut self) {
-        self.beside = BaselineMachines::default();
+    fn compare_with_baseline(&mut self) {
+        self.baseline = BaselineMachines::default();
         for entry in &mut self.entries {
-            entry.design = entry.outcome.as_ref().ok().map(|run| self.beside.set(&run.candidate));
+            entry.design = entry.outcome.as_ref().ok().map(|run| self.baseline.set(&run.candidate));
         }
     }
 
     /// Returns whether the machines of the runs differ, so that there are designs to compare.
     pub fn has_designs(&self) -> bool {
-        self.beside.differ()
+        self.baseline.differ()
     }
 
     /// Removes a run that the user added.
     pub fn remove(&mut self, entry: usize) {
         if self.entries.get(entry).is_some_and(|e| e.kept) {
             self.entries.remove(entry);
-            self.set_beside();
+            self.compare_with_baseline();
         }
     }
 

@@ -22,7 +22,7 @@ pub struct ComparisonRow {
 #[derive(Clone, Debug, Default)]
 pub struct ComparisonTable {
     rows: Vec<ComparisonRow>,
-    beside: BaselineMachines,
+    baseline: BaselineMachines,
 }
 
 /// Compares machines with the first of them.
@@ -37,7 +37,7 @@ impl BaselineMachines {
     pub fn set(&mut self, next: &DesignCandidate) -> DesignMeasures {
         let first = self.first.get_or_insert_with(|| next.clone());
         self.differ |= !next.is_alike(first);
-        next.beside(first)
+        next.compared_with(first)
     }
 
     /// Returns whether any machine differs from the first, so that there are designs to compare.
@@ -50,7 +50,7 @@ impl ComparisonTable {
     /// Runs a scenario to its end and adds it as a row.
     pub fn run(&mut self, way: Option<&'static str>, scenario: &Scenario) {
         let outcome = ComparedRun::of(scenario.clone()).map_err(|why| why.to_string());
-        let design = outcome.as_ref().ok().map(|run| self.beside.set(&run.candidate));
+        let design = outcome.as_ref().ok().map(|run| self.baseline.set(&run.candidate));
         let outcome = outcome.map(|run| run.summary);
         self.rows.push(ComparisonRow { name: scenario.name.clone(), way, outcome, design });
     }
@@ -62,7 +62,7 @@ impl ComparisonTable {
 
     /// Returns whether the machines of the runs differ.
     pub fn have_designs(&self) -> bool {
-        self.beside.differ()
+        self.baseline.differ()
     }
 }
 

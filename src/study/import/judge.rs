@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::given::GivenMotion;
 use crate::advice::{Advice, Remedy};
-use stillbase_mechanics::dynamics::{Surroundings, angular_momentum, inverse_with_wrench};
+use stillbase_mechanics::dynamics::{ExternalLoads, angular_momentum, inverse_with_wrench};
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::Vector;
 use stillbase_planning::Motion;
@@ -105,7 +105,7 @@ pub(super) struct MotionEvaluator {
     pub scenario: Scenario,
     pub machine: Machine,
     pub model: Inertia,
-    pub around: Surroundings,
+    pub around: ExternalLoads,
     pub space: Result<PoseSpace, NoPoseSpace>,
     pub instants: usize,
 }
@@ -117,7 +117,7 @@ impl MotionEvaluator {
         let machine = scenario.machine.clone();
         Self {
             model: Inertia::of(&machine),
-            around: Surroundings { gravity: machine.gravity(), force: Vector::default() },
+            around: ExternalLoads { gravity: machine.gravity(), force: Vector::default() },
             space: PoseSpace::of(&machine),
             instants,
             scenario,

@@ -71,7 +71,7 @@ pub fn correction_benefit(
         x.tr_mul(&x) / rows.count() as f64
     };
     let (force, moment): (DMatrix<f64>, DMatrix<f64>) = (mean(0) + mean(1), mean(2));
-    let by = DVector::from_iterator(count, mended.by.iter().flat_map(|by| [by.re, by.im]));
+    let by = DVector::from_iterator(count, mended.effects.iter().flat_map(|by| [by.re, by.im]));
     let now = fit.measured.rows(0, count).clone_owned();
     let then = &now + &by;
     let rms = |of: &DMatrix<f64>, x: &DVector<f64>| x.dot(&(of * x)).max(0.0).sqrt();

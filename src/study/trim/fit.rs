@@ -113,11 +113,11 @@ pub(super) fn estimate(machine: &Machine, rows: &Regressor) -> Result<Estimate, 
     let (solved, errors) = solved.ok_or(TrimError::NotFinite)?;
     let (confounded, identifiable) = solved.confounded(p);
     let count = rows.count();
-    let least = if rows.made == RegressorSource::Samples { 1 } else { MIN_LAGS };
+    let least = if rows.source == RegressorSource::Samples { 1 } else { MIN_LAGS };
     let parts: Vec<&[f64]> = errors.iter().map(|e| e.as_slice()).collect();
     let lags = bartlett_lags(&parts, &rows.motions, least);
     // For windows the larger number of lags compensates for the second parameter of the line.
-    let fitted = if rows.made == RegressorSource::Samples { TREND_PARAMETERS as i32 } else { 1 };
+    let fitted = if rows.source == RegressorSource::Samples { TREND_PARAMETERS as i32 } else { 1 };
     // Ratio of the long-run variance to the variance of one row: correlation length in rows.
     let correlation = |of: &[usize]| {
         let both = |f: &dyn Fn(usize) -> f64| of.iter().map(|c| f(*c)).sum::<f64>();
@@ -265,7 +265,7 @@ impl Solved {
         let Some((u, singular, v)) = parts else {
             return Self { by: DVector::zeros(p), inverse: DMatrix::zeros(p, p), free: DMatrix::identity(p, p) };
         };
-        let share = if let RegressorSource::Windows { noise, .. } = rows.made { noise } else { 0.0 };
+        let share = if let RegressorSource::Windows { noise, .. } = rows.source { noise } else { 0.0 };
         let threshold = singular.max() * RANK_TOLERANCE.max(NOISE_FACTOR * share);
         let kept: Vec<usize> = (0..p).filter(|i| singular[*i] > threshold).collect();
         let rest: Vec<usize> = (0..p).filter(|i| singular[*i] <= threshold).collect();

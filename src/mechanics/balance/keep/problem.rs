@@ -187,19 +187,19 @@ impl<'a> Problem<'a> {
             let places = all().filter(|(_, other)| {
                 other.parameter.body == one.parameter.body
                     && other.parameter.quantity != BodyQuantity::Mass
-                    && other.hold != ParameterBounds::Fixed
+                    && other.bounds != ParameterBounds::Fixed
             });
             let ends = one.ends(self.machine).unwrap_or([one.from; 2]);
             MassVariable { at, from: one.from, penalty: one.penalty, ends, places: places.map(|(i, _)| i).collect() }
         });
-        let counts = all().map(|(_, one)| one.hold != ParameterBounds::Fixed).collect();
+        let counts = all().map(|(_, one)| one.bounds != ParameterBounds::Fixed).collect();
         RebalanceSearch { equations, counts, masses: masses.collect(), bounds }
     }
 
     /// Returns whether the problem is a convex quadratic program: no body may change both its mass and a position.
     fn is_convex(&self) -> bool {
         let all =
-            || self.asked.parameters.iter().filter(|one| one.hold != ParameterBounds::Fixed).map(|one| one.parameter);
+            || self.asked.parameters.iter().filter(|one| one.bounds != ParameterBounds::Fixed).map(|one| one.parameter);
         let mut masses = all().filter(|mass| mass.quantity == BodyQuantity::Mass);
         !masses.any(|mass| all().any(|other| other.body == mass.body && other != mass))
     }
@@ -219,7 +219,7 @@ impl<'a> Problem<'a> {
     /// Returns the equation of parameter i if it is fixed.
     fn fixed(&self, i: usize) -> Option<LinearEquation> {
         let one = &self.asked.parameters[i];
-        let value = one.parameter.value(self.machine.spec()).filter(|_| one.hold == ParameterBounds::Fixed)?;
+        let value = one.parameter.value(self.machine.spec()).filter(|_| one.bounds == ParameterBounds::Fixed)?;
         let row = self.row(i, value);
         let mut a = vec![0.0; self.asked.parameters.len()];
         row.terms.iter().for_each(|&(j, by)| a[j] += by);
@@ -232,15 +232,15 @@ impl<'a> Problem<'a> {
     fn limits(&self, fixed: bool) -> Vec<(ParameterLimit, LinearRow)> {
         let mut all = Vec::new();
         for (i, one) in self.asked.parameters.iter().enumerate() {
-            let ends = one.ends(self.machine).filter(|_| fixed || one.hold != ParameterBounds::Fixed);
+            let ends = one.ends(self.machine).filter(|_| fixed || one.bounds != ParameterBounds::Fixed);
             for (side, value) in [LimitSide::Least, LimitSide::Most].into_iter().zip(ends.into_iter().flatten()) {
-                let (key, fixed) = (one.parameter.key(self.machine), one.hold == ParameterBounds::Fixed);
-                let usual = one.hold == ParameterBounds::Free;
+                let (key, fixed) = (one.parameter.key(self.machine), one.bounds == ParameterBounds::Fixed);
+                let is_default = one.bounds == ParameterBounds::Free;
                 let carrier = match one.parameter.body {
                     Body::Counterweight(i) => Some(self.from.counterweights[i].link.clone()),
                     _ => None,
                 };
-                let limit = ParameterLimit { parameter: one.parameter, key, carrier, side, fixed, usual, value };
+                let limit = ParameterLimit { parameter: one.parameter, key, carrier, side, fixed, is_default, value };
                 all.push((limit, self.limit(i, side, value)));
             }
         }
@@ -286,11 +286,11 @@ impl<'a> Problem<'a> {
     fn kept(&self, y: &DVector<f64>) -> Result<RebalancedMachine, RebalanceError> {
         let (mut spec, mut values, mut cost) = (self.machine.spec().clone(), Vec::new(), 0.0);
         for (i, one) in self.asked.parameters.iter().enumerate() {
-            let value = match (one.hold, one.ends(self.machine)) {
+            let value = match (one.bounds, one.ends(self.machine)) {
                 (ParameterBounds::Fixed, _) | (_, None) => one.parameter.value(&spec).unwrap_or_default(),
                 (_, Some([low, high])) => self.value(i, y).clamp(low, high),
             };
-            if one.hold != ParameterBounds::Fixed {
+            if one.bounds != ParameterBounds::Fixed {
                 one.parameter.set(&mut spec, value);
                 cost += (one.penalty * (value - one.from)).powi(2);
             }
@@ -367,7 +367,7 @@ impl<'a> Problem<'a> {
             if i >= floors {
                 let slack = k + i - floors;
                 program.at_most.push(LinearRow::new([(slack, -1.0)], 0.0));
-                if relax_defaults || !limits[i - floors].0.usual {
+                if relax_defaults || !limits[i - floors].0.is_default {
                     terms.push((slack, -1.0));
                 }
             }

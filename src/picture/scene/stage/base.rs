@@ -62,7 +62,7 @@ impl BaseStage {
     }
 
     /// Returns the name of the constant force on the base.
-    pub fn rest(&self, options: &ViewOptions) -> &'static str {
+    pub fn static_force_name(&self, options: &ViewOptions) -> &'static str {
         match options.external_force {
             Some([x, y]) if x.hypot(y) > 0.0 && self.weightless => "the push",
             Some([x, y]) if x.hypot(y) > 0.0 => "its weight with the push",

@@ -84,7 +84,13 @@ impl PlannedPath {
 }
 
 /// Draws the curve that the user is drawing, and a refused curve, at height `z`, m.
-pub fn by_hand(scene: &mut Scene, palette: &Palette, options: &ViewOptions, blocked: Option<&RefusedCurve>, z: f64) {
+pub fn draw_user_curves(
+    scene: &mut Scene,
+    palette: &Palette,
+    options: &ViewOptions,
+    blocked: Option<&RefusedCurve>,
+    z: f64,
+) {
     let drawn = |points: &[Vector]| [points.iter().map(|p| point(*p, z)).collect()];
     if options.stroke.len() > 1 {
         let stroke: Vec<Vector> = options.stroke.iter().map(|[x, y]| Vector::new(*x, *y)).collect();

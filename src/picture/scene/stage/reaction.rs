@@ -69,7 +69,7 @@ pub fn draw(
     let rows = [
         force,
         moment,
-        (felt.beside(rest).unwrap_or_default(), palette.dim, 11.5),
+        (felt.static_force_text(rest).unwrap_or_default(), palette.dim, 11.5),
         (centre_of_mass(frame, reach), palette.dim, 11.5),
         (scale.join(" · "), palette.dim, 11.5),
     ];
