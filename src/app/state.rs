@@ -18,7 +18,7 @@ use super::change::SessionChange;
 use super::given::assess::OpenedTable;
 use super::pace::PlaybackRate;
 use super::saving::Saving;
-use super::{Activity, Framing, Intro, Layout, Preferences, ResumePoint, SessionCommand, ViewState};
+use super::{Activity, Framing, Intro, Layout, Message, Preferences, ResumePoint, SessionCommand, ViewState};
 use stillbase_mechanics::machine::Machine;
 use stillbase_picture::scene::exaggeration::exaggeration;
 use stillbase_picture::scene::palette::Theme;
@@ -249,14 +249,14 @@ impl AppState {
     pub(super) fn show_outcome(&mut self, said: Result<Option<String>, String>) {
         match said {
             Ok(None) => {}
-            Ok(Some(news)) => self.view_state.said.message = Some((news, false)),
-            Err(problem) => self.view_state.said.message = Some((problem, true)),
+            Ok(Some(text)) => self.view_state.status.message = Some(Message { text, is_problem: false }),
+            Err(text) => self.view_state.status.message = Some(Message { text, is_problem: true }),
         }
     }
 
     /// Shows a message that no command has caused.
     pub(super) fn announce(&mut self, news: &str) {
-        self.view_state.said.message = Some((news.into(), false));
+        self.view_state.status.message = Some(Message { text: news.into(), is_problem: false });
     }
 
     /// Returns the factor by which the drawn motion of the base is enlarged, so that it can be seen. It depends on the

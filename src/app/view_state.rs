@@ -49,7 +49,7 @@ pub struct ViewState {
     /// Open dialogs, lists and cards.
     pub open: OpenDialogs,
     /// Messages.
-    pub said: StatusMessage,
+    pub status: StatusMessage,
     /// Objects under the pointer.
     pub pointed: HoverTarget,
     /// The drag under way.
@@ -100,7 +100,7 @@ impl ViewState {
         Self {
             arrangement: WindowArrangement::with_theme(theme),
             open: OpenDialogs::default(),
-            said: StatusMessage::default(),
+            status: StatusMessage::default(),
             pointed: HoverTarget::default(),
             gesture: DragGesture::default(),
             tool: Tool::default(),

@@ -29,7 +29,7 @@ pub fn run(scenario: Scenario, theme: Option<Theme>) -> Result<(), WindowError> 
         .with_workers(Threads::Background)
         .with_preferences(&liked)
         .offering_recovery(keeper::found());
-    if app_state.view_state().said.message.is_none() && app_state.session().run().waiting().is_none() {
+    if app_state.view_state().status.message.is_none() && app_state.session().run().waiting().is_none() {
         app_state.carry_out(SessionCommand::TogglePlay);
     }
     let place = egui::ViewportBuilder::default()

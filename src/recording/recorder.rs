@@ -6,7 +6,7 @@ use crate::rerun::EntityPathPart;
 use crate::rerun::components::{Scalar, Text};
 use crate::rerun::{AnyValues, EntityPath, ViewCoordinates};
 
-use super::events::Events;
+use super::events::{Events, RecordedRun};
 use super::eye::Eye;
 use super::pictures::PictureSeries;
 use super::preview::Preview;
@@ -245,8 +245,14 @@ impl<'a> Recorder<'a> {
         let trail = lines([self.trail.take()], 1.8, mix(self.palette.ink, self.palette.dim, 0.5));
         self.store.fixed(&under(self.root, "end_effector/path"), &trail)?;
         let (verdict, statements) = (Verdict::of(run.scenario(), frame), Statements::of(run, frame));
-        let (of, end) = ((self.scenario, run.simulation().dt()), (Instant::of(frame), &frame.peaks, &verdict));
-        self.events.write(self.store, self.root, of, end)?;
+        let recorded = RecordedRun {
+            scenario: self.scenario,
+            dt: run.simulation().dt(),
+            end: Instant::of(frame),
+            peaks: &frame.peaks,
+            verdict: &verdict,
+        };
+        self.events.write(self.store, self.root, &recorded)?;
         let path = EntityPath::properties() / EntityPathPart::new(self.scenario.name.as_str());
         self.store.fixed(&path, &properties(self.scenario, (&frame.peaks, &verdict, &statements), run.plan()))?;
         Ok((frame.peaks, verdict, statements))

@@ -148,10 +148,10 @@ impl Query for Fronts {
 
 impl Stage {
     /// Returns the first stage for machine `i`; after the last machine, an empty stage that is never run.
-    fn of(asked: &FrontsRequest, i: usize) -> Self {
-        match asked.machines.get(i) {
+    fn of(request: &FrontsRequest, i: usize) -> Self {
+        match request.machines.get(i) {
             Some(of) => {
-                let search = FrontSearch::begin((of.machine.clone(), of.spec.clone(), asked.count));
+                let search = FrontSearch::begin((of.machine.clone(), of.spec.clone(), request.count));
                 Self::Search(Box::new(search))
             }
             None => Self::Telling(Front { points: Vec::new() }, Vec::new()),

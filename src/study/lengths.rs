@@ -150,13 +150,13 @@ const CONVERGED_BELOW: f64 = 1e-5;
 /// Fails if the request is invalid, or no machine evaluated is feasible.
 pub fn search(
     machine: &Machine,
-    asked: &LengthSearch,
+    request: &LengthSearch,
     go_on: &mut dyn FnMut(SearchProgress) -> bool,
 ) -> Result<FoundLengths, NoLengths> {
-    check(machine, asked)?;
+    check(machine, request)?;
     let mut seen = Seen {
         machine,
-        search: asked,
+        search: request,
         go_on,
         stopped: false,
         machines: 0,
@@ -165,11 +165,11 @@ pub fn search(
         least_violations: [f64::INFINITY; 2],
     };
     let present =
-        asked.lengths.iter().map(|free| fraction_of_interval(free.bounds, length(machine.spec(), &free.name)));
+        request.lengths.iter().map(|free| fraction_of_interval(free.bounds, length(machine.spec(), &free.name)));
     let present: Vec<f64> = present.collect();
-    let mut draws = ChaCha8Rng::seed_from_u64(asked.seed);
+    let mut draws = ChaCha8Rng::seed_from_u64(request.seed);
     let mut final_values = Vec::new();
-    for start in 0..asked.starts {
+    for start in 0..request.starts {
         let drawn = present.iter().map(|_| (draws.next_u64() >> 11) as f64 / (1_u64 << 53) as f64).collect();
         let from = if start == 0 { present.clone() } else { drawn };
         final_values.push(nelder_mead(&mut seen, from));
@@ -190,11 +190,11 @@ pub fn search(
     Ok(FoundLengths { placed, lengths, starts: [final_values.len(), alike], machines })
 }
 
-fn check(machine: &Machine, asked: &LengthSearch) -> Result<(), NoLengths> {
-    if asked.lengths.is_empty() || asked.starts == 0 {
+fn check(machine: &Machine, request: &LengthSearch) -> Result<(), NoLengths> {
+    if request.lengths.is_empty() || request.starts == 0 {
         return Err(NoLengths::Nothing("nothing to seek: want at least one length and one start"));
     }
-    for (what, least) in [("reach", asked.least_reach), ("workspace", asked.least_workspace)] {
+    for (what, least) in [("reach", request.least_reach), ("workspace", request.least_workspace)] {
         if let Some(least) = least.filter(|least| !(least.is_finite() && *least >= 0.0)) {
             return Err(CounterweightError::OutOfRange {
                 what: format!("a {what} of at least"),
@@ -205,14 +205,14 @@ fn check(machine: &Machine, asked: &LengthSearch) -> Result<(), NoLengths> {
         }
     }
     let known: Vec<&str> = machine.spec().own_lengths().map(|(name, _)| name).collect();
-    for (i, FreeLength { name, bounds: [from, to] }) in asked.lengths.iter().enumerate() {
+    for (i, FreeLength { name, bounds: [from, to] }) in request.lengths.iter().enumerate() {
         if !known.contains(&name.as_str()) {
             return Err(NoLengths::Unknown { name: name.clone(), known: known.join(", ") });
         }
         if !(*from > 0.0 && from < to && *to < 1e6) {
             return Err(NoLengths::Range { name: name.clone(), from: *from, to: *to });
         }
-        if asked.lengths[..i].iter().any(|other| other.name == *name) {
+        if request.lengths[..i].iter().any(|other| other.name == *name) {
             return Err(NoLengths::Twice(name.clone()));
         }
     }

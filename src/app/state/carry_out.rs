@@ -65,16 +65,16 @@ impl AppState {
         match command {
             SessionCommand::Edit(edit) => {
                 let edit = self.with_balance(edit)?;
-                self.view_state.said.refused = None;
+                self.view_state.status.refused = None;
                 self.change(SessionChange::Edit(edit));
                 self.view_state.gesture.dragged |=
-                    self.view_state.gesture.grabbed.is_some() && self.view_state.said.refused.is_none();
+                    self.view_state.gesture.grabbed.is_some() && self.view_state.status.refused.is_none();
             }
             SessionCommand::EndGesture => {
                 self.session.end_gesture();
                 self.designed_from = None;
                 let said = self.branch_message.take();
-                self.view_state.said.left_branch |= said.is_some();
+                self.view_state.status.left_branch |= said.is_some();
                 return Ok(said);
             }
             SessionCommand::TogglePlay if self.session.is_playing() => self.session.pause(),

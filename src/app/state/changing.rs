@@ -64,16 +64,16 @@ impl AppState {
     /// Updates the state after a change of the session or its refusal.
     pub(super) fn changed(&mut self, change: &SessionChange, done: Result<Option<String>, Refusal>) {
         if let (SessionChange::Edit(edit), Err(refusal)) = (change, &done) {
-            self.view_state.said.refused = Some(RefusedEdit::of(edit, refusal));
+            self.view_state.status.refused = Some(RefusedEdit::of(edit, refusal));
         }
         if done.is_ok() {
             self.saving.changes += u64::from(!matches!(change, SessionChange::Seek(_)));
             match change {
                 // A push sends many edits a second, too many to simulate the run ahead after each.
-                SessionChange::Edit(Edit::Push { .. }) => self.view_state.said.refused = None,
-                SessionChange::Edit(edit) if edit.affects_no_frame() => self.view_state.said.refused = None,
+                SessionChange::Edit(Edit::Push { .. }) => self.view_state.status.refused = None,
+                SessionChange::Edit(edit) if edit.affects_no_frame() => self.view_state.status.refused = None,
                 SessionChange::Edit(_) => {
-                    self.view_state.said.refused = None;
+                    self.view_state.status.refused = None;
                     self.run_ahead();
                 }
                 SessionChange::Undo

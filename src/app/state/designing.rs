@@ -60,8 +60,8 @@ impl AppState {
     fn length_search_input(&self, objective: Objective) -> Option<<LengthsQuery as Query>::Input> {
         let Scenario { machine, design, .. } = self.session.scenario();
         let bare = machine.without_counterweights().ok()?;
-        let asked = LengthSearch::of(design, &bare, objective);
-        Some((Shared(bare.into()), asked))
+        let request = LengthSearch::of(design, &bare, objective);
+        Some((Shared(bare.into()), request))
     }
 
     /// Starts a new search for link lengths.

@@ -43,7 +43,7 @@ impl AppState {
                 if let Some(SessionFile::Own(file)) = &opening.file {
                     self.saving.misses(file);
                 }
-                self.view_state.said.refused = refused;
+                self.view_state.status.refused = refused;
                 self.show_outcome(Err(why));
             }
         }

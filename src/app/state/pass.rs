@@ -105,15 +105,15 @@ impl AppState {
             let width = plots::show(ui, &what, &mut commands);
             self.view_state.arrangement.now_mut().plots.width = width;
         }
-        let both = (self.comparison.as_ref(), self.intro.as_ref().filter(|_| !presents), &chosen[..]);
-        let scene = viewport::show(
-            ui,
-            &self.session,
-            (&self.views, self.base_exaggeration()),
-            both,
-            &mut self.view_state,
-            &mut commands,
-        );
+        let content = viewport::SceneContent {
+            session: &self.session,
+            views: &self.views,
+            exaggeration: self.base_exaggeration(),
+            comparison: self.comparison.as_ref(),
+            intro: self.intro.as_ref().filter(|_| !presents),
+            weights: &chosen,
+        };
+        let scene = viewport::show(ui, content, &mut self.view_state, &mut commands);
         status::news(ui.ctx(), scene, &self.session, &self.view_state, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);
         saving::show(ui.ctx(), &self.saving, &self.session, &self.view_state, &mut commands);
@@ -129,7 +129,7 @@ impl AppState {
             .iter()
             .any(|c| !matches!(c, Command::Session(SessionCommand::EndGesture) | Command::View(ViewChange::Preview(_))))
         {
-            self.view_state.said = StatusMessage::default();
+            self.view_state.status = StatusMessage::default();
         }
         if !commands.is_empty() {
             ui.ctx().request_repaint();

@@ -50,7 +50,7 @@ impl AppState {
             app_state.show_outcome(said.map(Some));
         });
         self.collect();
-        let failed = matches!(self.view_state.said.message, Some((_, true)));
+        let failed = self.view_state.status.problem().is_some();
         if self.background.runs(activity) || !failed {
             self.view_state.open.dialog = None;
         }

@@ -86,7 +86,7 @@ fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &BalanceBars, hot: Opt
             let next = ends[side] + (part * scale) as f32;
             let segment = Rect::from_x_y_ranges(ends[side].min(next)..=ends[side].max(next), bar.y_range());
             ends[side] = next;
-            draw(ui, p, session, segment, (*link, *part), (term, hot));
+            draw_segment(ui, p, session, segment, &LinkPart { link: *link, value: *part, unit: term.unit }, hot);
         }
         // The residual is drawn on the side that predominates.
         if !term.is_balanced {
@@ -109,15 +109,16 @@ fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &BalanceBars, hot: Opt
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &words));
 }
 
-/// Draws the contribution of one link.
-fn draw(
-    ui: &Ui,
-    p: &Palette,
-    session: &Session,
-    rect: Rect,
-    (link, part): (usize, f64),
-    (term, hot): (&BalanceBars, Option<usize>),
-) {
+/// The contribution of one link to a term.
+struct LinkPart<'a> {
+    link: usize,
+    value: f64,
+    unit: &'a str,
+}
+
+/// Draws the contribution of one link; `hot` is the highlighted link.
+fn draw_segment(ui: &Ui, p: &Palette, session: &Session, rect: Rect, part: &LinkPart<'_>, hot: Option<usize>) {
+    let LinkPart { link, value, unit } = *part;
     let machine = &session.scenario().machine;
     let tone = p.drive(machine.resolved_links()[link].drive);
     let tone = if hot == Some(link) { tone } else { mix(tone, p.panel, 0.38) };
@@ -132,7 +133,7 @@ fn draw(
     }
     if ui.rect_contains_pointer(rect) {
         place::highlight(ui.ctx(), Handle::Link(link));
-        let tip = format!("link {words}: {} {}", signed(part, 6), term.unit);
+        let tip = format!("link {words}: {} {unit}", signed(value, 6));
         egui::Tooltip::always_open(
             ui.ctx().clone(),
             ui.layer_id(),

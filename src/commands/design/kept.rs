@@ -40,9 +40,9 @@ impl RebalanceArguments {
         motion: Option<&Motion>,
         penalty: &[f64],
     ) -> Result<(Machine, RebalanceReport), Failure> {
-        let mut asked = RebalanceRequest::coms(machine, penalty);
-        hold(&mut asked, machine, &self.fix, &self.free, &self.bound)?;
-        rebalance_report(machine, &asked, motion).map_err(as_failure)
+        let mut request = RebalanceRequest::coms(machine, penalty);
+        hold(&mut request, machine, &self.fix, &self.free, &self.bound)?;
+        rebalance_report(machine, &request, motion).map_err(as_failure)
     }
 }
 

@@ -201,10 +201,10 @@ impl WeightArguments {
             seconds => seconds.unwrap_or(f64::INFINITY),
         };
         let disc = spec.disc;
-        let asked = CounterweightRequest { spec, lengths, front: self.front.map(usize::from) };
+        let request = CounterweightRequest { spec, lengths, front: self.front.map(usize::from) };
         let begun = Instant::now();
         let mut go_on = |_| begun.elapsed().as_secs_f64() < within;
-        balance_by_weights(machine, &asked, motion, &mut go_on).map_err(|why| match why {
+        balance_by_weights(machine, &request, motion, &mut go_on).map_err(|why| match why {
             NoCounterweights::Lengths(why) => lengths_failure(why),
             NoCounterweights::Weights(why) => self.refusal(why, &disc),
             NoCounterweights::Front(why) => request_failure(why),

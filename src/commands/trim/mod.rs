@@ -181,15 +181,15 @@ impl TrimArguments {
         }
         // Only counterweights and named parameters may change. Without counterweights, if only fixed parameters are
         // named, all other centres of mass may change.
-        let mut asked = match weights {
+        let mut request = match weights {
             0 if self.free.is_empty() && self.bound.is_empty() => {
                 RebalanceRequest::coms(machine, &vec![1.0; machine.links().len()])
             }
             _ => RebalanceRequest::default(),
         };
-        free_weights(&mut asked, machine, |weight| !weight.fixed);
-        hold(&mut asked, machine, &self.fix, &self.free, &self.bound)?;
-        Ok(TrimMethod::Change(asked))
+        free_weights(&mut request, machine, |weight| !weight.fixed);
+        hold(&mut request, machine, &self.fix, &self.free, &self.bound)?;
+        Ok(TrimMethod::Change(request))
     }
 }
 

@@ -34,8 +34,8 @@ const RELATIVE_TOLERANCE: f64 = 1e-9;
 ///
 /// # Errors
 /// As [`place_weights`].
-pub fn front(machine: &Machine, asked: &CounterweightSpec, count: usize) -> Result<Front, CounterweightError> {
-    answer_now::<FrontSearch>((machine.clone(), asked.clone(), count))
+pub fn front(machine: &Machine, request: &CounterweightSpec, count: usize) -> Result<Front, CounterweightError> {
+    answer_now::<FrontSearch>((machine.clone(), request.clone(), count))
 }
 
 /// The search for the Pareto front that [`front`] returns; each portion of work finds one point.
@@ -53,9 +53,9 @@ impl Query for FrontSearch {
     type Input = (Machine, CounterweightSpec, usize);
     type Answer = Result<Front, CounterweightError>;
 
-    fn begin((machine, asked, count): Self::Input) -> Self {
-        let mass = CounterweightSpec { objective: Objective::mass(), ..asked.clone() };
-        let inertia = CounterweightSpec { objective: Objective::inertia(), ..asked };
+    fn begin((machine, request, count): Self::Input) -> Self {
+        let mass = CounterweightSpec { objective: Objective::mass(), ..request.clone() };
+        let inertia = CounterweightSpec { objective: Objective::inertia(), ..request };
         Self { machine, mass, inertia, count, points: Vec::with_capacity(count) }
     }
 
@@ -80,7 +80,7 @@ impl FrontSearch {
     /// Adds one more point; returns false if the Pareto front is complete.
     fn one_more(&mut self) -> Result<bool, CounterweightError> {
         let Self { machine, mass, inertia, count, points } = self;
-        let (i, asked) = match points.len() {
+        let (i, request) = match points.len() {
             // Least inertia comes first, so that it reports the errors that both objectives share.
             0 => (0, inertia.clone()),
             1 => (0, mass.clone()),
@@ -109,7 +109,7 @@ impl FrontSearch {
                 (i + 1, between)
             }
         };
-        let placed = place_weights(machine, &asked)?;
+        let placed = place_weights(machine, &request)?;
         points.insert(i, (measures(&placed), placed));
         Ok(true)
     }

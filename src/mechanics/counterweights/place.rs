@@ -50,8 +50,11 @@ const MAX_GAP: f64 = 5e-7;
 ///
 /// # Errors
 /// If the request is not valid, or if its requirements contradict each other.
-pub fn place_weights(machine: &Machine, asked: &CounterweightSpec) -> Result<PlacedCounterweights, CounterweightError> {
-    place_weights_with(machine, asked, &[])
+pub fn place_weights(
+    machine: &Machine,
+    request: &CounterweightSpec,
+) -> Result<PlacedCounterweights, CounterweightError> {
+    place_weights_with(machine, request, &[])
 }
 
 /// As [`place_weights`], but each condition has a known additional residual in `beyond`, kg m or kg m², in the order of
@@ -84,10 +87,10 @@ pub fn place_weights_with(
 /// If the request is not valid.
 pub fn unreachable_by_weights(
     machine: &Machine,
-    asked: &CounterweightSpec,
+    request: &CounterweightSpec,
     beyond: &[Vector],
 ) -> Result<Vec<Vector>, CounterweightError> {
-    Ok(CounterweightProblem::new(machine, asked, beyond)?.unreachable(asked.sites.len()))
+    Ok(CounterweightProblem::new(machine, request, beyond)?.unreachable(request.sites.len()))
 }
 
 impl CounterweightTask<'_> {

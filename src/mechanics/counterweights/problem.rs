@@ -22,21 +22,21 @@ impl CounterweightProblem {
     ///
     /// # Errors
     /// If the request is not valid.
-    pub fn new(machine: &Machine, asked: &CounterweightSpec, beyond: &[Vector]) -> Result<Self, CounterweightError> {
-        asked.check(machine)?;
+    pub fn new(machine: &Machine, request: &CounterweightSpec, beyond: &[Vector]) -> Result<Self, CounterweightError> {
+        request.check(machine)?;
         let mut spec = machine.without_counterweights()?.spec().clone();
-        asked.rotors.iter().for_each(|rotor| spec.drives[rotor.drive].rotor = None);
-        if let Some([low, high]) = asked.payload {
+        request.rotors.iter().for_each(|rotor| spec.drives[rotor.drive].rotor = None);
+        if let Some([low, high]) = request.payload {
             spec.payload.mass = 0.5 * (low + high);
         }
         let bare = Machine::new(spec)?;
         let inertia = Inertia::of(&bare);
-        let of_rotors = asked.rotors.iter().any(|rotor| bare.motors().on(rotor.drive).is_some());
-        if asked.objective.torque > 0.0 && (!inertia.is_decoupled() || of_rotors) {
+        let of_rotors = request.rotors.iter().any(|rotor| bare.motors().on(rotor.drive).is_some());
+        if request.objective.torque > 0.0 && (!inertia.is_decoupled() || of_rotors) {
             return Err(CounterweightError::Coupled);
         }
         let reach = bare.reach();
-        let conditions = conditions(&bare, &inertia, asked, beyond)?;
+        let conditions = conditions(&bare, &inertia, request, beyond)?;
         Ok(Self { bare, inertia, conditions, reach })
     }
 
@@ -83,15 +83,15 @@ impl CounterweightProblem {
 
     /// Returns whether no counterweights are needed. Counterweights only add mass and inertia, so the optimum then has
     /// none.
-    pub fn needs_nothing(&self, asked: &CounterweightSpec) -> bool {
+    pub fn needs_nothing(&self, request: &CounterweightSpec) -> bool {
         let total: f64 = self.inertia.total_momentum();
-        asked.rotors.is_empty()
-            && asked.objective.momentum == 0.0
+        request.rotors.is_empty()
+            && request.objective.momentum == 0.0
             && self
                 .conditions
                 .iter()
                 .all(|condition| condition.residual.norm() <= condition.condition.tolerance(&self.inertia))
-            && asked.max_inertia.is_none_or(|most| total <= most)
+            && request.max_inertia.is_none_or(|most| total <= most)
     }
 
     pub fn drives(&self) -> usize {

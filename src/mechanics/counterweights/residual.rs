@@ -29,7 +29,7 @@ impl ConditionResidual {
 pub(super) fn conditions(
     bare: &Machine,
     inertia: &Inertia,
-    asked: &CounterweightSpec,
+    request: &CounterweightSpec,
     beyond: &[Vector],
 ) -> Result<Vec<ConditionResidual>, CounterweightError> {
     let parts = bare.resolved_links();
@@ -38,7 +38,7 @@ pub(super) fn conditions(
         spec.payload.mass = mass;
         Ok(Inertia::of(&Machine::new(spec)?))
     };
-    let ends = match asked.payload {
+    let ends = match request.payload {
         Some([low, high]) => [holding(low)?, holding(high)?],
         None => [inertia.clone(), inertia.clone()],
     };
@@ -50,7 +50,7 @@ pub(super) fn conditions(
             condition: condition,
             residual: condition.residual(inertia) + more,
             ends: [0, 1].map(|i| (condition.residual(&ends[i]) + more).re),
-            changes: asked.sites.iter().map(change).collect(),
+            changes: request.sites.iter().map(change).collect(),
         }
     };
     Ok(Condition::all(bare.drives()).enumerate().map(of).collect())

@@ -13,6 +13,7 @@ mod under;
 mod workspace;
 
 pub use base::PULL_STIFFNESS;
+use workspace::WorkspaceParts;
 pub use workspace::{OutlineQuery, Workspace};
 
 use std::sync::Arc;
@@ -347,7 +348,8 @@ impl Stage {
         self.base.unmoved(&mut scene, linkage, &palette, shown, options.exaggeration.factor());
         self.base.draw(&mut scene, linkage, &palette, shown);
         if let Some(workspace) = self.outlined() {
-            workspace.draw(&mut scene, (linkage, self.fill), &palette, shown, (options, self.compared));
+            let parts = WorkspaceParts { fill: self.fill, compared_b: self.compared };
+            workspace.draw(&mut scene, linkage, &palette, shown, options, parts);
         }
         if let Some(ring) = &self.ring {
             ring.draw(&mut scene, &palette, shown, options, z);

@@ -64,6 +64,16 @@ pub struct Contacts {
     bearings: usize,
 }
 
+/// Torques that friction changes, N m.
+pub struct FrictionTorques<'a> {
+    /// Generalised forces, to which friction torques are added.
+    pub force: &'a mut [f64],
+    /// Friction torques of the bearings, indexed by drive, to which those of their contacts are added.
+    pub bearing: &'a mut [f64],
+    /// Torques of stuck contacts: the first guess, then the result.
+    pub stuck_torque: &'a mut [f64; MAX_CONTACTS],
+}
+
 impl Contacts {
     /// Sliding rate below which a contact counts as stuck, rad/s.
     pub(crate) const STICTION_SPEED: f64 = 1e-12;
@@ -186,20 +196,19 @@ impl Contacts {
         lost
     }
 
-    /// Computes the torques of stuck contacts by projected Gauss–Seidel sweeps and adds them to `force`. Each torque
+    /// Computes the torques of stuck contacts by projected Gauss–Seidel sweeps and adds them to `torques`. Each torque
     /// either satisfies |f| ≤ τ_C with v̇ = 0, or is at its bound, against v̇. `solve` returns accelerations for
-    /// generalised forces; `free` are the accelerations without these torques. `stuck_torque` contains the first guess
-    /// on entry and the result on return. Returns the dissipated power, W, which is zero unless a contact has begun to
+    /// generalised forces; `free` are the accelerations without these torques. Returns the dissipated power, W, which is zero unless a contact has begun to
     /// slide since the step began. The number of sweeps is bounded; one sweep is exact if contacts do not interact.
     pub fn solve_stuck(
         &self,
         slip: &SlipDirections,
-        (qd, free): (&[f64], &[f64]),
+        qd: &[f64],
+        free: &[f64],
         solve: impl Fn(&[f64; MAX_DRIVES]) -> [f64; MAX_DRIVES],
-        force: &mut [f64],
-        bearing: &mut [f64],
-        stuck_torque: &mut [f64; MAX_CONTACTS],
+        torques: FrictionTorques<'_>,
     ) -> f64 {
+        let FrictionTorques { force, bearing, stuck_torque } = torques;
         const MAX_SWEEPS: usize = 2000;
         let stuck = |i: &usize| self.list[*i].coulomb > 0.0 && slip[*i] == 0;
         if !(0..self.list.len()).any(|i| stuck(&i)) {

@@ -16,7 +16,7 @@
 
 use std::collections::VecDeque;
 
-use crate::control::{Control, Controller, Reading};
+use crate::control::{Control, ControlledState, Controller, Reading};
 use crate::plant::{Actuation, ReducedState, Wheel, WheelState};
 use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector};
 use stillbase_planning::Reference;
@@ -180,7 +180,9 @@ impl ControlLoop {
                     (0..n).for_each(|k| (q[k], qd[k]) = (q[k] - base.0.angle, qd[k] - rate[n]));
                     (q[n], qd[n]) = (0.0, 0.0);
                 }
-                self.controller.torque_at::<N, MOVES>(reference, (&q, &qd), motion, base, loaded)
+                let ((e, rate), (base, velocity)) = (motion, base);
+                let state = ControlledState { q: &q, qd: &qd, e, rate, base, velocity };
+                self.controller.torque_at::<N, MOVES>(reference, &state, loaded)
             }
         };
         if let Some(limits) = &self.limits {
