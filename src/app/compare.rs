@@ -153,7 +153,7 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &ComparisonEntry, columns: &[H
         if label.on_hover_text(format!("Open this run in place of the present one{apart}")).clicked() {
             commands.push(SessionCommand::OpenRun(i).into());
         }
-        if entry.kept {
+        if entry.added_by_user {
             let remove = ui.small_button("×");
             name(&remove, &format!("Remove {}", entry.title));
             if remove.on_hover_text("Remove this row").clicked() {

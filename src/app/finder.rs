@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use egui::{Align2, Area, Frame, Id, Key, Modifiers, Order, RichText, ScrollArea, TextEdit, Ui, vec2};
 
-use super::actions::{ACTIONS, shown};
+use super::actions::{ACTIONS, shortcut_label};
 use super::facts::{ScenarioFacts, Setting};
 use super::theme::{bold, colour, plain};
 use super::top::with_machine;
@@ -44,7 +44,7 @@ fn entries<'a>(
 ) -> Vec<Entry<'a>> {
     let actions = ACTIONS.iter().filter_map(|action| {
         let command = action.command(session, view_state)?;
-        let keys = action.keys.first().map(shown).unwrap_or_default();
+        let keys = action.keys.first().map(shortcut_label).unwrap_or_default();
         let (title, place, also) = (action.name.into(), action.place, action.also);
         Some(Entry { title, place, also, hides: false, keys, command: Box::new(|| command) })
     });

@@ -256,7 +256,7 @@ fn kind_settings(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, comma
             choose(
                 ui,
                 session,
-                ChoiceRow { label: "Freedoms left", key: "posture", width: width },
+                ChoiceRow { label: "Freedoms left", key: "posture", width },
                 Posture::ALL,
                 task.posture,
                 commands,
@@ -311,7 +311,7 @@ fn kind_settings(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, comma
             choose(
                 ui,
                 session,
-                ChoiceRow { label: "What to keep small", key: "least", width: width },
+                ChoiceRow { label: "What to keep small", key: "least", width },
                 ReactionObjective::ALL,
                 task.least,
                 commands,

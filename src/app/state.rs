@@ -53,7 +53,7 @@ pub struct AppState {
     /// Request of the search for link lengths, under way or finished.
     seeking: Option<<LengthsQuery as Query>::Input>,
     /// The table opened last.
-    given: Option<OpenedTable>,
+    opened_table: Option<OpenedTable>,
     /// Work in the background.
     background: Background<Self>,
     /// Simulated time that is due but not simulated yet, s.
@@ -89,7 +89,7 @@ impl AppState {
             hints: true,
             saving: Saving::default(),
             comparison: None,
-            given: None,
+            opened_table: None,
             fronts: Vec::new(),
             seeking: None,
             background,
@@ -125,7 +125,7 @@ impl AppState {
     /// words.
     #[must_use]
     pub fn offering_recovery(mut self, left: Option<(PathBuf, String)>) -> Self {
-        self.saving.found = left;
+        self.saving.left_session = left;
         self
     }
 

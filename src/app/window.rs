@@ -28,7 +28,7 @@ pub fn run(scenario: Scenario, theme: Option<Theme>) -> Result<(), WindowError> 
     let mut app_state = AppState::open_or_explain(scenario, liked.theme)?
         .with_workers(Threads::Background)
         .with_preferences(&liked)
-        .offering_recovery(keeper::found());
+        .offering_recovery(keeper::find_left_session());
     if app_state.view_state().status.message.is_none() && app_state.session().run().waiting().is_none() {
         app_state.carry_out(SessionCommand::TogglePlay);
     }

@@ -163,7 +163,7 @@ pub fn record_with_bar(scenarios: &[Scenario], file: &Path, options: &Options) -
         if bar.message() != what {
             bar.set_message(what.into_owned());
         }
-        bar.set_length(progress.of);
+        bar.set_length(progress.total);
         bar.set_position(progress.done);
         true
     });

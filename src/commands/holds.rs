@@ -15,7 +15,7 @@ pub fn bound(text: &str) -> Result<(String, [f64; 2]), String> {
 ///
 /// # Errors
 /// If a key names no parameter, or a parameter is named twice.
-pub fn hold(
+pub fn apply_bounds(
     request: &mut RebalanceRequest,
     machine: &Machine,
     fix: &[String],

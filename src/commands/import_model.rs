@@ -9,7 +9,7 @@ use stillbase_files::{is_same_place, write_new};
 use stillbase_mechanics::machine::{Inertia, Machine, to_toml};
 use stillbase_session::gentle_motion;
 use stillbase_session::scenario::Scenario;
-use stillbase_settings::number::{counted, fixed, shown};
+use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
 use stillbase_simulation::plant::{Base, BaseKind};
 
 use super::exit::print_message;
@@ -96,7 +96,7 @@ impl ImportModelArguments {
         let ImportedMachine { machine, pose, base, mut notes } = found;
         let machine = self.settings.apply(machine)?;
         if let Some(base) = base.filter(|_| self.scenario.is_none()) {
-            let (mass, inertia) = (shown(base.mass, 6), shown(base.inertia, 6));
+            let (mass, inertia) = (fixed_or_scientific(base.mass, 6), fixed_or_scientific(base.inertia, 6));
             notes.push(format!(
                 "the base, {mass} kg and {inertia} kg m², is no part of a machine: --scenario FILE.toml writes it into \
                  [base] of a scenario"
@@ -130,7 +130,7 @@ impl ImportModelArguments {
         self.format.print(&answer, |answer| {
             let mut table = TextTable::new(["drive", "q rad in the file's pose", "H_kk kg m²"]);
             for (k, (drive, q)) in answer.drives.iter().zip(&answer.pose).enumerate() {
-                table.row([drive.clone(), fixed(*q, 6), shown(inertia.diagonal(k), 9)]);
+                table.row([drive.clone(), fixed(*q, 6), fixed_or_scientific(inertia.diagonal(k), 9)]);
             }
             let [links, drives] = [counted(answer.links, "link"), counted(answer.drives.len(), "drive")];
             let (balanced, invariant) = (yes(answer.force_balanced), yes(answer.invariant));

@@ -175,7 +175,7 @@ pub fn overlay_for_study(name: &str, settings: &Settings) -> Result<Scenario, Fa
 /// As [`overlay_for_study`], except for settings without an effect.
 pub fn overlay_unchecked(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     let found = stillbase_files::scenario(name)?;
-    if let Some(made) = &found.made {
+    if let Some(made) = &found.note {
         print_message(format!("note: {made}"));
     }
     overlay_settings(found.scenario, settings)

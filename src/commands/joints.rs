@@ -14,7 +14,7 @@ use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, check_output, check_size};
 use super::simulate::require_audit;
-use stillbase_settings::number::{counted, fixed, shown};
+use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
 
 /// Print the forces on all pins and bearings over a run, how near it comes to change points, and the tilting moment
 #[derive(Args)]
@@ -104,7 +104,13 @@ fn human(answer: &JointReport) -> String {
     let mut pins = TextTable::new(["pin", "on link", "peak N", "at s", "mean N"]);
     let mut undefined = 0;
     for pin in &answer.pins {
-        pins.row([pin.name.clone(), pin.to.clone(), shown(pin.peak, 3), fixed(pin.time, 3), shown(pin.mean, 3)]);
+        pins.row([
+            pin.name.clone(),
+            pin.to.clone(),
+            fixed_or_scientific(pin.peak, 3),
+            fixed(pin.time, 3),
+            fixed_or_scientific(pin.mean, 3),
+        ]);
         undefined = undefined.max(pin.undefined_steps);
     }
     let mut text = format!(

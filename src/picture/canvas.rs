@@ -58,9 +58,9 @@ impl Canvas {
         if !self.fonts {
             paint::install_fonts(&self.ctx);
             self.fonts = true;
-            self.pass(|ui| labels::still(ui, scene, camera));
+            self.pass(|ui| labels::paint_still(ui, scene, camera));
         }
-        self.pass(|ui| labels::still(ui, scene, camera));
+        self.pass(|ui| labels::paint_still(ui, scene, camera));
         self.read()
     }
 

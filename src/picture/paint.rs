@@ -66,7 +66,7 @@ impl SceneViewport {
 
     /// Projects a point, m, onto the screen; `None` if the camera does not see it.
     pub fn screen(&self, point: [f64; 3]) -> Option<Pos2> {
-        let [x, y] = self.pointer(self.rect.min).seen(point)?;
+        let [x, y] = self.pointer(self.rect.min).project(point)?;
         Some(self.rect.min + vec2(x as f32, y as f32))
     }
 }

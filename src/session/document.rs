@@ -111,7 +111,7 @@ impl Document {
     pub fn amended(&self, timed: &TimedEdit) -> Self {
         let mut document = self.clone();
         let mut timed = timed.clone();
-        if let Some(change) = timed.edit.take("duration") {
+        if let Some(change) = timed.edit.take_key("duration") {
             // A saved session stores its length as `duration`, so this setting changes the scenario and is not part of
             // the script.
             if let Ok(scenario) = document.scenario.with_settings(&change) {

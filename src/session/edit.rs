@@ -143,7 +143,7 @@ impl Edit {
     }
 
     /// Removes a key of the scenario itself from the edit. Returns the key with its value as a change, if it was there.
-    pub(super) fn take(&mut self, key: &str) -> Option<Table> {
+    pub(super) fn take_key(&mut self, key: &str) -> Option<Table> {
         let Self::Set { change } = self else { return None };
         Some(Table::from_iter([(key.to_owned(), change.remove(key)?)]))
     }

@@ -427,7 +427,7 @@ impl Run {
     ///
     /// # Errors
     /// If it is later than [`MAX_STEPS`], or an edit comes after it.
-    pub(super) fn whole(&self, script: &[TimedEdit]) -> Result<u64, ScriptError> {
+    pub(super) fn checked_last_step(&self, script: &[TimedEdit]) -> Result<u64, ScriptError> {
         let (last, step) = (self.last_step(), self.scenario.step);
         if last > MAX_STEPS {
             let time = self.scenario.duration.unwrap_or(self.planned_time());

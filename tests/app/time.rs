@@ -209,7 +209,7 @@ fn a_branch_is_shown_compared_and_removed() {
     assert!(*session(&h).frames() == here, "G shows the newest branch: the run before");
     press(&mut h, SHIFT, Key::G);
     let comparison = h.state().app_state().comparison().expect("runs side by side");
-    let kept: Vec<_> = comparison.entries().iter().filter(|entry| entry.kept).collect();
+    let kept: Vec<_> = comparison.entries().iter().filter(|entry| entry.added_by_user).collect();
     assert_eq!(kept.len(), 1);
     assert!(kept[0].shown && kept[0].title == "branch at 0.500 s", "{}", kept[0].title);
     let run = kept[0].outcome.as_ref().expect("it ran");

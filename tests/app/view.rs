@@ -195,7 +195,7 @@ fn runs_stand_side_by_side() {
     assert_eq!(comparison(&h).expect("on display").sorted(), Some((1, false)));
     h.get_by_label("Keep this run").click();
     h.run_steps(2);
-    assert!(comparison(&h).expect("on display").entries()[5].kept);
+    assert!(comparison(&h).expect("on display").entries()[5].added_by_user);
     h.get_by_label("Remove case-1").click();
     h.run_steps(2);
     assert_eq!(comparison(&h).expect("on display").entries().len(), 5);

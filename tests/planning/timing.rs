@@ -179,10 +179,10 @@ fn laws_have_their_peaks() {
 fn laws_begin_and_end_at_rest() {
     for &law in TimeLaw::ALL {
         for t in [-1.0, -1e-300] {
-            assert_eq!(law.at(t, 2.0), PathProgress::still(0.0), "{law:?}");
+            assert_eq!(law.at(t, 2.0), PathProgress::at_rest(0.0), "{law:?}");
         }
         for t in [2.0, 2.1, f64::INFINITY] {
-            assert_eq!(law.at(t, 2.0), PathProgress::still(1.0), "{law:?}");
+            assert_eq!(law.at(t, 2.0), PathProgress::at_rest(1.0), "{law:?}");
         }
         let (first, last) = (law.at(0.0, 2.0), law.at(2.0 - 1e-9, 2.0));
         assert_eq!((first.s, first.rate), (0.0, 0.0), "{law:?}");
@@ -192,7 +192,7 @@ fn laws_begin_and_end_at_rest() {
         assert_eq!(first.acceleration == 0.0 && last.acceleration.abs() < 1e-6, !steps, "{law:?}");
         assert_eq!(first.jerk == 0.0 && last.jerk.abs() < 1e-6, steps || law == TimeLaw::Septic, "{law:?}");
         // No time at all is at the end.
-        assert_eq!(law.at(0.0, 0.0), PathProgress::still(1.0));
+        assert_eq!(law.at(0.0, 0.0), PathProgress::at_rest(1.0));
     }
 }
 

@@ -193,7 +193,7 @@ fn all_that_the_window_plots_is_in_the_layout() {
             let view = view.unwrap_or_else(|| panic!("{file}: {}", chart.title)).entity_path().to_string();
             let queries = chunks.iter().find(|c| c.entity_path().to_string() == format!("{view}/ViewContents"));
             let shown = text(queries.expect("contents"), "ViewContents:query");
-            let held: Vec<_> = table.iter().filter(|signal| chart.holds(signal)).collect();
+            let held: Vec<_> = table.iter().filter(|signal| chart.contains(signal)).collect();
             assert!(!held.is_empty(), "{file}: {}", chart.title);
             let series: Vec<_> = held.iter().map(|signal| contents.series(&scenario.name, signal)).collect();
             let entities: BTreeSet<String> = series.iter().map(|(path, _)| path.clone()).collect();

@@ -18,7 +18,7 @@ use crate::support::{Noise, close, random};
 fn a_state(noise: &mut Noise, n: usize) -> DriveState {
     let mut some = |size: f64| PerDrive::from_fn(n, |_| noise.between(-size, size));
     let (q, qd, qdd) = (DriveAngles(some(6.0)), some(3.0), some(20.0));
-    DriveState::given(Reference { q, qd, qdd })
+    DriveState::of_reference(Reference { q, qd, qdd })
 }
 
 fn of(machine: &Machine, state: &DriveState) -> Vec<Equation> {
@@ -232,7 +232,7 @@ fn case_3_has_its_numbers() {
     let session = Session::open(Scenario::builtin("case-3").expect("built in")).expect("it opens");
     let (run, motion) = (session.run(), session.run().motion().expect("a motion"));
     let of_case = |at: f64| {
-        let state = DriveState { b: Some(2.4), ..DriveState::given(motion.at(at)) };
+        let state = DriveState { b: Some(2.4), ..DriveState::of_reference(motion.at(at)) };
         of(&run.scenario().machine, &state)
     };
     for (at, place) in [(0.0, [0.5, 0.5]), (1.0, [0.55, 0.9])] {
@@ -242,7 +242,12 @@ fn case_3_has_its_numbers() {
     }
     let all = of_case(0.3);
     for number in EQUATION_NUMBERS {
-        assert_eq!(numbered(&all, number).holds(), Some(true), "({number}): {:?}", numbered(&all, number).worst());
+        assert_eq!(
+            numbered(&all, number).holds(),
+            Some(true),
+            "({number}): {:?}",
+            numbered(&all, number).least_accurate()
+        );
     }
     assert!((lines(&all, "13")[0].sides()[0] - 2.4).abs() < 1e-9);
     assert!(lines(&all, "5")[0].sides()[0].abs() < 1e-9, "no moment");

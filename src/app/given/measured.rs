@@ -9,7 +9,7 @@ use crate::theme::{colour, plain};
 use crate::widgets::note;
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::Palette;
-use stillbase_settings::number::{counted, shown as rounded};
+use stillbase_settings::number::{counted, fixed_or_scientific as rounded};
 use stillbase_study::trim::{NoTrim, Number, ParameterChange, TrimOutcome, TrimReport, TrimResult};
 
 /// Width of the table of numbers, points.

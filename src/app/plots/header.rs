@@ -63,7 +63,7 @@ fn words(plot: &Plot<'_>, curve: &PlotCurve<'_>, drawn: &PlotLines, look: &PlotC
     if fewer >= SYMBOLS_ONLY {
         return symbol.into();
     }
-    let shown = |value: f64| match plot.own || curve.added {
+    let shown = |value: f64| match plot.added_by_user || curve.added {
         true => at_step(curve.scale * value, 5.0 * drawn.finest() * 10f64.powi(fewer as i32)),
         false => signed(curve.scale * value, if thousandths { 2 } else { 3 } - fewer),
     };

@@ -43,7 +43,7 @@ impl AppState {
         match command {
             Command::Session(command) => self.do_to_session(command),
             // Without an open table, the file dialog opens, so that the user can choose one.
-            Command::View(ViewChange::Switch(Switch::Table, true)) if self.given.is_none() => {
+            Command::View(ViewChange::Switch(Switch::Table, true)) if self.opened_table.is_none() => {
                 self.view_state.open.dialog = Some(FileDialog::suggest(&self.session, FilePurpose::Open));
                 Ok(None)
             }
@@ -133,7 +133,7 @@ impl AppState {
         match command {
             WindowCommand::Comparison(on) => self.change_comparison(on),
             WindowCommand::Ask(options) => {
-                if let Some(given) = &mut self.given {
+                if let Some(given) = &mut self.opened_table {
                     given.options = options;
                 }
             }

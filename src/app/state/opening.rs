@@ -64,7 +64,7 @@ impl AppState {
         let old = self.session.clone();
         self.session.take_over(next);
         // The measurements of an open table now refer to the newly opened machine.
-        if let Some(given) = &mut self.given {
+        if let Some(given) = &mut self.opened_table {
             given.measured = Shared(Arc::new(self.session.scenario().machine.clone()));
         }
         self.view_state.framing.iter_mut().for_each(Framing::renew);
@@ -111,7 +111,7 @@ impl AppState {
     }
 
     pub(super) fn recover(&mut self, what: Recovery) {
-        let Some((file, _)) = self.saving.found.take() else { return };
+        let Some((file, _)) = self.saving.left_session.take() else { return };
         match what {
             Recovery::Open => {
                 let (from, message) =

@@ -66,10 +66,10 @@ impl AppState {
         if self.view_state.below == Some(BottomPanel::Tolerances) {
             study::show(ui, self.study().as_deref(), self.session.frame().time, &self.view_state, &mut commands);
         }
-        if let Some(given) = self.given.as_ref().filter(|_| self.view_state.below == Some(BottomPanel::Table)) {
+        if let Some(table) = self.opened_table.as_ref().filter(|_| self.view_state.below == Some(BottomPanel::Table)) {
             let found = self.assessed();
             let is_known = found.as_ref().is_some_and(|(_, is_known)| *is_known);
-            let shown = given::TableView { given, answer: found.as_ref().map(|(answer, _)| &**answer), is_known };
+            let shown = given::TableView { table, answer: found.as_ref().map(|(answer, _)| &**answer), is_known };
             given::show(ui, shown, &self.view_state, &mut commands);
         }
         let contrast = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));

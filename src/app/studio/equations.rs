@@ -135,7 +135,7 @@ fn index(ui: &mut Ui, p: &Palette, all: &[Equation]) -> Option<usize> {
 
 /// Returns in a few words whether both sides of an equation agree.
 fn verdict(equation: &Equation) -> String {
-    let Some(worst) = equation.worst() else { return "not for this machine".into() };
+    let Some(worst) = equation.least_accurate() else { return "not for this machine".into() };
     match equation.holds() {
         Some(true) => "holds".into(),
         _ if equation.is_choice() => "another choice".into(),

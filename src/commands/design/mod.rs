@@ -68,7 +68,7 @@ pub struct DesignArguments {
     #[arg(long, value_parser = choice(Preset::ALL.iter().copied()), conflicts_with = "penalty")]
     preset: Option<Preset>,
     #[command(flatten)]
-    kept: RebalanceArguments,
+    rebalance: RebalanceArguments,
     #[command(flatten)]
     weighing: Box<WeightArguments>,
     /// A built-in scenario or a TOML file: its motion, planned for its own machine, determines the torque. Each β is
@@ -104,7 +104,7 @@ impl DesignArguments {
             return self.weigh(&machine, motion);
         }
         let (penalty, by) = self.penalty(machine.links().len())?;
-        if self.kept.keep {
+        if self.rebalance.keep {
             return self.keep(&machine, motion, &penalty, &by);
         }
         if let Some(file) = &self.output {
@@ -129,7 +129,7 @@ impl DesignArguments {
         if let Some(file) = &self.output {
             check_output(file, self.force, &["toml"])?;
         }
-        let (machine_now, answer) = self.kept.run(machine, motion, penalty)?;
+        let (machine_now, answer) = self.rebalance.run(machine, motion, penalty)?;
         if let Some(file) = &self.output {
             save(&machine_now, file, self.force, format!("{}, kept balanced with {by}", machine.name()))?;
         }

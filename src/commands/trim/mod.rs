@@ -20,7 +20,7 @@ use stillbase_study::trim::{
 
 use super::exit::print_message;
 use super::failure::Failure;
-use super::holds::{bound, hold};
+use super::holds::{apply_bounds, bound};
 use super::input::{Settings, read};
 use super::output::{Format, check_output};
 use super::sites::{range, sites};
@@ -188,7 +188,7 @@ impl TrimArguments {
             _ => RebalanceRequest::default(),
         };
         free_weights(&mut request, machine, |weight| !weight.fixed);
-        hold(&mut request, machine, &self.fix, &self.free, &self.bound)?;
+        apply_bounds(&mut request, machine, &self.fix, &self.free, &self.bound)?;
         Ok(TrimMethod::Change(request))
     }
 }

@@ -30,7 +30,7 @@ impl TableData {
         let name = file.display().to_string();
         let text = read(file).map_err(|e| {
             let want = format!("want a plain file that can be read, of at most {MAX_TEXT_BYTES} bytes");
-            TableError::whole(&name, format!("{e}: {want}"))
+            TableError::of_file(&name, format!("{e}: {want}"))
         })?;
         Self::of(&text, &name, machine, gaps)
     }

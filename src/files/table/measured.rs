@@ -105,7 +105,7 @@ pub(super) fn motions_or(
         }
     }
     if parts.is_empty() {
-        return Err(TableError::whole(file, "no rows of numbers: want motions that were measured"));
+        return Err(TableError::of_file(file, "no rows of numbers: want motions that were measured"));
     }
     Ok(parts.iter().map(|part| columns.motion_of(&part.rows)).collect())
 }

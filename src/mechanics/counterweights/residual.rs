@@ -47,7 +47,7 @@ pub(super) fn conditions(
             |site: &CounterweightSite| [condition.by_mass(&parts[site.link]), condition.by_moment(&parts[site.link])];
         let more = beyond.get(i).copied().unwrap_or_default();
         ConditionResidual {
-            condition: condition,
+            condition,
             residual: condition.residual(inertia) + more,
             ends: [0, 1].map(|i| (condition.residual(&ends[i]) + more).re),
             changes: request.sites.iter().map(change).collect(),

@@ -15,6 +15,7 @@ pub struct TimeExtent {
     /// Interval from the start to the end of the run, s.
     pub whole: [f64; 2],
     /// Interval shown by default, s: all of a short run, or the surroundings of the displayed instant of a long run.
+    #[serde(rename = "usual")]
     pub default: [f64; 2],
 }
 

@@ -55,7 +55,7 @@ fn rank(name: &str) -> u8 {
 const OPTIONAL_RANK: u8 = 5;
 
 /// Paints a scene with its labels over the whole surface, without input.
-pub fn still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
+pub fn paint_still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
     CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
         let rect = ui.max_rect();
         paint(ui, 0, rect, scene, camera);

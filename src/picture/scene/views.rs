@@ -445,7 +445,7 @@ impl Views {
                 let points = self.stage.waypoints().filter_map(|i| {
                     let handle = Handle::Waypoint(i);
                     let at = self.stage.handle(handle, shown)?;
-                    let [x, y] = pointer.seen(at)?;
+                    let [x, y] = pointer.project(at)?;
                     let name = (pointer.at[0] - x + NAME_DISTANCE_PX).hypot(pointer.at[1] - y);
                     let own = (pointer.at[0] - x).hypot(pointer.at[1] - y);
                     let off = if first.is_some() { name } else { own.min(name) };
@@ -456,7 +456,7 @@ impl Views {
                 let point = points.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
                 // A payload under the target is picked by its label, which is above it.
                 let load = self.stage.handle(Handle::Payload, shown).filter(|at| {
-                    let Some([x, y]) = pointer.seen(*at) else { return false };
+                    let Some([x, y]) = pointer.project(*at) else { return false };
                     let [px, py] = pointer.at;
                     let on = first.is_none() && (px - x).hypot(py - y) < PAYLOAD_PICK_PX;
                     on || (px - x).hypot(py - y + MASS_DISTANCE_PX) < POINT_PICK_PX

@@ -288,8 +288,8 @@ impl<'a> Search<'a> {
         (layers, finer, max_poses): (usize, f64, usize),
     ) -> Result<Layers<'a>, usize> {
         let freedoms = self.held().freedoms();
-        let apart = finer * POSE_SPACING_RAD[freedoms.clamp(1, POSE_SPACING_RAD.len()) - 1];
-        Layers::of((self.request.space, self.request.b), &self.stations, starts, Detail { layers, apart, max_poses })
+        let spacing = finer * POSE_SPACING_RAD[freedoms.clamp(1, POSE_SPACING_RAD.len()) - 1];
+        Layers::of((self.request.space, self.request.b), &self.stations, starts, Detail { layers, spacing, max_poses })
     }
 
     /// Returns refined paths over the layers, and those refined from one of constant orientation. For closed curves

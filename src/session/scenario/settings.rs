@@ -134,7 +134,7 @@ impl Scenario {
     fn step_by(&mut self, step: f64) {
         // Step numbers of edits refer to the last step size that an edit sets.
         let own = self.edits.iter().rev().find_map(|timed| timed.edit.own_number("step")).unwrap_or(self.step);
-        self.edits.retain_mut(|timed| timed.edit.take("step").is_none() || !timed.edit.sets_nothing());
+        self.edits.retain_mut(|timed| timed.edit.take_key("step").is_none() || !timed.edit.sets_nothing());
         let ratio = own / step;
         if ratio != 1.0 {
             self.edits.iter_mut().for_each(|edit| edit.step = (edit.step as f64 * ratio).round() as u64);
@@ -251,7 +251,7 @@ impl Scenario {
             Some(("base", key)) => self.base.uses(key),
             Some(("control", "knows_base")) => self.base.moves(),
             Some(("plant", key)) => key.strip_prefix("payload.").is_none_or(|key| self.plant.payload.uses(key)),
-            Some(("design", key)) => self.design.serves(key, &self.machine),
+            Some(("design", key)) => self.design.has_effect(key, &self.machine),
             _ => self.machine.uses(path, self.is_pushed()),
         };
         if used { None } else { key_of(path).map(|key| key.when) }

@@ -20,7 +20,7 @@ pub struct ComparisonEntry {
     /// Whether the run is overlaid on plots and scene.
     pub shown: bool,
     /// Whether the user added the row, which then remains when the task changes.
-    pub kept: bool,
+    pub added_by_user: bool,
     /// Comparison of the run's machine with the machine of the first run in the table.
     pub design: Option<DesignMeasures>,
 }
@@ -103,10 +103,10 @@ impl Comparison {
         let (Shared(scenario), ways) = &**found;
         self.task = Scenario::clone(scenario);
         let shown: Vec<String> = self.entries.iter().filter(|e| e.shown).map(|e| e.title.clone()).collect();
-        let kept: Vec<ComparisonEntry> = self.entries.drain(..).filter(|e| e.kept).collect();
+        let kept: Vec<ComparisonEntry> = self.entries.drain(..).filter(|e| e.added_by_user).collect();
         let own = ways.iter().cloned().map(|(title, outcome)| {
             let shown = outcome.is_ok() && shown.contains(&title);
-            ComparisonEntry { title, outcome, shown, kept: false, design: None }
+            ComparisonEntry { title, outcome, shown, added_by_user: false, design: None }
         });
         self.entries = own.chain(kept).collect();
         self.compare_with_baseline();
@@ -140,7 +140,13 @@ impl Comparison {
         }
         run.scenario.name.clone_from(&title);
         run.summary.name.clone_from(&title);
-        self.entries.push(ComparisonEntry { title, outcome: Ok(Arc::new(run)), shown: true, kept: true, design: None });
+        self.entries.push(ComparisonEntry {
+            title,
+            outcome: Ok(Arc::new(run)),
+            shown: true,
+            added_by_user: true,
+            design: None,
+        });
         self.compare_with_baseline();
     }
 
@@ -159,7 +165,7 @@ impl Comparison {
 
     /// Removes a run that the user added.
     pub fn remove(&mut self, entry: usize) {
-        if self.entries.get(entry).is_some_and(|e| e.kept) {
+        if self.entries.get(entry).is_some_and(|e| e.added_by_user) {
             self.entries.remove(entry);
             self.compare_with_baseline();
         }

@@ -154,7 +154,7 @@ impl Equation {
     }
 
     /// Returns the line with the largest ratio of residual to tolerance.
-    pub fn worst(&self) -> Option<&Equality> {
+    pub fn least_accurate(&self) -> Option<&Equality> {
         let far = |line: &Equality| line.residual().abs() / line.tolerance.max(f64::MIN_POSITIVE);
         self.lines.as_ref().ok()?.iter().max_by(|a, b| far(a).total_cmp(&far(b)))
     }

@@ -88,7 +88,7 @@ const DRAWN_INTERVALS: usize = 240;
 
 /// A candidate for the proposal.
 pub(super) struct MotionCandidate {
-    pub way: &'static str,
+    pub method: &'static str,
     pub why: String,
     pub task: Task,
 }
@@ -230,7 +230,7 @@ impl MotionEvaluator {
         });
         let account = self.account(motion, &mut part(goes_on, [SIMULATION_SHARE, 1.0]));
         Ok(Proposal {
-            way: candidate.way,
+            way: candidate.method,
             why: candidate.why.clone(),
             b: account.b_mean,
             tip_deviation: deviation.as_ref().map_or(0.0, |d| d.end_effector),

@@ -107,8 +107,8 @@ impl BaseStage {
                     }));
                 }
                 scene.lines.push(Polyline::new("springs", springs, 1.6, colour));
-                scene.lines.push(Polyline::new("springs/feet", walls, 2.2, colour).still());
-                scene.lines.push(Polyline::new("springs/feet/ground", hatches, 1.0, faded(colour, 0.8)).still());
+                scene.lines.push(Polyline::new("springs/feet", walls, 2.2, colour).constant());
+                scene.lines.push(Polyline::new("springs/feet/ground", hatches, 1.0, faded(colour, 0.8)).constant());
             }
         }
         if self.base.moves() {

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::odds::{LIMIT_KEPT_WITHIN, LIMIT_LEFT_BEYOND};
-use stillbase_settings::number::shown;
+use stillbase_settings::number::fixed_or_scientific;
 
 /// Reason for rejecting a measurement.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,7 +58,7 @@ pub struct MeasuredValue {
 
 impl fmt::Display for Doubt {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let number = |x: f64| shown(x, 4);
+        let number = |x: f64| fixed_or_scientific(x, 4);
         match self.causes.as_slice() {
             [] => {
                 write!(f, "this measurement is of no machine: want the columns, their signs and their units checked")?
