@@ -9,7 +9,7 @@ use stillbase_settings::text::{plain, shorten_message};
 use super::failure::Failure;
 
 /// Prints a message on standard error, in one line.
-pub fn say(message: impl Display) {
+pub fn print_message(message: impl Display) {
     let message = message.to_string();
     let line = message.lines().map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join(" ");
     let line = shorten_message(&line);
@@ -23,11 +23,11 @@ pub fn exit_code(done: Result<(), Failure>) -> ExitCode {
     match done {
         Ok(()) | Err(Failure::ReaderGone) => ExitCode::SUCCESS,
         Err(Failure::NoAnswer(why)) => {
-            say(why);
+            print_message(why);
             ExitCode::from(1)
         }
         Err(Failure::WrongInput(why)) => {
-            say(why);
+            print_message(why);
             ExitCode::from(2)
         }
     }

@@ -53,7 +53,7 @@ impl Failure {
 
     /// Returns the failure with `what` before its reason.
     #[must_use]
-    pub fn of(self, what: impl Display) -> Self {
+    pub fn with_context(self, what: impl Display) -> Self {
         match self {
             Self::ReaderGone => Self::ReaderGone,
             Self::NoAnswer(why) => Self::NoAnswer(format!("{what}: {why}")),

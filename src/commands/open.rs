@@ -54,7 +54,7 @@ impl OpenArguments {
         #[cfg(feature = "window")]
         let why = match stillbase_app::window::run(scenario.clone(), self.theme.map(Theme::from)) {
             Ok(()) => return Ok(()),
-            Err(WindowError::Refused(refusal)) => return Err(Failure::from(refusal).of(&scenario.name)),
+            Err(WindowError::Refused(refusal)) => return Err(Failure::from(refusal).with_context(&scenario.name)),
             Err(lost @ WindowError::DeviceLost { .. }) => return Err(Failure::no_answer(lost)),
             // Without a window, the scenario is recorded.
             Err(error) => error.to_string(),
@@ -70,13 +70,18 @@ fn record_instead(scenario: Scenario, why: &str) -> Result<(), Failure> {
     use stillbase_files::free_name;
     use stillbase_settings::number::counted;
 
-    use super::exit::say;
+    use super::exit::print_message;
     use super::headless::{record_with_bar, unpictured};
 
     let file = free_name(&scenario.name, "rrd");
-    say(format!("{}; recording {} without a window instead", why.trim_end_matches('.'), scenario.name));
+    print_message(format!("{}; recording {} without a window instead", why.trim_end_matches('.'), scenario.name));
     for done in record_with_bar(&[scenario], &file, &unpictured())? {
-        say(format!("wrote {}: {}, {}", done.file.display(), counted(done.steps, "step"), done.verdict.sentence()));
+        print_message(format!(
+            "wrote {}: {}, {}",
+            done.file.display(),
+            counted(done.steps, "step"),
+            done.verdict.sentence()
+        ));
     }
     Ok(())
 }

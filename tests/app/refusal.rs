@@ -2,7 +2,7 @@
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::{AppState, SessionCommand, WindowCommand};
+use stillbase::app::{AppState, Message, SessionCommand, WindowCommand};
 use stillbase::picture::scene::options::{Handle, ViewOptions};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
@@ -49,7 +49,7 @@ fn a_refused_path_shows_where_and_what_b_would_do() {
     h.get_by_label_contains("take b").click();
     h.run_steps(3);
     let task = &session(&h).scenario().task;
-    let message = &h.state().app_state().view_state().said.message;
+    let message = &h.state().app_state().view_state().status.message;
     assert!((task.b - 2.5256).abs() < 1e-3 && task.to == [0.0, 0.5], "{task:?} {message:?}");
     assert!(h.query_by_label_contains("the path stops").is_none());
 }
@@ -62,10 +62,15 @@ fn a_scenario_that_cannot_be_planned_is_explained() {
     let asked = Scenario { task: task.clone(), ..scenario };
     assert!(AppState::new(asked.clone(), Theme::Dark).is_err());
     let mut app_state = AppState::open_or_explain(asked, Theme::Dark).expect("explained");
-    let (words, bad) = app_state.view_state().said.message.clone().expect("a reason");
+    let Message { text: words, is_problem: bad } = app_state.view_state().status.message.clone().expect("a reason");
     assert!(bad && words.contains("the path stops at"), "{words}");
-    let (edit, _) =
-        app_state.view_state().said.refused.as_ref().and_then(|wish| wish.remedy.clone()).expect("another b would do");
+    let (edit, _) = app_state
+        .view_state()
+        .status
+        .refused
+        .as_ref()
+        .and_then(|wish| wish.remedy.clone())
+        .expect("another b would do");
     app_state.carry_out(SessionCommand::Edit(edit));
     let done = &app_state.session().scenario().task;
     assert_eq!((done.points(), done.shape()), (task.points(), task.shape()));
@@ -143,7 +148,7 @@ fn a_run_that_waits_says_so_and_keeps_its_way_out() {
     let has_way_out = |h: &Window| {
         h.query_by_label_contains("The run waits: B").is_some() && h.query_by_label_contains("take b").is_some()
     };
-    assert!(has_way_out(&h), "{:?}", h.state().app_state().view_state().said.message);
+    assert!(has_way_out(&h), "{:?}", h.state().app_state().view_state().status.message);
     // What is refused meanwhile stands above it.
     h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::DragTarget { x: 0.5, y: 0.6 }));
     h.run_steps(3);

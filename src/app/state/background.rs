@@ -102,7 +102,7 @@ impl AppState {
         let ours = comparison
             .entries()
             .iter()
-            .any(|e| e.outcome.as_ref().is_ok_and(|run| run.scenario.task == scenario.task && !e.kept));
+            .any(|e| e.outcome.as_ref().is_ok_and(|run| run.scenario.task == scenario.task && !e.added_by_user));
         let task = comparison.task();
         let stale = first || (task != scenario && (!ours || !same_but_task(task, scenario)));
         let wanted = stale || self.queries().progress::<AlternativeRuns>().is_some();
