@@ -1,6 +1,6 @@
 //! Motion planning: the poses and paths that a machine can reach, and the timing of motions along them.
 //!
-//! Other programs use this crate as `stillbase::planning`; only `stillbase` follows semantic versioning.
+//! Others reach this crate as `stillbase::planning`; `stillbase` alone follows semantic versioning.
 //!
 //! | what | modules |
 //! |---|---|
