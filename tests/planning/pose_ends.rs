@@ -113,5 +113,9 @@ fn no_pose_is_denied_often() {
         let clock = Instant::now();
         let (asked, denied) = denied(n as usize, of("MACHINES", 100) as usize, of("SEED", 1000) + n);
         println!("{n} drives: asked {asked:?}, denied {denied:?}, {:.1} s", clock.elapsed().as_secs_f64());
+        assert!(
+            denied.iter().zip(&asked).all(|(denied, asked)| 100 * denied <= *asked),
+            "{n} drives: {denied:?} of {asked:?}"
+        );
     }
 }

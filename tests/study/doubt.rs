@@ -266,8 +266,16 @@ fn campaign_of_faults() {
             }
         }
         println!("{kind}: {wrong} honest of {count} refused");
+        assert!(100 * wrong <= count, "{kind}: {wrong} of {count} honest measurements are refused");
         for ((name, _), [refused, first, named]) in FAULTS.iter().zip(found) {
             println!("  {name:48} refused {refused:4}  first {first:4}  named {named:4}");
+            // The worst of all rows of a hundred: 57 named of 100 refused; 70 refused of 100.
+            assert!(2 * named >= refused, "{kind}, {name}: {named} named of {refused} refused");
+            // The force of a balanced machine is zero, whatever the sign of its sensor.
+            assert!(
+                kind == "balanced" || 5 * refused as u64 >= 3 * count,
+                "{kind}, {name}: {refused} refused of {count}"
+            );
         }
     }
 }
@@ -405,4 +413,8 @@ fn campaign_of_any_machine() {
     println!(
         "{wrong} honest of {count} refused; nz reversed {reversed}, all reversed {reading}, of force {of_force:?}"
     );
+    // Of a hundred, none is refused wrongly, and one at most is missed.
+    assert!(100 * wrong <= count, "{wrong} of {count} honest measurements are refused");
+    let nearly_all = |refused: u64| 20 * refused >= 19 * count;
+    assert!([reversed, reading].into_iter().chain(of_force).all(nearly_all), "faults are missed");
 }
