@@ -308,6 +308,7 @@ impl AppState {
     fn refresh(&mut self) {
         self.refresh_views();
         self.refresh_study();
+        self.refresh_proposals();
         self.refresh_comparison();
         self.refresh_given();
         self.refresh_seeking();

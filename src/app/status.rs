@@ -11,7 +11,7 @@ use stillbase_picture::scene::Rgba;
 use stillbase_picture::scene::palette::{Palette, faded};
 use stillbase_planning::pose_space::NoPoseSpace;
 use stillbase_session::verdict::{Statement, Statements, StatusLight, Verdict};
-use stillbase_session::{Edit, Session};
+use stillbase_session::{Edit, Proposal, Session};
 use stillbase_simulation::frame::{Frame, Reach};
 
 /// Whether a problem message must be shown.
@@ -25,12 +25,13 @@ pub fn news_rect(ctx: &egui::Context) -> Option<egui::Rect> {
     ctx.memory(|memory| memory.area_rect(egui::Id::unique("news")))
 }
 
-/// Draws the problem message in full over the lower edge of a scene, with a button for the remedy if there is one.
+/// Draws the problem message in full over the lower edge of a scene, with a button for each proposal.
 pub fn news(
     ctx: &egui::Context,
     scene: egui::Rect,
     session: &Session,
     view_state: &ViewState,
+    proposals: &[Proposal],
     commands: &mut Vec<Command>,
 ) {
     let fault = fault(session.frame());
@@ -59,18 +60,21 @@ pub fn news(
             if let Some((_, said)) = also {
                 ui.add(egui::Label::new(RichText::new(said).font(plain(12.0)).color(colour(p.dim))).wrap());
             }
-            let remedy = view_state.said.refused.as_ref().and_then(|refused| refused.remedy.clone());
-            let mends = waits.and_then(|waiting| waiting.why.feasible_b().zip(waiting.why.displayed_b()));
-            let mends = mends.map(|(b, shown)| (Edit::set("task.b", b), shown));
-            if let Some((edit, b)) = remedy.or(mends) {
-                let way_out = ui.button(format!("take b = {b} rad"));
-                if way_out.on_hover_text("Asks for the same on the nearest plane that allows it").clicked() {
-                    commands.extend([
-                        Command::Session(SessionCommand::Edit(edit)),
-                        Command::Session(SessionCommand::EndGesture),
-                    ]);
+            ui.horizontal_wrapped(|ui| {
+                for proposal in proposals {
+                    let edit = match &view_state.said.refused {
+                        Some(refused) => refused.edit_with(proposal),
+                        None => proposal.edit(),
+                    };
+                    let way_out = ui.button(&proposal.text);
+                    if way_out.on_hover_text(proposal.settings().join("\n")).clicked() {
+                        commands.extend([
+                            Command::Session(SessionCommand::Edit(edit)),
+                            Command::Session(SessionCommand::EndGesture),
+                        ]);
+                    }
                 }
-            }
+            });
         });
     });
 }

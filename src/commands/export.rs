@@ -108,7 +108,7 @@ impl ExportArguments {
                 if start.base.moves() {
                     say("note: tau_ff is of the model on a fixed base; --what simulated gives what control asks for");
                 }
-                let (rows, duration) = self.reference(&Run::new(&start).map_err(|e| Failure::from(e).of(&name))?)?;
+                let (rows, duration) = self.reference(&Run::new(&start).map_err(|e| Failure::refused(&start, e))?)?;
                 (rows, duration, None)
             }
             What::Simulated => self.simulated(&scenario)?,
@@ -207,7 +207,7 @@ impl ExportArguments {
                 );
             }
         })
-        .map_err(|e| Failure::from(e).of(&scenario.name))?;
+        .map_err(|e| Failure::refused(scenario, e))?;
         let last = run.frame();
         Ok((rows, last.time, last.first_violation().map(|lamp| lamp.to_string())))
     }

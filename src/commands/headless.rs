@@ -168,19 +168,21 @@ pub fn record_with_bar(scenarios: &[Scenario], file: &Path, options: &Options) -
         true
     });
     bar.finish_and_clear();
-    let recordings = recordings?;
+    let recordings = recordings.map_err(|error| failed(error, scenarios))?;
     let notes: Vec<&String> = recordings.iter().flat_map(|r| &r.notes).collect();
     let is_first = |i: &usize| !notes[..*i].contains(&notes[*i]);
     (0..notes.len()).filter(is_first).for_each(|i| say(notes[i]));
     Ok(recordings)
 }
 
-impl From<RecordError> for Failure {
-    fn from(e: RecordError) -> Self {
-        match e {
-            RecordError::Refused { scenario, refusal } => Self::from(refusal).of(scenario),
-            other => Self::wrong_input(other),
-        }
+/// Returns the failure of a recording of scenarios.
+fn failed(error: RecordError, scenarios: &[Scenario]) -> Failure {
+    match error {
+        RecordError::Refused { scenario, refusal } => match scenarios.iter().find(|own| own.name == scenario) {
+            Some(scenario) => Failure::refused(scenario, refusal),
+            None => Failure::from(refusal).of(scenario),
+        },
+        other => Failure::wrong_input(other),
     }
 }
 

@@ -54,7 +54,7 @@ impl OpenArguments {
         #[cfg(feature = "window")]
         let why = match stillbase_app::window::run(scenario.clone(), self.theme.map(Theme::from)) {
             Ok(()) => return Ok(()),
-            Err(WindowError::Refused(refusal)) => return Err(Failure::from(refusal).of(&scenario.name)),
+            Err(WindowError::Refused(refusal)) => return Err(Failure::refused(&scenario, refusal)),
             Err(lost @ WindowError::DeviceLost { .. }) => return Err(Failure::no_answer(lost)),
             // Without a window, the scenario is recorded.
             Err(error) => error.to_string(),

@@ -215,6 +215,12 @@ pub fn brief_edit(scenario: &Scenario, change: &Table) -> Result<Edit, String> {
     Ok(Edit::Set { change: join(follows, change) })
 }
 
+/// Returns the least change of the free numbers that balances the machine of a scenario; `None` if there is none.
+pub(super) fn balancing_change(scenario: &Scenario) -> Option<Table> {
+    let brief = DesignBrief { keep_balanced: true, ..scenario.design.clone() };
+    brief.followed(&scenario.machine, &scenario.machine, &Table::new()).ok()
+}
+
 /// Returns the edit that turns the machine into another one with the same links. It sets the properties of links, the
 /// lengths, the counterweights, the payload mass and the rotor ratios. Returns `None` if nothing differs.
 pub fn machine_edit(scenario: &Scenario, of: &Machine) -> Option<Edit> {

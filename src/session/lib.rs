@@ -15,6 +15,7 @@ mod interactive;
 mod machines;
 mod older;
 mod planner;
+mod proposal;
 mod refusal;
 mod replay;
 mod run;
@@ -35,6 +36,9 @@ pub use interactive::Session;
 #[doc(hidden)]
 pub use machines::Machines;
 pub use planner::{Plan, curves};
+pub use proposal::{Proposal, improvements, proposals};
+#[doc(hidden)]
+pub use proposal::{ProposalsQuery, is_improvable};
 pub use refusal::Refusal;
 pub use replay::{base_loads, replay, replay_if, replay_while, with_start_edits};
 pub use run::{Run, WaitReason};

@@ -64,8 +64,11 @@ fn a_scenario_that_cannot_be_planned_is_explained() {
     let mut app_state = AppState::open_or_explain(asked, Theme::Dark).expect("explained");
     let (words, bad) = app_state.view_state().said.message.clone().expect("a reason");
     assert!(bad && words.contains("the path stops at"), "{words}");
-    let (edit, _) =
-        app_state.view_state().said.refused.as_ref().and_then(|wish| wish.remedy.clone()).expect("another b would do");
+    let refused = app_state.view_state().said.refused.as_ref().expect("refused");
+    let (scenario, why) = refused.refused.clone().expect("a change of settings");
+    let proposals = stillbase::session::proposals(&scenario.0, &why);
+    assert!(proposals[0].text.starts_with("take b = "), "{proposals:?}");
+    let edit = refused.edit_with(&proposals[0]);
     app_state.carry_out(SessionCommand::Edit(edit));
     let done = &app_state.session().scenario().task;
     assert_eq!((done.points(), done.shape()), (task.points(), task.shape()));

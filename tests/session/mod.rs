@@ -9,6 +9,7 @@ mod design;
 mod events;
 mod hand;
 mod limits;
+mod proposals;
 mod replay;
 mod settings;
 mod sitting;

@@ -114,7 +114,9 @@ impl AppState {
             &mut self.view_state,
             &mut commands,
         );
-        status::news(ui.ctx(), scene, &self.session, &self.view_state, &mut commands);
+        let proposals = self.proposals();
+        let proposals = proposals.as_ref().map_or(&[][..], |known| known);
+        status::news(ui.ctx(), scene, &self.session, &self.view_state, proposals, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);
         saving::show(ui.ctx(), &self.saving, &self.session, &self.view_state, &mut commands);
         let recent = &self.saving.recent;
