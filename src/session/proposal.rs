@@ -1,7 +1,7 @@
 //! [`Proposal`]: settings that make a refused task run, or a run better. Each has been tried.
 
 use serde::{Serialize, Serializer};
-use toml::{Table, Value};
+use toml::Table;
 
 use crate::design::balancing_change;
 use crate::edit::Edit;
@@ -15,7 +15,7 @@ use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::reactionless::Decimal;
 use stillbase_planning::timing::TimeLaw;
 use stillbase_query::{Portion, ProgressCallback, Query, Shared};
-use stillbase_settings::change::{join, leaves, same_value, single_change, typed};
+use stillbase_settings::change::{join, leaves, single_change, typed};
 use stillbase_settings::number::significant;
 use stillbase_settings::range::Requirement;
 use stillbase_settings::word::Choice;
@@ -75,13 +75,21 @@ impl Proposal {
         }
     }
 
-    /// Returns the proposal without the settings that the scenario has already.
+    /// Returns the proposal without settings that change nothing.
     fn reduced(self, scenario: &Scenario) -> Self {
-        let is_new =
-            |(path, value): &(String, &Value)| scenario.value(path).is_none_or(|present| !same_value(&present, value));
-        let new = leaves(&self.change).into_iter().filter(is_new);
-        let change = new.fold(Table::new(), |all, (path, value)| join(all, &single_change(&path, value.clone())));
-        Self { change, ..self }
+        let Some(changed) = self.applied(scenario) else { return self };
+        let all: Vec<Table> =
+            leaves(&self.change).into_iter().map(|(path, value)| single_change(&path, value.clone())).collect();
+        let without = |kept: &[bool]| {
+            let kept = all.iter().zip(kept).filter(|(_, kept)| **kept);
+            Self { change: kept.fold(Table::new(), |all, (one, _)| join(all, one)), text: self.text.clone() }
+        };
+        let mut kept = vec![true; all.len()];
+        for i in 0..all.len() {
+            kept[i] = false;
+            kept[i] = without(&kept).applied(scenario).is_none_or(|other| other != changed);
+        }
+        without(&kept)
     }
 
     /// Returns the scenario with the change.
