@@ -29,7 +29,7 @@ pub struct Action {
     /// Its place in the window.
     pub place: &'static str,
     /// The switch that it toggles, if any.
-    pub turns: Option<Switch>,
+    pub switch: Option<Switch>,
     /// Returns its command in the present state, or `None` while it has no effect. Without this function, the action
     /// toggles its switch.
     command_fn: Option<fn(&Session, &ViewState) -> Option<Command>>,
@@ -41,7 +41,7 @@ impl Action {
         let other = |switch| view_state.has(switch, session).then(|| view_state.other(switch));
         match self.command_fn {
             Some(command) => command(session, view_state),
-            None => self.turns.and_then(other),
+            None => self.switch.and_then(other),
         }
     }
 }
@@ -164,7 +164,7 @@ macro_rules! actions {
         $(turns $switch:ident)? $(, $command:expr)?;)+) => {
         &[$(Action {
             group: ActionGroup::$group, name: $name, also: concat!($($also)?), keys: &[$($key),*], place: $place,
-            turns: actions!(@of Switch $($switch)?), command_fn: actions!(@option $($command)?),
+            switch: actions!(@of Switch $($switch)?), command_fn: actions!(@option $($command)?),
         }),+]
     };
     (@of $kind:ident) => { None };
@@ -369,16 +369,16 @@ fn faster(view_state: &ViewState) -> Option<Command> {
 
 /// Returns the first key of the action of this name, if it has one.
 pub fn key_of(action: &str) -> Option<String> {
-    ACTIONS.iter().find(|known| known.name == action)?.keys.first().map(shown)
+    ACTIONS.iter().find(|known| known.name == action)?.keys.first().map(shortcut_label)
 }
 
 /// Returns the first key of the action that toggles this switch, if it has one.
 pub fn key_of_switch(switch: Switch) -> Option<String> {
-    ACTIONS.iter().find(|known| known.turns == Some(switch))?.keys.first().map(shown)
+    ACTIONS.iter().find(|known| known.switch == Some(switch))?.keys.first().map(shortcut_label)
 }
 
 /// Returns the label of a keyboard shortcut, such as `Ctrl K`.
-pub fn shown(key: &KeyboardShortcut) -> String {
+pub fn shortcut_label(key: &KeyboardShortcut) -> String {
     let m = key.modifiers;
     let held = [(m.command || m.ctrl, "Ctrl "), (m.alt, "Alt "), (m.shift, "Shift ")];
     let held: String = held.into_iter().filter(|(held, _)| *held).map(|(_, word)| word).collect();

@@ -70,7 +70,7 @@ pub(super) struct Opening {
     /// Whether the file dialog closes.
     pub closes: bool,
     /// The message.
-    pub news: Option<String>,
+    pub message: Option<String>,
     /// The file of the session.
     pub file: Option<SessionFile>,
     /// The scenario to open instead if this one cannot be opened, and its message.
@@ -238,7 +238,7 @@ impl<A> Background<A> {
 
     /// Frees a replaced session. A long one that shares no frames with the present one is freed in the background.
     pub fn free(&self, old: Session, now: &Session) {
-        let shares = now.frames().revision().kept_of(&old.frames().revision().mark()) > 0;
+        let shares = now.frames().revision().unchanged_since(&old.frames().revision().mark()) > 0;
         if old.frames().len() > MAX_FRAMES_FREED_AT_ONCE && !shares {
             drop(self.start(move |_| drop(old)));
         }

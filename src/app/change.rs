@@ -102,7 +102,7 @@ pub(super) enum Opened {
 pub(super) struct OpenedSession {
     pub session: Session,
     /// A note about the source, for the user.
-    pub said: Option<String>,
+    pub note: Option<String>,
     /// Instant and plots on display when the journal was written, if the journal has them.
     pub left_off: Option<ResumePoint>,
 }
@@ -129,8 +129,8 @@ impl SessionSource {
                 text.map_err(|why| NotOpened { why: shorten_message(&why.to_string()).into_owned(), refused: None })?;
             return Ok(Opened::Table(path.clone(), TableText { name: path.display().to_string(), text }));
         }
-        let (FoundScenario { scenario, made }, from_file, left_off) = match self {
-            Self::Scenario(scenario) => (FoundScenario { scenario: *scenario, made: None }, false, None),
+        let (FoundScenario { scenario, note }, from_file, left_off) = match self {
+            Self::Scenario(scenario) => (FoundScenario { scenario: *scenario, note: None }, false, None),
             Self::File(path) => (read(&path)?, true, None),
             Self::Journal(path) => {
                 let text = stillbase_files::text::read(&path).unwrap_or_default();
@@ -148,6 +148,6 @@ impl SessionSource {
             // The file may name any time: the run is not extended beyond its length.
             session.seek_while(time.min(session.length()), watch);
         }
-        Ok(Opened::Session(Box::new(OpenedSession { session, said: made, left_off })))
+        Ok(Opened::Session(Box::new(OpenedSession { session, note, left_off })))
     }
 }

@@ -148,12 +148,12 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &ComparisonEntry, columns: &[H
         let label = ui.add(Button::new(title).frame(false));
         name(&label, &format!("Open {}", entry.title));
         let label = label.on_hover_cursor(CursorIcon::PointingHand);
-        let apart = entry.design.as_ref().and_then(|design| design.apart.as_ref());
+        let apart = entry.design.as_ref().and_then(|design| design.why_not.as_ref());
         let apart = apart.map_or_else(String::new, |why| format!(". Its machine: {why}"));
         if label.on_hover_text(format!("Open this run in place of the present one{apart}")).clicked() {
             commands.push(SessionCommand::OpenRun(i).into());
         }
-        if entry.kept {
+        if entry.added_by_user {
             let remove = ui.small_button("×");
             name(&remove, &format!("Remove {}", entry.title));
             if remove.on_hover_text("Remove this row").clicked() {

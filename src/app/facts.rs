@@ -18,9 +18,9 @@ pub(super) struct Setting {
     /// Its value as the user would type it; empty if it is not set.
     pub typed: String,
     /// Whether it has its default value.
-    pub usual: bool,
+    pub is_default: bool,
     /// If the setting has no effect now: the condition under which it has one.
-    pub wants: Option<&'static str>,
+    pub unmet_condition: Option<&'static str>,
     /// Path and explanation in lower case, to be searched.
     pub text: String,
 }
@@ -94,14 +94,14 @@ impl QuickQuery for Settings {
 
     fn answer(Shared(scenario): &Self::Input) -> Vec<Setting> {
         // Tables of samples cannot be typed: they come from files.
-        let shown = scenario.settings().into_iter().filter(|(_, key, _)| key.holds != KeyType::Rows);
+        let shown = scenario.settings().into_iter().filter(|(_, key, _)| key.value_type != KeyType::Rows);
         let setting = |(path, key, value): (String, &'static Key, Value)| {
             let typed = Some(change::typed(&value)).filter(|typed| typed != DEFAULT_WORD).unwrap_or_default();
             let is_default = || change::same_value(&change::value(key.default), &value);
             Setting {
-                usual: typed.is_empty() || key.default.is_empty() || is_default(),
-                wants: scenario.condition_for_effect(&path),
-                text: format!("{path}\n{}", key.words).to_lowercase(),
+                is_default: typed.is_empty() || key.default.is_empty() || is_default(),
+                unmet_condition: scenario.condition_for_effect(&path),
+                text: format!("{path}\n{}", key.meaning).to_lowercase(),
                 typed,
                 key,
                 path,

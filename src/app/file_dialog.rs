@@ -90,7 +90,7 @@ impl FileDialog {
             FilePurpose::Open => String::new(),
             FilePurpose::Save => free(own, "toml"),
             FilePurpose::Record => free(own, "rrd"),
-            FilePurpose::Machine => free(session.scenario().machine.name(), form::USUAL_ENDING),
+            FilePurpose::Machine => free(session.scenario().machine.name(), form::DEFAULT_EXTENSION),
             FilePurpose::Plot(plot, file) => {
                 free(&format!("{own} {}", plot.to_lowercase()), &file.words().to_lowercase())
             }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use egui::{Align2, Area, Frame, Id, Key, Modifiers, Order, RichText, ScrollArea, TextEdit, Ui, vec2};
 
-use super::actions::{ACTIONS, shown};
+use super::actions::{ACTIONS, shortcut_label};
 use super::facts::{ScenarioFacts, Setting};
 use super::theme::{bold, colour, plain};
 use super::top::with_machine;
@@ -44,7 +44,7 @@ fn entries<'a>(
 ) -> Vec<Entry<'a>> {
     let actions = ACTIONS.iter().filter_map(|action| {
         let command = action.command(session, view_state)?;
-        let keys = action.keys.first().map(shown).unwrap_or_default();
+        let keys = action.keys.first().map(shortcut_label).unwrap_or_default();
         let (title, place, also) = (action.name.into(), action.place, action.also);
         Some(Entry { title, place, also, hides: false, keys, command: Box::new(|| command) })
     });
@@ -83,7 +83,7 @@ fn entries<'a>(
     let settings = settings.iter().map(|setting| {
         let title = format!("Setting: {}", setting.path);
         let look_up = || Command::View(ViewChange::LookUp(setting.path.clone()));
-        Entry { hides: true, ..entry(title, "left panel, all settings", setting.key.words, Box::new(look_up)) }
+        Entry { hides: true, ..entry(title, "left panel, all settings", setting.key.meaning, Box::new(look_up)) }
     });
     actions.chain(recent).chain(scenarios).chain(machines).chain(settings).collect()
 }
@@ -116,7 +116,7 @@ pub fn show(
     let p = view_state.palette();
     let Some(mut finder) = view_state.open.finder.clone() else { return };
     let settings = facts.settings();
-    let list = found(entries(session, &settings, recent, view_state), &finder.sought);
+    let list = found(entries(session, &settings, recent, view_state), &finder.search_text);
     finder.chosen = finder.chosen.min(list.len().saturating_sub(1));
     let pressed = |key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
     let (up, down, enter) = (pressed(Key::ArrowUp), pressed(Key::ArrowDown), pressed(Key::Enter));
@@ -132,7 +132,7 @@ pub fn show(
     let shown = area.show(ctx, |ui| {
         frame.show(ui, |ui| {
             ui.set_width(width);
-            let field = TextEdit::singleline(&mut finder.sought).hint_text("What would you like to do?");
+            let field = TextEdit::singleline(&mut finder.search_text).hint_text("What would you like to do?");
             let field = ui.add(field.desired_width(f32::INFINITY).font(plain(15.0)).margin(vec2(8.0, 7.0)));
             name(&field, "Find a command");
             field.request_focus();

@@ -26,7 +26,7 @@ const OPTIONS_WIDTH_PT: f32 = 250.0;
 
 /// Returns the title line: file name and content of the table.
 fn summary(shown: &TableView<'_>) -> String {
-    let file = shown.given.file.file_name().unwrap_or_default().to_string_lossy();
+    let file = shown.table.file.file_name().unwrap_or_default().to_string_lossy();
     let held = match shown.answer {
         Some(Ok(TableAssessment::Motion { motion, .. })) => motion::summary(motion),
         Some(Ok(TableAssessment::Measured(trimmed))) => measured::summary(trimmed),
@@ -94,7 +94,7 @@ fn refused(ui: &mut Ui, p: &Palette, why: &Advice) {
 
 /// Draws the options for reading and assessing the table.
 fn options_column(ui: &mut Ui, p: &Palette, shown: &TableView<'_>, commands: &mut Vec<Command>) {
-    let (options, content) = (&shown.given.options, shown.content());
+    let (options, content) = (&shown.table.options, shown.content());
     let choices = [
         (None, "as its columns say"),
         (Some(TableContent::Drives), "a motion of the drives"),

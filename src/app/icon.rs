@@ -298,7 +298,7 @@ fn background(ui: &Ui, p: &Palette, response: &Response, on: bool) {
 }
 
 /// Draws a disabled button with a short word; its tooltip says why it is disabled.
-pub fn word_without(ui: &mut Ui, p: &Palette, word: &str, tip: &str, size: Vec2) -> Response {
+pub fn disabled_word_button(ui: &mut Ui, p: &Palette, word: &str, tip: &str, size: Vec2) -> Response {
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, word, bold(11.0), colour(faded(p.dim, 0.45)));
     response.widget_info(|| accessible_info(word, false, Some(false)));

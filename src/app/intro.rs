@@ -9,7 +9,7 @@ use super::theme::{bold, card, colour, plain};
 use super::widgets::name;
 use super::{Command, Layout, SessionCommand, Switch, ViewChange, ViewState, WindowCommand};
 use stillbase_picture::numbers::signed;
-use stillbase_picture::paint::words::words;
+use stillbase_picture::paint::labels::draw_labels;
 use stillbase_picture::paint::{SceneViewport, paint};
 use stillbase_picture::scene::camera::Camera;
 use stillbase_picture::scene::exaggeration::Exaggeration;
@@ -81,7 +81,7 @@ impl Intro {
     ///
     /// # Errors
     /// If the run along the straight line cannot be made.
-    pub fn beside(session: &Session) -> Result<Self, Refusal> {
+    pub fn for_session(session: &Session) -> Result<Self, Refusal> {
         let straight = match Scenario::builtin("case-1") {
             Some(case) => {
                 let scenario = Scenario { compare_b: None, ..case };
@@ -106,7 +106,7 @@ impl Intro {
     }
 
     /// Returns the run along the straight line, for the plots.
-    pub fn beside_it(&self) -> Option<&Comparison> {
+    pub fn straight_comparison(&self) -> Option<&Comparison> {
         self.straight.as_ref().map(|straight| &straight.run)
     }
 
@@ -116,7 +116,7 @@ impl Intro {
     }
 
     /// Adds wall time, s, to the pause at the end of the run; returns whether the run must start over.
-    pub fn rests(&mut self, session: &Session, wall: f64) -> bool {
+    pub fn advance_rest(&mut self, session: &Session, wall: f64) -> bool {
         let waits = self.straight.is_some()
             && session.is_playing()
             && session.is_at_end()
@@ -137,7 +137,7 @@ impl Intro {
 
     /// Observes a command that was carried out: it may end the demonstration or complete the hint. `held` is `true`
     /// during a drag.
-    pub fn sees(&mut self, command: &Command, session: &Session, held: bool) {
+    pub fn observe(&mut self, command: &Command, session: &Session, held: bool) {
         let touches = match command {
             Command::Session(
                 SessionCommand::Edit(_)
@@ -195,7 +195,7 @@ impl Intro {
         let Some((frame, scene)) = self.straight(now, view_state.arrangement.theme) else { return };
         let (p, scene) = (view_state.palette(), Arc::new(scene));
         paint(ui, 1, rect, &scene, camera);
-        words(ui, &SceneViewport { rect, camera: *camera }, &scene, &[]);
+        draw_labels(ui, &SceneViewport { rect, camera: *camera }, &scene, &[]);
         let turn = MOUNT_COMPLIANCE.to_degrees();
         let words = format!("From A to B along a line. The arm shakes its base, drawn {turn:.0}° for 1 N m.");
         caption(ui, rect, &p, "Straight line", &words, frame.wrench.total().moment, p.reaction);

@@ -2,7 +2,7 @@
 
 use egui::{Context, Grid, Key, KeyboardShortcut, Modifiers, RichText, ScrollArea, TextEdit, Ui};
 
-use super::actions::{ACTIONS, Action, ActionGroup, FINE_ACTIONS, GESTURES, shown};
+use super::actions::{ACTIONS, Action, ActionGroup, FINE_ACTIONS, GESTURES, shortcut_label};
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, Layout, OpenDialogs, SessionCommand, Switch, Tool, ViewChange, ViewState, WindowCommand, search};
@@ -148,7 +148,7 @@ fn sheet(sought: &str) -> Vec<(&'static str, Lines)> {
 
 /// Returns the keys of an action, without repetitions.
 fn all_keys(action: &Action) -> String {
-    let mut keys: Vec<String> = action.keys.iter().map(shown).collect();
+    let mut keys: Vec<String> = action.keys.iter().map(shortcut_label).collect();
     keys.dedup();
     keys.join("  ")
 }

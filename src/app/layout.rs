@@ -51,14 +51,14 @@ pub struct Panel {
 
 impl Panel {
     /// A panel of its default width.
-    pub const fn usual(shown: bool) -> Self {
+    pub const fn with_default_width(shown: bool) -> Self {
         Self { shown, width: None }
     }
 
     /// Returns the width to store, points: the present width `now`, if the user set one earlier or if it differs from
-    /// the default `usual`.
-    pub(super) fn made(&self, now: f32, usual: f32) -> Option<f32> {
-        if self.width.is_some() || (now - usual).abs() > 1.0 { Some(now) } else { None }
+    /// the default `default`.
+    pub(super) fn stored_width(&self, now: f32, default: f32) -> Option<f32> {
+        if self.width.is_some() || (now - default).abs() > 1.0 { Some(now) } else { None }
     }
 }
 
@@ -73,9 +73,9 @@ pub struct Panels {
 
 impl Panels {
     /// The default panels of a layout.
-    pub const fn usual(layout: Layout) -> Self {
+    pub const fn default_of(layout: Layout) -> Self {
         let (side, plots) = (matches!(layout, Layout::Explore), !matches!(layout, Layout::Present));
-        Self { side: Panel::usual(side), plots: Panel::usual(plots) }
+        Self { side: Panel::with_default_width(side), plots: Panel::with_default_width(plots) }
     }
 }
 
@@ -100,16 +100,16 @@ pub struct WindowArrangement {
     /// Whether settings are on the right and plots on the left.
     pub swapped: bool,
     /// Whether the design view shows the equations in place of the balance.
-    pub learns: bool,
+    pub shows_equations: bool,
     /// The panels of each layout, in the order of [`Layout::ALL`].
     pub panels: [Panels; Layout::ALL.len()],
 }
 
 impl WindowArrangement {
     /// Returns the default arrangement.
-    pub fn usual(theme: Theme) -> Self {
-        let panels = Layout::ALL.map(Panels::usual);
-        Self { theme, layout: Layout::Explore, swapped: false, learns: false, panels }
+    pub fn with_theme(theme: Theme) -> Self {
+        let panels = Layout::ALL.map(Panels::default_of);
+        Self { theme, layout: Layout::Explore, swapped: false, shows_equations: false, panels }
     }
 
     /// The panels on display.
@@ -125,7 +125,7 @@ impl WindowArrangement {
     /// Chooses a layout. Choosing `Present`, or the present layout again, restores its default panels.
     pub(super) fn lay_out(&mut self, layout: Layout) {
         if layout == self.layout || layout == Layout::Present {
-            self.panels[layout as usize] = Panels::usual(layout);
+            self.panels[layout as usize] = Panels::default_of(layout);
         }
         self.layout = layout;
     }

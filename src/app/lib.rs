@@ -74,7 +74,7 @@ pub use open::{Finder, OpenDialogs};
 pub use preferences::Preferences;
 pub use resume_point::ResumePoint;
 pub use state::AppState;
-pub use status_message::{RefusedEdit, StatusMessage};
+pub use status_message::{Message, RefusedEdit, StatusMessage};
 use view_state::set_b;
 pub use view_state::{Framing, ViewState};
 pub use waiting::DrawingGuard;

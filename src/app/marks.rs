@@ -30,7 +30,7 @@ pub(super) enum Tone {
     /// The peak of the base reaction, or a failed audit.
     Peak,
     /// A bookmark.
-    Own,
+    Bookmark,
 }
 
 /// Marks that are drawn as one.
@@ -88,7 +88,7 @@ impl QuickQuery for MarksByTime {
             let tone = if matches!(event.kind, EventKind::Peak | EventKind::Fault) { Tone::Peak } else { Tone::Event };
             TimelineMark { time: event.step as f64 * of.step, words: event.words.clone(), tone }
         };
-        let own = |mark: &Bookmark| TimelineMark { time: mark.time, words: mark.name.clone(), tone: Tone::Own };
+        let own = |mark: &Bookmark| TimelineMark { time: mark.time, words: mark.name.clone(), tone: Tone::Bookmark };
         let fork = |fork: &Fork| TimelineMark {
             time: fork.from,
             words: format!("a branch parts: {}", fork.title),
@@ -161,7 +161,7 @@ impl Marks {
 
 /// Returns the time, s, of the next mark after the instant on display if `forward`, otherwise of the last mark before
 /// it.
-pub(super) fn beside(queries: &Queries, session: &Session, forward: bool) -> Option<f64> {
+pub(super) fn neighbour(queries: &Queries, session: &Session, forward: bool) -> Option<f64> {
     let (time, step) = (session.frame().time, session.scenario().step);
     let marks = queries.last::<QuickWork<MarksByTime>>()?;
     let mut times = within(&marks, session.length()).iter().map(|mark| mark.time);

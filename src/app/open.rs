@@ -7,7 +7,7 @@ use super::tour::Tour;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Finder {
     /// Search text.
-    pub sought: String,
+    pub search_text: String,
     /// Index of the selected line, counted from 0 at the top.
     pub chosen: usize,
 }

@@ -30,10 +30,24 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     let mut kinds = TaskKind::ALL.to_vec();
     // Kinds that need more than points come last.
     kinds.sort_by_key(|kind| matches!(kind, TaskKind::SameTip | TaskKind::Given));
-    choose(ui, session, ("Redundancy", "kind"), &kinds, task.kind, 2.0 * half, commands);
+    choose(ui, session, ChoiceRow { label: "Redundancy", key: "kind", width: 2.0 * half }, &kinds, task.kind, commands);
     ui.horizontal(|ui| {
-        choose(ui, session, ("Shape", "shape"), PathShape::ALL, task.shape(), half - 16.0, commands);
-        choose(ui, session, ("Time law", "law"), TimeLaw::ALL, task.law, half - 16.0, commands);
+        choose(
+            ui,
+            session,
+            ChoiceRow { label: "Shape", key: "shape", width: half - 16.0 },
+            PathShape::ALL,
+            task.shape(),
+            commands,
+        );
+        choose(
+            ui,
+            session,
+            ChoiceRow { label: "Time law", key: "law", width: half - 16.0 },
+            TimeLaw::ALL,
+            task.law,
+            commands,
+        );
     });
     time(ui, session, p, commands);
     points(ui, session, task, p, commands);
@@ -42,15 +56,25 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     costs(ui, session, p);
 }
 
+/// A row of the panel with a list of choices.
+struct ChoiceRow<'a> {
+    label: &'a str,
+    /// Key of the task.
+    key: &'a str,
+    /// Width of the list, points.
+    width: f32,
+}
+
+/// Draws the choices of a key of the task.
 fn choose<T: Choice>(
     ui: &mut Ui,
     session: &Session,
-    (label, key): (&str, &str),
+    row: ChoiceRow<'_>,
     choices: &[T],
     now: T,
-    width: f32,
     commands: &mut Vec<Command>,
 ) {
+    let ChoiceRow { label, key, width } = row;
     let combo = ComboBox::from_id_salt(key).selected_text(now.words().screen).width(width);
     let response = combo.show_ui(ui, |ui| {
         for choice in choices {
@@ -229,7 +253,14 @@ fn kind_settings(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, comma
             if session.scenario().condition_for_effect("task.posture").is_none() =>
         {
             let width = ui.available_width() - 10.0;
-            choose(ui, session, ("Freedoms left", "posture"), Posture::ALL, task.posture, width, commands);
+            choose(
+                ui,
+                session,
+                ChoiceRow { label: "Freedoms left", key: "posture", width },
+                Posture::ALL,
+                task.posture,
+                commands,
+            );
             if let Some(drift) = plan.drift().next() {
                 note(ui, p, &format!("the drives end up to {} rad from where they began", signed(drift, 3)));
             }
@@ -277,7 +308,14 @@ fn kind_settings(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, comma
         }
         TaskKind::LeastReaction => {
             let width = ui.available_width() - 10.0;
-            choose(ui, session, ("What to keep small", "least"), ReactionObjective::ALL, task.least, width, commands);
+            choose(
+                ui,
+                session,
+                ChoiceRow { label: "What to keep small", key: "least", width },
+                ReactionObjective::ALL,
+                task.least,
+                commands,
+            );
             if let Some(verdicts) = &plan.verdicts {
                 let fixed = match verdicts.fixed {
                     FixedB::Serves => "b can stay: no reaction at all".into(),
@@ -305,14 +343,11 @@ fn kind_settings(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, comma
     }
 }
 
-/// Draws a limit that the planned motion exceeds, then its forecast: always two lines, so that nothing below moves.
+/// Draws the forecast of the planned motion: always two lines, so that nothing below moves. A limit that the motion
+/// exceeds takes the place of the first one.
 fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
     let forecast = &session.run().plan().forecast;
     let torque = forecast.torque.max_abs();
-    if let Some((limit, factor)) = forecast.exceeded_limit {
-        let words = format!("{limit} passes its limit, {} times", signed(factor, 2));
-        ui.add(egui::Label::new(RichText::new(words).font(plain(11.0)).color(colour(p.reaction))).wrap());
-    }
     // The plan is computed for the model on a fixed base; the status line shows the effects of plant and base.
     let scenario = session.scenario();
     let ideal = scenario.plant == Default::default() && !scenario.base.moves();
@@ -328,10 +363,15 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
         true => "change limits, points or b".into(),
         false => format!("{time} s  ·  τ {torque}  ·  n_B {moment} N m"),
     };
-    for (words, tip) in [
-        (of.to_owned(), "The line at the bottom says what the run comes to"),
+    let (first, ink) = match forecast.exceeded_limit {
+        Some((limit, factor)) => (format!("{limit} passes its limit, {} times", signed(factor, 2)), p.reaction),
+        None => (of.to_owned(), p.dim),
+    };
+    for (words, ink, tip) in [
+        (first, ink, "The line at the bottom says what the run comes to"),
         (
             figures,
+            p.dim,
             if waits {
                 "It goes on once the limits, the points or b let it"
             } else {
@@ -339,7 +379,7 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
             },
         ),
     ] {
-        let words = RichText::new(words).font(plain(11.0)).color(colour(p.dim));
+        let words = RichText::new(words).font(plain(11.0)).color(colour(ink));
         ui.add(egui::Label::new(words).truncate()).on_hover_text(tip);
     }
 }

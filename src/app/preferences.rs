@@ -22,7 +22,8 @@ pub struct Preferences {
     /// Whether settings are on the right and plots on the left.
     pub swapped: bool,
     /// Whether the design view shows the equations instead of the balance.
-    pub learns: bool,
+    #[serde(rename = "learns")]
+    pub shows_equations: bool,
     /// Whether *Explore* shows the panel of settings.
     pub side: bool,
     /// Width of the panel of settings in *Explore*, if set by the user, logical points.
@@ -51,7 +52,7 @@ impl Default for Preferences {
             hints: true,
             layout: Layout::Explore,
             swapped: false,
-            learns: false,
+            shows_equations: false,
             side: true,
             side_width: None,
             plots: true,
@@ -68,14 +69,14 @@ impl Default for Preferences {
 impl Preferences {
     /// Returns the preferences of a window with this arrangement and size, points of the screen.
     pub(super) fn of(arrangement: &WindowArrangement, size: [f32; 2], hints: bool, recent: &[PathBuf]) -> Self {
-        let WindowArrangement { theme, layout, swapped, learns, panels: [explore, compare, _] } = arrangement;
+        let WindowArrangement { theme, layout, swapped, shows_equations, panels: [explore, compare, _] } = arrangement;
         Self {
             theme: *theme,
             size,
             hints,
             layout: *layout,
             swapped: *swapped,
-            learns: *learns,
+            shows_equations: *shows_equations,
             side: explore.side.shown,
             side_width: explore.side.width,
             plots: explore.plots.shown,
@@ -96,8 +97,13 @@ impl Preferences {
             side: panel(self.compare_side, self.compare_side_width),
             plots: panel(self.compare_plots, self.compare_plots_width),
         };
-        let panels = [explore, compare, Panels::usual(Layout::Present)];
-        WindowArrangement { swapped: self.swapped, learns: self.learns, panels, ..WindowArrangement::usual(self.theme) }
+        let panels = [explore, compare, Panels::default_of(Layout::Present)];
+        WindowArrangement {
+            swapped: self.swapped,
+            shows_equations: self.shows_equations,
+            panels,
+            ..WindowArrangement::with_theme(self.theme)
+        }
     }
 
     /// Limits all sizes to those that a window can have, and drops recent files with relative paths or after the 32nd.

@@ -4,7 +4,7 @@
 use egui::{Frame, Margin, Panel, ScrollArea, Ui, vec2};
 
 use super::actions::{key_of, key_of_switch};
-use super::icon::{Icon, IconButton, SEPARATOR_HEIGHT, rule, word_button, word_without};
+use super::icon::{Icon, IconButton, SEPARATOR_HEIGHT, disabled_word_button, rule, word_button};
 use super::{Command, Switch, ViewChange, ViewState, arrangement, history};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_picture::scene::views::{ViewKind, Views};
@@ -26,12 +26,12 @@ struct Toggle {
     /// Its name.
     label: &'static str,
     /// Its effect.
-    does: &'static str,
+    effect: &'static str,
     switch: Switch,
 }
 
-const fn tool(switch: Switch, icon: Icon, label: &'static str, does: &'static str) -> Toggle {
-    Toggle { icon, label, does, switch }
+const fn tool(switch: Switch, icon: Icon, label: &'static str, effect: &'static str) -> Toggle {
+    Toggle { icon, label, effect, switch }
 }
 
 /// Tools of the pointer.
@@ -85,7 +85,7 @@ pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &View
                 let size = vec2(BUTTON_SIZE_PT.x, VIEW_BUTTON_HEIGHT_PT);
                 if let Err(why) = Views::has(view, session.run()) {
                     let tip = format!("Not of this machine: {why}");
-                    word_without(ui, &p, view.name(), &tip, size);
+                    disabled_word_button(ui, &p, view.name(), &tip, size);
                     continue;
                 }
                 let tip = format!("{}{}", view.explanation(), key("The next view: 2D, 3D, joint space, tower"));
@@ -132,7 +132,7 @@ fn toggle(
     let on = view_state.is_on(tool.switch);
     let only = if enabled { "" } else { "\n(in 2D and 3D)" };
     let key = in_brackets(key_of_switch(tool.switch));
-    let tip = format!("{}{key}\n{}{only}", tool.label, tool.does);
+    let tip = format!("{}{key}\n{}{only}", tool.label, tool.effect);
     let button = IconButton { icon: tool.icon, label: tool.label, tip: &tip, on: Some(on), enabled, size };
     if button.show(ui, p).clicked() {
         commands.push(view_state.other(tool.switch));

@@ -21,7 +21,7 @@ pub(super) struct Saving {
     /// Whether the window must close.
     pub leaves: bool,
     /// The file of a session left by an earlier program run, and the time of its writing in words.
-    pub found: Option<(PathBuf, String)>,
+    pub left_session: Option<(PathBuf, String)>,
     /// The file of a recovered or discarded session; it is removed once a journal contains the present session.
     pub recovered: Option<PathBuf>,
     /// Recently opened and saved files, newest first.
@@ -47,7 +47,7 @@ impl Saving {
 
     /// Whether a question is open: until it is answered, it alone receives the keys.
     pub fn has_question(&self) -> bool {
-        self.asks || self.found.is_some()
+        self.asks || self.left_session.is_some()
     }
 
     /// Adds a file to the recent files, by its absolute path; ignores a file that does not exist.
@@ -93,7 +93,7 @@ pub(super) fn show(
                 ("Cancel", vec![Command::Window(WindowCommand::AskToLeave(false))]),
             ],
         );
-    } else if let Some((_, when)) = &saving.found {
+    } else if let Some((_, when)) = &saving.left_session {
         let words = format!("The program did not end in order {when}. What was done then is still there.");
         card(
             ctx,

@@ -33,16 +33,26 @@ pub struct ScenePointer<'a> {
     pushes: bool,
 }
 
+/// The scene under the pointer.
+#[derive(Clone, Copy)]
+pub struct PointedScene<'a> {
+    pub session: &'a Session,
+    pub shown: &'a DrawnFrame<'a>,
+    pub views: &'a Views,
+    /// Whether it is the scene of the demonstration.
+    pub demonstrates: bool,
+}
+
 impl<'a> ScenePointer<'a> {
-    /// Creates the pointer over a scene of a session; `demonstrates` is `true` for the scene of the demonstration.
+    /// Creates the pointer over a scene.
     pub fn over(
         ui: &'a Ui,
         response: &'a Response,
         spot: &'a SceneViewport,
-        (session, shown): (&'a Session, &'a DrawnFrame<'a>),
-        (views, demonstrates): (&'a Views, bool),
+        scene: PointedScene<'a>,
         view_state: &ViewState,
     ) -> Self {
+        let PointedScene { session, shown, views, demonstrates } = scene;
         let view = view_state.view;
         // Dragging pushes with Alt held, or with the push tool.
         let pushes = view.shows_machine() && (view_state.tool == Tool::Push || ui.input(|i| i.modifiers.alt));

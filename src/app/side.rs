@@ -66,7 +66,7 @@ pub fn show(
             all::show(ui, facts, &p, commands);
         });
     });
-    view_state.arrangement.now().side.made(shown.response.rect.width(), usual)
+    view_state.arrangement.now().side.stored_width(shown.response.rect.width(), usual)
 }
 
 fn pose_constant(

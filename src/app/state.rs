@@ -18,7 +18,7 @@ use super::change::SessionChange;
 use super::given::assess::OpenedTable;
 use super::pace::PlaybackRate;
 use super::saving::Saving;
-use super::{Activity, Framing, Intro, Layout, Preferences, ResumePoint, SessionCommand, ViewState};
+use super::{Activity, Framing, Intro, Layout, Message, Preferences, ResumePoint, SessionCommand, ViewState};
 use stillbase_mechanics::machine::Machine;
 use stillbase_picture::scene::exaggeration::exaggeration;
 use stillbase_picture::scene::palette::Theme;
@@ -53,7 +53,7 @@ pub struct AppState {
     /// Request of the search for link lengths, under way or finished.
     seeking: Option<<LengthsQuery as Query>::Input>,
     /// The table opened last.
-    given: Option<OpenedTable>,
+    opened_table: Option<OpenedTable>,
     /// Work in the background.
     background: Background<Self>,
     /// Simulated time that is due but not simulated yet, s.
@@ -78,7 +78,7 @@ impl AppState {
 
     fn around(session: Session, theme: Theme) -> Self {
         let background = Background::default();
-        let views = Views::made(&background.queries, session.run(), None);
+        let views = Views::base_views(&background.queries, session.run(), None);
         let view_state = ViewState::new(theme, &views);
         let mut app_state = Self {
             designed_from: None,
@@ -89,7 +89,7 @@ impl AppState {
             hints: true,
             saving: Saving::default(),
             comparison: None,
-            given: None,
+            opened_table: None,
             fronts: Vec::new(),
             seeking: None,
             background,
@@ -116,7 +116,7 @@ impl AppState {
         self.saving.recent.clone_from(&liked.recent);
         let usual = Scenario::builtin("case-3").is_some_and(|case| case == *self.session.scenario());
         if liked.hints && usual && liked.layout == Layout::Explore {
-            self.intro = Intro::beside(&self.session).ok();
+            self.intro = Intro::for_session(&self.session).ok();
         }
         self
     }
@@ -125,7 +125,7 @@ impl AppState {
     /// words.
     #[must_use]
     pub fn offering_recovery(mut self, left: Option<(PathBuf, String)>) -> Self {
-        self.saving.found = left;
+        self.saving.left_session = left;
         self
     }
 
@@ -249,14 +249,14 @@ impl AppState {
     pub(super) fn show_outcome(&mut self, said: Result<Option<String>, String>) {
         match said {
             Ok(None) => {}
-            Ok(Some(news)) => self.view_state.said.message = Some((news, false)),
-            Err(problem) => self.view_state.said.message = Some((problem, true)),
+            Ok(Some(text)) => self.view_state.status.message = Some(Message { text, is_problem: false }),
+            Err(text) => self.view_state.status.message = Some(Message { text, is_problem: true }),
         }
     }
 
     /// Shows a message that no command has caused.
     pub(super) fn announce(&mut self, news: &str) {
-        self.view_state.said.message = Some((news.into(), false));
+        self.view_state.status.message = Some(Message { text: news.into(), is_problem: false });
     }
 
     /// Returns the factor by which the drawn motion of the base is enlarged, so that it can be seen. It depends on the
@@ -287,7 +287,7 @@ impl AppState {
     /// Updates the views for the current run.
     fn refresh_views(&mut self) {
         let (run, queries) = (self.session.run(), self.queries());
-        let made = Views::made(queries, run, None);
+        let made = Views::base_views(queries, run, None);
         let views = Views::completed(&made, queries, run, Some(self.view_state.drives));
         if Arc::ptr_eq(&views, &self.views) {
             return;

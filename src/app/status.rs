@@ -5,7 +5,7 @@ use egui::{Align, Layout, Margin, Panel, RichText, Sense, Ui, vec2};
 use super::facts::ScenarioFacts;
 use super::theme::{colour, plain};
 use super::widgets::name;
-use super::{Activity, Command, SessionCommand, Tool, ViewState, WindowCommand};
+use super::{Activity, Command, Message, SessionCommand, Tool, ViewState, WindowCommand};
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::Rgba;
 use stillbase_picture::scene::palette::{Palette, faded};
@@ -16,7 +16,7 @@ use stillbase_simulation::frame::{Frame, Reach};
 
 /// Whether a problem message must be shown.
 pub fn has_bad_news(session: &Session, view_state: &ViewState) -> bool {
-    let bad = matches!(view_state.said.message, Some((_, true))) || session.run().waiting().is_some();
+    let bad = view_state.status.problem().is_some() || session.run().waiting().is_some();
     (bad || fault(session.frame()).is_some()) && view_state.open.dialog.is_none()
 }
 
@@ -37,8 +37,8 @@ pub fn news(
     let fault = fault(session.frame());
     let waits = session.run().waiting();
     let waiting = waits.map(|waiting| format!("The run waits: {}", waiting.why));
-    let text = match (&view_state.said.message, &fault, &waiting, &view_state.open.dialog) {
-        (Some((text, true)), _, _, None) | (_, Some(text), _, None) | (_, _, Some(text), None) => text,
+    let text = match (view_state.status.problem(), &fault, &waiting, &view_state.open.dialog) {
+        (Some(text), _, _, None) | (_, Some(text), _, None) | (_, _, Some(text), None) => text,
         _ => return,
     };
     // While the run waits, a refused edit hides neither the reason for the wait nor the remedy.
@@ -62,7 +62,7 @@ pub fn news(
             }
             ui.horizontal_wrapped(|ui| {
                 for proposal in proposals {
-                    let edit = match &view_state.said.refused {
+                    let edit = match &view_state.status.refused {
                         Some(refused) => refused.edit_with(proposal),
                         None => proposal.edit(),
                     };
@@ -133,8 +133,8 @@ pub fn statements(session: &Session) -> Statements {
 
 /// Draws a statement with its lamp: a disc if it is good, a triangle if it is bad, a ring if it is open.
 pub fn lamp(ui: &mut Ui, (about, statement): (&str, &Statement), size: f32, p: &Palette) {
-    let tone = tone_of(statement.lamp, p);
-    let ink = if statement.lamp == StatusLight::Bad { tone } else { p.ink };
+    let tone = tone_of(statement.outcome, p);
+    let ink = if statement.outcome == StatusLight::Bad { tone } else { p.ink };
     // The words are painted instead of added as a widget, so that a screen reader announces lamp and words as one
     // item.
     let words = format!("{about}: {}", statement.words);
@@ -142,9 +142,9 @@ pub fn lamp(ui: &mut Ui, (about, statement): (&str, &Statement), size: f32, p: &
     let [disc, gap] = [0.8 * size, 0.4 * size];
     let (rect, response) = ui.allocate_exact_size(vec2(disc + gap + words.size().x, words.size().y), Sense::hover());
     let middle = rect.left_center() + vec2(0.5 * disc, 0.0);
-    sign(ui.painter(), egui::Rect::from_center_size(middle, vec2(disc, disc)), statement.lamp, colour(tone));
+    sign(ui.painter(), egui::Rect::from_center_size(middle, vec2(disc, disc)), statement.outcome, colour(tone));
     ui.painter().galley(rect.left_top() + vec2(disc + gap, 0.0), words, colour(ink));
-    let spoken = format!("{about}: {}, {}", statement.words, statement.lamp.name());
+    let spoken = format!("{about}: {}, {}", statement.words, statement.outcome.name());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &spoken));
     response.on_hover_text(&statement.why);
 }
@@ -200,7 +200,7 @@ pub fn show(
             if let Ok(map) = session.run().pose_space() {
                 facts.push(format!("b {:.3} rad", f.b.rem_euclid(map.period())));
             }
-            let bad_news = matches!(view_state.said.message, Some((_, true)));
+            let bad_news = view_state.status.problem().is_some();
             if let Some((poses, distance)) = found.standing.filter(|_| !bad_news && ui.available_width() > 460.0) {
                 let many = if poses == 1 { "one pose".into() } else { format!("{poses} poses") };
                 // A narrow window keeps the space for the hint.
@@ -227,10 +227,10 @@ pub fn show(
                     ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(p.dim))).truncate());
                     return;
                 }
-                let (text, tone) = match (&view_state.said.message, f.target.reach) {
-                    (Some((_, true)), _) => (String::new(), p.reaction),
-                    (Some((text, false)), _) => {
-                        let newest = session.branch_count().checked_sub(1).filter(|_| view_state.said.left_branch);
+                let (text, tone) = match (&view_state.status.message, f.target.reach) {
+                    (Some(Message { is_problem: true, .. }), _) => (String::new(), p.reaction),
+                    (Some(Message { text, .. }), _) => {
+                        let newest = session.branch_count().checked_sub(1).filter(|_| view_state.status.left_branch);
                         if let Some(branch) = newest {
                             let back = ui.button("show it").on_hover_text("Shows the branch; G leads there and back");
                             name(&back, "Show the branch");

@@ -10,12 +10,28 @@ use stillbase_session::{Edit, Proposal, Refusal};
 /// Messages shown until the next command.
 #[derive(Clone, Debug, Default)]
 pub struct StatusMessage {
-    /// The last message, and whether it reports a problem.
-    pub message: Option<(String, bool)>,
+    /// The last message.
+    pub message: Option<Message>,
     /// Whether the message concerns a branch that was left: a button then shows that branch.
     pub left_branch: bool,
     /// The last refused edit.
     pub refused: Option<RefusedEdit>,
+}
+
+impl StatusMessage {
+    /// Returns the text of the last message if it reports a problem.
+    pub fn problem(&self) -> Option<&String> {
+        self.message.as_ref().filter(|message| message.is_problem).map(|message| &message.text)
+    }
+}
+
+/// A message.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Message {
+    /// Its text.
+    pub text: String,
+    /// Whether it reports a problem.
+    pub is_problem: bool,
 }
 
 /// A refused edit.

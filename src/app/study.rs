@@ -68,11 +68,11 @@ fn summary(study: &Study) -> String {
         text += &format!("  ·  {:.1} % keep within limits ({low:.1} to {high:.1} %)", 100.0 * yields.share);
     }
     let (n, f) = (&study.agreement.moment_deviation, &study.agreement.force_mean);
-    text += &match n.worst <= study.agreement.tolerance {
+    text += &match n.largest <= study.agreement.tolerance {
         true => "  ·  first order holds for n_B".into(),
-        false => format!("  ·  first order is off by {:.2} σ for n_B at {:.3} s", n.worst, n.time),
+        false => format!("  ·  first order is off by {:.2} σ for n_B at {:.3} s", n.largest, n.time),
     };
-    if f.worst > study.agreement.sampled_tolerance {
+    if f.largest > study.agreement.sampled_tolerance {
         text += ", not for the mean of |f_B|, which is a norm";
     }
     if !study.left_out.is_empty() {

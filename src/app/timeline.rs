@@ -91,7 +91,7 @@ fn pace(rate: f64) -> String {
 /// branches.
 fn mark(ui: &Ui, p: &Palette, group: &MarkGroup, [x, top]: [f32; 2], commands: &mut Vec<Command>) -> Response {
     let tone = match group.tone {
-        Tone::Own => p.amber,
+        Tone::Bookmark => p.amber,
         Tone::Peak => p.reaction,
         Tone::Event => p.dim,
         Tone::Fork => p.ink,
@@ -113,7 +113,9 @@ fn mark(ui: &Ui, p: &Palette, group: &MarkGroup, [x, top]: [f32; 2], commands: &
         commands.push(SessionCommand::Seek(group.time).into());
     }
     match group.tone {
-        Tone::Own if response.secondary_clicked() => commands.push(SessionCommand::NameBookmark(group.time).into()),
+        Tone::Bookmark if response.secondary_clicked() => {
+            commands.push(SessionCommand::NameBookmark(group.time).into())
+        }
         // The list of changes contains the branches.
         Tone::Fork if response.secondary_clicked() => commands.push(ViewChange::Switch(Switch::History, true).into()),
         _ => {}

@@ -211,7 +211,7 @@ pub fn dialog(ctx: &egui::Context, view_state: &mut ViewState, commands: &mut Ve
                     ui.label(RichText::new("or drop a file on the window").weak());
                 }
             });
-            if let Some((text, true)) = &view_state.said.message {
+            if let Some(text) = view_state.status.problem() {
                 ui.label(RichText::new(text).color(ui.visuals().error_fg_color));
             }
         });

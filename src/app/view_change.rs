@@ -32,7 +32,7 @@ impl ViewState {
             Switch::Times => self.open.times,
             Switch::Finder => self.open.finder.is_some(),
             Switch::Equations => {
-                self.view == ViewKind::Design && self.arrangement.now().plots.shown && self.arrangement.learns
+                self.view == ViewKind::Design && self.arrangement.now().plots.shown && self.arrangement.shows_equations
             }
             Switch::Loop => self.loops,
             Switch::Exaggeration => self.exaggerates_base,
@@ -77,7 +77,7 @@ impl ViewState {
             Switch::Times => self.open.times = on,
             Switch::Finder => self.open.finder = on.then(Finder::default),
             Switch::Equations => {
-                self.arrangement.learns = on;
+                self.arrangement.shows_equations = on;
                 // No point of the Pareto front is under the pointer any more.
                 self.ghost = None;
                 if on {

@@ -49,7 +49,7 @@ pub struct ViewState {
     /// Open dialogs, lists and cards.
     pub open: OpenDialogs,
     /// Messages.
-    pub said: StatusMessage,
+    pub status: StatusMessage,
     /// Objects under the pointer.
     pub pointed: HoverTarget,
     /// The drag under way.
@@ -98,9 +98,9 @@ impl ViewState {
     /// Returns the initial state: a flat view of everything.
     pub fn new(theme: Theme, views: &Views) -> Self {
         Self {
-            arrangement: WindowArrangement::usual(theme),
+            arrangement: WindowArrangement::with_theme(theme),
             open: OpenDialogs::default(),
-            said: StatusMessage::default(),
+            status: StatusMessage::default(),
             pointed: HoverTarget::default(),
             gesture: DragGesture::default(),
             tool: Tool::default(),

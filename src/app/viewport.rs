@@ -6,7 +6,7 @@ use egui::{CentralPanel, CursorIcon, Frame, PointerButton, PopupAnchor, Pos2, Re
 
 use super::card::Card;
 use super::intro::Intro;
-use super::scene_pointer::ScenePointer;
+use super::scene_pointer::{PointedScene, ScenePointer};
 use super::tour::Tour;
 use super::widgets::name;
 use super::{
@@ -14,7 +14,7 @@ use super::{
     status,
 };
 use stillbase_mechanics::planar::{DriveAngles, Vector};
-use stillbase_picture::paint::words::words;
+use stillbase_picture::paint::labels::draw_labels;
 use stillbase_picture::paint::{SceneViewport, paint};
 use stillbase_picture::scene::exaggeration::{DrawnFrame, Exaggeration};
 use stillbase_picture::scene::options::{Handle, OtherRun, ViewOptions, WeightOption};
@@ -25,15 +25,22 @@ use stillbase_session::scenario::Task;
 use stillbase_session::{Edit, Session};
 use stillbase_study::comparison::Comparison;
 
+/// What the scene shows.
+#[derive(Clone, Copy)]
+pub struct SceneContent<'a> {
+    pub session: &'a Session,
+    pub views: &'a Views,
+    /// Factor by which the motion of the base is enlarged.
+    pub exaggeration: f64,
+    pub comparison: Option<&'a Comparison>,
+    pub intro: Option<&'a Intro>,
+    /// Counterweights of the point of a Pareto front that the user has chosen.
+    pub weights: &'a [WeightOption],
+}
+
 /// Draws the scene and handles the pointer; returns the rectangle of the scene.
-pub fn show(
-    ui: &mut Ui,
-    session: &Session,
-    (views, exaggeration): (&Views, f64),
-    (comparison, intro, chosen): (Option<&Comparison>, Option<&Intro>, &[WeightOption]),
-    view_state: &mut ViewState,
-    commands: &mut Vec<Command>,
-) -> Rect {
+pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, commands: &mut Vec<Command>) -> Rect {
+    let SceneContent { session, views, exaggeration, comparison, intro, weights } = content;
     let shown = CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let mut room = ui.available_size();
@@ -63,7 +70,13 @@ pub fn show(
             draw(ui, &response, &spot, views, view_state, commands);
         } else {
             let demonstrates = intro.is_some_and(Intro::demonstrates);
-            let hand = ScenePointer::over(ui, &response, &spot, (session, &shown), (views, demonstrates), view_state);
+            let hand = ScenePointer::over(
+                ui,
+                &response,
+                &spot,
+                PointedScene { session, shown: &shown, views, demonstrates },
+                view_state,
+            );
             hand.points(view_state, commands);
             let place = |pos: Pos2| spot.pointer(pos).ray()?.at_height(views.stage().handle_height());
             let at = response.interact_pointer_pos().filter(|_| view_state.view.shows_machine()).and_then(place);
@@ -86,7 +99,7 @@ pub fn show(
             drag_position: view_state.gesture.position,
             preview_b: view_state.pointed.preview,
             stroke: drawn(&view_state.tool),
-            refused: view_state.said.refused.as_ref().and_then(|r| r.curve.clone()),
+            refused: view_state.status.refused.as_ref().and_then(|r| r.curve.clone()),
             snapshots: if view_state.snapshots { snapshots(session) } else { Vec::new() },
             others: comparison.map_or_else(Vec::new, |comparison| others(comparison, session.frame().time)),
             exaggeration,
@@ -96,7 +109,7 @@ pub fn show(
             shadows: view_state.view == ViewKind::Space,
             show_hints: session.can_be_dragged(),
             compares: both.is_none(),
-            weights: chosen.to_vec(),
+            weights: weights.to_vec(),
             links: view_state.pointed.lit_links.clone(),
             scale: None,
         };
@@ -105,7 +118,7 @@ pub fn show(
         let spot = SceneViewport { rect, camera: *view_state.camera() };
         // The problem message covers the scene while it lasts.
         covered.extend(status::has_bad_news(session, view_state).then(|| status::news_rect(ui.ctx())).flatten());
-        words(ui, &spot, &scene, &covered);
+        draw_labels(ui, &spot, &scene, &covered);
         corner::show(ui, rect, view_state, views, commands);
         coordinates::show(ui, rect, session, views, view_state, commands);
         let seen = |at: [f64; 3]| spot.screen(at).is_some_and(|at| rect.contains(at));

@@ -55,7 +55,7 @@ pub(super) struct NumberRow<'a> {
 
 /// Returns the explanation of a setting, by its path.
 pub(super) fn tip_of(path: &str) -> &'static str {
-    key_of(path).map_or("", |key| key.words)
+    key_of(path).map_or("", |key| key.meaning)
 }
 
 impl<'a> NumberRow<'a> {
@@ -63,7 +63,7 @@ impl<'a> NumberRow<'a> {
     pub fn of(label: &'a str, path: &str) -> Self {
         let key = key_of(path);
         let range = key.and_then(key::Key::range).map_or(f64::MIN..=f64::MAX, |range| range.low()..=range.high());
-        let (unit, tip) = key.map_or(("", ""), |key| (key.unit(), key.words));
+        let (unit, tip) = key.map_or(("", ""), |key| (key.unit(), key.meaning));
         Self { label, unit, tip, decimals: 2, speed: 0.01, slide: range.clone(), range }
     }
 

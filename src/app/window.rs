@@ -28,8 +28,8 @@ pub fn run(scenario: Scenario, theme: Option<Theme>) -> Result<(), WindowError> 
     let mut app_state = AppState::open_or_explain(scenario, liked.theme)?
         .with_workers(Threads::Background)
         .with_preferences(&liked)
-        .offering_recovery(keeper::found());
-    if app_state.view_state().said.message.is_none() && app_state.session().run().waiting().is_none() {
+        .offering_recovery(keeper::find_left_session());
+    if app_state.view_state().status.message.is_none() && app_state.session().run().waiting().is_none() {
         app_state.carry_out(SessionCommand::TogglePlay);
     }
     let place = egui::ViewportBuilder::default()
@@ -38,5 +38,5 @@ pub fn run(scenario: Scenario, theme: Option<Theme>) -> Result<(), WindowError> 
         .with_inner_size(liked.size)
         .with_min_inner_size([960.0, 600.0]);
     let may_break = std::env::var_os("STILLBASE_BREAK_DEVICE").is_some();
-    shell::show(&mut App::new(app_state, Clock::Wall(None)).kept(liked, may_break), place)
+    shell::show(&mut App::new(app_state, Clock::Wall(None)).with_storage(liked, may_break), place)
 }

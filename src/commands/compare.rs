@@ -10,7 +10,7 @@ use stillbase_study::comparison::{
     ComparisonRow, ComparisonTable, DESIGN_COLUMNS, SUMMARY_COLUMNS, Summary, alternatives,
 };
 
-use super::exit::say;
+use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, distinct_name, scenario};
 use super::output::{Format, TextTable, check_output};
@@ -63,7 +63,7 @@ impl CompareArguments {
         scenarios.iter().for_each(|(way, scenario)| runs.run(*way, scenario));
         let faults =
             || runs.rows().iter().filter_map(|row| Some((&row.name, row.outcome.as_ref().ok()?.fault.as_ref()?)));
-        faults().for_each(|(name, fault)| say(format!("{name}: audit failed: {fault}")));
+        faults().for_each(|(name, fault)| print_message(format!("{name}: audit failed: {fault}")));
         let good = runs.rows().iter().zip(scenarios).filter(|(row, _)| row.outcome.is_ok());
         let good: Vec<Scenario> = good.map(|(_, (_, scenario))| scenario).collect();
         if let [ComparisonRow { name, outcome: Err(why), .. }] = runs.rows() {
@@ -104,7 +104,7 @@ impl CompareArguments {
     fn record(&self, scenarios: &[Scenario], file: &std::path::Path) -> Result<(), Failure> {
         let options = stillbase_recording::Options { force: self.force, ..super::headless::unpictured() };
         super::headless::record_with_bar(scenarios, file, &options)?;
-        say(format!("wrote {}", file.display()));
+        print_message(format!("wrote {}", file.display()));
         Ok(())
     }
 
@@ -146,7 +146,7 @@ impl CompareArguments {
             Ok(file) => file.finish()?,
             Err(e) => return Err(Failure::wrong_input(e.error())),
         }
-        say(format!("wrote {}", file.display()));
+        print_message(format!("wrote {}", file.display()));
         Ok(())
     }
 }
@@ -163,7 +163,7 @@ fn designs(rows: &[ComparisonRow]) -> String {
         let cells = columns.iter().map(|c| (c.value)(design).map_or_else(|| "–".into(), |x| fixed(x, c.decimals)));
         let name = row.title();
         table.row([name.to_owned()].into_iter().chain(cells));
-        if let Some(why) = &design.apart {
+        if let Some(why) = &design.why_not {
             apart += &format!("{name}: {why}\n");
         }
     }

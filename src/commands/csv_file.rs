@@ -6,7 +6,7 @@ use std::path::Path;
 use stillbase_files::{NewFile, WriteError};
 use stillbase_settings::text::plain;
 
-use super::exit::say;
+use super::exit::print_message;
 use super::failure::Failure;
 
 /// A CSV file that is being written.
@@ -54,7 +54,7 @@ impl Csv {
             Ok(Sink::File(file)) => {
                 let name = file.path().display().to_string();
                 file.finish()?;
-                say(format!("wrote {name}"));
+                print_message(format!("wrote {name}"));
             }
             Ok(Sink::Standard(_)) => {}
             Err(e) => return Err(Failure::standard_output(e.error())),

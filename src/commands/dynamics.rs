@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::{Deserialize, Serialize};
-use stillbase_mechanics::dynamics::Surroundings;
+use stillbase_mechanics::dynamics::ExternalLoads;
 use stillbase_mechanics::loads::Loads;
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::PerDrive;
@@ -52,7 +52,7 @@ impl DynamicsArguments {
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
         let inertia = Inertia::of(&machine);
-        let around = Surroundings { gravity: machine.gravity(), ..Surroundings::default() };
+        let around = ExternalLoads { gravity: machine.gravity(), ..ExternalLoads::default() };
         let states = states(&self.states, &machine)?;
         let results = states.iter().map(|[q, qd, qdd]| Loads::of(&inertia, &around, q, qd, qdd)).collect();
         self.format.print(&Answer { results }, |answer| tables(answer, inertia.drives()))

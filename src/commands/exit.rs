@@ -13,7 +13,7 @@ use super::failure::{Failure, RefusedScenario};
 use super::output::Format;
 
 /// Prints a message on standard error, in one line.
-pub fn say(message: impl Display) {
+pub fn print_message(message: impl Display) {
     let message = message.to_string();
     let line = message.lines().map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join(" ");
     let line = shorten_message(&line);
@@ -47,10 +47,10 @@ pub fn exit_code(done: Result<(), Failure>, as_json: bool) -> ExitCode {
         let report = FailureReport { reason: &why, proposals: &proposals };
         let _ = Format { json: true }.print(&report, |_| String::new());
     }
-    say(why);
+    print_message(why);
     for proposal in proposals {
         let settings: Vec<String> = proposal.settings().iter().map(|set| format!("--set {}", quoted(set))).collect();
-        say(format!("{}: {}", proposal.text, settings.join(" ")));
+        print_message(format!("{}: {}", proposal.text, settings.join(" ")));
     }
     ExitCode::from(status)
 }

@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use stillbase_files::write_new;
-use stillbase_mechanics::dynamics::{Surroundings, inverse};
+use stillbase_mechanics::dynamics::{ExternalLoads, inverse};
 use stillbase_mechanics::machine::Inertia;
 use stillbase_mechanics::planar::Vector;
 use stillbase_session::scenario::Scenario;
 use stillbase_session::{Run, replay_if, with_start_edits};
 
-use super::exit::say;
+use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{Settings, scenario};
 use super::output::{Format, check_output, check_size};
@@ -100,13 +100,15 @@ impl ExportArguments {
             What::Reference => {
                 let (start, later) = with_start_edits(&scenario)?;
                 if later > 0 {
-                    say(format!(
+                    print_message(format!(
                         "note: the reference leaves out {} after the start; --what simulated",
                         counted(later, "edit")
                     ));
                 }
                 if start.base.moves() {
-                    say("note: tau_ff is of the model on a fixed base; --what simulated gives what control asks for");
+                    print_message(
+                        "note: tau_ff is of the model on a fixed base; --what simulated gives what control asks for",
+                    );
                 }
                 let (rows, duration) = self.reference(&Run::new(&start).map_err(|e| Failure::refused(&start, e))?)?;
                 (rows, duration, None)
@@ -127,7 +129,7 @@ impl ExportArguments {
             _ => 0.0,
         };
         if (last_interval * self.rate - 1.0).abs() > 1e-6 && rows.len() > 1 {
-            say(format!(
+            print_message(format!(
                 "note: {} Hz does not divide {} s: the last row, the end, is {} ms after the one before",
                 self.rate,
                 fixed(duration, 6),
@@ -144,7 +146,7 @@ impl ExportArguments {
                 if self.format.json {
                     self.format.print(&answer, |_| String::new())?;
                 }
-                say(format!("wrote {}, {}", file.display(), counted(answer.rows.len(), "row")));
+                print_message(format!("wrote {}, {}", file.display(), counted(answer.rows.len(), "row")));
             }
             None => self.format.print(&answer, |_| csv)?,
         }
@@ -155,7 +157,7 @@ impl ExportArguments {
     fn reference(&self, run: &Run) -> Result<(Rows, f64), Failure> {
         let (motion, machine) = (&run.plan().motion, &run.scenario().machine);
         let (model, whole) = (Inertia::of(machine), motion.duration());
-        let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
+        let around = ExternalLoads { gravity: machine.gravity(), force: Vector::default() };
         self.check_rows(whole)?;
         // The end adds a row unless a whole number of intervals reaches it.
         let spaces = (whole * self.rate * (1.0 - 1e-9)).ceil() as usize;

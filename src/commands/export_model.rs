@@ -13,7 +13,7 @@ use stillbase_files::write_new;
 use stillbase_mechanics::machine::Machine;
 use stillbase_settings::number::{counted, fixed};
 
-use super::exit::say;
+use super::exit::print_message;
 use super::failure::Failure;
 use super::input::MachineArgument;
 use super::output::{Format, TextTable, check_output};
@@ -108,7 +108,7 @@ impl ExportModelArguments {
         let text = form.written(&machine, &pose, &cut).map_err(Failure::wrong_input)?;
         let of = described(&machine, form, pose, &cut)?;
         write_new(&self.output, text.as_bytes(), self.force)?;
-        say(format!("wrote {}", self.output.display()));
+        print_message(format!("wrote {}", self.output.display()));
         let answer = Answer { file: self.output.display().to_string(), of };
         self.format.print(&answer, |answer| answer.of.words(&machine))
     }
@@ -138,7 +138,7 @@ impl ExportModelArguments {
             Some((option, _, counts)) => {
                 let endings = form::listed(counts);
                 let what = format!("{option} has no effect on such a file: want one that ends in {endings}");
-                Err(Failure::wrong_input(what).of(self.output.display()))
+                Err(Failure::wrong_input(what).with_context(self.output.display()))
             }
             None => Ok(()),
         }

@@ -67,20 +67,20 @@ impl Failure {
     /// Returns the failure of a refused scenario, with the name of the scenario before the reason.
     pub fn refused(scenario: &Scenario, refusal: Refusal) -> Self {
         let proposals = proposals(scenario, &refusal);
-        let failure = Self::from(refusal).of(&scenario.name);
+        let failure = Self::from(refusal).with_context(&scenario.name);
         Self::Refused(Box::new(RefusedScenario { failure, proposals, is_printed: false }))
     }
 
     /// Returns the failure with `what` before its reason.
     #[must_use]
-    pub fn of(self, what: impl Display) -> Self {
+    pub fn with_context(self, what: impl Display) -> Self {
         match self {
             Self::ReaderGone => Self::ReaderGone,
             Self::NoAnswer(why) => Self::NoAnswer(format!("{what}: {why}")),
             Self::WrongInput(why) => Self::WrongInput(format!("{what}: {why}")),
             Self::Refused(refused) => {
                 let RefusedScenario { failure, proposals, is_printed } = *refused;
-                Self::Refused(Box::new(RefusedScenario { failure: failure.of(what), proposals, is_printed }))
+                Self::Refused(Box::new(RefusedScenario { failure: failure.with_context(what), proposals, is_printed }))
             }
         }
     }

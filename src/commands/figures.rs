@@ -15,7 +15,7 @@ use stillbase_picture::scene::views::ViewKind;
 use stillbase_session::Edit;
 use stillbase_session::scenario::{TaskChange, Value};
 
-use super::exit::say;
+use super::exit::print_message;
 use super::failure::Failure;
 
 /// Draw the pictures of the documentation in both themes, without a display: the window, joint space and the tower
@@ -74,7 +74,7 @@ impl FiguresArguments {
     fn write(&self, name: &str, picture: &Picture) -> Result<(), Failure> {
         let file = self.output.join(name);
         write_new(&file, &picture.to_png().map_err(Failure::no_answer)?, self.force)?;
-        say(format!("wrote {}", file.display()));
+        print_message(format!("wrote {}", file.display()));
         Ok(())
     }
 }

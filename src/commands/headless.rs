@@ -10,7 +10,7 @@ use stillbase_session::scenario::Scenario;
 use stillbase_session::verdict::Statements;
 use stillbase_settings::text::plain;
 
-use super::exit::say;
+use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{Settings, scenario};
 use super::output::{Format, TextTable, check_output};
@@ -121,11 +121,11 @@ impl HeadlessArguments {
         let [width, height] = self.size;
         let pictures = self.fps.map(|fps| Pictures { fps, width, height, pin_forces: self.pin_forces });
         let recordings = record_with_bar(&scenarios, &self.output, &Options { pictures, force: self.force })?;
-        say(format!("wrote {}", self.output.display()));
+        print_message(format!("wrote {}", self.output.display()));
         let answer = Answer { recordings: recordings.into_iter().map(Row::from).collect() };
         for row in &answer.recordings {
-            say(format!("{}: {}", row.scenario, row.statements.line()));
-            row.remarks.iter().for_each(|remark| say(format!("{}: {remark}", row.scenario)));
+            print_message(format!("{}: {}", row.scenario, row.statements.line()));
+            row.remarks.iter().for_each(|remark| print_message(format!("{}: {remark}", row.scenario)));
         }
         self.format.print(&answer, table)?;
         answer.recordings.iter().try_for_each(|row| require_audit(&row.scenario, row.audit_failed.clone()))
@@ -139,7 +139,7 @@ impl HeadlessArguments {
             let next = scenario(name, &self.settings)?;
             if scenarios.iter().any(|s| s.name == next.name) {
                 let why = format!("a second scenario called {:?}: want different names in one recording", next.name);
-                return Err(Failure::wrong_input(why).of(name));
+                return Err(Failure::wrong_input(why).with_context(name));
             }
             scenarios.push(next);
         }
@@ -163,7 +163,7 @@ pub fn record_with_bar(scenarios: &[Scenario], file: &Path, options: &Options) -
         if bar.message() != what {
             bar.set_message(what.into_owned());
         }
-        bar.set_length(progress.of);
+        bar.set_length(progress.total);
         bar.set_position(progress.done);
         true
     });
@@ -171,7 +171,7 @@ pub fn record_with_bar(scenarios: &[Scenario], file: &Path, options: &Options) -
     let recordings = recordings.map_err(|error| failed(error, scenarios))?;
     let notes: Vec<&String> = recordings.iter().flat_map(|r| &r.notes).collect();
     let is_first = |i: &usize| !notes[..*i].contains(&notes[*i]);
-    (0..notes.len()).filter(is_first).for_each(|i| say(notes[i]));
+    (0..notes.len()).filter(is_first).for_each(|i| print_message(notes[i]));
     Ok(recordings)
 }
 
@@ -180,7 +180,7 @@ fn failed(error: RecordError, scenarios: &[Scenario]) -> Failure {
     match error {
         RecordError::Refused { scenario, refusal } => match scenarios.iter().find(|own| own.name == scenario) {
             Some(scenario) => Failure::refused(scenario, refusal),
-            None => Failure::from(refusal).of(scenario),
+            None => Failure::from(refusal).with_context(scenario),
         },
         other => Failure::wrong_input(other),
     }

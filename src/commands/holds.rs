@@ -11,12 +11,12 @@ pub fn bound(text: &str) -> Result<(String, [f64; 2]), String> {
     named(text).ok_or_else(|| "want KEY=LO,HI in m or kg, as 2.com=-0.3,0.1".to_owned())
 }
 
-/// Sets in the request `asked` which parameters are fixed, free or bounded.
+/// Sets in the request `request` which parameters are fixed, free or bounded.
 ///
 /// # Errors
 /// If a key names no parameter, or a parameter is named twice.
-pub fn hold(
-    asked: &mut RebalanceRequest,
+pub fn apply_bounds(
+    request: &mut RebalanceRequest,
     machine: &Machine,
     fix: &[String],
     free: &[String],
@@ -32,7 +32,7 @@ pub fn hold(
             return Err(Failure::wrong_input(format!("{key} is held in two ways: want one of --fix, --free, --bound")));
         }
         seen.push(parameter);
-        asked.hold(machine, parameter, hold);
+        request.set_bounds(machine, parameter, hold);
     }
     Ok(())
 }

@@ -8,13 +8,13 @@ use std::path::{Path as FilePath, PathBuf};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use stillbase_files::table::{SampleTable, samples};
-use stillbase_files::{finish_all, made};
+use stillbase_files::{finish_all, write_temporary};
 use stillbase_planning::curves::Coordinates;
 use stillbase_query::{Shared, answer_now};
 use stillbase_session::scenario::Scenario;
 use stillbase_study::import::{GivenMotion, ImportQuery, ImportedMotion, MotionImportError, PreservedPath, Request};
 
-use super::exit::say;
+use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, above_zero, pose_constant, read};
 use super::output::{Format, check_output};
@@ -98,7 +98,7 @@ impl From<MotionImportError> for Failure {
     fn from(why: MotionImportError) -> Self {
         match why {
             MotionImportError::NoPoses(_) => Self::no_answer(why),
-            MotionImportError::NoJoints => Self::wrong_input(why).of("--keep joints has no use here"),
+            MotionImportError::NoJoints => Self::wrong_input(why).with_context("--keep joints has no use here"),
             MotionImportError::TooDense => Self::wrong_input(why),
         }
     }
@@ -120,18 +120,18 @@ impl ImportArguments {
         let SampleTable { coordinates, samples, names, unwrapped } =
             samples(&read(&self.file)?, &name, &machine, wanted, self.gaps)?;
         for (column, turns) in names.iter().zip(&unwrapped).filter(|(_, turns)| **turns > 0) {
-            say(format!("note: {column} was wrapped: a whole turn taken out at {turns} places"));
+            print_message(format!("note: {column} was wrapped: a whole turn taken out at {turns} places"));
         }
         let motion = GivenMotion::new(&machine, coordinates, names, samples);
         for (k, lift) in motion.lifted.iter().enumerate().filter(|(_, lift)| **lift != 0.0) {
             let turns = lift / TAU;
-            say(format!(
+            print_message(format!(
                 "note: q{} lifted by {turns:+.0} turns, so that the relative angles begin within their limits",
                 k + 1
             ));
         }
         let motion = match self.smooth {
-            Some(cut_off) => motion.smoothed(cut_off).map_err(|e| Failure::wrong_input(e).of("--smooth"))?,
+            Some(cut_off) => motion.smoothed(cut_off).map_err(|e| Failure::wrong_input(e).with_context("--smooth"))?,
             None => motion,
         };
         let base = Scenario::builtin(DEFAULT_SCENARIO)
@@ -145,7 +145,7 @@ impl ImportArguments {
         let scenario = Shared(Scenario { name: stem, title, machine, ..base }.into());
         let request = Request { scenario, motion: Shared(motion.into()), b: self.b, keep };
         let found = answer_now::<ImportQuery>(request)?;
-        found.notes.iter().for_each(|note| say(format!("note: {}", note.worded(option))));
+        found.notes.iter().for_each(|note| print_message(format!("note: {}", note.worded(option))));
         let imported = ImportedMotion { reason: found.reason.map(|reason| reason.worded(option)), ..found };
         self.format.print(&Answer { file: &name, imported: &imported }, |answer| table(answer.imported))?;
         let Some([proposed, given]) = &imported.scenarios else {
@@ -154,9 +154,9 @@ impl ImportArguments {
         if let Some([file, given_file]) = &files {
             // The given motion is written first, so that it exists whenever the proposal does.
             let given_first = [(given_file, given.to_toml()), (file, proposed.to_toml())];
-            let [given_made, made] = given_first.map(|(file, text)| made(file, text.as_bytes(), self.force));
+            let [given_made, made] = given_first.map(|(file, text)| write_temporary(file, text.as_bytes(), self.force));
             finish_all([given_made?, made?])?;
-            say(format!("wrote {} and {}", file.display(), given_file.display()));
+            print_message(format!("wrote {} and {}", file.display(), given_file.display()));
         }
         Ok(())
     }

@@ -9,10 +9,10 @@ use stillbase_files::{is_same_place, write_new};
 use stillbase_mechanics::machine::{Inertia, Machine, to_toml};
 use stillbase_session::gentle_motion;
 use stillbase_session::scenario::Scenario;
-use stillbase_settings::number::{counted, fixed, shown};
+use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
 use stillbase_simulation::plant::{Base, BaseKind};
 
-use super::exit::say;
+use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{Settings, read};
 use super::output::{Format, TextTable, check_output, yes};
@@ -92,11 +92,11 @@ impl ImportModelArguments {
             return Err(Failure::wrong_input("-o and --scenario name one file: want two"));
         }
         let name = self.file.display();
-        let found = import(&read(&self.file)?).map_err(|e| Failure::wrong_input(e).of(&name))?;
+        let found = import(&read(&self.file)?).map_err(|e| Failure::wrong_input(e).with_context(&name))?;
         let ImportedMachine { machine, pose, base, mut notes } = found;
         let machine = self.settings.apply(machine)?;
         if let Some(base) = base.filter(|_| self.scenario.is_none()) {
-            let (mass, inertia) = (shown(base.mass, 6), shown(base.inertia, 6));
+            let (mass, inertia) = (fixed_or_scientific(base.mass, 6), fixed_or_scientific(base.inertia, 6));
             notes.push(format!(
                 "the base, {mass} kg and {inertia} kg m², is no part of a machine: --scenario FILE.toml writes it into \
                  [base] of a scenario"
@@ -104,15 +104,15 @@ impl ImportModelArguments {
         }
         let scenario = self.scenario.as_ref().map(|_| scenario(&machine, base)).transpose()?;
         for note in &notes {
-            say(format!("note: {name}: {note}"));
+            print_message(format!("note: {name}: {note}"));
         }
         if let Some(file) = &self.output {
             write_new(file, to_toml(&machine).as_bytes(), self.force)?;
-            say(format!("wrote {}", file.display()));
+            print_message(format!("wrote {}", file.display()));
         }
         if let (Some(file), Some(scenario)) = (&self.scenario, &scenario) {
             write_new(file, scenario.to_toml().as_bytes(), self.force)?;
-            say(format!("wrote {}", file.display()));
+            print_message(format!("wrote {}", file.display()));
         }
         let inertia = Inertia::of(&machine);
         let answer = Answer {
@@ -130,7 +130,7 @@ impl ImportModelArguments {
         self.format.print(&answer, |answer| {
             let mut table = TextTable::new(["drive", "q rad in the file's pose", "H_kk kg m²"]);
             for (k, (drive, q)) in answer.drives.iter().zip(&answer.pose).enumerate() {
-                table.row([drive.clone(), fixed(*q, 6), shown(inertia.diagonal(k), 9)]);
+                table.row([drive.clone(), fixed(*q, 6), fixed_or_scientific(inertia.diagonal(k), 9)]);
             }
             let [links, drives] = [counted(answer.links, "link"), counted(answer.drives.len(), "drive")];
             let (balanced, invariant) = (yes(answer.force_balanced), yes(answer.invariant));

@@ -16,7 +16,7 @@ use stillbase_settings::range::Range;
 use stillbase_settings::text::MAX_TEXT_BYTES;
 use stillbase_settings::word::Choice;
 
-use super::exit::say;
+use super::exit::print_message;
 use super::failure::Failure;
 
 /// Default scenario of a command: the paper's reactionless case.
@@ -61,9 +61,9 @@ impl Settings {
             return Ok(machine);
         }
         let machine = machine.set_all(self.pairs.iter().map(|(k, v)| (k.as_str(), v.as_str())));
-        let machine = machine.map_err(|e| Failure::wrong_input(e).of("--set"))?;
+        let machine = machine.map_err(|e| Failure::wrong_input(e).with_context("--set"))?;
         match self.pairs.iter().find(|(key, value)| value != change::DEFAULT_WORD && !machine.uses(key, false)) {
-            Some((key, _)) => Err(no_use(key, key_of(key).map_or("", |key| key.when)).of("--set")),
+            Some((key, _)) => Err(no_use(key, key_of(key).map_or("", |key| key.when)).with_context("--set")),
             None => Ok(machine),
         }
     }
@@ -72,11 +72,11 @@ impl Settings {
     ///
     /// # Errors
     /// If there is such a setting.
-    pub fn none_of_tolerance(&self) -> Result<(), Failure> {
+    pub fn refuse_tolerances(&self) -> Result<(), Failure> {
         let given = |(key, value): &&(String, String)| {
             key.split('.').next() == Some("tolerance") && ![change::DEFAULT_WORD, Key::NONE].contains(&value.as_str())
         };
-        self.pairs.iter().find(given).map_or(Ok(()), |(key, _)| Err(no_use(key, STUDY).of("--set")))
+        self.pairs.iter().find(given).map_or(Ok(()), |(key, _)| Err(no_use(key, STUDY).with_context("--set")))
     }
 
     /// Whether a key is set.
@@ -118,7 +118,7 @@ impl MachineArgument {
         let mut all: Vec<(String, Machine)> = Vec::new();
         for called in std::iter::once(&self.name).chain(others) {
             let machine = stillbase_files::machine(called, None)?;
-            let machine = self.settings.apply(machine).map_err(|why| why.of(called))?;
+            let machine = self.settings.apply(machine).map_err(|why| why.with_context(called))?;
             all.push((distinct_name(machine.name(), |name| all.iter().any(|(known, _)| known == name)), machine));
         }
         Ok(all)
@@ -142,7 +142,7 @@ pub fn distinct_name(own: &str, taken: impl Fn(&str) -> bool) -> String {
 /// As [`overlay_for_study`], or if a setting is a tolerance.
 pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     let scenario = overlay_for_study(name, settings)?;
-    settings.none_of_tolerance()?;
+    settings.refuse_tolerances()?;
     report_tolerance(&scenario);
     Ok(scenario)
 }
@@ -150,7 +150,7 @@ pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
 /// Prints a note if a scenario has tolerances, which have no effect in a command that samples no machines.
 pub fn report_tolerance(scenario: &Scenario) {
     if !scenario.tolerance.is_empty() {
-        say(format!("note: {}: tolerance has no use here: want {STUDY}", scenario.name));
+        print_message(format!("note: {}: tolerance has no use here: want {STUDY}", scenario.name));
     }
 }
 
@@ -164,7 +164,7 @@ const STUDY: &str = "the command tolerance, or the window";
 /// If there is no such scenario or setting, or the result is not valid.
 pub fn overlay_for_study(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     let scenario = overlay_unchecked(name, settings)?;
-    none_idle(&scenario, settings)?;
+    refuse_ineffective(&scenario, settings)?;
     report_idle(&scenario);
     Ok(scenario)
 }
@@ -175,8 +175,8 @@ pub fn overlay_for_study(name: &str, settings: &Settings) -> Result<Scenario, Fa
 /// As [`overlay_for_study`], except for settings without an effect.
 pub fn overlay_unchecked(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     let found = stillbase_files::scenario(name)?;
-    if let Some(made) = &found.made {
-        say(format!("note: {made}"));
+    if let Some(made) = &found.note {
+        print_message(format!("note: {made}"));
     }
     overlay_settings(found.scenario, settings)
 }
@@ -184,7 +184,7 @@ pub fn overlay_unchecked(name: &str, settings: &Settings) -> Result<Scenario, Fa
 /// Prints which keys of a scenario have no effect.
 pub fn report_idle(scenario: &Scenario) {
     for (path, want) in scenario.ineffective_keys() {
-        say(format!("note: {}: {path} has no use there: want {want}", scenario.name));
+        print_message(format!("note: {}: {path} has no use there: want {want}", scenario.name));
     }
 }
 
@@ -194,7 +194,7 @@ pub fn report_idle(scenario: &Scenario) {
 /// If there is no such setting, it has no effect, or the result is not valid.
 pub fn overlay_used(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure> {
     let scenario = overlay_settings(scenario, settings)?;
-    none_idle(&scenario, settings)?;
+    refuse_ineffective(&scenario, settings)?;
     Ok(scenario)
 }
 
@@ -203,7 +203,8 @@ pub fn overlay_used(scenario: Scenario, settings: &Settings) -> Result<Scenario,
 /// # Errors
 /// If there is no such setting, or the result is not valid.
 pub fn overlay_settings(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure> {
-    let scenario = scenario.with_settings(&settings.change()).map_err(|why| Failure::wrong_input(why).of("--set"))?;
+    let scenario =
+        scenario.with_settings(&settings.change()).map_err(|why| Failure::wrong_input(why).with_context("--set"))?;
     scenario.check("--set")?;
     Ok(scenario)
 }
@@ -212,11 +213,11 @@ pub fn overlay_settings(scenario: Scenario, settings: &Settings) -> Result<Scena
 ///
 /// # Errors
 /// If there is such a setting; the error names the condition for an effect.
-pub fn none_idle(scenario: &Scenario, settings: &Settings) -> Result<(), Failure> {
+pub fn refuse_ineffective(scenario: &Scenario, settings: &Settings) -> Result<(), Failure> {
     for (path, value) in change::leaves(&settings.change()) {
         let freed = value.as_str().is_some_and(|word| [change::DEFAULT_WORD, Key::NONE].contains(&word));
         if let Some(want) = scenario.condition_for_effect(&path).filter(|_| !freed) {
-            return Err(no_use(&path, want).of("--set"));
+            return Err(no_use(&path, want).with_context("--set"));
         }
     }
     Ok(())
@@ -247,7 +248,7 @@ pub fn change_task(scenario: &mut Scenario, change: &TaskChange) -> Result<(), F
 pub fn pose_space(machine: &Machine) -> Result<PoseSpace, Failure> {
     let space = PoseSpace::of(machine)?;
     if let nearly @ PoseConstant::Nearly { .. } = PoseConstant::of(machine) {
-        say(format!("note: {}: {nearly}", machine.name()));
+        print_message(format!("note: {}: {nearly}", machine.name()));
     }
     Ok(space)
 }
@@ -296,6 +297,6 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
 pub fn read(file: &Path) -> Result<String, Failure> {
     stillbase_files::text::read(file).map_err(|e| {
         let why = format!("{e}: want a plain file that can be read, of at most {MAX_TEXT_BYTES} bytes");
-        Failure::wrong_input(why).of(file.display())
+        Failure::wrong_input(why).with_context(file.display())
     })
 }

@@ -9,12 +9,12 @@ use stillbase_simulation::frame::Frame;
 use stillbase_study::joint_extremes::{JointExtremes, JointReport};
 
 use super::csv_file::Csv;
-use super::exit::say;
+use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, check_output, check_size};
 use super::simulate::require_audit;
-use stillbase_settings::number::{counted, fixed, shown};
+use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
 
 /// Print the forces on all pins and bearings over a run, how near it comes to change points, and the tilting moment
 #[derive(Args)]
@@ -46,11 +46,11 @@ impl JointsArguments {
         let scenario = scenario(&self.scenario, &self.settings)?;
         let machine = scenario.plant.machine(&scenario.machine)?;
         let name = machine.name().to_owned();
-        let mut extremes = JointExtremes::of(machine).map_err(|e| Failure::from(e).of(name))?;
+        let mut extremes = JointExtremes::of(machine).map_err(|e| Failure::from(e).with_context(name))?;
         let pins = extremes.pins().to_vec();
         if extremes.left_out() > 0 {
             let all = pins.len() + extremes.left_out();
-            say(format!("a run keeps the first {} of {all} pins; the others are left out", pins.len()));
+            print_message(format!("a run keeps the first {} of {all} pins; the others are left out", pins.len()));
         }
         if let Some(file) = &self.output {
             check_output(file, self.force, &["csv"])?;
@@ -104,7 +104,13 @@ fn human(answer: &JointReport) -> String {
     let mut pins = TextTable::new(["pin", "on link", "peak N", "at s", "mean N"]);
     let mut undefined = 0;
     for pin in &answer.pins {
-        pins.row([pin.name.clone(), pin.to.clone(), shown(pin.peak, 3), fixed(pin.time, 3), shown(pin.mean, 3)]);
+        pins.row([
+            pin.name.clone(),
+            pin.to.clone(),
+            fixed_or_scientific(pin.peak, 3),
+            fixed(pin.time, 3),
+            fixed_or_scientific(pin.mean, 3),
+        ]);
         undefined = undefined.max(pin.undefined_steps);
     }
     let mut text = format!(

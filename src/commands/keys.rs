@@ -63,21 +63,21 @@ impl KeysArguments {
     pub fn run(&self) -> Result<(), Failure> {
         let sought: Vec<String> = self.words.iter().flat_map(|w| w.split_whitespace()).map(str::to_lowercase).collect();
         let matches_words = |key: &&Key| {
-            let all = format!("{} {} {} {}", key.path, key.words, key.holds, key.when).to_lowercase();
+            let all = format!("{} {} {} {}", key.path, key.meaning, key.value_type, key.when).to_lowercase();
             sought.iter().all(|word| all.contains(word) || key.matches(word))
         };
         let some = |text: &'static str| (!text.is_empty()).then_some(text);
         let of_part = |&(part, tables): &(&'static str, &'static [&'static [Key]])| {
             tables.iter().copied().flatten().filter(matches_words).map(move |key| Row {
                 key: key.path,
-                holds: key.holds.to_string(),
+                holds: key.value_type.to_string(),
                 unit: some(key.unit()),
                 default: some(key.default),
                 instead: some(key.instead),
-                words: key.words,
+                words: key.meaning,
                 when: some(key.when),
                 part,
-                usual: key.usual(),
+                usual: key.default_in_words(),
             })
         };
         let keys: Vec<Row> = KEYS.iter().flat_map(of_part).collect();

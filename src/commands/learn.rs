@@ -16,7 +16,7 @@ use stillbase_study::equations::{
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, no_use, overlay_used};
 use super::output::Format;
-use stillbase_settings::number::{counted, fixed, shown};
+use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
 
 /// Print every equation of the paper, and below it the same equation with the numbers of a machine
 ///
@@ -118,7 +118,7 @@ impl LearnArguments {
         };
         let q = DriveAngles(given("--pose", &pose)?);
         let (qd, qdd) = (given("--rates", &self.rates)?, given("--accelerations", &self.accelerations)?);
-        Ok((machine, DriveState::given(Reference { q, qd, qdd })))
+        Ok((machine, DriveState::of_reference(Reference { q, qd, qdd })))
     }
 
     /// Returns the scenario or the machine that the command line names.
@@ -126,10 +126,10 @@ impl LearnArguments {
         let machine = || self.settings.apply(stillbase_files::machine(&self.what, None)?);
         match stillbase_files::scenario(&self.what) {
             // For the name of a machine, the scenario made for it is not used.
-            Ok(found) if found.made.is_some() => Ok(Subject::Machine(Box::new(machine()?))),
+            Ok(found) if found.note.is_some() => Ok(Subject::Machine(Box::new(machine()?))),
             Ok(found) => {
                 let scenario = overlay_used(found.scenario, &self.settings)?;
-                self.settings.none_of_tolerance()?;
+                self.settings.refuse_tolerances()?;
                 Ok(Subject::Scenario(Box::new(scenario)))
             }
             // A machine for which no task can be made is accepted, too.
@@ -190,14 +190,14 @@ fn text(equation: &Equation) -> String {
 
 /// States whether both sides of an equation agree.
 fn verdict(equation: &Equation) -> String {
-    let Some(worst) = equation.worst() else { return String::new() };
-    let off = worst.off().abs();
+    let Some(worst) = equation.least_accurate() else { return String::new() };
+    let off = worst.residual().abs();
     let unit = if worst.unit.is_empty() { String::new() } else { format!(" {}", worst.unit) };
     let name = if worst.name.is_empty() { String::new() } else { format!(" in {}", worst.name) };
     match equation.holds() {
         Some(true) => format!("holds: both sides differ by {off:.0e}{unit} at most"),
         _ if equation.is_choice() => "the centres of mass of this machine lie elsewhere, which is no fault".into(),
-        _ => format!("does not hold: off by {}{unit}{name}", shown(off, DECIMALS)),
+        _ => format!("does not hold: off by {}{unit}{name}", fixed_or_scientific(off, DECIMALS)),
     }
 }
 

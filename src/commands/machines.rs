@@ -35,7 +35,7 @@ impl MachinesArguments {
     pub fn run(&self) -> Result<(), Failure> {
         let mut machines = Vec::new();
         for machine in builtins() {
-            let machine = self.settings.apply(machine.clone()).map_err(|e| e.of(machine.name()))?;
+            let machine = self.settings.apply(machine.clone()).map_err(|e| e.with_context(machine.name()))?;
             machines.push(Row {
                 name: machine.name().into(),
                 drives: machine.drives(),

@@ -70,13 +70,18 @@ fn record_instead(scenario: Scenario, why: &str) -> Result<(), Failure> {
     use stillbase_files::free_name;
     use stillbase_settings::number::counted;
 
-    use super::exit::say;
+    use super::exit::print_message;
     use super::headless::{record_with_bar, unpictured};
 
     let file = free_name(&scenario.name, "rrd");
-    say(format!("{}; recording {} without a window instead", why.trim_end_matches('.'), scenario.name));
+    print_message(format!("{}; recording {} without a window instead", why.trim_end_matches('.'), scenario.name));
     for done in record_with_bar(&[scenario], &file, &unpictured())? {
-        say(format!("wrote {}: {}, {}", done.file.display(), counted(done.steps, "step"), done.verdict.sentence()));
+        print_message(format!(
+            "wrote {}: {}, {}",
+            done.file.display(),
+            counted(done.steps, "step"),
+            done.verdict.sentence()
+        ));
     }
     Ok(())
 }

@@ -126,7 +126,7 @@ pub fn check_output(file: &Path, force: bool, endings: &[&'static str]) -> Resul
     let own = file.extension().unwrap_or_default();
     endings.iter().copied().find(|ending| own.eq_ignore_ascii_case(ending)).ok_or_else(|| {
         let endings: Vec<String> = endings.iter().map(|ending| format!(".{ending}")).collect();
-        Failure::wrong_input(format!("want a name that ends in {}", endings.join(" or "))).of(file.display())
+        Failure::wrong_input(format!("want a name that ends in {}", endings.join(" or "))).with_context(file.display())
     })
 }
 

@@ -16,11 +16,11 @@ use stillbase_session::{Run, with_start_edits};
 use stillbase_simulation::plant::PlantDifferences;
 use stillbase_study::plan_summary::PlanSummary;
 
-use super::exit::say;
+use super::exit::print_message;
 use super::failure::{Failure, RefusedScenario};
 use super::input::{
-    DEFAULT_SCENARIO, Settings, above_zero, change_task, choice, no_use, none_idle, overlay_settings,
-    overlay_unchecked, point, pose_constant, pose_space, report_idle, report_tolerance,
+    DEFAULT_SCENARIO, Settings, above_zero, change_task, choice, no_use, overlay_settings, overlay_unchecked, point,
+    pose_constant, pose_space, refuse_ineffective, report_idle, report_tolerance,
 };
 use super::output::{Format, TextTable, check_output};
 use stillbase_settings::number::{counted, fixed};
@@ -119,7 +119,7 @@ impl PlanArguments {
         let space = pose_space(&scenario.machine).ok();
         let run = Run::new(&scenario);
         let answer = PlanSummary::of(&scenario, space.as_ref(), run.as_ref(), self.base.as_ref());
-        let answer = answer.map_err(|e| Failure::wrong_input(e).of("--base"))?;
+        let answer = answer.map_err(|e| Failure::wrong_input(e).with_context("--base"))?;
         if run.is_ok() || self.format.json {
             self.format.print(&answer, table)?;
         }
@@ -134,7 +134,7 @@ impl PlanArguments {
                 scenario.name = file.file_stem().map_or_else(|| DEFAULT_NAME.into(), |s| s.to_string_lossy().into());
             }
             write_new(file, scenario.to_toml().as_bytes(), self.force)?;
-            say(format!("wrote {}", file.display()));
+            print_message(format!("wrote {}", file.display()));
         }
         Ok(())
     }
@@ -163,7 +163,7 @@ impl PlanArguments {
             return Err(no_use("--base", "the kind change-b: only a change of b turns the base"));
         }
         if scenario.plant != PlantDifferences::default() || scenario.base.moves() {
-            say("note: a plan is of the model; what differs in the plant or the base shows in `simulate`");
+            print_message("note: a plan is of the model; what differs in the plant or the base shows in `simulate`");
         }
         Ok(())
     }
@@ -173,7 +173,7 @@ impl PlanArguments {
         let as_machine = stillbase_files::machine(&self.name, None);
         let known = Scenario::builtin(&self.name).is_some();
         if self.output.is_none() {
-            self.settings.none_of_tolerance()?;
+            self.settings.refuse_tolerances()?;
         }
         let mut scenario = match as_machine {
             Ok(machine) if !known => {
@@ -195,7 +195,7 @@ impl PlanArguments {
                 }
                 let (start, later) = with_start_edits(&found)?;
                 if later > 0 {
-                    say(format!("note: the plan leaves out {} after the start", counted(later, "edit")));
+                    print_message(format!("note: the plan leaves out {} after the start", counted(later, "edit")));
                 }
                 start
             }
@@ -239,14 +239,14 @@ impl PlanArguments {
             && !self.points.is_empty()
             && let none @ PoseConstant::None(_) = PoseConstant::of(&scenario.machine)
         {
-            say(format!(
+            print_message(format!(
                 "note: {}: pose constant {none}; planned as minimum-norm, with what that does to the base",
                 scenario.machine.name()
             ));
             scenario.task.kind = TaskKind::MinimumNorm;
         }
         self.check_use(&scenario)?;
-        none_idle(&scenario, &self.settings)?;
+        refuse_ineffective(&scenario, &self.settings)?;
         // With another kind, keys of a built-in task may lose their effect, but the user has not given them.
         if self.kind.is_none() || Scenario::builtin(&scenario.name).is_none() {
             report_idle(&scenario);

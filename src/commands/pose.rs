@@ -70,7 +70,7 @@ impl PoseArguments {
             Ok(set) => {
                 let nearest_b = set.nearest(self.b);
                 let displayed_b = nearest_b.and_then(|b| set.decimal(b, 4));
-                Unreachable::OnThisPlane { x, y, b, would_do: set.in_words(), nearest_b, displayed_b }
+                Unreachable::OnThisPlane { x, y, b, feasible: set.in_words(), nearest_b, displayed_b }
             }
         }
     }

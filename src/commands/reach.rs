@@ -66,7 +66,7 @@ impl ReachArguments {
             points: self.points.iter().zip(sets).map(of_point).collect(),
             overlap,
             period: space.period(),
-            mend: why.and_then(|why| why.mend),
+            mend: why.and_then(|why| why.correction),
         };
         self.format.print(&answer, table)?;
         let said = || why.map_or("no b serves all points".into(), |w| w.in_words(&|i| format!("point {}", i + 1)));

@@ -12,7 +12,7 @@ use stillbase_simulation::frame::Frame;
 use stillbase_simulation::signals::{Signal, signals};
 
 use super::csv_file::Csv;
-use super::exit::say;
+use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, check_output, check_size};
@@ -182,7 +182,7 @@ impl SimulateArguments {
         }
         if !self.format.json {
             let past = verdict.peak_moment_past_wheel;
-            say(format!(
+            print_message(format!(
                 "{}: {}, peak |n_B| {} N m,{} peak |f_B| {} N, reactionless: {}",
                 scenario.name,
                 counted(verdict.steps, "step"),
@@ -191,9 +191,9 @@ impl SimulateArguments {
                 fixed(verdict.peak_base_force, 6),
                 verdict.answer,
             ));
-            say(format!("{}: {}", scenario.name, verdict.statements.line()));
+            print_message(format!("{}: {}", scenario.name, verdict.statements.line()));
             for remark in &verdict.remarks {
-                say(format!("{}: {remark}", scenario.name));
+                print_message(format!("{}: {remark}", scenario.name));
             }
             return require_audit(&scenario.name, verdict.audit_failed);
         }

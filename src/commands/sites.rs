@@ -1,6 +1,6 @@
 //! `--range`: links that may carry a counterweight, and the bounds of its place.
 
-use stillbase_mechanics::counterweights::Sites;
+use stillbase_mechanics::counterweights::CounterweightSite;
 use stillbase_mechanics::machine::Machine;
 
 use super::ends::named;
@@ -28,12 +28,12 @@ pub fn link(machine: &Machine, name: &str) -> Result<usize, Failure> {
 ///
 /// # Errors
 /// If there is no such link.
-pub fn sites(machine: &Machine, ranges: &[(String, [f64; 2])]) -> Result<Vec<Sites>, Failure> {
+pub fn sites(machine: &Machine, ranges: &[(String, [f64; 2])]) -> Result<Vec<CounterweightSite>, Failure> {
     if ranges.is_empty() {
-        return Ok(Sites::anywhere(machine));
+        return Ok(CounterweightSite::anywhere(machine));
     }
     let site = |(name, [from, to]): &(String, [f64; 2])| {
-        Ok(Sites { link: link(machine, name)?, from: *from, to: *to, most: f64::INFINITY })
+        Ok(CounterweightSite { link: link(machine, name)?, from: *from, to: *to, most: f64::INFINITY })
     };
     ranges.iter().map(site).collect()
 }

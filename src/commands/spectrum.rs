@@ -9,12 +9,12 @@ use stillbase_session::scenario::Scenario;
 use stillbase_study::base_spectrum::{BaseSpectrum, NoBaseSpectrum};
 use stillbase_study::spectrum::{JitterLimit, WindowFunction};
 
-use super::exit::say;
+use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, check_output, yes};
 use super::simulate::require_audit;
-use stillbase_settings::number::{counted, fixed, shown};
+use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
 
 /// Compute the spectra of the base reactions of a run, and compare them with jitter limits
 ///
@@ -86,13 +86,13 @@ impl SpectrumArguments {
             check_output(file, self.force, &["csv"])?;
         }
         if scenario.base.wheel.is_some() {
-            say(format!("note: {}: n_B is what the reaction wheel leaves of it for the base", scenario.name));
+            print_message(format!("note: {}: n_B is what the reaction wheel leaves of it for the base", scenario.name));
         }
         let failed = |why| failed(why, &scenario);
         let mut of = BaseSpectrum::of(&scenario, self.window).map_err(failed)?;
         if let Some(file) = &self.output {
             write(file, self.force, &of)?;
-            say(format!("wrote {}", file.display()));
+            print_message(format!("wrote {}", file.display()));
         }
         of.judge(self.limit_force.as_ref(), self.limit_moment.as_ref()).map_err(failed)?;
         let file = self.output.as_ref().map(|file| file.display().to_string());
@@ -121,7 +121,7 @@ fn text(answer: &BaseSpectrum) -> String {
     for ((name, unit, spectrum), (_, _, axis)) in answer.spectra.named().into_iter().zip(answer.axes.named()) {
         let [at, most] = spectrum.greatest();
         let frequencies = [at, spectrum.below(0.5), spectrum.below(0.99)].map(|f| fixed(f, 3));
-        let sizes = [axis.rms, axis.weighted_rms, most].map(|x| shown(x, 6));
+        let sizes = [axis.rms, axis.weighted_rms, most].map(|x| fixed_or_scientific(x, 6));
         let row = [name.to_owned(), unit.to_owned()].into_iter().chain(sizes);
         table.row(row.chain(frequencies));
     }
@@ -132,7 +132,12 @@ fn text(answer: &BaseSpectrum) -> String {
     let mut any = false;
     for (name, unit, axis) in answer.axes.named() {
         let Some(v) = &axis.limit else { continue };
-        let numbers = [fixed(v.frequency, 3), shown(v.density, 6), shown(v.limit, 6), shown(v.ratio, 3)];
+        let numbers = [
+            fixed(v.frequency, 3),
+            fixed_or_scientific(v.density, 6),
+            fixed_or_scientific(v.limit, 6),
+            fixed_or_scientific(v.ratio, 3),
+        ];
         let row = [name.to_owned(), format!("{unit}/√Hz"), yes(v.within).to_owned()];
         verdicts.row(row.into_iter().chain(numbers));
         any = true;

@@ -77,7 +77,7 @@ impl Program {
     }
 
     /// Adds the constraint x_u x_w ≥ x_s² with x_u ≥ 0 and x_w ≥ 0.
-    pub fn above_quotient(&mut self, u: usize, w: usize, s: usize) {
+    pub fn add_rotated_cone(&mut self, u: usize, w: usize, s: usize) {
         self.cones.push([
             LinearRow::new([(u, 1.0), (w, 1.0)], 0.0),
             LinearRow::new([(s, 2.0)], 0.0),

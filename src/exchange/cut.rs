@@ -102,7 +102,7 @@ impl Cut {
     }
 
     /// Returns the mass of a disc, kg, for its radius and thickness, m.
-    pub fn weighs(&self, radius: f64, thickness: f64) -> f64 {
+    pub fn disc_mass(&self, radius: f64, thickness: f64) -> f64 {
         disc_area(radius) * thickness * self.density
     }
 }
@@ -131,7 +131,7 @@ pub fn holes(machine: &Machine, j: usize) -> Vec<f64> {
 }
 
 /// Returns the interval that a bar covers, m from its root: its length, all its pins, and the centres of its discs.
-pub fn ends(machine: &Machine, j: usize) -> [f64; 2] {
+pub fn bar_extent(machine: &Machine, j: usize) -> [f64; 2] {
     let (link, part) = (&machine.links()[j], &machine.resolved_links()[j]);
     let discs = machine.spec().counterweights.iter().filter(|weight| weight.link == link.name).map(|weight| weight.at);
     let all = part.pins.iter().copied().chain(discs);

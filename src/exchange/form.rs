@@ -51,7 +51,7 @@ pub const FORMS: [Form; 6] = [
 ];
 
 /// The default ending.
-pub const USUAL_ENDING: &str = "urdf";
+pub const DEFAULT_EXTENSION: &str = "urdf";
 
 /// Error of an export.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -72,7 +72,7 @@ impl PartsList {
             for row in &table.rows {
                 let of = |name: &&str| {
                     let cell = table.head.iter().position(|own| own == name).and_then(|i| row.get(i));
-                    cell.map_or(String::new(), PartCell::whole)
+                    cell.map_or(String::new(), PartCell::csv_text)
                 };
                 text += &line(std::iter::once(table.kind.to_owned()).chain(head.iter().map(of)).collect());
             }
@@ -125,7 +125,7 @@ impl PartCell {
     }
 
     /// Returns the cell for CSV: numbers with all digits, and text that a spreadsheet does not take for a formula.
-    fn whole(&self) -> String {
+    fn csv_text(&self) -> String {
         match self {
             Self::Words(text) => sheet_cell(text).into_owned(),
             Self::Number(value, _) => value.to_string(),
@@ -200,7 +200,7 @@ fn counterweights(machine: &Machine, cut: &Cut) -> PartTable {
             PartCell::Number(weight.radius, 4),
             PartCell::some(thickness, 4),
             PartCell::some(thickness.map(|_| cut.density), 0),
-            PartCell::some(thickness.map(|thickness| cut.weighs(weight.radius, thickness)), 3),
+            PartCell::some(thickness.map(|thickness| cut.disc_mass(weight.radius, thickness)), 3),
         ]
     };
     PartTable {

@@ -48,7 +48,7 @@ pub struct FoundScenario {
     /// The scenario.
     pub scenario: Scenario,
     /// Note that the scenario was made for a machine; `None` otherwise.
-    pub made: Option<String>,
+    pub note: Option<String>,
 }
 
 /// Returns a scenario by built-in name or by file. A machine file that the scenario names is resolved in the folder of
@@ -58,7 +58,7 @@ pub struct FoundScenario {
 /// If there is no such scenario, machine or file, or if the file is neither a scenario nor a machine.
 pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
     if let Some(scenario) = Scenario::builtin(name) {
-        return Ok(FoundScenario { scenario, made: None });
+        return Ok(FoundScenario { scenario, note: None });
     }
     let file = Path::new(name);
     let said = |message: String| ScenarioError::Syntax { file: shortened(name, 300), line: None, message };
@@ -66,7 +66,7 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
         Ok(text) => text,
         Err(source) if source.kind() == ErrorKind::NotFound && !name.ends_with(".toml") => {
             return match machine::builtin(name) {
-                Some(machine) => made(name, machine),
+                Some(machine) => scenario_for(name, machine),
                 None => {
                     let known = Scenario::builtin_names().collect::<Vec<_>>().join(", ");
                     Err(said(format!("no such scenario: want {known}, or a TOML file")))
@@ -78,19 +78,19 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
     // This is a model of another program, because TOML cannot begin with this character.
     if text.trim_start().starts_with('<') {
         let ImportedMachine { machine, notes, .. } = import(&text).map_err(|why| said(why.to_string()))?;
-        let FoundScenario { scenario, made } = made(name, &machine)?;
-        let made = made.into_iter().chain(notes).collect::<Vec<_>>().join("; ");
-        return Ok(FoundScenario { scenario, made: Some(made) });
+        let FoundScenario { scenario, note } = scenario_for(name, &machine)?;
+        let made = note.into_iter().chain(notes).collect::<Vec<_>>().join("; ");
+        return Ok(FoundScenario { scenario, note: Some(made) });
     }
     if content(&text) == Some(FileContent::Machine) {
-        return made(name, &machine::parse(&text, &shortened(name, 300))?);
+        return scenario_for(name, &machine::parse(&text, &shortened(name, 300))?);
     }
     let scenario = Scenario::parse(&text, name, Some(&|name| machine(name, file.parent())))?;
-    Ok(FoundScenario { scenario, made: None })
+    Ok(FoundScenario { scenario, note: None })
 }
 
 /// Makes a scenario for a machine, whose name or file is `name`.
-fn made(name: &str, machine: &Machine) -> Result<FoundScenario, ScenarioError> {
+fn scenario_for(name: &str, machine: &Machine) -> Result<FoundScenario, ScenarioError> {
     let scenario = gentle_motion(machine)?;
     let task = &scenario.task;
     let made = format!(
@@ -103,5 +103,5 @@ fn made(name: &str, machine: &Machine) -> Result<FoundScenario, ScenarioError> {
         task.to[1],
         ShortNumber(task.time)
     );
-    Ok(FoundScenario { scenario, made: Some(made) })
+    Ok(FoundScenario { scenario, note: Some(made) })
 }

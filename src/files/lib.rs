@@ -28,7 +28,7 @@ pub use draft::{WriteBlock, abandon};
 pub use find::{FoundScenario, machine, scenario};
 pub use new_file::{NewFile, WriteError, write_new};
 #[doc(hidden)]
-pub use new_file::{check_new, finish_all, free_name, is_same_place, made};
+pub use new_file::{check_new, finish_all, free_name, is_same_place, write_temporary};
 
 /// Returns the absolute path of an existing file.
 #[doc(hidden)]

@@ -356,14 +356,14 @@ impl Write for NewFile {
 /// # Errors
 /// If the file exists and `force` is not set, or if it cannot be written.
 pub fn write_new(file: &Path, bytes: &[u8], force: bool) -> Result<(), WriteError> {
-    made(file, bytes, force)?.finish()
+    write_temporary(file, bytes, force)?.finish()
 }
 
 /// Writes the whole content of a file under a temporary name; [`NewFile::finish`] gives it its final name.
 ///
 /// # Errors
 /// As [`write_new`].
-pub fn made(file: &Path, bytes: &[u8], force: bool) -> Result<NewFile, WriteError> {
+pub fn write_temporary(file: &Path, bytes: &[u8], force: bool) -> Result<NewFile, WriteError> {
     let mut out = NewFile::create(file, force)?;
     out.write_all(bytes).map_err(|source| WriteError::Failed { file: file.into(), source })?;
     Ok(out)

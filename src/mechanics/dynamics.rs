@@ -48,7 +48,7 @@ pub use by_drives;
 
 /// External loads: the field of gravity, and a force at the end effector.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Surroundings {
+pub struct ExternalLoads {
     /// Acceleration of gravity g, m/s².
     pub gravity: Vector,
     /// Force F acting on the end effector, N.
@@ -70,7 +70,7 @@ impl MassMatrix {
     }
 
     /// Returns D_k, kg m²: Σ_l H_lk, (A3), plus the contribution of rotors whose stators are on the base.
-    pub fn momentum_row(&self, k: usize) -> f64 {
+    pub fn momentum_coefficient(&self, k: usize) -> f64 {
         (0..self.n).map(|l| self.h[l][k]).sum::<f64>() + self.taken_up[k]
     }
 
@@ -191,17 +191,17 @@ pub fn assemble<const N: usize>(inertia: &Inertia, e: &[Vector; N], qd: &[f64; N
 
 /// Returns the torque that holds the machine at rest, −γᵀ g − Jᵀ F, N m.
 #[inline]
-pub fn holding_torque(inertia: &Inertia, e: &UnitVectors, around: &Surroundings) -> PerDrive {
+pub fn holding_torque(inertia: &Inertia, e: &UnitVectors, around: &ExternalLoads) -> PerDrive {
     by_drives!(inertia.drives, holding_torque_of(inertia, e, around))
 }
 
 #[inline]
-fn holding_torque_of<const N: usize>(inertia: &Inertia, e: &UnitVectors, around: &Surroundings) -> PerDrive {
+fn holding_torque_of<const N: usize>(inertia: &Inertia, e: &UnitVectors, around: &ExternalLoads) -> PerDrive {
     hold::<N>(inertia, leading_entries(e), around).into()
 }
 
 #[inline(always)]
-fn hold<const N: usize>(inertia: &Inertia, e: &[Vector; N], around: &Surroundings) -> [f64; N] {
+fn hold<const N: usize>(inertia: &Inertia, e: &[Vector; N], around: &ExternalLoads) -> [f64; N] {
     // (i e) · a = e × a: multiplying by i turns e by a right angle.
     std::array::from_fn(|k| {
         -cross(inertia.g[k] * e[k], around.gravity) - inertia.end_effector[k] * cross(e[k], around.force)
@@ -211,7 +211,7 @@ fn hold<const N: usize>(inertia: &Inertia, e: &[Vector; N], around: &Surrounding
 /// Returns the generalised torques for given accelerations, (4), N m. If all motors sit on the base, these are the
 /// motor torques.
 #[inline]
-pub fn inverse(inertia: &Inertia, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> PerDrive {
+pub fn inverse(inertia: &Inertia, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, around: &ExternalLoads) -> PerDrive {
     by_drives!(inertia.drives, inverse_of(inertia, e, qd, qdd, around))
 }
 
@@ -221,7 +221,7 @@ fn inverse_of<const N: usize>(
     e: &UnitVectors,
     qd: &PerDrive,
     qdd: &PerDrive,
-    around: &Surroundings,
+    around: &ExternalLoads,
 ) -> PerDrive {
     torques(inertia, leading_entries::<N, _>(e), leading_entries(qd.padded()), leading_entries(qdd.padded()), around)
         .into()
@@ -234,7 +234,7 @@ pub fn torques<const N: usize>(
     e: &[Vector; N],
     qd: &[f64; N],
     qdd: &[f64; N],
-    around: &Surroundings,
+    around: &ExternalLoads,
 ) -> [f64; N] {
     let (h, v) = assemble(inertia, e, qd);
     let (inertial, holding) = (matrix_times(&h, qdd), hold(inertia, e, around));
@@ -248,7 +248,7 @@ pub fn forward(
     e: &UnitVectors,
     qd: &PerDrive,
     torque: &PerDrive,
-    around: &Surroundings,
+    around: &ExternalLoads,
 ) -> PerDrive {
     by_drives!(inertia.drives, forward_of(inertia, e, qd, torque, around))
 }
@@ -259,7 +259,7 @@ fn forward_of<const N: usize>(
     e: &UnitVectors,
     qd: &PerDrive,
     torque: &PerDrive,
-    around: &Surroundings,
+    around: &ExternalLoads,
 ) -> PerDrive {
     let (e, qd, torque) =
         (leading_entries::<N, _>(e), leading_entries(qd.padded()), leading_entries::<N, _>(torque.padded()));
@@ -272,7 +272,7 @@ fn forward_of<const N: usize>(
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BaseWrench {
     /// Part from weight and from a force at the end effector: M g + F, and the moment of both about B.
-    pub statical: Wrench,
+    pub static_part: Wrench,
     /// Part from motion: −d/dt of the linear and of the angular momentum.
     pub dynamic: Wrench,
 }
@@ -280,7 +280,10 @@ pub struct BaseWrench {
 impl BaseWrench {
     /// Returns the sum of both parts.
     pub fn total(&self) -> Wrench {
-        Wrench { force: self.statical.force + self.dynamic.force, moment: self.statical.moment + self.dynamic.moment }
+        Wrench {
+            force: self.static_part.force + self.dynamic.force,
+            moment: self.static_part.moment + self.dynamic.moment,
+        }
     }
 }
 
@@ -291,7 +294,7 @@ pub fn base_wrench(
     e: &UnitVectors,
     qd: &PerDrive,
     qdd: &PerDrive,
-    around: &Surroundings,
+    around: &ExternalLoads,
 ) -> BaseWrench {
     inverse_with_wrench(inertia, e, qd, qdd, around).1
 }
@@ -310,7 +313,7 @@ pub fn wrench_with<const N: usize>(
     e: &[Vector; N],
     qd: &[f64; N],
     qdd: &[f64; N],
-    around: &Surroundings,
+    around: &ExternalLoads,
     momentum_rate: f64,
 ) -> BaseWrench {
     let (mut pull, mut tip, mut first) = (Vector::default(), Vector::default(), Vector::default());
@@ -321,7 +324,7 @@ pub fn wrench_with<const N: usize>(
         tip += e[k] * inertia.end_effector[k];
     }
     BaseWrench {
-        statical: Wrench {
+        static_part: Wrench {
             force: inertia.mass * around.gravity + around.force,
             moment: cross(first, around.gravity) + cross(tip, around.force),
         },
@@ -336,7 +339,7 @@ pub fn inverse_with_wrench(
     e: &UnitVectors,
     qd: &PerDrive,
     qdd: &PerDrive,
-    around: &Surroundings,
+    around: &ExternalLoads,
 ) -> (PerDrive, BaseWrench) {
     by_drives!(inertia.drives, inverse_with_wrench_of(inertia, e, qd, qdd, around))
 }
@@ -347,7 +350,7 @@ fn inverse_with_wrench_of<const N: usize>(
     e: &UnitVectors,
     qd: &PerDrive,
     qdd: &PerDrive,
-    around: &Surroundings,
+    around: &ExternalLoads,
 ) -> (PerDrive, BaseWrench) {
     let (e, qd, qdd) = (leading_entries::<N, _>(e), leading_entries(qd.padded()), leading_entries(qdd.padded()));
     let (h, v) = assemble(inertia, e, qd);

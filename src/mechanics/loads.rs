@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::dynamics::{Surroundings, angular_momentum, centre_of_mass, inverse_with_wrench, mass_matrix};
+use super::dynamics::{ExternalLoads, angular_momentum, centre_of_mass, inverse_with_wrench, mass_matrix};
 use super::machine::Inertia;
 use super::planar::{DriveAngles, PerDrive};
 
@@ -25,7 +25,7 @@ pub struct Loads {
 
 impl Loads {
     /// Computes the loads of a machine with drive angles q, rad, rates q̇, rad/s, and accelerations q̈, rad/s².
-    pub fn of(inertia: &Inertia, around: &Surroundings, q: &PerDrive, qd: &PerDrive, qdd: &PerDrive) -> Self {
+    pub fn of(inertia: &Inertia, around: &ExternalLoads, q: &PerDrive, qd: &PerDrive, qdd: &PerDrive) -> Self {
         let e = DriveAngles(*q).units();
         let (h, _) = mass_matrix(inertia, &e, qd);
         let (torque, wrench) = inverse_with_wrench(inertia, &e, qd, qdd, around);

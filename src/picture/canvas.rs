@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::gui::{GuiRenderer, RenderTarget};
-use super::paint::{self, words};
+use super::paint::{self, labels};
 use super::render::offscreen::{Gpu, NoAdapter, NoPicture, Picture, surface};
 use super::scene::Scene;
 use super::scene::camera::Camera;
@@ -58,9 +58,9 @@ impl Canvas {
         if !self.fonts {
             paint::install_fonts(&self.ctx);
             self.fonts = true;
-            self.pass(|ui| words::still(ui, scene, camera));
+            self.pass(|ui| labels::paint_still(ui, scene, camera));
         }
-        self.pass(|ui| words::still(ui, scene, camera));
+        self.pass(|ui| labels::paint_still(ui, scene, camera));
         self.read()
     }
 

@@ -137,7 +137,7 @@ impl Chart {
     }
 
     /// Whether the chart contains a signal.
-    pub fn holds(&self, signal: &Signal) -> bool {
+    pub fn contains(&self, signal: &Signal) -> bool {
         self.signals.iter().any(|of| signal.path == *of || signal.group() == *of)
     }
 

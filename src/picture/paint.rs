@@ -1,8 +1,8 @@
 //! Paints a scene and its labels with egui: in the window, in figures and in the pictures of recordings.
 
 pub mod figure;
+pub mod labels;
 pub mod portrait;
-pub mod words;
 
 use std::sync::Arc;
 
@@ -66,7 +66,7 @@ impl SceneViewport {
 
     /// Projects a point, m, onto the screen; `None` if the camera does not see it.
     pub fn screen(&self, point: [f64; 3]) -> Option<Pos2> {
-        let [x, y] = self.pointer(self.rect.min).seen(point)?;
+        let [x, y] = self.pointer(self.rect.min).project(point)?;
         Some(self.rect.min + vec2(x as f32, y as f32))
     }
 }
@@ -141,7 +141,7 @@ pub(super) struct PaintedScene {
 }
 
 /// Makes all scenes appear in draft quality while they change; for software rendering.
-pub fn draw_drafts(ctx: &egui::Context) {
+pub fn enable_draft_quality(ctx: &egui::Context) {
     ctx.data_mut(|data| data.insert_temp(drafts_id(), true));
 }
 

@@ -76,7 +76,7 @@ pub fn no_common(space: &PoseSpace, points: &[Vector]) -> Option<NoCommonB> {
     };
     let mends = (0..points.len()).filter_map(|i| least_move(space, points[i], i, &others(i)));
     let least = mends.min_by(|x, y| x.distance.total_cmp(&y.distance));
-    Some(NoCommonB { pair, mend: least.and_then(|mend| made_robust(space, points, &others(mend.point), mend)) })
+    Some(NoCommonB { pair, correction: least.and_then(|mend| made_robust(space, points, &others(mend.point), mend)) })
 }
 
 /// Returns the index of a point that cannot be reached at b, and why; `None` if all can. A point that cannot be reached
@@ -100,13 +100,13 @@ pub fn unreachable_reason(space: &PoseSpace, points: &[Vector], i: usize, b: f64
             let nearest = common.nearest(b);
             let inner = [1e-6, 1e-3, 0.5].map(|share| nearest.map(|b| common.moved_inside(b, share)));
             let nearest_b = inner.into_iter().flatten().find(|b| serves(*b));
-            let displayed_b = nearest_b.and_then(|b| Decimal::that(b, 4, serves));
-            Unreachable::OnThisPlane { x, y, b, would_do: common.in_words(), nearest_b, displayed_b }
+            let displayed_b = nearest_b.and_then(|b| Decimal::shortest_passing(b, 4, serves));
+            Unreachable::OnThisPlane { x, y, b, feasible: common.in_words(), nearest_b, displayed_b }
         }
         (None, Some(why)) => Unreachable::NoCommonPlane(why),
         // Another point cannot be reached at any b.
         (None, None) => {
-            Unreachable::OnThisPlane { x, y, b, would_do: own.in_words(), nearest_b: None, displayed_b: None }
+            Unreachable::OnThisPlane { x, y, b, feasible: own.in_words(), nearest_b: None, displayed_b: None }
         }
     }
 }
@@ -224,21 +224,21 @@ fn made_robust(space: &PoseSpace, points: &[Vector], others: &BSet, mend: PointC
             .collect();
         around.retain(|(_, far)| *far <= longest * mend.distance || decimals > 8);
         around.sort_by(|a, b| a.1.total_cmp(&b.1));
-        around.into_iter().find_map(|(to, far)| {
+        around.into_iter().find_map(|(to, length)| {
             let at = Vector::new(to[0].value(), to[1].value());
             let [low, high] = shared(at)?;
             let b = mend.b.clamp(low, high);
             let inside = |x: f64| low <= x && x <= high && serves(at, x);
             // If the common interval of b is short, its midpoint allows fewer decimals than its bounds.
-            let b = [b, 0.5 * (low + high)].into_iter().filter_map(|b| Decimal::that(b, 4, inside));
+            let b = [b, 0.5 * (low + high)].into_iter().filter_map(|b| Decimal::shortest_passing(b, 4, inside));
             let b = b.min_by_key(Decimal::decimals).filter(|b| b.decimals() <= decimals + 4)?;
-            Some(RoundedCorrection { to, b, far, does: true })
+            Some(RoundedCorrection { to, b, length, path_feasible: true })
         })
     });
     match (exact, shown) {
         (Some((to, b)), shown) => Some(PointCorrection { to, distance: (to - from).norm(), b, shown, ..mend }),
         (None, Some(own)) => {
-            Some(PointCorrection { to: own.point(), distance: own.far, b: own.b.value(), shown, ..mend })
+            Some(PointCorrection { to: own.point(), distance: own.length, b: own.b.value(), shown, ..mend })
         }
         (None, None) => None,
     }

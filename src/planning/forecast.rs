@@ -2,7 +2,7 @@
 
 use crate::Motion;
 use crate::timing::limits::{DriveLimit, DriveLimits, LimitedQuantity};
-use stillbase_mechanics::dynamics::{Surroundings, inverse_with_wrench};
+use stillbase_mechanics::dynamics::{ExternalLoads, inverse_with_wrench};
 use stillbase_mechanics::machine::Inertia;
 use stillbase_mechanics::planar::PerDrive;
 use stillbase_query::ProgressCallback;
@@ -53,13 +53,13 @@ const EXCEEDED_ABOVE: f64 = 1.0 + 1e-6;
 
 impl Forecast {
     /// Returns the forecast of a motion of a model, with a number of samples that depends on the path.
-    pub fn of(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &DriveLimits) -> Self {
+    pub fn of(motion: &Motion, model: &Inertia, around: &ExternalLoads, limits: &DriveLimits) -> Self {
         let instants = (SAMPLES_PER_PART * motion.path.parts()).clamp(MIN_SAMPLES, MAX_SAMPLES);
         Self::at(motion, model, around, limits, instants)
     }
 
     /// Returns the forecast from the given number of samples, at the midpoints of equal intervals of T.
-    pub fn at(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &DriveLimits, instants: usize) -> Self {
+    pub fn at(motion: &Motion, model: &Inertia, around: &ExternalLoads, limits: &DriveLimits, instants: usize) -> Self {
         Self::at_while(motion, model, around, limits, instants, &mut |_| true)
     }
 
@@ -68,7 +68,7 @@ impl Forecast {
     pub fn at_while(
         motion: &Motion,
         model: &Inertia,
-        around: &Surroundings,
+        around: &ExternalLoads,
         limits: &DriveLimits,
         instants: usize,
         goes_on: ProgressCallback<'_>,

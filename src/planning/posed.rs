@@ -30,7 +30,7 @@ impl PoseAngles {
     }
 
     /// Length of the straight line in joint space to another pose, rad: with planes |Δa|, else the largest |Δq_k|.
-    pub fn way(&self, space: &PoseSpace, to: &Self) -> f64 {
+    pub fn distance_to(&self, space: &PoseSpace, to: &Self) -> f64 {
         match space.planes() {
             Ok(_) => across(&self.a, &to.a),
             Err(_) => to.q.0.minus(&self.q.0).max_abs(),

@@ -21,7 +21,7 @@ pub enum Unreachable {
         reason: NoReach,
     },
     /// The point can be reached, but not at this b.
-    #[error("({}, {}) m is outside the reactionless workspace of b = {b:.6} rad: want {would_do}", metres(*.x, 3), metres(*.y, 3))]
+    #[error("({}, {}) m is outside the reactionless workspace of b = {b:.6} rad: want {feasible}", metres(*.x, 3), metres(*.y, 3))]
     OnThisPlane {
         /// x of the point, m.
         x: f64,
@@ -30,7 +30,7 @@ pub enum Unreachable {
         /// The given b, rad.
         b: f64,
         /// The feasible b, in words.
-        would_do: String,
+        feasible: String,
         /// The feasible b nearest to the given one, rad.
         nearest_b: Option<f64>,
         /// `nearest_b` as displayed: rounded to a value that is still feasible.
@@ -47,7 +47,7 @@ pub struct NoCommonB {
     /// The first two points that share no b; `None` if each pair shares one, but not all points at once.
     pub pair: Option<[usize; 2]>,
     /// The shortest move of one point after which all points share a b.
-    pub mend: Option<PointCorrection>,
+    pub correction: Option<PointCorrection>,
 }
 
 impl NoCommonB {
@@ -57,11 +57,11 @@ impl NoCommonB {
             Some([i, j]) => format!("no b serves both {} and {}", name(i), name(j)),
             None => "each two points share some b, but no b serves all".into(),
         };
-        let remedy = match self.mend {
+        let remedy = match self.correction {
             Some(PointCorrection { point, shown: Some(shown), .. }) => {
                 let (point, RoundedCorrection { to: [x, y], b, .. }) = (name(point), shown);
                 let distance = shown.distance();
-                if shown.does {
+                if shown.path_feasible {
                     format!("moving {point} by {distance} m to ({x}, {y}) m would do, at b = {b} rad")
                 } else {
                     format!(
@@ -84,9 +84,9 @@ pub struct RoundedCorrection {
     /// The b that all points then share, rad.
     pub b: Decimal,
     /// Length of the move, m.
-    pub far: f64,
+    pub length: f64,
     /// Whether the planned path is then feasible too.
-    pub does: bool,
+    pub path_feasible: bool,
 }
 
 impl RoundedCorrection {
@@ -96,7 +96,7 @@ impl RoundedCorrection {
     }
 
     fn distance(&self) -> Decimal {
-        Decimal::nearest(self.far, self.to[0].decimals())
+        Decimal::nearest(self.length, self.to[0].decimals())
     }
 }
 

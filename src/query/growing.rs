@@ -97,7 +97,7 @@ impl<G: IncrementalQuery> IncrementalState<G> {
 
     /// Takes at most `at_most` new items of the sequence, after truncating the answer to the items that are unchanged.
     pub fn follow(&mut self, input: &G::Input, items: &Sequence<G::Item>, at_most: usize) {
-        let kept = items.revision().kept_of(&self.of).min(items.len());
+        let kept = items.revision().unchanged_since(&self.of).min(items.len());
         self.of = items.revision().mark();
         if self.answer.count() > kept {
             self.change().truncate(kept);
@@ -161,12 +161,12 @@ impl<G: IncrementalQuery> IncrementalAnswers<G> {
     /// store. The other entries are kept while they are in use. Without common items, that is as long as their sequence
     /// exists; with common items, as long as a sequence has exactly their revision.
     pub fn take(&mut self, revision: &Revision) -> Option<IncrementalState<G>> {
-        let kept = |growth: &IncrementalState<G>| revision.kept_of(&growth.of);
+        let kept = |growth: &IncrementalState<G>| revision.unchanged_since(&growth.of);
         let best = (0..self.0.len()).max_by_key(|i| kept(&self.0[*i])).filter(|i| kept(&self.0[*i]) > 0);
         let found = best.map(|i| self.0.swap_remove(i));
         self.0.retain(|growth| match kept(growth) {
-            0 => !growth.of.has_ended(),
-            _ => growth.of.is_had(),
+            0 => !growth.of.is_forgotten(),
+            _ => growth.of.is_current(),
         });
         found
     }

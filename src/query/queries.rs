@@ -30,7 +30,7 @@ impl WeakQueries {
 
 impl fmt::Debug for WeakQueries {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Asking")
+        f.write_str("WeakQueries")
     }
 }
 
@@ -81,7 +81,7 @@ impl Queries {
 #[doc(hidden)]
 impl Queries {
     /// Returns a weak reference, for an input that makes requests of its own.
-    pub fn asking(&self) -> WeakQueries {
+    pub fn downgrade(&self) -> WeakQueries {
         WeakQueries(Arc::downgrade(&self.0))
     }
 

@@ -182,12 +182,12 @@ pub struct RevisionMark {
 
 impl RevisionMark {
     /// Returns whether a sequence still has this revision.
-    pub fn is_had(&self) -> bool {
+    pub fn is_current(&self) -> bool {
         self.alive.strong_count() > 0
     }
 
     /// Returns whether no sequence has this revision or remembers it.
-    pub fn has_ended(&self) -> bool {
+    pub fn is_forgotten(&self) -> bool {
         self.own.strong_count() == 0
     }
 }
@@ -218,7 +218,7 @@ impl Revision {
 
     /// Returns how many leading items are unchanged since an earlier revision: `usize::MAX` if it is this revision, 0
     /// if it is unknown.
-    pub fn kept_of(&self, earlier: &RevisionMark) -> usize {
+    pub fn unchanged_since(&self, earlier: &RevisionMark) -> usize {
         let is_it = |own: &Arc<()>| std::ptr::eq(Arc::as_ptr(own), earlier.own.as_ptr());
         if is_it(&self.own) {
             return usize::MAX;

@@ -340,13 +340,13 @@ impl Layout<'_> {
 
     /// Adds the plot of a chart; other series of the same entities are hidden.
     fn plot(&mut self, case: &Preview, chart: &Chart) -> Result<Part, StoreError> {
-        let held = |topic: &&Topic| topic.signals.iter().any(|signal| chart.holds(signal));
+        let held = |topic: &&Topic| topic.signals.iter().any(|signal| chart.contains(signal));
         let topics: Vec<_> = case.topics.iter().filter(held).collect();
         let contents: Vec<_> = topics.iter().map(|topic| format!("$origin/{}", topic.name)).collect();
         let range = self.range_of(chart);
         let plot = self.time_series(&titled(chart, case), &under(&case.root, "signals"), &contents, range, false)?;
         for topic in topics {
-            let shown: Vec<bool> = topic.signals.iter().map(|signal| chart.holds(signal)).collect();
+            let shown: Vec<bool> = topic.signals.iter().map(|signal| chart.contains(signal)).collect();
             if shown.contains(&false) {
                 let style = SeriesLines::update_fields().with_visible_series(shown);
                 self.draw_as(&plot, &topic.path(&case.root), 0, &style)?;
@@ -423,7 +423,7 @@ fn name_of(chart: &Chart) -> String {
 /// would cover the curves of such a low plot. With many series, the viewer names the series under the pointer.
 fn titled(chart: &Chart, case: &Preview) -> String {
     let signals = case.topics.iter().flat_map(|topic| &topic.signals);
-    let all: Vec<_> = signals.filter(|signal| chart.holds(signal)).collect();
+    let all: Vec<_> = signals.filter(|signal| chart.contains(signal)).collect();
     let of_drives = all.len() > 1 && all.iter().enumerate().all(|(k, signal)| signal.drive == Some(k));
     let of_drives = of_drives && all.len() <= COLOURS.len();
     let words = all.iter().zip(COLOURS).map(|(signal, colour)| format!("{} {colour}", signal.symbol));

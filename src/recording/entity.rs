@@ -159,7 +159,7 @@ pub struct Entity {
     /// Names of its ancestors, nearest first, which may have poses.
     pub ancestors: Vec<String>,
     /// Constant components in the current scene.
-    pub lasting: Option<StaticShape>,
+    pub constant: Option<StaticShape>,
     /// Changing components in the current scene.
     pub shape: Option<EntityShape>,
     /// Pose in the current scene.
@@ -173,7 +173,7 @@ pub struct Entity {
     /// Constant components that have been written.
     pub written: Option<StaticShape>,
     /// Whether a constant pose has been written.
-    pub stands: bool,
+    pub pose_is_static: bool,
     pub shapes: SparseRows<Option<EntityShape>>,
     pub poses: SparseRows<Rigid>,
 }
@@ -185,21 +185,21 @@ impl Entity {
             kind,
             path,
             ancestors: cuts.into_iter().rev().map(|i| name[..i].to_owned()).collect(),
-            lasting: None,
+            constant: None,
             shape: None,
             pose: None,
             placed: Vec::new(),
             rings: (Vec::new(), 0.0),
             is_there: false,
             written: None,
-            stands: false,
+            pose_is_static: false,
             shapes: SparseRows::new(),
             poses: SparseRows::new(),
         }
     }
 
     pub fn begin(&mut self) {
-        (self.lasting, self.shape, self.pose, self.is_there) = (None, None, None, false);
+        (self.constant, self.shape, self.pose, self.is_there) = (None, None, None, false);
         self.placed.clear();
         self.rings.0.clear();
     }
@@ -224,13 +224,13 @@ impl Entity {
     /// Converts several solids of one name to instances of one mesh, and several rings to one shape; the entity then
     /// has no pose.
     pub fn share(&mut self) {
-        if let (Some(StaticShape::Ring { width, rgba, .. }), (middles, radius)) = (&self.lasting, &self.rings)
+        if let (Some(StaticShape::Ring { width, rgba, .. }), (middles, radius)) = (&self.constant, &self.rings)
             && middles.len() > 1
         {
             let ring = |[x, y, z]: &[f32; 3]| circle(*radius).map(|[u, v, _]| [x + u, y + v, *z]).collect();
             let strips = middles.iter().map(ring).collect();
             self.shape = Some(EntityShape::Strokes(Strokes { strips, width: *width, rgba: *rgba, dash: None }));
-            (self.lasting, self.pose) = (None, None);
+            (self.constant, self.pose) = (None, None);
         }
         if self.placed.len() > 1 || self.placed.iter().any(|(_, stretch)| *stretch != 1.0) {
             self.shape = Some(EntityShape::Instances(self.placed.iter().map(|(pose, _)| pose.at).collect()));
@@ -240,7 +240,7 @@ impl Entity {
 
     /// Writes new constant components of the current scene, from `since` on or for all times, and buffers rows of
     /// changing ones. `outer` is the pose of the nearest ancestor that has a pose.
-    pub fn note(
+    pub fn record(
         &mut self,
         store: &mut Store,
         at: Instant,
@@ -252,14 +252,14 @@ impl Entity {
             if self.written.take().is_some() {
                 store.shape(Some(at), &self.path, &Clear::flat())?;
                 self.write_poses(store, eye)?;
-                (self.poses, self.stands) = (SparseRows::new(), false);
+                (self.poses, self.pose_is_static) = (SparseRows::new(), false);
             }
             if matches!(self.shapes.last(), Some(Some(_))) {
                 self.shapes.push(at, None);
             }
             return Ok(());
         }
-        let lasting = self.lasting.take().filter(|lasting| self.written.as_ref() != Some(lasting));
+        let lasting = self.constant.take().filter(|lasting| self.written.as_ref() != Some(lasting));
         let mut stands = None;
         if let Some((pose, changes)) = self.pose {
             let pose = pose.within(outer);
@@ -267,13 +267,13 @@ impl Entity {
             let is_part = *outer != Rigid::IDENTITY;
             let same = |last: &Rigid| if is_part { last.is_near(&pose) } else { *last == pose };
             let known = self.poses.last().is_some_and(same);
-            let never = self.poses.last().is_none() && !self.stands;
+            let never = self.poses.last().is_none() && !self.pose_is_static;
             let at_home = never && pose.is_near(&Rigid::IDENTITY);
             match (changes, since) {
                 _ if known || at_home => {}
                 (ItemChanges::Nothing, None) if never => {
                     stands = Some(transform(&[pose], eye));
-                    self.stands = true;
+                    self.pose_is_static = true;
                 }
                 (ItemChanges::Nothing, None) => {}
                 _ => self.poses.push(at, pose),

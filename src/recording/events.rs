@@ -33,6 +33,18 @@ struct Row {
     rgba: Rgba,
 }
 
+/// A run whose events are written.
+#[derive(Clone, Copy, Debug)]
+pub struct RecordedRun<'a> {
+    pub scenario: &'a Scenario,
+    /// Integration step, s.
+    pub dt: f64,
+    /// Its last instant.
+    pub end: Instant,
+    pub peaks: &'a Peaks,
+    pub verdict: &'a Verdict,
+}
+
 impl Events {
     /// Returns an empty list of events.
     pub fn new(prefix: String, palette: Palette) -> Self {
@@ -73,17 +85,12 @@ impl Events {
         self.add(at, event.words.clone(), level, rgba);
     }
 
-    /// Writes all events, phases and the verdict of a run; `dt` is the integration step, s.
+    /// Writes all events, phases and the verdict of a run.
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn write(
-        mut self,
-        store: &mut Store,
-        root: &EntityPath,
-        (scenario, dt): (&Scenario, f64),
-        (end, peaks, verdict): (Instant, &Peaks, &Verdict),
-    ) -> Result<(), StoreError> {
+    pub fn write(mut self, store: &mut Store, root: &EntityPath, run: &RecordedRun<'_>) -> Result<(), StoreError> {
+        let RecordedRun { scenario, dt, end, peaks, verdict } = *run;
         let states = [Phase::Motion, Phase::Follow, Phase::Rest];
         let lanes = StateConfiguration::new()
             .with_values(states.map(Phase::name))

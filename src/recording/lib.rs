@@ -103,7 +103,7 @@ pub struct RecordingProgress<'a> {
     /// Completed steps of all scenarios. Each step counts twice, because each scenario is run for the scales first.
     pub done: u64,
     /// Total number of steps.
-    pub of: u64,
+    pub total: u64,
     /// Name of the current scenario.
     pub what: &'a str,
 }
@@ -246,7 +246,8 @@ fn write(
     let mut before = 0;
     let mut cases = Vec::with_capacity(scenarios.len());
     for scenario in scenarios {
-        let mut tick = |step| progress(RecordingProgress { done: before + step, of: 2 * total, what: &scenario.name });
+        let mut tick =
+            |step| progress(RecordingProgress { done: before + step, total: 2 * total, what: &scenario.name });
         let refused = |refusal| stopped_or(scenario.name.clone(), refusal);
         cases.push(Preview::of(scenario, &mut tick).map_err(refused)?);
         before += steps(scenario);
@@ -266,8 +267,8 @@ fn write(
     let done = laid_out.and_then(|()| {
         if preview::machines_differ(&cases) {
             let designs: Vec<_> =
-                cases.iter().map(|c| (c.name.as_str(), c.candidate.beside(&cases[0].candidate))).collect();
-            let table = TextDocument::from_markdown(design::beside(&designs));
+                cases.iter().map(|c| (c.name.as_str(), c.candidate.compared_with(&cases[0].candidate))).collect();
+            let table = TextDocument::from_markdown(design::comparison_table(&designs));
             set.store.fixed(&EntityPath::from(preview::DESIGNS_PATH), &table)?;
         }
         let names: Vec<_> = scenarios.iter().map(|s| s.name.as_str()).collect();
@@ -275,7 +276,7 @@ fn write(
         set.store.fixed(&EntityPath::properties(), &info)?;
         for (scenario, case) in scenarios.iter().zip(&cases) {
             let mut tick =
-                |step| progress(RecordingProgress { done: before + step, of: 2 * total, what: &scenario.name });
+                |step| progress(RecordingProgress { done: before + step, total: 2 * total, what: &scenario.name });
             let (peaks, verdict, statements) = recorder::record(&mut set, scenario, case, &mut tick)?;
             before += case.steps;
             recordings.push(Recording {

@@ -63,7 +63,7 @@ pub struct PictureSeries {
     #[cfg(feature = "render")]
     painter: Option<Painter>,
     /// Index of the next picture of the current case: it is due at this number divided by the frame rate.
-    taken: u64,
+    count: u64,
     clock: RowTimes,
     pictures: Vec<Vec<u8>>,
 }
@@ -76,7 +76,7 @@ impl PictureSeries {
             note: None,
             #[cfg(feature = "render")]
             painter: None,
-            taken: 0,
+            count: 0,
             clock: RowTimes::default(),
             pictures: Vec::new(),
         };
@@ -117,9 +117,9 @@ impl PictureSeries {
     /// Returns whether a picture is due at this instant: the step is nearest to the time of the next picture.
     pub fn is_due(&mut self, frame: &Frame, step: f64) -> bool {
         if frame.step == 0 {
-            self.taken = 0;
+            self.count = 0;
         }
-        self.wanted.is_some_and(|p| frame.time + 0.5 * step >= self.taken as f64 / p.fps)
+        self.wanted.is_some_and(|p| frame.time + 0.5 * step >= self.count as f64 / p.fps)
     }
 
     /// Takes a picture.
@@ -137,7 +137,7 @@ impl PictureSeries {
         self.pictures.push(picture.to_png().map_err(|why| failed(&why))?);
         self.clock.push(at);
         // If steps are longer than the time between pictures, there is one picture per step.
-        self.taken = self.taken.max((frame.time * wanted.fps).floor() as u64) + 1;
+        self.count = self.count.max((frame.time * wanted.fps).floor() as u64) + 1;
         Ok(())
     }
 

@@ -64,8 +64,8 @@ impl Preview {
         let charts = charts(scenario);
         let topics = Topic::all(signals.clone(), &charts);
         let mut charts: Vec<_> = charts.into_iter().map(|chart| (chart, none)).collect();
-        charts.retain(|(chart, _)| signals.iter().any(|signal| chart.holds(signal)));
-        let held = |signal: &Signal| charts.iter().position(|(chart, _)| chart.holds(signal));
+        charts.retain(|(chart, _)| signals.iter().any(|signal| chart.contains(signal)));
+        let held = |signal: &Signal| charts.iter().position(|(chart, _)| chart.contains(signal));
         let drawn: Vec<_> = signals.iter().filter_map(|signal| Some((held(signal)?, signal.clone()))).collect();
         let (mut b, mut first) = (none, None);
         let run = replay_while(scenario, |_, frame| {

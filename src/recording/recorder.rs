@@ -6,7 +6,7 @@ use crate::rerun::EntityPathPart;
 use crate::rerun::components::{Scalar, Text};
 use crate::rerun::{AnyValues, EntityPath, ViewCoordinates};
 
-use super::events::Events;
+use super::events::{Events, RecordedRun};
 use super::eye::Eye;
 use super::pictures::PictureSeries;
 use super::preview::Preview;
@@ -98,9 +98,9 @@ struct Recorder<'a> {
     events: Events,
 }
 
-/// Views of the run: `made` without, `views` with the present base and payload.
+/// Views of the run: `base_views` without, `views` with the present base and payload.
 struct Drawn {
-    made: Arc<Views>,
+    base_views: Arc<Views>,
     views: Arc<Views>,
 }
 
@@ -188,11 +188,11 @@ impl<'a> Recorder<'a> {
         let force = run.scenario().plant.force;
         self.options.external_force = Some(force).filter(|force| *force != [0.0; 2]);
         let queries = &self.forecast.queries;
-        let made = Views::made(queries, run, Some(self.forecast.b));
+        let made = Views::base_views(queries, run, Some(self.forecast.b));
         let views = Views::completed(&made, queries, run, None);
-        let drawn = self.drawn.replace(Drawn { made: made.clone(), views });
+        let drawn = self.drawn.replace(Drawn { base_views: made.clone(), views });
         match drawn {
-            Some(before) if Arc::ptr_eq(&before.made, &made) => return false,
+            Some(before) if Arc::ptr_eq(&before.base_views, &made) => return false,
             Some(_) => {}
             // Workspaces are named by their b at the start.
             None => self.first_b = frame.b_reference,
@@ -245,8 +245,14 @@ impl<'a> Recorder<'a> {
         let trail = lines([self.trail.take()], 1.8, mix(self.palette.ink, self.palette.dim, 0.5));
         self.store.fixed(&under(self.root, "end_effector/path"), &trail)?;
         let (verdict, statements) = (Verdict::of(run.scenario(), frame), Statements::of(run, frame));
-        let (of, end) = ((self.scenario, run.simulation().dt()), (Instant::of(frame), &frame.peaks, &verdict));
-        self.events.write(self.store, self.root, of, end)?;
+        let recorded = RecordedRun {
+            scenario: self.scenario,
+            dt: run.simulation().dt(),
+            end: Instant::of(frame),
+            peaks: &frame.peaks,
+            verdict: &verdict,
+        };
+        self.events.write(self.store, self.root, &recorded)?;
         let path = EntityPath::properties() / EntityPathPart::new(self.scenario.name.as_str());
         self.store.fixed(&path, &properties(self.scenario, (&frame.peaks, &verdict, &statements), run.plan()))?;
         Ok((frame.peaks, verdict, statements))

@@ -100,7 +100,7 @@ impl RecordingSpace {
             let pose = area.world_from_item();
             let flat = Area { turn: 0.0, at: [0.0; 2], z: 0.0, ..area.clone() };
             let entity = self.entity(EntityKind::Area, &area.name);
-            (entity.lasting, entity.pose) =
+            (entity.constant, entity.pose) =
                 (Some(StaticShape::Sheet(flat)), Some((Rigid::of(&pose), ItemChanges::Pose)));
         });
         let mut lift = 0.0;
@@ -118,7 +118,7 @@ impl RecordingSpace {
                 Some(pose)
             });
             let eye = self.eye;
-            self.entities[i].note(store, at, since, &outer.unwrap_or(Rigid::IDENTITY), &eye)?;
+            self.entities[i].record(store, at, since, &outer.unwrap_or(Rigid::IDENTITY), &eye)?;
         }
         Ok(())
     }
@@ -126,13 +126,13 @@ impl RecordingSpace {
     fn solid(&mut self, solid: &Solid, model: &Arc<MeshSet>) {
         let entity = self.entity(EntityKind::Solid, &solid.name);
         if solid.changes == ItemChanges::Shape {
-            (entity.lasting, entity.shape) =
+            (entity.constant, entity.shape) =
                 (Some(StaticShape::Tint(solid.colour)), Some(EntityShape::Mesh(model.clone(), solid.mesh)));
             return;
         }
         entity.placed.push((Rigid::of(&solid.world_from_item), solid.world_from_item[2][2]));
-        if entity.lasting.is_none() {
-            entity.lasting = Some(StaticShape::Mesh(model.clone(), solid.mesh, solid.colour));
+        if entity.constant.is_none() {
+            entity.constant = Some(StaticShape::Mesh(model.clone(), solid.mesh, solid.colour));
             entity.pose = Some((Rigid::of(&solid.world_from_item), solid.changes));
         }
     }
@@ -146,7 +146,7 @@ impl RecordingSpace {
         entity.pose = Some((pose, line.changes));
         match line.changes {
             ItemChanges::Shape => entity.strokes(strokes),
-            _ => entity.lasting = Some(StaticShape::Strokes(strokes)),
+            _ => entity.constant = Some(StaticShape::Strokes(strokes)),
         }
     }
 
@@ -158,7 +158,7 @@ impl RecordingSpace {
             let entity = self.entity(EntityKind::Line, &marker.name);
             let radius = px * (marker.radius - 0.5 * marker.stroke_width);
             let rgba = over(background, marker.stroke);
-            entity.lasting = Some(StaticShape::Ring { radius, width: marker.stroke_width, rgba });
+            entity.constant = Some(StaticShape::Ring { radius, width: marker.stroke_width, rgba });
             entity.rings.0.push(marker.at);
             entity.rings.1 = radius;
             entity.pose = Some((Rigid::shifted(marker.at), ItemChanges::Pose));

@@ -12,8 +12,8 @@ use stillbase_mechanics::balance::{
     Body, BodyQuantity, ListedParameter, Parameter, ParameterBounds, RebalanceRequest, rebalance,
 };
 use stillbase_mechanics::counterweights::{
-    CounterweightError, CounterweightSpec, Disc, FreeRotor, Front, Objective, Placed, RotorFreedom, Sites, front,
-    place_weights,
+    CounterweightError, CounterweightSite, CounterweightSpec, Disc, FreeRotor, Front, Objective, PlacedCounterweights,
+    RotorFreedom, front, place_weights,
 };
 use stillbase_mechanics::machine::{Counterweight, Drive, Inertia, Length, Link, Machine, MachineSpec};
 use stillbase_settings::change::{DEFAULT_WORD, at, join, leaves, single_change};
@@ -74,7 +74,8 @@ impl DesignBrief {
         let problem = self.free_numbers(&changed, start, &named);
         let kept = rebalance(&changed, &problem).map_err(|why| why.to_string())?;
         // The edit sets all free numbers, changed or not, so that the next edit of a drag replaces it.
-        let follows = problem.parameters.iter().zip(&kept.values).filter(|(one, _)| one.hold != ParameterBounds::Fixed);
+        let follows =
+            problem.parameters.iter().zip(&kept.values).filter(|(one, _)| one.bounds != ParameterBounds::Fixed);
         let follows = follows.map(|(one, value)| (one.parameter.key(&changed), *value));
         let discs = kept.machine.spec().counterweights.iter().enumerate();
         let discs = discs.map(|(i, weight)| (format!("counterweight.{}.radius", i + 1), weight.radius));
@@ -104,7 +105,7 @@ impl DesignBrief {
             let stays = is_fixed || self.fixed.contains(link) || named.contains(&parameter.key(machine));
             ListedParameter {
                 parameter,
-                hold: match (parameter.quantity, parameter.body) {
+                bounds: match (parameter.quantity, parameter.body) {
                     _ if stays => ParameterBounds::Fixed,
                     (BodyQuantity::Along, Body::Counterweight(i)) => self.along(machine, start, i),
                     _ => ParameterBounds::Free,
@@ -121,7 +122,7 @@ impl DesignBrief {
         for parameter in Parameter::all(machine) {
             let key = parameter.key(machine);
             if let Some(hold) = self.hold.get(&key).filter(|_| !named.contains(&key)) {
-                keep.hold(machine, parameter, *hold);
+                keep.set_bounds(machine, parameter, *hold);
             }
         }
         keep.measured_from(start)
@@ -156,7 +157,7 @@ impl DesignBrief {
     /// # Errors
     /// If no counterweights within the bounds balance the machine.
     pub fn front(&self, machine: &Machine, count: usize) -> Result<Front, CounterweightError> {
-        front(machine, &self.weighing(machine), count)
+        front(machine, &self.lightest_problem(machine), count)
     }
 
     /// Returns the counterweights and rotor ratios with the least Σ |D_k|, the momentum that the drives give to the
@@ -164,25 +165,30 @@ impl DesignBrief {
     ///
     /// # Errors
     /// If no counterweights and ratios within the bounds balance the machine.
-    pub fn stillest(&self, machine: &Machine) -> Result<Placed, CounterweightError> {
+    pub fn least_momentum(&self, machine: &Machine) -> Result<PlacedCounterweights, CounterweightError> {
         let objective = Objective { momentum: 1.0, mass: MASS_WEIGHT, ..Objective::mass() };
         let drives = machine.spec().drives.iter().enumerate();
         let rotors = drives.filter_map(|(drive, of)| {
             let ends = *self.ratio.get(&of.name)?;
             Some(FreeRotor { drive, parameter: RotorFreedom::Ratio(ends) })
         });
-        place_weights(machine, &CounterweightSpec { objective, rotors: rotors.collect(), ..self.weighing(machine) })
+        place_weights(
+            machine,
+            &CounterweightSpec { objective, rotors: rotors.collect(), ..self.lightest_problem(machine) },
+        )
     }
 
     /// Returns the optimisation problem of the lightest counterweights for a machine, within the bounds of the brief.
-    pub fn weighing(&self, machine: &Machine) -> CounterweightSpec {
+    pub fn lightest_problem(&self, machine: &Machine) -> CounterweightSpec {
         let spec = machine.spec();
         let free = machine.resolved_links().iter().enumerate();
-        let sites = free.filter(|(link, _)| !self.fixed.contains(&spec.links[*link].name)).map(|(link, part)| Sites {
-            link,
-            from: -self.behind_root.unwrap_or(part.length),
-            to: part.length,
-            most: self.heaviest.unwrap_or(f64::INFINITY),
+        let sites = free.filter(|(link, _)| !self.fixed.contains(&spec.links[*link].name)).map(|(link, part)| {
+            CounterweightSite {
+                link,
+                from: -self.behind_root.unwrap_or(part.length),
+                to: part.length,
+                most: self.heaviest.unwrap_or(f64::INFINITY),
+            }
         });
         CounterweightSpec {
             clearance: self.clearance,

@@ -86,7 +86,7 @@ impl Document {
         let (mut frames, mut machines) = (Sequence::default(), Machines::default());
         let see = |run: &Run, frame: &Frame| {
             frames.push(*frame);
-            machines.hold(frame.step, &run.scenario().machine);
+            machines.set_from(frame.step, &run.scenario().machine);
             !frames.len().is_multiple_of(REPORT_FRAMES) || watch(frames.len() as f64 / (self.end + 1) as f64)
         };
         let end = |_: &Run, _: &[TimedEdit]| Ok(self.end);
@@ -98,12 +98,12 @@ impl Document {
     /// depends, returns the scenario of the run with these settings from `self`. Otherwise returns `None`.
     pub fn aside_of(&self, other: &Self) -> Option<Scenario> {
         fn moving(document: &Document) -> impl Iterator<Item = &TimedEdit> {
-            document.script.in_order().into_iter().filter(|timed| !timed.edit.is_aside())
+            document.script.in_order().into_iter().filter(|timed| !timed.edit.affects_no_frame())
         }
         if !moving(self).eq(moving(other)) || other.scenario.with_asides_of(&self.scenario).ok()? != *self.scenario {
             return None;
         }
-        let mut asides = self.script.in_order().into_iter().filter_map(|timed| timed.edit.asides());
+        let mut asides = self.script.in_order().into_iter().filter_map(|timed| timed.edit.frameless_settings());
         asides.try_fold(Scenario::clone(&self.scenario), |now, edit| changed(&now, &edit).ok())
     }
 
@@ -111,7 +111,7 @@ impl Document {
     pub fn amended(&self, timed: &TimedEdit) -> Self {
         let mut document = self.clone();
         let mut timed = timed.clone();
-        if let Some(change) = timed.edit.take("duration") {
+        if let Some(change) = timed.edit.take_key("duration") {
             // A saved session stores its length as `duration`, so this setting changes the scenario and is not part of
             // the script.
             if let Ok(scenario) = document.scenario.with_settings(&change) {

@@ -143,7 +143,7 @@ impl Edit {
     }
 
     /// Removes a key of the scenario itself from the edit. Returns the key with its value as a change, if it was there.
-    pub(super) fn take(&mut self, key: &str) -> Option<Table> {
+    pub(super) fn take_key(&mut self, key: &str) -> Option<Table> {
         let Self::Set { change } = self else { return None };
         Some(Table::from_iter([(key.to_owned(), change.remove(key)?)]))
     }
@@ -170,12 +170,12 @@ impl Edit {
     }
 
     /// Returns whether no frame depends on the edit's settings, so that they apply to the whole run.
-    pub fn is_aside(&self) -> bool {
+    pub fn affects_no_frame(&self) -> bool {
         self.effect() == Effect::NoFrame
     }
 
     /// Returns the edit with only those settings on which no frame depends, if there are any.
-    pub(super) fn asides(&self) -> Option<Self> {
+    pub(super) fn frameless_settings(&self) -> Option<Self> {
         let change = self.settings()?;
         let aside = |(part, value): &(&String, &Value)| effect_in(part, value) == Effect::NoFrame;
         let change: Table = change.iter().filter(aside).map(|(part, value)| (part.clone(), value.clone())).collect();
@@ -206,16 +206,16 @@ impl Edit {
 
     /// Returns whether the edit's settings apply to the whole run: those of the plan, and those on which no frame
     /// depends.
-    pub fn is_of_the_whole(&self) -> bool {
-        self.is_of_the_start() || self.is_aside()
+    pub fn applies_to_whole_run(&self) -> bool {
+        self.changes_plan() || self.affects_no_frame()
     }
 
-    /// Reason for refusing an edit [of the start](Self::is_of_the_start) after the first step.
+    /// Reason for refusing an edit [of the start](Self::changes_plan) after the first step.
     pub(super) const START_ONLY_REASON: &str =
         "task, time, base and step can change only before the first step: want step = 0";
 
     /// Returns whether the edit changes the plan of the motion, so that it is allowed only before the first step.
-    pub(super) fn is_of_the_start(&self) -> bool {
+    pub(super) fn changes_plan(&self) -> bool {
         self.effect() == Effect::Plan
     }
 

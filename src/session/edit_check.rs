@@ -33,7 +33,7 @@ pub(crate) fn check_edits(scenario: &Scenario) -> Result<(), (usize, String)> {
         }
         now = changed(&now, &timed.edit).map_err(|why| of_entry(why.to_string()))?;
         match now.check(timed.edit.name()) {
-            Ok(()) if place >= opening && timed.edit.is_of_the_start() => {
+            Ok(()) if place >= opening && timed.edit.changes_plan() => {
                 return Err(of_entry(Edit::START_ONLY_REASON.into()));
             }
             Ok(()) => unsound = None,

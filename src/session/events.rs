@@ -276,7 +276,7 @@ impl EventLog {
     /// Reads one more frame of a run whose frames are not kept, with the step size, s, and the machine at that step.
     pub fn see(&mut self, frame: &Frame, (step, machine): (f64, &Machine)) {
         self.step = step;
-        self.machines.hold(frame.step, machine);
+        self.machines.set_from(frame.step, machine);
         self.note(frame, Some(machine));
     }
 

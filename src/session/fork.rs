@@ -18,7 +18,7 @@ pub struct Fork {
 
 impl LeftBranch {
     /// Returns the difference between the branch and a run with other edits that ends at step `end`.
-    pub(super) fn beside(&self, edits: &Sequence<TimedEdit>, end: u64) -> Fork {
+    pub(super) fn difference_from(&self, edits: &Sequence<TimedEdit>, end: u64) -> Fork {
         Fork::of((&self.script.in_order(), self.end, self.script.is_dragged()), (edits, end), self.step)
     }
 }
@@ -33,7 +33,7 @@ impl QuickQuery for Forks {
     type Answer = Vec<Fork>;
 
     fn answer((branches, edits, end): &Self::Input) -> Vec<Fork> {
-        let mut forks: Vec<Fork> = branches.0.iter().map(|left| left.beside(edits, *end)).collect();
+        let mut forks: Vec<Fork> = branches.0.iter().map(|left| left.difference_from(edits, *end)).collect();
         for i in 1..forks.len() {
             let title = forks[i].title.clone();
             let taken = |name: &String| forks[..i].iter().any(|fork| fork.title == *name);

@@ -10,7 +10,7 @@ pub struct Machines(Arc<Vec<(u64, Machine)>>);
 
 impl Machines {
     /// Sets the machine from a step on, replacing all entries for that step and later ones.
-    pub fn hold(&mut self, step: u64, machine: &Machine) {
+    pub fn set_from(&mut self, step: u64, machine: &Machine) {
         let earlier = self.0.partition_point(|(from, _)| *from < step);
         let is_same = earlier.checked_sub(1).is_some_and(|i| self.0[i].1 == *machine);
         if earlier == self.0.len() && is_same {

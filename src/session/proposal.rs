@@ -243,7 +243,7 @@ fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal> {
     match refusal {
         Refusal::Edit { refusal, .. } => return candidates(scenario, refusal),
         Refusal::NoCommonPlane { why, .. } => {
-            let shown = why.mend.and_then(|mend| Some((mend.point, mend.shown?)));
+            let shown = why.correction.and_then(|correction| Some((correction.point, correction.shown?)));
             found.extend(shown.and_then(|(point, shown)| {
                 let mut change = task.moving(point, shown.point())?;
                 change.insert("b".into(), shown.b.value().into());

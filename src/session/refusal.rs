@@ -35,10 +35,10 @@ pub enum Refusal {
         unreachable: Unreachable,
     },
     /// No b reaches all points.
-    #[error("{said}")]
+    #[error("{message}")]
     NoCommonPlane {
         /// Message with the names of the points.
-        said: String,
+        message: String,
         /// Reason, and the change that would help.
         why: NoCommonB,
     },

@@ -58,7 +58,7 @@ fn whole(
     see: impl FnMut(&Run, &Frame) -> bool,
 ) -> Result<Run, Refusal> {
     let end = |run: &Run, script: &[TimedEdit]| {
-        let last = run.whole(script)?;
+        let last = run.checked_last_step(script)?;
         allow(last).map(|()| last).map_err(ScriptError::from)
     };
     let done = perform(scenario, &in_order(&scenario.edits), end, false, None, see);

@@ -208,7 +208,7 @@ impl Run {
     /// # Errors
     /// If it cannot apply; then nothing has changed.
     pub fn apply(&mut self, edit: &Edit) -> Result<(), Refusal> {
-        if edit.is_aside() {
+        if edit.affects_no_frame() {
             self.scenario = Arc::new(checked(changed(&self.scenario, edit)?, edit)?);
             return Ok(());
         }
@@ -273,7 +273,7 @@ impl Run {
 
     /// Changes settings during a motion, which keeps its path.
     fn set(&mut self, edit: &Edit) -> Result<(), Refusal> {
-        if edit.is_of_the_start() {
+        if edit.changes_plan() {
             return Err(Refusal::Task(Edit::START_ONLY_REASON.into()));
         }
         let scenario = checked(changed(&self.scenario, edit)?, edit)?;
@@ -427,7 +427,7 @@ impl Run {
     ///
     /// # Errors
     /// If it is later than [`MAX_STEPS`], or an edit comes after it.
-    pub(super) fn whole(&self, script: &[TimedEdit]) -> Result<u64, ScriptError> {
+    pub(super) fn checked_last_step(&self, script: &[TimedEdit]) -> Result<u64, ScriptError> {
         let (last, step) = (self.last_step(), self.scenario.step);
         if last > MAX_STEPS {
             let time = self.scenario.duration.unwrap_or(self.planned_time());

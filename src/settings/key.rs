@@ -14,12 +14,12 @@ pub struct Key {
     /// Parts of the key joined by dots; `*` is a placeholder for the name of a link, a length, a drive or an angle.
     pub path: &'static str,
     /// Type and range of the value.
-    pub holds: KeyType,
+    pub value_type: KeyType,
     /// Default if a file omits the key, written as in a file. [`NONE`](Self::NONE) if a missing key has no value,
     /// [`REQUIRED`](Self::REQUIRED) if the key must be given.
     pub default: &'static str,
     /// Meaning, in one sentence.
-    pub words: &'static str,
+    pub meaning: &'static str,
     /// Condition under which the key has an effect; empty for always.
     pub when: &'static str,
     /// Description of what applies if the key has no value.
@@ -73,8 +73,8 @@ impl Key {
     pub const REQUIRED: &'static str = "";
 
     /// Returns a key that always has an effect.
-    pub const fn new(path: &'static str, holds: KeyType, default: &'static str, words: &'static str) -> Self {
-        Self { path, holds, default, words, when: "", instead: "", effect: Effect::Motion }
+    pub const fn new(path: &'static str, value_type: KeyType, default: &'static str, meaning: &'static str) -> Self {
+        Self { path, value_type, default, meaning, when: "", instead: "", effect: Effect::Motion }
     }
 
     /// Returns a key that holds a number.
@@ -118,7 +118,7 @@ impl Key {
     }
 
     /// Returns the default in words: that the key must be given, the value, or what applies instead.
-    pub fn usual(&self) -> String {
+    pub fn default_in_words(&self) -> String {
         match (self.default, self.instead) {
             (Self::REQUIRED, _) => "has to be given".into(),
             (default, "") => format!("`{default}`"),
@@ -133,7 +133,7 @@ impl Key {
 
     /// Returns the range of the key's numbers, if its value contains any.
     pub const fn range(&self) -> Option<Range> {
-        match self.holds {
+        match self.value_type {
             KeyType::Number(range)
             | KeyType::Whole(range)
             | KeyType::PerDrive(range)
@@ -146,7 +146,7 @@ impl Key {
 
     /// Returns the unit of the key's numbers.
     pub const fn unit(&self) -> &'static str {
-        match self.holds {
+        match self.value_type {
             KeyType::Spread(unit) => unit,
             _ => match self.range() {
                 Some(range) => range.unit(),
@@ -175,7 +175,7 @@ impl KeyType {
     }
 
     /// Returns whether a value has this type; the word `default` always does.
-    pub fn takes(&self, value: &Value) -> bool {
+    pub fn accepts(&self, value: &Value) -> bool {
         let number = |value: &Value| change::number(value).is_some();
         let list = |value: &Value, count: Option<usize>| {
             let fits = |list: &Vec<Value>| count.is_none_or(|n| list.len() == n) && list.iter().all(number);

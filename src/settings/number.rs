@@ -32,7 +32,7 @@ pub fn fixed(x: f64, decimals: usize) -> String {
 
 /// Formats a number with fixed decimals, or with a power of ten if those would show only zeros. Below 1e-12 it is
 /// treated as zero.
-pub fn shown(x: f64, decimals: usize) -> String {
+pub fn fixed_or_scientific(x: f64, decimals: usize) -> String {
     let text = fixed(x, decimals);
     match x.abs() >= 1e-12 && text.bytes().all(|b| matches!(b, b'0' | b'.')) {
         true => format!("{x:.1e}"),

@@ -18,24 +18,24 @@ const DIMENSIONLESS: Dimension = [0; 4];
 struct Quantity {
     /// Value in metres, kilograms, seconds, radians.
     value: f64,
-    of: Dimension,
+    dimension: Dimension,
     /// Whether a unit was typed, even one without a dimension.
     has_unit: bool,
 }
 
 impl Quantity {
     fn plain(value: f64) -> Self {
-        Self { value, of: DIMENSIONLESS, has_unit: false }
+        Self { value, dimension: DIMENSIONLESS, has_unit: false }
     }
 
     fn times(self, other: Self, sign: i32) -> Self {
         let value = if sign > 0 { self.value * other.value } else { self.value / other.value };
-        let of = [0, 1, 2, 3].map(|i| self.of[i] + sign * other.of[i]);
-        Self { value, of, has_unit: self.has_unit || other.has_unit }
+        let dimension = [0, 1, 2, 3].map(|i| self.dimension[i] + sign * other.dimension[i]);
+        Self { value, dimension, has_unit: self.has_unit || other.has_unit }
     }
 
     fn to_the(self, power: i32) -> Self {
-        Self { value: self.value.powi(power), of: self.of.map(|of| of * power), ..self }
+        Self { value: self.value.powi(power), dimension: self.dimension.map(|of| of * power), ..self }
     }
 }
 
@@ -93,7 +93,7 @@ pub fn read(text: &str, unit: &str) -> Result<f64, QuantityError> {
     }
     // Radians may be omitted where there is mass, as in torques: N m/rad is N m.
     let same = |one: Dimension, other: Dimension| one == other || (one[1] != 0 && one[..3] == other[..3]);
-    let found = wanted.into_iter().find(|wanted| same(typed.of, wanted.of));
+    let found = wanted.into_iter().find(|wanted| same(typed.dimension, wanted.dimension));
     match found.map(|wanted| typed.value / wanted.value) {
         Some(value) if value.is_finite() => Ok(value),
         Some(_) => Err(QuantityError::NotFinite),
@@ -142,7 +142,7 @@ impl Reader<'_> {
                 () => return Ok(sum),
             };
             let next = self.product()?;
-            if next.of != sum.of || next.has_unit != sum.has_unit {
+            if next.dimension != sum.dimension || next.has_unit != sum.has_unit {
                 return Err(QuantityError::Mixed);
             }
             sum.value += sign * next.value;
@@ -269,7 +269,7 @@ fn meaning(word: &str) -> Option<Quantity> {
     let (m, kg, s, rad) = ([1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]);
     let (newton, joule, per_s) = ([1, 1, -2, 0], [2, 1, -2, 0], [0, 0, -1, 0]);
     let degree = PI / 180.0;
-    let (value, of) = match word {
+    let (value, dimension) = match word {
         "pi" | "π" | "Pi" | "PI" => return Some(Quantity::plain(PI)),
         "tau" | "τ" => return Some(Quantity::plain(TAU)),
         "m" => (1.0, m),
@@ -304,5 +304,5 @@ fn meaning(word: &str) -> Option<Quantity> {
         "%" => (0.01, DIMENSIONLESS),
         _ => return None,
     };
-    Some(Quantity { value, of, has_unit: true })
+    Some(Quantity { value, dimension, has_unit: true })
 }

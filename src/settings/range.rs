@@ -85,7 +85,7 @@ impl RangeCheck {
     }
 
     /// Returns a check whose condition depends on other numbers, with the condition in words.
-    pub fn said(key: impl Into<Cow<'static, str>>, value: f64, ok: bool, want: impl FnOnce() -> String) -> Self {
+    pub fn depending(key: impl Into<Cow<'static, str>>, value: f64, ok: bool, want: impl FnOnce() -> String) -> Self {
         let want = if ok { Requirement::Words("") } else { Requirement::Said(want()) };
         Self { key: key.into(), value, ok, want }
     }

@@ -72,7 +72,7 @@ impl Control {
     }
 
     /// Returns the checks that depend on the step, s, and on the number `n` of drives.
-    pub fn fits(&self, n: usize, step: f64) -> Vec<RangeCheck> {
+    pub fn range_checks(&self, n: usize, step: f64) -> Vec<RangeCheck> {
         let mut list = Vec::new();
         let at_step = |range: Range| format!("{range} at a step of {} s", ShortNumber(step));
         for (key, gain, most) in [
@@ -80,7 +80,7 @@ impl Control {
             ("control.kd", self.kd, Range::new(0.0, 2.0 / step, "s⁻¹")),
         ] {
             let all = gain.values().into_iter();
-            list.extend(all.map(|x| RangeCheck::said(key, x, most.contains(x), || at_step(most.rounded()))));
+            list.extend(all.map(|x| RangeCheck::depending(key, x, most.contains(x), || at_step(most.rounded()))));
             list.extend(gain.misfit(n, key));
         }
         let whole = |steps: f64| (steps - steps.round()).abs() < 1e-6 * steps.max(1.0);
@@ -89,8 +89,8 @@ impl Control {
         let (delay, encoder) = (self.delay, self.encoder);
         let counts = encoder == 0.0 || encoder >= 16.0;
         list.extend([
-            RangeCheck::said("control.rate", self.rate, period, || rates(steps, step)),
-            RangeCheck::said("control.delay", delay, whole(delay / step), || delays(delay, step)),
+            RangeCheck::depending("control.rate", self.rate, period, || rates(steps, step)),
+            RangeCheck::depending("control.delay", delay, whole(delay / step), || delays(delay, step)),
             RangeCheck::words("control.encoder", encoder, counts, "0, or 16 to 1e12 counts in a turn"),
         ]);
         list
@@ -145,6 +145,22 @@ pub struct Controller {
     models: Box<[MovingBody; 2]>,
 }
 
+/// State of the machine from which the torques are computed, with arrays of compile-time size.
+pub(crate) struct ControlledState<'a, const N: usize> {
+    /// Angles of the drives relative to the base, rad.
+    pub q: &'a [f64; N],
+    /// Rates of the drives relative to the base, rad/s.
+    pub qd: &'a [f64; N],
+    /// Absolute unit vectors of the rotational coordinates.
+    pub e: &'a [Vector; N],
+    /// Absolute rates of the rotational coordinates, rad/s.
+    pub rate: &'a [f64; N],
+    /// Pose of the base.
+    pub base: Pose2,
+    /// Velocity of B, m/s.
+    pub velocity: Vector,
+}
+
 impl Controller {
     /// Builds a controller for a machine of `n` drives.
     pub fn new(control: &Control, n: usize, models: [MovingBody; 2]) -> Self {
@@ -178,17 +194,16 @@ impl Controller {
         by_drives!(size, size > reading.q.len(), torque_of(self, reference, reading, loaded))
     }
 
-    /// Returns the motor torques, N m, for a compile-time size `N`; `MOVES` says whether the base moves. The angles `q`
-    /// and rates `qd` are relative to the base, `e` and `rate` are absolute. Entries beyond the drives are zero.
+    /// Returns the motor torques, N m, for a compile-time size `N`; `MOVES` says whether the base moves. Entries
+    /// beyond the drives are zero.
     #[inline(always)]
     pub(crate) fn torque_at<const N: usize, const MOVES: bool>(
         &self,
         reference: &Reference,
-        (q, qd): (&[f64; N], &[f64; N]),
-        (e, rate): (&[Vector; N], &[f64; N]),
-        (base, velocity): (Pose2, Vector),
+        state: &ControlledState<'_, N>,
         loaded: bool,
     ) -> [f64; N] {
+        let ControlledState { q, qd, e, rate, base, velocity } = *state;
         let n = if MOVES { N - 1 } else { N };
         let (aim, aim_rate) = (reference.q.0.array::<N>(), reference.qd.array::<N>());
         let (kp, kd) = (self.kp.array::<N>(), self.kd.array::<N>());
@@ -250,7 +265,13 @@ fn torque_of<const N: usize, const MOVES: bool>(
     reading: &Reading,
     loaded: bool,
 ) -> PerDrive {
-    let (own, all) = ((reading.q.0.array(), reading.qd.array()), (leading_entries(reading.e), reading.rates.array()));
-    let base = (reading.base, reading.velocity);
-    PerDrive::of_array(reading.q.len(), control.torque_at::<N, MOVES>(reference, own, all, base, loaded))
+    let state = ControlledState {
+        q: reading.q.0.array(),
+        qd: reading.qd.array(),
+        e: leading_entries(reading.e),
+        rate: reading.rates.array(),
+        base: reading.base,
+        velocity: reading.velocity,
+    };
+    PerDrive::of_array(reading.q.len(), control.torque_at::<N, MOVES>(reference, &state, loaded))
 }

@@ -116,13 +116,13 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
         ("moment/felt", "n felt", "moment that the base feels: n_B less a wheel's", "N m", |f| f.net_base_moment()),
         ("moment/wheel", "τ_w", "torque of the reaction wheel", "N m", |f| f.wheel.torque),
         ("moment/rms", "n rms", "root mean square of the moment so far", "N m", |f| f.totals.moment_rms()),
-        ("moment/static", "n_B stat", "base moment, from weight", "N m", |f| f.wrench.statical.moment),
+        ("moment/static", "n_B stat", "base moment, from weight", "N m", |f| f.wrench.static_part.moment),
         ("force/dynamic", "|f_B|", "base force, from motion", "N", |f| f.wrench.dynamic.force.norm()),
         ("force/rms", "f rms", "root mean square of |f_B| so far", "N", |f| f.totals.force_rms()),
         ("force/dynamic_x", "f_Bx", "base force along x, from motion", "N", |f| f.wrench.dynamic.force.re),
         ("force/dynamic_y", "f_By", "base force along y, from motion", "N", |f| f.wrench.dynamic.force.im),
-        ("force/static_x", "f_Bx stat", "base force along x, from weight", "N", |f| f.wrench.statical.force.re),
-        ("force/static_y", "f_By stat", "base force along y, from weight", "N", |f| f.wrench.statical.force.im),
+        ("force/static_x", "f_Bx stat", "base force along x, from weight", "N", |f| f.wrench.static_part.force.re),
+        ("force/static_y", "f_By stat", "base force along y, from weight", "N", |f| f.wrench.static_part.force.im),
         ("momentum/x", "p_x", "linear momentum along x", "kg m/s", |f| f.momentum.re),
         ("momentum/y", "p_y", "linear momentum along y", "kg m/s", |f| f.momentum.im),
         ("angular_momentum/about_b", "h_B", "angular momentum about the origin", "kg m²/s", |f| f.angular_momentum),
@@ -198,7 +198,7 @@ fn inside(machine: &Machine) -> Vec<Signal> {
             let drive = Some(machine.resolved_links()[pin.to].drive);
             add(path, symbol, label, "N", drive, Quantity::PerIndex(i, |f, i| f.inside.size(i)));
         }
-        let worst = Quantity::Whole(|f| f.inside.worst);
+        let worst = Quantity::Whole(|f| f.inside.largest_force);
         add("pin/worst".into(), "F worst".into(), "largest force of a pin".into(), "N", None, worst);
     }
     let tilt = |value: fn(&Frame) -> f64| Quantity::Whole(value);

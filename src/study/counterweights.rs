@@ -9,7 +9,8 @@ use super::front_point::FrontPoint;
 use super::lengths::{FoundLengths, LengthSearch, NoLengths, SearchProgress, search};
 use super::measures::Measures;
 use stillbase_mechanics::counterweights::{
-    CounterweightError, CounterweightSpec, FreeRotor, Placed, Residual, Sites, front, over_payloads, place_weights,
+    CounterweightError, CounterweightSite, CounterweightSpec, FreeRotor, PayloadResidual, PlacedCounterweights, front,
+    over_payloads, place_weights,
 };
 use stillbase_mechanics::machine::{Counterweight, Inertia, Machine, MachineError};
 use stillbase_planning::Motion;
@@ -21,7 +22,7 @@ const PAYLOAD_SAMPLES: usize = 11;
 #[derive(Clone, Debug, PartialEq)]
 pub struct CounterweightRequest {
     /// Sites of the counterweights, and the objective. A search for lengths uses its own sites and objective instead.
-    pub weighing: CounterweightSpec,
+    pub spec: CounterweightSpec,
     /// Link lengths to optimise together with the counterweights.
     pub lengths: Option<LengthSearch>,
     /// Number of machines on the Pareto front from the least mass to the least inertia.
@@ -70,14 +71,14 @@ pub struct CounterweightReport {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub front_points: Vec<FrontPoint>,
     /// Lengths that were optimised.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub sought: Option<LengthsReport>,
+    #[serde(rename = "sought", skip_serializing_if = "Option::is_none")]
+    pub optimised_lengths: Option<LengthsReport>,
     /// Rotors that were chosen.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rotors: Vec<ChosenRotor>,
     /// Residuals of balance over the range of payloads.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub payload: Vec<Residual>,
+    pub payload: Vec<PayloadResidual>,
     /// Whether (7) and (8) hold. With a range of payloads they need not hold: see [`payload`](Self::payload).
     pub is_balanced: bool,
     /// Balance constants of the new machine.
@@ -132,13 +133,13 @@ pub fn balance_by_weights(
     motion: Option<&Motion>,
     go_on: &mut dyn FnMut(SearchProgress) -> bool,
 ) -> Result<(Machine, CounterweightReport), NoCounterweights> {
-    let mut weighing = request.weighing.clone();
+    let mut weighing = request.spec.clone();
     let (placed, sought) = match &request.lengths {
         None => (place_weights(machine, &weighing).map_err(NoCounterweights::Weights)?, None),
         Some(lengths) => {
             let found = search(machine, lengths, go_on).map_err(NoCounterweights::Lengths)?;
             if lengths.anywhere {
-                weighing.sites = Sites::anywhere(&found.placed.machine);
+                weighing.sites = CounterweightSite::anywhere(&found.placed.machine);
             }
             let sought = LengthsReport::of(lengths, &found);
             (found.placed, Some(sought))
@@ -152,7 +153,7 @@ pub fn balance_by_weights(
     };
     let front = front.iter().map(|placed| FrontPoint::of(placed, motion, true)).collect();
     let mut report = CounterweightReport::of(&placed, front, motion, &weighing)?;
-    report.sought = sought;
+    report.optimised_lengths = sought;
     report.taken_off = removed_weights(machine);
     Ok((placed.machine, report))
 }
@@ -175,7 +176,7 @@ impl LengthsReport {
 
 impl CounterweightReport {
     fn of(
-        placed: &Placed,
+        placed: &PlacedCounterweights,
         front_points: Vec<FrontPoint>,
         motion: Option<&Motion>,
         request: &CounterweightSpec,
@@ -198,7 +199,7 @@ impl CounterweightReport {
             certified: placed.is_certified(),
             front: front_points.iter().map(FrontPoint::measures).collect(),
             front_points,
-            sought: None,
+            optimised_lengths: None,
             rotors: request.rotors.iter().map(chosen).collect(),
             payload: payload.unwrap_or_default(),
             is_balanced: inertia.is_balanced(),

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use stillbase_mechanics::counterweights::{Placed, PlacementTolerance, worst_residual};
-use stillbase_mechanics::dynamics::{Surroundings, inverse_with_wrench};
+use stillbase_mechanics::counterweights::{PlacedCounterweights, PlacementTolerance, worst_residual};
+use stillbase_mechanics::dynamics::{ExternalLoads, inverse_with_wrench};
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::Vector;
 use stillbase_planning::Motion;
@@ -24,8 +24,9 @@ pub struct FrontPoint {
     /// Area of the reactionless workspace, m²; `None` unless the machine has three drives and a b.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub workspace: Option<f64>,
-    /// Largest |g_k| if every counterweight deviates by the usual tolerance ([`PlacementTolerance::USUAL`]), kg m.
-    pub off_by: f64,
+    /// Largest |g_k| if every counterweight deviates by the usual tolerance ([`PlacementTolerance::DEFAULT`]), kg m.
+    #[serde(rename = "off_by")]
+    pub residual_if_misplaced: f64,
 }
 
 /// Further measures of the machines of a Pareto front.
@@ -54,12 +55,12 @@ impl FrontMeasure {
 
     /// Returns the measure of one machine; `None` where it is not defined. The motion must have as many drives as the
     /// machine.
-    pub fn of(self, placed: &Placed, motion: Option<&Motion>) -> Option<f64> {
+    pub fn of(self, placed: &PlacedCounterweights, motion: Option<&Motion>) -> Option<f64> {
         let point = FrontPoint::of(placed, motion.filter(|_| self == Self::Torque), self == Self::Workspace);
         match self {
             Self::Torque => point.torque,
             Self::Workspace => point.workspace,
-            Self::OffBy => Some(point.off_by),
+            Self::OffBy => Some(point.residual_if_misplaced),
         }
     }
 }
@@ -72,14 +73,14 @@ impl FrontPoint {
 
     /// Returns the measures of one machine. The motion must have as many drives as the machine. The workspace is
     /// computed only if requested, because it takes longer than all other measures.
-    pub fn of(placed: &Placed, motion: Option<&Motion>, workspace: bool) -> Self {
+    pub fn of(placed: &PlacedCounterweights, motion: Option<&Motion>, workspace: bool) -> Self {
         let machine = &placed.machine;
         Self {
             added_mass: placed.added_mass,
             inertia: Inertia::of(machine).total_momentum(),
             torque: motion.map(|motion| greatest_torque(machine, motion)),
             workspace: workspace.then(|| plane_area(machine)).flatten(),
-            off_by: worst_residual(machine, &PlacementTolerance::USUAL).force,
+            residual_if_misplaced: worst_residual(machine, &PlacementTolerance::DEFAULT).force,
         }
     }
 }
@@ -87,7 +88,7 @@ impl FrontPoint {
 /// Returns the largest |torque| over all motors, N m.
 fn greatest_torque(machine: &Machine, motion: &Motion) -> f64 {
     let inertia = Inertia::of(machine);
-    let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
+    let around = ExternalLoads { gravity: machine.gravity(), force: Vector::default() };
     let at = |r: stillbase_planning::Reference| {
         let (torque, _) = inverse_with_wrench(&inertia, &r.q.units(), &r.qd, &r.qdd, &around);
         inertia.motors().motor_torques(&torque).iter().fold(0.0_f64, |most, x| most.max(x.abs()))

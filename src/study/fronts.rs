@@ -18,7 +18,7 @@ pub struct FrontCase {
     /// The machine; its counterweights are removed first, except fixed ones.
     pub machine: Machine,
     /// Bounds on the counterweights: the same for all machines, applied to the links of this one.
-    pub asked: CounterweightSpec,
+    pub spec: CounterweightSpec,
 }
 
 impl FrontCase {
@@ -26,7 +26,7 @@ impl FrontCase {
     pub fn of(name: impl Into<String>, machine: &Machine, brief: &DesignBrief) -> Self {
         // Counterweights are removed here, so that changing them does not change the request.
         let machine = machine.without_counterweights().unwrap_or_else(|_| machine.clone());
-        Self { name: name.into(), asked: brief.weighing(&machine), machine }
+        Self { name: name.into(), spec: brief.lightest_problem(&machine), machine }
     }
 }
 
@@ -87,7 +87,7 @@ impl Serialize for MachineFront {
 /// has the reason in place of a front.
 #[derive(Debug)]
 pub struct Fronts {
-    asked: FrontsRequest,
+    request: FrontsRequest,
     done: Vec<MachineFront>,
     now: Stage,
 }
@@ -105,14 +105,14 @@ impl Query for Fronts {
     type Input = FrontsRequest;
     type Answer = Vec<MachineFront>;
 
-    fn begin(asked: FrontsRequest) -> Self {
-        Self { now: Stage::of(&asked, 0), done: Vec::with_capacity(asked.machines.len()), asked }
+    fn begin(request: FrontsRequest) -> Self {
+        Self { now: Stage::of(&request, 0), done: Vec::with_capacity(request.machines.len()), request }
     }
 
     /// Computes one machine of a front, or its measures.
     fn go_on(&mut self, goes_on: ProgressCallback<'_>) -> Portion<Self::Answer> {
-        let (known, all) = (self.done.len(), self.asked.machines.len() as f64);
-        let Some(of) = self.asked.machines.get(known) else {
+        let (known, all) = (self.done.len(), self.request.machines.len() as f64);
+        let Some(of) = self.request.machines.get(known) else {
             return Portion::Done(std::mem::take(&mut self.done));
         };
         // For each machine, the search is one half of the work and the measures are the other.
@@ -129,9 +129,9 @@ impl Query for Fronts {
             },
             Stage::Telling(front, points) => match front.points.get(points.len()) {
                 Some(placed) => {
-                    let motion = self.asked.motion.as_ref().map(|motion| &*motion.0);
+                    let motion = self.request.motion.as_ref().map(|motion| &*motion.0);
                     let motion = motion.filter(|motion| motion.at(0.0).q.len() == of.machine.drives());
-                    points.push(FrontPoint::of(placed, motion, self.asked.workspace));
+                    points.push(FrontPoint::of(placed, motion, self.request.workspace));
                     return Portion::More(share(1.0 + points.len() as f64 / front.points.len() as f64));
                 }
                 None => {
@@ -141,17 +141,17 @@ impl Query for Fronts {
             },
         };
         self.done.push(MachineFront { name: of.name.clone(), outcome });
-        self.now = Stage::of(&self.asked, known + 1);
+        self.now = Stage::of(&self.request, known + 1);
         Portion::More(share(2.0))
     }
 }
 
 impl Stage {
     /// Returns the first stage for machine `i`; after the last machine, an empty stage that is never run.
-    fn of(asked: &FrontsRequest, i: usize) -> Self {
-        match asked.machines.get(i) {
+    fn of(request: &FrontsRequest, i: usize) -> Self {
+        match request.machines.get(i) {
             Some(of) => {
-                let search = FrontSearch::begin((of.machine.clone(), of.asked.clone(), asked.count));
+                let search = FrontSearch::begin((of.machine.clone(), of.spec.clone(), request.count));
                 Self::Search(Box::new(search))
             }
             None => Self::Telling(Front { points: Vec::new() }, Vec::new()),

@@ -10,7 +10,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use stillbase_mechanics::counterweights::{
-    CounterweightError, CounterweightSpec, Objective, Placed, Sites, place_weights,
+    CounterweightError, CounterweightSite, CounterweightSpec, Objective, PlacedCounterweights, place_weights,
 };
 use stillbase_mechanics::machine::{Length, Link, Machine, MachineSpec};
 use stillbase_planning::pose_space::plane_area;
@@ -23,7 +23,7 @@ pub struct FreeLength {
     /// Name of the length, or of the link.
     pub name: String,
     /// Lower and upper bound, m.
-    pub ends: [f64; 2],
+    pub bounds: [f64; 2],
 }
 
 /// Request for a search.
@@ -32,7 +32,7 @@ pub struct LengthSearch {
     /// Lengths to optimise. Links keep their mass per metre; centre of mass and inertia scale with the length.
     pub lengths: Vec<FreeLength>,
     /// Sites of the counterweights, and the objective.
-    pub weighing: CounterweightSpec,
+    pub spec: CounterweightSpec,
     /// Whether bounds of sites that are at plus or minus the length of a link change with this length.
     pub anywhere: bool,
     /// Lower bound on the reach Σ |L_k|, m.
@@ -49,7 +49,7 @@ pub struct LengthSearch {
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundLengths {
     /// The machine with its counterweights, which are certified for these lengths.
-    pub placed: Placed,
+    pub placed: PlacedCounterweights,
     /// Lengths in the order of the request, m.
     pub lengths: Vec<f64>,
     /// Number of starts, and number of those that ended within a thousandth of the best.
@@ -116,20 +116,20 @@ const INFEASIBLE: f64 = 1e30;
 /// [`search`] as a query that runs in a single call; its progress is the fraction of finished starts.
 pub struct LengthsQuery {
     machine: Shared<Machine>,
-    asked: LengthSearch,
+    search: LengthSearch,
 }
 
 impl Query for LengthsQuery {
     type Input = (Shared<Machine>, LengthSearch);
     type Answer = Result<FoundLengths, NoLengths>;
 
-    fn begin((machine, asked): Self::Input) -> Self {
-        Self { machine, asked }
+    fn begin((machine, search): Self::Input) -> Self {
+        Self { machine, search }
     }
 
     fn go_on(&mut self, goes_on: ProgressCallback<'_>) -> Portion<Self::Answer> {
-        let (starts, mut wanted) = (self.asked.starts.max(1) as f64, true);
-        let found = search(&self.machine.0, &self.asked, &mut |progress| {
+        let (starts, mut wanted) = (self.search.starts.max(1) as f64, true);
+        let found = search(&self.machine.0, &self.search, &mut |progress| {
             wanted = goes_on(progress.starts as f64 / starts);
             wanted
         });
@@ -150,13 +150,13 @@ const CONVERGED_BELOW: f64 = 1e-5;
 /// Fails if the request is invalid, or no machine evaluated is feasible.
 pub fn search(
     machine: &Machine,
-    asked: &LengthSearch,
+    request: &LengthSearch,
     go_on: &mut dyn FnMut(SearchProgress) -> bool,
 ) -> Result<FoundLengths, NoLengths> {
-    check(machine, asked)?;
+    check(machine, request)?;
     let mut seen = Seen {
         machine,
-        asked,
+        search: request,
         go_on,
         stopped: false,
         machines: 0,
@@ -164,11 +164,12 @@ pub fn search(
         best: None,
         least_violations: [f64::INFINITY; 2],
     };
-    let present = asked.lengths.iter().map(|free| fraction_of_interval(free.ends, length(machine.spec(), &free.name)));
+    let present =
+        request.lengths.iter().map(|free| fraction_of_interval(free.bounds, length(machine.spec(), &free.name)));
     let present: Vec<f64> = present.collect();
-    let mut draws = ChaCha8Rng::seed_from_u64(asked.seed);
+    let mut draws = ChaCha8Rng::seed_from_u64(request.seed);
     let mut final_values = Vec::new();
-    for start in 0..asked.starts {
+    for start in 0..request.starts {
         let drawn = present.iter().map(|_| (draws.next_u64() >> 11) as f64 / (1_u64 << 53) as f64).collect();
         let from = if start == 0 { present.clone() } else { drawn };
         final_values.push(nelder_mead(&mut seen, from));
@@ -179,7 +180,7 @@ pub fn search(
     }
     let machines = seen.machines;
     let Some((value, lengths, placed)) = seen.best else {
-        let why = match seen.asked.at(machine, &present) {
+        let why = match seen.search.at(machine, &present) {
             Err(why) => why,
             Ok(_) => describe_violations(seen.least_violations),
         };
@@ -189,11 +190,11 @@ pub fn search(
     Ok(FoundLengths { placed, lengths, starts: [final_values.len(), alike], machines })
 }
 
-fn check(machine: &Machine, asked: &LengthSearch) -> Result<(), NoLengths> {
-    if asked.lengths.is_empty() || asked.starts == 0 {
+fn check(machine: &Machine, request: &LengthSearch) -> Result<(), NoLengths> {
+    if request.lengths.is_empty() || request.starts == 0 {
         return Err(NoLengths::Nothing("nothing to seek: want at least one length and one start"));
     }
-    for (what, least) in [("reach", asked.least_reach), ("workspace", asked.least_workspace)] {
+    for (what, least) in [("reach", request.least_reach), ("workspace", request.least_workspace)] {
         if let Some(least) = least.filter(|least| !(least.is_finite() && *least >= 0.0)) {
             return Err(CounterweightError::OutOfRange {
                 what: format!("a {what} of at least"),
@@ -204,14 +205,14 @@ fn check(machine: &Machine, asked: &LengthSearch) -> Result<(), NoLengths> {
         }
     }
     let known: Vec<&str> = machine.spec().own_lengths().map(|(name, _)| name).collect();
-    for (i, FreeLength { name, ends: [from, to] }) in asked.lengths.iter().enumerate() {
+    for (i, FreeLength { name, bounds: [from, to] }) in request.lengths.iter().enumerate() {
         if !known.contains(&name.as_str()) {
             return Err(NoLengths::Unknown { name: name.clone(), known: known.join(", ") });
         }
         if !(*from > 0.0 && from < to && *to < 1e6) {
             return Err(NoLengths::Range { name: name.clone(), from: *from, to: *to });
         }
-        if asked.lengths[..i].iter().any(|other| other.name == *name) {
+        if request.lengths[..i].iter().any(|other| other.name == *name) {
             return Err(NoLengths::Twice(name.clone()));
         }
     }
@@ -239,10 +240,10 @@ const DEFAULT_STARTS: usize = 6;
 impl LengthSearch {
     /// Builds the search from a brief, for a machine and an objective.
     pub fn of(brief: &DesignBrief, machine: &Machine, objective: Objective) -> Self {
-        let lengths = brief.length.iter().map(|(name, ends)| FreeLength { name: name.clone(), ends: *ends });
+        let lengths = brief.length.iter().map(|(name, ends)| FreeLength { name: name.clone(), bounds: *ends });
         Self {
             lengths: lengths.collect(),
-            weighing: CounterweightSpec { objective, ..brief.weighing(machine) },
+            spec: CounterweightSpec { objective, ..brief.lightest_problem(machine) },
             anywhere: true,
             least_reach: brief.reach,
             least_workspace: brief.workspace,
@@ -256,7 +257,7 @@ impl LengthSearch {
     fn changed(&self, machine: &Machine, shares: &[f64]) -> Result<(Vec<f64>, Machine), String> {
         let mut spec = machine.spec().clone();
         let mut lengths = Vec::with_capacity(shares.len());
-        for (FreeLength { name, ends: [from, to] }, share) in self.lengths.iter().zip(shares) {
+        for (FreeLength { name, bounds: [from, to] }, share) in self.lengths.iter().zip(shares) {
             let (was, now) = (length(&spec, name), from + (to - from) * share);
             let scale = now / was;
             for link in spec.links.iter_mut().filter(|link| has_length(link, name)) {
@@ -278,14 +279,12 @@ impl LengthSearch {
 
     /// Returns lengths, machine with counterweights, and constraint violations of reach, m, and area, m²; or the reason
     /// that there is no machine.
-    fn at(&self, machine: &Machine, shares: &[f64]) -> Result<(Vec<f64>, Placed, [f64; 2]), String> {
+    fn at(&self, machine: &Machine, shares: &[f64]) -> Result<(Vec<f64>, PlacedCounterweights, [f64; 2]), String> {
         let (lengths, changed) = self.changed(machine, shares)?;
         let mut violations = [(self.least_reach.unwrap_or(0.0) - changed.reach()).max(0.0), 0.0];
         let weighing = match self.anywhere {
-            true => {
-                CounterweightSpec { sites: stretched(&self.weighing.sites, machine, &changed), ..self.weighing.clone() }
-            }
-            false => self.weighing.clone(),
+            true => CounterweightSpec { sites: stretched(&self.spec.sites, machine, &changed), ..self.spec.clone() },
+            false => self.spec.clone(),
         };
         let placed = place_weights(&changed, &weighing).map_err(|why| why.to_string())?;
         if let Some(least) = self.least_workspace {
@@ -304,11 +303,11 @@ fn describe_violations([reach, area]: [f64; 2]) -> String {
 }
 
 /// Changes bounds of sites that are at plus or minus the length of their link to plus or minus the new length.
-fn stretched(sites: &[Sites], machine: &Machine, changed: &Machine) -> Vec<Sites> {
-    let stretch = |site: &Sites| {
+fn stretched(sites: &[CounterweightSite], machine: &Machine, changed: &Machine) -> Vec<CounterweightSite> {
+    let stretch = |site: &CounterweightSite| {
         let [was, is] = [machine, changed].map(|machine| machine.resolved_links()[site.link].length);
         let end = |at: f64| if at.abs() == was { is.copysign(at) } else { at };
-        Sites { from: end(site.from), to: end(site.to), ..*site }
+        CounterweightSite { from: end(site.from), to: end(site.to), ..*site }
     };
     sites.iter().map(stretch).collect()
 }
@@ -316,12 +315,12 @@ fn stretched(sites: &[Sites], machine: &Machine, changed: &Machine) -> Vec<Sites
 /// State of a search.
 struct Seen<'a> {
     machine: &'a Machine,
-    asked: &'a LengthSearch,
+    search: &'a LengthSearch,
     go_on: &'a mut dyn FnMut(SearchProgress) -> bool,
     stopped: bool,
     machines: usize,
     ended: usize,
-    best: Option<(f64, Vec<f64>, Placed)>,
+    best: Option<(f64, Vec<f64>, PlacedCounterweights)>,
     /// Violations of the bounds on reach, m, and on area, m², of the machine with the smallest sum of both.
     least_violations: [f64; 2],
 }
@@ -329,7 +328,7 @@ struct Seen<'a> {
 impl Seen<'_> {
     fn value(&mut self, shares: &[f64]) -> f64 {
         self.machines += 1;
-        let value = match self.asked.at(self.machine, shares) {
+        let value = match self.search.at(self.machine, shares) {
             Ok((lengths, placed, [0.0, 0.0])) => {
                 let value = placed.value;
                 if self.best.as_ref().is_none_or(|(best, ..)| value < *best) {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use stillbase_mechanics::dynamics::{Surroundings, inverse_with_wrench};
+use stillbase_mechanics::dynamics::{ExternalLoads, inverse_with_wrench};
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{PerDrive, Vector};
 use stillbase_planning::Motion;
@@ -60,7 +60,7 @@ impl Measures {
 }
 
 fn beta(gravity: Vector, [bare, machine]: [&Inertia; 2], motion: &Motion) -> Beta {
-    let around = Surroundings { gravity, force: Vector::default() };
+    let around = ExternalLoads { gravity, force: Vector::default() };
     let squares = |inertia: &Inertia| {
         let mut sum = [0.0; 3];
         for r in instants(motion) {

@@ -104,11 +104,11 @@ pub struct Obstacle {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub blocked: Option<Box<Blocked>>,
     /// Nearest b to the requested one at which the task is feasible, rad.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub mending_b: Option<f64>,
+    #[serde(rename = "mending_b", skip_serializing_if = "Option::is_none")]
+    pub feasible_b: Option<f64>,
     /// Smallest move of one point after which all points have a b in common.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub mend: Option<PointCorrection>,
+    #[serde(rename = "mend", skip_serializing_if = "Option::is_none")]
+    pub correction: Option<PointCorrection>,
     /// Settings after which the task is feasible.
     pub proposals: Vec<Proposal>,
 }
@@ -187,8 +187,8 @@ impl Obstacle {
     pub fn of(scenario: &Scenario, refusal: &Refusal) -> Self {
         Self {
             blocked: if let Refusal::Blocked(blocked) = refusal { Some(blocked.clone()) } else { None },
-            mending_b: refusal.feasible_b(),
-            mend: if let Refusal::NoCommonPlane { why, .. } = refusal { why.mend } else { None },
+            feasible_b: refusal.feasible_b(),
+            correction: if let Refusal::NoCommonPlane { why, .. } = refusal { why.correction } else { None },
             proposals: proposals(scenario, refusal),
         }
     }

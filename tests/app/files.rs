@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::SessionCommand;
+use stillbase::app::{Message, SessionCommand};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
@@ -115,7 +115,8 @@ fn a_machine_goes_elsewhere_from_the_design_view() {
 /// What the window says, if it is good news.
 #[track_caller]
 fn done(h: &Window, words: &str) {
-    let (said, bad) = h.state().app_state().view_state().said.message.clone().expect("it is said");
+    let Message { text: said, is_problem: bad } =
+        h.state().app_state().view_state().status.message.clone().expect("it is said");
     assert!(!bad && said.contains(words), "{said:?} does not say {words:?}");
     assert!(h.query_by_label("File name").is_none(), "the dialog has gone");
 }
@@ -123,11 +124,11 @@ fn done(h: &Window, words: &str) {
 /// Refused with these words, on the screen; `dialog` says whether another name can be typed at once.
 #[track_caller]
 fn refused(h: &Window, words: &str, dialog: bool) {
-    let (said, bad) = h
+    let Message { text: said, is_problem: bad } = h
         .state()
         .app_state()
         .view_state()
-        .said
+        .status
         .message
         .clone()
         .unwrap_or_else(|| panic!("nothing said about {words:?}"));
@@ -260,12 +261,14 @@ fn a_model_of_another_program_is_opened_as_a_machine() {
         h.run_steps(3);
         let machine = &session(&h).scenario().machine;
         assert!((machine.mass() - mass).abs() < 1e-6 && machine.drives() == 2, "{name}: {} kg", machine.mass());
-        let (said, bad) = h.state().app_state().view_state().said.message.clone().expect("what it is");
+        let Message { text: said, is_problem: bad } =
+            h.state().app_state().view_state().status.message.clone().expect("what it is");
         assert!(!bad && said.contains("is a machine, so a task was made for it"), "{name}: {said}");
         assert_eq!(h.state().app_state().recent()[0], file.canonicalize().expect("it is there"));
     }
     drop_on(&mut h, &folder.file("none.urdf", "<robot name='x'><link name='a'/></robot>"));
-    let (said, bad) = h.state().app_state().view_state().said.message.clone().expect("why not");
+    let Message { text: said, is_problem: bad } =
+        h.state().app_state().view_state().status.message.clone().expect("why not");
     assert!(bad && said.contains("none.urdf"), "{said}");
 }
 
@@ -366,7 +369,7 @@ fn a_dialog_that_is_left_does_nothing() {
             h.run_steps(3);
             assert!(h.query_by_label("File name").is_none(), "{what:?}");
             assert_eq!(session(&h).to_scenario(), before);
-            assert!(h.state().app_state().view_state().said.message.is_none());
+            assert!(h.state().app_state().view_state().status.message.is_none());
         }
     }
     assert!(folder.names().is_empty());

@@ -153,7 +153,7 @@ fn a_machine_of_another_kind_brings_its_task() {
     h.run_steps(4);
     assert_eq!(session(&h).scenario().machine.drives(), 4);
     assert_eq!(session(&h).scenario().name, "four-drive");
-    assert!(h.state().app_state().view_state().said.message.is_none());
+    assert!(h.state().app_state().view_state().status.message.is_none());
 }
 
 fn a_list_of_commands_types_nothing_into_the_window() {

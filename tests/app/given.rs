@@ -152,7 +152,7 @@ fn a_table_that_cannot_be_read_says_why_and_a_choice_mends_it() {
     // What the table does not say cannot be taken.
     let app_state = h.state_mut().app_state_mut();
     app_state.carry_out(SessionCommand::TakeGiven(TableAction::Measured));
-    assert!(app_state.view_state().said.message.as_ref().is_some_and(|(_, bad)| *bad));
+    assert!(app_state.view_state().status.message.as_ref().is_some_and(|message| message.is_problem));
     app_state.carry_out(WindowCommand::Ask(TableOptions { b: Some(9e5), ..TableOptions::default() }));
     h.run_steps(3);
     assert!(h.query_by_label("Take the proposal").is_none());

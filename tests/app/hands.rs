@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::{SessionCommand, Switch, ViewChange};
+use stillbase::app::{Message, SessionCommand, Switch, ViewChange};
 use stillbase::picture::scene::options::Handle;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::pointer::Pointer;
@@ -294,7 +294,7 @@ fn the_target_is_typed() {
     assert!((f.end_effector.re - 0.55).abs() < 1e-4 && (f.end_effector.im - 0.6).abs() < 1e-4, "{}", f.end_effector);
     assert!((f.b - 2.4).abs() < 1e-9 && f.peaks.is_reactionless());
     type_into(&mut h, "target x m", "nan");
-    assert!(h.state().app_state().view_state().said.message.as_ref().is_some_and(|(_, bad)| *bad));
+    assert!(h.state().app_state().view_state().status.message.as_ref().is_some_and(|message| message.is_problem));
 }
 
 /// The pointer moves with keys held, and stays down.
@@ -403,7 +403,8 @@ fn numbers_are_typed_with_units_and_arithmetic() {
     assert_eq!(task(&h).time, 1.5);
     type_into(&mut h, "B x m", "1.1/2 + 0.5 cm / 1 cm");
     assert_eq!(task(&h).to[0], 0.55, "different kinds are not added");
-    let (said, bad) = h.state().app_state().view_state().said.message.clone().expect("it is said");
+    let Message { text: said, is_problem: bad } =
+        h.state().app_state().view_state().status.message.clone().expect("it is said");
     assert!(bad && said.contains("B x") && said.contains("different kinds"), "{said}");
     type_into(&mut h, "B x m", "56 cm");
     assert!((task(&h).to[0] - 0.56).abs() < 1e-12);

@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use stillbase::app::jobs::Threads;
 use stillbase::app::window::{App, Clock};
-use stillbase::app::{AppState, Command, SessionCommand, Switch, ViewChange, WindowCommand};
+use stillbase::app::{AppState, Command, Message, SessionCommand, Switch, ViewChange, WindowCommand};
 use stillbase::picture::scene::options::{Handle, ViewOptions};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
@@ -404,8 +404,12 @@ fn a_file_is_opened_beside_the_window() {
     assert_eq!(session(&h).scenario().name, "case-3");
     work_all(&mut h, &workers);
     assert_eq!(session(&h).scenario().task, Scenario::builtin("circle").expect("built in").task);
-    let said = h.state().app_state().view_state().said.message.clone();
-    assert_eq!(said, Some((format!("opened {}", file.display()), false)), "of two only the newest counts");
+    let said = h.state().app_state().view_state().status.message.clone();
+    assert_eq!(
+        said,
+        Some(Message { text: format!("opened {}", file.display()), is_problem: false }),
+        "of two only the newest counts"
+    );
     tell(&mut h, Command::Session(SessionCommand::Undo));
     work_all(&mut h, &workers);
     assert_eq!(session(&h).b_aim(), 2.5, "undo brings back what was there");

@@ -400,6 +400,15 @@ fn the_panel_holds_still() {
         h.run_steps(3);
         assert_eq!(top(&h), before, "{kind}");
     }
+    // A limit that the plan exceeds is said in the place of another line.
+    let exceeded = |h: &Window| h.query_by_label_contains("passes its limit, ").is_some();
+    assert!(!exceeded(&h) && h.query_by_label("planned").is_some());
+    let torque = session(&h).run().plan().forecast.torque[0];
+    let edit = Edit::set("drive.1.torque_limit", 0.5 * torque);
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(edit));
+    h.run_steps(3);
+    assert!(exceeded(&h) && h.query_by_label("planned").is_none());
+    assert_eq!(top(&h), before, "an exceeded limit");
 }
 
 /// A list closes with Esc and nothing else does; a link says its name.

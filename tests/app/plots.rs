@@ -3,7 +3,7 @@
 use egui::accesskit::Toggled;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, Pos2, TouchPhase, pos2, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use stillbase::app::{Command, PlotFile, SessionCommand, ViewChange};
+use stillbase::app::{Command, Message, PlotFile, SessionCommand, ViewChange};
 use stillbase::picture::charts::choice::PlotChange;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::scenario::Scenario;
@@ -330,17 +330,17 @@ fn a_plot_is_written_to_files() {
     let mut write = |file: PlotFile, name: &str| {
         let path = folder.path(name);
         h.state_mut().app_state_mut().carry_out(SessionCommand::WritePlot(path.clone(), "Torque".into(), file));
-        let message = h.state().app_state().view_state().said.message.clone().expect("it is said");
+        let message = h.state().app_state().view_state().status.message.clone().expect("it is said");
         (std::fs::read(&path).unwrap_or_default(), message)
     };
-    let (csv, (said, bad)) = write(PlotFile::Csv, "plot.csv");
+    let (csv, Message { text: said, is_problem: bad }) = write(PlotFile::Csv, "plot.csv");
     let text = String::from_utf8(csv).expect("UTF-8");
     assert!(!bad && said.contains("plot.csv"), "{said}");
     assert_eq!(text.lines().count(), 102);
     assert!(text.starts_with("time s,torque/1 N m,torque/2 N m,torque/3 N m\n0.2,"), "{text}");
     let (svg, _) = write(PlotFile::Svg, "plot.svg");
     assert!(String::from_utf8(svg).expect("UTF-8").contains(">Torque</tspan>"));
-    let (png, (said, bad)) = write(PlotFile::Png, "plot.png");
+    let (png, Message { text: said, is_problem: bad }) = write(PlotFile::Png, "plot.png");
     assert!(!bad, "{said}");
     let picture = image::load_from_memory(&png).expect("a picture").to_rgba8();
     assert_eq!(picture.dimensions(), (1440, 640));
@@ -348,7 +348,7 @@ fn a_plot_is_written_to_files() {
     let bright = picture.pixels().filter(|p| p.0[0] > 200 && p.0[1] > 200 && p.0[2] > 200).count();
     assert!(bright > 200, "{bright} bright pixels");
     // What is there stays there.
-    let (same, (said, bad)) = write(PlotFile::Csv, "plot.svg");
+    let (same, Message { text: said, is_problem: bad }) = write(PlotFile::Csv, "plot.svg");
     assert!(bad && said.contains("exists") && String::from_utf8(same).expect("UTF-8").starts_with("<?xml"), "{said}");
     // Through the menu and the dialog.
     h.get_by_label_contains("Torque over time").click_secondary();

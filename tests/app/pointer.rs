@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, pos2};
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::{AppState, Preferences, SessionCommand, Tool};
+use stillbase::app::{AppState, Message, Preferences, SessionCommand, Tool};
 use stillbase::mechanics::planar::unit;
 use stillbase::picture::scene::options::Handle;
 use stillbase::picture::scene::palette::Theme;
@@ -219,7 +219,8 @@ fn a_case_that_another_machine_cannot_do_brings_its_own() {
     h.key_press(Key::Num3);
     h.run_steps(4);
     assert_eq!((session(&h).scenario().name.as_str(), session(&h).scenario().machine.name()), ("case-3", "nine-link"));
-    let (said, bad) = h.state().app_state().view_state().said.message.clone().expect("it is said");
+    let Message { text: said, is_problem: bad } =
+        h.state().app_state().view_state().status.message.clone().expect("it is said");
     assert!(!bad && said.contains("the paper's machine") && said.contains("two-drive cannot"), "{said}");
     h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     h.run_steps(4);
@@ -361,7 +362,7 @@ fn a_hand_is_named_and_let_go() {
     h.key_press(Key::Num3);
     h.run_steps(2);
     assert_eq!(session(&h).to_scenario().machine, Scenario::builtin("case-3").expect("built in").machine);
-    assert!(h.state().app_state().view_state().said.message.is_none());
+    assert!(h.state().app_state().view_state().status.message.is_none());
     // Another machine that somebody has chosen stays, and that is said.
     let case = Scenario::builtin("case-3").expect("built in");
     let other = stillbase::mechanics::machine::builtins().iter().find(|m| m.name() == "nine-link-table-1");
@@ -375,7 +376,8 @@ fn a_hand_is_named_and_let_go() {
     h.state_mut().app_state_mut().carry_out(open);
     h.key_press(Key::Num3);
     h.run_steps(2);
-    let (said, bad) = h.state().app_state().view_state().said.message.clone().expect("it is said");
+    let Message { text: said, is_problem: bad } =
+        h.state().app_state().view_state().status.message.clone().expect("it is said");
     assert!(!bad && said.contains(other.name()), "{said}");
     assert_eq!(session(&h).scenario().machine.name(), other.name());
 }

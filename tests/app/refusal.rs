@@ -2,7 +2,7 @@
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::{AppState, SessionCommand, WindowCommand};
+use stillbase::app::{AppState, Message, SessionCommand, WindowCommand};
 use stillbase::picture::scene::options::{Handle, ViewOptions};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
@@ -49,7 +49,7 @@ fn a_refused_path_shows_where_and_what_b_would_do() {
     h.get_by_label_contains("take b").click();
     h.run_steps(3);
     let task = &session(&h).scenario().task;
-    let message = &h.state().app_state().view_state().said.message;
+    let message = &h.state().app_state().view_state().status.message;
     assert!((task.b - 2.5256).abs() < 1e-3 && task.to == [0.0, 0.5], "{task:?} {message:?}");
     assert!(h.query_by_label_contains("the path stops").is_none());
 }
@@ -62,9 +62,9 @@ fn a_scenario_that_cannot_be_planned_is_explained() {
     let asked = Scenario { task: task.clone(), ..scenario };
     assert!(AppState::new(asked.clone(), Theme::Dark).is_err());
     let mut app_state = AppState::open_or_explain(asked, Theme::Dark).expect("explained");
-    let (words, bad) = app_state.view_state().said.message.clone().expect("a reason");
+    let Message { text: words, is_problem: bad } = app_state.view_state().status.message.clone().expect("a reason");
     assert!(bad && words.contains("the path stops at"), "{words}");
-    let refused = app_state.view_state().said.refused.as_ref().expect("refused");
+    let refused = app_state.view_state().status.refused.as_ref().expect("refused");
     let (scenario, why) = refused.refused.clone().expect("a change of settings");
     let proposals = stillbase::session::proposals(&scenario.0, &why);
     assert!(proposals[0].text.starts_with("take b = "), "{proposals:?}");
@@ -146,7 +146,7 @@ fn a_run_that_waits_says_so_and_keeps_its_way_out() {
     let has_way_out = |h: &Window| {
         h.query_by_label_contains("The run waits: B").is_some() && h.query_by_label_contains("take b").is_some()
     };
-    assert!(has_way_out(&h), "{:?}", h.state().app_state().view_state().said.message);
+    assert!(has_way_out(&h), "{:?}", h.state().app_state().view_state().status.message);
     // What is refused meanwhile stands above it.
     h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::DragTarget { x: 0.5, y: 0.6 }));
     h.run_steps(3);

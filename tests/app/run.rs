@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, pos2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use stillbase::app::{SessionCommand, ViewChange};
+use stillbase::app::{Message, SessionCommand, ViewChange};
 use stillbase::picture::charts;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::planning::common::common_b_set;
@@ -175,14 +175,14 @@ fn b_leaves_the_task_as_it_is() {
     {
         let before = session(&h).to_scenario();
         type_into(&mut h, "b rad", text);
-        let (said, bad) =
-            h.state().app_state().view_state().said.message.clone().unwrap_or_else(|| panic!("{text} is refused"));
+        let Message { text: said, is_problem: bad } =
+            h.state().app_state().view_state().status.message.clone().unwrap_or_else(|| panic!("{text} is refused"));
         assert!(bad && said.contains(words), "{said}");
         assert_eq!(session(&h).to_scenario(), before, "{text}");
     }
     type_into(&mut h, "b rad", "2.5");
     assert!((session(&h).frame().b - 2.5).abs() < 1e-9);
-    assert!(h.state().app_state().view_state().said.message.is_none());
+    assert!(h.state().app_state().view_state().status.message.is_none());
     h.get_by_label("turn the task too").click();
     h.run_steps(2);
     h.get_by_role_and_label(Role::Slider, "b slider").set_value_accesskit(3.6);

@@ -207,7 +207,7 @@ fn equations_light_up_their_links() {
     h.key_press(Key::E);
     h.run_steps(4);
     let view_state = |h: &Window| h.state().app_state().view_state().clone();
-    assert!(view_state(&h).view == ViewKind::Design && view_state(&h).arrangement.learns);
+    assert!(view_state(&h).view == ViewKind::Design && view_state(&h).arrangement.shows_equations);
     h.get_by_label("Equation 7").click();
     h.run_steps(6);
     let line = "(7) g₁: m₁ l_c1 + m₄ l_c4 + m₆ l_c6 + (m₅ + m₇ + m₈ + m₉) l₁ = 0";
@@ -232,7 +232,9 @@ fn equations_light_up_their_links() {
     // The key leads back.
     h.key_press(Key::E);
     h.run_steps(3);
-    assert!(!view_state(&h).arrangement.learns && h.query_by_label_contains("g₁, no force: 0 kg m left").is_some());
+    assert!(
+        !view_state(&h).arrangement.shows_equations && h.query_by_label_contains("g₁, no force: 0 kg m left").is_some()
+    );
 }
 
 fn equations_follow_the_machine_and_are_remembered() {
@@ -256,12 +258,12 @@ fn equations_follow_the_machine_and_are_remembered() {
     h.run_steps(6);
     assert!(h.query_by_label_contains("(11) Motion of a balanced machine: not for this machine").is_some());
     let liked = h.state().app_state().preferences([1280.0, 800.0]);
-    assert!(liked.learns);
+    assert!(liked.shows_equations);
     let again = stillbase::app::AppState::new(Scenario::builtin("case-3").expect("built in"), Theme::Dark);
-    assert!(again.expect("it starts").with_preferences(&liked).view_state().arrangement.learns);
+    assert!(again.expect("it starts").with_preferences(&liked).view_state().arrangement.shows_equations);
     h.get_by_label("Balance tab").click();
     h.run_steps(3);
-    assert!(!h.state().app_state().preferences([1280.0, 800.0]).learns);
+    assert!(!h.state().app_state().preferences([1280.0, 800.0]).shows_equations);
 }
 
 /// What a designer asks for is a change like any other, and makes no frame anew.
@@ -287,7 +289,7 @@ fn what_is_asked_is_undone_and_saved() {
     }
     assert_eq!((session(&h).scenario().design.fixed.len(), session(&h).undo_count()), (0, undone));
     let frames = session(&h).frames();
-    assert!(frames.revision().kept_of(&known) >= frames.len(), "no frame is made anew");
+    assert!(frames.revision().unchanged_since(&known) >= frames.len(), "no frame is made anew");
 }
 
 /// A number that stays while others of its kind follow, and one that may go only so far.

@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use stillbase::app::{Command, SessionCommand};
+use stillbase::app::{Command, Message, SessionCommand};
 use stillbase::files::journal::{self, Journal};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
@@ -68,7 +68,10 @@ fn bookmarks_are_found_again() {
     press(&mut h, PLAIN, Key::K);
     let app_state = h.state().app_state();
     assert!(app_state.changes().1, "it is in no file yet");
-    assert_eq!(app_state.view_state().said.message, Some(("bookmark 2 at 0.700 s".into(), false)));
+    assert_eq!(
+        app_state.view_state().status.message,
+        Some(Message { text: "bookmark 2 at 0.700 s".into(), is_problem: false })
+    );
     press(&mut h, PLAIN, Key::Home);
     for (modifiers, want) in [(PLAIN, 0.4), (PLAIN, 0.7), (SHIFT, 0.4)] {
         press(&mut h, modifiers, Key::N);
@@ -206,7 +209,7 @@ fn a_branch_is_shown_compared_and_removed() {
     assert!(*session(&h).frames() == here, "G shows the newest branch: the run before");
     press(&mut h, SHIFT, Key::G);
     let comparison = h.state().app_state().comparison().expect("runs side by side");
-    let kept: Vec<_> = comparison.entries().iter().filter(|entry| entry.kept).collect();
+    let kept: Vec<_> = comparison.entries().iter().filter(|entry| entry.added_by_user).collect();
     assert_eq!(kept.len(), 1);
     assert!(kept[0].shown && kept[0].title == "branch at 0.500 s", "{}", kept[0].title);
     let run = kept[0].outcome.as_ref().expect("it ran");
@@ -246,8 +249,9 @@ fn the_branch_that_goes_is_named() {
     let mut h = window("case-3", Theme::Dark);
     h.get_by_label("Play").click();
     h.run_steps(20);
-    let said =
-        |h: &Window| h.state().app_state().view_state().said.message.clone().map_or_else(String::new, |(text, _)| text);
+    let said = |h: &Window| {
+        h.state().app_state().view_state().status.message.clone().map_or_else(String::new, |message| message.text)
+    };
     for i in 0..=MAX_BRANCHES {
         assert!(!said(&h).contains("is gone"), "{}", said(&h));
         let app_state = h.state_mut().app_state_mut();
@@ -275,7 +279,8 @@ fn a_refused_bookmark_is_no_change() {
         tell(&mut h, command);
         let app_state = h.state().app_state();
         assert_eq!((app_state.changes(), app_state.view_state().open.naming), (before, None));
-        let (said, bad) = app_state.view_state().said.message.clone().expect("it is said");
+        let Message { text: said, is_problem: bad } =
+            app_state.view_state().status.message.clone().expect("it is said");
         assert!(bad && said.contains("take one away"), "{said}");
     }
 }

@@ -3,8 +3,8 @@
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::app::SessionCommand;
-use stillbase::picture::paint::words::placed;
-use stillbase::picture::paint::{SceneViewport, draw_drafts};
+use stillbase::picture::paint::labels::placed;
+use stillbase::picture::paint::{SceneViewport, enable_draft_quality};
 use stillbase::picture::scene::framing::PictureArea;
 use stillbase::picture::scene::options::ViewOptions;
 use stillbase::picture::scene::palette::Theme;
@@ -90,7 +90,7 @@ fn what_moves_is_drawn_in_draft_and_finely_once_it_rests() {
     let picture = |drafts: bool, rests: bool| {
         let mut h = window("case-3", Theme::Dark);
         if drafts {
-            draw_drafts(&h.ctx);
+            enable_draft_quality(&h.ctx);
         }
         h.step();
         h.key_press(Key::Space);
@@ -195,7 +195,7 @@ fn runs_stand_side_by_side() {
     assert_eq!(comparison(&h).expect("on display").sorted(), Some((1, false)));
     h.get_by_label("Keep this run").click();
     h.run_steps(2);
-    assert!(comparison(&h).expect("on display").entries()[5].kept);
+    assert!(comparison(&h).expect("on display").entries()[5].added_by_user);
     h.get_by_label("Remove case-1").click();
     h.run_steps(2);
     assert_eq!(comparison(&h).expect("on display").entries().len(), 5);

@@ -10,8 +10,10 @@ use divan::{Bencher, black_box};
 use stillbase::mechanics::balance::{
     Body, BodyQuantity, Breakdown, Parameter, ParameterBounds, Preset, RebalanceRequest, rebalance,
 };
-use stillbase::mechanics::counterweights::{CounterweightSpec, Disc, Objective, Sites, front, place_weights};
-use stillbase::mechanics::dynamics::{Surroundings, base_wrench, inverse_with_wrench};
+use stillbase::mechanics::counterweights::{
+    CounterweightSite, CounterweightSpec, Disc, Objective, front, place_weights,
+};
+use stillbase::mechanics::dynamics::{ExternalLoads, base_wrench, inverse_with_wrench};
 use stillbase::mechanics::joint_forces::Joints;
 use stillbase::mechanics::kinematics::end_effector;
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse};
@@ -43,7 +45,7 @@ const QDD: [f64; 3] = [-1.0, 2.0, 4.0];
 #[divan::bench]
 fn dynamics_with_base_wrench(bencher: Bencher) {
     let inertia = Inertia::of(builtin("nine-link").expect("built in"));
-    let around = Surroundings { gravity: Vector::new(0.0, -9.81), force: Vector::default() };
+    let around = ExternalLoads { gravity: Vector::new(0.0, -9.81), force: Vector::default() };
     let (q, qd, qdd) = (DriveAngles::from(Q), PerDrive::from(QD), PerDrive::from(QDD));
     bencher.bench_local(|| {
         let e = black_box(&q).units();
@@ -111,7 +113,7 @@ fn dynamics_by_recursive_newton_euler(bencher: Bencher) {
 #[divan::bench]
 fn pin_forces(bencher: Bencher) {
     let joints = Joints::of(builtin("nine-link").expect("built in")).expect("determinate");
-    let around = Surroundings { gravity: Vector::new(0.0, -9.81), force: Vector::default() };
+    let around = ExternalLoads { gravity: Vector::new(0.0, -9.81), force: Vector::default() };
     let (q, qd, qdd) = (DriveAngles::from(Q), PerDrive::from(QD), PerDrive::from(QDD));
     bencher.bench_local(|| {
         let e = black_box(&q).units();
@@ -292,7 +294,7 @@ fn tip_path() -> Path {
 fn fastest_of_1000_points(bencher: Bencher) {
     let machine = builtin("nine-link").expect("built in");
     let (model, limits, path) = (Inertia::of(machine), DriveLimits::of(machine), tip_path());
-    bencher.bench_local(|| fastest(black_box(&path), &model, &Surroundings::default(), &limits, false));
+    bencher.bench_local(|| fastest(black_box(&path), &model, &ExternalLoads::default(), &limits, false));
 }
 
 /// The same with limits on jerk, searched for and checked.
@@ -301,7 +303,7 @@ fn fastest_smooth_of_1000_points(bencher: Bencher) {
     let machine = builtin("nine-link").expect("built in");
     let limits = DriveLimits { jerk: PerDrive::from([2000.0; 3]), ..DriveLimits::of(machine) };
     let (model, path) = (Inertia::of(machine), tip_path());
-    bencher.bench_local(|| fastest(black_box(&path), &model, &Surroundings::default(), &limits, true));
+    bencher.bench_local(|| fastest(black_box(&path), &model, &ExternalLoads::default(), &limits, true));
 }
 
 /// Looking up such a motion at an instant.
@@ -309,7 +311,7 @@ fn fastest_smooth_of_1000_points(bencher: Bencher) {
 fn profile_at(bencher: Bencher) {
     let machine = builtin("nine-link").expect("built in");
     let (model, limits) = (Inertia::of(machine), DriveLimits::of(machine));
-    let found = fastest(&tip_path(), &model, &Surroundings::default(), &limits, false).expect("limits");
+    let found = fastest(&tip_path(), &model, &ExternalLoads::default(), &limits, false).expect("limits");
     let (profile, mut t) = (found.profile, 0.0);
     bencher.bench_local(|| {
         t = (t + 0.377 * profile.duration()) % profile.duration();
@@ -401,7 +403,7 @@ fn tolerance_of_1024_machines_one_by_one(bencher: Bencher) {
                 let deviations: Vec<f64> = (0..count).map(|p| sampler.deviations()[p][machine]).collect();
                 let machine = ensemble.machine_of(&deviations).expect("possible");
                 let inertia = Inertia::of(&machine);
-                let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
+                let around = ExternalLoads { gravity: machine.gravity(), force: Vector::default() };
                 let (mut squares, mut peak) = (0.0, [0.0_f64; 2]);
                 for r in ensemble.references() {
                     let wrench = base_wrench(&inertia, &r.q.units(), &r.qd, &r.qdd, &around);
@@ -457,7 +459,9 @@ fn pyramid_of_a_million_samples(bencher: Bencher) {
 fn bare() -> (Machine, CounterweightSpec) {
     let machine = parse(include_str!("../reference/family/nine-link-bare.toml"), "bare").expect("a machine");
     let parts = machine.resolved_links().iter().enumerate();
-    let sites = parts.map(|(link, part)| Sites { link, from: -0.3, to: part.length, most: f64::INFINITY }).collect();
+    let sites = parts
+        .map(|(link, part)| CounterweightSite { link, from: -0.3, to: part.length, most: f64::INFINITY })
+        .collect();
     let disc = Disc { density: 7850.0, thickness: 0.03 };
     (machine, CounterweightSpec::least(Objective::inertia(), sites, disc))
 }
@@ -474,9 +478,9 @@ fn breakdown_of_nine_links(bencher: Bencher) {
 fn nine_links_kept_balanced(bencher: Bencher) {
     let machine = builtin("nine-link").expect("built in").set("link.5.com", "-0.05").expect("in range");
     let mut asked = RebalanceRequest::coms(&machine, &Preset::Table1.penalty(9).expect("nine links"));
-    asked.hold(&machine, Parameter::com(4), ParameterBounds::Fixed);
+    asked.set_bounds(&machine, Parameter::com(4), ParameterBounds::Fixed);
     let at = machine.links()[1].com;
-    asked.hold(&machine, Parameter::com(1), ParameterBounds::Within([at - 1e-4, at + 1e-4]));
+    asked.set_bounds(&machine, Parameter::com(1), ParameterBounds::Within([at - 1e-4, at + 1e-4]));
     bencher.bench_local(|| rebalance(black_box(&machine), &asked).expect("it can be balanced"));
 }
 
@@ -487,10 +491,10 @@ fn nine_links_and_masses_kept_balanced(bencher: Bencher) {
     let mut asked = RebalanceRequest::coms(&machine, &Preset::Table1.penalty(9).expect("nine links"));
     for (j, link) in machine.links().iter().enumerate() {
         let mass = Parameter::new(Body::Link(j), BodyQuantity::Mass);
-        asked.hold(&machine, mass, ParameterBounds::Within([0.9 * link.mass, 1.1 * link.mass]));
-        asked.hold(&machine, Parameter::com(j), ParameterBounds::Within([link.com - 0.01, link.com + 0.01]));
+        asked.set_bounds(&machine, mass, ParameterBounds::Within([0.9 * link.mass, 1.1 * link.mass]));
+        asked.set_bounds(&machine, Parameter::com(j), ParameterBounds::Within([link.com - 0.01, link.com + 0.01]));
     }
-    asked.hold(&machine, Parameter::com(4), ParameterBounds::Fixed);
+    asked.set_bounds(&machine, Parameter::com(4), ParameterBounds::Fixed);
     bencher.bench_local(|| rebalance(black_box(&machine), &asked).expect("it can be balanced"));
 }
 
@@ -500,7 +504,7 @@ fn conflict_of_nine_links(bencher: Bencher) {
     let machine = builtin("nine-link").expect("built in").set("payload.mass", "0.3").expect("in range");
     let mut asked = RebalanceRequest::coms(&machine, &[1.0; 9]);
     for (j, link) in machine.links().iter().enumerate() {
-        asked.hold(&machine, Parameter::com(j), ParameterBounds::Within([link.com - 0.01, link.com + 0.01]));
+        asked.set_bounds(&machine, Parameter::com(j), ParameterBounds::Within([link.com - 0.01, link.com + 0.01]));
     }
     bencher.bench_local(|| rebalance(black_box(&machine), &asked).expect_err("they are tight"));
 }

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use egui::epaint::Primitive;
 use stillbase::app::{AppState, SessionCommand, ViewChange};
 use stillbase::picture::gui::{GuiRenderer, RenderTarget};
-use stillbase::picture::paint::{draw_drafts, install_fonts};
+use stillbase::picture::paint::{enable_draft_quality, install_fonts};
 use stillbase::picture::render::offscreen::{Gpu, surface};
 use stillbase::picture::render::{Renderer, View};
 use stillbase::picture::scene::options::ViewOptions;
@@ -113,7 +113,7 @@ impl<'a> Screen<'a> {
         install_fonts(&ctx);
         // As the window does.
         if gpu.adapter().get_info().device_type == wgpu::DeviceType::Cpu {
-            draw_drafts(&ctx);
+            enable_draft_quality(&ctx);
         }
         Self {
             gpu,

@@ -107,7 +107,7 @@ fn main() {
                 None => seen.push((activity, 1)),
             }
         }
-        let message = app_state.view_state().said.message.clone();
+        let message = app_state.view_state().status.message.clone();
         if message.is_some() && message != said {
             println!("after {} repaints: {message:?}", all.len());
             said = message;

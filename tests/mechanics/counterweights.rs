@@ -1,8 +1,8 @@
 //! Counterweights: against a conic solver of others, against the laws, and what is refused.
 
 use stillbase::mechanics::counterweights::{
-    Bound, BoundRelaxation, CounterweightError, CounterweightSpec, Disc, FreeRotor, Objective, PlacementTolerance,
-    RotorFreedom, Sites, front, over_payloads, place_weights, worst_residual,
+    Bound, BoundRelaxation, CounterweightError, CounterweightSite, CounterweightSpec, Disc, FreeRotor, Objective,
+    PlacementTolerance, RotorFreedom, front, over_payloads, place_weights, worst_residual,
 };
 use stillbase::mechanics::dynamics::mass_matrix;
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse, to_toml};
@@ -14,9 +14,9 @@ use crate::support::{Noise, family_machine};
 const STEEL: Disc = Disc { density: 7850.0, thickness: 0.03 };
 
 /// Every link from 0.30 m behind its root to its tip.
-fn anywhere(machine: &Machine) -> Vec<Sites> {
+fn anywhere(machine: &Machine) -> Vec<CounterweightSite> {
     let parts = machine.resolved_links().iter().enumerate();
-    parts.map(|(link, part)| Sites { link, from: -0.3, to: part.length, most: f64::INFINITY }).collect()
+    parts.map(|(link, part)| CounterweightSite { link, from: -0.3, to: part.length, most: f64::INFINITY }).collect()
 }
 
 fn weighing(machine: &Machine, objective: Objective) -> CounterweightSpec {
@@ -37,7 +37,7 @@ fn the_known_answers_are_found() {
     assert!((momenta(&quick.machine) - 1.798_401_1).abs() < 1e-6, "{}", momenta(&quick.machine));
     assert!((quick.added_mass - 21.9756).abs() < 1e-2, "{}", quick.added_mass);
     for (most, mass) in [(2.0, 10.743_685), (1.9, 12.996_808), (1.85, 14.975_873)] {
-        let asked = CounterweightSpec { most_inertia: Some(most), ..weighing(&bare, Objective::mass()) };
+        let asked = CounterweightSpec { max_inertia: Some(most), ..weighing(&bare, Objective::mass()) };
         let found = place_weights(&bare, &asked).expect("it can be balanced");
         assert!((found.added_mass - mass).abs() < 2e-6, "Σ D ≤ {most}: {}", found.added_mass);
         assert!((momenta(&found.machine) - most).abs() < 1e-6);
@@ -170,7 +170,7 @@ fn bounds_that_leave_no_way_are_named() {
     let mut asked = weighing(&bare, Objective::mass());
     asked.sites.iter_mut().for_each(|site| site.most = 1.0);
     let why = place_weights(&bare, &asked).expect_err("too little");
-    let CounterweightError::Conflict { bounds, would } = why else { panic!("{why:?}") };
+    let CounterweightError::Conflict { bounds, reliefs: would } = why else { panic!("{why:?}") };
     let [BoundRelaxation::Most(relief)] = would.concat()[..] else { panic!("{would:?}") };
     assert!(!bounds.is_empty() && bounds.iter().any(|bound| matches!(bound, Bound::Most(_))), "{bounds:?}");
     // With any of them away there is a way, and so there is with the masses that are proposed.
@@ -447,7 +447,7 @@ fn a_clearance_that_leaves_no_way_says_which_would_do() {
     let bare = family_machine("nine-link-bare");
     let asked = CounterweightSpec { clearance: Some(0.25), ..weighing(&bare, Objective::mass()) };
     let why = place_weights(&bare, &asked).expect_err("too far");
-    let CounterweightError::Reaches { would, .. } = why else { panic!("{why}") };
+    let CounterweightError::Reaches { reliefs: would, .. } = why else { panic!("{why}") };
     let [BoundRelaxation::Clearance(would)] = would.concat()[..] else { panic!("{would:?}") };
     let with = |clearance| place_weights(&bare, &CounterweightSpec { clearance: Some(clearance), ..asked.clone() });
     assert!(with(would).is_ok() && with(would + 1e-4).is_err(), "{would}");
@@ -578,11 +578,11 @@ fn rotors_that_turn_the_other_way_take_momentum_away() {
 #[test]
 fn what_would_do_does() {
     let bare = family_machine("nine-link-bare");
-    let with = |most_mass, most_inertia| {
-        place_weights(&bare, &CounterweightSpec { most_mass, most_inertia, ..weighing(&bare, Objective::mass()) })
+    let with = |max_added_mass, max_inertia| {
+        place_weights(&bare, &CounterweightSpec { max_added_mass, max_inertia, ..weighing(&bare, Objective::mass()) })
     };
     let would = |why| match why {
-        Err(CounterweightError::Conflict { would, .. }) => would.concat(),
+        Err(CounterweightError::Conflict { reliefs, .. }) => reliefs.concat(),
         other => panic!("{other:?}"),
     };
     let [BoundRelaxation::Inertia(least)] = would(with(None, Some(1.5)))[..] else { panic!("not of inertia") };
@@ -602,8 +602,8 @@ fn relieved(asked: &CounterweightSpec, together: &[BoundRelaxation]) -> Counterw
             BoundRelaxation::Most(_) => {
                 asked.sites.iter_mut().filter(|site| site.most.is_finite()).for_each(|site| site.most = number);
             }
-            BoundRelaxation::Mass(_) => asked.most_mass = Some(number),
-            BoundRelaxation::Inertia(_) => asked.most_inertia = Some(number),
+            BoundRelaxation::Mass(_) => asked.max_added_mass = Some(number),
+            BoundRelaxation::Inertia(_) => asked.max_inertia = Some(number),
             BoundRelaxation::Clearance(_) => asked.clearance = Some(number),
         }
     }
@@ -639,13 +639,13 @@ fn bounds_of_several_kinds(count: usize, seed: u64) -> [usize; 2] {
             let to = size * noise.between(0.3, 4.0);
             asked.sites.iter_mut().for_each(|site| site.most = to);
         }
-        asked.most_mass = mass.then(|| size * noise.between(2.0, 14.0));
-        asked.most_inertia = inertia.then(|| size * noise.between(0.3, 2.5));
+        asked.max_added_mass = mass.then(|| size * noise.between(2.0, 14.0));
+        asked.max_inertia = inertia.then(|| size * noise.between(0.3, 2.5));
         asked.clearance = (clearance && i % 2 == 1).then(|| noise.between(0.0, 0.2));
         asked.payload = payload.then(|| [0.0, size * noise.between(0.1, 0.5)]);
         let would = match place_weights(&bare, &asked) {
             Ok(_) => continue,
-            Err(CounterweightError::Conflict { would, .. } | CounterweightError::Reaches { would, .. }) => would,
+            Err(CounterweightError::Conflict { reliefs, .. } | CounterweightError::Reaches { reliefs, .. }) => reliefs,
             Err(why) => panic!("{why}"),
         };
         assert!(!would.is_empty(), "{asked:?}");

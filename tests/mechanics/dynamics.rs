@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use stillbase::mechanics::dynamics::{
-    Surroundings, angular_momentum, base_wrench, centre_of_mass, energy, first_moment, forward, inverse,
+    ExternalLoads, angular_momentum, base_wrench, centre_of_mass, energy, first_moment, forward, inverse,
     inverse_with_wrench, linear_momentum, mass_matrix,
 };
 use stillbase::mechanics::kinematics::{end_effector, least_transmission, velocity};
@@ -31,8 +31,8 @@ impl State {
     }
 }
 
-fn around(machine: &Machine) -> Surroundings {
-    Surroundings { gravity: machine.gravity(), force: Vector::default() }
+fn around(machine: &Machine) -> ExternalLoads {
+    ExternalLoads { gravity: machine.gravity(), force: Vector::default() }
 }
 
 fn matrix(inertia: &Inertia, s: &State) -> Vec<f64> {
@@ -137,7 +137,7 @@ proptest! {
             i3 + i7 + i9 + m3 * c3 * c3 + m7 * c7 * c7 + m9 * c9 * c9 + m6 * l3 * l3 + m8 * l7 * l7 + c13 + c23,
         ];
         let (h, _) = mass_matrix(&inertia, &s.e(), &s.qd);
-        close("(A3)", &[0, 1, 2].map(|k| h.momentum_row(k)), &d, 1e-12);
+        close("(A3)", &[0, 1, 2].map(|k| h.momentum_coefficient(k)), &d, 1e-12);
         // Without its cosines, d_k is H_kk.
         close("(11)", &inertia.diagonals(), &[d[0] - c12 - c13, d[1] - c12 - c23, d[2] - c13 - c23], 1e-12);
     }
@@ -167,9 +167,9 @@ proptest! {
             [p.re, p.im, angular_momentum(&inertia, &s.e(), &s.qd), kinetic + potential, r.re, r.im]
         });
         let weight = inertia.mass() * machine.gravity();
-        close("static force", &xy(wrench.statical.force), &xy(weight), 1e-14);
+        close("static force", &xy(wrench.static_part.force), &xy(weight), 1e-14);
         let moment = cross(centre_of_mass(&inertia, &e), weight);
-        close("static moment", &[wrench.statical.moment], &[moment], 1e-12);
+        close("static moment", &[wrench.static_part.moment], &[moment], 1e-12);
         // Differences carry rounding of 1e-16/h, and of the fourth order in h.
         close("force", &xy(wrench.dynamic.force), &[-px, -py], 1e-7);
         close("moment", &[wrench.dynamic.moment], &[-l], 1e-7);
@@ -186,7 +186,7 @@ proptest! {
         let (inertia, e) = (Inertia::of(&machine), s.e());
         let free = around(&machine);
         let force = Vector::new(fx, fy);
-        let held = Surroundings { force, ..free };
+        let held = ExternalLoads { force, ..free };
         let (without, loose) = inverse_with_wrench(&inertia, &e, &s.qd, &s.qdd, &free);
         let (with, wrench) = inverse_with_wrench(&inertia, &e, &s.qd, &s.qdd, &held);
         let work = with.plus(-1.0, &without).dot(&s.qd);

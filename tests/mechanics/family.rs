@@ -3,7 +3,7 @@
 
 use stillbase::mechanics::balance::design;
 use stillbase::mechanics::dynamics::{
-    Surroundings, angular_momentum, centre_of_mass, inverse_with_wrench, mass_matrix,
+    ExternalLoads, angular_momentum, centre_of_mass, inverse_with_wrench, mass_matrix,
 };
 use stillbase::mechanics::joint_forces::Joints;
 use stillbase::mechanics::kinematics::end_effector;
@@ -17,8 +17,8 @@ use crate::support::{Noise, close, family, family_machine, numbers, xy};
 
 const NAMES: [&str; 5] = ["two-drive", "serial-3r", "four-drive", "nine-link-geared", "nine-link-bare"];
 
-fn around(machine: &Machine) -> Surroundings {
-    Surroundings { gravity: machine.gravity(), ..Surroundings::default() }
+fn around(machine: &Machine) -> ExternalLoads {
+    ExternalLoads { gravity: machine.gravity(), ..ExternalLoads::default() }
 }
 
 /// Everything that is asked of a state, with gravity set by key.
@@ -32,7 +32,7 @@ fn state(what: &str, machine: &Machine, want: &serde_json::Value) {
     let (torque, wrench) = inverse_with_wrench(&inertia, &e, &qd, &qdd, &around(&machine));
     let n = machine.drives();
     let rows: Vec<f64> = (0..n * n).map(|i| h.get(i / n, i % n)).collect();
-    let d: Vec<f64> = (0..n).map(|k| h.momentum_row(k)).collect();
+    let d: Vec<f64> = (0..n).map(|k| h.momentum_coefficient(k)).collect();
     let check = |field: &str, got: &[f64]| close(&format!("{what}, {field}"), got, &numbers(&want[field]), 1e-9);
     check("mass_matrix", &rows);
     check("d", &d);
@@ -148,7 +148,7 @@ fn as_bodies(what: &str, machine: &Machine, noise: &mut Noise) {
         close(&format!("{what}: n_B"), &[wrench.total().moment, size], &[moment, size], 1e-8);
         close(&format!("{what}: com"), &xy(centre_of_mass(&inertia, &e)), &xy(bodies.com(&q)), 1e-11);
         close(&format!("{what}: tip"), &xy(end_effector(machine.end_effector(), &e)), &xy(bodies.tip(&q)), 1e-11);
-        let d: f64 = (0..n).map(|k| h.momentum_row(k) * qd[k]).sum();
+        let d: f64 = (0..n).map(|k| h.momentum_coefficient(k) * qd[k]).sum();
         close(&format!("{what}: D q̇"), &[d], &[bodies.angular(&q, &qd)], 1e-10);
         close(&format!("{what}: momentum"), &[angular_momentum(&inertia, &e, &qd)], &[d], 1e-11);
         // What the motors bring is what comes into motion: power is the same in their angles and in those of drives.
@@ -176,7 +176,7 @@ fn the_moment_of_any_motion_is_that_of_b() {
         for _ in 0..4 {
             let [q, qd, qdd] = motion(&mut noise, n);
             let (torque, wrench) =
-                inverse_with_wrench(&inertia, &DriveAngles(q).units(), &qd, &qdd, &Surroundings::default());
+                inverse_with_wrench(&inertia, &DriveAngles(q).units(), &qd, &qdd, &ExternalLoads::default());
             let want = -d * lambda.dot(&qdd);
             let size = torque.iter().map(|t| t.abs()).sum::<f64>();
             close(&format!("{seed}"), &[wrench.total().moment, size], &[want, size], 1e-9);
@@ -210,7 +210,7 @@ fn a_counter_rotating_rotor_frees_its_drive() {
     for _ in 0..50 {
         let [q, qd, qdd] = motion(&mut noise, 2);
         let (torque, wrench) =
-            inverse_with_wrench(&inertia, &DriveAngles(q).units(), &qd, &qdd, &Surroundings::default());
+            inverse_with_wrench(&inertia, &DriveAngles(q).units(), &qd, &qdd, &ExternalLoads::default());
         assert!(wrench.total().moment.abs() < 1e-12 * torque.iter().map(|t| t.abs()).sum::<f64>());
         assert!(torque.max_abs() > 0.1, "its rotors are turned all the same");
     }

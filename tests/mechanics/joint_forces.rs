@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use proptest::prelude::*;
-use stillbase::mechanics::dynamics::{Surroundings, inverse_with_wrench};
+use stillbase::mechanics::dynamics::{ExternalLoads, inverse_with_wrench};
 use stillbase::mechanics::joint_forces::{
     AxialMoments, FLAT_SINE, InternalLoads, Joints, JointsError, MAX_FRAME_PINS, Pin, PinForces, PinLoads, PinPeak,
     nearest_change_point, next_change_point,
@@ -15,7 +15,7 @@ use stillbase::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, cr
 use crate::support::{State, any_body, close, machine_of, three, xy};
 
 impl State {
-    fn forces(&self, machine: &Machine, around: &Surroundings) -> PinForces {
+    fn forces(&self, machine: &Machine, around: &ExternalLoads) -> PinForces {
         let joints = Joints::of(machine).expect("determinate");
         joints.forces(&self.q.units(), &self.qd, &self.qdd, around)
     }
@@ -51,8 +51,8 @@ fn any_force() -> impl Strategy<Value = Vector> {
     (-30.0..30.0, -30.0..30.0).prop_map(|(x, y)| Vector::new(x, y))
 }
 
-fn around(machine: &Machine, force: Vector) -> Surroundings {
-    Surroundings { gravity: machine.gravity(), force }
+fn around(machine: &Machine, force: Vector) -> ExternalLoads {
+    ExternalLoads { gravity: machine.gravity(), force }
 }
 
 fn all(forces: &PinForces) -> Vec<f64> {
@@ -70,12 +70,12 @@ fn moving(a: &[Vector; MAX_DRIVES], s: &State) -> (Vector, Vector) {
 
 /// Newton and Euler of each link by itself: forces of its pins, weight, what it holds, and a torque only where a drive
 /// turns it. Knows nothing of trees and closures.
-fn assert_each_link_balances(machine: &Machine, s: &State, around: &Surroundings, turned: &[Option<usize>]) {
+fn assert_each_link_balances(machine: &Machine, s: &State, around: &ExternalLoads, turned: &[Option<usize>]) {
     let joints = Joints::of(machine).expect("determinate");
     let (e, payload) = (s.q.units(), machine.spec().payload);
     let forces = joints.forces(&e, &s.qd, &s.qdd, around);
     let torque = forces.torque().expect("defined");
-    let size = forces.worst().0.max(1.0);
+    let size = forces.largest().0.max(1.0);
     let mut carried = PerDrive::zeros(machine.drives());
     for (j, link) in machine.links().iter().enumerate() {
         let drive = machine.resolved_links()[j].drive;
@@ -165,7 +165,7 @@ proptest! {
     #[test]
     fn forces_turn_with_everything(machine in any_machine(), s in any_state(), force in any_force(), by in -4.0..4.0) {
         let still = around(&machine, force);
-        let turned = Surroundings { gravity: still.gravity * unit(by), force: still.force * unit(by) };
+        let turned = ExternalLoads { gravity: still.gravity * unit(by), force: still.force * unit(by) };
         let (a, b) = (s.forces(&machine, &still), s.turned(by).forces(&machine, &turned));
         let want: Vec<f64> = a.bounded().iter().flat_map(|f| xy(f * unit(by))).collect();
         close("pins", &all(&b), &want, 1e-10);
@@ -178,11 +178,11 @@ proptest! {
     #[test]
     fn causes_add(machine in any_machine(), s in any_state(), force in any_force()) {
         let still = State { qd: PerDrive::zeros(3), qdd: PerDrive::zeros(3), ..s };
-        let no = Surroundings::default();
+        let no = ExternalLoads::default();
         let parts = [
             all(&s.forces(&machine, &no)),
             all(&still.forces(&machine, &around(&machine, Vector::default()))),
-            all(&still.forces(&machine, &Surroundings { force, ..no })),
+            all(&still.forces(&machine, &ExternalLoads { force, ..no })),
         ];
         let sum: Vec<f64> = (0..parts[0].len()).map(|i| parts.iter().map(|p| p[i]).sum()).collect();
         close("pins", &all(&s.forces(&machine, &around(&machine, force))), &sum, 1e-10);
@@ -195,7 +195,7 @@ proptest! {
         let (machine, other) = (builtin("nine-link").expect("built in"), recut());
         let forces = |machine: &Machine| {
             let joints = Joints::of(machine).expect("determinate");
-            let around = Surroundings { gravity: Vector::new(1.0, -9.81), force };
+            let around = ExternalLoads { gravity: Vector::new(1.0, -9.81), force };
             let forces = joints.forces(&s.q.units(), &s.qd, &s.qdd, &around);
             (joints, forces)
         };
@@ -317,7 +317,7 @@ fn pins_are_named_by_their_links() {
 #[test]
 fn forces_grow_towards_a_change_point() {
     let machine = builtin("nine-link").expect("built in");
-    let none = Surroundings::default();
+    let none = ExternalLoads::default();
     let at = |gap: f64| State::new([1.6, 3.9, 1.6 + gap], [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]);
     let torque = |gap: f64| {
         let s = at(gap);
@@ -327,7 +327,7 @@ fn forces_grow_towards_a_change_point() {
         exact.max_abs()
     };
     for gap in [1e-2, 1e-3, 1e-4, 1e-5, 1e-6] {
-        let ratio = at(0.1 * gap).forces(machine, &none).worst().0 / at(gap).forces(machine, &none).worst().0;
+        let ratio = at(0.1 * gap).forces(machine, &none).largest().0 / at(gap).forces(machine, &none).largest().0;
         assert!((ratio - 10.0).abs() < 20.0 * gap.max(1e-2), "{ratio} times at {gap}");
         assert!((torque(gap) - torque(1.0)).abs() < 3.0);
     }
@@ -340,7 +340,7 @@ fn at_a_change_point_some_forces_are_undefined() {
     let joints = Joints::of(machine).expect("determinate");
     let named = |q: [f64; 3]| -> Vec<String> {
         let s = State::new(q, [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]);
-        let forces = s.forces(machine, &Surroundings::default());
+        let forces = s.forces(machine, &ExternalLoads::default());
         assert!(forces.bounded().iter().all(|f| f.re.is_finite() && f.im.is_finite()));
         let undefined: Vec<usize> = (0..12).filter(|&i| forces.get(i).is_none()).collect();
         assert_eq!(forces.torque().is_none(), !undefined.is_empty());
@@ -357,7 +357,7 @@ fn at_a_change_point_some_forces_are_undefined() {
     // What is undefined does not touch what is not: the others are the limits from either side.
     let s = |gap: f64| State::new([1.6, 3.9, 1.6 + gap], [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]);
     let (on, near) =
-        (s(0.0).forces(machine, &Surroundings::default()), s(1e-7).forces(machine, &Surroundings::default()));
+        (s(0.0).forces(machine, &ExternalLoads::default()), s(1e-7).forces(machine, &ExternalLoads::default()));
     for i in (0..12).filter(|&i| on.get(i).is_some()) {
         assert!((on.bounded()[i] - near.bounded()[i]).norm() < 1e-4, "{}", joints.pins()[i].name);
     }
@@ -432,7 +432,10 @@ fn machines_of_any_number_of_drives() {
         close("f_B", &xy(joints.on_base(&forces)), &xy(exact.1.total().force), 1e-12);
         // A frame keeps the first of them, and the worst of all.
         let inside = PinLoads::of(&machine).at(&s.q.units(), &s.qd, &s.qdd, &around, |_, _| 0.0);
-        assert_eq!((inside.pins(), inside.worst), (joints.pins().len().min(MAX_FRAME_PINS), forces.worst().0));
+        assert_eq!(
+            (inside.pins(), inside.largest_force),
+            (joints.pins().len().min(MAX_FRAME_PINS), forces.largest().0)
+        );
         assert!((0..20).all(|i| inside.pin(i) == forces.get(i).filter(|_| i < MAX_FRAME_PINS)));
     }
     let many = Joints::of(&fan(5)).map(|_| ()).expect_err("35 pins");
@@ -474,7 +477,7 @@ fn what_statics_does_not_determine_is_refused() {
 fn a_force_balanced_machine_may_tilt_its_base() {
     let machine = builtin("nine-link").expect("built in");
     let s = State::new([1.6, 3.9, 2.5], [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]);
-    let none = Surroundings::default();
+    let none = ExternalLoads::default();
     assert!(AxialMoments::of(machine).is_flat());
     assert_eq!(AxialMoments::of(machine).tilt(&s.q.units(), &s.qd, &s.qdd, &none).total(), Vector::default());
     // All at one height: nothing either.
@@ -499,22 +502,22 @@ fn a_force_balanced_machine_may_tilt_its_base() {
 fn a_frame_keeps_what_the_joints_say() {
     let machine = builtin("nine-link").expect("built in").set("link.5.axial", "0.02").expect("valid");
     let s = State::new([1.6, 3.9, 2.5], [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]);
-    let around = Surroundings { gravity: Vector::new(0.0, -9.81), force: Vector::default() };
+    let around = ExternalLoads { gravity: Vector::new(0.0, -9.81), force: Vector::default() };
     let see = |machine: &Machine, s: &State| PinLoads::of(machine).at(&s.q.units(), &s.qd, &s.qdd, &around, |_, _| 0.0);
     let (inside, forces) = (see(&machine, &s), s.forces(&machine, &around));
     assert_eq!(inside.pins(), 12);
     for i in 0..MAX_FRAME_PINS {
         assert_eq!(inside.pin(i), forces.get(i));
-        assert!(inside.size(i) <= inside.worst);
+        assert!(inside.size(i) <= inside.largest_force);
     }
-    assert_eq!((inside.worst, inside.worst_pin()), (forces.worst().0, Some(forces.worst().1)));
+    assert_eq!((inside.largest_force, inside.worst_pin()), (forces.largest().0, Some(forces.largest().1)));
     let flat = see(&machine, &State::new([1.6, 3.9, 1.6], [-0.3, 0.9, 1.7], [-1.0, 2.0, 4.0]));
-    assert!(flat.pin(0).is_none() && flat.pin(1).is_some() && flat.size(0).is_finite() && flat.worst > 1e6);
+    assert!(flat.pin(0).is_none() && flat.pin(1).is_some() && flat.size(0).is_finite() && flat.largest_force > 1e6);
     let mut spec = machine.spec().clone();
     spec.closures.pop();
     let open = see(&Machine::new(spec).expect("valid"), &s);
     assert_eq!(open.tilt, inside.tilt);
-    assert_eq!((open.pins(), open.worst_pin(), open.worst), (0, None, 0.0));
+    assert_eq!((open.pins(), open.worst_pin(), open.largest_force), (0, None, 0.0));
     // A session holds 180,000 frames.
     assert!(size_of::<InternalLoads>() <= 320, "{} bytes", size_of::<InternalLoads>());
 }

@@ -56,7 +56,7 @@ fn nothing_changes_where_nothing_has_to() {
         let machine = family_machine(name);
         let mut asked = RebalanceRequest::coms(&machine, &vec![1.0; machine.links().len()]);
         for parameter in Parameter::all(&machine) {
-            asked.hold(&machine, parameter, ParameterBounds::Free);
+            asked.set_bounds(&machine, parameter, ParameterBounds::Free);
         }
         let kept = rebalance(&machine, &asked).expect("it is balanced");
         assert!(kept.cost < 1e-16, "{name}: {}", kept.cost);
@@ -77,14 +77,14 @@ fn anything(noise: &mut Noise, machine: &Machine, reach: f64) -> RebalanceReques
             BodyQuantity::Mass => (value * (1.0 - low.min(0.99)), value * (1.0 + 4.0 * high)),
             BodyQuantity::Along | BodyQuantity::Across => (value - low, value + high),
         };
-        let hold = match noise.between(0.0, 10.0) as usize {
+        let bounds = match noise.between(0.0, 10.0) as usize {
             0 => continue,
             1 => ParameterBounds::Fixed,
             2..6 => ParameterBounds::Within([least, most]),
             _ => ParameterBounds::Free,
         };
         let from = value + if noise.between(0.0, 1.0) < 0.3 { noise.between(0.0, 0.05) } else { 0.0 };
-        asked.parameters.push(ListedParameter { parameter, hold, penalty: noise.between(0.3, 3.0), from });
+        asked.parameters.push(ListedParameter { parameter, bounds, penalty: noise.between(0.3, 3.0), from });
     }
     asked
 }
@@ -92,7 +92,7 @@ fn anything(noise: &mut Noise, machine: &Machine, reach: f64) -> RebalanceReques
 /// Σ (p Δ)² of values.
 fn cost(asked: &RebalanceRequest, values: &[f64]) -> f64 {
     assert_eq!(asked.parameters.len(), values.len());
-    let all = asked.parameters.iter().zip(values).filter(|(one, _)| one.hold != ParameterBounds::Fixed);
+    let all = asked.parameters.iter().zip(values).filter(|(one, _)| one.bounds != ParameterBounds::Fixed);
     all.map(|(one, value)| (one.penalty * (value - one.from)).powi(2)).sum()
 }
 
@@ -103,7 +103,7 @@ fn within_what_is_asked(machine: &Machine, asked: &RebalanceRequest, kept: &Reba
     for (one, value) in asked.parameters.iter().zip(&kept.values) {
         let now = one.parameter.value(kept.machine.spec()).expect("still there");
         assert_eq!(now, *value);
-        match one.hold {
+        match one.bounds {
             ParameterBounds::Fixed => assert_eq!(one.parameter.value(machine.spec()), Some(now)),
             ParameterBounds::Within([low, high]) => assert!((low..=high).contains(&now), "{low} {now} {high}"),
             ParameterBounds::Free => {
@@ -205,7 +205,7 @@ fn masses_that_may_change(count: usize, seed: u64) -> [usize; 2] {
         let mut more = asked.clone();
         for _ in 0..2 {
             let j = noise.between(0.0, machine.links().len() as f64 - 1e-9) as usize;
-            more.hold(
+            more.set_bounds(
                 &machine,
                 Parameter::new(stillbase::mechanics::balance::Body::Link(j), BodyQuantity::Mass),
                 ParameterBounds::Free,
@@ -227,7 +227,7 @@ fn only(asked: &RebalanceRequest, limits: &[(Parameter, LimitSide, f64)]) -> Reb
     for one in &mut only.parameters {
         let end = |side| limits.iter().find(|l| l.0 == one.parameter && l.1 == side).map(|l| l.2);
         let least = if one.parameter.quantity == BodyQuantity::Mass { 0.0 } else { -1e3 };
-        one.hold =
+        one.bounds =
             ParameterBounds::Within([end(LimitSide::Least).unwrap_or(least), end(LimitSide::Most).unwrap_or(1e3)]);
     }
     only
@@ -254,19 +254,19 @@ fn check_conflict(machine: &Machine, asked: &RebalanceRequest) -> Option<(usize,
     let mut relieved = asked.clone();
     for one in &mut relieved.parameters {
         let to = |side| relief.iter().find(|r| r.limit.parameter == one.parameter && r.limit.side == side);
-        let [low, high] = match one.hold {
+        let [low, high] = match one.bounds {
             ParameterBounds::Within(ends) => ends,
             ParameterBounds::Fixed => [one.parameter.value(machine.spec()).expect("one of its own"); 2],
             ParameterBounds::Free if relief.iter().all(|r| r.limit.parameter != one.parameter) => continue,
             ParameterBounds::Free => [f64::MAX, f64::MIN],
         };
         let ends = [to(LimitSide::Least).map_or(low, |r| r.to), to(LimitSide::Most).map_or(high, |r| r.to)];
-        if one.hold == ParameterBounds::Free {
+        if one.bounds == ParameterBounds::Free {
             let unbounded = if one.parameter.quantity == BodyQuantity::Mass { [0.0, 1e3] } else { [-1e3, 1e3] };
-            one.hold = ParameterBounds::Within([ends[0].min(unbounded[0]), ends[1].max(unbounded[1])]);
+            one.bounds = ParameterBounds::Within([ends[0].min(unbounded[0]), ends[1].max(unbounded[1])]);
         } else if ends != [low, high] {
             assert!(ends[0] <= low && ends[1] >= high);
-            one.hold = ParameterBounds::Within(ends);
+            one.bounds = ParameterBounds::Within(ends);
         }
     }
     let kept = rebalance(machine, &relieved).unwrap_or_else(|why| panic!("{why}\n{relief:?}"));
@@ -288,7 +288,7 @@ fn limits_that_leave_no_way_are_named_and_how_far_they_would_have_to_give() {
             let one = &mut asked.parameters[drop];
             let value = one.parameter.value(machine.spec()).expect("one of its own");
             if one.parameter.quantity == BodyQuantity::Along {
-                one.hold = ParameterBounds::Within([value + off, value + off + 0.02]);
+                one.bounds = ParameterBounds::Within([value + off, value + off + 0.02]);
             }
         }
         if !matches!(rebalance(&machine, &asked), Err(RebalanceError::Conflict { .. })) {
@@ -307,13 +307,13 @@ fn a_dragged_link_is_followed_by_the_others() {
     let dragged = nine_link().set("link.5.com", "-0.05").expect("in range");
     assert!(!balanced(&dragged));
     let mut asked = RebalanceRequest::coms(&dragged, &Preset::Table1.penalty(9).expect("nine links"));
-    asked.hold(&dragged, find(&dragged, "link.5.com"), ParameterBounds::Fixed);
+    asked.set_bounds(&dragged, find(&dragged, "link.5.com"), ParameterBounds::Fixed);
     let free = rebalance(&dragged, &asked).expect("it can be balanced");
     within_what_is_asked(&dragged, &asked, &free);
     let com = find(&dragged, "link.2.com");
     let [was, moved] = [&dragged, &free.machine].map(|machine| com.value(machine.spec()).expect("a link"));
     assert!((moved - was).abs() > 1e-3, "{was} {moved}");
-    asked.hold(&dragged, com, ParameterBounds::Within([was - 1e-4, was + 1e-4]));
+    asked.set_bounds(&dragged, com, ParameterBounds::Within([was - 1e-4, was + 1e-4]));
     let bounded = rebalance(&dragged, &asked).expect("it can be balanced");
     within_what_is_asked(&dragged, &asked, &bounded);
     assert!(bounded.cost > free.cost);
@@ -333,8 +333,8 @@ fn what_cannot_be_is_refused() {
     assert!(matches!(rebalance(&heavy, &RebalanceRequest::default()), Err(RebalanceError::Inconsistent { .. })));
     assert!(words(&|a| a.parameters[3].penalty = 0.0).starts_with("link.4.com: a penalty of 0: want"));
     assert!(words(&|a| a.parameters[3].from = f64::NAN).contains("link.4.com: a change measured from NaN"));
-    assert!(words(&|a| a.parameters[3].hold = ParameterBounds::Within([0.2, 0.1])).contains("no less than 0.2"));
-    assert!(words(&|a| a.parameters[3].hold = ParameterBounds::Within([f64::NAN, 0.1])).contains("bounds from NaN"));
+    assert!(words(&|a| a.parameters[3].bounds = ParameterBounds::Within([0.2, 0.1])).contains("no less than 0.2"));
+    assert!(words(&|a| a.parameters[3].bounds = ParameterBounds::Within([f64::NAN, 0.1])).contains("bounds from NaN"));
     assert!(words(&|a| a.parameters.push(a.parameters[3])).contains("link.4.com is listed twice"));
     let payload = Parameter::new(stillbase::mechanics::balance::Body::Payload, BodyQuantity::Mass);
     assert!(words(&|a| a.parameters[0].parameter = payload).contains("payload.mass cannot be changed"));
@@ -352,9 +352,9 @@ fn conditions_that_repeat_each_other_are_met() {
         ("link.2.mass", [1.101_810_977_846_388, 2.748_076_038_392_712_3]),
         ("link.3.com", [-0.096_612_439_897_767_63, 0.764_257_831_020_413_7]),
     ] {
-        asked.hold(&machine, find(&machine, key), ParameterBounds::Within(ends));
+        asked.set_bounds(&machine, find(&machine, key), ParameterBounds::Within(ends));
     }
-    asked.hold(&machine, find(&machine, "link.3.mass"), ParameterBounds::Free);
+    asked.set_bounds(&machine, find(&machine, "link.3.mass"), ParameterBounds::Free);
     let kept = rebalance(&machine, &asked).expect("it can be balanced");
     within_what_is_asked(&machine, &asked, &kept);
 }
@@ -368,14 +368,14 @@ fn a_free_mass_comes_to_rest_at_the_bottom() {
     for j in 0..9 {
         let mut asked = RebalanceRequest::coms(&bare, &[1.0; 9]);
         let mass = Parameter::new(stillbase::mechanics::balance::Body::Link(j), BodyQuantity::Mass);
-        asked.hold(&bare, mass, ParameterBounds::Free);
+        asked.set_bounds(&bare, mass, ParameterBounds::Free);
         let kept = rebalance(&bare, &asked).expect("it can be balanced");
         let (place, was) =
             (asked.parameters.iter().position(|one| one.parameter == mass).expect("listed"), bare.links()[j].mass);
         let found = kept.values[place];
         let at = |mass_of: f64| {
             let mut fixed = asked.clone();
-            fixed.hold(&bare, mass, ParameterBounds::Within([mass_of, mass_of * (1.0 + 1e-12)]));
+            fixed.set_bounds(&bare, mass, ParameterBounds::Within([mass_of, mass_of * (1.0 + 1e-12)]));
             rebalance(&bare, &fixed).expect("it can be balanced").cost
         };
         // At a tenth or ten times what it was there is no bottom.
@@ -402,7 +402,7 @@ fn no_mass_becomes_nothing() {
             let mut asked = RebalanceRequest::coms(&machine, &vec![1.0; machine.links().len()]);
             let mass = Parameter::new(stillbase::mechanics::balance::Body::Link(j), BodyQuantity::Mass);
             let was = machine.links()[j].mass;
-            asked.hold(&machine, mass, ParameterBounds::Within([0.0, 1e3 * was]));
+            asked.set_bounds(&machine, mass, ParameterBounds::Within([0.0, 1e3 * was]));
             // Dear places and cheap masses.
             asked.parameters.iter_mut().for_each(|one| one.penalty = if one.parameter == mass { 1e-3 } else { 10.0 });
             let Ok(kept) = rebalance(&machine, &asked) else { continue };
@@ -429,7 +429,7 @@ fn light_machines_are_kept_as_heavy_ones_are() {
             let machine = Machine::new(spec).expect("a machine");
             let mut asked = RebalanceRequest::coms(&machine, &vec![1.0; machine.links().len()]);
             for parameter in Parameter::all(&machine).into_iter().filter(|one| one.quantity == BodyQuantity::Mass) {
-                asked.hold(&machine, parameter, ParameterBounds::Free);
+                asked.set_bounds(&machine, parameter, ParameterBounds::Free);
             }
             let kept = rebalance(&machine, &asked).unwrap_or_else(|why| panic!("{name}, {scale}: {why}"));
             assert!(kept.cost < 1e-16, "{name}, {scale}: {}", kept.cost);

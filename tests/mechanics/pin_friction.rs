@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
-use stillbase::mechanics::dynamics::Surroundings;
+use stillbase::mechanics::dynamics::ExternalLoads;
 use stillbase::mechanics::joint_forces::Joints;
 use stillbase::mechanics::kinematics::least_transmission;
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
@@ -51,7 +51,7 @@ fn couples_are_in_the_balance(cases: u32) {
     let check = |(body, (q, qd, qdd), each, bearing): (NineBody, Motion, [f64; 3], [f64; 3])| {
         let machine = machine_of(&body);
         let joints = Joints::of(&machine).expect("determinate");
-        let around = Surroundings { gravity: machine.gravity(), ..Surroundings::default() };
+        let around = ExternalLoads { gravity: machine.gravity(), ..ExternalLoads::default() };
         let couple = |from: usize, to: usize| {
             let pair = PAIRS.iter().position(|p| *p == (from.min(to), from.max(to))).expect("two drives");
             if from < to { each[pair] } else { -each[pair] }
@@ -195,7 +195,7 @@ fn friction_changes_what_pins_carry_by_newtons() {
     let joints = Joints::of(&scenario.machine).expect("determinate");
     let (mut most, mut off) = (0.0_f64, 0.0_f64);
     replay(&scenario, |_, f| {
-        let free = joints.forces(&f.q.units(), &f.qd, &f.qdd, &Surroundings::default());
+        let free = joints.forces(&f.q.units(), &f.qd, &f.qdd, &ExternalLoads::default());
         for (i, free) in free.bounded().iter().enumerate() {
             let rubbing = f.inside.pin(i).expect("off the change points");
             (most, off) = (most.max(rubbing.norm()), off.max((rubbing - free).norm()));

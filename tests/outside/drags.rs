@@ -51,7 +51,7 @@ fn a_drag(noise: &mut Noise, machine: &Machine, space: &PoseSpace) -> Value {
     let two = |p: Vector| [p.re, p.im];
     let middle = led(GuidanceMode::Middle).follow(at, b, &from).expect("it is there");
     let inverse = PostureWeights::of(machine, space).least_torque().expect("regular");
-    let torque = led(GuidanceMode::Weighed(Box::new(inverse))).drag_to(at + step, b, &from).0;
+    let torque = led(GuidanceMode::WeightedNorm(Box::new(inverse))).drag_to(at + step, b, &from).0;
     let energy = space.drag_to(at + step, b, &from).0;
     json!({
         "b": b, "p": two(there), "at": two(at), "step": two(step), "from": list(&from), "a": list(&a),

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use stillbase::exchange::mjcf::{hinges, middle, mjcf};
-use stillbase::mechanics::dynamics::{Surroundings, inverse_with_wrench, mass_matrix};
+use stillbase::mechanics::dynamics::{ExternalLoads, inverse_with_wrench, mass_matrix};
 use stillbase::mechanics::kinematics::end_effector;
 use stillbase::mechanics::machine::{Inertia, Machine, builtins};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
@@ -83,7 +83,7 @@ fn near(what: &str, got: &[f64], want: &Value, scale: f64) {
 
 fn compare(machine: &Machine, motion: &Motion, found: &Value) {
     let (n, inertia, e) = (machine.drives(), Inertia::of(machine), DriveAngles(motion.q).units());
-    let around = Surroundings { gravity: machine.gravity(), ..Surroundings::default() };
+    let around = ExternalLoads { gravity: machine.gravity(), ..ExternalLoads::default() };
     let (h, _) = mass_matrix(&inertia, &e, &motion.qd);
     let (torque, wrench) = inverse_with_wrench(&inertia, &e, &motion.qd, &motion.qdd, &around);
     let rows: Vec<f64> = (0..n * n).map(|i| h.get(i / n, i % n)).collect();

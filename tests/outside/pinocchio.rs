@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use stillbase::exchange::import::import;
 use stillbase::exchange::urdf::{joint, urdf};
-use stillbase::mechanics::dynamics::{Surroundings, inverse_with_wrench, mass_matrix};
+use stillbase::mechanics::dynamics::{ExternalLoads, inverse_with_wrench, mass_matrix};
 use stillbase::mechanics::kinematics::end_effector;
 use stillbase::mechanics::machine::{Inertia, Machine, builtins};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
@@ -73,7 +73,7 @@ fn largest(list: &[f64]) -> f64 {
 
 fn compare(machine: &Machine, motion: &Motion, found: &Value) {
     let (n, inertia, e) = (machine.drives(), Inertia::of(machine), DriveAngles(motion.q).units());
-    let around = Surroundings { gravity: machine.gravity(), ..Surroundings::default() };
+    let around = ExternalLoads { gravity: machine.gravity(), ..ExternalLoads::default() };
     let (h, _) = mass_matrix(&inertia, &e, &motion.qd);
     let (torque, wrench) = inverse_with_wrench(&inertia, &e, &motion.qd, &motion.qdd, &around);
     let still = PerDrive::from_fn(n, |_| 0.0);

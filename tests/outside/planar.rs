@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 use serde_json::{Value, json};
 use stillbase::exchange::import::import;
-use stillbase::mechanics::dynamics::{Surroundings, inverse_with_wrench, mass_matrix};
+use stillbase::mechanics::dynamics::{ExternalLoads, inverse_with_wrench, mass_matrix};
 use stillbase::mechanics::kinematics::end_effector;
 use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
@@ -50,7 +50,7 @@ fn compare(found: &Value) -> Result<(), String> {
     }
     let to_drives = DMatrix::from_fn(n, n, |i, j| rows[i][j]);
     let inertia = Inertia::of(machine);
-    let around = Surroundings { gravity: machine.gravity(), ..Surroundings::default() };
+    let around = ExternalLoads { gravity: machine.gravity(), ..ExternalLoads::default() };
     near("mass", &[machine.mass()], &[found["mass"].as_f64().expect("a number")], machine.mass())?;
     for (drive, want) in machine.spec().drives.iter().zip(found["torque_limits"].as_array().expect("a list")) {
         let (got, want) = (drive.torque_limit.unwrap_or(0.0), want.as_f64().unwrap_or(0.0));

@@ -1,7 +1,7 @@
 //! SciPy's least squares find the same numbers of balance from the same measurement.
 
 use serde_json::{Value, json};
-use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
+use stillbase::mechanics::dynamics::{ExternalLoads, base_wrench};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::study::trim::{MeasuredMotion, MeasurementSet, Regressor, fit};
@@ -25,7 +25,7 @@ impl Noise {
 
 fn measured(machine: &Machine, noise: &mut Noise) -> MeasurementSet {
     let (inertia, n) = (Inertia::of(machine), machine.drives());
-    let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
+    let around = ExternalLoads { gravity: machine.gravity(), force: Vector::default() };
     let motion = |noise: &mut Noise| {
         let waves: Vec<[f64; 3]> =
             (0..n).map(|_| [0.4 + 0.2 * noise.next(), 5.0 + 3.0 * noise.next(), 3.0 * noise.next()]).collect();

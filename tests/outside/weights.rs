@@ -2,7 +2,8 @@
 
 use serde_json::{Value, json};
 use stillbase::mechanics::counterweights::{
-    CounterweightError, CounterweightSpec, Disc, FreeRotor, Objective, Placed, RotorFreedom, Sites, place_weights,
+    CounterweightError, CounterweightSite, CounterweightSpec, Disc, FreeRotor, Objective, PlacedCounterweights,
+    RotorFreedom, place_weights,
 };
 use stillbase::mechanics::machine::{Machine, parse, to_toml};
 
@@ -66,12 +67,12 @@ fn a_question(noise: &mut Noise) -> (Machine, CounterweightSpec) {
             (from, to) = if is_so(noise, 0.5) { (from, from) } else { (0.0, to) };
         }
         let most = if is_so(noise, 0.5) { noise.between(1.0, 60.0) } else { f64::INFINITY };
-        sites.push(Sites { link, from, to, most });
+        sites.push(CounterweightSite { link, from, to, most });
     }
     let disc = Disc { density: 7850.0, thickness: noise.between(0.005, 0.05) };
     let mut asked = CounterweightSpec::least(objective, sites, disc);
-    asked.most_mass = is_so(noise, 0.2).then(|| noise.between(2.0, 60.0));
-    asked.most_inertia = is_so(noise, 0.2).then(|| noise.between(0.5, 8.0));
+    asked.max_added_mass = is_so(noise, 0.2).then(|| noise.between(2.0, 60.0));
+    asked.max_inertia = is_so(noise, 0.2).then(|| noise.between(0.5, 8.0));
     asked.clearance = (machine.links().len() < 5 && is_so(noise, 0.4)).then(|| noise.between(0.0, 0.08));
     if is_so(noise, 0.3) {
         let low = if is_so(noise, 0.5) { 0.0 } else { noise.between(0.0, 0.5) };
@@ -103,7 +104,7 @@ fn a_question(noise: &mut Noise) -> (Machine, CounterweightSpec) {
     (machine, asked)
 }
 
-fn line(machine: &Machine, asked: &CounterweightSpec, found: Option<&Placed>, seed: usize) -> String {
+fn line(machine: &Machine, asked: &CounterweightSpec, found: Option<&PlacedCounterweights>, seed: usize) -> String {
     let sites = asked
         .sites
         .iter()
@@ -121,8 +122,8 @@ fn line(machine: &Machine, asked: &CounterweightSpec, found: Option<&Placed>, se
         "sites": sites.collect::<Vec<_>>(),
         "spread": asked.disc.radius(1.0),
         "objective": objective,
-        "most_mass": asked.most_mass,
-        "most_inertia": asked.most_inertia,
+        "most_mass": asked.max_added_mass,
+        "most_inertia": asked.max_inertia,
         "clearance": asked.clearance,
         "rotors": asked.rotors.iter().map(rotor).collect::<Vec<_>>(),
         "payload": asked.payload,
@@ -133,7 +134,11 @@ fn line(machine: &Machine, asked: &CounterweightSpec, found: Option<&Placed>, se
 }
 
 /// What is wrong with an answer, by what SciPy says of it.
-fn wrong(asked: &CounterweightSpec, ours: &Result<Placed, CounterweightError>, theirs: &Value) -> Vec<String> {
+fn wrong(
+    asked: &CounterweightSpec,
+    ours: &Result<PlacedCounterweights, CounterweightError>,
+    theirs: &Value,
+) -> Vec<String> {
     let (low, high, worst) = (theirs["low"].as_f64(), theirs["high"].as_f64(), theirs["worst"].as_f64());
     let mut all = Vec::new();
     let mut hold = |is_so: bool, what: String| {

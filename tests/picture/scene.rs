@@ -296,7 +296,7 @@ fn pins_show_what_they_carry() {
     assert!(scene_of(&session).lines.iter().all(|l| !l.name.starts_with("pin_forces/")));
     let scene = stage.scene(frame, &ViewOptions { pin_forces: true, ..ViewOptions::default() });
     let worst = frame.inside.worst_pin().expect("one");
-    let per_newton = 0.25 * stage.linkage().reach() / round_up(frame.inside.worst);
+    let per_newton = 0.25 * stage.linkage().reach() / round_up(frame.inside.largest_force);
     for (i, pin) in joints.pins().iter().enumerate() {
         let force = frame.inside.pin(i).expect("defined");
         let Some(shaft) = scene.lines.iter().find(|l| l.name == format!("pin_forces/{}", pin.name)) else {
@@ -311,7 +311,7 @@ fn pins_show_what_they_carry() {
         let p = palette(Theme::Dark);
         assert_eq!(shaft.colour, if i == worst { p.reaction } else { p.ink });
     }
-    let said = format!("{} {:.1} N", joints.pins()[worst].name, frame.inside.worst);
+    let said = format!("{} {:.1} N", joints.pins()[worst].name, frame.inside.largest_force);
     assert!(scene.labels.iter().any(|l| l.text == said), "{said}");
     assert!(scene.labels.iter().any(|l| l.text.starts_with("pins: ") && l.text.ends_with(" N")));
 }

@@ -295,7 +295,7 @@ fn cameras(first: Camera) -> Vec<Camera> {
 
 fn pointer(camera: Camera, at: [f64; 3]) -> Pointer {
     let over = Pointer { camera, size: [900.0, 700.0], at: [0.0; 2] };
-    Pointer { at: over.seen(at).expect("in front of the eye"), ..over }
+    Pointer { at: over.project(at).expect("in front of the eye"), ..over }
 }
 
 /// Taking hold of the slice and pulling it to where another b would have it asks for that b.

@@ -37,7 +37,7 @@ fn checked(noise: &mut Noise, space: &PoseSpace, map: &PoseSpace, poses: usize) 
         );
         return 0;
     };
-    let Some(mend) = why.mend else {
+    let Some(mend) = why.correction else {
         assert!(count > 2, "two can always be brought together: {n} drives, {points:?}");
         return 0;
     };
@@ -108,7 +108,7 @@ fn planes_and_spaces_move_alike() {
     while seen < 6 {
         let points: Vec<Vector> = (0..2).map(|_| noise.between(0.3, 1.2) * unit(noise.between(0.0, TAU))).collect();
         let [Some(one), Some(other)] = spaces.each_ref().map(|space| no_common(space, &points)) else { continue };
-        let [one, other] = [one, other].map(|why| why.mend.expect("two can be brought together"));
+        let [one, other] = [one, other].map(|why| why.correction.expect("two can be brought together"));
         assert!((one.distance - other.distance).abs() < 1e-7, "{one:?} {other:?}");
         seen += 1;
     }
@@ -122,15 +122,15 @@ fn a_printed_move_is_hardly_longer() {
     let mut seen = 0;
     while seen < 12 {
         let mut points: Vec<Vector> = (0..2).map(|_| noise.between(0.3, 1.2) * unit(noise.between(0.0, TAU))).collect();
-        let Some(mend) = no_common(&space, &points).and_then(|why| why.mend) else { continue };
+        let Some(mend) = no_common(&space, &points).and_then(|why| why.correction) else { continue };
         // Most of the way is gone already: from a hundredth to a millionth of it is left.
         let left = 10.0_f64.powf(noise.between(-6.0, -2.0));
         let was = points[mend.point];
         points[mend.point] = was + (1.0 - left) * (mend.to - was);
-        let Some(mend) = no_common(&space, &points).and_then(|why| why.mend) else { continue };
+        let Some(mend) = no_common(&space, &points).and_then(|why| why.correction) else { continue };
         let Some(shown) = mend.shown else { continue };
         if shown.to.iter().all(|x| x.decimals() <= 8) {
-            assert!(shown.far <= 1.1001 * mend.distance, "{points:?} {mend:?}");
+            assert!(shown.length <= 1.1001 * mend.distance, "{points:?} {mend:?}");
             seen += 1;
         }
     }
@@ -174,7 +174,7 @@ fn points_have_a_pose_each_and_turn_where_b_does_not_serve_them() {
                 assert!(space.angles(&pose.q).minus(&pose.a).max_abs() < 1e-9, "{n} drives: {pose:?}");
             }
             let apart = nearest_poses(space, [points[0], points[1]], [b, b]).expect("both are reached");
-            let ways = [apart, [poses[0], poses[1]]].map(|[from, to]| from.way(space, &to));
+            let ways = [apart, [poses[0], poses[1]]].map(|[from, to]| from.distance_to(space, &to));
             assert!(space.planes().is_err() || ways[0] <= ways[1] + 1e-9, "{n} drives: {ways:?}");
             assert_eq!(carried_points(space, &points, [b, b]), points, "where b serves them they stay");
             let other = b + noise.between(1.0, 3.0);

@@ -1,6 +1,6 @@
 //! The least reaction: against closed forms and other solvers, and how it converges.
 
-use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
+use stillbase::mechanics::dynamics::{ExternalLoads, base_wrench};
 use stillbase::mechanics::kinematics::end_effector;
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, Vector, unit};
@@ -56,7 +56,7 @@ fn in_spaces(from: Vector, to: Vector, b: f64, end: Option<f64>, goal: ReactionN
 fn moment(path: &stillbase::planning::curves::PathTable, u: f64) -> f64 {
     let at = path.at(u);
     let model = Inertia::of(nine_link());
-    base_wrench(&model, &at.q.units(), &at.first, &at.second, &Surroundings::default()).total().moment
+    base_wrench(&model, &at.q.units(), &at.first, &at.second, &ExternalLoads::default()).total().moment
 }
 
 /// The corridor of every instant by brute force: b of the self-motion near the pose.

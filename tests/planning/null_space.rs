@@ -2,14 +2,15 @@
 
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
-use stillbase::mechanics::dynamics::{Surroundings, angular_momentum, base_wrench, mass_matrix};
+use stillbase::mechanics::dynamics::{ExternalLoads, angular_momentum, base_wrench, mass_matrix};
 use stillbase::mechanics::kinematics::{end_effector, velocity};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::planning::off_plane::b_integral::BIntegral;
 use stillbase::planning::off_plane::drift::{DriftError, circle, drift, drift_in, zero_momentum_path};
 use stillbase::planning::off_plane::null_space::{
-    NullSpace, is_integrable, momentum_row, momentum_row_rate, motion, projected, rates, twist,
+    NullSpace, integrability_violation, is_integrable, momentum_coefficients, momentum_row_rate, motion, projected,
+    rates,
 };
 
 /// A pose in the middle of the joint limits.
@@ -74,7 +75,7 @@ proptest! {
         let model = serial(drives, 0.03);
         let (q, qd) = (angles(&q[..drives]), PerDrive::from_slice(&qd[..drives]).expect("few"));
         let (h, _) = mass_matrix(&model, &q.units(), &qd);
-        let d = |s: f64| momentum_row(&model, &DriveAngles(q.0.plus(s, &qd)).units());
+        let d = |s: f64| momentum_coefficients(&model, &DriveAngles(q.0.plus(s, &qd)).units());
         for k in 0..drives {
             let sum: f64 = (0..drives).map(|l| h.get(l, k)).sum();
             prop_assert!((sum - d(0.0)[k]).abs() < 1e-13);
@@ -90,14 +91,14 @@ proptest! {
             let d = |k: usize, h: f64, i: usize| {
                 let mut q = q;
                 q[k] += h;
-                momentum_row(&model, &angles(&q).units())[i]
+                momentum_coefficients(&model, &angles(&q).units())[i]
             };
             let slope = |k: usize, i: usize| (d(k, 1e-5, i) - d(k, -1e-5, i)) / 2e-5;
             let curl: f64 = [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
                 .map(|(i, j, k)| d(0, 0.0, i) * (slope(j, k) - slope(k, j)))
                 .iter()
                 .sum();
-            let got = twist(&model, &q.into());
+            let got = integrability_violation(&model, &q.into());
             prop_assert!((got - curl.abs()).abs() < 1e-8 * (1.0 + got), "{got} and {curl}");
         }
     }
@@ -111,7 +112,7 @@ proptest! {
         let sum = (h(0) * c(1, 2) - c(1, 0) * c(0, 2)) * turn(1, 2)
             + (h(1) * c(2, 0) - c(2, 1) * c(1, 0)) * turn(2, 0)
             + (h(2) * c(0, 1) - c(0, 2) * c(2, 1)) * turn(0, 1);
-        prop_assert!((twist(&model, &q.into()) - 2.0 * sum.im.abs()).abs() < 1e-12);
+        prop_assert!((integrability_violation(&model, &q.into()) - 2.0 * sum.im.abs()).abs() < 1e-12);
     }
 
     /// Rates of three drives against the solution of the equations they are to solve.
@@ -131,7 +132,7 @@ proptest! {
         let model = serial(2, off);
         let integral = BIntegral::of(&model).expect("two drives");
         let slope = |q: [f64; 2]| {
-            let d = momentum_row(&model, &angles(&q).units());
+            let d = momentum_coefficients(&model, &angles(&q).units());
             [-d[1] / (d[0] + d[1]), d[0] / (d[0] + d[1])]
         };
         let n = 2000;
@@ -164,7 +165,8 @@ fn pose_integral_is_its_quadrature() {
         for delta in [-11.0, -3.2, 0.4, 3.1, 3.2, 7.0] {
             let n = 4000;
             let share = |i: i32| {
-                let d = momentum_row(&model, &angles(&[0.0, delta * (f64::from(i) + 0.5) / f64::from(n)]).units());
+                let d =
+                    momentum_coefficients(&model, &angles(&[0.0, delta * (f64::from(i) + 0.5) / f64::from(n)]).units());
                 d[1] / (d[0] + d[1])
             };
             let want = 0.3 + delta * (0..n).map(share).sum::<f64>() / f64::from(n);
@@ -189,18 +191,18 @@ fn pose_integral_is_its_quadrature() {
 #[test]
 fn only_invariant_machines_have_a_pose_constant() {
     let poses = || (0..40).map(|i| [0.37, 1.91, 4.23].map(|x| (x * f64::from(i)) % 6.0));
-    let most = |model: &Inertia| poses().map(|q| twist(model, &q.into())).fold(0.0, f64::max);
+    let most = |model: &Inertia| poses().map(|q| integrability_violation(model, &q.into())).fold(0.0, f64::max);
     let exact = Inertia::of(nine_link());
     assert!(is_integrable(&exact) && most(&exact) < 1e-14);
     assert!(is_integrable(&serial(2, 0.1)));
-    assert_eq!(twist(&serial(2, 0.1), &[1.0, 2.5].into()), 0.0);
+    assert_eq!(integrability_violation(&serial(2, 0.1), &[1.0, 2.5].into()), 0.0);
     for model in [unbalanced(0.05, 0.25), unbalanced(-0.011, 0.9), serial(3, 0.0), serial(3, 0.05)] {
         assert!(!is_integrable(&model));
         assert!(most(&model) > 1e-3 * model.invariance_residual(), "{}", most(&model));
     }
     // Four drives: every three of them count.
     let four = serial(4, 0.0);
-    assert!(!is_integrable(&four) && twist(&four, &[0.1, 1.4, 2.9, 4.0].into()) > 1e-3);
+    assert!(!is_integrable(&four) && integrability_violation(&four, &[0.1, 1.4, 2.9, 4.0].into()) > 1e-3);
 }
 
 /// A point mass on a chain without mass: its angular momentum is m r² θ̇, so that its bearing θ is a pose constant.
@@ -223,7 +225,7 @@ fn a_point_mass_has_its_bearing() {
     let machine = parse(&text, "chain").expect("valid");
     let model = Inertia::of(&machine);
     assert!(is_integrable(&model) && !model.is_invariant());
-    assert!(twist(&model, &[0.3, 1.9, 3.1].into()) < 1e-12);
+    assert!(integrability_violation(&model, &[0.3, 1.9, 3.1].into()) < 1e-12);
     let mut q = angles(&[0.3, 1.2, 1.9]);
     let bearing = |q: &DriveAngles| end_effector(machine.end_effector(), &q.units()).arg();
     let from = bearing(&q);
@@ -312,11 +314,11 @@ fn a_cycle_is_a_path_of_zero_moment() {
         assert!(angular_momentum(&model, &e, &at.first).abs() < 1e-8, "s = {s}");
         let (rate, acceleration) = (1.7, -2.3);
         let qdd = at.second.scaled(rate * rate).plus(acceleration, &at.first);
-        let wrench = base_wrench(&model, &e, &at.first.scaled(rate), &qdd, &Surroundings::default());
+        let wrench = base_wrench(&model, &e, &at.first.scaled(rate), &qdd, &ExternalLoads::default());
         assert!(wrench.total().moment.abs() < 1e-6, "s = {s}: {:e}", wrench.total().moment);
     }
     for node in table.nodes() {
-        let wrench = base_wrench(&model, &node.q.units(), &node.first, &node.second, &Surroundings::default());
+        let wrench = base_wrench(&model, &node.q.units(), &node.first, &node.second, &ExternalLoads::default());
         assert!(wrench.total().moment.abs() < 1e-12, "{:e}", wrench.total().moment);
     }
 }
@@ -332,7 +334,7 @@ fn motions_along_the_null_space_transmit_nothing() {
         for node in table.nodes() {
             let e = node.q.units();
             assert!(angular_momentum(&model, &e, &node.first).abs() < 1e-13);
-            let wrench = base_wrench(&model, &e, &node.first, &node.second, &Surroundings::default());
+            let wrench = base_wrench(&model, &e, &node.first, &node.second, &ExternalLoads::default());
             assert!(wrench.total().moment.abs() < 1e-12, "{:e}", wrench.total().moment);
             // What was taken away is at right angles to every other direction of the null space.
             let gone = w.minus(&projected(&model, &node.q, &w));
@@ -373,7 +375,7 @@ fn what_cannot_be_followed_is_refused() {
     let (e, lengths) = (q.units(), [0.1, 0.2, 0.3, 0.4]);
     let moved: Vector = (0..4).map(|k| Vector::new(0.0, lengths[k] * own[k]) * e[k]).sum();
     assert!((moved - Vector::new(0.3, -0.1)).norm() < 1e-12);
-    assert!(momentum_row(&four, &q.units()).dot(&own).abs() < 1e-12);
+    assert!(momentum_coefficients(&four, &q.units()).dot(&own).abs() < 1e-12);
     assert_eq!(rates(&serial(2, 0.0), &angles(&[0.1, 1.4]), Vector::default(), 0.0), None);
     let space = NullSpace::of(&four, &q);
     let columns: Vec<DVector<f64>> = space.basis().iter().map(|x| DVector::from_row_slice(x)).collect();

@@ -1,7 +1,7 @@
 //! What postures promise, on random machines: each has the least of what it is named for, and a line is refused only
 //! where no way along it exists.
 
-use stillbase::mechanics::dynamics::{Surroundings, inverse};
+use stillbase::mechanics::dynamics::{ExternalLoads, inverse};
 use stillbase::mechanics::machine::Inertia;
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::planning::Motion;
@@ -35,7 +35,7 @@ impl Case {
     /// ∫ |q′|² ds, ∫ τ² dt, and ∫ ½ Σ x² ds, by sampling.
     fn costs(&self, path: &Path) -> [f64; 3] {
         const SAMPLES: usize = 4000;
-        let (inertia, around) = (Inertia::of(&self.machine), Surroundings::default());
+        let (inertia, around) = (Inertia::of(&self.machine), ExternalLoads::default());
         let postures = PostureWeights::of(&self.machine, &self.space);
         let motion = Motion::new(path.clone(), TimeLaw::Quintic, 1.0);
         let mut sums = [0.0; 3];

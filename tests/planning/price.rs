@@ -1,7 +1,7 @@
 //! The price of b: stated before a motion, found again by the dynamics of it.
 
 use proptest::prelude::*;
-use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
+use stillbase::mechanics::dynamics::{ExternalLoads, base_wrench};
 use stillbase::mechanics::machine::{Inertia, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use stillbase::planning::Motion;
@@ -31,7 +31,7 @@ fn lifted(space: &PoseSpace, a: [f64; 2], b: f64) -> PoseAngles {
 
 /// n_B of the dynamics, N m, without gravity.
 fn moment(model: &Inertia, q: &DriveAngles, qd: &PerDrive, qdd: &PerDrive) -> f64 {
-    base_wrench(model, &q.units(), qd, qdd, &Surroundings::default()).total().moment
+    base_wrench(model, &q.units(), qd, qdd, &ExternalLoads::default()).total().moment
 }
 
 const LAWS: [PoseLaw; 3] = [PoseLaw::BangBang, PoseLaw::Cubic, PoseLaw::Quintic];

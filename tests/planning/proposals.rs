@@ -83,7 +83,7 @@ fn refused_and_typed(base: &Scenario, shape: &str, [from, to]: [[f64; 2]; 2], b:
         assert!(exact.is_ok(), "{shape} from {from:?} to {to:?}: {words}; {b:?}");
     }
     if let Refusal::NoCommonPlane { why, .. } = &refusal
-        && let (Some(mend), "joint-line") = (why.mend, shape)
+        && let (Some(mend), "joint-line") = (why.correction, shape)
     {
         let name = if mend.point == 0 { "from" } else { "to" };
         let exact = with(&task, &format!("{name} = [{:?}, {:?}]\nb = {:?}", mend.to.re, mend.to.im, mend.b));

@@ -106,7 +106,7 @@ fn the_least_move_mends() {
     for points in [&points[..2], &points[..]] {
         let why = common::no_common(space, points).expect("nothing in common");
         assert_eq!(why.pair, Some([0, 1]));
-        let Some(mend) = why.mend else {
+        let Some(mend) = why.correction else {
             assert_eq!(points.len(), 3, "two can always be brought together");
             continue;
         };

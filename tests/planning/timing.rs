@@ -2,7 +2,7 @@
 //! limits themselves, kept and used.
 
 use proptest::prelude::*;
-use stillbase::mechanics::dynamics::{Surroundings, holding_torque, inverse, mass_matrix};
+use stillbase::mechanics::dynamics::{ExternalLoads, holding_torque, inverse, mass_matrix};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::planning::Motion;
@@ -92,8 +92,8 @@ fn unbalanced() -> Machine {
 }
 
 /// A machine's constants and gravity.
-fn of(machine: &Machine) -> (Inertia, Surroundings) {
-    (Inertia::of(machine), Surroundings { gravity: machine.gravity(), force: Vector::default() })
+fn of(machine: &Machine) -> (Inertia, ExternalLoads) {
+    (Inertia::of(machine), ExternalLoads { gravity: machine.gravity(), force: Vector::default() })
 }
 
 fn even(n: usize) -> Vec<f64> {
@@ -179,10 +179,10 @@ fn laws_have_their_peaks() {
 fn laws_begin_and_end_at_rest() {
     for &law in TimeLaw::ALL {
         for t in [-1.0, -1e-300] {
-            assert_eq!(law.at(t, 2.0), PathProgress::still(0.0), "{law:?}");
+            assert_eq!(law.at(t, 2.0), PathProgress::at_rest(0.0), "{law:?}");
         }
         for t in [2.0, 2.1, f64::INFINITY] {
-            assert_eq!(law.at(t, 2.0), PathProgress::still(1.0), "{law:?}");
+            assert_eq!(law.at(t, 2.0), PathProgress::at_rest(1.0), "{law:?}");
         }
         let (first, last) = (law.at(0.0, 2.0), law.at(2.0 - 1e-9, 2.0));
         assert_eq!((first.s, first.rate), (0.0, 0.0), "{law:?}");
@@ -192,7 +192,7 @@ fn laws_begin_and_end_at_rest() {
         assert_eq!(first.acceleration == 0.0 && last.acceleration.abs() < 1e-6, !steps, "{law:?}");
         assert_eq!(first.jerk == 0.0 && last.jerk.abs() < 1e-6, steps || law == TimeLaw::Septic, "{law:?}");
         // No time at all is at the end.
-        assert_eq!(law.at(0.0, 0.0), PathProgress::still(1.0));
+        assert_eq!(law.at(0.0, 0.0), PathProgress::at_rest(1.0));
     }
 }
 
@@ -755,7 +755,7 @@ fn drawn(points: &[Vector], shape: usize, blend: f64) -> Option<Vec<Path>> {
 
 /// Every place of a path and many stations, each space cut into as many parts: far denser than is ever planned with.
 fn converged(path: &Path, parts: usize) -> Vec<f64> {
-    let mut all = path.places();
+    let mut all = path.sample_parameters();
     all.extend(stations(300));
     all.sort_by(f64::total_cmp);
     all.dedup_by(|b, a| *b - *a < 1e-9);

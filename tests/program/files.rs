@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use stillbase::files::text::read;
-use stillbase::files::{NewFile, WriteError, finish_all, made, write_new};
+use stillbase::files::{NewFile, WriteError, finish_all, write_new, write_temporary};
 use stillbase::settings::text::{MAX_TEXT_BYTES, plain, shorten_message};
 
 use crate::folder::Folder;
@@ -78,7 +78,8 @@ fn of_many_who_take_a_name_one_has_it() {
 fn files_that_belong_together_appear_together() {
     let folder = Folder::new("files-pair");
     let [a, b] = ["a", "b"].map(|name| folder.path(name));
-    let pair = |force| [made(&a, b"new a", force).expect("a"), made(&b, b"new b", force).expect("b")];
+    let pair =
+        |force| [write_temporary(&a, b"new a", force).expect("a"), write_temporary(&b, b"new b", force).expect("b")];
     // Somebody takes the second name in the meantime.
     let both = pair(false);
     fs::write(&b, "theirs").expect("written");
@@ -201,8 +202,12 @@ fn replacing_keeps_permissions_and_hard_links() {
         let both = [&file, &other].map(|name| fs::metadata(name).expect("there"));
         assert_eq!((both[0].ino(), both[0].nlink(), both[0].mode() & 0o7777), (both[1].ino(), 2, mode));
         // Of two that belong together neither changes where one cannot.
-        let pair =
-            || [made(&file, b"newest", true).expect("begun"), made(&folder.path("b"), b"b", false).expect("begun")];
+        let pair = || {
+            [
+                write_temporary(&file, b"newest", true).expect("begun"),
+                write_temporary(&folder.path("b"), b"b", false).expect("begun"),
+            ]
+        };
         let begun = pair();
         fs::write(folder.path("b"), "in the way").expect("written");
         finish_all(begun).expect_err("b is taken");

@@ -7,7 +7,7 @@ fn signals_are_the_frames_at_every_step() {
     let folder = Folder::new("signals");
     let mut heard = Vec::new();
     let recordings = record(&cases(), &folder.path("cases.rrd"), &Options::default(), &mut |p| {
-        heard.push((p.done, p.of, p.what.to_owned()));
+        heard.push((p.done, p.total, p.what.to_owned()));
         true
     })
     .expect("three cases");

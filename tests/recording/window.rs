@@ -43,7 +43,7 @@ fn the_reaction_is_the_same_in_the_window() {
                     assert_eq!(colours.value(k), packed(seen.colour), "{file} at {step}: {}", seen.text);
                     kinds.insert((k, seen.colour == p.reaction));
                 }
-                let weight = (gravity != 0.0).then(|| frames[*step as usize].wrench.statical.force.norm());
+                let weight = (gravity != 0.0).then(|| frames[*step as usize].wrench.static_part.force.norm());
                 let words = weight.map(|w| format!("and its weight, {w:.1} N"));
                 assert_eq!(
                     words.as_deref(),
@@ -193,7 +193,7 @@ fn all_that_the_window_plots_is_in_the_layout() {
             let view = view.unwrap_or_else(|| panic!("{file}: {}", chart.title)).entity_path().to_string();
             let queries = chunks.iter().find(|c| c.entity_path().to_string() == format!("{view}/ViewContents"));
             let shown = text(queries.expect("contents"), "ViewContents:query");
-            let held: Vec<_> = table.iter().filter(|signal| chart.holds(signal)).collect();
+            let held: Vec<_> = table.iter().filter(|signal| chart.contains(signal)).collect();
             assert!(!held.is_empty(), "{file}: {}", chart.title);
             let series: Vec<_> = held.iter().map(|signal| contents.series(&scenario.name, signal)).collect();
             let entities: BTreeSet<String> = series.iter().map(|(path, _)| path.clone()).collect();

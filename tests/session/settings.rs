@@ -58,7 +58,7 @@ fn every_key_of_a_file_is_in_the_table() {
 #[test]
 fn every_word_of_a_choice_is_in_the_table() {
     for key in keys() {
-        let KeyType::Choice(words) = key.holds else { continue };
+        let KeyType::Choice(words) = key.value_type else { continue };
         // Files are read by types that do not know the table.
         let file: Table = case_3().to_toml().parse().expect("TOML");
         let file = change::join(file, &change::single_change(key.path, "nonsense")).to_string();
@@ -108,7 +108,7 @@ fn every_range_is_as_it_is_said() {
             if outside > 9e18 {
                 continue;
             }
-            let value = match key.holds {
+            let value = match key.value_type {
                 KeyType::List(count, _) => vec![outside; count].into(),
                 KeyType::Bounds(_) => vec![outside; 2].into(),
                 KeyType::Points(_) => Value::Array(vec![vec![outside, 0.0].into()]),
@@ -130,8 +130,8 @@ fn every_key_says_what_it_means() {
     let mut seen = BTreeSet::new();
     for key in keys() {
         assert!(seen.insert(key.path), "{} stands twice", key.path);
-        assert!(key.words.ends_with('.') && key.words.len() > 10, "{}: {}", key.path, key.words);
-        assert!(key.words.chars().next().is_some_and(char::is_uppercase), "{}: {}", key.path, key.words);
+        assert!(key.meaning.ends_with('.') && key.meaning.len() > 10, "{}: {}", key.path, key.meaning);
+        assert!(key.meaning.chars().next().is_some_and(char::is_uppercase), "{}: {}", key.path, key.meaning);
         assert_eq!(key_of(key.path).map(|key| key.path), Some(key.path));
     }
     assert!(seen.len() > 70, "{}", seen.len());
@@ -214,7 +214,7 @@ fn what_changes_no_frame_says_so() {
     let frames = session.frames().to_vec();
     let known = session.frames().revision().mark();
     for edit in &set {
-        assert!(edit.is_aside(), "{}", edit.title());
+        assert!(edit.affects_no_frame(), "{}", edit.title());
         session.apply(edit.clone()).expect("it is set");
         session.end_gesture();
     }
@@ -236,11 +236,12 @@ fn what_changes_no_frame_says_so() {
     }
     assert_eq!(*session.scenario(), scenario);
     assert_eq!((&later[..frames.len()], session.frames().to_vec()), (&frames[..], later.clone()));
-    assert!(session.frames().revision().kept_of(&known) >= frames.len(), "the frames were made again");
+    assert!(session.frames().revision().unchanged_since(&known) >= frames.len(), "the frames were made again");
 }
 
 fn any_change() -> impl Strategy<Value = (String, Value)> {
-    let all: Vec<(String, KeyType)> = case_3().settings().into_iter().map(|(path, key, _)| (path, key.holds)).collect();
+    let all: Vec<(String, KeyType)> =
+        case_3().settings().into_iter().map(|(path, key, _)| (path, key.value_type)).collect();
     (prop::sample::select(all), 0.0..1.0_f64, any::<bool>()).prop_map(|((path, holds), u, back)| {
         let within = |low: f64, high: f64| -> f64 { low.max(-5.0) + u * (high.min(5.0) - low.max(-5.0)) };
         let value = match holds {

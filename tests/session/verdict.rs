@@ -173,9 +173,9 @@ proptest! {
         let ((falling, frames), (floating, others)) = (of(gravity), of([0.0; 2]));
         for (a, b) in frames.iter().zip(&others) {
             prop_assert!((a.wrench.dynamic.force - b.wrench.dynamic.force).norm() < 1e-8);
-            prop_assert!(a.wrench.statical.force.norm() < 1e-12);
+            prop_assert!(a.wrench.static_part.force.norm() < 1e-12);
             prop_assert!((a.base_moment() - b.base_moment()).abs() < 1e-8);
-            prop_assert!((a.inside.worst - b.inside.worst).abs() < 1e-6);
+            prop_assert!((a.inside.largest_force - b.inside.largest_force).abs() < 1e-6);
         }
         prop_assert_eq!(falling.reactionless, floating.reactionless);
         prop_assert_eq!(falling.reactionless, name == "case-3" && payload == 0.0);
@@ -190,7 +190,7 @@ fn statements(scenario: &Scenario) -> [Statements; 2] {
 }
 
 fn lamps(of: &Statements) -> [StatusLight; 3] {
-    of.named().map(|(_, statement)| statement.lamp)
+    of.named().map(|(_, statement)| statement.outcome)
 }
 
 /// Three statements: what has not run is neither praised nor blamed, and a path that leaves its plane is not the
@@ -224,12 +224,12 @@ fn machine_plan_and_run_are_told_apart() {
     wheel.base.wheel = Some(Wheel { inertia: 0.002, ..Wheel::default() });
     assert_eq!(lamps(&statements(&wheel)[1]), [Good, Bad, Good]);
     let [_, stuck] = statements(&case("case-3", &[], "[plant.friction]\ncoulomb = 1e4"));
-    assert_eq!((stuck.run.lamp, stuck.run.words.as_str()), (Open, "nothing moved"));
+    assert_eq!((stuck.run.outcome, stuck.run.words.as_str()), (Open, "nothing moved"));
     let run = replay(&case("case-3", &[], ""), |_, _| ()).expect("runs");
     let mut end = run.frame();
     end.audit.energy = 1.0;
     let of = Statements::of(&run, &end).run;
-    assert_eq!((of.lamp, of.words.as_str()), (Bad, "cannot be trusted"));
+    assert_eq!((of.outcome, of.words.as_str()), (Bad, "cannot be trusted"));
 }
 
 /// A run that waits has no plan, and one that a hand leads holds b until the hand turns it.
@@ -239,7 +239,7 @@ fn plans_that_wait_and_hands_that_lead() {
     waits.task.b = 3.6;
     let session = Session::open_waiting(waits).expect("it waits");
     let of = Statements::of(session.run(), session.frame());
-    assert_eq!([of.plan.lamp, of.run.lamp], [StatusLight::Open; 2], "{of:?}");
+    assert_eq!([of.plan.outcome, of.run.outcome], [StatusLight::Open; 2], "{of:?}");
     let mut session = Session::open(case("case-3", &[], "")).expect("begins");
     session.apply(Edit::DragTarget { x: 0.52, y: 0.6 }).expect("inside");
     session.play();
@@ -251,7 +251,7 @@ fn plans_that_wait_and_hands_that_lead() {
     );
     session.apply(Edit::SlideB { b: 2.6 }).expect("b");
     session.tick(20);
-    assert_eq!(of(&session).plan.lamp, StatusLight::Bad, "{:?}", of(&session).plan);
+    assert_eq!(of(&session).plan.outcome, StatusLight::Bad, "{:?}", of(&session).plan);
     session.tick(20_000);
     assert_eq!(
         lamps(&of(&session)),
@@ -282,9 +282,9 @@ proptest! {
         let most = |of: &dyn Fn(&Frame) -> f64| frames.iter().map(of).fold(0.0, f64::max);
         let [moment, force] = [most(&|f| f.base_moment().abs()), most(&|f| f.wrench.dynamic.force.norm())];
         let torque = most(&|f| f.torque.iter().map(|t| t.abs()).sum());
-        prop_assert_eq!(of.machine.lamp == StatusLight::Good, off == 0.0);
-        prop_assert_eq!(of.plan.lamp == StatusLight::Good, off == 0.0 && name == "case-3");
-        prop_assert_eq!(of.run.lamp == StatusLight::Good, moment < 1e-5 * torque && force < 1e-6);
-        prop_assert_eq!(of.run.lamp == StatusLight::Good, off == 0.0 && name == "case-3" && payload == 0.0);
+        prop_assert_eq!(of.machine.outcome == StatusLight::Good, off == 0.0);
+        prop_assert_eq!(of.plan.outcome == StatusLight::Good, off == 0.0 && name == "case-3");
+        prop_assert_eq!(of.run.outcome == StatusLight::Good, moment < 1e-5 * torque && force < 1e-6);
+        prop_assert_eq!(of.run.outcome == StatusLight::Good, off == 0.0 && name == "case-3" && payload == 0.0);
     }
 }

@@ -33,7 +33,7 @@ fn what_a_key_holds_sets_it() {
         let freed = with.set(&path, DEFAULT_WORD);
         let is_required = key.default == Key::REQUIRED;
         assert_eq!(freed.is_err(), is_required, "{path}: {freed:?}");
-        let KeyType::Number(range) = key.holds else { continue };
+        let KeyType::Number(range) = key.value_type else { continue };
         if !is_required && key.default != Key::NONE {
             let usual: f64 = key.default.parse().expect("a number");
             assert!(range.contains(usual), "{path}");

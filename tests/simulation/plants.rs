@@ -7,7 +7,7 @@ use stillbase::session::{Edit, TimedEdit, replay};
 use stillbase::settings::change;
 use stillbase::simulation::control::Control;
 use stillbase::simulation::frame::Frame;
-use stillbase::simulation::plant::{BaseKind, Contacts, DriveValues, Friction};
+use stillbase::simulation::plant::{BaseKind, Contacts, DriveValues, Friction, FrictionTorques};
 
 use crate::support::{body_of, close, three};
 
@@ -431,7 +431,8 @@ proptest! {
         let free = solve(&padded);
         let (mut total, mut bearing) = (force, [0.0; 3]);
         let mut taken = [0.0; stillbase::simulation::plant::MAX_CONTACTS];
-        contacts.hold(&[0; stillbase::simulation::plant::MAX_CONTACTS], (&[0.0; 3], &free[..3]), solve, &mut total, &mut bearing, &mut taken);
+        let torques = FrictionTorques { force: &mut total, bearing: &mut bearing, stuck_torque: &mut taken };
+        contacts.solve_stuck(&[0; stillbase::simulation::plant::MAX_CONTACTS], &[0.0; 3], &free[..3], solve, torques);
         padded[..3].copy_from_slice(&total);
         let left = solve(&padded);
         let scale = free.iter().fold(1.0_f64, |m, x| m.max(x.abs()));

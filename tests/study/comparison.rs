@@ -168,7 +168,7 @@ fn two_instants_differ_by_their_signals() {
     assert_eq!(list.len(), table.len());
     for (d, signal) in list.iter().zip(&table) {
         assert_eq!((d.from, d.to), (signal.value(a), signal.value(b)), "{}", signal.path);
-        assert_eq!(d.by(), d.to - d.from);
+        assert_eq!(d.difference(), d.to - d.from);
     }
 }
 
@@ -211,7 +211,7 @@ fn a_comparison_follows_sorts_and_keeps() {
     comparison.follow(&ways(other.clone()));
     assert_eq!(*comparison.task(), other);
     assert_eq!(comparison.entries().len(), 7);
-    assert!(comparison.entries()[1].shown && comparison.entries()[5].kept);
+    assert!(comparison.entries()[1].shown && comparison.entries()[5].added_by_user);
     assert_eq!(comparison.entries()[1].outcome.as_ref().map(|r| r.summary.time), Ok(2.0));
     comparison.remove(0);
     assert_eq!(comparison.entries().len(), 7, "only what was kept can be taken away");
@@ -236,7 +236,7 @@ fn designs_stand_beside_the_first() {
         (link.mass, link.inertia) = (2.0 * link.mass, 2.0 * link.inertia);
     }
     heavy.machine = stillbase::mechanics::machine::Machine::new(spec).expect("a machine");
-    let design = compared(heavy.clone()).candidate.beside(&bare.candidate);
+    let design = compared(heavy.clone()).candidate.compared_with(&bare.candidate);
     let mass = bare.machine().mass();
     assert!((value(&design, "added_mass").expect("a mass") - mass).abs() < 1e-12 * mass);
     assert!((value(&design, "mass_inertia_factor").expect("a factor") - 4.0).abs() < 1e-12);
@@ -248,21 +248,21 @@ fn designs_stand_beside_the_first() {
     // An edit of the session counts; β of another task or of another arm would be of nothing.
     let mut edited = scenario("nine-link-bare");
     edited.edits = vec![TimedEdit { step: 0, edit: Edit::set("link.9.mass", 0.9) }];
-    let design = compared(edited).candidate.beside(&bare.candidate);
+    let design = compared(edited).candidate.compared_with(&bare.candidate);
     let added = value(&design, "added_mass").expect("a mass");
-    assert!((added - (0.9 - bare.machine().links()[8].mass)).abs() < 1e-12 && design.apart.is_none());
+    assert!((added - (0.9 - bare.machine().links()[8].mass)).abs() < 1e-12 && design.why_not.is_none());
     let mut elsewhere = heavy.clone();
     elsewhere.task.to = [0.52, 0.80];
     let mut longer = scenario("nine-link-bare");
     longer.machine = longer.machine.set("length.l9", "0.31").expect("a machine");
     for (other, word) in [(elsewhere, "task"), (longer, "length")] {
-        let design = compared(other).candidate.beside(&bare.candidate);
+        let design = compared(other).candidate.compared_with(&bare.candidate);
         assert!(value(&design, "added_mass").is_some() && value(&design, "beta_force").is_none());
-        assert!(design.apart.as_ref().is_some_and(|why| why.contains(word)), "{:?}", design.apart);
+        assert!(design.why_not.as_ref().is_some_and(|why| why.contains(word)), "{:?}", design.why_not);
     }
-    let design = compared(scenario("two-drive")).candidate.beside(&bare.candidate);
+    let design = compared(scenario("two-drive")).candidate.compared_with(&bare.candidate);
     assert!(value(&design, "mass").is_some() && value(&design, "added_mass").is_none());
-    assert!(design.apart.as_ref().is_some_and(|why| why.contains("2 drives")), "{:?}", design.apart);
+    assert!(design.why_not.as_ref().is_some_and(|why| why.contains("2 drives")), "{:?}", design.why_not);
     // In a table they have columns of their own as soon as there are two machines.
     let mut comparison = Comparison::empty(&scenario("nine-link-bare"));
     comparison.keep(scenario("nine-link-bare")).expect("it runs");
@@ -296,9 +296,9 @@ fn rows_are_what_runs_come_to() {
     assert!(refused.outcome.is_err() && refused.design.is_none() && refused.title() == "case-3");
     let alone = ComparedRun::of(scenario("case-3")).expect("it runs");
     assert_eq!((first.outcome.as_ref().ok(), first.title()), (Some(&alone.summary), "as it is"));
-    assert_eq!(first.design, Some(alone.candidate.beside(&alone.candidate)));
+    assert_eq!(first.design, Some(alone.candidate.compared_with(&alone.candidate)));
     let two = ComparedRun::of(scenario("two-drive")).expect("it runs");
-    assert_eq!(other.design, Some(two.candidate.beside(&alone.candidate)));
+    assert_eq!(other.design, Some(two.candidate.compared_with(&alone.candidate)));
     let said = serde_json::to_value(&rows).expect("plain data");
     assert!(said[0]["refused"].is_string() && said[1]["way"] == "as it is" && said[2]["design"]["apart"].is_string());
 }

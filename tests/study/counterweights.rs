@@ -1,6 +1,6 @@
 //! A machine balanced by counterweights: what the answer says is what the machine that comes out is.
 
-use stillbase::mechanics::counterweights::{CounterweightSpec, Disc, Objective, Sites, place_weights};
+use stillbase::mechanics::counterweights::{CounterweightSite, CounterweightSpec, Disc, Objective, place_weights};
 use stillbase::mechanics::machine::Inertia;
 use stillbase::query::{Portion, Query, Shared, answer_now};
 use stillbase::study::balance_constants::BalanceConstants;
@@ -11,13 +11,13 @@ use crate::support::family_machine;
 
 fn weighing() -> CounterweightSpec {
     let bare = family_machine("nine-link-bare");
-    CounterweightSpec::least(Objective::inertia(), Sites::anywhere(&bare), Disc::STEEL)
+    CounterweightSpec::least(Objective::inertia(), CounterweightSite::anywhere(&bare), Disc::STEEL)
 }
 
 fn lengths(starts: usize) -> LengthSearch {
     LengthSearch {
-        lengths: vec![FreeLength { name: "l5".into(), ends: [0.3, 0.6] }],
-        weighing: weighing(),
+        lengths: vec![FreeLength { name: "l5".into(), bounds: [0.3, 0.6] }],
+        spec: weighing(),
         anywhere: true,
         least_reach: None,
         least_workspace: None,
@@ -29,32 +29,32 @@ fn lengths(starts: usize) -> LengthSearch {
 #[test]
 fn the_report_is_of_the_machine_that_comes_out() {
     let bare = family_machine("nine-link-bare");
-    let asked = CounterweightRequest { weighing: weighing(), lengths: None, front: Some(3) };
+    let asked = CounterweightRequest { spec: weighing(), lengths: None, front: Some(3) };
     let (machine, report) = balance_by_weights(&bare, &asked, None, &mut |_| true).expect("it can be balanced");
-    let placed = place_weights(&bare, &asked.weighing).expect("it can be balanced");
+    let placed = place_weights(&bare, &asked.spec).expect("it can be balanced");
     let inertia = Inertia::of(&machine);
     assert!(report.is_balanced && inertia.is_balanced() && report.certified == placed.is_certified());
     assert_eq!(report.weights, machine.spec().counterweights);
     assert_eq!(report.balance, BalanceConstants::of(&inertia));
     assert_eq!((report.gap, report.measures.added_mass), (placed.gap, inertia.mass() - Inertia::of(&bare).mass()));
-    assert!(report.sought.is_none() && report.taken_off.is_empty() && report.front.len() == 3);
+    assert!(report.optimised_lengths.is_none() && report.taken_off.is_empty() && report.front.len() == 3);
     // From light to quick.
     assert!(report.front.windows(2).all(|w| w[0][0] <= w[1][0] + 1e-9 && w[0][1] + 1e-9 >= w[1][1]));
-    let heavy = CounterweightSpec { most_mass: Some(1e-3), ..weighing() };
-    let refused = balance_by_weights(&bare, &CounterweightRequest { weighing: heavy, ..asked }, None, &mut |_| true);
+    let heavy = CounterweightSpec { max_added_mass: Some(1e-3), ..weighing() };
+    let refused = balance_by_weights(&bare, &CounterweightRequest { spec: heavy, ..asked }, None, &mut |_| true);
     assert!(matches!(refused, Err(NoCounterweights::Weights(_))));
 }
 
 #[test]
 fn what_it_had_is_taken_off_and_lengths_are_sought() {
     let bare = family_machine("nine-link-bare");
-    let asked = CounterweightRequest { weighing: weighing(), lengths: None, front: None };
+    let asked = CounterweightRequest { spec: weighing(), lengths: None, front: None };
     let (weighed, first) = balance_by_weights(&bare, &asked, None, &mut |_| true).expect("it can be balanced");
     let (_, again) = balance_by_weights(&weighed, &asked, None, &mut |_| true).expect("it can be balanced");
     assert_eq!(again.taken_off, first.weights);
     let asked = CounterweightRequest { lengths: Some(lengths(2)), ..asked };
     let (longer, report) = balance_by_weights(&bare, &asked, None, &mut |_| true).expect("it can be balanced");
-    let sought = report.sought.expect("lengths");
+    let sought = report.optimised_lengths.expect("lengths");
     assert_eq!((&*sought.lengths[0].0, sought.starts, sought.certified), ("l5", 2, false));
     assert!((longer.spec().lengths["l5"] - sought.lengths[0].1).abs() < 1e-12);
 }
@@ -73,6 +73,6 @@ fn lengths_are_a_query() {
     };
     let mut work = LengthsQuery::begin((Shared(bare.clone().into()), lengths(2)));
     assert_eq!(work.go_on(&mut goes_on), Portion::Stopped);
-    let nothing = LengthSearch { lengths: vec![FreeLength { name: "none".into(), ends: [0.1, 0.2] }], ..lengths(1) };
+    let nothing = LengthSearch { lengths: vec![FreeLength { name: "none".into(), bounds: [0.1, 0.2] }], ..lengths(1) };
     assert!(!matches!(answer_now::<LengthsQuery>((Shared(bare.into()), nothing)), Ok(_) | Err(NoLengths::Weights(_))));
 }

@@ -4,7 +4,7 @@
 
 use std::f64::consts::PI;
 
-use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
+use stillbase::mechanics::dynamics::{ExternalLoads, base_wrench};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::study::trim::{Doubt, MeasuredMotion, MeasurementSet, doubt};
@@ -290,7 +290,7 @@ fn a_recording(machine: &Machine, off: f64, noise: &mut Noise, rows: u32) -> Mea
         link.mass *= 1.0 + off * noise.between(-1.0, 1.0);
     }
     let inertia = Inertia::of(&Machine::new(spec).expect("a machine"));
-    let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
+    let around = ExternalLoads { gravity: machine.gravity(), force: Vector::default() };
     let (sigma, rates) = (10.0_f64.powf(noise.between(-3.0, 0.0)), noise.between(0.0, 1.0) < 0.5);
     let slow = noise.between(0.0, 0.9);
     let fresh = (1.0 - slow * slow).sqrt();

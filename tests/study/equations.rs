@@ -18,7 +18,7 @@ use crate::support::{Noise, close, random};
 fn a_state(noise: &mut Noise, n: usize) -> DriveState {
     let mut some = |size: f64| PerDrive::from_fn(n, |_| noise.between(-size, size));
     let (q, qd, qdd) = (DriveAngles(some(6.0)), some(3.0), some(20.0));
-    DriveState::given(Reference { q, qd, qdd })
+    DriveState::of_reference(Reference { q, qd, qdd })
 }
 
 fn of(machine: &Machine, state: &DriveState) -> Vec<Equation> {
@@ -71,8 +71,8 @@ fn both_sides_of_every_law_agree() {
         for number in ["1", "2", "3", "4", "5", "6", "14", "A1", "A2", "A3"] {
             for line in self::lines(&all, number) {
                 assert!(line.tolerance > 0.0 && line.sides().iter().all(|side| side.is_finite()));
-                assert!(line.holds(), "({number}) {}: off by {:e}, {:?}", line.name, line.off(), line.sides());
-                worst = worst.max(line.off().abs() / line.tolerance);
+                assert!(line.holds(), "({number}) {}: off by {:e}, {:?}", line.name, line.residual(), line.sides());
+                worst = worst.max(line.residual().abs() / line.tolerance);
                 lines += 1;
             }
         }
@@ -120,10 +120,18 @@ fn what_is_left_of_balance_is_what_the_constants_have() {
         for (i, (line, condition)) in both.into_iter().zip(conditions).enumerate() {
             let size: f64 = line.left.iter().map(|term| term.value.abs()).sum();
             let left = condition.residual(&inertia).re;
-            assert!((line.off() - left).abs() <= 1e-13 * size.max(1e-3), "{condition:?}: {} and {left}", line.off());
+            assert!(
+                (line.residual() - left).abs() <= 1e-13 * size.max(1e-3),
+                "{condition:?}: {} and {left}",
+                line.residual()
+            );
             // (9) is the same in two heaps.
             let ninth = &lines(&all, "9")[i];
-            assert!((ninth.off() - left).abs() <= 1e-12 * size.max(1e-3), "{condition:?}: {} and {left}", ninth.off());
+            assert!(
+                (ninth.residual() - left).abs() <= 1e-12 * size.max(1e-3),
+                "{condition:?}: {} and {left}",
+                ninth.residual()
+            );
         }
     }
 }
@@ -139,7 +147,7 @@ fn on_a_plane_of_any_number_of_drives() {
         assert!((lines(&all, "13")[0].sides()[0] - b).abs() < 1e-9 * (1.0 + b.abs()));
         for number in ["13", "15", "16"] {
             for line in lines(&all, number) {
-                assert!(line.holds(), "({number}) off by {:e}", line.off());
+                assert!(line.holds(), "({number}) off by {:e}", line.residual());
             }
         }
         let [zero, ratios @ ..] = lines(&all, "12") else { panic!("no line") };
@@ -148,7 +156,7 @@ fn on_a_plane_of_any_number_of_drives() {
         let momentum = lines(&all, "6")[0].sides()[0];
         let inertia = Inertia::of(&machine);
         let size: f64 = inertia.diagonals().iter().sum();
-        assert!((zero.off() * inertia.pose_inertia() - momentum).abs() < 1e-9 * size * 10.0);
+        assert!((zero.residual() * inertia.pose_inertia() - momentum).abs() < 1e-9 * size * 10.0);
         // Another b than that of the pose is found out.
         let other = of(&machine, &DriveState { b: Some(b + 0.1), ..state });
         assert!(!lines(&other, "13")[0].holds());
@@ -208,7 +216,7 @@ fn the_paper_s_numbers_stand_in_them() {
     // (10) gives Table I to its last digit, and (9) holds for it.
     let least = lines(&all, "10");
     for line in &least[1..] {
-        assert!(line.off().abs() < 5e-5, "{:?}", line.sides());
+        assert!(line.residual().abs() < 5e-5, "{:?}", line.sides());
     }
     let [now, best] = least[0].sides();
     assert!((now - best).abs() < 1e-3 * best, "{now} and {best}");
@@ -224,7 +232,7 @@ fn case_3_has_its_numbers() {
     let session = Session::open(Scenario::builtin("case-3").expect("built in")).expect("it opens");
     let (run, motion) = (session.run(), session.run().motion().expect("a motion"));
     let of_case = |at: f64| {
-        let state = DriveState { b: Some(2.4), ..DriveState::given(motion.at(at)) };
+        let state = DriveState { b: Some(2.4), ..DriveState::of_reference(motion.at(at)) };
         of(&run.scenario().machine, &state)
     };
     for (at, place) in [(0.0, [0.5, 0.5]), (1.0, [0.55, 0.9])] {
@@ -234,7 +242,12 @@ fn case_3_has_its_numbers() {
     }
     let all = of_case(0.3);
     for number in EQUATION_NUMBERS {
-        assert_eq!(numbered(&all, number).holds(), Some(true), "({number}): {:?}", numbered(&all, number).worst());
+        assert_eq!(
+            numbered(&all, number).holds(),
+            Some(true),
+            "({number}): {:?}",
+            numbered(&all, number).least_accurate()
+        );
     }
     assert!((lines(&all, "13")[0].sides()[0] - 2.4).abs() < 1e-9);
     assert!(lines(&all, "5")[0].sides()[0].abs() < 1e-9, "no moment");

@@ -1,6 +1,8 @@
 //! The fronts of several machines side by side are those of each alone.
 
-use stillbase::mechanics::counterweights::{CounterweightError, CounterweightSpec, Disc, Objective, Sites, front};
+use stillbase::mechanics::counterweights::{
+    CounterweightError, CounterweightSite, CounterweightSpec, Disc, Objective, front,
+};
 use stillbase::planning::Motion;
 use stillbase::query::{ByIdentity, Portion, Query, answer_now};
 use stillbase::session::Run;
@@ -18,9 +20,10 @@ const COUNT: usize = 5;
 fn asked(names: &[&str], most: f64) -> FrontsRequest {
     let of = |name: &&str| {
         let machine = family_machine(name);
-        let sites = Sites::anywhere(&machine).into_iter().map(|site| Sites { most, ..site }).collect();
-        let asked = CounterweightSpec::least(Objective::mass(), sites, Disc::STEEL);
-        FrontCase { name: (*name).to_owned(), machine, asked }
+        let sites =
+            CounterweightSite::anywhere(&machine).into_iter().map(|site| CounterweightSite { most, ..site }).collect();
+        let spec = CounterweightSpec::least(Objective::mass(), sites, Disc::STEEL);
+        FrontCase { name: (*name).to_owned(), machine, spec }
     };
     FrontsRequest { machines: names.iter().map(of).collect(), count: COUNT, motion: None, workspace: true }
 }
@@ -40,10 +43,10 @@ fn each_front_is_that_of_its_machine_alone() {
     for (found, of) in fronts.iter().zip(&request.machines) {
         let told = found.outcome.as_ref().expect("it can be balanced");
         assert_eq!((&found.name, told.points.len()), (&of.name, COUNT));
-        assert_eq!(told.front, front(&of.machine, &of.asked, COUNT).expect("it can be balanced"));
+        assert_eq!(told.front, front(&of.machine, &of.spec, COUNT).expect("it can be balanced"));
         // A motion of three drives says nothing of a machine of two.
         let own = (of.machine.drives() == 3).then_some(&*motion.0);
-        let alone = CounterweightRequest { weighing: of.asked.clone(), lengths: None, front: Some(COUNT) };
+        let alone = CounterweightRequest { spec: of.spec.clone(), lengths: None, front: Some(COUNT) };
         let (_, report) = balance_by_weights(&of.machine, &alone, own, &mut |_| true).expect("it can be balanced");
         assert_eq!((&told.points, told.measures()), (&report.front_points, report.front));
         assert!(told.points.iter().all(|point| point.torque.is_some() == own.is_some()));
@@ -55,7 +58,7 @@ fn one_brief_is_asked_of_all() {
     let bare = family_machine("nine-link-bare");
     let brief = DesignBrief { heaviest: Some(9.0), behind_root: Some(0.2), ..DesignBrief::default() };
     let of = FrontCase::of("bare", &bare, &brief);
-    assert_eq!(of.asked, brief.weighing(&bare));
+    assert_eq!(of.spec, brief.lightest_problem(&bare));
     let alone = brief.front(&bare, COUNT).expect("it can be balanced");
     // Counterweights of today make no other question.
     let heavy = alone.points[0].machine.clone();
@@ -66,19 +69,19 @@ fn one_brief_is_asked_of_all() {
     assert_eq!((&told.front, told.measures()), (&alone, alone.measures()));
     assert!(told.points.iter().all(|point| point.workspace.is_none()));
     let off: Vec<_> = alone.points.iter().map(|placed| FrontMeasure::OffBy.of(placed, None)).collect();
-    assert_eq!(told.points.iter().map(|point| Some(point.off_by)).collect::<Vec<_>>(), off);
+    assert_eq!(told.points.iter().map(|point| Some(point.residual_if_misplaced)).collect::<Vec<_>>(), off);
 }
 
 #[test]
 fn a_machine_that_nothing_balances_says_why_and_the_others_stand() {
     let names = ["nine-link-bare", "two-drive", "nine-link-bare"];
     let mut request = asked(&names, f64::INFINITY);
-    request.machines[0].asked.most_mass = Some(1e-3);
+    request.machines[0].spec.max_added_mass = Some(1e-3);
     let fronts = answer_now::<Fronts>(request.clone());
     assert!(matches!(fronts[0].outcome, Err(CounterweightError::Conflict { .. })));
     assert!(fronts[1].outcome.is_ok() && fronts[2].outcome.is_ok());
     let said = serde_json::to_value(&fronts).expect("plain data");
-    let alone = front(&request.machines[0].machine, &request.machines[0].asked, COUNT).expect_err("too light");
+    let alone = front(&request.machines[0].machine, &request.machines[0].spec, COUNT).expect_err("too light");
     assert_eq!(said[0], serde_json::json!({ "machine": "nine-link-bare", "refused": alone.to_string() }));
     assert_eq!(said[1]["machine"], "two-drive");
     assert_eq!(said[2]["front_points"].as_array().map(Vec::len), Some(COUNT));

@@ -1,6 +1,6 @@
 //! Lengths that are sought: what a search finds holds what is asked for, and a grid of all lengths finds nothing better.
 
-use stillbase::mechanics::counterweights::{CounterweightSpec, Disc, Objective, Sites, place_weights};
+use stillbase::mechanics::counterweights::{CounterweightSite, CounterweightSpec, Disc, Objective, place_weights};
 use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::study::lengths::{FreeLength, LengthSearch, NoLengths, search};
 
@@ -8,8 +8,8 @@ use crate::support::family_machine;
 
 fn asked(machine: &Machine, lengths: &[(&str, [f64; 2])]) -> LengthSearch {
     LengthSearch {
-        lengths: lengths.iter().map(|(name, ends)| FreeLength { name: (*name).into(), ends: *ends }).collect(),
-        weighing: CounterweightSpec::least(Objective::inertia(), Sites::anywhere(machine), Disc::STEEL),
+        lengths: lengths.iter().map(|(name, ends)| FreeLength { name: (*name).into(), bounds: *ends }).collect(),
+        spec: CounterweightSpec::least(Objective::inertia(), CounterweightSite::anywhere(machine), Disc::STEEL),
         anywhere: true,
         least_reach: Some(1.26),
         least_workspace: None,
@@ -56,7 +56,7 @@ fn a_grid_of_lengths_finds_nothing_better() {
                 continue;
             }
             let machine = by_hand(&bare, l5, l9);
-            let weighing = CounterweightSpec { sites: Sites::anywhere(&machine), ..asked.weighing.clone() };
+            let weighing = CounterweightSpec { sites: CounterweightSite::anywhere(&machine), ..asked.spec.clone() };
             least = least.min(place_weights(&machine, &weighing).expect("it can be balanced").value);
         }
     }

@@ -54,10 +54,10 @@ fn a_refusal_says_what_would_do() {
     let found = summary(&blocked, None);
     let obstacle = found.obstacle.as_ref().expect("B is on other planes");
     assert!(!found.feasible && found.cost.is_none() && found.b == 2.9);
-    assert!(obstacle.mending_b.is_some_and(|b| (b - 2.9).abs() > 0.1), "{obstacle:?}");
+    assert!(obstacle.feasible_b.is_some_and(|b| (b - 2.9).abs() > 0.1), "{obstacle:?}");
     let json = serde_json::to_value(&found).expect("plain data");
     assert_eq!(json["feasible"], false);
-    assert_eq!(json["mending_b"].as_f64(), obstacle.mending_b);
+    assert_eq!(json["mending_b"].as_f64(), obstacle.feasible_b);
     assert!(json["reason"].is_string() && json.get("duration").is_none());
     if let Some(blocked) = &obstacle.blocked {
         assert_eq!(json["blocked"]["point"][0], blocked.at.re);

@@ -107,7 +107,7 @@ fn samples_follow_a_session() {
         assert!(portions.is_some() && bit_by_bit.times() == samples.times(), "{what}");
         checks += 1;
         let revision = session.frames().revision();
-        again += usize::from(known.replace(revision.mark()).is_none_or(|known| revision.kept_of(&known) == 0));
+        again += usize::from(known.replace(revision.mark()).is_none_or(|known| revision.unchanged_since(&known) == 0));
         assert_eq!(samples.times().len(), session.frames().len(), "{what}");
         for signal in asked {
             let got = samples.series(&signal.path).expect("asked for").values();

@@ -1,8 +1,8 @@
 //! Trim balancing: machines with hidden errors are found from what their bases feel, within what is said of it.
 
 use stillbase::mechanics::balance::{Body, BodyQuantity, Condition, Parameter, ParameterBounds, RebalanceRequest};
-use stillbase::mechanics::counterweights::{CounterweightSpec, Disc, Objective, Sites, place_weights};
-use stillbase::mechanics::dynamics::{Surroundings, base_wrench};
+use stillbase::mechanics::counterweights::{CounterweightSite, CounterweightSpec, Disc, Objective, place_weights};
+use stillbase::mechanics::dynamics::{ExternalLoads, base_wrench};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, builtins};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::query::{Portion, Query, Shared, answer_now};
@@ -68,7 +68,7 @@ fn normal(noise: &mut Noise) -> f64 {
 
 fn measured(machine: &Machine, noise: &mut Noise, how: Measuring, moving: &[bool]) -> MeasurementSet {
     let (inertia, n) = (Inertia::of(machine), machine.drives());
-    let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
+    let around = ExternalLoads { gravity: machine.gravity(), force: Vector::default() };
     let mut motions = Vec::new();
     for _ in 0..how.motions {
         let sines = Sines::of(noise, n, moving);
@@ -195,7 +195,7 @@ fn noise_of_accelerations_is_that_of_the_window() {
         motion.moment.push(normal(&mut noise));
     }
     let rows = Regressor::of(&machine, &MeasurementSet { motions: vec![motion] }, true).expect("rows");
-    let RegressorSource::Windows { half, noise: share } = rows.made else { panic!("windows") };
+    let RegressorSource::Windows { half, noise: share } = rows.source else { panic!("windows") };
     // Sums over u = (t − centre)/half.
     let count = 20_000;
     let sum = |f: &dyn Fn(f64) -> f64| {
@@ -331,7 +331,7 @@ fn what_turns_as_one_is_told_as_one() {
             let alike = |x: f64, more: f64| PerDrive::from_fn(2, |k| x + more * k as f64);
             (motion.q[i], motion.qd[i], motion.qdd[i]) = (alike(q, 0.7), alike(qd, 0.0), alike(qdd, 0.0));
             let e = DriveAngles(motion.q[i]).units();
-            let wrench = base_wrench(&inertia, &e, &motion.qd[i], &motion.qdd[i], &Surroundings::default()).total();
+            let wrench = base_wrench(&inertia, &e, &motion.qd[i], &motion.qdd[i], &ExternalLoads::default()).total();
             (motion.force[i], motion.moment[i]) = (wrench.force, wrench.moment);
         }
     }
@@ -347,7 +347,9 @@ fn what_turns_as_one_is_told_as_one() {
 fn weighed() -> Machine {
     let bare = builtin("nine-link-bare").expect("built in");
     let sites = bare.resolved_links().iter().enumerate();
-    let sites = sites.map(|(link, part)| Sites { link, from: -0.3, to: part.length, most: f64::INFINITY }).collect();
+    let sites = sites
+        .map(|(link, part)| CounterweightSite { link, from: -0.3, to: part.length, most: f64::INFINITY })
+        .collect();
     let asked = CounterweightSpec::least(Objective::inertia(), sites, Disc::STEEL);
     place_weights(bare, &asked).expect("counterweights").machine
 }
@@ -356,7 +358,7 @@ fn of_weights(machine: &Machine) -> TrimMethod {
     let mut asked = RebalanceRequest::default();
     for i in 0..machine.spec().counterweights.len() {
         for quantity in [BodyQuantity::Mass, BodyQuantity::Along] {
-            asked.hold(machine, Parameter::new(Body::Counterweight(i), quantity), ParameterBounds::Free);
+            asked.set_bounds(machine, Parameter::new(Body::Counterweight(i), quantity), ParameterBounds::Free);
         }
     }
     TrimMethod::Change(asked)
@@ -369,7 +371,7 @@ fn shaking(machine: &Machine, recording: &MeasurementSet) -> f64 {
     for motion in &recording.motions {
         for i in 0..motion.t.len() {
             let e = DriveAngles(motion.q[i]).units();
-            let wrench = base_wrench(&inertia, &e, &motion.qd[i], &motion.qdd[i], &Surroundings::default());
+            let wrench = base_wrench(&inertia, &e, &motion.qd[i], &motion.qdd[i], &ExternalLoads::default());
             sum += wrench.dynamic.force.norm_sqr();
             count += 1;
         }
@@ -435,11 +437,11 @@ fn off_and_taken_agree() {
         let fit = fitted(machine, &measured(&hidden, &mut noise, how, &[true; 2]), false);
         let taken = adopt_parameters(&fit);
         for i in 0..fit.unknowns.of_balance() {
-            assert_eq!(taken.off[i], taken.measured[i]);
-            assert_eq!(taken.off[i], taken.values[i] != fit.nominal[i]);
-            assert_eq!(taken.off[i], taken.half_widths[i] > 0.0);
-            assert!(!taken.off[i] || (taken.values[i] - fit.nominal[i]).abs() > taken.half_widths[i]);
-            (off, not) = (off + u32::from(taken.off[i]), not + u32::from(!taken.off[i]));
+            assert_eq!(taken.differs[i], taken.measured[i]);
+            assert_eq!(taken.differs[i], taken.values[i] != fit.nominal[i]);
+            assert_eq!(taken.differs[i], taken.half_widths[i] > 0.0);
+            assert!(!taken.differs[i] || (taken.values[i] - fit.nominal[i]).abs() > taken.half_widths[i]);
+            (off, not) = (off + u32::from(taken.differs[i]), not + u32::from(!taken.differs[i]));
         }
     }
     assert!(off > 30 && not > 30, "{off}, {not}");
@@ -472,7 +474,7 @@ fn a_change_is_proposed_where_it_helps() {
         // The force of the true machine before and after.
         let truth = fit.unknowns.nominal(&Inertia::of(&hidden));
         let size = |by: f64| {
-            let left = |i: usize| Vector::new(truth[2 * i], truth[2 * i + 1]) + mended.by[i] * by;
+            let left = |i: usize| Vector::new(truth[2 * i], truth[2 * i + 1]) + mended.effects[i] * by;
             (0..3).map(|i| left(i).norm_sqr()).sum::<f64>()
         };
         let helps = size(1.0) < size(0.0);
@@ -496,7 +498,7 @@ fn the_query_puts_all_of_it_together() {
         recording: Shared(recording.clone().into()),
         angles_only: false,
         as_given,
-        way: of_weights(&machine),
+        method: of_weights(&machine),
         accelerations: None,
     };
     let ask = |recording: &MeasurementSet, as_given: bool| answer_now::<TrimQuery>(request(recording, as_given));
@@ -504,10 +506,10 @@ fn the_query_puts_all_of_it_together() {
     assert!(found.doubt.is_none() && found.angle_noise.is_none());
     let trim = found.outcome.expect("a fit");
     let fit = fitted(&machine, &recording, false);
-    assert_eq!(trim.taken, adopt_parameters(&fit));
+    assert_eq!(trim.adopted, adopt_parameters(&fit));
     let told = trim.report.numbers.iter().map(|number| number.measured.expect("told"));
     assert!(told.eq(fit.measured.iter().map(|x| x + 0.0)) && trim.report.rows == 400);
-    let mended = trim.mended.expect("a change");
+    let mended = trim.correction.expect("a change");
     let gain = trim.report.worth.expect("what it is worth");
     assert_eq!((gain.helps, trim.report.changes.is_empty()), (gain.worth.helps(), !gain.helps));
     assert_eq!(mended.changes, trim.report.changes);
@@ -537,7 +539,8 @@ fn new_counterweights_mend_what_has_none() {
     let recording = measured(&hidden, &mut noise, EXACT, &[true; 3]);
     let taken = adopt_parameters(&fitted(machine, &recording, false));
     let sites = machine.resolved_links().iter().enumerate();
-    let sites = sites.map(|(link, p)| Sites { link, from: -p.length, to: p.length, most: f64::INFINITY }).collect();
+    let sites =
+        sites.map(|(link, p)| CounterweightSite { link, from: -p.length, to: p.length, most: f64::INFINITY }).collect();
     let asked = CounterweightSpec::least(Objective::mass(), sites, Disc::STEEL);
     let mended = correct_machine(machine, &taken, &TrimMethod::Add(asked)).expect("new ones");
     let mut after = hidden.spec().clone();
@@ -601,7 +604,7 @@ fn the_next_motion_keeps_its_promise() {
                 let t = i as f64 * how.step;
                 let [q, qd, qdd] = sines.at(t);
                 let wrench =
-                    base_wrench(&inertia, &DriveAngles(q).units(), &qd, &qdd, &Surroundings::default()).total();
+                    base_wrench(&inertia, &DriveAngles(q).units(), &qd, &qdd, &ExternalLoads::default()).total();
                 error.iter_mut().for_each(|e| *e = slow * *e + fresh * normal(&mut noise));
                 more.t.push(t);
                 more.q.push(q);
@@ -613,8 +616,8 @@ fn the_next_motion_keeps_its_promise() {
             let mut both = recording.clone();
             both.motions.push(more);
             let after = fitted(machine, &both, false);
-            let ratio = after.half_width(told.worst) / candidate.half_width;
-            assert!((0.6..1.6).contains(&ratio), "{candidate:?}: {} found", after.half_width(told.worst));
+            let ratio = after.half_width(told.least_known) / candidate.half_width;
+            assert!((0.6..1.6).contains(&ratio), "{candidate:?}: {} found", after.half_width(told.least_known));
             let balance = before.unknowns.of_balance();
             let gains = (0..balance).map(|i| (before.half_width(i) / after.half_width(i)).ln());
             let all = (gains.sum::<f64>() / balance as f64).exp();
@@ -768,7 +771,7 @@ fn what_is_no_recording_is_refused() {
     };
     // At a gigahertz nothing but noise moves, or what is found is finite.
     if let Ok(rows) = Regressor::of(machine, &huge, true) {
-        assert!(matches!(rows.made, RegressorSource::Windows { .. }));
+        assert!(matches!(rows.source, RegressorSource::Windows { .. }));
         if let Ok(fit) = fit(machine, &rows) {
             assert!(fit.measured.iter().all(|x| x.is_finite()));
         }

@@ -81,7 +81,7 @@ pub enum TableAction {
 impl OpenedTable {
     /// Returns the request for the machine, plant, base, control, step and design of a scenario; its task and edits
     /// are ignored.
-    pub fn asked(&self, scenario: &Scenario) -> Option<TableRequest> {
+    pub fn request(&self, scenario: &Scenario) -> Option<TableRequest> {
         let Scenario { machine, plant, base, control, design, .. } = scenario;
         let part = |part: Option<&OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
         let scenario = Scenario {
@@ -132,7 +132,7 @@ pub enum TableAssessment {
 
 /// Query that reads a table, then runs the import of a motion or the trim of a machine.
 pub struct AssessmentQuery {
-    asked: TableRequest,
+    request: TableRequest,
     work: Option<Work>,
 }
 
@@ -150,13 +150,13 @@ impl Query for AssessmentQuery {
     /// The assessment, or the reason why the table cannot be read.
     type Answer = Result<TableAssessment, Advice>;
 
-    fn begin(asked: TableRequest) -> Self {
-        Self { asked, work: None }
+    fn begin(request: TableRequest) -> Self {
+        Self { request, work: None }
     }
 
     fn go_on(&mut self, goes_on: ProgressCallback<'_>) -> Portion<Self::Answer> {
         match &mut self.work {
-            None => match self.asked.read() {
+            None => match self.request.read() {
                 Ok(work) => {
                     self.work = Some(work);
                     Portion::More(READING_SHARE)
@@ -219,7 +219,7 @@ impl TableRequest {
             recording: Shared(MeasurementSet { motions }.into()),
             angles_only: options.angles_only,
             as_given: options.as_given,
-            way: TrimMethod::of(&scenario.0.design, machine),
+            method: TrimMethod::of(&scenario.0.design, machine),
             accelerations: None,
         };
         Work::Measured(TrimQuery::begin(request).into())

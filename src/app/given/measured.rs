@@ -9,7 +9,7 @@ use crate::theme::{colour, plain};
 use crate::widgets::note;
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::Palette;
-use stillbase_settings::number::{counted, shown as rounded};
+use stillbase_settings::number::{counted, fixed_or_scientific as rounded};
 use stillbase_study::trim::{NoTrim, Number, ParameterChange, TrimOutcome, TrimReport, TrimResult};
 
 /// Width of the table of numbers, points.
@@ -102,26 +102,26 @@ fn numbers(ui: &mut Ui, p: &Palette, report: &TrimReport) {
 }
 
 fn change(ui: &mut Ui, p: &Palette, shown: &TableView<'_>, found: &TrimResult, commands: &mut Vec<Command>) {
-    let TrimResult { report, mended, .. } = found;
+    let TrimResult { report, correction, .. } = found;
     let ink = |ui: &mut Ui, words: &str, tone| {
         ui.add(Label::new(RichText::new(words).font(plain(12.5)).color(colour(tone))).wrap());
     };
     let changes: Vec<&ParameterChange> = report.changed().collect();
-    let [head, rest] = match mended {
+    let [head, rest] = match correction {
         Err(_) => ["Nothing mends it", ""],
         Ok(_) if changes.is_empty() => ["No change", ""],
         Ok(_) => ["Least change", "to 0.1 g and 0.1 mm"],
     };
     title(ui, p, head, rest);
     ui.horizontal_wrapped(|ui| {
-        if mended.is_ok() && !changes.is_empty() {
+        if correction.is_ok() && !changes.is_empty() {
             let tip = "The machine of the session becomes the measured one with this change: one step to undo";
             take(ui, "Take the change", tip, shown, TableAction::Change, commands);
         }
         let tip = "The machine of the session becomes the measured one as it stands: one step to undo";
         take(ui, "Take as measured", tip, shown, TableAction::Measured, commands);
     });
-    match mended {
+    match correction {
         Err(why) => ink(ui, &why.to_string(), p.reaction),
         Ok(_) if changes.is_empty() => ink(ui, &report.why_no_change(), p.ink),
         Ok(_) => {

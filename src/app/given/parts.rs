@@ -18,7 +18,7 @@ pub(super) const COLUMN_GAP: f32 = 14.0;
 /// Content of the panel: the table, its assessment, and whether the assessment belongs to the present session.
 #[derive(Clone, Copy)]
 pub(crate) struct TableView<'a> {
-    pub given: &'a OpenedTable,
+    pub table: &'a OpenedTable,
     pub answer: Option<&'a Result<TableAssessment, Advice>>,
     pub is_known: bool,
 }
@@ -32,7 +32,7 @@ impl TableView<'_> {
                 Coordinates::Drives => Some(TableContent::Drives),
                 Coordinates::EndEffector => Some(TableContent::Tip),
             },
-            _ => self.given.options.content,
+            _ => self.table.options.content,
         }
     }
 
@@ -44,7 +44,7 @@ impl TableView<'_> {
 
     /// Requests an assessment with changed options.
     pub fn ask(&self, commands: &mut Vec<Command>, change: impl FnOnce(&mut TableOptions)) {
-        let mut options = self.given.options.clone();
+        let mut options = self.table.options.clone();
         change(&mut options);
         commands.push(WindowCommand::Ask(options).into());
     }

@@ -56,7 +56,7 @@ pub fn show(
         {
             let [a, b] = [from, time_at(pos)].map(|time| axes.place([time, 0.0])[0]);
             let sides = [a.min(b), axes.sides[1], a.max(b), axes.sides[3]];
-            items(&painter, rect.min, &axes, &[FigureItem::Area { sides, colour: faded(p.amber, 0.18) }]);
+            items(&painter, rect.min, &axes, &[FigureItem::Rectangle { sides, colour: faded(p.amber, 0.18) }]);
         }
         items(&painter, rect.min, &axes, &body(plot, drawn, &axes, look));
         if response.has_focus() {
@@ -65,7 +65,8 @@ pub fn show(
         }
     }
     // Gestures on the axis numbers change the value range; all others change the time.
-    let on_values = held(ui, &response).is_none() && values::hands(ui, plot, drawn, &axes, &response, commands);
+    let on_values =
+        held(ui, &response).is_none() && values::handle_gestures(ui, plot, drawn, &axes, &response, commands);
     if !on_values {
         if plot.against.is_none() {
             drag(ui, shown, &response, &axes, time_at, commands);

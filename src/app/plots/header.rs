@@ -63,12 +63,12 @@ fn words(plot: &Plot<'_>, curve: &PlotCurve<'_>, drawn: &PlotLines, look: &PlotC
     if fewer >= SYMBOLS_ONLY {
         return symbol.into();
     }
-    let shown = |value: f64| match plot.own || curve.added {
+    let shown = |value: f64| match plot.added_by_user || curve.added {
         true => at_step(curve.scale * value, 5.0 * drawn.finest() * 10f64.powi(fewer as i32)),
         false => signed(curve.scale * value, if thousandths { 2 } else { 3 } - fewer),
     };
     match look.mark.map(|marked| SignalDifference::of(signal, marked, look.now)) {
-        Some(d) => format!("Δ{symbol} {}", shown(d.by())),
+        Some(d) => format!("Δ{symbol} {}", shown(d.difference())),
         None => format!("{symbol} {}", shown(signal.value(look.now))),
     }
 }

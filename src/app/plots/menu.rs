@@ -66,7 +66,7 @@ fn entries(ui: &mut Ui, shown: &DisplayContext<'_>, plot: &Plot<'_>, commands: &
         }
     }
     if ui.button("Against another signal…").clicked() {
-        search::start(ui.ctx(), search::SearchPurpose::Across(plot.name.clone()));
+        search::start(ui.ctx(), search::SearchPurpose::Abscissa(plot.name.clone()));
         ui.close();
     }
     if plot.against.is_some() && ui.button("Against time").clicked() {

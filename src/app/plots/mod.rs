@@ -97,5 +97,5 @@ pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, commands: &mut Vec<Command>)
             which_b::show(ui, which_b::WhichB { session, queries, view_state, palette: &p, height }, commands);
         });
     });
-    view_state.arrangement.now().plots.made(made.response.rect.width(), usual)
+    view_state.arrangement.now().plots.stored_width(made.response.rect.width(), usual)
 }

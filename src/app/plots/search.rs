@@ -22,13 +22,13 @@ pub enum SearchPurpose {
     /// A curve in the plot of this name.
     Curve(String),
     /// The abscissa of the plot of this name.
-    Across(String),
+    Abscissa(String),
 }
 
 /// State of the search: its purpose, its text, and the index of the selected result.
 #[derive(Clone, Debug, Default)]
 struct Typed {
-    sought: SearchPurpose,
+    purpose: SearchPurpose,
     text: String,
     place: usize,
     /// Whether the results are on display.
@@ -55,7 +55,7 @@ pub fn focus(ctx: &Context) {
 
 /// Moves the keyboard focus to the empty search field, for the given purpose.
 pub fn start(ctx: &Context, sought: SearchPurpose) {
-    ctx.data_mut(|data| data.insert_temp(typed_id(), Typed { sought, ..Typed::default() }));
+    ctx.data_mut(|data| data.insert_temp(typed_id(), Typed { purpose: sought, ..Typed::default() }));
     ctx.memory_mut(|memory| memory.request_focus(id()));
 }
 
@@ -111,10 +111,10 @@ fn field(ui: &mut Ui, shown: &DisplayContext<'_>, plots: &[Plot<'_>], commands: 
     let mut typed: Typed = ui.data(|data| data.get_temp(typed_id())).unwrap_or_default();
     let title =
         |name: &String| plots.iter().find(|plot| plot.name == *name).map_or("it", |plot| &plot.title).to_owned();
-    let hint = match &typed.sought {
+    let hint = match &typed.purpose {
         SearchPurpose::Plot => "+ plot a signal: name, symbol, unit".to_owned(),
         SearchPurpose::Curve(plot) => format!("+ curve in {}", title(plot)),
-        SearchPurpose::Across(plot) => format!("{} against …", title(plot)),
+        SearchPurpose::Abscissa(plot) => format!("{} against …", title(plot)),
     };
     // The arrow keys move through the results, not through the text.
     let focused = ui.memory(|memory| memory.has_focus(id()));
@@ -165,10 +165,10 @@ fn field(ui: &mut Ui, shown: &DisplayContext<'_>, plots: &[Plot<'_>], commands: 
             });
         });
     if let Some(path) = chosen {
-        let change = match typed.sought.clone() {
+        let change = match typed.purpose.clone() {
             SearchPurpose::Plot => PlotChange::Plot(path),
             SearchPurpose::Curve(plot) => PlotChange::Add(plot, path),
-            SearchPurpose::Across(plot) => PlotChange::Against(plot, Some(path)),
+            SearchPurpose::Abscissa(plot) => PlotChange::Against(plot, Some(path)),
         };
         commands.push(ViewChange::Charts(change).into());
         typed = Typed::default();

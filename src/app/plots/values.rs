@@ -16,7 +16,7 @@ const LOG_ZOOM_PER_PT: f64 = 0.004;
 const TIP: &str = "Drag: along the values\nCtrl wheel, or Alt wheel on the plot: closer\nDouble click: all of them";
 
 /// Handles the gestures; returns whether the pointer is on the numbers or drags them.
-pub fn hands(
+pub fn handle_gestures(
     ui: &Ui,
     plot: &Plot<'_>,
     drawn: &PlotLines,

@@ -7,7 +7,7 @@ use stillbase_picture::canvas::Canvas;
 use stillbase_picture::charts::choice::Plot;
 use stillbase_picture::charts::figure::{Figure, PlotContext};
 use stillbase_picture::charts::svg::svg;
-use stillbase_picture::paint::figure::whole;
+use stillbase_picture::paint::figure::paint_figure;
 use stillbase_query::{QuickWork, answer_sequence};
 use stillbase_simulation::signals::Signal;
 use stillbase_study::samples::SignalSamples;
@@ -57,7 +57,7 @@ fn png(figure: &Figure) -> Result<Vec<u8>, String> {
     let picture = canvas.draw(|ui| {
         // Fonts are available from the second pass on.
         if std::mem::replace(&mut has_fonts, true) {
-            whole(ui.painter(), figure);
+            paint_figure(ui.painter(), figure);
         } else {
             stillbase_picture::paint::install_fonts(ui.ctx());
         }

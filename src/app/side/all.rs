@@ -87,15 +87,15 @@ fn typed(text: &str, key: &Key) -> Result<Value, QuantityError> {
     }
     let value = change::value(text);
     let numbers = matches!(
-        key.holds,
+        key.value_type,
         KeyType::Number(_) | KeyType::Whole(_) | KeyType::PerDrive(_) | KeyType::List(..) | KeyType::Bounds(_)
     );
     // Words such as *none* are returned unchanged; the edit checks them.
-    if !numbers || key.holds.takes(&value) || !text.contains(|c: char| c.is_ascii_digit() || c == 'π') {
+    if !numbers || key.value_type.accepts(&value) || !text.contains(|c: char| c.is_ascii_digit() || c == 'π') {
         return Ok(value);
     }
     let all: Vec<f64> = text.split(',').map(|part| quantity::read(part, key.unit())).collect::<Result<_, _>>()?;
-    Ok(match (key.holds, all.as_slice()) {
+    Ok(match (key.value_type, all.as_slice()) {
         (KeyType::Whole(_), [one]) if one.fract() == 0.0 && one.abs() < 1e15 => Value::Integer(*one as i64),
         (_, [one]) => Value::Float(*one),
         (_, several) => several.to_vec().into(),
@@ -103,13 +103,13 @@ fn typed(text: &str, key: &Key) -> Result<Value, QuantityError> {
 }
 
 fn row(ui: &mut Ui, p: &Palette, setting: &Setting, commands: &mut Vec<Command>) {
-    let Setting { path, key, typed: shown, usual, wants, .. } = setting;
+    let Setting { path, key, typed: shown, is_default, unmet_condition: wants, .. } = setting;
     let wants = wants.map_or_else(String::new, |wants| format!("\nNo effect as things are: that takes {wants}."));
     let instead = match key.instead {
         "" => String::new(),
         instead => format!("\nWithout it: {instead}."),
     };
-    let tip = format!("{path}\n{}\n{}.{instead}{wants}", key.words, key.holds);
+    let tip = format!("{path}\n{}\n{}.{instead}{wants}", key.meaning, key.value_type);
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let unit = RichText::new(key.unit()).font(plain(10.5)).color(colour(p.dim));
@@ -138,7 +138,9 @@ fn row(ui: &mut Ui, p: &Palette, setting: &Setting, commands: &mut Vec<Command>)
                     }
                 }
             }
-            if !usual && undo(ui, p, &format!("{path} back to normal"), &format!("Back to normal: {}", key.default)) {
+            if !is_default
+                && undo(ui, p, &format!("{path} back to normal"), &format!("Back to normal: {}", key.default))
+            {
                 undoable_edit(commands, Edit::set(path, DEFAULT_WORD));
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {

@@ -198,7 +198,7 @@ pub struct NumberField<'a> {
     pub now: f64,
     pub normal: f64,
     /// Whether the default value is shown beside the number.
-    pub beside: bool,
+    pub shows_default: bool,
     /// The edit that restores the default; without it, the number is set to the default value.
     pub back: Option<Edit>,
     /// Its name for screen readers, if several fields have the same label.
@@ -207,7 +207,7 @@ pub struct NumberField<'a> {
 
 impl<'a> NumberField<'a> {
     pub fn of(row: NumberRow<'a>, now: f64, normal: f64) -> Self {
-        Self { row, now, normal, beside: false, back: None, called: None }
+        Self { row, now, normal, shows_default: false, back: None, called: None }
     }
 
     pub fn show(
@@ -218,7 +218,7 @@ impl<'a> NumberField<'a> {
         commands: &mut Vec<Command>,
         edit: impl Fn(f64) -> Edit,
     ) {
-        let Self { row, now, normal, beside, back, called } = self;
+        let Self { row, now, normal, shows_default, back, called } = self;
         let called = called.unwrap_or_else(|| row.label.to_owned());
         let mut value = now;
         let differs = now != normal;
@@ -238,7 +238,7 @@ impl<'a> NumberField<'a> {
                         undoable_edit(commands, back.unwrap_or_else(|| edit(normal)));
                     }
                 }
-                if beside {
+                if shows_default {
                     let text = RichText::new(written(normal)).font(plain(11.5)).color(colour(p.dim));
                     ui.label(text).on_hover_text("As the model has it");
                 }

@@ -258,7 +258,7 @@ fn link_rows(ui: &mut Ui, link: &Link, differs: &LinkDifference, p: &Palette, co
             row,
             now: now.unwrap_or(normal),
             normal,
-            beside: now.is_some(),
+            shows_default: now.is_some(),
             back: Some(PanelSection::Plant.back(&path)),
             called,
         };
@@ -284,7 +284,7 @@ fn length(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, c
         let row = NumberRow { tip, ..NumberRow::of(&now, "plant.length.*").with(4, 0.0005) };
         let value = differs.copied().unwrap_or(*normal);
         let back = Some(PanelSection::Plant.back(&path));
-        NumberField { row, now: value, normal: *normal, beside: differs.is_some(), back, called }.show(
+        NumberField { row, now: value, normal: *normal, shows_default: differs.is_some(), back, called }.show(
             ui,
             p,
             SliderScale::No,

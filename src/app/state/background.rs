@@ -76,7 +76,7 @@ impl AppState {
 
     /// Returns what proposals are for: the last refused edit, the task of a run that waits, or the plan on display.
     fn improvable(&self) -> Option<(Shared<Scenario>, Option<Refusal>)> {
-        let refused = self.view_state.said.refused.as_ref().and_then(|refused| refused.refused.clone());
+        let refused = self.view_state.status.refused.as_ref().and_then(|refused| refused.refused.clone());
         let run = self.session.run();
         match (refused, run.waiting()) {
             (Some((scenario, why)), _) => Some((scenario, Some(why))),
@@ -127,7 +127,7 @@ impl AppState {
         let ours = comparison
             .entries()
             .iter()
-            .any(|e| e.outcome.as_ref().is_ok_and(|run| run.scenario.task == scenario.task && !e.kept));
+            .any(|e| e.outcome.as_ref().is_ok_and(|run| run.scenario.task == scenario.task && !e.added_by_user));
         let task = comparison.task();
         let stale = first || (task != scenario && (!ours || !same_but_task(task, scenario)));
         let wanted = stale || self.queries().progress::<AlternativeRuns>().is_some();

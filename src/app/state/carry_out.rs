@@ -43,7 +43,7 @@ impl AppState {
         match command {
             Command::Session(command) => self.do_to_session(command),
             // Without an open table, the file dialog opens, so that the user can choose one.
-            Command::View(ViewChange::Switch(Switch::Table, true)) if self.given.is_none() => {
+            Command::View(ViewChange::Switch(Switch::Table, true)) if self.opened_table.is_none() => {
                 self.view_state.open.dialog = Some(FileDialog::suggest(&self.session, FilePurpose::Open));
                 Ok(None)
             }
@@ -65,16 +65,16 @@ impl AppState {
         match command {
             SessionCommand::Edit(edit) => {
                 let edit = self.with_balance(edit)?;
-                self.view_state.said.refused = None;
+                self.view_state.status.refused = None;
                 self.change(SessionChange::Edit(edit));
                 self.view_state.gesture.dragged |=
-                    self.view_state.gesture.grabbed.is_some() && self.view_state.said.refused.is_none();
+                    self.view_state.gesture.grabbed.is_some() && self.view_state.status.refused.is_none();
             }
             SessionCommand::EndGesture => {
                 self.session.end_gesture();
                 self.designed_from = None;
                 let said = self.branch_message.take();
-                self.view_state.said.left_branch |= said.is_some();
+                self.view_state.status.left_branch |= said.is_some();
                 return Ok(said);
             }
             SessionCommand::TogglePlay if self.session.is_playing() => self.session.pause(),
@@ -87,7 +87,7 @@ impl AppState {
             }
             SessionCommand::NameBookmark(time) => self.name_bookmark(time)?,
             SessionCommand::ToMark(on) => {
-                if let Some(time) = marks::beside(self.queries(), &self.session, on) {
+                if let Some(time) = marks::neighbour(self.queries(), &self.session, on) {
                     self.change(SessionChange::Seek(time));
                 }
             }
@@ -133,7 +133,7 @@ impl AppState {
         match command {
             WindowCommand::Comparison(on) => self.change_comparison(on),
             WindowCommand::Ask(options) => {
-                if let Some(given) = &mut self.given {
+                if let Some(given) = &mut self.opened_table {
                     given.options = options;
                 }
             }

@@ -28,7 +28,7 @@ impl AppState {
             Some((next, done)) => {
                 if done.is_ok() {
                     let old = std::mem::replace(&mut self.session, next);
-                    self.parts(&change, old.branch_events().0, old.frame().time, old.is_dragged());
+                    self.note_left_branch(&change, old.branch_events().0, old.frame().time, old.is_dragged());
                     self.background.free(old, &self.session);
                 }
                 self.changed(&change, done);
@@ -40,7 +40,13 @@ impl AppState {
 
     /// Stores the message about an edit that has left a branch. The other arguments describe the earlier state:
     /// number of branches left so far, time on display, s, and whether the machine was dragged.
-    pub(super) fn parts(&mut self, change: &SessionChange, branch_events: u64, shown: f64, was_dragged: bool) {
+    pub(super) fn note_left_branch(
+        &mut self,
+        change: &SessionChange,
+        branch_events: u64,
+        shown: f64,
+        was_dragged: bool,
+    ) {
         let (now, gone) = self.session.branch_events();
         if !matches!(change, SessionChange::Edit(_)) || now == branch_events {
             return;
@@ -58,16 +64,16 @@ impl AppState {
     /// Updates the state after a change of the session or its refusal.
     pub(super) fn changed(&mut self, change: &SessionChange, done: Result<Option<String>, Refusal>) {
         if let (SessionChange::Edit(edit), Err(refusal)) = (change, &done) {
-            self.view_state.said.refused = Some(RefusedEdit::of(self.session.scenario(), edit, refusal));
+            self.view_state.status.refused = Some(RefusedEdit::of(self.session.scenario(), edit, refusal));
         }
         if done.is_ok() {
             self.saving.changes += u64::from(!matches!(change, SessionChange::Seek(_)));
             match change {
                 // A push sends many edits a second, too many to simulate the run ahead after each.
-                SessionChange::Edit(Edit::Push { .. }) => self.view_state.said.refused = None,
-                SessionChange::Edit(edit) if edit.is_aside() => self.view_state.said.refused = None,
+                SessionChange::Edit(Edit::Push { .. }) => self.view_state.status.refused = None,
+                SessionChange::Edit(edit) if edit.affects_no_frame() => self.view_state.status.refused = None,
                 SessionChange::Edit(_) => {
-                    self.view_state.said.refused = None;
+                    self.view_state.status.refused = None;
                     self.run_ahead();
                 }
                 SessionChange::Undo

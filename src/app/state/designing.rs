@@ -32,7 +32,7 @@ impl AppState {
     /// Stops unfinished searches for Pareto fronts that are not on display any more. If no other machine's front is
     /// listed, the cached fronts of other machines are removed.
     pub(super) fn refresh_fronts(&mut self) {
-        if self.view_state.view != ViewKind::Design || self.view_state.arrangement.learns {
+        if self.view_state.view != ViewKind::Design || self.view_state.arrangement.shows_equations {
             studio::leave(self.queries());
         } else if self.fronts.is_empty() {
             self.queries().forget::<Fronts>();
@@ -57,23 +57,23 @@ impl AppState {
 
     /// Returns the request of a search for link lengths with the present design brief; `None` if the machine is not
     /// valid without its counterweights.
-    fn sought(&self, objective: Objective) -> Option<<LengthsQuery as Query>::Input> {
+    fn length_search_input(&self, objective: Objective) -> Option<<LengthsQuery as Query>::Input> {
         let Scenario { machine, design, .. } = self.session.scenario();
         let bare = machine.without_counterweights().ok()?;
-        let asked = LengthSearch::of(design, &bare, objective);
-        Some((Shared(bare.into()), asked))
+        let request = LengthSearch::of(design, &bare, objective);
+        Some((Shared(bare.into()), request))
     }
 
     /// Starts a new search for link lengths.
     pub(super) fn seek(&mut self, objective: Objective) {
         self.queries().forget::<LengthsQuery>();
-        self.seeking = self.sought(objective);
+        self.seeking = self.length_search_input(objective);
     }
 
     /// Continues the search for link lengths, or drops it if its request has changed.
     pub(super) fn refresh_seeking(&mut self) {
         let Some(seeking) = self.seeking.take() else { return };
-        self.seeking = self.sought(seeking.1.weighing.objective.clone()).filter(|now| *now == seeking);
+        self.seeking = self.length_search_input(seeking.1.spec.objective.clone()).filter(|now| *now == seeking);
         match &self.seeking {
             Some(seeking) => drop(self.queries().ask_in_background::<LengthsQuery>(seeking)),
             None => self.queries().forget::<LengthsQuery>(),
@@ -101,7 +101,7 @@ impl AppState {
     /// base.
     pub(super) fn take_stillest(&mut self) -> Result<(), String> {
         let scenario = self.session.scenario();
-        let placed = scenario.design.stillest(&scenario.machine).map_err(|why| why.to_string())?;
+        let placed = scenario.design.least_momentum(&scenario.machine).map_err(|why| why.to_string())?;
         self.take_weights(&placed.machine);
         Ok(())
     }

@@ -18,7 +18,7 @@ impl AppState {
     pub(super) fn take_up(&mut self, file: PathBuf, table: TableText) {
         self.saving.uses(&file);
         let measured = Shared(Arc::new(self.session.scenario().machine.clone()));
-        self.given =
+        self.opened_table =
             Some(OpenedTable { file, table: Shared(table.into()), options: TableOptions::default(), measured });
         self.view_state.below = Some(BottomPanel::Table);
         self.view_state.open.dialog = None;
@@ -29,8 +29,8 @@ impl AppState {
         if self.view_state.gesture.grabbed.is_some() {
             return;
         }
-        let given = self.given.as_ref().filter(|_| self.view_state.below == Some(BottomPanel::Table));
-        match given.and_then(|given| given.asked(self.session.scenario())) {
+        let given = self.opened_table.as_ref().filter(|_| self.view_state.below == Some(BottomPanel::Table));
+        match given.and_then(|given| given.request(self.session.scenario())) {
             None => self.queries().give_up::<AssessmentQuery>(),
             Some(asked) => drop(self.queries().ask_in_background::<AssessmentQuery>(&asked)),
         }
@@ -66,7 +66,8 @@ impl AppState {
             }
             Some(Ok(TableAssessment::Measured(trimmed))) => match (&trimmed.outcome, taking) {
                 (Ok(trim), TableAction::Change | TableAction::Measured) => {
-                    let measured = self.given.as_ref().map(|given| &*given.measured.0).ok_or("no table is open")?;
+                    let measured =
+                        self.opened_table.as_ref().map(|given| &*given.measured.0).ok_or("no table is open")?;
                     adopting_edit(scenario, measured, trim, taking == TableAction::Change)?
                 }
                 _ => None,

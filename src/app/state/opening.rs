@@ -26,16 +26,16 @@ impl AppState {
         match opened.unwrap_or_else(|| Err(broken())) {
             Ok(Opened::Table(file, table)) => self.take_up(file, table),
             Ok(Opened::Session(opened)) => {
-                let OpenedSession { session, said, left_off } = *opened;
-                let news = said.or_else(|| opening.news.clone());
-                self.take_over(session, Opening { news, ..opening });
+                let OpenedSession { session, note, left_off } = *opened;
+                let message = note.or_else(|| opening.message.clone());
+                self.take_over(session, Opening { message, ..opening });
                 if let Some(ResumePoint { plots, .. }) = left_off {
                     self.view_state.charts = plots;
                 }
             }
             Err(_) if opening.instead.is_some() => {
                 if let Some((scenario, said)) = opening.instead.map(|instead| *instead) {
-                    let opening = Opening { news: Some(said), instead: None, ..opening };
+                    let opening = Opening { message: Some(said), instead: None, ..opening };
                     self.open(SessionSource::Scenario(Box::new(scenario)), opening);
                 }
             }
@@ -43,14 +43,14 @@ impl AppState {
                 if let Some(SessionFile::Own(file)) = &opening.file {
                     self.saving.misses(file);
                 }
-                self.view_state.said.refused = refused;
+                self.view_state.status.refused = refused;
                 self.show_outcome(Err(why));
             }
         }
         self.refresh();
     }
 
-    pub(super) fn take_over(&mut self, next: Session, Opening { plays, closes, news, file, .. }: Opening) {
+    pub(super) fn take_over(&mut self, next: Session, Opening { plays, closes, message: news, file, .. }: Opening) {
         self.saving.opened();
         match file {
             Some(SessionFile::Own(file)) => self.saving.uses(&file),
@@ -64,7 +64,7 @@ impl AppState {
         let old = self.session.clone();
         self.session.take_over(next);
         // The measurements of an open table now refer to the newly opened machine.
-        if let Some(given) = &mut self.given {
+        if let Some(given) = &mut self.opened_table {
             given.measured = Shared(Arc::new(self.session.scenario().machine.clone()));
         }
         self.view_state.framing.iter_mut().for_each(Framing::renew);
@@ -97,25 +97,26 @@ impl AppState {
             );
             Box::new((case.clone(), said))
         };
-        let (news, instead) = (other.as_ref().map(news), other.as_ref().map(instead));
+        let (message, instead) = (other.as_ref().map(news), other.as_ref().map(instead));
         let scenario = Scenario { machine: other.unwrap_or_else(|| case.machine.clone()), ..case };
-        let opening = Opening { plays: true, news, instead, ..Opening::default() };
+        let opening = Opening { plays: true, message, instead, ..Opening::default() };
         self.open(SessionSource::Scenario(Box::new(scenario)), opening);
     }
 
     /// Opens a file.
     pub(super) fn open_file(&mut self, path: PathBuf) {
-        let news = Some(format!("opened {}", path.display()));
+        let message = Some(format!("opened {}", path.display()));
         let file = Some(SessionFile::Own(path.clone()));
-        self.open(SessionSource::File(path), Opening { closes: true, news, file, ..Opening::default() });
+        self.open(SessionSource::File(path), Opening { closes: true, message, file, ..Opening::default() });
     }
 
     pub(super) fn recover(&mut self, what: Recovery) {
-        let Some((file, _)) = self.saving.found.take() else { return };
+        let Some((file, _)) = self.saving.left_session.take() else { return };
         match what {
             Recovery::Open => {
-                let (from, news) = (Some(SessionFile::LeftBehind(file.clone())), Some("here is where you were".into()));
-                self.open(SessionSource::Journal(file), Opening { news, file: from, ..Opening::default() });
+                let (from, message) =
+                    (Some(SessionFile::LeftBehind(file.clone())), Some("here is where you were".into()));
+                self.open(SessionSource::Journal(file), Opening { message, file: from, ..Opening::default() });
             }
             Recovery::Forget => self.saving.recovered = Some(file),
             Recovery::Later => {}

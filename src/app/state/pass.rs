@@ -40,7 +40,7 @@ impl AppState {
             tour.follow(&self.session);
         }
         let beside = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
-        let beside = beside.and_then(Intro::beside_it).or(self.comparison.as_ref());
+        let beside = beside.and_then(Intro::straight_comparison).or(self.comparison.as_ref());
         let queries = self.queries().clone();
         let marks = Marks::of(&queries, &self.session, beside);
         if !marks.is_whole {
@@ -66,17 +66,17 @@ impl AppState {
         if self.view_state.below == Some(BottomPanel::Tolerances) {
             study::show(ui, self.study().as_deref(), self.session.frame().time, &self.view_state, &mut commands);
         }
-        if let Some(given) = self.given.as_ref().filter(|_| self.view_state.below == Some(BottomPanel::Table)) {
+        if let Some(table) = self.opened_table.as_ref().filter(|_| self.view_state.below == Some(BottomPanel::Table)) {
             let found = self.assessed();
             let is_known = found.as_ref().is_some_and(|(_, is_known)| *is_known);
-            let shown = given::TableView { given, answer: found.as_ref().map(|(answer, _)| &**answer), is_known };
+            let shown = given::TableView { table, answer: found.as_ref().map(|(answer, _)| &**answer), is_known };
             given::show(ui, shown, &self.view_state, &mut commands);
         }
         let contrast = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
         let designs = self.view_state.view == ViewKind::Design && !presents;
         let mut chosen = Vec::new();
         if designs {
-            let found = match self.view_state.arrangement.learns {
+            let found = match self.view_state.arrangement.shows_equations {
                 true => studio::DesignFacts::learned(&queries, &self.session),
                 false => studio::DesignFacts::weighed(&queries, &self.session, self.view_state.front_by, &self.fronts),
             };
@@ -96,7 +96,7 @@ impl AppState {
         self.view_state.pointed.panel_object = place::lit(ui.ctx());
         self.view_state.pointed.lit_links = place::lit_links(ui.ctx());
         if self.view_state.arrangement.now().plots.shown && !designs {
-            let beside = contrast.and_then(Intro::beside_it).or(self.comparison.as_ref());
+            let beside = contrast.and_then(Intro::straight_comparison).or(self.comparison.as_ref());
             if std::mem::take(&mut self.focuses_search) {
                 plots::focus(ui.ctx());
             }
@@ -105,15 +105,15 @@ impl AppState {
             let width = plots::show(ui, &what, &mut commands);
             self.view_state.arrangement.now_mut().plots.width = width;
         }
-        let both = (self.comparison.as_ref(), self.intro.as_ref().filter(|_| !presents), &chosen[..]);
-        let scene = viewport::show(
-            ui,
-            &self.session,
-            (&self.views, self.base_exaggeration()),
-            both,
-            &mut self.view_state,
-            &mut commands,
-        );
+        let content = viewport::SceneContent {
+            session: &self.session,
+            views: &self.views,
+            exaggeration: self.base_exaggeration(),
+            comparison: self.comparison.as_ref(),
+            intro: self.intro.as_ref().filter(|_| !presents),
+            weights: &chosen,
+        };
+        let scene = viewport::show(ui, content, &mut self.view_state, &mut commands);
         let proposals = self.proposals();
         let proposals = proposals.as_ref().map_or(&[][..], |known| known);
         status::news(ui.ctx(), scene, &self.session, &self.view_state, proposals, &mut commands);
@@ -131,7 +131,7 @@ impl AppState {
             .iter()
             .any(|c| !matches!(c, Command::Session(SessionCommand::EndGesture) | Command::View(ViewChange::Preview(_))))
         {
-            self.view_state.said = StatusMessage::default();
+            self.view_state.status = StatusMessage::default();
         }
         if !commands.is_empty() {
             ui.ctx().request_repaint();
@@ -141,7 +141,7 @@ impl AppState {
             self.carry_out(command);
             let held = self.view_state.gesture.grabbed.is_some();
             if let (Some(intro), Some(command)) = (&mut self.intro, seen) {
-                intro.sees(&command, &self.session, held);
+                intro.observe(&command, &self.session, held);
             }
         }
         if self.intro.as_ref().is_some_and(Intro::is_over) {

@@ -53,7 +53,7 @@ impl AppState {
     /// loop it is the start of the run or of the range chosen in the plots. `wall` is the wall time that has passed,
     /// s.
     fn starts_over(&mut self, wall: f64) -> Option<f64> {
-        if self.intro.as_mut().is_some_and(|intro| intro.rests(&self.session, wall)) {
+        if self.intro.as_mut().is_some_and(|intro| intro.advance_rest(&self.session, wall)) {
             return Some(0.0);
         }
         let [from, to] = self.view_state.charts.range.unwrap_or([0.0, f64::INFINITY]);

@@ -50,7 +50,7 @@ impl AppState {
             app_state.show_outcome(said.map(Some));
         });
         self.collect();
-        let failed = matches!(self.view_state.said.message, Some((_, true)));
+        let failed = self.view_state.status.problem().is_some();
         if self.background.runs(activity) || !failed {
             self.view_state.open.dialog = None;
         }
@@ -117,7 +117,7 @@ impl AppState {
             Ok(move |ticket: &Ticket, path: &Path, force: bool| {
                 let options = stillbase_recording::Options { pictures: None, force };
                 let mut report = |progress: stillbase_recording::RecordingProgress| {
-                    ticket.goes_on(progress.done as f64 / progress.of.max(1) as f64)
+                    ticket.goes_on(progress.done as f64 / progress.total.max(1) as f64)
                 };
                 let done = stillbase_recording::record(&[scenario], path, &options, &mut report);
                 let done = done.map_err(|e| e.to_string())?;

@@ -25,7 +25,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, view_state: &Vi
     for term in facts.terms.iter() {
         row(ui, p, session, term, hot);
     }
-    if facts.terms.iter().any(|term| term.left[1].abs() > 1e-9) {
+    if facts.terms.iter().any(|term| term.residual[1].abs() > 1e-9) {
         let words = "Some masses lie off the axes of their links; the bars show what they do along them.";
         ui.label(RichText::new(words).font(plain(11.0)).color(colour(p.dim)));
     }
@@ -64,10 +64,10 @@ fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &BalanceBars, hot: Opt
     let below = rect.top() + BAR_HEIGHT_PT + 12.0;
     painter.text(pos2(rect.left(), below), Align2::LEFT_CENTER, term.meaning, plain(10.5), colour(p.dim));
     let tone = colour(if term.is_balanced { p.zero } else { p.reaction });
-    let size = term.left[0].hypot(term.left[1]);
-    let text = match (term.is_balanced, term.left[1] == 0.0) {
+    let size = term.residual[0].hypot(term.residual[1]);
+    let text = match (term.is_balanced, term.residual[1] == 0.0) {
         (true, _) => "0".to_owned(),
-        (false, true) => signed(term.left[0], 4),
+        (false, true) => signed(term.residual[0], 4),
         (false, false) => format!("|{}|", signed(size, 4)),
     };
     painter.text(pos2(rect.right(), middle), Align2::RIGHT_CENTER, &text, bold(12.5), tone);
@@ -86,13 +86,14 @@ fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &BalanceBars, hot: Opt
             let next = ends[side] + (part * scale) as f32;
             let segment = Rect::from_x_y_ranges(ends[side].min(next)..=ends[side].max(next), bar.y_range());
             ends[side] = next;
-            draw(ui, p, session, segment, (*link, *part), (term, hot));
+            draw_segment(ui, p, session, segment, &LinkPart { link: *link, value: *part, unit: term.unit }, hot);
         }
         // The residual is drawn on the side that predominates.
         if !term.is_balanced {
-            let outweighed = zero - (term.left[0] * scale) as f32;
-            let from = if term.left[0] > 0.0 { ends[1] + (outweighed - zero) } else { ends[0] + (outweighed - zero) };
-            let to = if term.left[0] > 0.0 { ends[1] } else { ends[0] };
+            let outweighed = zero - (term.residual[0] * scale) as f32;
+            let from =
+                if term.residual[0] > 0.0 { ends[1] + (outweighed - zero) } else { ends[0] + (outweighed - zero) };
+            let to = if term.residual[0] > 0.0 { ends[1] } else { ends[0] };
             let left = Rect::from_x_y_ranges(from.min(to)..=from.max(to), bar.bottom() + 2.0..=bar.bottom() + 5.0);
             ui.painter().rect_filled(left, 1.0, colour(p.ink));
         }
@@ -108,15 +109,16 @@ fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &BalanceBars, hot: Opt
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &words));
 }
 
-/// Draws the contribution of one link.
-fn draw(
-    ui: &Ui,
-    p: &Palette,
-    session: &Session,
-    rect: Rect,
-    (link, part): (usize, f64),
-    (term, hot): (&BalanceBars, Option<usize>),
-) {
+/// The contribution of one link to a term.
+struct LinkPart<'a> {
+    link: usize,
+    value: f64,
+    unit: &'a str,
+}
+
+/// Draws the contribution of one link; `hot` is the highlighted link.
+fn draw_segment(ui: &Ui, p: &Palette, session: &Session, rect: Rect, part: &LinkPart<'_>, hot: Option<usize>) {
+    let LinkPart { link, value, unit } = *part;
     let machine = &session.scenario().machine;
     let tone = p.drive(machine.resolved_links()[link].drive);
     let tone = if hot == Some(link) { tone } else { mix(tone, p.panel, 0.38) };
@@ -131,7 +133,7 @@ fn draw(
     }
     if ui.rect_contains_pointer(rect) {
         place::highlight(ui.ctx(), Handle::Link(link));
-        let tip = format!("link {words}: {} {}", signed(part, 6), term.unit);
+        let tip = format!("link {words}: {} {unit}", signed(value, 6));
         egui::Tooltip::always_open(
             ui.ctx().clone(),
             ui.layer_id(),

@@ -56,11 +56,18 @@ pub fn show(ui: &mut Ui, scenario: &Scenario, is_balanced: bool, p: &Palette, co
     let response = row.show(ui, p, &mut thickness);
     send(commands, &[response], || Edit::set("design.thickness", 1e-3 * thickness));
     let row = NumberRow::of("behind the root", "design.behind_root").with(3, 0.002);
-    bounded(ui, p, (&row, "design.behind_root", 1.0), brief.behind_root, 0.3, commands);
+    draw_bound(
+        ui,
+        p,
+        &BoundRow { number: row, path: "design.behind_root", scale: 1.0 },
+        brief.behind_root,
+        0.3,
+        commands,
+    );
     let row = NumberRow::of("heaviest", "design.heaviest").with(2, 0.02);
-    bounded(ui, p, (&row, "design.heaviest", 1.0), brief.heaviest, 5.0, commands);
+    draw_bound(ui, p, &BoundRow { number: row, path: "design.heaviest", scale: 1.0 }, brief.heaviest, 5.0, commands);
     let row = millimetres("clear of pins", "design.clearance", 0.0..=1000.0);
-    bounded(ui, p, (&row, "design.clearance", 1e-3), brief.clearance, 5.0, commands);
+    draw_bound(ui, p, &BoundRow { number: row, path: "design.clearance", scale: 1e-3 }, brief.clearance, 5.0, commands);
     payloads(ui, p, brief.payload, spec.payload.mass, commands);
     rotors(ui, p, &spec.drives, brief, commands);
 }
@@ -177,18 +184,28 @@ fn penalties(ui: &mut Ui, now: Preset, commands: &mut Vec<Command>) {
     });
 }
 
-/// Draws an optional bound; `scale` is the factor from the value shown to the value of the setting.
-pub(super) fn bounded(
+/// The row of an optional bound.
+pub(super) struct BoundRow<'a> {
+    pub number: NumberRow<'a>,
+    /// Path of the setting.
+    pub path: &'a str,
+    /// Factor from the value shown to the value of the setting.
+    pub scale: f64,
+}
+
+/// Draws an optional bound; ticking it sets the value shown to `initial`.
+pub(super) fn draw_bound(
     ui: &mut Ui,
     p: &Palette,
-    (row, path, scale): (&NumberRow<'_>, &str, f64),
+    bound_row: &BoundRow<'_>,
     bound: Option<f64>,
-    usual: f64,
+    initial: f64,
     commands: &mut Vec<Command>,
 ) {
+    let BoundRow { number: row, path, scale } = bound_row;
     ui.horizontal(|ui| {
         let words = (row.label, row.tip);
-        optional(ui, words, bound.is_some(), |value| Edit::set(path, value), || (scale * usual).into(), commands);
+        optional(ui, words, bound.is_some(), |value| Edit::set(path, value), || (scale * initial).into(), commands);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             unit(ui, p, row.unit);
             match bound {

@@ -135,12 +135,12 @@ fn index(ui: &mut Ui, p: &Palette, all: &[Equation]) -> Option<usize> {
 
 /// Returns in a few words whether both sides of an equation agree.
 fn verdict(equation: &Equation) -> String {
-    let Some(worst) = equation.worst() else { return "not for this machine".into() };
+    let Some(worst) = equation.least_accurate() else { return "not for this machine".into() };
     match equation.holds() {
         Some(true) => "holds".into(),
         _ if equation.is_choice() => "another choice".into(),
         _ => {
-            let off = worst.off().abs();
+            let off = worst.residual().abs();
             let size = if off > 0.0 { 10f64.powf(off.log10().floor() - 2.0) } else { 1.0 };
             format!("off by {} {}", at_step(off, size), worst.unit).trim_end().to_owned()
         }

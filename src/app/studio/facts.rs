@@ -5,7 +5,9 @@ use std::sync::Arc;
 use super::lengths::LengthsResult;
 use super::lesson::MachineEquations;
 use stillbase_mechanics::balance::{Breakdown, Condition};
-use stillbase_mechanics::counterweights::{CounterweightError, Front, FrontSearch, Placed, Residual, over_payloads};
+use stillbase_mechanics::counterweights::{
+    CounterweightError, Front, FrontSearch, PayloadResidual, PlacedCounterweights, over_payloads,
+};
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_picture::scene::options::WeightOption;
 use stillbase_planning::Motion;
@@ -33,15 +35,15 @@ pub struct DesignFacts {
     /// Cost of the balance, in comparison with the machine without its counterweights.
     pub(super) measures: Option<Arc<Measures>>,
     /// Residual of the balance over the payloads of the brief.
-    pub(super) payloads: Option<Arc<Vec<Residual>>>,
+    pub(super) payloads: Option<Arc<Vec<PayloadResidual>>>,
     /// Pareto front of added mass and inertia; `None` while the equations are on display.
     front: Option<QueryResult<Points>>,
     /// The search for lengths of this machine, if there is one.
-    pub(super) sought: Option<LengthsResult>,
+    pub(super) length_search: Option<LengthsResult>,
     /// Pareto fronts of other machines; `None` while the equations are on display.
-    beside: Option<QueryResult<Vec<MachineFront>>>,
+    other_fronts: Option<QueryResult<Vec<MachineFront>>>,
     /// The measure that colours the points of the front.
-    pub(super) told: Option<Arc<MeasureValues>>,
+    pub(super) front_measure: Option<Arc<MeasureValues>>,
     /// Equations of the machine; `None` while the front is on display.
     pub(super) lesson: Option<Arc<MachineEquations>>,
 }
@@ -104,9 +106,9 @@ struct OverPayloads;
 
 impl QuickQuery for OverPayloads {
     type Input = (Machine, [f64; 2]);
-    type Answer = Vec<Residual>;
+    type Answer = Vec<PayloadResidual>;
 
-    fn answer((machine, ends): &Self::Input) -> Vec<Residual> {
+    fn answer((machine, ends): &Self::Input) -> Vec<PayloadResidual> {
         over_payloads(machine, *ends, PAYLOAD_POINTS).unwrap_or_default()
     }
 }
@@ -121,14 +123,17 @@ impl QuickQuery for FrontPoints {
     fn answer(front: &Self::Input) -> Points {
         let front = front.0.as_ref().as_ref().map_err(ToString::to_string)?;
         let measures = front.measures().into_iter();
-        let point = |(placed, [_, inertia]): (&Placed, [f64; 2])| FrontMachine { placed: placed.clone(), inertia };
+        let point = |(placed, [_, inertia]): (&PlacedCounterweights, [f64; 2])| FrontMachine {
+            placed: placed.clone(),
+            inertia,
+        };
         Ok(front.points.iter().zip(measures).map(point).collect())
     }
 }
 
 /// A measure of the machines of a Pareto front.
 pub(super) struct MeasureValues {
-    pub by: FrontMeasure,
+    pub measure: FrontMeasure,
     /// Its value for each machine; `None` where a machine has none.
     pub values: Vec<Option<f64>>,
 }
@@ -156,7 +161,7 @@ impl Query for MeasureQuery {
                 self.values.push(by.of(&point.placed, motion.as_ref().map(|motion| &*motion.0)));
                 Portion::More(self.values.len() as f64 / points.len() as f64)
             }
-            None => Portion::Done(MeasureValues { by: *by, values: std::mem::take(&mut self.values) }),
+            None => Portion::Done(MeasureValues { measure: *by, values: std::mem::take(&mut self.values) }),
         }
     }
 }
@@ -164,7 +169,7 @@ impl Query for MeasureQuery {
 /// A point of a Pareto front.
 pub(super) struct FrontMachine {
     /// The machine with its counterweights.
-    pub placed: Placed,
+    pub placed: PlacedCounterweights,
     /// Σ D_k, kg m².
     pub inertia: f64,
 }
@@ -177,7 +182,7 @@ pub(super) struct BalanceBars {
     pub meaning: &'static str,
     pub unit: &'static str,
     /// Residual along the axes of the links, and across them, in `unit`.
-    pub left: [f64; 2],
+    pub residual: [f64; 2],
     pub is_balanced: bool,
     /// Index and contribution of each link with all bodies that it carries, the largest contribution first.
     /// Negligible contributions are omitted.
@@ -199,7 +204,7 @@ impl DesignFacts {
     /// Queries the values of the machine on display, with its Pareto front and those of other machines.
     pub fn weighed(queries: &Queries, session: &Session, by: Option<FrontMeasure>, others: &[FrontCase]) -> Self {
         let mut facts = Self::of(queries, session);
-        facts.beside = (!others.is_empty()).then(|| {
+        facts.other_fronts = (!others.is_empty()).then(|| {
             let machines = others.to_vec();
             let request = FrontsRequest { machines, count: FRONT_POINTS, motion: None, workspace: false };
             queries.ask_in_background::<Fronts>(&request)
@@ -209,10 +214,11 @@ impl DesignFacts {
         let points = front.last.map(|front| queries.ask::<QuickWork<FrontPoints>>(&ByIdentity(front)));
         // A run that waits has no motion.
         let motion = session.run().shared_motion().filter(|_| session.run().waiting().is_none());
-        facts.told = by.zip(points.clone()).and_then(|(by, points)| {
+        facts.front_measure = by.zip(points.clone()).and_then(|(by, points)| {
             let told = queries.ask_in_background::<MeasureQuery>(&(ByIdentity(points.clone()), by, motion)).last?;
             // Values of another front do not apply to this one.
-            (told.by == by && told.values.len() == points.as_deref().map_or(0, <[FrontMachine]>::len)).then_some(told)
+            (told.measure == by && told.values.len() == points.as_deref().map_or(0, <[FrontMachine]>::len))
+                .then_some(told)
         });
         facts.front = Some(QueryResult { last: points, state: front.state });
         facts
@@ -237,9 +243,9 @@ impl DesignFacts {
             payloads: session.scenario().design.payload.and_then(over),
             sums,
             front: None,
-            sought: queries.newest::<LengthsQuery>(),
-            beside: None,
-            told: None,
+            length_search: queries.newest::<LengthsQuery>(),
+            other_fronts: None,
+            front_measure: None,
             lesson: None,
         }
     }
@@ -264,13 +270,13 @@ impl DesignFacts {
     }
 
     /// Returns the Pareto fronts of other machines, as far as they are known.
-    pub(super) fn beside(&self) -> &[MachineFront] {
-        self.beside.as_ref().and_then(|beside| beside.last.as_deref()).map_or(&[], Vec::as_slice)
+    pub(super) fn other_fronts(&self) -> &[MachineFront] {
+        self.other_fronts.as_ref().and_then(|beside| beside.last.as_deref()).map_or(&[], Vec::as_slice)
     }
 
     /// Returns the fraction of the fronts of other machines that is computed, while the work is under way.
-    pub(super) fn beside_under_way(&self) -> Option<f64> {
-        match self.beside.as_ref()?.state {
+    pub(super) fn other_fronts_progress(&self) -> Option<f64> {
+        match self.other_fronts.as_ref()?.state {
             QueryStatus::UnderWay(share) => Some(share),
             _ => None,
         }
@@ -314,7 +320,7 @@ pub fn leave(queries: &Queries) {
 
 /// Returns the request for a Pareto front.
 fn front_request(bare: &Machine, brief: &DesignBrief) -> <FrontSearch as Query>::Input {
-    (bare.clone(), brief.weighing(bare), FRONT_POINTS)
+    (bare.clone(), brief.lightest_problem(bare), FRONT_POINTS)
 }
 
 fn terms(machine: &Machine) -> Vec<BalanceBars> {
@@ -329,8 +335,8 @@ fn terms(machine: &Machine) -> Vec<BalanceBars> {
             Condition::Force(k) => (format!("g{}", subscript(k + 1)), "no force", "kg m"),
             Condition::Coupling(k, l) => (format!("C{}{}", subscript(k + 1), subscript(l + 1)), "no coupling", "kg m²"),
         };
-        let left = [term.residual.re, term.residual.im];
-        BalanceBars { symbol, meaning, unit, left, is_balanced: term.balanced, parts }
+        let residual = [term.residual.re, term.residual.im];
+        BalanceBars { symbol, meaning, unit, residual, is_balanced: term.balanced, parts }
     };
     let mut terms: Vec<BalanceBars> = breakdown.terms.iter().map(term).collect();
     // Contributions that are rounding errors in comparison with the other lines are not drawn.

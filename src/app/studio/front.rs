@@ -55,7 +55,7 @@ pub fn show(ui: &mut Ui, facts: &DesignFacts, view_state: &ViewState, commands: 
         [low - room, high + room]
     };
     let ([left, right], [low, high]) = (ends(0, mass), ends(1, inertia));
-    let colours = facts.told.as_ref().and_then(|measure| ColourScale::of(measure.by, &measure.values));
+    let colours = facts.front_measure.as_ref().and_then(|measure| ColourScale::of(measure.measure, &measure.values));
     ui.horizontal(|ui| {
         ui.label(RichText::new("Σ D, kg m²").font(plain(11.0)).color(colour(p.dim)));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| measure_choice(ui, view_state, commands));
@@ -143,7 +143,7 @@ fn words(all: &[[f64; 2]]) -> String {
 
 /// A measure of the machines in addition to mass and inertia, shown by colour.
 struct ColourScale<'a> {
-    by: FrontMeasure,
+    measure: FrontMeasure,
     values: &'a [Option<f64>],
     /// Minimum and maximum of the values.
     ends: [f64; 2],
@@ -154,7 +154,7 @@ impl<'a> ColourScale<'a> {
     fn of(by: FrontMeasure, values: &'a [Option<f64>]) -> Option<Self> {
         let least = values.iter().flatten().fold(f64::INFINITY, |least, x| least.min(*x));
         let most = values.iter().flatten().fold(f64::NEG_INFINITY, |most, x| most.max(*x));
-        (least <= most).then_some(Self { by, values, ends: [least, most] })
+        (least <= most).then_some(Self { measure: by, values, ends: [least, most] })
     }
 
     /// Returns the colour of a machine.
@@ -167,7 +167,7 @@ impl<'a> ColourScale<'a> {
 
     fn words(&self, value: f64) -> String {
         let decimals = decimals((self.ends[1] - self.ends[0]).max(1e-3 * self.ends[1].abs()));
-        format!("{} {}", signed(value, decimals), self.by.words()[1])
+        format!("{} {}", signed(value, decimals), self.measure.words()[1])
     }
 
     /// Draws the colour scale.

@@ -2,7 +2,7 @@
 
 use egui::{Align, CollapsingHeader, Layout, RichText, Ui};
 
-use super::brief::{bounded, optional};
+use super::brief::{BoundRow, draw_bound, optional};
 use crate::theme::{bold, colour, plain};
 use crate::widgets::{NumberRow, note, send, tip_of, unit};
 use crate::{Command, SessionCommand, WindowCommand};
@@ -39,9 +39,23 @@ pub fn show(
             return note(ui, p, "Tick those that may change: they are sought with the counterweights.");
         }
         let row = NumberRow::of("reach at least", "design.reach").with(3, 0.005);
-        bounded(ui, p, (&row, "design.reach", 1.0), brief.reach, scenario.machine.reach(), commands);
+        draw_bound(
+            ui,
+            p,
+            &BoundRow { number: row, path: "design.reach", scale: 1.0 },
+            brief.reach,
+            scenario.machine.reach(),
+            commands,
+        );
         let row = NumberRow::of("workspace at least", "design.workspace").with(3, 0.005);
-        bounded(ui, p, (&row, "design.workspace", 1.0), brief.workspace, 0.5, commands);
+        draw_bound(
+            ui,
+            p,
+            &BoundRow { number: row, path: "design.workspace", scale: 1.0 },
+            brief.workspace,
+            0.5,
+            commands,
+        );
         ui.horizontal(|ui| {
             ui.label(RichText::new("seek").font(plain(12.5)));
             let tip =

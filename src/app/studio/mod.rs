@@ -48,7 +48,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, view_state: &Vi
                 table::show(ui, session, view_state, commands);
                 let is_balanced = facts.terms.iter().all(|term| term.is_balanced);
                 brief::show(ui, session.scenario(), is_balanced, &p, commands);
-                lengths::show(ui, session.scenario(), facts.sought.as_ref(), &p, commands);
+                lengths::show(ui, session.scenario(), facts.length_search.as_ref(), &p, commands);
                 measures::show(ui, session, facts, &p);
             });
         });

@@ -14,12 +14,12 @@ use stillbase_study::fronts::MachineFront;
 
 /// Returns the points of all these fronts: added mass, kg, and Σ D_k, kg m².
 pub(super) fn places(facts: &DesignFacts) -> impl Iterator<Item = [f64; 2]> {
-    facts.beside().iter().filter_map(|front| front.outcome.as_ref().ok()).flat_map(|front| front.measures())
+    facts.other_fronts().iter().filter_map(|front| front.outcome.as_ref().ok()).flat_map(|front| front.measures())
 }
 
 /// Draws the fronts, each with its number.
 pub(super) fn draw(plot: &mut PlotUi<'_>, facts: &DesignFacts, p: &Palette) {
-    for (i, MachineFront { name, outcome }) in facts.beside().iter().enumerate() {
+    for (i, MachineFront { name, outcome }) in facts.other_fronts().iter().enumerate() {
         let Ok(front) = outcome else { continue };
         let places = front.measures();
         let last = places.last().copied().unwrap_or_default();
@@ -51,7 +51,7 @@ pub(super) fn list(ui: &mut Ui, facts: &DesignFacts, p: &Palette, commands: &mut
         });
         name(&add.response.on_hover_text("The front of another machine, as this one is asked"), "Add a front");
     });
-    for (i, MachineFront { name: called, outcome }) in facts.beside().iter().enumerate() {
+    for (i, MachineFront { name: called, outcome }) in facts.other_fronts().iter().enumerate() {
         ui.horizontal(|ui| {
             let remove = ui.add(Button::new(RichText::new("×").font(plain(12.0))).frame(false));
             name(&remove, &format!("Remove the front of {called}"));
@@ -74,7 +74,7 @@ pub(super) fn list(ui: &mut Ui, facts: &DesignFacts, p: &Palette, commands: &mut
             });
         });
     }
-    if let Some(share) = facts.beside_under_way() {
+    if let Some(share) = facts.other_fronts_progress() {
         note(ui, p, &format!("looking for them: {:.0} %", 100.0 * share));
     }
 }

@@ -18,7 +18,7 @@ pub fn show(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Command>) {
         ui.spacing_mut().item_spacing.x = 3.0;
         let width = 0.5 * (ui.available_width() - 3.0 - crate::side::SCROLL_BAR_WIDTH);
         for (learns, words, tip) in TABS {
-            let chosen = learns == view_state.arrangement.learns;
+            let chosen = learns == view_state.arrangement.shows_equations;
             let text = RichText::new(words).font(bold(12.5)).color(colour(if chosen { p.ink } else { p.dim }));
             let fill = if chosen { colour(p.line) } else { egui::Color32::TRANSPARENT };
             let button = Button::new(text).fill(fill).stroke((1.0, colour(p.line))).min_size(vec2(width, 24.0));

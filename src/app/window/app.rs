@@ -53,7 +53,7 @@ impl App {
 
     /// Enables preferences, journal and the system's file dialogs; `may_break` says whether a key simulates the loss of
     /// the graphics device.
-    pub(super) fn kept(self, liked: Preferences, may_break: bool) -> Self {
+    pub(super) fn with_storage(self, liked: Preferences, may_break: bool) -> Self {
         let keeper = Keeper::new(liked, &self.app_state);
         Self { keeper: Some(keeper), chooser: Some(Chooser::default()), may_break, ..self }
     }

@@ -86,7 +86,7 @@ fn endings(purpose: &FilePurpose) -> Vec<&'static str> {
         FilePurpose::Plot(_, PlotFile::Png) => vec!["png"],
         FilePurpose::Machine => {
             let mut endings = form::endings().to_vec();
-            endings.sort_by_key(|ending| *ending != form::USUAL_ENDING);
+            endings.sort_by_key(|ending| *ending != form::DEFAULT_EXTENSION);
             endings
         }
     }

@@ -165,7 +165,7 @@ impl Keeper {
 }
 
 /// Returns the file of the newest session that an earlier program run left, and its age in words.
-pub fn found() -> Option<(PathBuf, String)> {
+pub fn find_left_session() -> Option<(PathBuf, String)> {
     let LeftoverJournal { file, when } = journal::leftover_journals(&journal::folder()?).into_iter().next()?;
     let ago = when.elapsed().unwrap_or_default().as_secs();
     let words = match ago {

@@ -14,7 +14,7 @@ use winit::window::{Window, WindowId};
 use super::app::App;
 use super::error::{WindowError, what_is_missing};
 use super::screen::{PaintOutcome, Screen};
-use stillbase_picture::paint::draw_drafts;
+use stillbase_picture::paint::enable_draft_quality;
 use stillbase_picture::render::offscreen::NoAdapter;
 
 /// A device lost again within this time is not replaced again.
@@ -110,7 +110,7 @@ impl OpenWindow {
         let mut input = egui_winit::State::new(ctx.clone(), ViewportId::ROOT, &window, scale, window.theme(), side);
         input.init_accesskit(events, &window, wakes.clone());
         if screen.is_software() {
-            draw_drafts(&ctx);
+            enable_draft_quality(&ctx);
         }
         let info = ViewportInfo::default();
         let screen = Some(screen);

@@ -19,20 +19,20 @@ struct Answer {
 impl DesignArguments {
     /// Prints the Pareto front of each machine, or the reason why it has none.
     pub fn fronts(&self) -> Result<(), Failure> {
-        let machines = self.machine.load_with(&self.beside)?;
+        let machines = self.machine.load_with(&self.other_machines)?;
         let task = self.task(&machines.iter().map(|(_, machine)| machine).collect::<Vec<_>>())?;
         let of = |(name, machine)| {
             // The Pareto front trades mass against inertia, neither of which depends on a motion.
-            let asked = self.weighing.asked(&machine, None).map_err(|why| why.of(&name))?;
+            let spec = self.weighing.spec(&machine, None).map_err(|why| why.with_context(&name))?;
             report_removed(&machine, &format!("{name}: "));
-            Ok(FrontCase { name, machine, asked })
+            Ok(FrontCase { name, machine, spec })
         };
         let machines = machines.into_iter().map(of).collect::<Result<_, Failure>>()?;
         let motion = task.as_ref().and_then(|run| run.shared_motion());
         let request = FrontsRequest { machines, count: self.weighing.front_count(), motion, workspace: true };
         let answer = Answer { fronts: answer_now::<Fronts>(request) };
         let mut refused = answer.fronts.iter().filter_map(|of| Some((of, of.outcome.as_ref().err()?)));
-        let mut refusals = refused.clone().map(|(of, why)| request_failure(why.clone()).of(&of.name));
+        let mut refusals = refused.clone().map(|(of, why)| request_failure(why.clone()).with_context(&of.name));
         if let Some(wrong) = refusals.find(|why| matches!(why, Failure::WrongInput(_))) {
             return Err(wrong);
         }

@@ -9,7 +9,7 @@ use stillbase_study::centres::{RebalanceChange, RebalanceReport, rebalance_repor
 
 use super::super::check::balance_tables;
 use super::super::failure::Failure;
-use super::super::holds::{bound, hold};
+use super::super::holds::{apply_bounds, bound};
 use super::super::output::TextTable;
 use super::measures;
 
@@ -40,9 +40,9 @@ impl RebalanceArguments {
         motion: Option<&Motion>,
         penalty: &[f64],
     ) -> Result<(Machine, RebalanceReport), Failure> {
-        let mut asked = RebalanceRequest::coms(machine, penalty);
-        hold(&mut asked, machine, &self.fix, &self.free, &self.bound)?;
-        rebalance_report(machine, &asked, motion).map_err(as_failure)
+        let mut request = RebalanceRequest::coms(machine, penalty);
+        apply_bounds(&mut request, machine, &self.fix, &self.free, &self.bound)?;
+        rebalance_report(machine, &request, motion).map_err(as_failure)
     }
 }
 

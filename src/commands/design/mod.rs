@@ -15,7 +15,7 @@ use stillbase_mechanics::machine::{Machine, to_toml};
 use stillbase_study::centres::design_centres;
 
 use super::check::balance_tables;
-use super::exit::say;
+use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{MachineArgument, Settings, choice, scenario};
 use super::output::{Format, TextTable, check_output};
@@ -60,7 +60,7 @@ pub struct DesignArguments {
     machine: MachineArgument,
     /// More machines, to compare their Pareto fronts with that of the first under the same bounds and settings
     #[arg(value_name = "MACHINE", requires = "front", conflicts_with_all = ["objective", "length", "output"])]
-    beside: Vec<String>,
+    other_machines: Vec<String>,
     /// Penalty p_j on the centre of mass of each link, 1e-6 to 1e6
     #[arg(long, value_name = "P1,P2,…", value_delimiter = ',', value_parser = penalty)]
     penalty: Vec<f64>,
@@ -68,7 +68,7 @@ pub struct DesignArguments {
     #[arg(long, value_parser = choice(Preset::ALL.iter().copied()), conflicts_with = "penalty")]
     preset: Option<Preset>,
     #[command(flatten)]
-    kept: RebalanceArguments,
+    rebalance: RebalanceArguments,
     #[command(flatten)]
     weighing: Box<WeightArguments>,
     /// A built-in scenario or a TOML file: its motion, planned for its own machine, determines the torque. Each β is
@@ -94,7 +94,7 @@ fn penalty(text: &str) -> Result<f64, String> {
 impl DesignArguments {
     /// Prints the new centres of mass and the balance that they achieve, and writes the machine.
     pub fn run(&self) -> Result<(), Failure> {
-        if !self.beside.is_empty() {
+        if !self.other_machines.is_empty() {
             return self.fronts();
         }
         let machine = self.machine.load()?;
@@ -104,7 +104,7 @@ impl DesignArguments {
             return self.weigh(&machine, motion);
         }
         let (penalty, by) = self.penalty(machine.links().len())?;
-        if self.kept.keep {
+        if self.rebalance.keep {
             return self.keep(&machine, motion, &penalty, &by);
         }
         if let Some(file) = &self.output {
@@ -129,7 +129,7 @@ impl DesignArguments {
         if let Some(file) = &self.output {
             check_output(file, self.force, &["toml"])?;
         }
-        let (machine_now, answer) = self.kept.run(machine, motion, penalty)?;
+        let (machine_now, answer) = self.rebalance.run(machine, motion, penalty)?;
         if let Some(file) = &self.output {
             save(&machine_now, file, self.force, format!("{}, kept balanced with {by}", machine.name()))?;
         }
@@ -182,6 +182,6 @@ fn save(machine: &Machine, file: &Path, force: bool, summary: String) -> Result<
     spec.name = file.file_stem().unwrap_or(OsStr::new("machine")).to_string_lossy().into_owned();
     spec.summary = summary;
     write_new(file, to_toml(&Machine::new(spec)?).as_bytes(), force)?;
-    say(format!("wrote {}", file.display()));
+    print_message(format!("wrote {}", file.display()));
     Ok(())
 }

@@ -17,8 +17,8 @@ use stillbase_study::lengths::{FreeLength, LengthSearch, NoLengths};
 use stillbase_study::measures::greatest_accelerations;
 
 use super::super::check::balance_tables;
-use super::super::ends::ends;
-use super::super::exit::say;
+use super::super::ends::parse_bounds;
+use super::super::exit::print_message;
 use super::super::failure::Failure;
 use super::super::output::TextTable;
 use super::super::sites::{link, range, sites};
@@ -101,7 +101,7 @@ pub struct WeightArguments {
 
 impl WeightArguments {
     /// Returns the problem that the arguments define.
-    pub fn asked(&self, machine: &Machine, motion: Option<&Motion>) -> Result<CounterweightSpec, Failure> {
+    pub fn spec(&self, machine: &Machine, motion: Option<&Motion>) -> Result<CounterweightSpec, Failure> {
         let mut sites = sites(machine, &self.range)?;
         for word in &self.max_mass {
             let (name, most) = word.split_once('=').map_or((None, word.as_str()), |(name, most)| (Some(name), most));
@@ -130,8 +130,8 @@ impl WeightArguments {
             None => {}
         }
         Ok(CounterweightSpec {
-            most_mass: self.max_added,
-            most_inertia: self.max_inertia,
+            max_added_mass: self.max_added,
+            max_inertia: self.max_inertia,
             clearance: self.clearance,
             rotors: self.rotors(machine)?,
             payload: self.payload,
@@ -160,13 +160,13 @@ impl WeightArguments {
     /// Converts the reason why there are no counterweights into a failure. If radii are bounded, feasible masses are
     /// also given as radii.
     fn refusal(&self, why: CounterweightError, disc: &Disc) -> Failure {
-        let (CounterweightError::Conflict { would, .. } | CounterweightError::Reaches { would, .. }, Some(_)) =
+        let (CounterweightError::Conflict { reliefs, .. } | CounterweightError::Reaches { reliefs, .. }, Some(_)) =
             (&why, self.max_radius)
         else {
             return request_failure(why);
         };
         let mut said = why.to_string();
-        for relief in would.iter().flatten() {
+        for relief in reliefs.iter().flatten() {
             if let BoundRelaxation::Most(most) = relief {
                 let radius = (disc.radius(*most) * 1e6 * (1.0 + 1e-9)).ceil() * 1e-6;
                 said.push_str(&format!("; {most:.6} kg takes a radius of {radius:.6} m"));
@@ -177,10 +177,10 @@ impl WeightArguments {
 
     /// Returns the search for lengths, if lengths are free.
     fn lengths(&self, weighing: &CounterweightSpec) -> Option<LengthSearch> {
-        let lengths = self.length.iter().map(|(name, ends)| FreeLength { name: name.clone(), ends: *ends });
+        let lengths = self.length.iter().map(|(name, ends)| FreeLength { name: name.clone(), bounds: *ends });
         (!self.length.is_empty()).then(|| LengthSearch {
             lengths: lengths.collect(),
-            weighing: weighing.clone(),
+            spec: weighing.clone(),
             anywhere: self.range.is_empty(),
             least_reach: self.min_reach,
             least_workspace: self.min_workspace,
@@ -191,20 +191,20 @@ impl WeightArguments {
 
     /// Finds the counterweights. Returns the machine that carries them, and the report on it.
     pub fn run(&self, machine: &Machine, motion: Option<&Motion>) -> Result<(Machine, CounterweightReport), Failure> {
-        let weighing = self.asked(machine, motion)?;
+        let spec = self.spec(machine, motion)?;
         report_removed(machine, "");
-        let lengths = self.lengths(&weighing);
+        let lengths = self.lengths(&spec);
         let within = match self.seconds.filter(|_| lengths.is_some()) {
             Some(seconds) if !(seconds.is_finite() && seconds > 0.0) => {
                 return Err(Failure::wrong_input(format!("--seconds {seconds}: want a time above 0 in s")));
             }
             seconds => seconds.unwrap_or(f64::INFINITY),
         };
-        let disc = weighing.disc;
-        let asked = CounterweightRequest { weighing, lengths, front: self.front.map(usize::from) };
+        let disc = spec.disc;
+        let request = CounterweightRequest { spec, lengths, front: self.front.map(usize::from) };
         let begun = Instant::now();
         let mut go_on = |_| begun.elapsed().as_secs_f64() < within;
-        balance_by_weights(machine, &asked, motion, &mut go_on).map_err(|why| match why {
+        balance_by_weights(machine, &request, motion, &mut go_on).map_err(|why| match why {
             NoCounterweights::Lengths(why) => lengths_failure(why),
             NoCounterweights::Weights(why) => self.refusal(why, &disc),
             NoCounterweights::Front(why) => request_failure(why),
@@ -222,7 +222,7 @@ pub fn report_removed(machine: &Machine, of: &str) {
     let each = taken_off.iter().map(|weight| {
         format!("{} kg at {} m of link {}", nine_digits(weight.mass), nine_digits(weight.at), weight.link)
     });
-    say(format!(
+    print_message(format!(
         "{of}taken off before others are sought: {}; fixed = true in a [[counterweight]] keeps it",
         each.collect::<Vec<_>>().join("; ")
     ));
@@ -262,7 +262,7 @@ fn number(text: &str) -> Result<f64, String> {
 
 /// Parses LO,HI, kg.
 fn payload(text: &str) -> Result<[f64; 2], String> {
-    ends(text).ok_or_else(|| "want two numbers, as 0.1,0.5".to_owned())
+    parse_bounds(text).ok_or_else(|| "want two numbers, as 0.1,0.5".to_owned())
 }
 
 fn objective(text: &str) -> Result<Objective, String> {
@@ -291,8 +291,8 @@ pub const FRONT_HEADINGS: [&str; 5] = ["added kg", "Σ D_k kg m²", "torque N m"
 /// Returns the cells of one machine of a Pareto front.
 pub fn front_cells(point: &FrontPoint) -> [String; 5] {
     let or_none = |x: Option<f64>| x.map_or_else(|| "–".into(), |x| fixed(x, 6));
-    let FrontPoint { added_mass, inertia, torque, workspace, off_by } = *point;
-    [fixed(added_mass, 6), fixed(inertia, 6), or_none(torque), or_none(workspace), fixed(off_by, 6)]
+    let FrontPoint { added_mass, inertia, torque, workspace, residual_if_misplaced } = *point;
+    [fixed(added_mass, 6), fixed(inertia, 6), or_none(torque), or_none(workspace), fixed(residual_if_misplaced, 6)]
 }
 
 /// Formats the report as text.
@@ -315,7 +315,7 @@ pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
     if let Some(torque) = report.torque {
         text.push_str(&format!("\ngreatest torque of the task {} N m\n", fixed(torque, 6)));
     }
-    if let Some(sought) = &report.sought {
+    if let Some(sought) = &report.optimised_lengths {
         let mut table = TextTable::new(["length", "m"]);
         sought.lengths.iter().for_each(|(name, length)| table.row([name.clone(), fixed(*length, 6)]));
         let LengthsReport { starts, agreeing, machines, reach, .. } = sought;

@@ -16,7 +16,7 @@ use stillbase_study::tolerance::{
 };
 
 use self::report::{MergedParts, ToleranceAnswer};
-use crate::exit::say;
+use crate::exit::print_message;
 use crate::failure::Failure;
 use crate::input::{DEFAULT_SCENARIO, Settings, overlay_for_study};
 use crate::output::{Format, check_output};
@@ -154,7 +154,7 @@ impl ToleranceArguments {
             distributions,
             yields: Yields::of(&outcomes, self.limit_moment, self.limit_force),
         };
-        say(format!("wrote {}", answer.file));
+        print_message(format!("wrote {}", answer.file));
         self.format.print(&answer, MergedParts::text)
     }
 
@@ -175,18 +175,21 @@ impl ToleranceArguments {
         let (scenario, others) = with_start_edits(&overlay_for_study(name, &self.settings)?)?;
         if others > 0 {
             let edits = counted(others, "edit");
-            say(format!("note: {}: the planned motion counts, without {edits} after its start", scenario.name));
+            print_message(format!(
+                "note: {}: the planned motion counts, without {edits} after its start",
+                scenario.name
+            ));
         }
         let left_out = stillbase_study::tolerance::neglected_effects(&scenario);
         if !left_out.is_empty() && !self.simulate {
             let what = left_out.join(", ");
-            say(format!(
+            print_message(format!(
                 "note: {}: perfect tracking on a fixed base leaves out {what}: --simulate has it",
                 scenario.name
             ));
         }
         if self.simulate && scenario.base.wheel.is_some() {
-            say(format!(
+            print_message(format!(
                 "note: {}: |n_B| of the simulated machines is what the reaction wheel leaves of it for the base",
                 scenario.name
             ));
@@ -226,7 +229,7 @@ impl ToleranceArguments {
         let report = report.ok_or_else(|| Failure::no_answer("no machine was drawn"))?;
         let answer = ToleranceAnswer { report, file: self.output.as_ref().map(|file| file.display().to_string()) };
         if let Some(file) = &answer.file {
-            say(format!("wrote {file}"));
+            print_message(format!("wrote {file}"));
         }
         self.format.print(&answer, |answer| report::text(&answer.report))
     }

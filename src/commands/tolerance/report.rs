@@ -1,7 +1,7 @@
 //! Results of a study, as JSON and as text.
 
 use serde::Serialize;
-use stillbase_settings::number::{counted, fixed, shown};
+use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
 use stillbase_study::tolerance::{Distribution, Distributions, LimitYield, PartReport, SampleOutcome, Share, Yields};
 
 use crate::output::TextTable;
@@ -19,8 +19,8 @@ fn distributions_table(all: &Distributions, nominal: Option<&SampleOutcome>) -> 
     ];
     for (name, d, of) in rows {
         let q = &d.quantiles.values;
-        let nominal = nominal.map_or_else(|| "–".into(), |o| shown(of(o), 6));
-        let numbers = [d.mean, d.deviation, q[0], q[2], q[4], q[6], q[7], q[8]].map(|x| shown(x, 6));
+        let nominal = nominal.map_or_else(|| "–".into(), |o| fixed_or_scientific(of(o), 6));
+        let numbers = [d.mean, d.deviation, q[0], q[2], q[4], q[6], q[7], q[8]].map(|x| fixed_or_scientific(x, 6));
         table.row([name.to_owned(), nominal].into_iter().chain(numbers));
     }
     table
@@ -34,7 +34,7 @@ fn yields_table(yields: &Yields) -> Option<TextTable> {
     for (name, kept) in rows {
         let Some(LimitYield { limit, count }) = kept else { continue };
         let percent = |x: f64| fixed(100.0 * x, 3);
-        let limit = limit.map_or_else(String::new, |x| shown(x, 6));
+        let limit = limit.map_or_else(String::new, |x| fixed_or_scientific(x, 6));
         let between = format!("{} … {}", percent(count.interval[0]), percent(count.interval[1]));
         table.row([name.to_owned(), limit, count.good.to_string(), percent(count.share), between]);
         any = true;
@@ -105,7 +105,7 @@ pub fn text(report: &PartReport) -> String {
     }
     text += &format!("\n{}\n{}", shares_table(report), orders(report));
     for drawn in report.parameters.iter().filter(|d| d.cut > 0.0) {
-        let share = shown(100.0 * drawn.cut, 3);
+        let share = fixed_or_scientific(100.0 * drawn.cut, 3);
         text += &format!("{}: {share} % of its distribution lies below 0 and is never drawn\n", drawn.key);
     }
     if let Some(c) = &report.against_tracking {
@@ -133,7 +133,7 @@ fn shares_table(report: &PartReport) -> TextTable {
     for s in shares.iter().take(MAX_SHARE_ROWS) {
         table.row([
             s.key.clone(),
-            shown(s.deviation, 6),
+            fixed_or_scientific(s.deviation, 6),
             s.unit.to_owned(),
             fixed(s.moment_slope * s.deviation, 6),
             percent(s.moment_share),
@@ -163,12 +163,12 @@ fn orders(report: &PartReport) -> String {
         ("deviation of |f_B|: first order, sampled", &a.force_deviation, a.sampled_tolerance),
     ];
     for (name, gap, tolerance) in rows {
-        let verdict = match gap.worst <= tolerance {
+        let verdict = match gap.largest <= tolerance {
             _ if name.ends_with("sampled") && report.bands.samples < MIN_SAMPLES => "too few samples".into(),
             true => "agree".to_owned(),
             false => format!("part, by more than {} σ", fixed(tolerance, 2)),
         };
-        let numbers = [fixed(gap.worst, 4), fixed(gap.time, 3), fixed(100.0 * gap.share, 1)];
+        let numbers = [fixed(gap.largest, 4), fixed(gap.time, 3), fixed(100.0 * gap.share, 1)];
         table.row([name.to_owned()].into_iter().chain(numbers).chain([verdict]));
     }
     let explained = |x: f64| fixed(100.0 * x, 2);
@@ -178,7 +178,7 @@ fn orders(report: &PartReport) -> String {
         explained(report.shares.moment_first_order),
         explained(report.shares.force_first_order),
     );
-    let parts = [a.force_mean, a.force_deviation].iter().any(|gap| gap.worst > a.sampled_tolerance);
+    let parts = [a.force_mean, a.force_deviation].iter().any(|gap| gap.largest > a.sampled_tolerance);
     if parts && report.bands.samples >= MIN_SAMPLES {
         text += "|f_B| is a norm: near a balanced machine its mean and deviation are not of first order, so read its \
                      percentiles and RMS.\n";

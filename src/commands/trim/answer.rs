@@ -1,7 +1,7 @@
 //! The answer of `stillbase trim` as text.
 
 use stillbase_mechanics::machine::Machine;
-use stillbase_settings::number::{counted, fixed, shown};
+use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
 use stillbase_study::trim::{ExcitationReport, ParameterChange, Suggestion, TrimReport};
 
 use super::super::output::{TextTable, yes};
@@ -20,15 +20,15 @@ pub fn text(report: &TrimReport, machine: &Machine) -> String {
         machine.name(),
         counted(report.motions, "motion"),
         counted(report.rows, "row"),
-        shown(report.size[0], 4),
-        shown(report.noise[0], 4),
-        shown(report.size[1], 4),
-        shown(report.noise[1], 4),
+        fixed_or_scientific(report.size[0], 4),
+        fixed_or_scientific(report.noise[0], 4),
+        fixed_or_scientific(report.size[1], 4),
+        fixed_or_scientific(report.noise[1], 4),
     );
     let mut table =
         TextTable::new(["", "machine", "measured", "± 95 %", "off", "taken as", "±", "after the change", "unit"]);
     for number in &report.numbers {
-        let or = |x: Option<f64>, none: &str| x.map_or_else(|| none.into(), |x| shown(x, 6));
+        let or = |x: Option<f64>, none: &str| x.map_or_else(|| none.into(), |x| fixed_or_scientific(x, 6));
         table.row([
             number.name.clone(),
             fixed(number.nominal, 6),
@@ -36,7 +36,7 @@ pub fn text(report: &TrimReport, machine: &Machine) -> String {
             or(number.half_width, "–"),
             if number.identifiable { yes(number.off).into() } else { "–".into() },
             fixed(number.taken, 6),
-            if number.taken_half_width > 0.0 { shown(number.taken_half_width, 6) } else { "–".into() },
+            if number.taken_half_width > 0.0 { fixed_or_scientific(number.taken_half_width, 6) } else { "–".into() },
             number.residual.filter(|_| number.balance).map_or_else(|| "–".into(), |x| fixed(x, 6)),
             number.unit.into(),
         ]);
@@ -87,7 +87,7 @@ fn suggestion_text(next: &Suggestion) -> String {
             motion.clone(),
             list(&candidate.amplitude),
             list(frequencies),
-            if half.is_finite() { shown(half, 6) } else { "not told".into() },
+            if half.is_finite() { fixed_or_scientific(half, 6) } else { "not told".into() },
             fixed(candidate.all, 2),
         ]);
     }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use stillbase_files::table::motions;
-use stillbase_files::{finish_all, made};
+use stillbase_files::{finish_all, write_temporary};
 use stillbase_mechanics::balance::RebalanceRequest;
 use stillbase_mechanics::counterweights::{CounterweightSpec, Disc, Objective};
 use stillbase_mechanics::machine::{Machine, to_toml};
@@ -18,9 +18,9 @@ use stillbase_study::trim::{
     identified_machine,
 };
 
-use super::exit::say;
+use super::exit::print_message;
 use super::failure::Failure;
-use super::holds::{bound, hold};
+use super::holds::{apply_bounds, bound};
 use super::input::{Settings, read};
 use super::output::{Format, check_output};
 use super::sites::{range, sites};
@@ -112,7 +112,7 @@ impl TrimArguments {
                 counted(self.accelerations.len(), "number")
             )));
         }
-        let way = self.way(&machine)?;
+        let method = self.method(&machine)?;
         let mut recording = MeasurementSet::default();
         for file in files {
             recording.motions.extend(motions(&read(Path::new(file))?, file, &machine)?);
@@ -122,28 +122,30 @@ impl TrimArguments {
             recording: Shared(recording.into()),
             angles_only: self.angles_only,
             as_given: self.as_given,
-            way,
+            method,
             accelerations: Some(self.accelerations.clone()).filter(|all| !all.is_empty()),
         };
         let found = answer_now::<TrimQuery>(request);
         if let Some(noise) = found.angle_noise {
-            say(format!(
+            print_message(format!(
                 "note: noise of the angles is {:.0} % of their accelerations, or samples are too far apart: what is found \
                  may be off; want faster motions or finer encoders",
                 100.0 * noise
             ));
         }
-        found.doubt.iter().for_each(|doubt| say(format!("note: {doubt}")));
-        let Found { report, taken, mended } = found.outcome.map_err(as_failure)?;
+        found.doubt.iter().for_each(|doubt| print_message(format!("note: {doubt}")));
+        let Found { report, adopted, correction } = found.outcome.map_err(as_failure)?;
         self.format.print(&report, |report| answer::text(report, &machine))?;
-        let mended = mended.map_err(Failure::no_answer)?;
+        let mended = correction.map_err(Failure::no_answer)?;
         if self.output.is_none() && self.identified.is_none() {
             return Ok(());
         }
-        let (built, misses) = identified_machine(&machine, &taken).map_err(Failure::no_answer)?;
+        let (built, misses) = identified_machine(&machine, &adopted).map_err(Failure::no_answer)?;
         let scale = |miss: &Vector| miss.norm();
         if misses.iter().map(scale).fold(0.0, f64::max) > 1e-6 {
-            say("note: centres of mass of the links do not explain all that was measured: the file comes close");
+            print_message(
+                "note: centres of mass of the links do not explain all that was measured: the file comes close",
+            );
         }
         let mut files = Vec::new();
         if let Some(file) = &self.identified {
@@ -153,19 +155,19 @@ impl TrimArguments {
             let trimmed = corrected_as_built(&built, &machine, &mended)?;
             files.push((file, named(&trimmed, file, format!("{}, trimmed as measured", machine.name()))?));
         }
-        let written = |(file, text): &(&PathBuf, String)| made(file, text.as_bytes(), self.force);
+        let written = |(file, text): &(&PathBuf, String)| write_temporary(file, text.as_bytes(), self.force);
         match files.as_slice() {
             [one, other] => finish_all([written(one)?, written(other)?])?,
             [one] => finish_all([written(one)?])?,
             _ => {}
         }
-        files.iter().for_each(|(file, _)| say(format!("wrote {}", file.display())));
+        files.iter().for_each(|(file, _)| print_message(format!("wrote {}", file.display())));
         Ok(())
     }
 
     /// Returns the permitted changes: of the present counterweights and the named parameters, or by new counterweights
     /// if there are neither.
-    fn way(&self, machine: &Machine) -> Result<TrimMethod, Failure> {
+    fn method(&self, machine: &Machine) -> Result<TrimMethod, Failure> {
         let weights = machine.spec().counterweights.len();
         let named = !(self.fix.is_empty() && self.free.is_empty() && self.bound.is_empty());
         if weights == 0 && !named {
@@ -179,15 +181,15 @@ impl TrimArguments {
         }
         // Only counterweights and named parameters may change. Without counterweights, if only fixed parameters are
         // named, all other centres of mass may change.
-        let mut asked = match weights {
+        let mut request = match weights {
             0 if self.free.is_empty() && self.bound.is_empty() => {
                 RebalanceRequest::coms(machine, &vec![1.0; machine.links().len()])
             }
             _ => RebalanceRequest::default(),
         };
-        free_weights(&mut asked, machine, |weight| !weight.fixed);
-        hold(&mut asked, machine, &self.fix, &self.free, &self.bound)?;
-        Ok(TrimMethod::Change(asked))
+        free_weights(&mut request, machine, |weight| !weight.fixed);
+        apply_bounds(&mut request, machine, &self.fix, &self.free, &self.bound)?;
+        Ok(TrimMethod::Change(request))
     }
 }
 

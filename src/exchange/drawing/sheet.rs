@@ -5,7 +5,7 @@
 
 use std::f64::consts::PI;
 
-use crate::cut::{Cut, CutError, SAME_PIN_DISTANCE, ends, holes};
+use crate::cut::{Cut, CutError, SAME_PIN_DISTANCE, bar_extent, holes};
 use stillbase_mechanics::machine::{Counterweight, Machine};
 use stillbase_settings::number::{counted, fixed};
 
@@ -138,7 +138,7 @@ impl Piece {
         let weights = machine.spec().counterweights.iter().filter(|weight| weight.link == link.name);
         let weights: Vec<&Counterweight> = weights.collect();
         let holes = holes(machine, j);
-        piece.bar(cut, part.drive, ends(machine, j));
+        piece.bar(cut, part.drive, bar_extent(machine, j));
         for weight in weights.iter().filter(|weight| weight.radius > 0.0) {
             let (at, radius) = ([1e3 * weight.at, 0.0], 1e3 * weight.radius);
             piece.include([at[0] - radius, -radius, at[0] + radius, radius]);
@@ -249,7 +249,7 @@ fn below(machine: &Machine, cut: &Cut, j: usize, weights: &[&Counterweight]) -> 
 
 /// Returns the area of a bar without its holes, m².
 fn outline_area(machine: &Machine, cut: &Cut, j: usize) -> f64 {
-    let (holes, [from, to]) = (holes(machine, j), ends(machine, j));
+    let (holes, [from, to]) = (holes(machine, j), bar_extent(machine, j));
     let round = |diameter: f64| 0.25 * PI * diameter * diameter;
     (to - from) * cut.bar_width + round(cut.bar_width) - holes.len() as f64 * round(cut.pin_diameter)
 }
@@ -261,7 +261,7 @@ fn disc(cut: &Cut, weight: &Counterweight) -> String {
         return format!("counterweight at {at} mm: a point of {mass} kg");
     };
     let across = mm(2.0 * weight.radius);
-    let own = cut.weighs(weight.radius, thickness);
+    let own = cut.disc_mass(weight.radius, thickness);
     let wanted = match (own - weight.mass).abs() <= 5e-4 {
         true => String::new(),
         false => format!(", not {mass} kg"),

@@ -63,7 +63,7 @@ pub fn imported(linkage: &ImportedLinkage) -> Result<ImportedMachine, ImportErro
     let mut notes = linkage.notes.clone();
     let (spec, pose) = Builder { linkage, flat: &flat, notes: &mut notes }.spec()?;
     let base = flat.ground(linkage)?;
-    let machine = Machine::new(spec).map_err(|why| ImportError::whole(why.to_string(), "a machine of the family"))?;
+    let machine = Machine::new(spec).map_err(|why| ImportError::of_file(why.to_string(), "a machine of the family"))?;
     Ok(ImportedMachine { machine, pose, base, notes })
 }
 
@@ -158,7 +158,7 @@ impl Flat {
         let links: Vec<usize> = (0..parts.len()).filter(is_link).collect();
         if links.len() > MAX_LINKS {
             let what = format!("{} links that turn and have mass", links.len());
-            return Err(ImportError::whole(what, format!("at most {MAX_LINKS}")));
+            return Err(ImportError::of_file(what, format!("at most {MAX_LINKS}")));
         }
         Ok(Self { axes, bodies, roots, owners, links, size: size.max(f64::MIN_POSITIVE) })
     }
@@ -174,7 +174,7 @@ impl Flat {
                 return Ok(self.roots[*i]);
             }
         }
-        Err(ImportError::whole("no link with mass turns on the base", "at least one"))
+        Err(ImportError::of_file("no link with mass turns on the base", "at least one"))
     }
 
     /// Returns the base with all parts that are fixed to it, if it has mass and inertia.
@@ -268,11 +268,11 @@ impl Builder<'_> {
         let motors = &linkage.motors;
         if motors.len() > MAX_DRIVES {
             let what = format!("{} motors", motors.len());
-            return Err(ImportError::whole(what, format!("at most {MAX_DRIVES}")));
+            return Err(ImportError::of_file(what, format!("at most {MAX_DRIVES}")));
         }
         let end = linkage.end.filter(|(end, _)| flat.links.contains(end)).ok_or_else(|| {
             let want = "a link end_effector fixed where the machine works, or in MJCF a site of that name";
-            ImportError::whole("nothing says where the end effector is", want)
+            ImportError::of_file("nothing says where the end effector is", want)
         })?;
         let mut points = vec![Vec::new(); linkage.parts.len()];
         let mut carriers = vec![None; linkage.parts.len()];
@@ -342,7 +342,7 @@ impl Builder<'_> {
         let own: Vec<usize> = flat.links.iter().copied().filter(|i| self.linkage.sets[*i] == Some(k)).collect();
         let Some(first) = own.first() else {
             let what = format!("\"{}\" turns no link that has mass", quote_clipped(&self.linkage.motors[k].name));
-            return Err(ImportError::whole(what, "a link for every motor"));
+            return Err(ImportError::of_file(what, "a link for every motor"));
         };
         let farthest = |i: &usize| {
             let all = points[*i].iter().map(|at| at - flat.roots[*i]);

@@ -151,7 +151,7 @@ impl ImportedPart {
 pub fn common_axis(parts: &[ImportedPart]) -> Result<(Unit<Vector3<f64>>, Vec<f64>), ImportError> {
     let first = parts.iter().find_map(|part| part.hinge).map(|(axis, _)| axis);
     let Some(first) = first else {
-        return Err(ImportError::whole("nothing turns", "links on revolute joints or hinges"));
+        return Err(ImportError::of_file("nothing turns", "links on revolute joints or hinges"));
     };
     // The common axis points towards positive z, y or x if possible, so that angles have the sign of the file.
     let up = [first.z, first.y, first.x].into_iter().find(|x| x.abs() > 0.5).unwrap_or(1.0);

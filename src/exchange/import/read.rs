@@ -94,7 +94,7 @@ pub fn number<'a>(node: impl AttributeSource<'a>, name: &'static str) -> Result<
 }
 
 /// Returns the number of a required attribute.
-pub fn given<'a>(node: impl AttributeSource<'a>, name: &'static str) -> Result<f64, ImportError> {
+pub fn required_number<'a>(node: impl AttributeSource<'a>, name: &'static str) -> Result<f64, ImportError> {
     word(&node, name)?;
     number(node, name).map(|x| x.unwrap_or(0.0))
 }
@@ -106,7 +106,7 @@ pub fn vector<'a>(node: impl AttributeSource<'a>, name: &'static str) -> Result<
 
 /// Returns a required mass, kg, not below 0.
 pub fn mass<'a>(node: impl AttributeSource<'a>, name: &'static str) -> Result<f64, ImportError> {
-    match given(&node, name)? {
+    match required_number(&node, name)? {
         mass if mass >= 0.0 => Ok(mass),
         mass => {
             Err(element_error(node.node(), format!("a mass of {} kg", ShortNumber(mass)), "one that is not below 0"))

@@ -24,7 +24,7 @@ impl ImportError {
     }
 
     /// Makes an error of the whole file.
-    pub fn whole(what: impl Into<String>, want: impl Into<String>) -> Self {
+    pub fn of_file(what: impl Into<String>, want: impl Into<String>) -> Self {
         Self { at: None, line: None, element: String::new(), what: what.into(), want: want.into() }
     }
 
@@ -49,5 +49,5 @@ pub fn element_name(node: Node<'_, '_>) -> String {
 
 /// Makes the error that the XML parser reports.
 pub fn syntax(why: &str) -> ImportError {
-    ImportError::whole(shortened(why, 300), "XML without document types, as URDF and MJCF are")
+    ImportError::of_file(shortened(why, 300), "XML without document types, as URDF and MJCF are")
 }

@@ -8,7 +8,7 @@ use roxmltree::Node;
 use super::linkage::{
     Ground, ImportedLinkage, ImportedMotor, ImportedPart, JointLimit, PartPoint, common_axis, end_rank, owners,
 };
-use super::read::{child, each, given, inertia, mass, number, vector, word};
+use super::read::{child, each, inertia, mass, number, required_number, vector, word};
 use super::refusal::{ImportError, element_error, element_name};
 use crate::urdf::meet;
 use stillbase_mechanics::planar::MAX_DRIVES;
@@ -147,7 +147,7 @@ impl<'a> Extension<'a> {
             let i = known.ok_or_else(|| {
                 element_error(node, format!("no link \"{}\"", quote_clipped(name)), "the name of one")
             })?;
-            let at = parts[i].frame * nalgebra::Point3::new(given(node, at)?, 0.0, 0.0);
+            let at = parts[i].frame * nalgebra::Point3::new(required_number(node, at)?, 0.0, 0.0);
             let owner = owners[i]
                 .ok_or_else(|| element_error(node, "a pin on what does not turn", "pins on links that turn"))?;
             Ok::<_, ImportError>((owner, at.coords))
@@ -267,7 +267,7 @@ impl<'a> File<'a> {
         let mut free: Vec<usize> = (0..parts.len()).filter(is_free).collect();
         if free.len() > MAX_DRIVES {
             let want = format!("at most {MAX_DRIVES}");
-            return Err(ImportError::whole(format!("{} joints that move by themselves", free.len()), want));
+            return Err(ImportError::of_file(format!("{} joints that move by themselves", free.len()), want));
         }
         // The independent joints have the order of the file.
         free.sort_by_key(|i| joints[*i].range().start);
@@ -380,7 +380,7 @@ fn body(
     };
     let mass = mass(part("mass")?, "value")?;
     let node = part("inertia")?;
-    let [xx, yy, zz] = [given(node, "ixx")?, given(node, "iyy")?, given(node, "izz")?];
+    let [xx, yy, zz] = [required_number(node, "ixx")?, required_number(node, "iyy")?, required_number(node, "izz")?];
     let pair = |name| number(node, name).map(|x| x.unwrap_or(0.0));
     let all = [xx, yy, zz, pair("ixy")?, pair("ixz")?, pair("iyz")?];
     Ok((mass, place.translation.vector, inertia(all, &Rotation3::from(place.rotation))))

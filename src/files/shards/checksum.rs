@@ -103,7 +103,7 @@ impl Write for CheckedFile {
 ///
 /// # Errors
 /// If the file cannot be read.
-pub fn holds(file: &mut File, end: ChecksumPlace) -> io::Result<Option<bool>> {
+pub fn verify(file: &mut File, end: ChecksumPlace) -> io::Result<Option<bool>> {
     let length = file.metadata()?.len();
     let from = if end == ChecksumPlace::Head { 0 } else { length.saturating_sub(SEARCHED_BYTES) };
     file.seek(SeekFrom::Start(from))?;

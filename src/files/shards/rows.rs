@@ -311,7 +311,7 @@ impl StudyPart {
     pub fn open(file: &Path) -> Result<Self, ShardError> {
         let (kind, mut opened) = plain_file(file)?;
         let unreadable = |e| shard_error(file, e);
-        match checksum::holds(&mut opened, kind.end()).map_err(unreadable)? {
+        match checksum::verify(&mut opened, kind.end()).map_err(unreadable)? {
             Some(true) => Self::load(file),
             Some(false) => {
                 let why = "its checksum does not fit its bytes, so it was changed or damaged: want it written again";

@@ -18,11 +18,11 @@ pub struct TableError {
 impl TableError {
     /// Makes an error of a line, counted from 1.
     pub(super) fn at(file: &str, line: u64, why: impl Display) -> Self {
-        Self { line: Some(line), ..Self::whole(file, why) }
+        Self { line: Some(line), ..Self::of_file(file, why) }
     }
 
     /// Makes an error of the whole text.
-    pub(super) fn whole(file: &str, why: impl Display) -> Self {
+    pub(super) fn of_file(file: &str, why: impl Display) -> Self {
         Self { file: file.to_owned(), line: None, why: why.to_string().into() }
     }
 

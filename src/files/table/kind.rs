@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::column::angles;
 use super::error::TableError;
-use super::measured::{feels, motions_or};
+use super::measured::{has_base_reaction, motions_or};
 use super::reader::TableReader;
 use super::samples::{SampleTable, samples_or};
 use crate::text::read;
@@ -30,7 +30,7 @@ impl TableData {
         let name = file.display().to_string();
         let text = read(file).map_err(|e| {
             let want = format!("want a plain file that can be read, of at most {MAX_TEXT_BYTES} bytes");
-            TableError::whole(&name, format!("{e}: {want}"))
+            TableError::of_file(&name, format!("{e}: {want}"))
         })?;
         Self::of(&text, &name, machine, gaps)
     }
@@ -44,7 +44,7 @@ impl TableData {
     /// If the text is neither; the error has its place and the expected columns of both kinds.
     pub fn of(text: &str, file: &str, machine: &Machine, gaps: bool) -> Result<Self, TableError> {
         let want = head_wanted(machine);
-        match feels(TableReader::new(text, file, &want)?.head()) {
+        match has_base_reaction(TableReader::new(text, file, &want)?.head()) {
             true => motions_or(text, file, machine, &want).map(Self::Measurement),
             false => samples_or(text, file, machine, None, gaps, &want).map(Self::Motion),
         }

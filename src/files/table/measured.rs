@@ -105,13 +105,13 @@ pub(super) fn motions_or(
         }
     }
     if parts.is_empty() {
-        return Err(TableError::whole(file, "no rows of numbers: want motions that were measured"));
+        return Err(TableError::of_file(file, "no rows of numbers: want motions that were measured"));
     }
     Ok(parts.iter().map(|part| columns.motion_of(&part.rows)).collect())
 }
 
 /// Returns whether a table has a column of a force or a moment on the base.
-pub(super) fn feels(head: &csv::StringRecord) -> bool {
+pub(super) fn has_base_reaction(head: &csv::StringRecord) -> bool {
     let is = |cell: &str, names: &[&str], units: UnitNames| names.contains(&name_and_unit(cell, units).0.as_str());
     head.iter().any(|cell| is(cell, FORCE_X, FORCE) || is(cell, FORCE_Y, FORCE) || is(cell, MOMENT_Z, MOMENT))
 }

@@ -73,7 +73,7 @@ impl<'a> TableReader<'a> {
     /// If the text is not CSV.
     pub fn row(&mut self) -> Result<Option<TableRow<'a>>, TableError> {
         let Some(cells) = self.records.next() else { return Ok(None) };
-        let cells = cells.map_err(|e| TableError::whole(self.file, format!("{e}: want a CSV file")))?;
+        let cells = cells.map_err(|e| TableError::of_file(self.file, format!("{e}: want a CSV file")))?;
         Ok(Some(TableRow { file: self.file, line: line_of(&cells), cells }))
     }
 }

@@ -72,7 +72,7 @@ pub(super) fn samples_or(
     }
     if rows.len() < MIN_SPLINE_SAMPLES {
         let why = format!("{} of numbers: want at least {MIN_SPLINE_SAMPLES}", counted(rows.len(), "row"));
-        return Err(TableError::whole(file, why));
+        return Err(TableError::of_file(file, why));
     }
     if let Some((i, step, usual)) = gap(&rows).filter(|_| !gaps) {
         let what = format!(
@@ -91,7 +91,7 @@ pub(super) fn samples_or(
         unwrapped[k - 1] = turns.map_err(|broken| TableError::at(file, lines[broken.row], broken.why(&lines)))?;
     }
     let names = columns.all[1..].iter().map(|c| c.name.clone()).collect();
-    let samples = Samples::new(&rows).map_err(|why| TableError::whole(file, why))?;
+    let samples = Samples::new(&rows).map_err(|why| TableError::of_file(file, why))?;
     Ok(SampleTable { coordinates: columns.coordinates, samples, names, unwrapped })
 }
 

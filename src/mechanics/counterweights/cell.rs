@@ -3,7 +3,7 @@
 //! If D_k is negative, more inertia reduces |D_k|, so s²/w and w² need upper bounds. For x from a to b,
 //! s²/w ≤ (a + b) s − a b w. For w from a to b, w² ≤ (a + b) w − a b. Both are equalities at a and at b.
 
-use super::spec::{CounterweightSpec, Sites};
+use super::spec::{CounterweightSite, CounterweightSpec};
 use stillbase_convex::{LinearRow, Program};
 
 /// Range of mass, kg, and of position, m.
@@ -18,13 +18,13 @@ const MIN_WIDTH: f64 = 1e-6;
 
 impl SearchCell {
     /// Returns the cell of all masses and positions that a site allows.
-    pub fn of(asked: &CounterweightSpec, site: &Sites) -> Self {
-        Self { mass: [0.0, site.most.min(asked.most_mass.unwrap_or(f64::INFINITY))], at: [site.from, site.to] }
+    pub fn of(request: &CounterweightSpec, site: &CounterweightSite) -> Self {
+        Self { mass: [0.0, site.most.min(request.max_added_mass.unwrap_or(f64::INFINITY))], at: [site.from, site.to] }
     }
 
     /// Adds rows that keep w and s in the cell, and upper bounds of u, which represents s²/w, and of v, the disc's own
     /// inertia.
-    pub fn enter(&self, asked: &CounterweightSpec, [w, s, u, v]: [usize; 4], program: &mut Program) {
+    pub fn enter(&self, request: &CounterweightSpec, [w, s, u, v]: [usize; 4], program: &mut Program) {
         let ([light, heavy], [from, to]) = (self.mass, self.at);
         let mut most = |terms: &[(usize, f64)], right: f64| program.at_most.push(LinearRow::new(terms, right));
         most(&[(w, from), (s, -1.0)], 0.0);
@@ -34,7 +34,7 @@ impl SearchCell {
             most(&[(w, -1.0)], -light);
         }
         if heavy.is_finite() {
-            let own = asked.disc.own();
+            let own = request.disc.own();
             most(&[(w, 1.0)], heavy);
             most(&[(v, 1.0), (w, -own * (light + heavy))], -own * light * heavy);
         }

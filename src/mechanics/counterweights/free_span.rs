@@ -23,13 +23,13 @@ impl FreeSpan {
     }
 
     /// Adds constraints that keep the disc with unknowns w and s in the interval.
-    pub fn enter(&self, asked: &CounterweightSpec, [w, s]: [usize; 2], program: &mut Program) {
-        let (clearance, spread) = (asked.clearance.unwrap_or_default(), asked.disc.spread());
+    pub fn enter(&self, request: &CounterweightSpec, [w, s]: [usize; 2], program: &mut Program) {
+        let (clearance, spread) = (request.clearance.unwrap_or_default(), request.disc.spread());
         // y ≤ √w and z ≥ w²/y, so z ≥ w^1.5.
         let (y, z) = (program.linear.len(), program.linear.len() + 1);
         program.linear.extend([0.0, 0.0]);
         program.above_square(w, 1.0, y);
-        program.above_quotient(z, y, w);
+        program.add_rotated_cone(z, y, w);
         if self.from.is_finite() {
             program.at_most.push(LinearRow::new([(w, self.from + clearance), (z, spread), (s, -1.0)], 0.0));
         }

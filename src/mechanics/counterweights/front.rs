@@ -1,6 +1,6 @@
 //! [`front`]: the Pareto front of added mass and inertia.
 
-use super::place::{Placed, place_weights};
+use super::place::{PlacedCounterweights, place_weights};
 use super::refusal::CounterweightError;
 use super::spec::{CounterweightSpec, Objective};
 use crate::machine::{Inertia, Machine};
@@ -11,7 +11,7 @@ use stillbase_query::{Portion, ProgressCallback, Query, answer_now};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Front {
     /// The points, by increasing mass and decreasing inertia.
-    pub points: Vec<Placed>,
+    pub points: Vec<PlacedCounterweights>,
 }
 
 impl Front {
@@ -21,7 +21,7 @@ impl Front {
     }
 }
 
-fn measures(placed: &Placed) -> [f64; 2] {
+fn measures(placed: &PlacedCounterweights) -> [f64; 2] {
     [placed.added_mass, Inertia::of(&placed.machine).total_momentum()]
 }
 
@@ -34,8 +34,8 @@ const RELATIVE_TOLERANCE: f64 = 1e-9;
 ///
 /// # Errors
 /// As [`place_weights`].
-pub fn front(machine: &Machine, asked: &CounterweightSpec, count: usize) -> Result<Front, CounterweightError> {
-    answer_now::<FrontSearch>((machine.clone(), asked.clone(), count))
+pub fn front(machine: &Machine, request: &CounterweightSpec, count: usize) -> Result<Front, CounterweightError> {
+    answer_now::<FrontSearch>((machine.clone(), request.clone(), count))
 }
 
 /// The search for the Pareto front that [`front`] returns; each portion of work finds one point.
@@ -46,16 +46,16 @@ pub struct FrontSearch {
     inertia: CounterweightSpec,
     count: usize,
     /// The points found so far, by increasing mass, with their measures.
-    points: Vec<([f64; 2], Placed)>,
+    points: Vec<([f64; 2], PlacedCounterweights)>,
 }
 
 impl Query for FrontSearch {
     type Input = (Machine, CounterweightSpec, usize);
     type Answer = Result<Front, CounterweightError>;
 
-    fn begin((machine, asked, count): Self::Input) -> Self {
-        let mass = CounterweightSpec { objective: Objective::mass(), ..asked.clone() };
-        let inertia = CounterweightSpec { objective: Objective::inertia(), ..asked };
+    fn begin((machine, request, count): Self::Input) -> Self {
+        let mass = CounterweightSpec { objective: Objective::mass(), ..request.clone() };
+        let inertia = CounterweightSpec { objective: Objective::inertia(), ..request };
         Self { machine, mass, inertia, count, points: Vec::with_capacity(count) }
     }
 
@@ -80,7 +80,7 @@ impl FrontSearch {
     /// Adds one more point; returns false if the Pareto front is complete.
     fn one_more(&mut self) -> Result<bool, CounterweightError> {
         let Self { machine, mass, inertia, count, points } = self;
-        let (i, asked) = match points.len() {
+        let (i, request) = match points.len() {
             // Least inertia comes first, so that it reports the errors that both objectives share.
             0 => (0, inertia.clone()),
             1 => (0, mass.clone()),
@@ -103,13 +103,13 @@ impl FrontSearch {
                 };
                 let halfway = |axis: usize| Some(0.5 * (points[i].0[axis] + points[i + 1].0[axis]));
                 let between = match by_mass > by_inertia {
-                    true => CounterweightSpec { most_mass: halfway(0), ..inertia.clone() },
-                    false => CounterweightSpec { most_inertia: halfway(1), ..mass.clone() },
+                    true => CounterweightSpec { max_added_mass: halfway(0), ..inertia.clone() },
+                    false => CounterweightSpec { max_inertia: halfway(1), ..mass.clone() },
                 };
                 (i + 1, between)
             }
         };
-        let placed = place_weights(machine, &asked)?;
+        let placed = place_weights(machine, &request)?;
         points.insert(i, (measures(&placed), placed));
         Ok(true)
     }

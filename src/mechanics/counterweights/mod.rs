@@ -19,7 +19,6 @@ mod payload;
 mod place;
 mod problem;
 mod program;
-mod question;
 mod refusal;
 mod relief;
 mod residual;
@@ -27,14 +26,16 @@ mod search;
 mod search_node;
 mod solution;
 mod spec;
+mod task;
 mod tolerance;
 mod unknowns;
 
 pub use front::{Front, FrontSearch, front};
-pub use payload::{Residual, over_payloads};
-pub use place::{Placed, place_weights, place_weights_with, unreachable_by_weights};
+pub use payload::{PayloadResidual, over_payloads};
+pub use place::{PlacedCounterweights, place_weights, place_weights_with, unreachable_by_weights};
 pub use refusal::{Bound, BoundRelaxation, CounterweightError};
 pub use spec::{
-    CounterweightSpec, DENSITY_RANGE, Disc, FreeRotor, MATERIALS, Objective, RotorFreedom, Sites, THICKNESS_RANGE,
+    CounterweightSite, CounterweightSpec, DENSITY_RANGE, Disc, FreeRotor, MATERIALS, Objective, RotorFreedom,
+    THICKNESS_RANGE,
 };
 pub use tolerance::{PlacementTolerance, WorstResidual, worst_residual};

@@ -7,7 +7,7 @@ use crate::machine::{Inertia, Machine, MachineError};
 
 /// Largest residuals of (7) and of (8) with one payload.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Residual {
+pub struct PayloadResidual {
     /// Mass of the payload, kg.
     pub payload: f64,
     /// Largest residual of (7), |g_k|, kg m.
@@ -20,7 +20,11 @@ pub struct Residual {
 ///
 /// # Errors
 /// If the machine is not valid with one of the payloads.
-pub fn over_payloads(machine: &Machine, [low, high]: [f64; 2], count: usize) -> Result<Vec<Residual>, MachineError> {
+pub fn over_payloads(
+    machine: &Machine,
+    [low, high]: [f64; 2],
+    count: usize,
+) -> Result<Vec<PayloadResidual>, MachineError> {
     let steps = count.max(2) - 1;
     let at = |i: usize| {
         let mut spec = machine.spec().clone();
@@ -32,7 +36,7 @@ pub fn over_payloads(machine: &Machine, [low, high]: [f64; 2], count: usize) -> 
             let alike = all.filter(|condition| matches!(condition, Condition::Force(_)) == of_force);
             alike.map(|condition| condition.residual(&inertia).norm()).fold(0.0, f64::max)
         };
-        Ok(Residual { payload, force: greatest(true), coupling: greatest(false) })
+        Ok(PayloadResidual { payload, force: greatest(true), coupling: greatest(false) })
     };
     (0..=steps).map(at).collect()
 }

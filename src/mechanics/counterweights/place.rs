@@ -2,18 +2,18 @@
 
 use super::problem::CounterweightProblem;
 use super::program::SOLVER_ROUNDING;
-use super::question::CounterweightTask;
 use super::refusal::CounterweightError;
 use super::relief::sufficient_reliefs;
 use super::search_node::BalanceGoal;
-use super::spec::{CounterweightSpec, Objective, Sites};
+use super::spec::{CounterweightSite, CounterweightSpec, Objective};
+use super::task::CounterweightTask;
 use crate::machine::{Inertia, Machine};
 use crate::planar::Vector;
 use stillbase_convex::{NoOptimum, Optimum};
 
 /// Counterweights, and the machine that carries them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Placed {
+pub struct PlacedCounterweights {
     /// The machine, balanced to rounding. Over a range of payloads, its largest residual is minimal, and it carries the
     /// mean payload.
     pub machine: Machine,
@@ -25,7 +25,7 @@ pub struct Placed {
     pub gap: f64,
 }
 
-impl Placed {
+impl PlacedCounterweights {
     /// Returns whether the value is certified as the optimum, to rounding. A search may stop before it has proved
     /// optimality.
     pub fn is_certified(&self) -> bool {
@@ -50,8 +50,11 @@ const MAX_GAP: f64 = 5e-7;
 ///
 /// # Errors
 /// If the request is not valid, or if its requirements contradict each other.
-pub fn place_weights(machine: &Machine, asked: &CounterweightSpec) -> Result<Placed, CounterweightError> {
-    place_weights_with(machine, asked, &[])
+pub fn place_weights(
+    machine: &Machine,
+    request: &CounterweightSpec,
+) -> Result<PlacedCounterweights, CounterweightError> {
+    place_weights_with(machine, request, &[])
 }
 
 /// As [`place_weights`], but each condition has a known additional residual in `beyond`, kg m or kg m², in the order of
@@ -64,13 +67,13 @@ pub fn place_weights_with(
     machine: &Machine,
     spec: &CounterweightSpec,
     beyond: &[Vector],
-) -> Result<Placed, CounterweightError> {
+) -> Result<PlacedCounterweights, CounterweightError> {
     let problem = CounterweightProblem::new(machine, spec, beyond)?;
     problem.check()?;
     if problem.needs_nothing(spec) {
         let inertia = Inertia::of(&problem.bare);
         let value = spec.objective.of(0.0, &inertia);
-        return Ok(Placed { machine: problem.bare, added_mass: 0.0, value, gap: 0.0 });
+        return Ok(PlacedCounterweights { machine: problem.bare, added_mass: 0.0, value, gap: 0.0 });
     }
     let one = CounterweightTask { problem: &problem, machine, spec, beyond };
     one.found()?.map_err(|weights| one.refusal(&weights))
@@ -84,16 +87,16 @@ pub fn place_weights_with(
 /// If the request is not valid.
 pub fn unreachable_by_weights(
     machine: &Machine,
-    asked: &CounterweightSpec,
+    request: &CounterweightSpec,
     beyond: &[Vector],
 ) -> Result<Vec<Vector>, CounterweightError> {
-    Ok(CounterweightProblem::new(machine, asked, beyond)?.unreachable(asked.sites.len()))
+    Ok(CounterweightProblem::new(machine, request, beyond)?.unreachable(request.sites.len()))
 }
 
 impl CounterweightTask<'_> {
     /// Finds the counterweights. If there are none, returns the weights of the bounds in the certificate of
     /// infeasibility without clearance. These are empty if only the clearance of pins makes the problem infeasible.
-    fn found(&self) -> Result<Result<Placed, Vec<f64>>, CounterweightError> {
+    fn found(&self) -> Result<Result<PlacedCounterweights, Vec<f64>>, CounterweightError> {
         if self.balance() == BalanceGoal::Nearest {
             return self.nearest();
         }
@@ -109,9 +112,9 @@ impl CounterweightTask<'_> {
     }
 
     /// Returns the solution of least inertia among those of the same mass, if mass alone is minimised.
-    fn least_inertia(&self, best: Placed, least: &Optimum) -> Placed {
-        let CounterweightSpec { objective, most_inertia, .. } = self.spec;
-        if objective.depends_on_inertia() || objective.mass == 0.0 || most_inertia.is_some() {
+    fn least_inertia(&self, best: PlacedCounterweights, least: &Optimum) -> PlacedCounterweights {
+        let CounterweightSpec { objective, max_inertia, .. } = self.spec;
+        if objective.depends_on_inertia() || objective.mass == 0.0 || max_inertia.is_some() {
             return best;
         }
         let objective = Objective { inertia: TIE_BREAK_WEIGHT * objective.mass, ..objective.clone() };
@@ -123,23 +126,23 @@ impl CounterweightTask<'_> {
     }
 
     /// Returns a solution without the counterweights of negligible mass, if one is optimal within [`MAX_GAP`].
-    fn simpler(&self, best: Placed) -> Placed {
+    fn simpler(&self, best: PlacedCounterweights) -> PlacedCounterweights {
         let weights = || best.machine.spec().counterweights.iter().filter(|weight| !weight.fixed);
         let is_light = |mass: f64| mass < NEGLIGIBLE_MASS_FRACTION * best.added_mass;
         if !weights().any(|weight| is_light(weight.mass)) {
             return best;
         }
-        let carries = |site: &Sites| {
+        let carries = |site: &CounterweightSite| {
             let link = &self.machine.links()[site.link].name;
             weights().any(|weight| weight.link == *link && !is_light(weight.mass))
         };
-        let sites: Vec<Sites> = self.spec.sites.iter().copied().filter(carries).collect();
+        let sites: Vec<CounterweightSite> = self.spec.sites.iter().copied().filter(carries).collect();
         let fewer = CounterweightSpec { sites, ..self.spec.clone() };
         self.exact(&fewer).and_then(|found| self.within_max_gap(found, best.value - best.gap)).unwrap_or(best)
     }
 
     /// Returns the optimum of another request with exact balance, if there is one.
-    fn exact(&self, spec: &CounterweightSpec) -> Option<Placed> {
+    fn exact(&self, spec: &CounterweightSpec) -> Option<PlacedCounterweights> {
         let problem = CounterweightProblem::new(self.machine, spec, self.beyond).ok()?;
         problem.check().ok()?;
         let one = CounterweightTask { problem: &problem, spec, ..*self };
@@ -149,15 +152,15 @@ impl CounterweightTask<'_> {
     }
 
     /// Returns a solution with its gap to `bound`, a lower bound of the objective; `None` if the gap is too large.
-    fn within_max_gap(&self, found: Placed, bound: f64) -> Option<Placed> {
+    fn within_max_gap(&self, found: PlacedCounterweights, bound: f64) -> Option<PlacedCounterweights> {
         let value = self.spec.objective.of(found.added_mass, &Inertia::of(&found.machine));
         let gap = (value - bound).max(found.gap);
-        (gap < MAX_GAP).then_some(Placed { value, gap, ..found })
+        (gap < MAX_GAP).then_some(PlacedCounterweights { value, gap, ..found })
     }
 
     /// Minimises the largest residual over all payloads, then the objective. Prefers exact balance with the mean
     /// payload if its objective is no larger, within [`MAX_GAP`].
-    fn nearest(&self) -> Result<Result<Placed, Vec<f64>>, CounterweightError> {
+    fn nearest(&self) -> Result<Result<PlacedCounterweights, Vec<f64>>, CounterweightError> {
         let found = |balance| match self.least(balance)? {
             Ok(least) => Ok(Ok(least)),
             Err(NoOptimum::Contradiction(weights)) => Ok(Err(weights)),
@@ -180,11 +183,11 @@ impl CounterweightTask<'_> {
         Ok(Ok(self.placed(&least, balance)?))
     }
 
-    fn placed(&self, least: &Optimum, balance: BalanceGoal) -> Result<Placed, CounterweightError> {
+    fn placed(&self, least: &Optimum, balance: BalanceGoal) -> Result<PlacedCounterweights, CounterweightError> {
         let (added_mass, machine) = self.problem.machine(self.machine, self.spec, &least.x, balance)?;
         let value = self.spec.objective.of(added_mass, &Inertia::of(&machine));
         // The gap is that of the finished machine: the dual value is a lower bound of the objective.
-        Ok(Placed { machine, added_mass, value, gap: (value - (least.value - least.gap)).max(least.gap) })
+        Ok(PlacedCounterweights { machine, added_mass, value, gap: (value - (least.value - least.gap)).max(least.gap) })
     }
 
     /// Returns the reason why there are no counterweights; `weights` come from [`found`](Self::found).
@@ -193,12 +196,12 @@ impl CounterweightTask<'_> {
             |spec: &CounterweightSpec| CounterweightTask { spec, ..*self }.found().is_ok_and(|found| found.is_ok());
         let would = || sufficient_reliefs(self, &is_feasible);
         match self.spec.clearance {
-            Some(asked) if weights.is_empty() => CounterweightError::Reaches { asked, would: would() },
+            Some(clearance) if weights.is_empty() => CounterweightError::Reaches { clearance, reliefs: would() },
             _ => {
                 let bounds = self.problem.conflict(self.machine, self.spec, self.balance(), weights);
                 match bounds.is_empty() {
                     true => CounterweightError::TooFew,
-                    false => CounterweightError::Conflict { bounds, would: would() },
+                    false => CounterweightError::Conflict { bounds, reliefs: would() },
                 }
             }
         }

@@ -22,21 +22,21 @@ impl CounterweightProblem {
     ///
     /// # Errors
     /// If the request is not valid.
-    pub fn new(machine: &Machine, asked: &CounterweightSpec, beyond: &[Vector]) -> Result<Self, CounterweightError> {
-        asked.check(machine)?;
+    pub fn new(machine: &Machine, request: &CounterweightSpec, beyond: &[Vector]) -> Result<Self, CounterweightError> {
+        request.check(machine)?;
         let mut spec = machine.without_counterweights()?.spec().clone();
-        asked.rotors.iter().for_each(|rotor| spec.drives[rotor.drive].rotor = None);
-        if let Some([low, high]) = asked.payload {
+        request.rotors.iter().for_each(|rotor| spec.drives[rotor.drive].rotor = None);
+        if let Some([low, high]) = request.payload {
             spec.payload.mass = 0.5 * (low + high);
         }
         let bare = Machine::new(spec)?;
         let inertia = Inertia::of(&bare);
-        let of_rotors = asked.rotors.iter().any(|rotor| bare.motors().on(rotor.drive).is_some());
-        if asked.objective.torque > 0.0 && (!inertia.is_decoupled() || of_rotors) {
+        let of_rotors = request.rotors.iter().any(|rotor| bare.motors().on(rotor.drive).is_some());
+        if request.objective.torque > 0.0 && (!inertia.is_decoupled() || of_rotors) {
             return Err(CounterweightError::Coupled);
         }
         let reach = bare.reach();
-        let conditions = conditions(&bare, &inertia, asked, beyond)?;
+        let conditions = conditions(&bare, &inertia, request, beyond)?;
         Ok(Self { bare, inertia, conditions, reach })
     }
 
@@ -45,7 +45,7 @@ impl CounterweightProblem {
     /// # Errors
     /// If they cannot change one of these conditions.
     pub fn check(&self) -> Result<(), CounterweightError> {
-        for ConditionResidual { of, residual, .. } in &self.conditions {
+        for ConditionResidual { condition: of, residual, .. } in &self.conditions {
             if residual.im.abs() > 1e-9 {
                 let residual = format!("{:.3e} {}", residual.im, of.unit());
                 return Err(CounterweightError::OffAxis { condition: of.name(&self.bare), residual });
@@ -53,12 +53,16 @@ impl CounterweightProblem {
         }
         for condition in self.conditions.iter().filter(|condition| !condition.is_touched()) {
             if condition.residual.re.abs() > 1e-9 {
-                let residual = format!("{:.3e} {}", condition.residual.re, condition.of.unit());
+                let residual = format!("{:.3e} {}", condition.residual.re, condition.condition.unit());
                 let parts = self.bare.links().iter().zip(self.bare.resolved_links());
-                let of = |part| condition.of.by_mass(part) != 0.0 || condition.of.by_moment(part) != 0.0;
+                let of = |part| condition.condition.by_mass(part) != 0.0 || condition.condition.by_moment(part) != 0.0;
                 let would: Vec<&str> = parts.filter(|(_, part)| of(part)).map(|(link, _)| link.name.as_str()).collect();
                 let want = format!("one of {}", would.join(", "));
-                return Err(CounterweightError::Untouched { condition: condition.of.name(&self.bare), residual, want });
+                return Err(CounterweightError::Untouched {
+                    condition: condition.condition.name(&self.bare),
+                    residual,
+                    want,
+                });
             }
         }
         Ok(())
@@ -79,15 +83,15 @@ impl CounterweightProblem {
 
     /// Returns whether no counterweights are needed. Counterweights only add mass and inertia, so the optimum then has
     /// none.
-    pub fn needs_nothing(&self, asked: &CounterweightSpec) -> bool {
+    pub fn needs_nothing(&self, request: &CounterweightSpec) -> bool {
         let total: f64 = self.inertia.total_momentum();
-        asked.rotors.is_empty()
-            && asked.objective.momentum == 0.0
+        request.rotors.is_empty()
+            && request.objective.momentum == 0.0
             && self
                 .conditions
                 .iter()
-                .all(|condition| condition.residual.norm() <= condition.of.tolerance(&self.inertia))
-            && asked.most_inertia.is_none_or(|most| total <= most)
+                .all(|condition| condition.residual.norm() <= condition.condition.tolerance(&self.inertia))
+            && request.max_inertia.is_none_or(|most| total <= most)
     }
 
     pub fn drives(&self) -> usize {

@@ -16,10 +16,15 @@ pub(super) const SOLVER_ROUNDING: [f64; 2] = [1e-7, 1e-10];
 
 impl CounterweightProblem {
     /// Solves the cone program of one subproblem.
-    pub fn least(&self, machine: &Machine, asked: &CounterweightSpec, node: &SearchNode) -> Result<Optimum, NoOptimum> {
-        let solve = |node: &SearchNode| self.program(machine, asked, &self.bounds(machine, asked), node).solve();
+    pub fn least(
+        &self,
+        machine: &Machine,
+        request: &CounterweightSpec,
+        node: &SearchNode,
+    ) -> Result<Optimum, NoOptimum> {
+        let solve = |node: &SearchNode| self.program(machine, request, &self.bounds(machine, request), node).solve();
         let first = solve(node)?;
-        if asked.objective.momentum == 0.0 || node.balance == BalanceGoal::Nearest || node.least.is_some() {
+        if request.objective.momentum == 0.0 || node.balance == BalanceGoal::Nearest || node.least.is_some() {
             return Ok(first);
         }
         // The relaxation may overestimate inertia, so that a rotor seems to cancel more momentum than there is.
@@ -34,12 +39,12 @@ impl CounterweightProblem {
     pub fn conflict(
         &self,
         machine: &Machine,
-        asked: &CounterweightSpec,
+        request: &CounterweightSpec,
         balance: BalanceGoal,
         weights: &[f64],
     ) -> Vec<Bound> {
-        let (bounds, node) = (self.bounds(machine, asked), SearchNode::unconstrained(asked, balance));
-        let any = CounterweightSpec { objective: Objective::mass(), ..asked.clone() };
+        let (bounds, node) = (self.bounds(machine, request), SearchNode::unconstrained(request, balance));
+        let any = CounterweightSpec { objective: Objective::mass(), ..request.clone() };
         let contradicts = |bounds: &[(Bound, LinearRow)]| {
             matches!(self.program(machine, &any, bounds, &node).solve(), Err(NoOptimum::Contradiction(_)))
         };
@@ -51,40 +56,40 @@ impl CounterweightProblem {
     pub fn program(
         &self,
         machine: &Machine,
-        asked: &CounterweightSpec,
+        request: &CounterweightSpec,
         bounds: &[(Bound, LinearRow)],
         node: &SearchNode,
     ) -> Program {
-        let unknowns = UnknownIndices::of(asked, self.drives());
-        let mut program = Program::over(unknowns.torque() + usize::from(asked.objective.torque > 0.0));
-        for j in 0..asked.sites.len() {
-            program.linear[unknowns.w(j)] += asked.objective.mass;
+        let unknowns = UnknownIndices::of(request, self.drives());
+        let mut program = Program::over(unknowns.torque() + usize::from(request.objective.torque > 0.0));
+        for j in 0..request.sites.len() {
+            program.linear[unknowns.w(j)] += request.objective.mass;
             program.at_most.push(LinearRow::new([(unknowns.w(j), -1.0)], 0.0));
         }
-        self.enter_rotors(machine, asked, &unknowns, &mut program);
+        self.enter_rotors(machine, request, &unknowns, &mut program);
         if unknowns.inertia {
-            self.enter_inertia(asked, &unknowns, &mut program);
-            self.cost(machine, asked, &unknowns, &mut program);
-            self.enter_motion(machine, asked, &unknowns, node, &mut program);
+            self.enter_inertia(request, &unknowns, &mut program);
+            self.cost(machine, request, &unknowns, &mut program);
+            self.enter_motion(machine, request, &unknowns, node, &mut program);
         }
         if unknowns.momentum {
             for (j, cell) in node.cells.iter().enumerate() {
                 let [w, s, u, v] = [unknowns.w(j), unknowns.s(j), unknowns.u(j), unknowns.v(j)];
-                cell.enter(asked, [w, s, u, v], &mut program);
+                cell.enter(request, [w, s, u, v], &mut program);
             }
         }
         if let Some(most) = node.most {
             let terms: Vec<_> = program.linear.iter().copied().enumerate().filter(|(_, by)| *by != 0.0).collect();
             program.at_most.push(LinearRow::new(terms, most));
             program.linear.fill(0.0);
-            let tie_break = CounterweightSpec { objective: Objective::inertia(), ..asked.clone() };
-            (0..asked.sites.len()).for_each(|j| program.linear[unknowns.w(j)] = 1.0);
+            let tie_break = CounterweightSpec { objective: Objective::inertia(), ..request.clone() };
+            (0..request.sites.len()).for_each(|j| program.linear[unknowns.w(j)] = 1.0);
             self.cost(machine, &tie_break, &unknowns, &mut program);
         }
         self.enter_balance(&unknowns, node.balance, &mut program);
         for (j, room) in node.rooms.iter().enumerate() {
             if let Some(room) = room {
-                room.enter(asked, [unknowns.w(j), unknowns.s(j)], &mut program);
+                room.enter(request, [unknowns.w(j), unknowns.s(j)], &mut program);
             }
         }
         let firm = bounds.iter().filter(|(bound, _)| !bound.kind().is_some_and(|kind| node.loose.contains(&kind)));
@@ -95,7 +100,7 @@ impl CounterweightProblem {
             let (most, start) = (program.linear.len(), program.at_most.len() - firm.clone().count());
             program.linear.push(1.0);
             for ((bound, _), row) in firm.zip(&mut program.at_most[start..]).filter(|(b, _)| b.0.kind() == Some(kind)) {
-                row.right -= asked.value_of(bound, &self.bare);
+                row.right -= request.value_of(bound, &self.bare);
                 row.terms.push((most, -1.0));
             }
         }
@@ -122,7 +127,7 @@ impl CounterweightProblem {
         }
         program.linear.push(if balance == BalanceGoal::Nearest { 1.0 } else { 0.0 });
         for condition in &self.conditions {
-            let per = if matches!(condition.of, Condition::Force(_)) { 1.0 } else { self.reach };
+            let per = if matches!(condition.condition, Condition::Force(_)) { 1.0 } else { self.reach };
             for (sign, end) in [-1.0, 1.0].into_iter().flat_map(|sign| condition.ends.map(|end| (sign, end))) {
                 let mut terms = terms(condition, sign);
                 terms.push((worst, -per));
@@ -137,11 +142,11 @@ impl CounterweightProblem {
     fn enter_rotors(
         &self,
         machine: &Machine,
-        asked: &CounterweightSpec,
+        request: &CounterweightSpec,
         unknowns: &UnknownIndices,
         program: &mut Program,
     ) {
-        for (i, rotor) in asked.rotors.iter().enumerate() {
+        for (i, rotor) in request.rotors.iter().enumerate() {
             let (x, turned) = (unknowns.rotor(i), unknowns.turned(i));
             let ends = match rotor.parameter {
                 RotorFreedom::Inertia(ends) => {
@@ -160,15 +165,15 @@ impl CounterweightProblem {
     }
 
     /// Adds the equations for the diagonal H_kk of the mass matrix without free rotors.
-    fn enter_inertia(&self, asked: &CounterweightSpec, unknowns: &UnknownIndices, program: &mut Program) {
+    fn enter_inertia(&self, request: &CounterweightSpec, unknowns: &UnknownIndices, program: &mut Program) {
         let parts = self.bare.resolved_links();
-        for j in 0..asked.sites.len() {
-            program.above_quotient(unknowns.u(j), unknowns.w(j), unknowns.s(j));
-            program.above_square(unknowns.v(j), asked.disc.own(), unknowns.w(j));
+        for j in 0..request.sites.len() {
+            program.add_rotated_cone(unknowns.u(j), unknowns.w(j), unknowns.s(j));
+            program.above_square(unknowns.v(j), request.disc.own(), unknowns.w(j));
         }
         for k in 0..self.drives() {
             let mut terms = vec![(unknowns.h(k), 1.0)];
-            for (j, site) in asked.sites.iter().enumerate() {
+            for (j, site) in request.sites.iter().enumerate() {
                 let (root, part) = (parts[site.link].root[k], &parts[site.link]);
                 terms.push((unknowns.w(j), -root * root));
                 if part.drive == k {
@@ -182,11 +187,11 @@ impl CounterweightProblem {
     }
 
     /// Adds the weight of Σ H_kk to the objective.
-    fn cost(&self, machine: &Machine, asked: &CounterweightSpec, unknowns: &UnknownIndices, program: &mut Program) {
+    fn cost(&self, machine: &Machine, request: &CounterweightSpec, unknowns: &UnknownIndices, program: &mut Program) {
         for k in 0..self.drives() {
-            let [_, turned] = self.of_rotors(asked, machine, k);
+            let [_, turned] = self.of_rotors(request, machine, k);
             for (x, by) in std::iter::once((unknowns.h(k), 1.0)).chain(turned.terms) {
-                program.linear[x] += asked.objective.inertia * by;
+                program.linear[x] += request.objective.inertia * by;
             }
         }
     }
@@ -195,14 +200,14 @@ impl CounterweightProblem {
     fn enter_motion(
         &self,
         machine: &Machine,
-        asked: &CounterweightSpec,
+        request: &CounterweightSpec,
         unknowns: &UnknownIndices,
         node: &SearchNode,
         program: &mut Program,
     ) {
-        let objective = &asked.objective;
+        let objective = &request.objective;
         for k in 0..self.drives() {
-            let [momentum, turned] = self.of_rotors(asked, machine, k);
+            let [momentum, turned] = self.of_rotors(request, machine, k);
             let with = |sum: &AffineForm, sign: f64| {
                 let mut terms = vec![(unknowns.h(k), sign)];
                 terms.extend(sum.terms.iter().map(|(x, by)| (*x, sign * by)));
@@ -215,7 +220,7 @@ impl CounterweightProblem {
                     let mut row = LinearRow::new(with(&momentum, sign), -sign * constant);
                     row.terms.push((unknowns.momentum(k), -1.0));
                     if let (true, Some(tangents)) = (sign < 0.0, &node.tangents) {
-                        let linear = self.linear_diagonal(asked, unknowns, k, tangents);
+                        let linear = self.linear_diagonal(request, unknowns, k, tangents);
                         row.terms.retain(|(x, _)| *x != unknowns.h(k));
                         row.terms.extend(linear.terms.iter().map(|(x, by)| (*x, -by)));
                         row.right += linear.constant;
@@ -234,9 +239,9 @@ impl CounterweightProblem {
     }
 
     /// Returns the bounds of the request, with their rows.
-    fn bounds(&self, machine: &Machine, asked: &CounterweightSpec) -> Vec<(Bound, LinearRow)> {
-        let (mut all, unknowns) = (Vec::new(), UnknownIndices::of(asked, self.drives()));
-        for (j, site) in asked.sites.iter().enumerate() {
+    fn bounds(&self, machine: &Machine, request: &CounterweightSpec) -> Vec<(Bound, LinearRow)> {
+        let (mut all, unknowns) = (Vec::new(), UnknownIndices::of(request, self.drives()));
+        for (j, site) in request.sites.iter().enumerate() {
             let (w, s, link) = (unknowns.w(j), unknowns.s(j), self.bare.links()[site.link].name.clone());
             all.push((Bound::From(link.clone()), LinearRow::new([(w, site.from), (s, -1.0)], 0.0)));
             all.push((Bound::To(link.clone()), LinearRow::new([(s, 1.0), (w, -site.to)], 0.0)));
@@ -244,14 +249,14 @@ impl CounterweightProblem {
                 all.push((Bound::Most(link), LinearRow::new([(w, 1.0)], site.most)));
             }
         }
-        if let Some(most) = asked.most_mass {
-            let sum = (0..asked.sites.len()).map(|j| (unknowns.w(j), 1.0)).collect::<Vec<_>>();
+        if let Some(most) = request.max_added_mass {
+            let sum = (0..request.sites.len()).map(|j| (unknowns.w(j), 1.0)).collect::<Vec<_>>();
             all.push((Bound::Mass, LinearRow::new(sum, most)));
         }
-        if let Some(most) = asked.most_inertia {
+        if let Some(most) = request.max_inertia {
             let mut row = LinearRow::new([], most);
             for k in 0..self.drives() {
-                let [momentum, _] = self.of_rotors(asked, machine, k);
+                let [momentum, _] = self.of_rotors(request, machine, k);
                 row.terms.push((unknowns.h(k), 1.0));
                 row.terms.extend(momentum.terms);
                 row.right -= self.constant(k) + momentum.constant;
@@ -282,8 +287,8 @@ impl CounterweightSpec {
                 let own = self.sites.iter().find(|site| machine.links()[site.link].name == *link);
                 own.map_or(0.0, |site| site.most)
             }
-            Bound::Mass => self.most_mass.unwrap_or_default(),
-            Bound::Inertia => self.most_inertia.unwrap_or_default(),
+            Bound::Mass => self.max_added_mass.unwrap_or_default(),
+            Bound::Inertia => self.max_inertia.unwrap_or_default(),
             Bound::From(_) | Bound::To(_) => 0.0,
         }
     }

@@ -128,29 +128,29 @@ pub enum CounterweightError {
     #[error(
         "no counterweights balance this machine within these bounds: {}{}",
         listed(.bounds),
-        sufficient_relief(.would)
+        sufficient_relief(.reliefs)
     )]
     Conflict {
         /// The bounds; if any one of them is removed, the others are feasible together.
         bounds: Vec<Bound>,
         /// Sets of relaxed bounds. Each set is sufficient with all other bounds unchanged, and contains as few kinds of
         /// bounds as possible.
-        would: Vec<Vec<BoundRelaxation>>,
+        reliefs: Vec<Vec<BoundRelaxation>>,
     },
     /// No masses and positions on these links balance the machine.
     #[error("no counterweights on these links alone balance this machine: want more links that may carry one")]
     TooFew,
     /// Every solution would violate the clearance of a pin.
     #[error(
-        "no counterweights balance this machine and stay {asked} m clear of every pin{}",
-        sufficient_relief(.would)
+        "no counterweights balance this machine and stay {clearance} m clear of every pin{}",
+        sufficient_relief(.reliefs)
     )]
     Reaches {
         /// The clearance requested, m.
-        asked: f64,
+        clearance: f64,
         /// Sets of relaxed bounds. Each set is sufficient with all other bounds unchanged, and contains as few kinds of
         /// bounds as possible.
-        would: Vec<Vec<BoundRelaxation>>,
+        reliefs: Vec<Vec<BoundRelaxation>>,
     },
     /// There are too many choices of intervals between pins to search all.
     #[error(

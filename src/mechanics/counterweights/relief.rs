@@ -1,10 +1,10 @@
 //! [`sufficient_reliefs`]: relaxed bounds that make a request for counterweights feasible, with all other bounds
 //! unchanged.
 
-use super::question::CounterweightTask;
 use super::refusal::{BoundKind, BoundRelaxation};
 use super::search_node::SearchNode;
 use super::spec::CounterweightSpec;
+use super::task::CounterweightTask;
 
 /// Factor by which all but the last of several bounds are relaxed beyond their minimum, so that the last needs less
 /// relaxation.
@@ -43,21 +43,21 @@ fn together(
     is_feasible: &dyn Fn(&CounterweightSpec) -> bool,
 ) -> Option<Vec<BoundRelaxation>> {
     let (last, first) = kinds.split_last()?;
-    let (mut asked, mut reliefs) = (one.spec.clone(), Vec::new());
+    let (mut request, mut reliefs) = (one.spec.clone(), Vec::new());
     for (i, kind) in first.iter().enumerate() {
-        let relief = kind.rounded(FIRST_BOUND_FACTOR * least_bound(one, &asked, *kind, &kinds[i + 1..])?);
-        relief.set(&mut asked);
+        let relief = kind.rounded(FIRST_BOUND_FACTOR * least_bound(one, &request, *kind, &kinds[i + 1..])?);
+        relief.set(&mut request);
         reliefs.push(relief);
     }
     let least = match last {
-        BoundKind::Clearance => greatest_clearance(one, &asked)?,
-        _ => least_bound(one, &asked, *last, &[])?,
+        BoundKind::Clearance => greatest_clearance(one, &request)?,
+        _ => least_bound(one, &request, *last, &[])?,
     };
     let nudged = EXTRA_FRACTIONS
         .map(|by| last.rounded(if *last == BoundKind::Clearance { least * (1.0 - by) } else { least * (1.0 + by) }));
     let enough = |relief: &BoundRelaxation| {
-        relief.set(&mut asked);
-        is_feasible(&asked)
+        relief.set(&mut request);
+        is_feasible(&request)
     };
     reliefs.push(nudged.into_iter().find(enough)?);
     Some(reliefs)
@@ -67,22 +67,22 @@ fn together(
 /// none.
 fn least_bound(
     one: &CounterweightTask,
-    asked: &CounterweightSpec,
+    request: &CounterweightSpec,
     kind: BoundKind,
     loose: &[BoundKind],
 ) -> Option<f64> {
-    let without_clearance = CounterweightSpec { clearance: asked.clearance.map(|_| 0.0), ..asked.clone() };
-    let spec = if loose.contains(&BoundKind::Clearance) { &without_clearance } else { asked };
+    let without_clearance = CounterweightSpec { clearance: request.clearance.map(|_| 0.0), ..request.clone() };
+    let spec = if loose.contains(&BoundKind::Clearance) { &without_clearance } else { request };
     let one = CounterweightTask { spec, ..*one };
     let way = SearchNode { loose: loose.to_vec(), least: Some(kind), ..SearchNode::unconstrained(spec, one.balance()) };
     one.on(&way).ok()?.ok().map(|least| least.value.max(0.0))
 }
 
 /// Returns the greatest feasible clearance of discs from pins, m, by bisection; `None` if even 0 is infeasible.
-fn greatest_clearance(one: &CounterweightTask, asked: &CounterweightSpec) -> Option<f64> {
+fn greatest_clearance(one: &CounterweightTask, request: &CounterweightSpec) -> Option<f64> {
     let is_clear = |clearance: f64| {
-        let asked = CounterweightSpec { clearance: Some(clearance), ..asked.clone() };
-        CounterweightTask { spec: &asked, ..*one }.is_possible()
+        let request = CounterweightSpec { clearance: Some(clearance), ..request.clone() };
+        CounterweightTask { spec: &request, ..*one }.is_possible()
     };
     if !is_clear(0.0) {
         return None;
@@ -91,7 +91,7 @@ fn greatest_clearance(one: &CounterweightTask, asked: &CounterweightSpec) -> Opt
         let middle = 0.5 * (low + high);
         if is_clear(middle) { [middle, high] } else { [low, middle] }
     };
-    Some((0..BISECTIONS).fold([0.0, asked.clearance?], bisected)[0])
+    Some((0..BISECTIONS).fold([0.0, request.clearance?], bisected)[0])
 }
 
 /// Returns the value of a number printed with `decimals` decimals.
@@ -101,12 +101,12 @@ fn rounded_as_printed(x: f64, decimals: usize) -> f64 {
 
 impl BoundKind {
     /// Returns the kinds of bounds that are set.
-    fn of(asked: &CounterweightSpec) -> Vec<Self> {
+    fn of(request: &CounterweightSpec) -> Vec<Self> {
         let set = [
-            (Self::Most, asked.sites.iter().any(|site| site.most.is_finite())),
-            (Self::Mass, asked.most_mass.is_some()),
-            (Self::Inertia, asked.most_inertia.is_some()),
-            (Self::Clearance, asked.clearance.is_some()),
+            (Self::Most, request.sites.iter().any(|site| site.most.is_finite())),
+            (Self::Mass, request.max_added_mass.is_some()),
+            (Self::Inertia, request.max_inertia.is_some()),
+            (Self::Clearance, request.clearance.is_some()),
         ];
         set.into_iter().filter(|(_, set)| *set).map(|(kind, _)| kind).collect()
     }
@@ -127,15 +127,15 @@ impl BoundKind {
 }
 
 impl BoundRelaxation {
-    fn set(self, asked: &mut CounterweightSpec) {
+    fn set(self, request: &mut CounterweightSpec) {
         match self {
             Self::Most(most) => {
-                let bounded = asked.sites.iter_mut().filter(|site| site.most.is_finite());
+                let bounded = request.sites.iter_mut().filter(|site| site.most.is_finite());
                 bounded.for_each(|site| site.most = most);
             }
-            Self::Mass(most) => asked.most_mass = Some(most),
-            Self::Inertia(most) => asked.most_inertia = Some(most),
-            Self::Clearance(clearance) => asked.clearance = Some(clearance),
+            Self::Mass(most) => request.max_added_mass = Some(most),
+            Self::Inertia(most) => request.max_inertia = Some(most),
+            Self::Clearance(clearance) => request.clearance = Some(clearance),
         }
     }
 }

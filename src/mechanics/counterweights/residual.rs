@@ -1,14 +1,14 @@
 //! [`ConditionResidual`]: residual of each condition of (7) and (8), and its change with counterweights.
 
 use super::refusal::CounterweightError;
-use super::spec::{CounterweightSpec, Sites};
+use super::spec::{CounterweightSite, CounterweightSpec};
 use crate::balance::Condition;
 use crate::machine::{Inertia, Machine};
 use crate::planar::Vector;
 
 /// The residual of one condition of (7) or (8).
 pub(super) struct ConditionResidual {
-    pub of: Condition,
+    pub condition: Condition,
     /// Residual of the bare machine with the mean payload, kg m or kg m²: the real part along the axes, the imaginary
     /// part across them.
     pub residual: Vector,
@@ -29,7 +29,7 @@ impl ConditionResidual {
 pub(super) fn conditions(
     bare: &Machine,
     inertia: &Inertia,
-    asked: &CounterweightSpec,
+    request: &CounterweightSpec,
     beyond: &[Vector],
 ) -> Result<Vec<ConditionResidual>, CounterweightError> {
     let parts = bare.resolved_links();
@@ -38,18 +38,19 @@ pub(super) fn conditions(
         spec.payload.mass = mass;
         Ok(Inertia::of(&Machine::new(spec)?))
     };
-    let ends = match asked.payload {
+    let ends = match request.payload {
         Some([low, high]) => [holding(low)?, holding(high)?],
         None => [inertia.clone(), inertia.clone()],
     };
     let of = |(i, condition): (usize, Condition)| {
-        let change = |site: &Sites| [condition.by_mass(&parts[site.link]), condition.by_moment(&parts[site.link])];
+        let change =
+            |site: &CounterweightSite| [condition.by_mass(&parts[site.link]), condition.by_moment(&parts[site.link])];
         let more = beyond.get(i).copied().unwrap_or_default();
         ConditionResidual {
-            of: condition,
+            condition,
             residual: condition.residual(inertia) + more,
             ends: [0, 1].map(|i| (condition.residual(&ends[i]) + more).re),
-            changes: asked.sites.iter().map(change).collect(),
+            changes: request.sites.iter().map(change).collect(),
         }
     };
     Ok(Condition::all(bare.drives()).enumerate().map(of).collect())

@@ -36,14 +36,14 @@ const MAX_LINEARISATIONS: usize = 25;
 pub(super) fn search(
     problem: &CounterweightProblem,
     machine: &Machine,
-    asked: &CounterweightSpec,
+    request: &CounterweightSpec,
     node: &SearchNode,
 ) -> Result<Result<Optimum, NoOptimum>, CounterweightError> {
-    let search = Search { problem, machine, asked };
+    let search = Search { problem, machine, request };
     let rooms: Vec<Vec<FreeSpan>> =
-        asked.sites.iter().map(|site| FreeSpan::all(&problem.bare.resolved_links()[site.link].pins)).collect();
+        request.sites.iter().map(|site| FreeSpan::all(&problem.bare.resolved_links()[site.link].pins)).collect();
     // Open subproblems, each with the optimum of its relaxation.
-    let mut open = match problem.least(machine, asked, node) {
+    let mut open = match problem.least(machine, request, node) {
         Ok(least) => vec![(least, node.clone())],
         Err(why) => return Ok(Err(why)),
     };
@@ -70,7 +70,10 @@ pub(super) fn search(
                 rooms[j].iter().map(enter).collect()
             }
             // Only the objective depends on the exact inertias: a residual or a bound that is minimised does not.
-            None if asked.objective.momentum == 0.0 || node.least.is_some() || node.balance == BalanceGoal::Nearest => {
+            None if request.objective.momentum == 0.0
+                || node.least.is_some()
+                || node.balance == BalanceGoal::Nearest =>
+            {
                 return Ok(Ok(least));
             }
             None => {
@@ -95,10 +98,10 @@ pub(super) fn search(
             }
         };
         for next in children {
-            match problem.least(machine, asked, &next) {
+            match problem.least(machine, request, &next) {
                 Ok(least) => open.push((least, next)),
                 Err(NoOptimum::Contradiction(_)) => {}
-                Err(NoOptimum::Failed(why)) if asked.objective.momentum == 0.0 => {
+                Err(NoOptimum::Failed(why)) if request.objective.momentum == 0.0 => {
                     return Err(CounterweightError::Failed(why));
                 }
                 // If the solver fails, the parent's bound holds.
@@ -112,17 +115,17 @@ pub(super) fn search(
 struct Search<'a> {
     problem: &'a CounterweightProblem,
     machine: &'a Machine,
-    asked: &'a CounterweightSpec,
+    request: &'a CounterweightSpec,
 }
 
 impl Search<'_> {
     /// Returns the site whose disc violates the clearance of a pin most; `None` if all discs are clear or may cover
     /// pins. A disc whose interval is chosen is clear.
     fn worst_site(&self, least: &Optimum, rooms: &[Vec<FreeSpan>], node: &SearchNode) -> Option<usize> {
-        let clearance = self.asked.clearance?;
+        let clearance = self.request.clearance?;
         let missed = |j: usize| {
-            let [w, s] = self.problem.at(self.asked, &least.x, j);
-            let (radius, at) = (self.asked.disc.radius(w.max(0.0)), s / w);
+            let [w, s] = self.problem.at(self.request, &least.x, j);
+            let (radius, at) = (self.request.disc.radius(w.max(0.0)), s / w);
             let nearest =
                 rooms[j].iter().map(|room| room.violation(clearance, radius, at)).fold(f64::INFINITY, f64::min);
             if w > MIN_MASS_KG { nearest } else { 0.0 }
@@ -134,8 +137,8 @@ impl Search<'_> {
 
     /// Returns a solution with every inertia at its exact value.
     fn with_exact_inertia(&self, least: &Optimum) -> Optimum {
-        let x = self.problem.settled(self.machine, self.asked, &least.x);
-        Optimum { value: self.problem.value(self.machine, self.asked, &x), x, gap: 0.0 }
+        let x = self.problem.with_exact_values(self.machine, self.request, &least.x);
+        Optimum { value: self.problem.value(self.machine, self.request, &x), x, gap: 0.0 }
     }
 
     /// Descends from a solution, and also from the bounds of all cells if `from_bounds`. Each iteration solves the cone
@@ -144,11 +147,11 @@ impl Search<'_> {
     fn descend(&self, from: &Optimum, node: &SearchNode, from_bounds: bool) -> Vec<Optimum> {
         let about = |least: &Optimum| {
             let one = |j: usize| {
-                let ([w, s], [from, to]) = (self.problem.at(self.asked, &least.x, j), node.cells[j].at);
+                let ([w, s], [from, to]) = (self.problem.at(self.request, &least.x, j), node.cells[j].at);
                 let far = if from.abs() > to.abs() { from } else { to };
                 if w > MIN_MASS_KG { [w, s / w] } else { [0.0, far] }
             };
-            (0..self.asked.sites.len()).map(one).collect::<Vec<_>>()
+            (0..self.request.sites.len()).map(one).collect::<Vec<_>>()
         };
         let mean = |all: &[[f64; 2]]| all.iter().map(|[w, _]| w).sum::<f64>() / all.len().max(1) as f64;
         let here = about(from);
@@ -162,7 +165,7 @@ impl Search<'_> {
             let mut best: Option<Optimum> = None;
             for _ in 0..MAX_LINEARISATIONS {
                 let node = SearchNode { tangents: Some(tangents), ..node.clone() };
-                let Ok(next) = self.problem.least(self.machine, self.asked, &node) else { break };
+                let Ok(next) = self.problem.least(self.machine, self.request, &node) else { break };
                 let next = self.with_exact_inertia(&next);
                 tangents = about(&next);
                 let gain = best.as_ref().map_or(f64::INFINITY, |best| best.value - next.value);
@@ -180,14 +183,14 @@ impl Search<'_> {
 
     /// Splits the cell in which an inertia differs most from its exact value; empty if all cells are too narrow.
     fn halves(&self, least: &Optimum, node: &SearchNode, best: Option<&Optimum>) -> Vec<SearchNode> {
-        let excess = self.problem.excess(self.machine, self.asked, &least.x);
+        let excess = self.problem.excess(self.machine, self.request, &least.x);
         let each = excess.iter().enumerate().flat_map(|(j, [place, own])| [(j, true, *place), (j, false, *own)]);
         let mut order: Vec<(usize, bool, f64)> = each.collect();
         order.sort_by(|a, b| b.2.total_cmp(&a.2));
         // No counterweight is heavier than the best objective divided by the coefficient of mass in the objective.
-        let heaviest = best.map(|best| best.value / self.asked.objective.mass).filter(|mass| mass.is_finite());
+        let heaviest = best.map(|best| best.value / self.request.objective.mass).filter(|mass| mass.is_finite());
         let halved = order.into_iter().find_map(|(j, by_place, _)| {
-            let [w, s] = self.problem.at(self.asked, &least.x, j);
+            let [w, s] = self.problem.at(self.request, &least.x, j);
             let mut cell = node.cells[j];
             cell.mass[1] = cell.mass[1].min(heaviest.unwrap_or(f64::INFINITY)).max(cell.mass[0]);
             let halves = cell.halves(by_place, [w.max(0.0), if w > MIN_MASS_KG { s / w } else { 0.0 }])?;

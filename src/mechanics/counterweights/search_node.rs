@@ -37,14 +37,14 @@ pub(super) struct SearchNode {
 
 impl SearchNode {
     /// Returns the subproblem without choices: no clearance of pins, and cells as wide as the bounds.
-    pub fn unconstrained(asked: &CounterweightSpec, balance: BalanceGoal) -> Self {
+    pub fn unconstrained(request: &CounterweightSpec, balance: BalanceGoal) -> Self {
         Self {
-            rooms: vec![None; asked.sites.len()],
+            rooms: vec![None; request.sites.len()],
             balance,
             most: None,
             loose: Vec::new(),
             least: None,
-            cells: asked.sites.iter().map(|site| SearchCell::of(asked, site)).collect(),
+            cells: request.sites.iter().map(|site| SearchCell::of(request, site)).collect(),
             tangents: None,
         }
     }

@@ -4,13 +4,13 @@ use super::problem::CounterweightProblem;
 use super::refusal::CounterweightError;
 use super::residual::ConditionResidual;
 use super::search_node::{BalanceGoal, SearchNode};
-use super::spec::{CounterweightSpec, RotorFreedom, Sites};
+use super::spec::{CounterweightSite, CounterweightSpec, RotorFreedom};
 use super::unknowns::{AffineForm, UnknownIndices};
 use crate::balance::{LinearEquation, SolutionSpace};
 use crate::machine::{Counterweight, Machine, Rotor};
 
 /// Mass w, kg, and first moment s = w x, kg m, of the counterweight at each site that carries one.
-type Found = Vec<(Sites, [f64; 2])>;
+type Found = Vec<(CounterweightSite, [f64; 2])>;
 
 /// Smallest mass of a counterweight; lighter ones are omitted.
 pub(super) const MIN_MASS_KG: f64 = 1e-7;
@@ -20,10 +20,10 @@ const MIN_RATIO: f64 = 1e-9;
 
 impl CounterweightProblem {
     /// Returns a solution with every inertia, momentum and torque at its exact value instead of a bound.
-    pub fn settled(&self, machine: &Machine, asked: &CounterweightSpec, x: &[f64]) -> Vec<f64> {
-        let unknowns = UnknownIndices::of(asked, self.drives());
+    pub fn with_exact_values(&self, machine: &Machine, request: &CounterweightSpec, x: &[f64]) -> Vec<f64> {
+        let unknowns = UnknownIndices::of(request, self.drives());
         let mut x = x.to_vec();
-        for (i, rotor) in asked.rotors.iter().enumerate() {
+        for (i, rotor) in request.rotors.iter().enumerate() {
             let inertia = machine.spec().drives[rotor.drive].rotor.unwrap_or_default().inertia;
             x[unknowns.turned(i)] = match rotor.parameter {
                 RotorFreedom::Inertia(_) => 0.0,
@@ -33,49 +33,50 @@ impl CounterweightProblem {
         if !unknowns.inertia {
             return x;
         }
-        let places = (0..asked.sites.len()).map(|j| {
-            let [w, s] = self.at(asked, &x, j);
+        let places = (0..request.sites.len()).map(|j| {
+            let [w, s] = self.at(request, &x, j);
             if w > 0.0 { [w, s / w] } else { [0.0; 2] }
         });
         let places: Vec<[f64; 2]> = places.collect();
         for (j, [w, at]) in places.iter().enumerate() {
             x[unknowns.u(j)] = w * at * at;
-            x[unknowns.v(j)] = asked.disc.own() * w * w;
+            x[unknowns.v(j)] = request.disc.own() * w * w;
         }
         let of = |sum: &AffineForm, x: &[f64]| sum.constant + sum.terms.iter().map(|(i, by)| by * x[*i]).sum::<f64>();
         let mut torque = 0.0_f64;
         for k in 0..self.drives() {
-            let h = of(&self.linear_diagonal(asked, &unknowns, k, &places), &x);
+            let h = of(&self.linear_diagonal(request, &unknowns, k, &places), &x);
             x[unknowns.h(k)] = h;
-            let [momentum, turned] = self.of_rotors(asked, machine, k);
+            let [momentum, turned] = self.of_rotors(request, machine, k);
             let (momentum, turned) = (h + self.constant(k) + of(&momentum, &x), h + of(&turned, &x));
             if unknowns.momentum {
                 x[unknowns.momentum(k)] = momentum.abs();
             }
-            torque = torque.max(asked.objective.accelerations.get(k).copied().unwrap_or_default() * turned);
+            torque = torque.max(request.objective.accelerations.get(k).copied().unwrap_or_default() * turned);
         }
-        if asked.objective.torque > 0.0 {
+        if request.objective.torque > 0.0 {
             x[unknowns.torque()] = torque;
         }
         x
     }
 
     /// Returns the value of the objective.
-    pub fn value(&self, machine: &Machine, asked: &CounterweightSpec, x: &[f64]) -> f64 {
-        let costs = self.program(machine, asked, &[], &SearchNode::unconstrained(asked, BalanceGoal::Exact)).linear;
+    pub fn value(&self, machine: &Machine, request: &CounterweightSpec, x: &[f64]) -> f64 {
+        let costs = self.program(machine, request, &[], &SearchNode::unconstrained(request, BalanceGoal::Exact)).linear;
         costs.iter().zip(x).map(|(cost, x)| cost * x).sum()
     }
 
     /// Returns the excess of u and v over the exact inertias at each site, kg m².
-    pub fn excess(&self, machine: &Machine, asked: &CounterweightSpec, x: &[f64]) -> Vec<[f64; 2]> {
-        let (unknowns, settled) = (UnknownIndices::of(asked, self.drives()), self.settled(machine, asked, x));
+    pub fn excess(&self, machine: &Machine, request: &CounterweightSpec, x: &[f64]) -> Vec<[f64; 2]> {
+        let (unknowns, settled) =
+            (UnknownIndices::of(request, self.drives()), self.with_exact_values(machine, request, x));
         let excess = |i: usize| x[i] - settled[i];
-        (0..asked.sites.len()).map(|j| [excess(unknowns.u(j)), excess(unknowns.v(j))]).collect()
+        (0..request.sites.len()).map(|j| [excess(unknowns.u(j)), excess(unknowns.v(j))]).collect()
     }
 
     /// Returns the mass w, kg, and the first moment s, kg m, at site j.
-    pub fn at(&self, asked: &CounterweightSpec, x: &[f64], j: usize) -> [f64; 2] {
-        let unknowns = UnknownIndices::of(asked, self.drives());
+    pub fn at(&self, request: &CounterweightSpec, x: &[f64], j: usize) -> [f64; 2] {
+        let unknowns = UnknownIndices::of(request, self.drives());
         [x[unknowns.w(j)], x[unknowns.s(j)]]
     }
 
@@ -87,29 +88,29 @@ impl CounterweightProblem {
     pub fn machine(
         &self,
         machine: &Machine,
-        asked: &CounterweightSpec,
+        request: &CounterweightSpec,
         x: &[f64],
         balance: BalanceGoal,
     ) -> Result<(f64, Machine), CounterweightError> {
-        let unknowns = UnknownIndices::of(asked, self.drives());
-        let sites = asked.sites.iter().enumerate();
-        let all = sites.map(|(j, site)| (*site, self.at(asked, x, j)));
+        let unknowns = UnknownIndices::of(request, self.drives());
+        let sites = request.sites.iter().enumerate();
+        let all = sites.map(|(j, site)| (*site, self.at(request, x, j)));
         let mut found: Found = all.filter(|(_, [w, _])| *w > MIN_MASS_KG).collect();
         // The residual from the solver's rounding and from omitted counterweights is removed by the least change of the
         // others.
         for _ in 0..if balance == BalanceGoal::Exact { 3 } else { 0 } {
-            self.refine(asked, &mut found);
+            self.refine(request, &mut found);
         }
         let mut spec = self.bare.spec().clone();
-        let weight = |(site, [w, s]): &(Sites, [f64; 2])| Counterweight {
+        let weight = |(site, [w, s]): &(CounterweightSite, [f64; 2])| Counterweight {
             link: self.bare.links()[site.link].name.clone(),
             mass: *w,
             at: s / w,
-            radius: asked.disc.radius(*w),
+            radius: request.disc.radius(*w),
             fixed: false,
         };
         spec.counterweights.extend(found.iter().map(weight));
-        for (i, rotor) in asked.rotors.iter().enumerate() {
+        for (i, rotor) in request.rotors.iter().enumerate() {
             let (present, value) = (machine.spec().drives[rotor.drive].rotor.unwrap_or_default(), x[unknowns.rotor(i)]);
             let found = match rotor.parameter {
                 RotorFreedom::Inertia([low, high]) => Rotor { inertia: value.clamp(low, high), ..present },
@@ -121,12 +122,14 @@ impl CounterweightProblem {
     }
 
     /// Removes the residual of the conditions by the least change of the counterweights.
-    fn refine(&self, asked: &CounterweightSpec, found: &mut Found) {
+    fn refine(&self, request: &CounterweightSpec, found: &mut Found) {
         // Without counterweights the links balance each other.
         if found.is_empty() {
             return;
         }
-        let place = |site: &Sites| asked.sites.iter().position(|other| other.link == site.link).unwrap_or_default();
+        let place = |site: &CounterweightSite| {
+            request.sites.iter().position(|other| other.link == site.link).unwrap_or_default()
+        };
         let sites: Vec<usize> = found.iter().map(|(site, _)| place(site)).collect();
         let residual = self.conditions.iter().map(|condition| {
             let changed = sites.iter().zip(found.iter()).map(|(j, (_, [w, s]))| {

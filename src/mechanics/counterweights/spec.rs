@@ -8,7 +8,7 @@ use stillbase_settings::range::Range;
 
 /// Bounds of position and mass of a counterweight on a link.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sites {
+pub struct CounterweightSite {
     /// The link, counted from 0.
     pub link: usize,
     /// Lower bound of its position along the axis, m from the root, positive towards the tip.
@@ -19,7 +19,7 @@ pub struct Sites {
     pub most: f64,
 }
 
-impl Sites {
+impl CounterweightSite {
     /// Allows a counterweight of any mass on every link, from one link length behind the root to the tip.
     pub fn anywhere(machine: &Machine) -> Vec<Self> {
         let parts = machine.resolved_links().iter().enumerate();
@@ -125,15 +125,15 @@ pub struct FreeRotor {
 #[derive(Clone, Debug, PartialEq)]
 pub struct CounterweightSpec {
     /// Links that may carry a counterweight.
-    pub sites: Vec<Sites>,
+    pub sites: Vec<CounterweightSite>,
     /// Material of the counterweights.
     pub disc: Disc,
     /// The objective that is minimised.
     pub objective: Objective,
     /// Upper bound of the added mass, kg.
-    pub most_mass: Option<f64>,
+    pub max_added_mass: Option<f64>,
     /// Upper bound of Σ D_k, kg m².
-    pub most_inertia: Option<f64>,
+    pub max_inertia: Option<f64>,
     /// Clearance between the edge of a disc and the centre of every pin of its link, m; `None`: discs may cover pins.
     pub clearance: Option<f64>,
     /// Rotors with a free parameter, which is optimised with the counterweights.
@@ -147,9 +147,9 @@ const CLEARANCE: Range = Range::new(0.0, 1e3, "m");
 
 impl CounterweightSpec {
     /// Makes a request that minimises an objective, without bounds other than those of the sites.
-    pub fn least(objective: Objective, sites: Vec<Sites>, disc: Disc) -> Self {
-        let (most_mass, most_inertia, clearance, payload) = (None, None, None, None);
-        Self { sites, disc, objective, most_mass, most_inertia, clearance, rotors: Vec::new(), payload }
+    pub fn least(objective: Objective, sites: Vec<CounterweightSite>, disc: Disc) -> Self {
+        let (max_added_mass, max_inertia, clearance, payload) = (None, None, None, None);
+        Self { sites, disc, objective, max_added_mass, max_inertia, clearance, rotors: Vec::new(), payload }
     }
 
     /// Checks that the request is valid for a machine.
@@ -166,8 +166,8 @@ impl CounterweightSpec {
         };
         within("density", self.disc.density, DENSITY_RANGE)?;
         within("thickness", self.disc.thickness, THICKNESS_RANGE)?;
-        positive("the most Σ D_k may be, kg m²,", self.most_inertia)?;
-        positive("the most that may be added, kg,", self.most_mass)?;
+        positive("the most Σ D_k may be, kg m²,", self.max_inertia)?;
+        positive("the most that may be added, kg,", self.max_added_mass)?;
         if let Some(clearance) = self.clearance {
             within("clearance", clearance, CLEARANCE)?;
         }

@@ -16,7 +16,7 @@ pub struct PlacementTolerance {
 
 impl PlacementTolerance {
     /// Tolerances of one per cent and of half a millimetre.
-    pub const USUAL: Self = Self { mass: 0.01, place: 5e-4 };
+    pub const DEFAULT: Self = Self { mass: 0.01, place: 5e-4 };
 }
 
 /// Largest residuals of (7) and (8).

@@ -19,10 +19,10 @@ pub(super) struct UnknownIndices {
 }
 
 impl UnknownIndices {
-    pub fn of(asked: &CounterweightSpec, drives: usize) -> Self {
-        let inertia = asked.objective.depends_on_inertia() || asked.most_inertia.is_some();
-        let (rotors, momentum) = (asked.rotors.len(), asked.objective.momentum > 0.0);
-        Self { sites: asked.sites.len(), inertia, drives, rotors, momentum }
+    pub fn of(request: &CounterweightSpec, drives: usize) -> Self {
+        let inertia = request.objective.depends_on_inertia() || request.max_inertia.is_some();
+        let (rotors, momentum) = (request.rotors.len(), request.objective.momentum > 0.0);
+        Self { sites: request.sites.len(), inertia, drives, rotors, momentum }
     }
 
     pub fn w(self, j: usize) -> usize {
@@ -85,10 +85,10 @@ impl CounterweightProblem {
     }
 
     /// Returns the contributions of free rotors to D_k and to H_kk.
-    pub fn of_rotors(&self, asked: &CounterweightSpec, machine: &Machine, k: usize) -> [AffineForm; 2] {
-        let unknowns = UnknownIndices::of(asked, self.drives());
+    pub fn of_rotors(&self, request: &CounterweightSpec, machine: &Machine, k: usize) -> [AffineForm; 2] {
+        let unknowns = UnknownIndices::of(request, self.drives());
         let mut sums = [(); 2].map(|()| AffineForm { terms: Vec::new(), constant: 0.0 });
-        for (i, rotor) in asked.rotors.iter().enumerate() {
+        for (i, rotor) in request.rotors.iter().enumerate() {
             let [plain, by_ratio] = self.rates(rotor.drive, k);
             let present = machine.spec().drives[rotor.drive].rotor.unwrap_or_default();
             let (x, turned, inertia) = (unknowns.rotor(i), unknowns.turned(i), present.inertia);
@@ -118,15 +118,15 @@ impl CounterweightProblem {
     /// `tangents`.
     pub fn linear_diagonal(
         &self,
-        asked: &CounterweightSpec,
+        request: &CounterweightSpec,
         unknowns: &UnknownIndices,
         k: usize,
         tangents: &[[f64; 2]],
     ) -> AffineForm {
         let parts = self.bare.resolved_links();
         let mut sum = AffineForm { terms: Vec::new(), constant: self.inertia.diagonal(k) };
-        for (j, (site, [mass, at])) in asked.sites.iter().zip(tangents).enumerate() {
-            let (part, own) = (&parts[site.link], asked.disc.own());
+        for (j, (site, [mass, at])) in request.sites.iter().zip(tangents).enumerate() {
+            let (part, own) = (&parts[site.link], request.disc.own());
             let (root, (w, s)) = (part.root[k], (unknowns.w(j), unknowns.s(j)));
             sum.terms.push((w, root * root));
             if part.drive == k {

@@ -4,7 +4,7 @@ use super::block::together;
 use super::joints::Joints;
 use super::pins::{FLAT_SINE, MAX_PINS};
 use super::tree::{SolveStep, Stator};
-use crate::dynamics::Surroundings;
+use crate::dynamics::ExternalLoads;
 use crate::planar::{MAX_DRIVES, PerDrive, UnitVectors, Vector, cross};
 
 /// Forces of all pins, and torques of the motors, at one instant.
@@ -37,7 +37,7 @@ impl PinForces {
     }
 
     /// Returns the largest force, N, bounded as in [`bounded`](Self::bounded), and its pin.
-    pub fn worst(&self) -> (f64, usize) {
+    pub fn largest(&self) -> (f64, usize) {
         let mut worst = (0.0, 0);
         for (i, force) in self.bounded().iter().enumerate() {
             let square = force.norm_sqr();
@@ -60,7 +60,7 @@ impl PinForces {
 impl Joints {
     /// Returns the force of every pin and the torques of the drives for a motion, with frictionless pins. On a moving
     /// base, gravity is g − p̈_B.
-    pub fn forces(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> PinForces {
+    pub fn forces(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, around: &ExternalLoads) -> PinForces {
         self.forces_with(e, qd, qdd, around, |_, _| 0.0)
     }
 
@@ -73,7 +73,7 @@ impl Joints {
         e: &UnitVectors,
         qd: &PerDrive,
         qdd: &PerDrive,
-        around: &Surroundings,
+        around: &ExternalLoads,
         couple: impl Fn(usize, usize) -> f64,
     ) -> PinForces {
         let zero = Vector::default();

@@ -1,7 +1,7 @@
 //! Pin forces at one instant, as a frame stores them, and their peaks and means over a run.
 
 use super::{AxialMoments, Joints, PinForces, TiltMoment};
-use crate::dynamics::Surroundings;
+use crate::dynamics::ExternalLoads;
 use crate::machine::Machine;
 use crate::planar::{PerDrive, UnitVectors, Vector};
 
@@ -17,7 +17,7 @@ pub struct InternalLoads {
     undefined: u16,
     worst_pin: u8,
     /// The largest force of a pin, N; 0 if statics does not determine the forces.
-    pub worst: f64,
+    pub largest_force: f64,
     /// The moment that tilts the base, N m.
     pub tilt: TiltMoment,
 }
@@ -27,8 +27,15 @@ impl InternalLoads {
         let known = forces.bounded().len().min(MAX_FRAME_PINS);
         let mut pins = [Vector::default(); MAX_FRAME_PINS];
         pins[..known].copy_from_slice(&forces.bounded()[..known]);
-        let (worst, worst_pin) = forces.worst();
-        Self { pins, known: known as u8, undefined: forces.undefined() as u16, worst_pin: worst_pin as u8, worst, tilt }
+        let (largest_force, worst_pin) = forces.largest();
+        Self {
+            pins,
+            known: known as u8,
+            undefined: forces.undefined() as u16,
+            worst_pin: worst_pin as u8,
+            largest_force,
+            tilt,
+        }
     }
 
     /// Returns the force that the first link of pin i exerts on its second link, N; i is an index into
@@ -70,7 +77,7 @@ impl PinLoads {
     }
 
     /// Returns the magnitude of the tilting moment, N m.
-    pub fn tilt(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> f64 {
+    pub fn tilt(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, around: &ExternalLoads) -> f64 {
         if self.axial.is_flat() { 0.0 } else { self.axial.tilt(e, qd, qdd, around).total().norm() }
     }
 
@@ -81,7 +88,7 @@ impl PinLoads {
         e: &UnitVectors,
         qd: &PerDrive,
         qdd: &PerDrive,
-        around: &Surroundings,
+        around: &ExternalLoads,
         couple: impl Fn(usize, usize) -> f64,
     ) -> InternalLoads {
         let tilt = self.axial.tilt(e, qd, qdd, around);

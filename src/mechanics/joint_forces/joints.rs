@@ -36,7 +36,7 @@ impl Joints {
         let links = structure::links(machine)?;
         let mut closures = structure::closures(machine, &links);
         let steps = structure::steps(machine, &links, &closures)?;
-        structure::spread(&links, &mut closures, &steps);
+        structure::mark_dependent_pins(&links, &mut closures, &steps);
         let stators = structure::stators(machine, &links, &closures)?;
         let parallelograms = transmission::parallelograms(&pins[machine.links().len()..], &links, &closures);
         let place = |link: usize| links.iter().position(|l| l.link == link);

@@ -203,7 +203,7 @@ fn is_regular(links: &[TreeLink], closures: &[CutClosure], block: &SolveStep) ->
 
 /// Marks for each closure the pins that depend on its force. These are the pins that carry it, and the pins that depend
 /// on later closures whose equations contain it.
-pub fn spread(links: &[TreeLink], closures: &mut [CutClosure], steps: &[SolveStep]) {
+pub fn mark_dependent_pins(links: &[TreeLink], closures: &mut [CutClosure], steps: &[SolveStep]) {
     for (at, step) in steps.iter().enumerate().rev() {
         let mut reaches = 0;
         for (c, _) in members(step) {

@@ -22,7 +22,7 @@
 //! Products of inertia I_xz, I_yz of each link about its own CM are zero. Each link is symmetric about a plane normal
 //! to the drives' axis. With all z_j = 0, the default, n_t = 0.
 
-use crate::dynamics::Surroundings;
+use crate::dynamics::ExternalLoads;
 use crate::machine::Machine;
 use crate::planar::{MAX_DRIVES, PerDrive, UnitVectors, Vector};
 
@@ -97,7 +97,7 @@ impl AxialMoments {
 
     /// Returns the tilting moment about B in the reference plane, N m.
     #[inline]
-    pub fn tilt(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, around: &Surroundings) -> TiltMoment {
+    pub fn tilt(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, around: &ExternalLoads) -> TiltMoment {
         let i = Vector::new(0.0, 1.0);
         TiltMoment {
             motion: i * self.pull(&self.s, e, qd, qdd),

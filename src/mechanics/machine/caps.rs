@@ -8,7 +8,7 @@ use crate::planar::MAX_DRIVES;
 pub const MAX_LINKS: usize = 200;
 /// Maximum number of links in a chain from the base to a tip. The balance equations list the products of the links'
 /// lengths, and the number of these grows with the square of the chain's length.
-pub const MAX_IN_A_ROW: usize = 32;
+pub const MAX_CHAIN_LINKS: usize = 32;
 /// Maximum number of counterweights: one on each link, as design places them.
 pub const MAX_COUNTERWEIGHTS: usize = MAX_LINKS;
 /// Maximum number of pins that close loops.

@@ -1,7 +1,7 @@
 //! Makes a [`Machine`] from a specification: checks it, looks up names, and resolves roots and loops.
 
 use super::Chain;
-use super::caps::{MAX_IN_A_ROW, check_counts};
+use super::caps::{MAX_CHAIN_LINKS, check_counts};
 use super::error::{KeyPath, KeyStep, MachineError, quoted};
 use super::inertia::Inertia;
 use super::model::{Machine, MachineData, RelativeAngle, ResolvedClosure, ResolvedLink};
@@ -202,8 +202,8 @@ fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<ResolvedLink>, Machi
             root[drive] += f64::from(on.direction) * s;
             at = parent;
         }
-        if chain.len() > MAX_IN_A_ROW {
-            let (what, want) = ("links in a row, each on the one before", format!("at most {MAX_IN_A_ROW}"));
+        if chain.len() > MAX_CHAIN_LINKS {
+            let (what, want) = ("links in a row, each on the one before", format!("at most {MAX_CHAIN_LINKS}"));
             return Err(MachineError::Count { what, count: chain.len(), want });
         }
         parts.push(ResolvedLink {

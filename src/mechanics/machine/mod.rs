@@ -28,7 +28,7 @@ pub mod ranges;
 mod set;
 mod spec;
 
-pub use caps::{MAX_COUNTERWEIGHTS, MAX_IN_A_ROW, MAX_LINKS};
+pub use caps::{MAX_CHAIN_LINKS, MAX_COUNTERWEIGHTS, MAX_LINKS};
 pub use catalog::{builtin, builtins, named, unknown};
 pub use chain::{Chain, place_of};
 pub use check::CLOSURE_TOLERANCE;

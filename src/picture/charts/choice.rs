@@ -154,7 +154,7 @@ pub struct Plot<'a> {
     /// Chart of the table; a chart without signals if the user added the plot.
     pub chart: Chart,
     /// Whether the user added the plot.
-    pub own: bool,
+    pub added_by_user: bool,
     /// All curves, including those that are switched off.
     pub curves: Vec<PlotCurve<'a>>,
     /// Signal on the horizontal axis; `None` for time.
@@ -188,10 +188,10 @@ impl PlotCurve<'_> {
 }
 
 impl<'a> Plot<'a> {
-    fn of(name: &str, chart: Chart, own: bool, changes: &PlotSettings, signals: &'a [Signal]) -> Self {
+    fn of(name: &str, chart: Chart, added_by_user: bool, changes: &PlotSettings, signals: &'a [Signal]) -> Self {
         let find = |path: &String| signals.iter().find(|signal| signal.path == *path);
-        let held = signals.iter().filter(|signal| chart.holds(signal)).map(|signal| (signal, false));
-        let added = changes.added.iter().filter_map(find).filter(|signal| !chart.holds(signal));
+        let held = signals.iter().filter(|signal| chart.contains(signal)).map(|signal| (signal, false));
+        let added = changes.added.iter().filter_map(find).filter(|signal| !chart.contains(signal));
         let curves: Vec<PlotCurve<'a>> = held
             .chain(added.map(|signal| (signal, true)))
             .map(|(signal, added)| PlotCurve {
@@ -203,13 +203,13 @@ impl<'a> Plot<'a> {
             .collect();
         let against = changes.against.as_ref().and_then(find);
         let mut title = match curves.first() {
-            Some(first) if own => capital(&first.signal.label),
+            Some(first) if added_by_user => capital(&first.signal.label),
             _ => chart.title.to_owned(),
         };
-        if own && curves.len() > 1 {
+        if added_by_user && curves.len() > 1 {
             title += " …";
         }
-        Self { name: name.into(), title, chart, own, curves, against, values: changes.values }
+        Self { name: name.into(), title, chart, added_by_user, curves, against, values: changes.values }
     }
 
     /// Returns the title, with the symbol of the horizontal axis unless that is time.
@@ -227,7 +227,7 @@ impl<'a> Plot<'a> {
 
     /// Returns the units of the values, each once, separated by commas.
     pub fn unit(&self) -> String {
-        if !self.own && !self.curves.iter().any(|curve| curve.added) {
+        if !self.added_by_user && !self.curves.iter().any(|curve| curve.added) {
             return self.chart.unit.into();
         }
         let mut units: Vec<String> = Vec::new();

@@ -45,7 +45,7 @@ pub enum FigureItem {
         colour: Rgba,
     },
     /// A filled rectangle.
-    Area {
+    Rectangle {
         /// Left, top, right and bottom.
         sides: [f32; 4],
         /// Colour.

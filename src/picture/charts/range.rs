@@ -15,7 +15,8 @@ pub struct TimeExtent {
     /// Interval from the start to the end of the run, s.
     pub whole: [f64; 2],
     /// Interval shown by default, s: all of a short run, or the surroundings of the displayed instant of a long run.
-    pub usual: [f64; 2],
+    #[serde(rename = "usual")]
+    pub default: [f64; 2],
 }
 
 impl TimeExtent {
@@ -35,14 +36,14 @@ impl TimeExtent {
     fn within(window: f64, end: f64, now: f64) -> Self {
         let end = end.max(MIN_LENGTH_S);
         let to = end.min((now + 0.5 * window).max(window));
-        Self { whole: [0.0, end], usual: [(to - window).max(0.0), to] }
+        Self { whole: [0.0, end], default: [(to - window).max(0.0), to] }
     }
 
     /// Returns the interval to show for a choice of the user.
     pub fn shown(&self, chosen: Option<[f64; 2]>) -> [f64; 2] {
-        let [from, to] = chosen.unwrap_or(self.usual);
+        let [from, to] = chosen.unwrap_or(self.default);
         // An interval chosen for a longer run may lie beyond the end.
-        if from < self.whole[1] && to > from { [from, to] } else { self.usual }
+        if from < self.whole[1] && to > from { [from, to] } else { self.default }
     }
 
     /// Whether an interval contains the whole run.
@@ -52,7 +53,7 @@ impl TimeExtent {
 
     /// Toggles between the whole run and the default interval; returns the new choice.
     pub fn all(&self, chosen: Option<[f64; 2]>) -> Option<[f64; 2]> {
-        (chosen != Some(self.whole) && self.usual != self.whole).then_some(self.whole)
+        (chosen != Some(self.whole) && self.default != self.whole).then_some(self.whole)
     }
 
     /// Returns the choice that magnifies the interval `shown` by `factor`; the time `about`, s, keeps its place on the
@@ -61,7 +62,7 @@ impl TimeExtent {
         let (now, most) = (shown[1] - shown[0], self.whole[1] - self.whole[0]);
         let length = (now / factor.max(1e-6)).clamp(MIN_LENGTH_S.min(most), most);
         if length >= most * (1.0 - 1e-9) {
-            return (self.usual != self.whole).then_some(self.whole);
+            return (self.default != self.whole).then_some(self.whole);
         }
         let share = ((about - shown[0]) / now).clamp(0.0, 1.0);
         let from = about.clamp(shown[0], shown[1]) - share * length;

@@ -53,7 +53,7 @@ fn element(item: &FigureItem) -> String {
         FigureItem::Dot { at: [x, y], radius, colour } => {
             format!("<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{radius}\"{}/>", paint("fill", *colour))
         }
-        FigureItem::Area { sides, colour } => rect(*sides, &paint("fill", *colour)),
+        FigureItem::Rectangle { sides, colour } => rect(*sides, &paint("fill", *colour)),
         FigureItem::Text { at: [x, y], anchor: [across, down], words } => {
             let size = words.iter().fold(0.0_f32, |most, w| most.max(w.size));
             // The baseline is 0.93 of the font size below the top of the text; a line is 1.16 of the font size high.

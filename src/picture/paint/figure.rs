@@ -26,7 +26,7 @@ pub fn items(painter: &Painter, origin: Pos2, axes: &Axes, items: &[FigureItem])
             FigureItem::Dot { at: place, radius, colour: tone } => {
                 painter.circle_filled(at(*place), *radius, colour(*tone));
             }
-            FigureItem::Area { sides: [left, top, right, bottom], colour: tone } => {
+            FigureItem::Rectangle { sides: [left, top, right, bottom], colour: tone } => {
                 painter.rect_filled(Rect::from_min_max(at([*left, *top]), at([*right, *bottom])), 0.0, colour(*tone));
             }
             FigureItem::Text { at: place, anchor: [across, down], words } => {
@@ -44,7 +44,7 @@ pub fn items(painter: &Painter, origin: Pos2, axes: &Axes, items: &[FigureItem])
 }
 
 /// Paints a whole figure with its background.
-pub fn whole(painter: &Painter, figure: &Figure) {
+pub fn paint_figure(painter: &Painter, figure: &Figure) {
     let [width, height] = figure.size;
     painter.rect_filled(Rect::from_min_size(Pos2::ZERO, Vec2::new(width, height)), 0.0, colour(figure.background));
     items(painter, pos2(0.0, 0.0), &figure.axes, &figure.items);

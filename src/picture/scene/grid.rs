@@ -43,6 +43,6 @@ impl Grid {
     pub fn draw(&self, scene: &mut Scene, palette: &Palette) {
         let lines = Polyline::new("grid", self.lines.clone(), 1.0, faded(palette.line, 0.55));
         let axes = Polyline::new("grid/axes", self.axes.clone(), 1.0, palette.line);
-        scene.lines.extend([lines.still(), axes.still()]);
+        scene.lines.extend([lines.constant(), axes.constant()]);
     }
 }

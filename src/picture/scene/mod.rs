@@ -184,7 +184,7 @@ impl Polyline {
 
     /// Returns the line marked as constant.
     #[must_use]
-    pub fn still(self) -> Self {
+    pub fn constant(self) -> Self {
         Self { changes: ItemChanges::Nothing, ..self }
     }
 

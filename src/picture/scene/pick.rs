@@ -53,7 +53,7 @@ pub struct GrabPoint {
     /// Distance from the root of the link, m.
     pub along: f64,
     /// Vector from the pointer to this point, m.
-    pub off: [f64; 2],
+    pub offset: [f64; 2],
 }
 
 /// State of a link at the start of its rotation.

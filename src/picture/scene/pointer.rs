@@ -25,20 +25,20 @@ impl Pointer {
     }
 
     /// Projects a point, m, to the picture, px; `None` behind the eye.
-    pub fn seen(&self, point: [f64; 3]) -> Option<[f64; 2]> {
+    pub fn project(&self, point: [f64; 3]) -> Option<[f64; 2]> {
         let place = self.camera.project(point, self.aspect())?;
         Some([0, 1].map(|i| place[i] * self.size[i]))
     }
 
     /// Distance in the picture from the pointer to a point, px; `None` behind the eye.
     pub fn distance(&self, point: [f64; 3]) -> Option<f64> {
-        let [x, y] = self.seen(point)?;
+        let [x, y] = self.project(point)?;
         Some((x - self.at[0]).hypot(y - self.at[1]))
     }
 
     /// Distance in the picture from the pointer to a segment, px; `None` if an end is behind the eye.
     pub fn distance_to_segment(&self, ends: [[f64; 3]; 2]) -> Option<f64> {
-        let ([ax, ay], [bx, by]) = (self.seen(ends[0])?, self.seen(ends[1])?);
+        let ([ax, ay], [bx, by]) = (self.project(ends[0])?, self.project(ends[1])?);
         let (ux, uy, px, py) = (bx - ax, by - ay, self.at[0] - ax, self.at[1] - ay);
         let length = (ux * ux + uy * uy).max(1e-12);
         let t = ((px * ux + py * uy) / length).clamp(0.0, 1.0);

@@ -60,7 +60,7 @@ impl ReactionGlyph {
         Self {
             force,
             moment,
-            static_force: frame.wrench.statical.force.norm(),
+            static_force: frame.wrench.static_part.force.norm(),
             has_force: force.norm() > REACTIONLESS_SHARE * frame.peaks.inertial_pull.max(1e-9),
             has_moment: moment.abs() > REACTIONLESS_SHARE * frame.peaks.torque_sum.max(1e-9),
         }
@@ -89,7 +89,7 @@ impl ReactionGlyph {
     }
 
     /// Returns the text of the constant force under the given name, if there is one.
-    pub fn beside(&self, name: &str) -> Option<String> {
+    pub fn static_force_text(&self, name: &str) -> Option<String> {
         (self.static_force > 0.0).then(|| format!("and {name}, {:.1} N", self.static_force))
     }
 }

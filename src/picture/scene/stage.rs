@@ -13,6 +13,7 @@ mod under;
 mod workspace;
 
 pub use base::PULL_STIFFNESS;
+use workspace::WorkspaceParts;
 pub use workspace::{OutlineQuery, Workspace};
 
 use std::sync::Arc;
@@ -347,7 +348,8 @@ impl Stage {
         self.base.unmoved(&mut scene, linkage, &palette, shown, options.exaggeration.factor());
         self.base.draw(&mut scene, linkage, &palette, shown);
         if let Some(workspace) = self.outlined() {
-            workspace.draw(&mut scene, (linkage, self.fill), &palette, shown, (options, self.compared));
+            let parts = WorkspaceParts { fill: self.fill, compared_b: self.compared };
+            workspace.draw(&mut scene, linkage, &palette, shown, options, parts);
         }
         if let Some(ring) = &self.ring {
             ring.draw(&mut scene, &palette, shown, options, z);
@@ -358,8 +360,8 @@ impl Stage {
         snapshots::snapshots(&mut scene, linkage, &palette, options);
         snapshots::others(&mut scene, linkage, &palette, options);
         let blocked = self.plan.as_ref().and_then(PlannedPath::blocked);
-        path::by_hand(&mut scene, &palette, options, blocked, z);
-        reaction::draw(&mut scene, linkage, &palette, shown, options, self.base.rest(options));
+        path::draw_user_curves(&mut scene, &palette, options, blocked, z);
+        reaction::draw(&mut scene, linkage, &palette, shown, options, self.base.static_force_name(options));
         if options.pin_forces {
             self.pins.draw(&mut scene, linkage, &palette, shown);
         }
@@ -378,7 +380,7 @@ impl Stage {
         }
         if let (Some(b), Some(planes)) = (options.preview_b, self.planes()) {
             let map = planes.map();
-            let p = self.plan.as_ref().and_then(|plan| plan.begins).unwrap_or(shown.frame.target.at);
+            let p = self.plan.as_ref().and_then(|plan| plan.start_point).unwrap_or(shown.frame.target.at);
             for pose in map.poses(p, b).iter() {
                 let q = DriveAngles::from(map.lift(*pose));
                 scene.solids.extend(self.linkage.ghost("preview", &q.units(), palette, 0.34));

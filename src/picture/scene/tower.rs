@@ -302,7 +302,7 @@ impl Tower {
             Polyline::new(name, strips, 1.0, faded(palette.amber, strength)).on_top()
         };
         if self.fixed.is_some() {
-            scene.lines.push(line("contours", self.contours.clone(), 0.55).still());
+            scene.lines.push(line("contours", self.contours.clone(), 0.55).constant());
             return;
         }
         let (mut near_ones, mut far_ones) = (Vec::new(), Vec::new());

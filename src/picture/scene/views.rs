@@ -128,7 +128,7 @@ pub struct ViewSubject {
 impl ViewSubject {
     /// Returns the input for a run in the window, or with `over` for a whole run in a recording.
     pub fn of(run: &Run, over: Option<[f64; 2]>, queries: &Queries) -> Self {
-        Self { run: run.clone(), over, queries: queries.asking() }
+        Self { run: run.clone(), over, queries: queries.downgrade() }
     }
 
     /// Whether the constant parts of another run are equal: machine, plan, and differences of the plant from the model.
@@ -173,7 +173,7 @@ struct Completed;
 /// Input of [`Completed`].
 #[derive(Clone)]
 struct CompletedInput {
-    made: ByIdentity<Views>,
+    base_views: ByIdentity<Views>,
     run: Run,
     outline: Option<ByIdentity<Option<Arc<Workspace>>>>,
     /// Indices of the drives along the axes of joint space, from 0, if there are more than three drives.
@@ -189,7 +189,7 @@ impl CompletedInput {
 
 impl PartialEq for CompletedInput {
     fn eq(&self, other: &Self) -> bool {
-        self.made == other.made
+        self.base_views == other.base_views
             && self.is_of(&other.run)
             && self.outline == other.outline
             && self.drives == other.drives
@@ -200,8 +200,8 @@ impl QuickQuery for Completed {
     type Input = CompletedInput;
     type Answer = Views;
 
-    fn answer(CompletedInput { made, run, outline, drives }: &CompletedInput) -> Views {
-        let mut views = Views::clone(&made.0);
+    fn answer(CompletedInput { base_views, run, outline, drives }: &CompletedInput) -> Views {
+        let mut views = Views::clone(&base_views.0);
         if let Some(ByIdentity(outline)) = outline {
             views.stage.set_outline(Option::clone(outline));
         }
@@ -224,7 +224,7 @@ impl Views {
     /// Returns the views of a run, from the cache if possible, without the parts that [`completed`](Self::completed)
     /// adds. For a whole run, `over` is the interval of its b, rad.
     #[doc(hidden)]
-    pub fn made(queries: &Queries, run: &Run, over: Option<[f64; 2]>) -> Arc<Self> {
+    pub fn base_views(queries: &Queries, run: &Run, over: Option<[f64; 2]>) -> Arc<Self> {
         queries.ask_if::<QuickWork<Self>>(
             |seen| seen.over == over && seen.is_of(run),
             || ViewSubject::of(run, over, queries),
@@ -239,12 +239,17 @@ impl Views {
         let outline = wanted.and_then(|space| queries.known::<OutlineQuery>(&Shared(space))).map(ByIdentity);
         queries.ask_if::<QuickWork<Completed>>(
             |known| {
-                Arc::ptr_eq(&known.made.0, made)
+                Arc::ptr_eq(&known.base_views.0, made)
                     && known.is_of(run)
                     && known.outline == outline
                     && known.drives == drives
             },
-            || CompletedInput { made: ByIdentity(made.clone()), run: run.clone(), outline: outline.clone(), drives },
+            || CompletedInput {
+                base_views: ByIdentity(made.clone()),
+                run: run.clone(),
+                outline: outline.clone(),
+                drives,
+            },
         )
     }
 
@@ -440,7 +445,7 @@ impl Views {
                 let points = self.stage.waypoints().filter_map(|i| {
                     let handle = Handle::Waypoint(i);
                     let at = self.stage.handle(handle, shown)?;
-                    let [x, y] = pointer.seen(at)?;
+                    let [x, y] = pointer.project(at)?;
                     let name = (pointer.at[0] - x + NAME_DISTANCE_PX).hypot(pointer.at[1] - y);
                     let own = (pointer.at[0] - x).hypot(pointer.at[1] - y);
                     let off = if first.is_some() { name } else { own.min(name) };
@@ -451,7 +456,7 @@ impl Views {
                 let point = points.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
                 // A payload under the target is picked by its label, which is above it.
                 let load = self.stage.handle(Handle::Payload, shown).filter(|at| {
-                    let Some([x, y]) = pointer.seen(*at) else { return false };
+                    let Some([x, y]) = pointer.project(*at) else { return false };
                     let [px, py] = pointer.at;
                     let on = first.is_none() && (px - x).hypot(py - y) < PAYLOAD_PICK_PX;
                     on || (px - x).hypot(py - y + MASS_DISTANCE_PX) < POINT_PICK_PX

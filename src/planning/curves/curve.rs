@@ -251,7 +251,7 @@ impl Curve {
 
     /// Returns the s of the joints and of points between them, so dense that the curve changes little between
     /// neighbours.
-    pub fn places(&self) -> impl Iterator<Item = f64> + '_ {
+    pub fn sample_parameters(&self) -> impl Iterator<Item = f64> + '_ {
         let parts = |piece: &Piece| {
             let spaces = if piece.shape.is_straight() { 1 } else { 16 };
             let (from, to) = (piece.from, piece.to);

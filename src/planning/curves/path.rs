@@ -142,11 +142,11 @@ impl Path {
 
     /// Returns samples of s from 0 to 1. In tables and curves on a plane the path changes little between neighbours;
     /// other paths give their joints.
-    pub fn places(&self) -> Vec<f64> {
+    pub fn sample_parameters(&self) -> Vec<f64> {
         match self {
             Self::Table(table) => table.stations().to_vec(),
-            Self::OnPlane { curve, .. } => curve.places().collect(),
-            Self::Chain(chain) => chain.joined(Self::places),
+            Self::OnPlane { curve, .. } => curve.sample_parameters().collect(),
+            Self::Chain(chain) => chain.joined(Self::sample_parameters),
             _ => self.joints(),
         }
     }

@@ -9,7 +9,7 @@ pub(super) fn norm(values: &[f64]) -> f64 {
 }
 
 /// Finds by bisection the greatest fraction that is feasible; 0 is feasible, 1 is not.
-pub(super) fn last_open(is_open: impl Fn(f64) -> bool) -> f64 {
+pub(super) fn greatest_feasible_fraction(is_open: impl Fn(f64) -> bool) -> f64 {
     let (mut open, mut blocked) = (0.0, 1.0);
     for _ in 0..20 {
         let middle = 0.5 * (open + blocked);

@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use super::braking::{LAG_TIME, approach, last_open, norm};
+use super::braking::{LAG_TIME, approach, greatest_feasible_fraction, norm};
 use super::held::{HeldReference, Pull};
 use crate::Reference;
 use crate::pose_space::{PoseSpace, Reach};
@@ -287,11 +287,11 @@ impl Follower {
     /// Returns the pose `to`, or the last one before a limit or a fold on the straight line to it.
     fn as_far_as_open(&self, to: PerDrive) -> PerDrive {
         let from = self.a.x;
-        if !self.map.has_bars() || self.map.is_open_way(&from, &to) {
+        if !self.map.has_barriers() || self.map.is_unblocked(&from, &to) {
             return to;
         }
         let at = |t: f64| from.plus(t, &to.minus(&from));
-        at(last_open(|t| self.map.is_open_way(&from, &at(t))))
+        at(greatest_feasible_fraction(|t| self.map.is_unblocked(&from, &at(t))))
     }
 
     fn aim_point(&self) -> Vector {
@@ -354,7 +354,7 @@ impl Follower {
     /// them the reference can stop on a straight line without leaving its sheet.
     fn before_folds(&self, want: &PerDrive) -> PerDrive {
         let wanted = self.within_limits(want);
-        if !self.map.has_bars() || self.can_stop_after(&wanted) {
+        if !self.map.has_barriers() || self.can_stop_after(&wanted) {
             return wanted;
         }
         let speed = norm(&self.a.v);
@@ -362,7 +362,7 @@ impl Follower {
         let braking = self.a.v.scaled(if speed > 0.0 { -brake / speed } else { 0.0 });
         // Full braking does not move the stopping point, so it is always feasible.
         let at = |t: f64| self.within_limits(&braking.plus(t, &want.minus(&braking)));
-        at(last_open(|t| self.can_stop_after(&at(t))))
+        at(greatest_feasible_fraction(|t| self.can_stop_after(&at(t))))
     }
 
     /// Returns whether the coming step with these accelerations, and the straight line from there to the stop, meet no
@@ -375,7 +375,7 @@ impl Follower {
         let rest = speed - whole * self.bounds.joint * self.step;
         let far = self.step * (0.5 * whole * (speed + rest) + 0.5 * rest);
         let stop = next.x.plus(if speed > 0.0 { far / speed } else { 0.0 }, &next.v);
-        self.map.is_open_way(&self.a.x, &next.x) && self.map.is_open_way(&next.x, &stop)
+        self.map.is_unblocked(&self.a.x, &next.x) && self.map.is_unblocked(&next.x, &stop)
     }
 
     /// Sets the accelerations of the coming step.

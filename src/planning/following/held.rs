@@ -8,7 +8,7 @@
 
 use std::sync::Arc;
 
-use super::braking::{LAG_TIME, approach, last_open, norm};
+use super::braking::{LAG_TIME, approach, greatest_feasible_fraction, norm};
 use crate::Reference;
 use crate::pose_space::PoseSpace;
 use stillbase_mechanics::machine::Chain;
@@ -293,6 +293,10 @@ impl HeldReference {
             return;
         };
         let at = |t: f64| braking.plus(t, &want.minus(&braking));
-        self.acc = if self.can_stop_after(&want) { want } else { at(last_open(|t| self.can_stop_after(&at(t)))) };
+        self.acc = if self.can_stop_after(&want) {
+            want
+        } else {
+            at(greatest_feasible_fraction(|t| self.can_stop_after(&at(t))))
+        };
     }
 }

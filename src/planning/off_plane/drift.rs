@@ -9,7 +9,9 @@ use crate::curves::PathPoint;
 use crate::curves::curve::{Curve, CurvePoint};
 use crate::curves::path::by_pieces;
 use crate::curves::table::PathTable;
-use crate::off_plane::null_space::{determines, least, lines, momentum_row_rate, rates, solve, turns_nothing};
+use crate::off_plane::null_space::{
+    determines, has_no_angular_momentum, jacobian_with_momentum, least, momentum_row_rate, rates, solve,
+};
 use stillbase_mechanics::kinematics::{acceleration, end_effector};
 use stillbase_mechanics::machine::Inertia;
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
@@ -113,7 +115,7 @@ fn follow_once(
     cycle: usize,
 ) -> Result<Vec<PathPoint>, DriftError> {
     let drives = model.drives();
-    if start.len() != drives || (drives < 3 && !turns_nothing(model)) {
+    if start.len() != drives || (drives < 3 && !has_no_angular_momentum(model)) {
         return Err(DriftError::Drives { drives });
     }
     let reach = model.end_effector.iter().map(|c| c.abs()).sum::<f64>();
@@ -162,7 +164,7 @@ fn node(model: &Inertia, q: &DriveAngles, point: &CurvePoint) -> Option<PathPoin
         return Some(PathPoint { q: *q, first, second });
     }
     let e = q.units();
-    let (lines, scale) = lines(model, &e)?;
+    let (lines, scale) = jacobian_with_momentum(model, &e)?;
     let first = solve(&lines, point.first, 0.0)?;
     let bent = acceleration(&model.end_effector, &e, &first, &PerDrive::zeros(3));
     let turned = momentum_row_rate(model, &e, &first).dot(&first);

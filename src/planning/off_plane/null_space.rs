@@ -29,10 +29,10 @@ use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, UnitVectors
 
 /// Returns D_k at a pose, kg m², (A3).
 #[inline]
-pub fn momentum_row(model: &Inertia, e: &UnitVectors) -> PerDrive {
+pub fn momentum_coefficients(model: &Inertia, e: &UnitVectors) -> PerDrive {
     let n = model.drives();
     let (h, _) = mass_matrix(model, e, &PerDrive::zeros(n));
-    PerDrive::from_fn(n, |k| h.momentum_row(k))
+    PerDrive::from_fn(n, |k| h.momentum_coefficient(k))
 }
 
 /// Returns Ḋ_k at a pose for rates q̇, kg m²/s.
@@ -60,7 +60,7 @@ impl NullSpace {
     /// Returns the null space at a pose q, rad.
     pub fn of(model: &Inertia, q: &DriveAngles) -> Self {
         let n = model.drives();
-        let d = momentum_row(model, &q.units());
+        let d = momentum_coefficients(model, &q.units());
         let norm = d.dot(&d).sqrt();
         // The Householder reflection that maps D to the first axis maps the other axes to a basis of D's complement.
         let mut v = d;
@@ -83,7 +83,7 @@ impl NullSpace {
 
 /// Returns the rates of zero momentum nearest to the wanted rates w: w − D (D · w)/(D · D).
 pub fn projected(model: &Inertia, q: &DriveAngles, w: &PerDrive) -> PerDrive {
-    let d = momentum_row(model, &q.units());
+    let d = momentum_coefficients(model, &q.units());
     w.plus(-share(&d, w), &d)
 }
 
@@ -127,7 +127,7 @@ pub fn motion(model: &Inertia, start: DriveAngles, w: &PerDrive) -> Option<PathT
 /// Returns q, q′ = w − σ D and q″ = −σ′ D − σ D′, with σ = (D · w)/(D · D).
 fn node(model: &Inertia, q: DriveAngles, w: &PerDrive) -> PathPoint {
     let e = q.units();
-    let d = momentum_row(model, &e);
+    let d = momentum_coefficients(model, &e);
     let sigma = share(&d, w);
     let first = w.plus(-sigma, &d);
     let rate = momentum_row_rate(model, &e, &first);
@@ -140,10 +140,10 @@ fn node(model: &Inertia, q: DriveAngles, w: &PerDrive) -> PathPoint {
 /// = [v; h]. With more than three drives, or if no motion has angular momentum, these are the rates of minimum norm.
 /// Returns `None` for fewer than three drives with angular momentum, or if the matrix has lost rank.
 pub fn rates(model: &Inertia, q: &DriveAngles, v: Vector, h: f64) -> Option<PerDrive> {
-    if model.drives() > 3 || turns_nothing(model) {
+    if model.drives() > 3 || has_no_angular_momentum(model) {
         return least(model, q, v, Vector::default(), h).map(|(rates, _)| rates);
     }
-    let (lines, scale) = lines(model, &q.units())?;
+    let (lines, scale) = jacobian_with_momentum(model, &q.units())?;
     solve(&lines, v, h / scale)
 }
 
@@ -163,7 +163,7 @@ impl MomentumFreedom {
     pub fn of(model: &Inertia) -> Self {
         match model.drives() {
             1 => Self::None,
-            2 if !turns_nothing(model) => Self::OneCurve,
+            2 if !has_no_angular_momentum(model) => Self::OneCurve,
             _ => Self::AnyCurve,
         }
     }
@@ -172,11 +172,11 @@ impl MomentumFreedom {
 /// Returns whether the velocity of the end effector and the momentum determine the rates of the drives. This holds for
 /// three drives with angular momentum.
 pub(super) fn determines(model: &Inertia) -> bool {
-    model.drives() == 3 && !turns_nothing(model)
+    model.drives() == 3 && !has_no_angular_momentum(model)
 }
 
 /// Returns whether no motion of the machine has angular momentum.
-pub fn turns_nothing(model: &Inertia) -> bool {
+pub fn has_no_angular_momentum(model: &Inertia) -> bool {
     let (n, whole) = (model.drives(), model.diagonals().iter().sum::<f64>());
     let max_momentum = model.momenta().max_abs();
     max_momentum <= BALANCE_TOLERANCE * whole
@@ -187,20 +187,20 @@ pub fn turns_nothing(model: &Inertia) -> bool {
 /// Also returns their exact derivative for v̇ = `vd`, m/s², and constant h.
 pub(super) fn least(model: &Inertia, q: &DriveAngles, v: Vector, vd: Vector, h: f64) -> Option<(PerDrive, PerDrive)> {
     let e = q.units();
-    if turns_nothing(model) {
+    if has_no_angular_momentum(model) {
         return minimum_norm(&model.end_effector, &e, model.drives(), v, vd);
     }
-    let d = momentum_row(model, &e);
+    let d = momentum_coefficients(model, &e);
     minimum_norm_with(&model.end_effector, &d, h, |qd| momentum_row_rate(model, &e, qd), &e, v, vd)
 }
 
 /// Returns [J; D/scale] of three drives, and the scale, kg m, that makes the norm of D/scale equal to the arm length.
 /// Returns `None` for other numbers of drives, or if the matrix has lost rank.
-pub(super) fn lines(model: &Inertia, e: &UnitVectors) -> Option<(Matrix3<f64>, f64)> {
+pub(super) fn jacobian_with_momentum(model: &Inertia, e: &UnitVectors) -> Option<(Matrix3<f64>, f64)> {
     if model.drives() != 3 {
         return None;
     }
-    let d = momentum_row(model, e);
+    let d = momentum_coefficients(model, e);
     let reach = model.end_effector.iter().map(|c| c.abs()).sum::<f64>();
     let scale = d.dot(&d).sqrt() / reach;
     let j = [0, 1, 2].map(|k| column(&model.end_effector, e, k));
@@ -217,9 +217,9 @@ pub(super) fn solve(lines: &Matrix3<f64>, v: Vector, h: f64) -> Option<PerDrive>
 
 /// Returns the violation of integrability of D q̇ = 0 at a pose, (kg m²)²: the largest component of D ∧ dD, 2 |D_j Im
 /// Z_kl + D_k Im Z_lj + D_l Im Z_jk| over three drives j, k, l. It is 0 for one or two drives, and if D is constant.
-pub fn twist(model: &Inertia, q: &DriveAngles) -> f64 {
+pub fn integrability_violation(model: &Inertia, q: &DriveAngles) -> f64 {
     let (n, e) = (model.drives(), q.units());
-    let d = momentum_row(model, &e);
+    let d = momentum_coefficients(model, &e);
     let z = |k: usize, l: usize| coupling(model, &e, k, l).im;
     let mut largest = 0.0_f64;
     for j in 0..n {

@@ -27,7 +27,7 @@ pub(super) struct BoxedStep<'a> {
     /// Weights w_i, above 0.
     pub weight: &'a PerDrive,
     /// Unconstrained optimum y_i.
-    pub wish: &'a PerDrive,
+    pub unconstrained: &'a PerDrive,
     /// Bounds low_i and high_i.
     pub range: [[f64; 2]; MAX_DRIVES],
 }
@@ -35,7 +35,7 @@ pub(super) struct BoxedStep<'a> {
 impl BoxedStep<'_> {
     /// Returns the step x for the right-hand side r = `wanted`, and the multiplier ν.
     pub fn step(&self, wanted: Vector) -> (PerDrive, Vector) {
-        let n = self.wish.len();
+        let n = self.unconstrained.len();
         let scale: f64 = (0..n).map(|i| self.columns[i].norm_sqr() / self.weight[i]).sum();
         let damping = DAMPING * scale;
         let mut nu = Vector::default();
@@ -44,7 +44,7 @@ impl BoxedStep<'_> {
             return (x, nu);
         }
         let gradient = |x: &PerDrive, nu: Vector| wanted - self.sum(x) - damping * nu;
-        let enough = RELATIVE_TOLERANCE * (wanted.norm() + self.sum(self.wish).norm());
+        let enough = RELATIVE_TOLERANCE * (wanted.norm() + self.sum(self.unconstrained).norm());
         for _ in 0..MAX_ITERATIONS {
             let missing = gradient(&x, nu);
             if missing.norm() <= enough {
@@ -53,7 +53,7 @@ impl BoxedStep<'_> {
             let mut gram = [damping, 0.0, damping];
             for i in 0..n {
                 let [low, high] = self.range[i];
-                let own = self.wish[i] + dot(self.columns[i], nu) / self.weight[i];
+                let own = self.unconstrained[i] + dot(self.columns[i], nu) / self.weight[i];
                 if low < high && own >= low && own <= high {
                     let (c, w) = (self.columns[i], 1.0 / self.weight[i]);
                     gram = [gram[0] + w * c.re * c.re, gram[1] + w * c.re * c.im, gram[2] + w * c.im * c.im];
@@ -74,9 +74,9 @@ impl BoxedStep<'_> {
     }
 
     fn at(&self, nu: Vector) -> PerDrive {
-        PerDrive::from_fn(self.wish.len(), |i| {
+        PerDrive::from_fn(self.unconstrained.len(), |i| {
             let [low, high] = self.range[i];
-            (self.wish[i] + dot(self.columns[i], nu) / self.weight[i]).clamp(low, high)
+            (self.unconstrained[i] + dot(self.columns[i], nu) / self.weight[i]).clamp(low, high)
         })
     }
 
@@ -95,9 +95,9 @@ impl BoxedStep<'_> {
         }
         let mut breakpoints = [f64::INFINITY; 2 * MAX_DRIVES];
         let mut count = 0;
-        for i in 0..self.wish.len() {
+        for i in 0..self.unconstrained.len() {
             let speed = dot(self.columns[i], way) / self.weight[i];
-            let own = self.wish[i] + dot(self.columns[i], nu) / self.weight[i];
+            let own = self.unconstrained[i] + dot(self.columns[i], nu) / self.weight[i];
             for end in self.range[i] {
                 let t = (end - own) / speed;
                 if t > 0.0 && t.is_finite() {

@@ -128,7 +128,7 @@ impl PoseSpace {
                 return Some(a);
             }
             let range = within(windows, &a, longest);
-            let (step, _) = BoxedStep { columns: &columns, weight: &even, wish: &none, range }.step(residual);
+            let (step, _) = BoxedStep { columns: &columns, weight: &even, unconstrained: &none, range }.step(residual);
             let next = PerDrive::from_fn(n, |i| (a[i] + step[i]).clamp(windows[i][0], windows[i][1]));
             let (place, next_columns) = self.columns(&self.lift(&next, b));
             let next_residual = p - place;

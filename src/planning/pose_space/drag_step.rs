@@ -51,13 +51,13 @@ impl PoseSpace {
     /// angle of a drive, or to approach the [middle](GuidanceMode::Middle) of all ranges. Returns `None` for other
     /// spaces.
     pub fn drag_to_guided(&self, p: Vector, b: f64, from: &[f64]) -> Option<(PerDrive, f64)> {
-        match self.lead {
+        match self.guidance {
             GuidanceMode::Keep(kept) => Some(self.approach(p, b, from, Some(kept))),
             GuidanceMode::Middle => {
                 let (a, off) = self.approach(p, b, from, None);
                 Some((self.midrange_pose(p, b, &a), off))
             }
-            GuidanceMode::LeastEnergy | GuidanceMode::Weighed(_) => None,
+            GuidanceMode::LeastEnergy | GuidanceMode::WeightedNorm(_) => None,
         }
     }
 
@@ -211,8 +211,8 @@ impl PoseSpace {
         }
         // A drive without inertia has no weight; a small weight keeps the step finite.
         let cost = |k: usize| self.lambda[k].abs().max(1e-6);
-        let light = match &self.lead {
-            GuidanceMode::Weighed(inverse) => {
+        let light = match &self.guidance {
+            GuidanceMode::WeightedNorm(inverse) => {
                 SMatrix::<f64, MAX_DRIVES, MAX_DRIVES>::from_fn(|k, l| inverse[k][l]) * c.transpose()
             }
             _ => {

@@ -25,13 +25,13 @@ impl PoseSpace {
     }
 
     /// Whether a straight line in joint space within the limits can be blocked.
-    pub fn has_bars(&self) -> bool {
-        self.planes().is_ok_and(|planes| planes.has_bars())
+    pub fn has_barriers(&self) -> bool {
+        self.planes().is_ok_and(|planes| planes.has_barriers())
     }
 
     /// Whether the straight line in joint space between two poses of one b is not blocked.
-    pub fn is_open_way(&self, from: &PerDrive, to: &PerDrive) -> bool {
-        self.planes().map_or(true, |planes| planes.is_open_way([from[0], from[1]], [to[0], to[1]]))
+    pub fn is_unblocked(&self, from: &PerDrive, to: &PerDrive) -> bool {
+        self.planes().map_or(true, |planes| planes.is_unblocked([from[0], from[1]], [to[0], to[1]]))
     }
 
     /// Returns a pose at b with the end effector on p, m, or at the nearest boundary point; `None` without planes.
@@ -111,7 +111,7 @@ fn pose_for(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive) -> (PerDrive,
     let feasible_b = set.as_ref().and_then(|set| set.nearest(b));
     // A single value of b is printed with as many decimals as it needs.
     let serves = |b: f64| space.reaches(p, b);
-    let printed = |set: &BSet, b: f64| set.decimal(b, 3).or_else(|| Decimal::that(b, 3, serves));
+    let printed = |set: &BSet, b: f64| set.decimal(b, 3).or_else(|| Decimal::shortest_passing(b, 3, serves));
     let displayed_b = set.as_ref().zip(feasible_b).and_then(|(set, b)| printed(set, b));
     let nearest = space.end_effector(&space.lift(&a, b));
     (a, Reach::Outside { nearest, feasible_b, displayed_b, other_sheet: false })

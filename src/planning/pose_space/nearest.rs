@@ -39,6 +39,20 @@ pub(super) struct PreferredAngles {
 /// Size of the KKT system: relative angles, two multipliers for p and one for each angle.
 const KKT: usize = 2 * MAX_DRIVES + 2;
 
+/// A pose and the multiplier there, for a Newton step of the optimality (KKT) conditions.
+struct KktPoint<'a> {
+    /// Relative angles, rad.
+    a: &'a PerDrive,
+    /// Pose constant, rad.
+    b: f64,
+    /// Multiplier of the constraint on the point.
+    nu: Vector,
+    /// Columns ∂p/∂a_i, m/rad.
+    columns: &'a [Vector; MAX_DRIVES],
+    /// The point to reach less that of the pose, m.
+    residual: Vector,
+}
+
 impl PoseSpace {
     /// Returns the relative angles of the pose at p, m, and b that minimises ½ Σ x_i², starting from another pose
     /// there. x_i is the deviation of a_i from the midpoint of its range, as a fraction of half the range.
@@ -86,7 +100,8 @@ impl PoseSpace {
             let (place, columns) = self.columns(&self.lift(&a, b));
             let down = PerDrive::from_fn(n, |i| wish.weight[i] * (wish.angles[i] - a[i]) / weight[i]);
             let range = within(windows, &a, MAX_STEP_RAD);
-            let (step, nu) = BoxedStep { columns: &columns, weight: &weight, wish: &down, range }.step(p - place);
+            let (step, nu) =
+                BoxedStep { columns: &columns, weight: &weight, unconstrained: &down, range }.step(p - place);
             if step.max_abs() < STEP_TOLERANCE_RAD {
                 break;
             }
@@ -94,10 +109,12 @@ impl PoseSpace {
                 step[i].abs() < ACTIVE_TOLERANCE_RAD
                     && (range[i][0] > -ACTIVE_TOLERANCE_RAD || range[i][1] < ACTIVE_TOLERANCE_RAD)
             };
-            let newton_step = self.newton_step((&a, b), wish, (nu, &columns, p - place), &held).filter(|step| {
-                let fits = |i: usize| a[i] + step[i] >= windows[i][0] && a[i] + step[i] <= windows[i][1];
-                step.max_abs() < MAX_STEP_RAD && (0..n).all(fits)
-            });
+            let newton_step = self
+                .newton_step(&KktPoint { a: &a, b, nu, columns: &columns, residual: p - place }, wish, &held)
+                .filter(|step| {
+                    let fits = |i: usize| a[i] + step[i] >= windows[i][0] && a[i] + step[i] <= windows[i][1];
+                    step.max_abs() < MAX_STEP_RAD && (0..n).all(fits)
+                });
             let tries = newton_step.iter().map(|step| (step, 1.0));
             let shorter = (0..MAX_HALVINGS).map(|i| (&step, 0.5f64.powi(i as i32)));
             let better = tries.chain(shorter).find_map(|(step, share)| {
@@ -117,13 +134,8 @@ impl PoseSpace {
 
     /// Returns the Newton step of the optimality (KKT) conditions with some angles held; `None` if the system is
     /// singular.
-    fn newton_step(
-        &self,
-        (a, b): (&PerDrive, f64),
-        wish: &PreferredAngles,
-        (nu, columns, off): (Vector, &[Vector; MAX_DRIVES], Vector),
-        held: &dyn Fn(usize) -> bool,
-    ) -> Option<PerDrive> {
+    fn newton_step(&self, at: &KktPoint<'_>, wish: &PreferredAngles, held: &dyn Fn(usize) -> bool) -> Option<PerDrive> {
+        let KktPoint { a, b, nu, columns, residual } = *at;
         let n = self.joints.len();
         let q = self.lift(a, b);
         let turned: [PerDrive; MAX_DRIVES] = std::array::from_fn(|i| match i < n {
@@ -144,7 +156,7 @@ impl PoseSpace {
         }
         for (row, part) in [(MAX_DRIVES, 0), (MAX_DRIVES + 1, 1)] {
             square[(row, row)] = 0.0;
-            side[row] = if part == 0 { off.re } else { off.im };
+            side[row] = if part == 0 { residual.re } else { residual.im };
             for i in 0..n {
                 let x = if part == 0 { columns[i].re } else { columns[i].im };
                 (square[(row, i)], square[(i, row)]) = (x, x);

@@ -57,12 +57,12 @@ pub enum PlaneError {
     Map(#[from] NotAPlaneMap),
     /// The general method was requested.
     #[error("these poses are told apart by b alone, without planes")]
-    LeftOut,
+    NotRequested,
 }
 
 impl PlaneError {
     /// Whether a machine with this number of drives can have planes.
-    pub fn is_mendable(&self) -> bool {
+    pub fn could_have_planes(&self) -> bool {
         !matches!(self, Self::Shape { drives, .. } if *drives != 3)
     }
 }
@@ -95,7 +95,7 @@ impl Planes {
     }
 
     /// Whether a fold, or a change point that is to be avoided, can block a path within the limits.
-    pub fn has_bars(&self) -> bool {
+    pub fn has_barriers(&self) -> bool {
         self.keep_off_change_points || self.boundary.interior_singularity()
     }
 
@@ -116,12 +116,12 @@ impl Planes {
 
     /// Returns the pose for a target p, m, on the plane b and the sheet of `from`, or the nearest feasible one.
     pub fn reach(&self, p: Vector, b: f64, from: [f64; 2]) -> ([f64; 2], Reach) {
-        if let Some(a) = self.follow(p, b, from).filter(|a| self.is_open_way(from, *a)) {
+        if let Some(a) = self.follow(p, b, from).filter(|a| self.is_unblocked(from, *a)) {
             return (a, Reach::Inside);
         }
         let far = |a: &[f64; 2]| (a[0] - from[0]).hypot(a[1] - from[1]);
         let poses = self.map.poses(p, b);
-        let same = poses.iter().map(|x| x.a).filter(|a| self.is_open_way(from, *a));
+        let same = poses.iter().map(|x| x.a).filter(|a| self.is_unblocked(from, *a));
         if let Some(a) = same.min_by(|x, y| far(x).total_cmp(&far(y))) {
             return (a, Reach::Inside);
         }
@@ -131,7 +131,7 @@ impl Planes {
         let displayed_b = set.zip(feasible_b).and_then(|(set, b)| set.decimal(b, 3));
         let nearest = self.boundary.nearest(p, b, self.map.forward(from, b));
         let edge = self.map.clamp(nearest.a);
-        if !other_sheet && self.is_open_way(from, edge) {
+        if !other_sheet && self.is_unblocked(from, edge) {
             return (edge, Reach::Outside { nearest: nearest.at, feasible_b, displayed_b, other_sheet });
         }
         // The straight line in joint space is blocked: move as near to the target as possible.
@@ -145,7 +145,7 @@ impl Planes {
         let (mut a, mut t, mut step) = (from, 0.0, 0.125);
         while step > 1e-6 && t < 1.0 {
             let next = self.follow(start + (t + step) * (p - start), b, a);
-            let near = |x: &[f64; 2]| (x[0] - a[0]).hypot(x[1] - a[1]) < 0.5 && self.is_open_way(from, *x);
+            let near = |x: &[f64; 2]| (x[0] - a[0]).hypot(x[1] - a[1]) < 0.5 && self.is_unblocked(from, *x);
             match next.filter(near) {
                 Some(x) => (a, t) = (x, t + step),
                 None => step *= 0.5,
@@ -156,7 +156,7 @@ impl Planes {
 
     /// Whether the straight line in joint space between two poses of one plane stays on one sheet, where det keeps its
     /// sign. If change points are to be avoided, it must also stay on one side of each.
-    pub fn is_open_way(&self, from: [f64; 2], to: [f64; 2]) -> bool {
+    pub fn is_unblocked(&self, from: [f64; 2], to: [f64; 2]) -> bool {
         /// Minimum number of samples; long lines have one for each 0.1 rad.
         const MIN_SAMPLES: i32 = 32;
         if self.keep_off_change_points && self.map.sides(from) != self.map.sides(to) {

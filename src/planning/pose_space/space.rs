@@ -27,7 +27,7 @@ pub struct PoseSpace {
     /// Without planes, ordered as a tree: each follows the joint that leads to its nearer drive. With planes, in the
     /// machine's order.
     pub(super) joints: Box<[RelativeJoint]>,
-    pub(super) lead: GuidanceMode,
+    pub(super) guidance: GuidanceMode,
     inertia: f64,
     is_reactionless: bool,
     /// Cache of the patterns of these arms and joints; a space with different ones needs a new cache.
@@ -45,7 +45,7 @@ pub enum GuidanceMode {
     /// One drive keeps its angle, so its links keep their orientation, as long as that is feasible.
     Keep(usize),
     /// Each step minimises a weighted norm; the matrix is the inverse of the weight, row by row.
-    Weighed(Box<[[f64; MAX_DRIVES]; MAX_DRIVES]>),
+    WeightedNorm(Box<[[f64; MAX_DRIVES]; MAX_DRIVES]>),
     /// The pose moves to the one nearest to the midpoints of all joint ranges.
     Middle,
 }
@@ -64,7 +64,7 @@ impl PoseSpace {
     /// # Errors
     /// If the machine has no b: the reason.
     pub fn general(machine: &Machine) -> Result<Self, NoPoseSpace> {
-        Self::holding(machine, Err(PlaneError::LeftOut))
+        Self::holding(machine, Err(PlaneError::NotRequested))
     }
 
     fn holding(machine: &Machine, planes: Result<Arc<Planes>, PlaneError>) -> Result<Self, NoPoseSpace> {
@@ -80,7 +80,12 @@ impl PoseSpace {
     pub fn nominal(machine: &Machine) -> Result<Self, NoPoseSpace> {
         let inertia = Inertia::of(machine);
         let h = inertia.diagonals();
-        Self::with(machine, h.scaled(1.0 / h[0]), h[0], Err(plane_map(machine).err().unwrap_or(PlaneError::LeftOut)))
+        Self::with(
+            machine,
+            h.scaled(1.0 / h[0]),
+            h[0],
+            Err(plane_map(machine).err().unwrap_or(PlaneError::NotRequested)),
+        )
     }
 
     fn with(
@@ -107,7 +112,7 @@ impl PoseSpace {
             lambda,
             lambda_sum,
             joints: joints.into(),
-            lead: GuidanceMode::LeastEnergy,
+            guidance: GuidanceMode::LeastEnergy,
             inertia,
             is_reactionless: is_reactionless(machine),
             patterns: Patterns::default(),
@@ -117,8 +122,8 @@ impl PoseSpace {
 
     /// Returns the same space with another use of redundant freedoms.
     #[must_use]
-    pub fn with_guidance(self, lead: GuidanceMode) -> Self {
-        Self { lead, ..self }
+    pub fn with_guidance(self, guidance: GuidanceMode) -> Self {
+        Self { guidance, ..self }
     }
 
     /// Returns the same space with paths that avoid change points, or may cross them. Without planes it has no effect.

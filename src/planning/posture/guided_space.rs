@@ -31,7 +31,7 @@ fn with_posture_guidance(space: PoseSpace, machine: &Machine, posture: Posture) 
         Posture::Orientation => GuidanceMode::Keep(machine.resolved_links()[machine.end_link()].drive),
         Posture::LeastTorque => PostureWeights::of(machine, &space)
             .least_torque()
-            .map_or(GuidanceMode::LeastEnergy, |inverse| GuidanceMode::Weighed(Box::new(inverse))),
+            .map_or(GuidanceMode::LeastEnergy, |inverse| GuidanceMode::WeightedNorm(Box::new(inverse))),
         Posture::MidRange => GuidanceMode::Middle,
     };
     space.with_guidance(lead)

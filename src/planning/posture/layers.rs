@@ -16,7 +16,7 @@ pub(super) struct Detail {
     /// Approximate number of layers along the whole path.
     pub layers: usize,
     /// Distance between neighbouring poses of a layer, rad.
-    pub apart: f64,
+    pub spacing: f64,
     /// Maximum number of poses of a layer.
     pub max_poses: usize,
 }
@@ -40,7 +40,7 @@ pub(super) struct Layers<'a> {
     pub space: &'a PoseSpace,
     pub b: f64,
     pub all: Vec<Layer>,
-    pub apart: f64,
+    pub spacing: f64,
 }
 
 /// A pose nearer to another than this fraction of `apart` is omitted.
@@ -76,7 +76,7 @@ impl<'a> Layers<'a> {
             let mut next: Vec<Option<PerDrive>> = match ats.get(i + 1) {
                 Some(to) => angles_here
                     .iter()
-                    .map(|a| continued(space, b, a, &stations.places[*at..=*to], &windows, detail.apart))
+                    .map(|a| continued(space, b, a, &stations.places[*at..=*to], &windows, detail.spacing))
                     .collect(),
                 None => vec![None; angles_here.len()],
             };
@@ -87,14 +87,14 @@ impl<'a> Layers<'a> {
             {
                 let all = space.representative_poses(stations.places[*to], b);
                 for (a, next) in angles_here.iter().zip(&mut next).filter(|(_, next)| next.is_none()) {
-                    *next = nearest(&all, a, 2.0 * detail.apart);
+                    *next = nearest(&all, a, 2.0 * detail.spacing);
                     angles.extend(*next);
                 }
             }
             let poses = angles_here.iter().map(|a| lifted(space, a, b)).collect();
             all.push(Layer { at: *at, angles: angles_here, poses, next });
         }
-        Ok(Self { space, b, all, apart: detail.apart })
+        Ok(Self { space, b, all, spacing: detail.spacing })
     }
 }
 
@@ -178,7 +178,7 @@ fn filled(
     windows: &[[f64; 2]; MAX_DRIVES],
     detail: Detail,
 ) -> Vec<PerDrive> {
-    let thin = THINNING_SHARE * detail.apart;
+    let thin = THINNING_SHARE * detail.spacing;
     let mut poses: Vec<PerDrive> = Vec::new();
     let is_new = |poses: &[PerDrive], a: &PerDrive| !poses.iter().any(|other| near(other, a, thin * thin));
     for a in starts {
@@ -210,11 +210,11 @@ fn filled(
         }
         for way in ways.iter().flat_map(|way| [*way, way.scaled(-1.0)]) {
             let beside = PerDrive::from_fn(a.len(), |k| {
-                let there = a[k] + detail.apart * way[k];
+                let there = a[k] + detail.spacing * way[k];
                 there.clamp(room[k][0].min(a[k]), room[k][1].max(a[k]))
             });
             let Some(there) = space.solved(p, b, &beside, windows) else { continue };
-            if there.minus(&a).max_abs() <= 2.0 * detail.apart
+            if there.minus(&a).max_abs() <= 2.0 * detail.spacing
                 && poses.len() < detail.max_poses
                 && is_new(&poses, &there)
             {

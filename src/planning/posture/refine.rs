@@ -75,8 +75,23 @@ impl Frame {
     }
 }
 
-/// An active limit: index of the pose, penalty factor, and gradient of the angle.
-type ActiveLimit = (usize, f64, PerDrive);
+/// An active limit.
+struct ActiveLimit {
+    /// Index of the pose.
+    pose: usize,
+    /// Penalty factor.
+    penalty: f64,
+    /// Gradient of the angle.
+    row: PerDrive,
+}
+
+/// The objective and its constraints, linearised at the poses of a path.
+struct Linearisation<'a> {
+    frames: &'a [Frame],
+    /// Gradient of the objective with its limit terms, for each pose.
+    gradient: &'a [PerDrive],
+    active: &'a [ActiveLimit],
+}
 
 /// Multipliers and penalty factor of the limits.
 struct Forces {
@@ -195,7 +210,7 @@ impl RefinementProblem<'_> {
             let force = forces.multipliers[i] + forces.penalty * past;
             if force > 0.0 {
                 gradient[at] = gradient[at].plus(sign * force, row);
-                active.push((at, forces.penalty, *row));
+                active.push(ActiveLimit { pose: at, penalty: forces.penalty, row: *row });
             }
         });
         let (place, rows) = self.places(d, q.len());
@@ -204,7 +219,13 @@ impl RefinementProblem<'_> {
             (0..d).for_each(|k| side[place(i) + k] -= frame.free[k].dot(gradient));
         }
         let solved = [true, false].into_iter().find_map(|bent| {
-            self.assemble(goal, q, (&frames, &gradient, &active), bent, matrix);
+            self.assemble(
+                goal,
+                q,
+                &Linearisation { frames: &frames, gradient: &gradient, active: &active },
+                bent,
+                matrix,
+            );
             if !matrix.factor() {
                 return None;
             }
@@ -243,14 +264,8 @@ impl RefinementProblem<'_> {
     }
 
     /// Assembles the reduced Hessian. Without `bent`, negative curvature of the constraint p is set to zero.
-    fn assemble(
-        &self,
-        goal: &PostureCost,
-        q: &[PerDrive],
-        (frames, gradient, active): (&[Frame], &[PerDrive], &[ActiveLimit]),
-        bent: bool,
-        matrix: &mut Envelope,
-    ) {
+    fn assemble(&self, goal: &PostureCost, q: &[PerDrive], at: &Linearisation<'_>, bent: bool, matrix: &mut Envelope) {
+        let Linearisation { frames, gradient, active } = *at;
         let (d, n) = (self.held.freedoms(), self.held.space.drives());
         let (place, _) = self.places(d, q.len());
         matrix.clear();
@@ -285,7 +300,7 @@ impl RefinementProblem<'_> {
                 }
             }
         }
-        for (i, penalty, row) in active {
+        for ActiveLimit { pose: i, penalty, row } in active {
             for k in 0..d {
                 for l in 0..=k {
                     *matrix.entry(place(*i) + k, place(*i) + l) +=

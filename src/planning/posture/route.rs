@@ -58,7 +58,7 @@ impl Layers<'_> {
 
     /// Returns the steps from layer i to the layer `onto`.
     fn leaving(&self, i: usize, onto: &Layer, cost: StepCost<'_>) -> Vec<Vec<(usize, f64)>> {
-        let (layer, square) = (&self.all[i], (NEXT_POSE_FACTOR * self.apart).powi(2));
+        let (layer, square) = (&self.all[i], (NEXT_POSE_FACTOR * self.spacing).powi(2));
         let each = |(k, there): (usize, &Option<PerDrive>)| {
             let Some(there) = there else { return Vec::new() };
             let beside = onto.angles.iter().enumerate().filter(|(_, a)| near(a, there, square));

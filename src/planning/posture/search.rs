@@ -142,7 +142,7 @@ const GOALS: [Posture; 3] = [Posture::LeastRates, Posture::LeastTorque, Posture:
 
 /// Data that all paths of a search share.
 struct Search<'a> {
-    asked: &'a PostureRequest<'a>,
+    request: &'a PostureRequest<'a>,
     stations: Stations,
     weights: PostureWeights<'a>,
     bounds: Vec<AngleBound>,
@@ -244,9 +244,9 @@ fn goal_of(posture: Posture) -> usize {
 }
 
 impl<'a> Search<'a> {
-    fn on(asked: &'a PostureRequest<'a>, stations: Stations, done: f64) -> Self {
-        let (space, n) = (asked.space, asked.space.drives());
-        let weights = PostureWeights::of(asked.machine, space);
+    fn on(request: &'a PostureRequest<'a>, stations: Stations, done: f64) -> Self {
+        let (space, n) = (request.space, request.space.drives());
+        let weights = PostureWeights::of(request.machine, space);
         let one = |k: usize| PerDrive::from_fn(n, |l| f64::from(u8::from(k == l)));
         let none = PerDrive::zeros(n);
         let bounds = space.joints().iter().filter(|joint| joint.bounds()[0].is_finite()).map(|joint| {
@@ -254,7 +254,7 @@ impl<'a> Search<'a> {
             AngleBound { row: PerDrive::from_fn(n, |k| joint.of(&one(k)) - offset), offset, limits: joint.limits() }
         });
         let bounds = bounds.collect();
-        let centre = lifted(space, &space.middle(), asked.b);
+        let centre = lifted(space, &space.middle(), request.b);
         let goal = |terms: Vec<CostTerm>| PostureCost { terms, centre };
         let all = even(n);
         let rates = goal(vec![CostTerm::rates(&stations, all), CostTerm::smooth(&stations, all, 1.0)]);
@@ -275,11 +275,11 @@ impl<'a> Search<'a> {
             ])
         });
         let goals = [vec![rates], vec![torques], middle.to_vec()];
-        Self { asked, stations, weights, bounds, goals, done }
+        Self { request, stations, weights, bounds, goals, done }
     }
 
     fn held(&self) -> PoseConstraint<'a> {
-        PoseConstraint { space: self.asked.space, b: self.asked.b, hand: None }
+        PoseConstraint { space: self.request.space, b: self.request.b, hand: None }
     }
 
     fn layers(
@@ -288,14 +288,14 @@ impl<'a> Search<'a> {
         (layers, finer, max_poses): (usize, f64, usize),
     ) -> Result<Layers<'a>, usize> {
         let freedoms = self.held().freedoms();
-        let apart = finer * POSE_SPACING_RAD[freedoms.clamp(1, POSE_SPACING_RAD.len()) - 1];
-        Layers::of((self.asked.space, self.asked.b), &self.stations, starts, Detail { layers, apart, max_poses })
+        let spacing = finer * POSE_SPACING_RAD[freedoms.clamp(1, POSE_SPACING_RAD.len()) - 1];
+        Layers::of((self.request.space, self.request.b), &self.stations, starts, Detail { layers, spacing, max_poses })
     }
 
     /// Returns refined paths over the layers, and those refined from one of constant orientation. For closed curves
     /// these are closed paths, if there are any.
     fn ways(&self, layers: &Layers<'_>, oriented: Option<&Way>) -> Vec<Way> {
-        let closings: &[bool] = if self.asked.closed { &[true, false] } else { &[false] };
+        let closings: &[bool] = if self.request.closed { &[true, false] } else { &[false] };
         for closed in closings {
             let mut ways: Vec<Way> = Vec::new();
             for goal in 0..GOALS.len() {
@@ -482,7 +482,7 @@ impl<'a> Search<'a> {
     fn values(&self, tables: &[PathTable]) -> [f64; GOALS.len()] {
         let (stations, weights) = (&self.stations, &self.weights);
         [
-            emit::rates(stations, tables, &even(self.asked.space.drives())),
+            emit::rates(stations, tables, &even(self.request.space.drives())),
             emit::accelerations(stations, tables, &weights.torque),
             emit::places(stations, tables, |q| weights.off_middle(&DriveAngles(*q))),
         ]
@@ -491,11 +491,12 @@ impl<'a> Search<'a> {
     /// Returns paths of constant orientation of the last link, at any angle or a given one, those of the least rates
     /// first.
     fn oriented(&self, layers: &Layers<'_>, angle: Option<f64>) -> Vec<Way> {
-        let (asked, places) = (self.asked, &self.stations.places);
-        let drive = asked.hand.0;
+        let (request, places) = (self.request, &self.stations.places);
+        let drive = request.hand.0;
         let starts: Vec<PerDrive> = match angle {
             Some(angle) => {
-                let all = asked.space.poses_with_drive_angle(places[0], asked.b, drive, angle, &asked.space.middle());
+                let all =
+                    request.space.poses_with_drive_angle(places[0], request.b, drive, angle, &request.space.middle());
                 all.into_iter().map(|q| q.0).collect()
             }
             None => {

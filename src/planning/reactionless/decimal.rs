@@ -30,7 +30,7 @@ impl Decimal {
 
     /// Returns a number near x that passes a test, with the fewest decimals, but at least `least`: the nearest one or
     /// one of its neighbours. `None` if none with up to `MAX_DECIMALS` passes.
-    pub fn that(x: f64, least: usize, passes: impl Fn(f64) -> bool) -> Option<Self> {
+    pub fn shortest_passing(x: f64, least: usize, passes: impl Fn(f64) -> bool) -> Option<Self> {
         (least..=MAX_DECIMALS).find_map(|decimals| {
             let nearest = Self::nearest(x, decimals);
             let sense = if nearest.value > x { -1 } else { 1 };
@@ -61,7 +61,7 @@ impl BSet {
     pub fn decimal(&self, b: f64, least: usize) -> Option<Decimal> {
         let inside = |[low, high]: [f64; 2], b: f64| low <= b && b <= high;
         let sets = self.shifted_near(b).intervals;
-        Decimal::that(b, least, |x| sets.iter().any(|s| inside(*s, x)))
+        Decimal::shortest_passing(b, least, |x| sets.iter().any(|s| inside(*s, x)))
     }
 
     /// Describes the set: `b from 2.2158 to 2.6610 rad`, with the bounds rounded inwards, so that they are in the set.

@@ -14,7 +14,7 @@ use crate::timing::s_curve::s_curve;
 use crate::timing::smooth;
 use crate::timing::topp::{NoTiming, PathConstraints, REPAIR_THRESHOLD, TimingSweep, UNLIMITED};
 use crate::timing::usage::TimeShares;
-use stillbase_mechanics::dynamics::Surroundings;
+use stillbase_mechanics::dynamics::ExternalLoads;
 use stillbase_mechanics::machine::Inertia;
 use stillbase_mechanics::planar::PerDrive;
 
@@ -30,7 +30,7 @@ pub const GRID_INTERVALS: usize = 600;
 pub fn fastest(
     path: &Path,
     model: &Inertia,
-    around: &Surroundings,
+    around: &ExternalLoads,
     limits: &DriveLimits,
     smooth: bool,
 ) -> Result<FastestMotion, TimeError> {
@@ -55,7 +55,7 @@ pub fn stations(spaces: usize) -> Vec<f64> {
 pub fn fastest_at(
     path: &Path,
     model: &Inertia,
-    around: &Surroundings,
+    around: &ExternalLoads,
     limits: &DriveLimits,
     smooth: bool,
     stations: &[f64],
@@ -70,7 +70,7 @@ pub fn fastest_at(
 fn planned(
     path: &Path,
     model: &Inertia,
-    around: &Surroundings,
+    around: &ExternalLoads,
     limits: &DriveLimits,
     smooth: bool,
     stations: Option<&[f64]>,
@@ -185,7 +185,7 @@ const MAX_REFINEMENTS: usize = 6;
 
 /// Returns [`stations`] merged with the places of a path, which replace stations close by.
 fn dense(path: &Path) -> Vec<f64> {
-    let (own, even) = (path.places(), stations(GRID_INTERVALS));
+    let (own, even) = (path.sample_parameters(), stations(GRID_INTERVALS));
     let mut all = Vec::with_capacity(own.len() + even.len());
     let mut next = 0;
     for (i, s) in even.iter().enumerate() {

@@ -5,7 +5,7 @@ use crate::timing::law::PathProgress;
 use crate::timing::limits::DriveLimits;
 use crate::timing::profile::{Profile, after};
 use crate::timing::usage::Demand;
-use stillbase_mechanics::dynamics::Surroundings;
+use stillbase_mechanics::dynamics::ExternalLoads;
 use stillbase_mechanics::machine::Inertia;
 
 /// Number of intervals of a phase that is sampled finely.
@@ -152,7 +152,7 @@ impl Motion {
     ///
     /// Its profile must consist of phases, as those of the fastest motions do.
     #[must_use]
-    pub fn slowed(&self, model: &Inertia, around: &Surroundings, limits: &DriveLimits) -> Option<Self> {
+    pub fn slowed(&self, model: &Inertia, around: &ExternalLoads, limits: &DriveLimits) -> Option<Self> {
         let limits = DriveLimits { jerk: DriveLimits::none(limits.jerk.len()).jerk, ..*limits };
         let count = self.profile.phases().count().max(1);
         // An even number, so that a change in the middle of a phase falls between two parts.

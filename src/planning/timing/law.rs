@@ -18,7 +18,7 @@ pub struct PathProgress {
 impl PathProgress {
     /// Returns rest at s.
     #[inline]
-    pub fn still(s: f64) -> Self {
+    pub fn at_rest(s: f64) -> Self {
         Self { s, rate: 0.0, acceleration: 0.0, jerk: 0.0 }
     }
 }
@@ -131,10 +131,10 @@ impl TimeLaw {
     #[inline]
     pub fn at(self, t: f64, duration: f64) -> PathProgress {
         if t < 0.0 {
-            return PathProgress::still(0.0);
+            return PathProgress::at_rest(0.0);
         }
         if t >= duration {
-            return PathProgress::still(1.0);
+            return PathProgress::at_rest(1.0);
         }
         let [s, rate, acceleration, jerk] = (self.data().at)(t / duration);
         let per = 1.0 / duration;

@@ -18,7 +18,7 @@ use std::fmt;
 use crate::curves::PathPoint;
 use crate::curves::path::Path;
 use crate::timing::law::PathProgress;
-use stillbase_mechanics::dynamics::{Surroundings, holding_torque, inverse, mass_matrix};
+use stillbase_mechanics::dynamics::{ExternalLoads, holding_torque, inverse, mass_matrix};
 use stillbase_mechanics::machine::{Inertia, Machine, Motors};
 use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive};
 
@@ -162,7 +162,7 @@ pub(super) fn stretches(rows: &[ConstraintRow], speeds: &[f64], at: &PathProgres
 #[derive(Clone, Debug)]
 pub struct Constraints<'a> {
     model: &'a Inertia,
-    around: Surroundings,
+    around: ExternalLoads,
     limits: &'a DriveLimits,
     /// 1/limit of each q̈_k, from the limits on torque and acceleration; only if torque is D_k q̈_k in every pose.
     constant: Option<PerDrive>,
@@ -173,7 +173,7 @@ pub struct Constraints<'a> {
 
 impl<'a> Constraints<'a> {
     /// Builds the constraints of a model; infinite limits give no row.
-    pub fn new(model: &'a Inertia, around: &Surroundings, limits: &'a DriveLimits) -> Self {
+    pub fn new(model: &'a Inertia, around: &ExternalLoads, limits: &'a DriveLimits) -> Self {
         let n = model.drives();
         let weightless = around.gravity.norm_sqr() == 0.0 || model.is_force_balanced();
         let constant = model.is_invariant() && weightless && around.force.norm_sqr() == 0.0 && model.is_decoupled();
@@ -235,7 +235,7 @@ impl<'a> Constraints<'a> {
             let (h, _) = mass_matrix(self.model, &e, first);
             let motors = self.model.motors();
             let a = motors.motor_torques(&h.times(first));
-            let c = motors.motor_torques(&inverse(self.model, &e, first, second, &Surroundings::default()));
+            let c = motors.motor_torques(&inverse(self.model, &e, first, second, &ExternalLoads::default()));
             let g = motors.motor_torques(&holding_torque(self.model, &e, &self.around));
             let (first, second) = (motors.to_motors(first), motors.to_motors(second));
             for (row, limit) in rows.iter_mut().zip(&self.rows) {

@@ -116,7 +116,7 @@ impl Profile {
 
     /// Returns s = t/T, for paths that contain their own timing and are at rest at both ends.
     pub fn even(duration: f64) -> Self {
-        Self::from_starts(vec![(0.0, PathProgress { rate: 1.0 / duration, ..PathProgress::still(0.0) })], duration)
+        Self::from_starts(vec![(0.0, PathProgress { rate: 1.0 / duration, ..PathProgress::at_rest(0.0) })], duration)
     }
 
     /// Returns s = t/T including both ends, for paths that contain their own timing and need not be at rest at their
@@ -218,19 +218,19 @@ impl Profile {
         match &self.shape {
             Shape::Law(law) => law.at(t, self.duration),
             // The sum of integration steps may miss either end by rounding.
-            Shape::Running if t < -END_SLACK_SHARE * self.duration => PathProgress::still(0.0),
-            Shape::Running if t > (1.0 + END_SLACK_SHARE) * self.duration => PathProgress::still(1.0),
+            Shape::Running if t < -END_SLACK_SHARE * self.duration => PathProgress::at_rest(0.0),
+            Shape::Running if t > (1.0 + END_SLACK_SHARE) * self.duration => PathProgress::at_rest(1.0),
             Shape::Running => {
                 let s = (t / self.duration).clamp(0.0, 1.0);
-                PathProgress { rate: 1.0 / self.duration, ..PathProgress::still(s) }
+                PathProgress { rate: 1.0 / self.duration, ..PathProgress::at_rest(s) }
             }
-            Shape::Phases(_) if t < 0.0 => PathProgress::still(0.0),
-            Shape::Phases(_) if t >= self.duration => PathProgress::still(1.0),
+            Shape::Phases(_) if t < 0.0 => PathProgress::at_rest(0.0),
+            Shape::Phases(_) if t >= self.duration => PathProgress::at_rest(1.0),
             Shape::Phases(phases) => phases.at(t),
-            Shape::Sequence(_) if t >= self.duration => PathProgress::still(1.0),
+            Shape::Sequence(_) if t >= self.duration => PathProgress::at_rest(1.0),
             Shape::Sequence(legs) => {
                 let i = legs.partition_point(|leg| leg.start <= t).max(1) - 1;
-                legs.get(i).map_or(PathProgress::still(0.0), |leg| {
+                legs.get(i).map_or(PathProgress::at_rest(0.0), |leg| {
                     let at = leg.profile.at(t - leg.start);
                     PathProgress {
                         s: leg.from + leg.run * at.s,

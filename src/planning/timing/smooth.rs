@@ -15,7 +15,7 @@ use crate::timing::profile::{JerkPhase, Profile};
 use crate::timing::s_curve::s_curve;
 use crate::timing::topp::PathConstraints;
 use crate::timing::usage::{Demand, Usage};
-use stillbase_mechanics::dynamics::Surroundings;
+use stillbase_mechanics::dynamics::ExternalLoads;
 use stillbase_mechanics::machine::Inertia;
 
 /// Number of samples from which the active limits are determined.
@@ -51,7 +51,7 @@ const MAX_RATE: f64 = 60.0;
 pub(super) fn smooth(
     path: &Path,
     model: &Inertia,
-    around: &Surroundings,
+    around: &ExternalLoads,
     constraints: &Constraints,
     grid: &PathConstraints,
     bound: Result<FastestMotion, TimeError>,

@@ -4,7 +4,7 @@ use crate::Motion;
 use crate::curves::path::Path;
 use crate::timing::law::PathProgress;
 use crate::timing::limits::{DriveLimit, DriveLimits, LimitedQuantity};
-use stillbase_mechanics::dynamics::{Surroundings, holding_torque, inverse};
+use stillbase_mechanics::dynamics::{ExternalLoads, holding_torque, inverse};
 use stillbase_mechanics::machine::Inertia;
 use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive};
 
@@ -32,7 +32,7 @@ impl Usage {
     /// T.
     ///
     /// Torques come from the inverse dynamics (4) along the motion, independently of its planning.
-    pub fn of(motion: &Motion, model: &Inertia, around: &Surroundings, limits: &DriveLimits, samples: usize) -> Self {
+    pub fn of(motion: &Motion, model: &Inertia, around: &ExternalLoads, limits: &DriveLimits, samples: usize) -> Self {
         let mut usage =
             Self { active: 0.0, max_utilisation: 0.0, time_of_max_s: 0.0, limit: None, active_limits: Vec::new() };
         let mut shares = TimeShares::default();
@@ -96,14 +96,14 @@ impl Demand {
     pub(super) fn of(
         path: &Path,
         model: &Inertia,
-        around: &Surroundings,
+        around: &ExternalLoads,
         limits: &DriveLimits,
         at: &PathProgress,
     ) -> Self {
         let point = path.at(at.s);
         let reference = point.timed(at);
         let e = point.q.units();
-        let moving = inverse(model, &e, &reference.qd, &reference.qdd, &Surroundings::default());
+        let moving = inverse(model, &e, &reference.qd, &reference.qdd, &ExternalLoads::default());
         let jerk = match limits.jerk.iter().any(|j| j.is_finite()) {
             true => point
                 .first

@@ -30,7 +30,7 @@ use stillbase_session::{Refusal, Run, designs};
 use stillbase_simulation::frame::Frame;
 
 pub use front::FRONT_VIEW;
-pub use words::beside;
+pub use words::comparison_table;
 
 /// Size of the machine as a fraction of the height and width of its view.
 const FILL_FRACTION: f64 = 0.8;

@@ -137,7 +137,7 @@ pub(super) fn balance(machine: &Machine, breakdown: &Breakdown) -> String {
 }
 
 /// Returns the table that compares the machines of several cases, by name, with the first.
-pub fn beside(cases: &[(&str, DesignMeasures)]) -> String {
+pub fn comparison_table(cases: &[(&str, DesignMeasures)]) -> String {
     let heads = cases.iter().map(|(name, _)| cell(name, MAX_NAME_CHARS));
     let heads: Vec<String> = [String::new()].into_iter().chain(heads).collect();
     let rows = DESIGN_COLUMNS.iter().map(|column| {
@@ -149,7 +149,7 @@ pub fn beside(cases: &[(&str, DesignMeasures)]) -> String {
             if column.unit == "1" { column.head.to_owned() } else { format!("{}, {}", column.head, column.unit) };
         [head].into_iter().chain(cells).collect::<Vec<_>>()
     });
-    let apart = cases.iter().filter_map(|(name, design)| Some((name, design.apart.as_ref()?)));
+    let apart = cases.iter().filter_map(|(name, design)| Some((name, design.why_not.as_ref()?)));
     let apart = apart.map(|(name, why)| format!("\n{}: {}\n", cell(name, MAX_NAME_CHARS), cell(why, MAX_TEXT_CHARS)));
     table(&heads, &rows.collect::<Vec<_>>()) + &apart.collect::<String>()
 }

@@ -75,6 +75,6 @@ impl Session {
         let before = self.document.clone();
         change(&mut self.document);
         self.redo.clear();
-        self.undo.push(Arc::new(HistoryStep { before, edit: None, inverse: None, title, beside: Some(kept) }));
+        self.undo.push(Arc::new(HistoryStep { before, edit: None, inverse: None, title, annotation: Some(kept) }));
     }
 }

@@ -32,7 +32,7 @@ impl Session {
     }
 
     fn fork(&self, left: &LeftBranch) -> Fork {
-        left.beside(&self.edits, self.document.end)
+        left.difference_from(&self.edits, self.document.end)
     }
 
     /// Returns the run on display as a branch.
@@ -76,7 +76,7 @@ impl Session {
         self.restore(Document { script, end, branches: Arc::new(branches), ..before.clone() }, true, watch)?;
         self.playing = false;
         self.redo.clear();
-        self.undo.push(Arc::new(HistoryStep { before, edit: None, inverse: None, title, beside: None }));
+        self.undo.push(Arc::new(HistoryStep { before, edit: None, inverse: None, title, annotation: None }));
         Ok(())
     }
 

@@ -15,7 +15,7 @@ pub(super) struct HistoryStep {
     /// Description of the change.
     pub title: String,
     /// Set if only bookmarks or only branches have changed.
-    pub beside: Option<AnnotationKind>,
+    pub annotation: Option<AnnotationKind>,
 }
 
 impl HistoryStep {
@@ -26,7 +26,7 @@ impl HistoryStep {
     }
 
     /// Returns whether no frame depends on the change.
-    pub fn is_aside(&self) -> bool {
-        self.edit.as_ref().is_some_and(|e| e.edit.is_aside())
+    pub fn affects_no_frame(&self) -> bool {
+        self.edit.as_ref().is_some_and(|e| e.edit.affects_no_frame())
     }
 }

@@ -52,7 +52,7 @@ impl Session {
             // A dragged machine has the new limits from the present step on.
             edit if edit.sets_limits() && self.is_dragged() && self.run.waiting().is_none() => true,
             // A motion in progress cannot change its time or its base.
-            edit if edit.is_of_the_whole() => false,
+            edit if edit.applies_to_whole_run() => false,
             // Edits of a gesture apply as its first edit did, even if that set the machine in motion.
             _ => self.gesture_now.unwrap_or_else(|| self.is_running()),
         }
@@ -121,7 +121,7 @@ impl Session {
             (document.branches, branch_events) = self.with_left();
         }
         match &timed.edit {
-            edit if edit.is_aside() => {
+            edit if edit.affects_no_frame() => {
                 self.run.apply(&timed.edit)?;
                 self.unedited = None;
                 self.edits = document.script.to_vec().into_iter().collect();
@@ -140,7 +140,7 @@ impl Session {
     /// Replaces the newest frame after an edit.
     fn show_present(&mut self) {
         let frame = self.run.frame();
-        self.machines.hold(frame.step, &self.scenario().machine.clone());
+        self.machines.set_from(frame.step, &self.scenario().machine.clone());
         self.frames.replace_last(frame);
     }
 

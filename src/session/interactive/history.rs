@@ -24,7 +24,7 @@ impl Session {
             }
             _ => {
                 let title = timed.edit.title();
-                self.undo.push(Arc::new(HistoryStep { before, edit: Some(timed), inverse, title, beside: None }));
+                self.undo.push(Arc::new(HistoryStep { before, edit: Some(timed), inverse, title, annotation: None }));
             }
         }
         self.gesture = true;
@@ -88,12 +88,12 @@ impl Session {
     /// Goes to the document of an undo or redo entry: in motion by applying `edit`, paused or at rest by restoring the
     /// document.
     fn go_to(&mut self, change: &HistoryStep, edit: Option<&Edit>, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
-        match (edit, change.beside) {
+        match (edit, change.annotation) {
             (_, Some(kept)) => {
                 self.document.keep_as(&change.before, kept);
                 Ok(())
             }
-            (_, None) if change.is_aside() && self.go_aside(&change.before) => Ok(()),
+            (_, None) if change.affects_no_frame() && self.go_aside(&change.before) => Ok(()),
             (Some(edit), None) if self.is_running() && !change.plans() => {
                 self.append(edit.clone(), watch).or_else(|why| self.restore_unless_stopped(why, &change.before, watch))
             }
@@ -183,7 +183,7 @@ impl Session {
             edit: None,
             inverse: None,
             title,
-            beside: None,
+            annotation: None,
         }));
         *self = next;
     }

@@ -64,7 +64,7 @@ impl Session {
                         let known = run.scenario().duration.map_or(0, |_| run.last_step());
                         known.max(script.last().map_or(0, |e| e.step))
                     }
-                    None => run.whole(&script)?,
+                    None => run.checked_last_step(&script)?,
                 };
                 let end = end.min(MAX_FRAMES as u64 - 1);
                 if let Some(late) = script.iter().position(|e| e.step > end) {

@@ -3,7 +3,7 @@
 use super::plan::{Plan, TimingBottleneck, dynamics_of, keeps_rules};
 use crate::refusal::Refusal;
 use crate::scenario::{Corners, PathShape, Scenario, Task};
-use stillbase_mechanics::dynamics::Surroundings;
+use stillbase_mechanics::dynamics::ExternalLoads;
 use stillbase_mechanics::machine::Inertia;
 use stillbase_mechanics::planar::{DriveAngles, Vector};
 use stillbase_planning::Motion;
@@ -62,7 +62,7 @@ pub(super) fn timed(
             let least = fastest.gap.map(|gap| time / (1.0 + gap)).or((time == 0.0).then_some(0.0));
             let pace = pace.get_or_insert(TimingBottleneck { unlimited: Some(0.0), ..TimingBottleneck::default() });
             pace.unlimited = pace.unlimited.zip(least).map(|(sum, least)| sum + least);
-            pace.taken += time;
+            pace.time += time;
             if pace.leading.is_none() {
                 pace.leading = fastest.active_limits.first().map(|(limit, _)| *limit);
             }
@@ -88,7 +88,7 @@ pub(super) fn timed(
 pub(super) fn slow_to_limits(
     motion: Motion,
     model: &Inertia,
-    around: &Surroundings,
+    around: &ExternalLoads,
     limits: &DriveLimits,
 ) -> Result<Motion, Refusal> {
     const SAMPLES: usize = 2000;

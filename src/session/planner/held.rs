@@ -100,7 +100,7 @@ fn cornered(task: &Task, space: &PoseSpace, points: usize) -> Result<(), Refusal
     if task.corners != Corners::Blend || (points <= 2 && !task.closed) {
         return Ok(());
     }
-    Err(Refusal::Task(match lacking.is_mendable() {
+    Err(Refusal::Task(match lacking.could_have_planes() {
         true => format!("corners of joint lines are rounded off on planes only: {lacking}, or corners = stop"),
         false => "corners of joint lines are rounded off for three drives only: want corners = stop".into(),
     }))
@@ -140,7 +140,7 @@ fn joint_lines(scenario: &Scenario, space: &PoseSpace, mut poses: Vec<PoseAngles
         }
     }
     poses.extend(task.closed.then(|| poses[0]));
-    let way = |i: usize| poses[i].way(space, &poses[i + 1]);
+    let way = |i: usize| poses[i].distance_to(space, &poses[i + 1]);
     let line = |i: usize| (Path::JointLine { from: poses[i].q, to: poses[i + 1].q }, way(i).max(1e-12));
     // A point equal to the previous one adds no part to the path.
     let moving = (0..poses.len() - 1).filter(|i| poses.len() == 2 || way(*i) > 1e-12);

@@ -132,7 +132,7 @@ fn holding_b(scenario: &Scenario, space: &PoseSpace, lacking: &PlaneError) -> Re
         Some(b) => format!("at b = {b} rad it can: want that"),
         None => "want minimum-norm, or change-b from point to point".into(),
     };
-    let only = match lacking.is_mendable() {
+    let only = match lacking.could_have_planes() {
         true => format!("it can change on the way only on planes: {lacking}"),
         false => "with other than three drives it does not change on the way".into(),
     };

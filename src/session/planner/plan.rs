@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::Refusal;
 use crate::scenario::Scenario;
-use stillbase_mechanics::dynamics::Surroundings;
+use stillbase_mechanics::dynamics::ExternalLoads;
 use stillbase_mechanics::machine::Inertia;
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase_planning::curves::Path;
@@ -54,7 +54,7 @@ const CLOSURE_TOLERANCE_RAD: f64 = 1e-6;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TimingBottleneck {
     /// Duration T, s.
-    pub taken: f64,
+    pub time: f64,
     /// Least time T* without limits on jerk, s, if the law has such limits and T* is known.
     pub unlimited: Option<f64>,
     /// Limit that is active for the greatest share of the first part.
@@ -65,7 +65,7 @@ impl TimingBottleneck {
     /// Returns T/T* − 1, with T* the least time without limits on jerk. Returns `None` without such limits, and if they
     /// alone limit the motion.
     pub fn gap(&self) -> Option<f64> {
-        self.unlimited.filter(|least| *least > 0.0).map(|least| (self.taken / least - 1.0).max(0.0))
+        self.unlimited.filter(|least| *least > 0.0).map(|least| (self.time / least - 1.0).max(0.0))
     }
 }
 
@@ -156,7 +156,7 @@ pub(super) fn keeps_rules(scenario: &Scenario, motion: &Motion) -> Result<(), Re
 }
 
 /// Returns the inertia and the surroundings of the machine that control assumes, without a force at the end effector.
-pub(super) fn dynamics_of(scenario: &Scenario) -> (Inertia, Surroundings) {
-    let around = Surroundings { gravity: scenario.machine.gravity(), force: Vector::default() };
+pub(super) fn dynamics_of(scenario: &Scenario) -> (Inertia, ExternalLoads) {
+    let around = ExternalLoads { gravity: scenario.machine.gravity(), force: Vector::default() };
     (Inertia::of(&scenario.machine), around)
 }

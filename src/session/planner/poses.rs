@@ -39,7 +39,7 @@ pub(super) fn start(scenario: &Scenario, space: PlannerSpace<'_>, points: &[Vect
 /// Returns the refusal of a point that the b of the task does not reach, with the name of the point.
 pub(super) fn refusal(task: &Task, i: usize, unreachable: Unreachable) -> Refusal {
     match unreachable {
-        Unreachable::NoCommonPlane(why) => Refusal::NoCommonPlane { said: why.in_words(&|i| task.name_of(i)), why },
+        Unreachable::NoCommonPlane(why) => Refusal::NoCommonPlane { message: why.in_words(&|i| task.name_of(i)), why },
         unreachable => Refusal::Unreachable { point: task.name_of(i), unreachable },
     }
 }

@@ -30,10 +30,10 @@ pub(super) fn proved_refusal(
     };
     match refusal {
         Refusal::NoCommonPlane { mut why, .. } => {
-            if let Some((mend, mut shown)) = why.mend.and_then(|mend| Some((mend, mend.shown?))) {
+            if let Some((mend, mut shown)) = why.correction.and_then(|mend| Some((mend, mend.shown?))) {
                 let moved = task.moved(mend.point, shown.point());
                 let result = moved.as_ref().map(|moved| try_path(&at(moved, shown.b.value()), PlanningEffort::Trial));
-                shown.does = match result {
+                shown.path_feasible = match result {
                     Some(Ok(_)) => true,
                     Some(Err(stopped)) => {
                         let other = another(&stopped).map(|(_, other)| other).or_else(|| {
@@ -47,9 +47,9 @@ pub(super) fn proved_refusal(
                     }
                     None => false,
                 };
-                why.mend = Some(PointCorrection { shown: Some(shown), ..mend });
+                why.correction = Some(PointCorrection { shown: Some(shown), ..mend });
             }
-            Refusal::NoCommonPlane { said: why.in_words(&|i| task.name_of(i)), why }
+            Refusal::NoCommonPlane { message: why.in_words(&|i| task.name_of(i)), why }
         }
         Refusal::Unreachable { .. } if task.shape() != PathShape::JointLine || task.keep_off_change_points => {
             tried_refusal(space, refusal, |b, effort| try_path(&at(task, b), effort))
@@ -72,8 +72,8 @@ pub(super) fn tried_refusal(
     else {
         return refusal;
     };
-    let made = |would_do: String, nearest_b: Option<f64>, displayed_b: Option<Decimal>| {
-        let unreachable = Unreachable::OnThisPlane { x: *x, y: *y, b: *b, would_do, nearest_b, displayed_b };
+    let made = |feasible: String, nearest_b: Option<f64>, displayed_b: Option<Decimal>| {
+        let unreachable = Unreachable::OnThisPlane { x: *x, y: *y, b: *b, feasible, nearest_b, displayed_b };
         Refusal::Unreachable { point: point.clone(), unreachable }
     };
     let stopped = match try_path(shown.value(), PlanningEffort::Whole) {

@@ -99,7 +99,7 @@ impl DesignBrief {
     }
 
     /// Returns whether a key of this part has an effect in the design view of a machine.
-    pub(super) fn serves(&self, key: &str, machine: &Machine) -> bool {
+    pub(super) fn has_effect(&self, key: &str, machine: &Machine) -> bool {
         let spec = machine.spec();
         let is_link = |name: &str| spec.links.iter().any(|link| link.name == name);
         let is_geared = |drive: &Drive| drive.rotor.is_some_and(|rotor| rotor.inertia > 0.0);
@@ -124,7 +124,7 @@ impl DesignBrief {
     }
 
     /// Checks that no lower bound is above its upper bound.
-    pub(super) fn fits(&self) -> Vec<RangeCheck> {
+    pub(super) fn range_checks(&self) -> Vec<RangeCheck> {
         let holds = self.hold.iter().filter_map(|(key, hold)| match hold {
             ParameterBounds::Within(ends) => Some((format!("design.hold.{key}"), *ends)),
             ParameterBounds::Fixed | ParameterBounds::Free => None,

@@ -134,7 +134,7 @@ impl Scenario {
     fn step_by(&mut self, step: f64) {
         // Step numbers of edits refer to the last step size that an edit sets.
         let own = self.edits.iter().rev().find_map(|timed| timed.edit.own_number("step")).unwrap_or(self.step);
-        self.edits.retain_mut(|timed| timed.edit.take("step").is_none() || !timed.edit.sets_nothing());
+        self.edits.retain_mut(|timed| timed.edit.take_key("step").is_none() || !timed.edit.sets_nothing());
         let ratio = own / step;
         if ratio != 1.0 {
             self.edits.iter_mut().for_each(|edit| edit.step = (edit.step as f64 * ratio).round() as u64);
@@ -251,7 +251,7 @@ impl Scenario {
             Some(("base", key)) => self.base.uses(key),
             Some(("control", "knows_base")) => self.base.moves(),
             Some(("plant", key)) => key.strip_prefix("payload.").is_none_or(|key| self.plant.payload.uses(key)),
-            Some(("design", key)) => self.design.serves(key, &self.machine),
+            Some(("design", key)) => self.design.has_effect(key, &self.machine),
             _ => self.machine.uses(path, self.is_pushed()),
         };
         if used { None } else { key_of(path).map(|key| key.when) }
@@ -290,12 +290,12 @@ impl Scenario {
         // A valid step size bounds some numbers more narrowly than their ranges do.
         let mut list = vec![STEP_RANGE.check("step", self.step)];
         if STEP_RANGE.contains(self.step) {
-            list.extend(self.task.fits(self.step));
-            list.extend(self.control.fits(n, self.step));
+            list.extend(self.task.range_checks(self.step));
+            list.extend(self.control.range_checks(n, self.step));
         }
         list.extend(key::checks(key_of, &stated));
-        list.extend(self.plant.fits(n));
-        list.extend(self.design.fits());
+        list.extend(self.plant.range_checks(n));
+        list.extend(self.design.range_checks());
         list
     }
 
@@ -348,11 +348,11 @@ fn first_value_error(part: &str, value: &Value) -> Option<SettingError> {
             Some(SettingError::Value { path: quote_clipped(&path), value, want })
         };
         match key_of(&path) {
-            Some(key) if key.holds.takes(value) => None,
-            Some(key) if key.unit().is_empty() || matches!(key.holds, KeyType::Spread(_)) => {
-                said(key.holds.to_string())
+            Some(key) if key.value_type.accepts(value) => None,
+            Some(key) if key.unit().is_empty() || matches!(key.value_type, KeyType::Spread(_)) => {
+                said(key.value_type.to_string())
             }
-            Some(key) => said(format!("{} (a number without its unit)", key.holds)),
+            Some(key) => said(format!("{} (a number without its unit)", key.value_type)),
             None => {
                 let below = |key: &&Key| key.path.starts_with(&format!("{path}."));
                 let below: Vec<&str> = keys().filter(below).map(|key| key.path).collect();
@@ -366,8 +366,8 @@ fn first_value_error(part: &str, value: &Value) -> Option<SettingError> {
 fn number(value: &Value, key: &Key) -> Result<Option<f64>, String> {
     match value {
         Value::String(word) if word == DEFAULT_WORD => Ok(None),
-        _ => change::number(value)
-            .map(Some)
-            .ok_or_else(|| format!("it is {}: want a number, {}", quote_clipped(&change::typed(value)), key.holds)),
+        _ => change::number(value).map(Some).ok_or_else(|| {
+            format!("it is {}: want a number, {}", quote_clipped(&change::typed(value)), key.value_type)
+        }),
     }
 }

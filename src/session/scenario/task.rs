@@ -188,10 +188,10 @@ impl Task {
     }
 
     /// Checks the time against the step size, s, and the number of points against its maximum.
-    pub(super) fn fits(&self, step: f64) -> Vec<RangeCheck> {
+    pub(super) fn range_checks(&self, step: f64) -> Vec<RangeCheck> {
         let (count, enough) = (self.via.len(), self.via.len() <= MAX_POINTS);
         let want = || format!("one step or more, {} to {} s", ShortNumber(step), ShortNumber(MOTION_TIME_RANGE.high()));
-        let time = RangeCheck::said("task.time", self.time, self.time >= step, want);
+        let time = RangeCheck::depending("task.time", self.time, self.time >= step, want);
         let many = || RangeCheck::count("task.via", count, "point", format!("at most {MAX_POINTS} between A and B"));
         std::iter::once(time).chain((!enough).then(many)).collect()
     }

@@ -48,7 +48,8 @@ impl StatusLight {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Statement {
     /// Outcome.
-    pub lamp: StatusLight,
+    #[serde(rename = "lamp")]
+    pub outcome: StatusLight,
     /// Outcome in a few words that follow the name of the subject: `holds b`.
     pub words: String,
     /// Reason, in a sentence.
@@ -56,8 +57,8 @@ pub struct Statement {
 }
 
 impl Statement {
-    fn new(lamp: StatusLight, words: impl Into<String>, why: impl Into<String>) -> Self {
-        Self { lamp, words: words.into(), why: why.into() }
+    fn new(outcome: StatusLight, words: impl Into<String>, why: impl Into<String>) -> Self {
+        Self { outcome, words: words.into(), why: why.into() }
     }
 
     /// States whether a machine is balanced, or by how much it is not.
@@ -163,7 +164,7 @@ impl Statement {
             peaks.transmits_force().then(|| format!("|f_B| {} N", significant(verdict.force))),
         ];
         let words = format!("peak {}", parts.into_iter().flatten().collect::<Vec<_>>().join(", "));
-        let cause = match (machine.lamp, plan.lamp) {
+        let cause = match (machine.outcome, plan.outcome) {
             (StatusLight::Bad, _) => "the machine does this: it is not balanced",
             (_, StatusLight::Bad) => "the path does this, not the machine: b changes on it",
             _ => {

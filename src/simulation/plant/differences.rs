@@ -75,11 +75,11 @@ impl PlantDifferences {
     }
 
     /// Returns the checks that depend on several settings or on the number `n` of drives.
-    pub fn fits(&self, n: usize) -> Vec<RangeCheck> {
+    pub fn range_checks(&self, n: usize) -> Vec<RangeCheck> {
         let (load, friction) = (&self.payload, &self.friction);
         let later = |until| {
             let from = || format!("more than plant.payload.from, {} s", ShortNumber(load.from));
-            RangeCheck::said("plant.payload.until", until, until > load.from, from)
+            RangeCheck::depending("plant.payload.until", until, until > load.from, from)
         };
         let mut list: Vec<RangeCheck> = load.until.map(later).into_iter().collect();
         list.extend(friction.viscous.misfit(n, "plant.friction.viscous"));

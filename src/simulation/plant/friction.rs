@@ -8,7 +8,7 @@
 //!
 //! Friction acts between two parts with equal and opposite torques. Coulomb friction is not smoothed: a contact either
 //! slides in one direction or is stuck. A stuck contact transmits exactly the torque that keeps it stuck
-//! ([`Contacts::hold`]). So there is neither creep nor chatter at rest, at any step size.
+//! ([`Contacts::solve_stuck`]). So there is neither creep nor chatter at rest, at any step size.
 
 use super::each::DriveValues;
 use super::load::MAX_PAYLOAD;
@@ -64,6 +64,16 @@ pub struct Contacts {
     bearings: usize,
 }
 
+/// Torques that friction changes, N m.
+pub struct FrictionTorques<'a> {
+    /// Generalised forces, to which friction torques are added.
+    pub force: &'a mut [f64],
+    /// Friction torques of the bearings, indexed by drive, to which those of their contacts are added.
+    pub bearing: &'a mut [f64],
+    /// Torques of stuck contacts: the first guess, then the result.
+    pub stuck_torque: &'a mut [f64; MAX_CONTACTS],
+}
+
 impl Contacts {
     /// Sliding rate below which a contact counts as stuck, rad/s.
     pub(crate) const STICTION_SPEED: f64 = 1e-12;
@@ -71,7 +81,7 @@ impl Contacts {
     /// Returns the slip directions of all contacts for given rates, rad/s.
     pub(crate) fn slips(&self, qd: &[f64]) -> SlipDirections {
         let mut slip = [0; MAX_CONTACTS];
-        for i in (0..self.len()).filter(|i| self.sticks(*i)) {
+        for i in (0..self.len()).filter(|i| self.can_stick(*i)) {
             let v = self.sliding(i, qd);
             slip[i] = if v.abs() < Self::STICTION_SPEED { 0 } else { v.signum() as i8 };
         }
@@ -119,19 +129,19 @@ impl Contacts {
     }
 
     /// Returns the reduced inertia of a contact, kg m²; `inertia_of` returns the inertia of a rotational coordinate.
-    pub fn resists(&self, i: usize, inertia_of: impl Fn(usize) -> f64) -> f64 {
+    pub fn reduced_inertia(&self, i: usize, inertia_of: impl Fn(usize) -> f64) -> f64 {
         let c = &self.list[i];
         let (a, b) = (inertia_of(c.plus), if c.minus < MAX_DRIVES { inertia_of(c.minus) } else { f64::INFINITY });
         1.0 / (1.0 / a + 1.0 / b)
     }
 
     /// Returns whether a contact can stick.
-    pub fn sticks(&self, i: usize) -> bool {
+    pub fn can_stick(&self, i: usize) -> bool {
         self.list[i].coulomb > 0.0
     }
 
     /// Returns whether any contact can stick.
-    pub fn stick(&self) -> bool {
+    pub fn any_can_stick(&self) -> bool {
         self.list.iter().any(|contact| contact.coulomb > 0.0)
     }
 
@@ -143,7 +153,7 @@ impl Contacts {
     /// Returns the friction torque in one pin between links of drives `from` and `to`, N m; it is positive against
     /// q̇_to − q̇_from. `stuck_torque` contains the torques of stuck contacts, N m. Pins between the same two drives
     /// share the torque equally.
-    pub fn couple(
+    pub fn pin_torque(
         &self,
         from: usize,
         to: usize,
@@ -186,20 +196,19 @@ impl Contacts {
         lost
     }
 
-    /// Computes the torques of stuck contacts by projected Gauss–Seidel sweeps and adds them to `force`. Each torque
+    /// Computes the torques of stuck contacts by projected Gauss–Seidel sweeps and adds them to `torques`. Each torque
     /// either satisfies |f| ≤ τ_C with v̇ = 0, or is at its bound, against v̇. `solve` returns accelerations for
-    /// generalised forces; `free` are the accelerations without these torques. `stuck_torque` contains the first guess
-    /// on entry and the result on return. Returns the dissipated power, W, which is zero unless a contact has begun to
+    /// generalised forces; `free` are the accelerations without these torques. Returns the dissipated power, W, which is zero unless a contact has begun to
     /// slide since the step began. The number of sweeps is bounded; one sweep is exact if contacts do not interact.
-    pub fn hold(
+    pub fn solve_stuck(
         &self,
         slip: &SlipDirections,
-        (qd, free): (&[f64], &[f64]),
+        qd: &[f64],
+        free: &[f64],
         solve: impl Fn(&[f64; MAX_DRIVES]) -> [f64; MAX_DRIVES],
-        force: &mut [f64],
-        bearing: &mut [f64],
-        stuck_torque: &mut [f64; MAX_CONTACTS],
+        torques: FrictionTorques<'_>,
     ) -> f64 {
+        let FrictionTorques { force, bearing, stuck_torque } = torques;
         const MAX_SWEEPS: usize = 2000;
         let stuck = |i: &usize| self.list[*i].coulomb > 0.0 && slip[*i] == 0;
         if !(0..self.list.len()).any(|i| stuck(&i)) {

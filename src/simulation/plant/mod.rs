@@ -16,7 +16,7 @@ mod wheel;
 pub use base::{Base, BaseKind};
 pub use differences::{LENGTH_KEYS, LinkDifference, PlantDifferences};
 pub use each::DriveValues;
-pub use friction::{Contacts, Friction, MAX_CONTACTS, SlipDirections};
+pub use friction::{Contacts, Friction, FrictionTorques, MAX_CONTACTS, SlipDirections};
 pub use load::{Load, MAX_PAYLOAD};
 pub use moving_body::MovingBody;
 pub(crate) use stage::{Actuation, ReducedState, RungeKuttaStage, StateRates};

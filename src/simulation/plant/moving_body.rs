@@ -18,7 +18,7 @@
 //! constant to the last digit. Gravity has no lever about R.
 
 use super::{Base, BaseKind, Contacts, Friction, SlipDirections, Slope, State};
-use stillbase_mechanics::dynamics::{BaseWrench, Surroundings, assemble, matrix_times};
+use stillbase_mechanics::dynamics::{BaseWrench, ExternalLoads, assemble, matrix_times};
 use stillbase_mechanics::machine::{Inertia, Machine, MachineError};
 use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, UnitVectors, Vector, cross, dot};
 
@@ -53,7 +53,7 @@ pub struct MovingBody {
     pub(super) end_effector_chain: [Vector; MAX_DRIVES],
     pub(super) support: Support,
     pub(super) contacts: Contacts,
-    pub(super) around: Surroundings,
+    pub(super) around: ExternalLoads,
     /// Mass of the base, kg, and mass times ρ, kg m.
     base: (f64, Vector),
 }
@@ -67,7 +67,7 @@ impl MovingBody {
     pub fn of(machine: &Machine, friction: &Friction, base: &Base, start: &DriveAngles) -> Result<Self, MachineError> {
         let n = machine.drives();
         let mut arm = Inertia::of(machine);
-        let around = Surroundings { gravity: machine.gravity(), force: Vector::default() };
+        let around = ExternalLoads { gravity: machine.gravity(), force: Vector::default() };
         let real = |chain: &[f64; MAX_DRIVES]| chain.map(|w| Vector::new(w, 0.0));
         let zero = [Vector::default(); MAX_DRIVES];
         if !base.moves() {
@@ -159,7 +159,7 @@ impl MovingBody {
     }
 
     /// Returns gravity and the force at the end effector.
-    pub fn around(&self) -> &Surroundings {
+    pub fn around(&self) -> &ExternalLoads {
         &self.around
     }
 
@@ -216,9 +216,9 @@ impl MovingBody {
         if self.is_free {
             let weight = self.arm.mass * self.around.gravity;
             let moment = cross(stillbase_mechanics::dynamics::first_moment(&self.arm, &x.e), self.around.gravity);
-            wrench.statical.force -= weight;
+            wrench.static_part.force -= weight;
             wrench.dynamic.force += weight;
-            wrench.statical.moment -= moment;
+            wrench.static_part.moment -= moment;
             wrench.dynamic.moment += moment;
         }
         wrench
@@ -305,7 +305,7 @@ impl MovingBody {
         e: &[Vector; N],
         (support_force, moment): (Vector, f64),
     ) -> [f64; N] {
-        let Surroundings { gravity, force } = self.around;
+        let ExternalLoads { gravity, force } = self.around;
         let mut outer = std::array::from_fn(|k| match MOVES {
             true => cross(self.end_effector_chain[k] * e[k], force) + cross(self.base_chain[k] * e[k], support_force),
             false => cross(self.arm.g[k] * e[k], gravity) + cross(e[k] * self.arm.end_effector[k], force),
@@ -345,8 +345,8 @@ impl MovingBody {
     }
 
     /// Returns the approximate reduced inertia of a contact, kg m².
-    pub fn resists(&self, i: usize) -> f64 {
-        self.contacts.resists(i, |k| self.rotating.c[k][k].re + self.rotating.spin[k])
+    pub fn reduced_inertia(&self, i: usize) -> f64 {
+        self.contacts.reduced_inertia(i, |k| self.rotating.c[k][k].re + self.rotating.spin[k])
     }
 
     /// Returns a state in which stuck contacts have exactly zero sliding rate. Internal impulses between the two sides
@@ -354,7 +354,7 @@ impl MovingBody {
     /// The energy removed is not counted as lost, so that the audits show any larger residual.
     #[must_use]
     pub fn with_stuck_stopped(&self, mut state: State, slip: &SlipDirections) -> State {
-        let still = |i: &usize| self.contacts.sticks(*i) && slip[*i] == 0;
+        let still = |i: &usize| self.contacts.can_stick(*i) && slip[*i] == 0;
         if !(0..self.contacts.len()).any(|i| still(&i)) {
             return state;
         }

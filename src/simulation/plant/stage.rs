@@ -4,7 +4,7 @@
 //! Unit vectors and mass matrix are computed once and used for rates, torques, accelerations and base wrench. A
 //! compile-time parameter says whether the base moves.
 
-use super::{MAX_CONTACTS, MovingBody, SlipDirections, Slope, State, WheelState};
+use super::{FrictionTorques, MAX_CONTACTS, MovingBody, SlipDirections, Slope, State, WheelState};
 use stillbase_mechanics::dynamics::{
     BaseWrench, Factors, angular_rate, assemble, by_drives, leading_entries, matrix_times, wrench_with,
 };
@@ -261,7 +261,10 @@ impl MovingBody {
             momentum_rate = self.mass * self.around.gravity + self.around.force + support_force;
         }
         if !self.contacts.is_empty() {
-            loss += self.rub(slip, (&rate, &v), &factors, &mut force, &mut friction, stuck_torque);
+            loss += {
+                let torques = FrictionTorques { force: &mut force, bearing: &mut friction, stuck_torque };
+                self.add_friction(slip, &rate, &v, &factors, torques)
+            };
         }
         let acceleration = factors.solve(std::array::from_fn(|k| force[k] - v[k]));
         let mut momenta_rate: [f64; N] = std::array::from_fn(|k| gain[k] + force[k]);
@@ -382,26 +385,25 @@ impl MovingBody {
         power
     }
 
-    /// Adds friction torques to the generalised forces `force`, and those of the bearings also to `friction`, N m. `v`
-    /// are the velocity terms. Returns the dissipated power, W.
+    /// Adds the friction at rates `rate`, rad/s, to `torques`; `v` are the velocity terms, N m. Returns the dissipated
+    /// power, W.
     #[inline(never)]
-    fn rub<const N: usize>(
+    fn add_friction<const N: usize>(
         &self,
         slip: &SlipDirections,
-        (rate, v): (&[f64; N], &[f64; N]),
+        rate: &[f64; N],
+        v: &[f64; N],
         factors: &Factors<N>,
-        force: &mut [f64; N],
-        friction: &mut [f64; N],
-        stuck_torque: &mut [f64; MAX_CONTACTS],
+        torques: FrictionTorques<'_>,
     ) -> f64 {
-        let loss = self.contacts.slide(slip, rate, force, friction);
-        let free = factors.solve(std::array::from_fn(|k| force[k] - v[k]));
+        let loss = self.contacts.slide(slip, rate, torques.force, torques.bearing);
+        let free = factors.solve(std::array::from_fn(|k| torques.force[k] - v[k]));
         let solve = |x: &[f64; MAX_DRIVES]| {
             let mut padded = [0.0; MAX_DRIVES];
             padded[..N].copy_from_slice(&factors.solve(*leading_entries::<N, _>(x)));
             padded
         };
-        loss + self.contacts.hold(slip, (rate, &free), solve, force, friction, stuck_torque)
+        loss + self.contacts.solve_stuck(slip, rate, &free, solve, torques)
     }
 }
 

@@ -47,7 +47,7 @@ pub struct WheelState {
 impl Wheel {
     /// Returns the minimum and maximum torque, N m, for a step of given length, s, that begins at a rate, rad/s. Call
     /// this once per step, so that the bounds do not jump within the step.
-    pub fn room(&self, rate: f64, step: f64) -> [f64; 2] {
+    pub fn torque_range(&self, rate: f64, step: f64) -> [f64; 2] {
         let limit = self.torque_limit.unwrap_or(f64::INFINITY);
         let top = self.speed_limit.unwrap_or(f64::INFINITY);
         let torque_to = |end_rate: f64| self.inertia * (end_rate - rate) / step;
@@ -57,7 +57,7 @@ impl Wheel {
     /// Returns the state of the wheel for a requested torque, N m, at a rate, rad/s. The torque is limited to the
     /// interval `room`, N m.
     #[inline]
-    pub fn give(&self, wanted: f64, rate: f64, room: [f64; 2]) -> WheelState {
+    pub fn command(&self, wanted: f64, rate: f64, room: [f64; 2]) -> WheelState {
         // In a run that diverges, the torque becomes NaN, so that the run is recognised as failed.
         let torque = if rate.is_finite() { wanted.max(room[0]).min(room[1]) } else { f64::NAN };
         WheelState { rate, torque, saturated: torque != wanted }

@@ -16,7 +16,7 @@
 
 use std::collections::VecDeque;
 
-use crate::control::{Control, Controller, Reading};
+use crate::control::{Control, ControlledState, Controller, Reading};
 use crate::plant::{Actuation, ReducedState, Wheel, WheelState};
 use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector};
 use stillbase_planning::Reference;
@@ -83,7 +83,7 @@ impl ControlLoop {
     /// Begins a step: computes the torque range of the wheel and, at a sampling instant, takes a reading and computes
     /// the torques.
     pub fn sample(&mut self, step: u64, reference: &Reference, reading: &Reading, loaded: bool, wheel_rate: f64) {
-        self.wheel_range = self.wheel.map_or([0.0; 2], |wheel| wheel.room(wheel_rate, self.step));
+        self.wheel_range = self.wheel.map_or([0.0; 2], |wheel| wheel.torque_range(wheel_rate, self.step));
         let Some(sampling) = &mut self.sampling else { return };
         if sampling.held.is_none() || step.is_multiple_of(sampling.period) {
             let (mut e, mut rates, mut seen) = (*reading.e, *reading.rates, *reading);
@@ -180,7 +180,9 @@ impl ControlLoop {
                     (0..n).for_each(|k| (q[k], qd[k]) = (q[k] - base.0.angle, qd[k] - rate[n]));
                     (q[n], qd[n]) = (0.0, 0.0);
                 }
-                self.controller.torque_at::<N, MOVES>(reference, (&q, &qd), motion, base, loaded)
+                let ((e, rate), (base, velocity)) = (motion, base);
+                let state = ControlledState { q: &q, qd: &qd, e, rate, base, velocity };
+                self.controller.torque_at::<N, MOVES>(reference, &state, loaded)
             }
         };
         if let Some(limits) = &self.limits {
@@ -189,7 +191,7 @@ impl ControlLoop {
         let spin = match &self.wheel {
             Some(wheel) => {
                 let moment = self.on_base::<N, MOVES>(&torque, reference);
-                wheel.give(-moment, at.wheel, self.wheel_range)
+                wheel.command(-moment, at.wheel, self.wheel_range)
             }
             None => WheelState::default(),
         };

@@ -3,7 +3,7 @@
 use crate::control::{Controller, Reading};
 use crate::frame::{Audit, Frame, Peaks, Phase, Reach, Target, Totals};
 use crate::plant::{Base, Friction, Load, MAX_CONTACTS, MovingBody, ReducedState, SlipDirections, Slope, State};
-use stillbase_mechanics::dynamics::{self, Surroundings, by_drives};
+use stillbase_mechanics::dynamics::{self, ExternalLoads, by_drives};
 use stillbase_mechanics::joint_forces::{InternalLoads, PinLoads};
 use stillbase_mechanics::kinematics::{end_effector, least_transmission};
 use stillbase_mechanics::machine::{Machine, MachineError, RelativeAngle};
@@ -341,7 +341,7 @@ impl Simulation {
             arm_moment: total.abs(),
             moment: (total - x.spin.torque).abs(),
             inertial_pull: dynamics::inertial_pull(&self.link_moments[loaded], &x.e, &qd, &qdd),
-            weight: length(x.wrench.statical.force),
+            weight: length(x.wrench.static_part.force),
             rate: PerDrive::from_fn(self.drives, |k| qd[k] - turning),
             tilt: self.inside[loaded].tilt(&x.e, &qd, &qdd, &self.field()),
             past_limit: self.angles.iter().enumerate().map(past).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a }),
@@ -353,9 +353,9 @@ impl Simulation {
 
     /// Returns gravity and outer force in axes that move with the base: the acceleration of the base is subtracted from
     /// gravity.
-    pub(super) fn field(&self) -> Surroundings {
+    pub(super) fn field(&self) -> ExternalLoads {
         let around = *self.body().around();
-        Surroundings { gravity: around.gravity - self.now.base_acceleration, ..around }
+        ExternalLoads { gravity: around.gravity - self.now.base_acceleration, ..around }
     }
 
     /// Returns the present audit figures, which should be zero; `plane` is b − b_ref, rad.
@@ -377,7 +377,7 @@ impl Simulation {
         let (x, n) = (&self.now, self.drives);
         let around = self.field();
         let contacts = self.body().contacts();
-        let couple = |from, to| contacts.couple(from, to, &x.qd, &self.slip, &self.stuck_torque);
+        let couple = |from, to| contacts.pin_torque(from, to, &x.qd, &self.slip, &self.stuck_torque);
         self.inside[usize::from(self.loaded)].at(&x.e, &x.qd.first(n), &x.qdd.first(n), &around, couple)
     }
 

@@ -188,7 +188,7 @@ impl Simulation {
             }
             let coarse = reached.slope;
             off = self.integrate(from, segment, count(substeps), reached);
-            error = self.apart(&reached.slope, &coarse);
+            error = self.slope_difference(&reached.slope, &coarse);
         }
         // Use the smaller of the two estimates.
         if off.share(measure) < error.share(measure) {
@@ -210,7 +210,7 @@ impl Simulation {
 
     /// Integrates a segment in equal substeps and returns the maximum error estimate.
     fn integrate(&self, from: &StepState, segment: &Segment, substeps: u32, reached: &mut StepState) -> Mismatch {
-        let sticks = self.body().contacts().stick();
+        let sticks = self.body().contacts().any_can_stick();
         if substeps == 1 && !sticks {
             return self.smooth(from, segment.to, segment, reached);
         }
@@ -232,7 +232,7 @@ impl Simulation {
     }
 
     /// Returns the difference between two slopes at one instant.
-    pub(super) fn apart(&self, a: &Slope, b: &Slope) -> Mismatch {
+    pub(super) fn slope_difference(&self, a: &Slope, b: &Slope) -> Mismatch {
         let felt = |x: &Slope| x.wrench.total().moment - x.spin.torque;
         let tip = |x: &Slope| tip(self.body(), x);
         Mismatch([
@@ -312,7 +312,7 @@ fn stepped_of<const N: usize, const MOVES: bool>(
     let aim = simulation.aim(to, segment);
     let k4 = simulation.stage::<N, MOVES>(&ReducedState::along::<MOVES>(state, &k3.rates, h), &aim, slip, stuck_torque);
     let mut state = StateRates::stepped::<MOVES>(state, [&k1, &k2.rates, &k3.rates, &k4.rates], h);
-    if body.contacts().stick() {
+    if body.contacts().any_can_stick() {
         state = body.with_stuck_stopped(state, slip);
     }
     let last = simulation.stage::<N, MOVES>(&ReducedState::of(&state), &aim, slip, stuck_torque);

@@ -38,7 +38,7 @@ impl Simulation {
     fn torque_reserve(&self, i: usize, slope: &Slope, stuck_torque: &[f64; MAX_CONTACTS]) -> f64 {
         let contacts = self.body().contacts();
         let limit = contacts.coulomb(i);
-        let away = contacts.sliding(i, &slope.qdd) * stuck_torque[i].signum() * self.body().resists(i);
+        let away = contacts.sliding(i, &slope.qdd) * stuck_torque[i].signum() * self.body().reduced_inertia(i);
         // Zero within rounding.
         let away = if away < 1e-9 * limit { 0.0 } else { away };
         limit - stuck_torque[i].abs() - away
@@ -47,7 +47,7 @@ impl Simulation {
     /// Releases the stuck contacts whose holding torque exceeds τ_C, so that they slide.
     pub(super) fn release(&self, slope: &Slope, slip: &mut SlipDirections, stuck_torque: &[f64; MAX_CONTACTS]) {
         let contacts = self.body().contacts();
-        for i in (0..contacts.len()).filter(|i| contacts.sticks(*i)) {
+        for i in (0..contacts.len()).filter(|i| contacts.can_stick(*i)) {
             if slip[i] == 0 && self.torque_reserve(i, slope, stuck_torque) < -0.5e-9 * contacts.coulomb(i) {
                 slip[i] = if stuck_torque[i] > 0.0 { 1 } else { -1 };
             }
@@ -80,7 +80,7 @@ impl Simulation {
     /// Returns the event in a substep, if any. If several contacts change, linear interpolation estimates the first.
     fn event(&self, from: &StepState, substep: &Substep) -> Option<Event> {
         let contacts = self.body().contacts();
-        let able = || (0..contacts.len()).filter(|i| contacts.sticks(*i));
+        let able = || (0..contacts.len()).filter(|i| contacts.can_stick(*i));
         let over = able().filter(|i| self.is_over(*i, &from.slip, &substep.end)).map(|i| {
             let (a, b) = (self.margin(i, &from.slip, from).max(0.0), -self.margin(i, &from.slip, &substep.end));
             (i, a / (a + b))
@@ -95,11 +95,12 @@ impl Simulation {
     fn turns_back(&self, from: &StepState, substep: &Substep) -> bool {
         let contacts = self.body().contacts();
         let h = substep.end.at - from.at;
-        (0..contacts.len()).filter(|i| contacts.sticks(*i)).any(|i| {
+        (0..contacts.len()).filter(|i| contacts.can_stick(*i)).any(|i| {
             let way = f64::from(from.slip[i]);
             if way == 0.0 {
-                let loose =
-                    |x: &Slope| self.body().resists(i) * contacts.sliding(i, &x.qdd).abs() > 1e-6 * contacts.coulomb(i);
+                let loose = |x: &Slope| {
+                    self.body().reduced_inertia(i) * contacts.sliding(i, &x.qdd).abs() > 1e-6 * contacts.coulomb(i)
+                };
                 return substep.stages.iter().any(loose);
             }
             let rate = |x: &Slope| way * contacts.sliding(i, &x.qd);
@@ -153,7 +154,7 @@ impl Simulation {
         // Each search ends earlier than the one before, so that the first of almost simultaneous events is found.
         for _ in 0..2 * contacts.len() {
             substep = self.shortened(i, from, substep, segment);
-            let mut others = (0..contacts.len()).filter(|j| *j != i && contacts.sticks(*j));
+            let mut others = (0..contacts.len()).filter(|j| *j != i && contacts.can_stick(*j));
             let h = substep.end.at - from.at;
             match others.find(|j| self.is_long_over(*j, &from.slip, &substep.end)) {
                 Some(sooner) => i = sooner,
@@ -207,10 +208,10 @@ impl Simulation {
     fn stick_stopped(&self, reached: &mut StepState, segment: &Segment) -> bool {
         let contacts = self.body().contacts();
         let mut changed = false;
-        for i in (0..contacts.len()).filter(|i| contacts.sticks(*i)) {
+        for i in (0..contacts.len()).filter(|i| contacts.can_stick(*i)) {
             let way = f64::from(reached.slip[i]);
             let (v, a) = (way * contacts.sliding(i, &reached.slope.qd), way * contacts.sliding(i, &reached.slope.qdd));
-            let away = a * self.body().resists(i) > 1e-10 * contacts.coulomb(i);
+            let away = a * self.body().reduced_inertia(i) > 1e-10 * contacts.coulomb(i);
             if way != 0.0 && v < Contacts::STICTION_SPEED && !away {
                 reached.slip[i] = 0;
                 changed = true;

@@ -32,9 +32,9 @@ pub struct DesignMeasures {
     pub residuals: [f64; 2],
     /// Comparison with the machine of the first run, in the first run's motion; without β if that motion does not
     /// apply.
-    pub beside: Option<Measures>,
+    pub comparison: Option<Measures>,
     /// Reason for a missing comparison.
-    pub apart: Option<String>,
+    pub why_not: Option<String>,
 }
 
 /// Columns of a table of designs, in order.
@@ -47,9 +47,11 @@ pub const DESIGN_COLUMNS: [SummaryColumn<DesignMeasures>; 10] = [
     column("coupling_left", "worst (8)", "largest |C|, what is left of invariance (8)", "kg m²", 5, |d| {
         Some(d.residuals[1])
     }),
-    column("added_mass", "added", "mass less that of the first run's machine", "kg", 3, |d| Some(d.beside?.added_mass)),
+    column("added_mass", "added", "mass less that of the first run's machine", "kg", 3, |d| {
+        Some(d.comparison?.added_mass)
+    }),
     column("added_inertia", "added Σ D", "Σ D less that of the first run's machine", "kg m²", 4, |d| {
-        Some(d.beside?.added_inertia)
+        Some(d.comparison?.added_inertia)
     }),
     column(
         "mass_inertia_factor",
@@ -57,7 +59,7 @@ pub const DESIGN_COLUMNS: [SummaryColumn<DesignMeasures>; 10] = [
         "mass–inertia factor: both as ratios to the first, summed",
         "1",
         3,
-        |d| d.beside?.mass_inertia_factor,
+        |d| d.comparison?.mass_inertia_factor,
     ),
     column(
         "beta_force",
@@ -88,31 +90,31 @@ impl DesignCandidate {
     }
 
     /// Compares this machine with the first of several.
-    pub fn beside(&self, first: &Self) -> DesignMeasures {
+    pub fn compared_with(&self, first: &Self) -> DesignMeasures {
         let inertia = Inertia::of(&self.machine);
         let mut design = DesignMeasures {
             mass: self.machine.mass(),
             inertia: inertia.total_momentum(),
             residuals: [inertia.force_residual(), inertia.invariance_residual()],
-            beside: None,
-            apart: None,
+            comparison: None,
+            why_not: None,
         };
         let [own, other] = [self, first].map(|one| one.machine.drives());
         if own != other {
             let [own, other] = [own, other].map(|count| counted(count, "drive"));
-            design.apart = Some(format!("it has {own} and the first {other}: it is not set beside that"));
+            design.why_not = Some(format!("it has {own} and the first {other}: it is not set beside that"));
             return design;
         }
         let motion = match (self.is_alike(first), self.differs(first)) {
             // Compared with itself, every β is 1.
             (true, _) => None,
             (_, Some(what)) => {
-                design.apart = Some(format!("{what} differs from that of the first: no β of the same motion"));
+                design.why_not = Some(format!("{what} differs from that of the first: no β of the same motion"));
                 None
             }
             _ => Some(&*first.motion),
         };
-        design.beside = Some(Measures::of(&first.machine, &self.machine, motion));
+        design.comparison = Some(Measures::of(&first.machine, &self.machine, motion));
         design
     }
 
@@ -140,7 +142,7 @@ impl Serialize for DesignMeasures {
                 map.serialize_entry(column.key, &value)?;
             }
         }
-        if let Some(why) = &self.apart {
+        if let Some(why) = &self.why_not {
             map.serialize_entry("apart", why)?;
         }
         map.end()
@@ -149,6 +151,6 @@ impl Serialize for DesignMeasures {
 
 impl DesignMeasures {
     fn beta(&self) -> Option<Beta> {
-        self.beside?.beta
+        self.comparison?.beta
     }
 }

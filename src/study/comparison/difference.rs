@@ -19,7 +19,7 @@ impl SignalDifference {
     }
 
     /// Returns the second value less the first.
-    pub fn by(&self) -> f64 {
+    pub fn difference(&self) -> f64 {
         self.to - self.from
     }
 }

@@ -20,7 +20,7 @@ pub struct ComparisonEntry {
     /// Whether the run is overlaid on plots and scene.
     pub shown: bool,
     /// Whether the user added the row, which then remains when the task changes.
-    pub kept: bool,
+    pub added_by_user: bool,
     /// Comparison of the run's machine with the machine of the first run in the table.
     pub design: Option<DesignMeasures>,
 }
@@ -41,7 +41,7 @@ pub struct Comparison {
     task: Scenario,
     entries: Vec<ComparisonEntry>,
     sort: Option<(usize, bool)>,
-    beside: BaselineMachines,
+    baseline: BaselineMachines,
     /// The alternatives that the table shows.
     ways: Option<Arc<<AlternativeRuns as Query>::Answer>>,
 }
@@ -88,7 +88,7 @@ impl Comparison {
             task: scenario.clone(),
             entries: Vec::new(),
             sort: None,
-            beside: BaselineMachines::default(),
+            baseline: BaselineMachines::default(),
             ways: None,
         }
     }
@@ -103,13 +103,13 @@ impl Comparison {
         let (Shared(scenario), ways) = &**found;
         self.task = Scenario::clone(scenario);
         let shown: Vec<String> = self.entries.iter().filter(|e| e.shown).map(|e| e.title.clone()).collect();
-        let kept: Vec<ComparisonEntry> = self.entries.drain(..).filter(|e| e.kept).collect();
+        let kept: Vec<ComparisonEntry> = self.entries.drain(..).filter(|e| e.added_by_user).collect();
         let own = ways.iter().cloned().map(|(title, outcome)| {
             let shown = outcome.is_ok() && shown.contains(&title);
-            ComparisonEntry { title, outcome, shown, kept: false, design: None }
+            ComparisonEntry { title, outcome, shown, added_by_user: false, design: None }
         });
         self.entries = own.chain(kept).collect();
-        self.set_beside();
+        self.compare_with_baseline();
     }
 
     /// Returns the scenario whose alternatives the table shows.
@@ -140,28 +140,34 @@ impl Comparison {
         }
         run.scenario.name.clone_from(&title);
         run.summary.name.clone_from(&title);
-        self.entries.push(ComparisonEntry { title, outcome: Ok(Arc::new(run)), shown: true, kept: true, design: None });
-        self.set_beside();
+        self.entries.push(ComparisonEntry {
+            title,
+            outcome: Ok(Arc::new(run)),
+            shown: true,
+            added_by_user: true,
+            design: None,
+        });
+        self.compare_with_baseline();
     }
 
     /// Compares every machine with that of the first run.
-    fn set_beside(&mut self) {
-        self.beside = BaselineMachines::default();
+    fn compare_with_baseline(&mut self) {
+        self.baseline = BaselineMachines::default();
         for entry in &mut self.entries {
-            entry.design = entry.outcome.as_ref().ok().map(|run| self.beside.set(&run.candidate));
+            entry.design = entry.outcome.as_ref().ok().map(|run| self.baseline.set(&run.candidate));
         }
     }
 
     /// Returns whether the machines of the runs differ, so that there are designs to compare.
     pub fn has_designs(&self) -> bool {
-        self.beside.differ()
+        self.baseline.differ()
     }
 
     /// Removes a run that the user added.
     pub fn remove(&mut self, entry: usize) {
-        if self.entries.get(entry).is_some_and(|e| e.kept) {
+        if self.entries.get(entry).is_some_and(|e| e.added_by_user) {
             self.entries.remove(entry);
-            self.set_beside();
+            self.compare_with_baseline();
         }
     }
 

@@ -11,7 +11,7 @@ pub struct ComparisonRow {
     /// Name of the scenario.
     pub name: String,
     /// Name of the alternative, if alternatives for one task are compared.
-    pub way: Option<&'static str>,
+    pub alternative: Option<&'static str>,
     /// Results, or why there are none.
     pub outcome: Result<Summary, String>,
     /// Comparison of the run's machine with the machine of the first run.
@@ -22,7 +22,7 @@ pub struct ComparisonRow {
 #[derive(Clone, Debug, Default)]
 pub struct ComparisonTable {
     rows: Vec<ComparisonRow>,
-    beside: BaselineMachines,
+    baseline: BaselineMachines,
 }
 
 /// Compares machines with the first of them.
@@ -37,7 +37,7 @@ impl BaselineMachines {
     pub fn set(&mut self, next: &DesignCandidate) -> DesignMeasures {
         let first = self.first.get_or_insert_with(|| next.clone());
         self.differ |= !next.is_alike(first);
-        next.beside(first)
+        next.compared_with(first)
     }
 
     /// Returns whether any machine differs from the first, so that there are designs to compare.
@@ -48,11 +48,11 @@ impl BaselineMachines {
 
 impl ComparisonTable {
     /// Runs a scenario to its end and adds it as a row.
-    pub fn run(&mut self, way: Option<&'static str>, scenario: &Scenario) {
+    pub fn run(&mut self, alternative: Option<&'static str>, scenario: &Scenario) {
         let outcome = ComparedRun::of(scenario.clone()).map_err(|why| why.to_string());
-        let design = outcome.as_ref().ok().map(|run| self.beside.set(&run.candidate));
+        let design = outcome.as_ref().ok().map(|run| self.baseline.set(&run.candidate));
         let outcome = outcome.map(|run| run.summary);
-        self.rows.push(ComparisonRow { name: scenario.name.clone(), way, outcome, design });
+        self.rows.push(ComparisonRow { name: scenario.name.clone(), alternative, outcome, design });
     }
 
     /// Returns all rows.
@@ -62,14 +62,14 @@ impl ComparisonTable {
 
     /// Returns whether the machines of the runs differ.
     pub fn have_designs(&self) -> bool {
-        self.beside.differ()
+        self.baseline.differ()
     }
 }
 
 impl ComparisonRow {
     /// Returns the title: the alternative, or else the scenario's name.
     pub fn title(&self) -> &str {
-        self.way.unwrap_or(&self.name)
+        self.alternative.unwrap_or(&self.name)
     }
 }
 
@@ -84,7 +84,7 @@ impl Serialize for ComparisonRow {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("scenario", &self.name)?;
-        if let Some(way) = self.way {
+        if let Some(way) = self.alternative {
             map.serialize_entry("way", way)?;
         }
         match &self.outcome {

@@ -114,14 +114,14 @@ impl Equality {
     }
 
     /// Returns the residual: left side less right side.
-    pub fn off(&self) -> f64 {
+    pub fn residual(&self) -> f64 {
         let [left, right] = self.sides();
         left - right
     }
 
     /// Returns whether both sides agree within the tolerance.
     pub fn holds(&self) -> bool {
-        self.off().abs() <= self.tolerance
+        self.residual().abs() <= self.tolerance
     }
 }
 
@@ -154,8 +154,8 @@ impl Equation {
     }
 
     /// Returns the line with the largest ratio of residual to tolerance.
-    pub fn worst(&self) -> Option<&Equality> {
-        let far = |line: &Equality| line.off().abs() / line.tolerance.max(f64::MIN_POSITIVE);
+    pub fn least_accurate(&self) -> Option<&Equality> {
+        let far = |line: &Equality| line.residual().abs() / line.tolerance.max(f64::MIN_POSITIVE);
         self.lines.as_ref().ok()?.iter().max_by(|a, b| far(a).total_cmp(&far(b)))
     }
 }

@@ -4,7 +4,7 @@ use super::bodies::{Bodies, BodyMass, BodyMotion};
 use super::equation::{Equality, Equation, Origin, Term};
 use super::state::DriveState;
 use super::symbol::indexed_symbol;
-use stillbase_mechanics::dynamics::{self, MassMatrix, Surroundings};
+use stillbase_mechanics::dynamics::{self, ExternalLoads, MassMatrix};
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{PerDrive, UnitVectors, Vector, cross, dot};
 
@@ -33,8 +33,8 @@ impl<'a> Reactions<'a> {
         Self { machine, inertia, bodies, motion: BodyMotion::of(state), e, state, h, v }
     }
 
-    fn around(&self) -> Surroundings {
-        Surroundings { gravity: self.machine.gravity(), force: Vector::default() }
+    fn around(&self) -> ExternalLoads {
+        ExternalLoads { gravity: self.machine.gravity(), force: Vector::default() }
     }
 
     fn drive(&self, k: usize) -> String {
@@ -234,7 +234,7 @@ impl<'a> Reactions<'a> {
             let mut parts = bodies.each(|mass| self.motion.momentum(mass, k) * qd);
             parts.extend(bodies.each_rotor(|rotor| rotor.rates[k] * qd));
             let symbol = format!("D_{{{}}} q\u{307}_{{{}}}", self.name(k), self.name(k));
-            Term::plain(symbol, self.h.momentum_row(k) * qd).from(parts)
+            Term::plain(symbol, self.h.momentum_coefficient(k) * qd).from(parts)
         });
         Equation {
             number: "6",
@@ -248,7 +248,7 @@ impl<'a> Reactions<'a> {
 
     /// Returns D_k at this instant, kg m², (A3).
     pub fn momentum_row(&self, k: usize) -> f64 {
-        self.h.momentum_row(k)
+        self.h.momentum_coefficient(k)
     }
 
     pub fn decoupled(&self, why_not: Option<String>) -> Equation {

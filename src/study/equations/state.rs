@@ -59,11 +59,11 @@ const PLAN_FRACTION: f64 = 0.25;
 impl DriveState {
     /// Returns the state of a pose at rest.
     pub fn at_rest(q: DriveAngles) -> Self {
-        Self::given(Reference::at_rest(q))
+        Self::of_reference(Reference::at_rest(q))
     }
 
     /// Returns the state with given angles, rates and accelerations.
-    pub fn given(Reference { q, qd, qdd }: Reference) -> Self {
+    pub fn of_reference(Reference { q, qd, qdd }: Reference) -> Self {
         Self { q, qd, qdd, b: None, when: InstantKind::Given }
     }
 
@@ -106,7 +106,7 @@ impl DriveState {
                 let time = PLAN_FRACTION * motion.duration();
                 let lambda = Inertia::of(&run.scenario().machine).lambda();
                 let b = Some(lambda.dot(&motion.at(0.0).q));
-                Self { b, when: InstantKind::Plan(time), ..Self::given(motion.at(time)) }
+                Self { b, when: InstantKind::Plan(time), ..Self::of_reference(motion.at(time)) }
             }
             None => Self::now(frame),
         }

@@ -34,7 +34,7 @@ pub(super) fn of_drives(
     if request.keep != Some(PreservedPath::Joints) {
         let mut add = |b: f64, why: String| match same_tip(space, &judge.model, samples, b, Rule::default()) {
             Ok(moved) => {
-                let made = moved.and_then(task).map(|task| MotionCandidate { way: "same-tip", why, task });
+                let made = moved.and_then(task).map(|task| MotionCandidate { method: "same-tip", why, task });
                 candidates.extend(made);
                 None
             }
@@ -69,6 +69,6 @@ pub(super) fn of_drives(
         (None, None) => "the end effector's path cannot be kept within the rules".into(),
     };
     let made = turned_to_plane(space.lambda(), samples, wanted).and_then(task);
-    candidates.extend(made.map(|task| MotionCandidate { way: "turned", why, task }));
+    candidates.extend(made.map(|task| MotionCandidate { method: "turned", why, task }));
     Ok(MotionProposals { given: Some(given), candidates: Ok(candidates) })
 }

@@ -58,7 +58,7 @@ pub(super) fn held_b_motion(
                         describe_interval(low, high)
                     ),
                 };
-                return (start(b), Ok(vec![MotionCandidate { way: "on-plane", why, task }]));
+                return (start(b), Ok(vec![MotionCandidate { method: "on-plane", why, task }]));
             }
             Err(why) => refused = refused.or(Some(why)),
         }

@@ -150,7 +150,7 @@ impl Trying {
     fn next(&mut self, motion: &GivenMotion, goes_on: ProgressCallback<'_>) -> bool {
         let Some(candidate) = self.candidates.get(self.tried) else { return false };
         let step = step_of(motion, &self.judge);
-        let scenario = self.judge.scenario(candidate.task.clone(), step, candidate.way);
+        let scenario = self.judge.scenario(candidate.task.clone(), step, candidate.method);
         let mut own = part(goes_on, [self.share(0.0), self.share(1.0)]);
         match self.judge.proposal(candidate, &scenario, self.given.as_ref(), &mut own) {
             Ok(proposal) if proposal.reactionless => {

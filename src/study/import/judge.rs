@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::given::GivenMotion;
 use crate::advice::{Advice, Remedy};
-use stillbase_mechanics::dynamics::{Surroundings, angular_momentum, inverse_with_wrench};
+use stillbase_mechanics::dynamics::{ExternalLoads, angular_momentum, inverse_with_wrench};
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::Vector;
 use stillbase_planning::Motion;
@@ -88,7 +88,7 @@ const DRAWN_INTERVALS: usize = 240;
 
 /// A candidate for the proposal.
 pub(super) struct MotionCandidate {
-    pub way: &'static str,
+    pub method: &'static str,
     pub why: String,
     pub task: Task,
 }
@@ -105,7 +105,7 @@ pub(super) struct MotionEvaluator {
     pub scenario: Scenario,
     pub machine: Machine,
     pub model: Inertia,
-    pub around: Surroundings,
+    pub around: ExternalLoads,
     pub space: Result<PoseSpace, NoPoseSpace>,
     pub instants: usize,
 }
@@ -117,7 +117,7 @@ impl MotionEvaluator {
         let machine = scenario.machine.clone();
         Self {
             model: Inertia::of(&machine),
-            around: Surroundings { gravity: machine.gravity(), force: Vector::default() },
+            around: ExternalLoads { gravity: machine.gravity(), force: Vector::default() },
             space: PoseSpace::of(&machine),
             instants,
             scenario,
@@ -230,7 +230,7 @@ impl MotionEvaluator {
         });
         let account = self.account(motion, &mut part(goes_on, [SIMULATION_SHARE, 1.0]));
         Ok(Proposal {
-            way: candidate.way,
+            way: candidate.method,
             why: candidate.why.clone(),
             b: account.b_mean,
             tip_deviation: deviation.as_ref().map_or(0.0, |d| d.end_effector),

@@ -49,7 +49,7 @@ pub(super) fn held_plane_motion(
     let start = poses_of_points(space, &[samples.point(0)], b).ok().and_then(|poses| poses.first().map(|pose| pose.q));
     let candidates = followed.map_err(|stop| stop.to_string().into()).map(|(b, why)| {
         let task = Task::sampled(TaskKind::Given, samples.clone(), Some(b), &judge.machine).ok();
-        task.map(|task| MotionCandidate { way: "on-plane", why, task }).into_iter().collect()
+        task.map(|task| MotionCandidate { method: "on-plane", why, task }).into_iter().collect()
     });
     (start, candidates)
 }

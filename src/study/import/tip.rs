@@ -74,6 +74,6 @@ fn on_curve(
             .and_then(|drives| turned_to_plane(space.lambda(), &drives, mean))
             .and_then(|drives| Task::sampled(TaskKind::Given, drives, None, &judge.machine).ok());
     let why = format!("the path lies along the curve of this b, to {:.1e} rad", (high - mean).max(mean - low));
-    task.map(|task| vec![MotionCandidate { way: "turned", why, task }])
+    task.map(|task| vec![MotionCandidate { method: "turned", why, task }])
         .ok_or_else(|| "the samples give no spline".into())
 }

@@ -44,7 +44,7 @@ pub(super) fn unchanged_motion(
     let task = Task::sampled(kind, samples.clone(), Some(0.0), &judge.machine).ok();
     let why = "every motion of this machine is reactionless".into();
     let candidates = match (&path, task) {
-        (Some(_), Some(task)) => Ok(vec![MotionCandidate { way: "as-given", why, task }]),
+        (Some(_), Some(task)) => Ok(vec![MotionCandidate { method: "as-given", why, task }]),
         _ => Err("the path is not within reach: want another".into()),
     };
     Ok(MotionProposals { given: path.map(|path| judge.given(timed_path(path, samples), goes_on)), candidates })

@@ -181,7 +181,8 @@ impl ForceBand {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct BandDifference {
     /// Largest difference.
-    pub worst: f64,
+    #[serde(rename = "worst")]
+    pub largest: f64,
     /// Time of the largest difference, s.
     pub time: f64,
     /// Fraction of the instants at which the difference exceeds the tolerance of [`Agreement`].
@@ -221,8 +222,8 @@ impl Agreement {
             let mut gap = BandDifference::default();
             for (s, t) in time.iter().enumerate().filter(|(s, _)| deviation[*s] > least) {
                 let apart = (a[s] - b[s]).abs() / deviation[s];
-                if apart > gap.worst {
-                    (gap.worst, gap.time) = (apart, *t);
+                if apart > gap.largest {
+                    (gap.largest, gap.time) = (apart, *t);
                 }
                 gap.share += f64::from(u8::from(apart > tolerance)) / time.len() as f64;
             }

@@ -25,7 +25,7 @@ use super::constants::{self, BLOCK_MACHINES, Lanes, LinkConstants, count, evalua
 use super::deviate::{CHUNK, RandomStream};
 use super::moments::Moments;
 use super::parameter::{UncertainParameter, parameters};
-use stillbase_mechanics::dynamics::{Surroundings, base_wrench};
+use stillbase_mechanics::dynamics::{ExternalLoads, base_wrench};
 use stillbase_mechanics::machine::{Inertia, Machine, MachineError};
 use stillbase_mechanics::planar::{MAX_DRIVES, Vector};
 use stillbase_planning::{Motion, Reference};
@@ -206,11 +206,11 @@ impl Ensemble {
     }
 }
 
-fn surroundings(machine: &Machine) -> Surroundings {
-    Surroundings { gravity: machine.gravity(), force: Vector::default() }
+fn surroundings(machine: &Machine) -> ExternalLoads {
+    ExternalLoads { gravity: machine.gravity(), force: Vector::default() }
 }
 
-fn wrench(inertia: &Inertia, r: &Reference, around: &Surroundings) -> (f64, Vector) {
+fn wrench(inertia: &Inertia, r: &Reference, around: &ExternalLoads) -> (f64, Vector) {
     let wrench = base_wrench(inertia, &r.q.units(), &r.qd, &r.qdd, around);
     (wrench.total().moment, wrench.dynamic.force)
 }

@@ -67,7 +67,8 @@ pub struct Yield {
     /// Number of machines within the limit.
     pub good: u64,
     /// Number of machines.
-    pub of: u64,
+    #[serde(rename = "of")]
+    pub total: u64,
     /// Fraction within the limit, 0 to 1.
     pub share: f64,
     /// 95 % confidence interval of the true fraction.
@@ -76,17 +77,17 @@ pub struct Yield {
 
 impl Yield {
     /// Returns the yield of `good` out of `of`; for `of` = 0 the interval is 0 to 1.
-    pub fn new(good: u64, of: u64) -> Self {
-        if of == 0 {
-            return Self { good, of, share: 0.0, interval: [0.0, 1.0] };
+    pub fn new(good: u64, total: u64) -> Self {
+        if total == 0 {
+            return Self { good, total, share: 0.0, interval: [0.0, 1.0] };
         }
         // 97.5 % quantile of the standard normal distribution.
         const Z: f64 = 1.959963984540054;
-        let (n, p) = (of as f64, good as f64 / of as f64);
+        let (n, p) = (total as f64, good as f64 / total as f64);
         let centre = (p + Z * Z / (2.0 * n)) / (1.0 + Z * Z / n);
         let half = Z / (1.0 + Z * Z / n) * (p * (1.0 - p) / n + Z * Z / (4.0 * n * n)).sqrt();
         let low = if good == 0 { 0.0 } else { (centre - half).max(0.0) };
-        let high = if good == of { 1.0 } else { (centre + half).min(1.0) };
-        Self { good, of, share: p, interval: [low, high] }
+        let high = if good == total { 1.0 } else { (centre + half).min(1.0) };
+        Self { good, total, share: p, interval: [low, high] }
     }
 }

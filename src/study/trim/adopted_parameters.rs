@@ -19,7 +19,7 @@ pub struct AdoptedParameters {
     pub measured: Vec<bool>,
     /// Whether each unknown differs significantly from the file. Of the unknowns of (7) and (8), exactly these are
     /// taken from the measurement.
-    pub off: Vec<bool>,
+    pub differs: Vec<bool>,
     /// D_k of each drive if it is identifiable, kg m².
     pub momenta: Vec<Option<f64>>,
 }
@@ -69,7 +69,7 @@ pub fn adopt_parameters(fit: &Fit) -> AdoptedParameters {
     let half_widths: Vec<f64> = (0..values.len()).map(|i| half_width(&covariance, i)).collect();
     let differs = |i: usize| fit.identifiable[i] && (values[i] - fit.nominal[i]).abs() > half_widths[i].max(rounding);
     let off = (0..values.len()).map(|i| measured.get(i).copied().unwrap_or_else(|| differs(i))).collect();
-    AdoptedParameters { values, covariance, half_widths, measured, off, momenta }
+    AdoptedParameters { values, covariance, half_widths, measured, differs: off, momenta }
 }
 
 /// Least-squares estimate with some unknowns fixed.

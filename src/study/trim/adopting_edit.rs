@@ -23,11 +23,11 @@ pub fn adopting_edit(
     if names(measured) != names(&scenario.machine) {
         return Err(format!("the measurement is of {}: open that machine, then the table again", measured.name()));
     }
-    let (built, _) = identified_machine(measured, &found.taken).map_err(|why| why.to_string())?;
+    let (built, _) = identified_machine(measured, &found.adopted).map_err(|why| why.to_string())?;
     if !mends {
         return Ok(machine_edit(scenario, &built));
     }
-    let mended = found.mended.as_ref().map_err(ToString::to_string)?;
+    let mended = found.correction.as_ref().map_err(ToString::to_string)?;
     let machine = corrected_as_built(&built, measured, mended).map_err(|why| why.to_string())?;
     Ok(machine_edit(scenario, &machine))
 }

@@ -20,7 +20,7 @@ use super::fit::Fit;
 use super::machine_correction::MachineCorrection;
 use super::rows::Regressor;
 use stillbase_mechanics::machine::{Inertia, Machine};
-use stillbase_settings::number::shown;
+use stillbase_settings::number::fixed_or_scientific;
 
 /// Effect of a change over the measured motions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -38,8 +38,10 @@ pub struct CorrectionBenefit {
 impl CorrectionBenefit {
     /// Describes the effect in words.
     pub fn words(&self) -> String {
-        let pair = |[from, to]: [f64; 2], unit: &str| format!("from {} to {} {unit}", shown(from, 4), shown(to, 4));
-        let share = |x: f64| shown(100.0 * x, 1);
+        let pair = |[from, to]: [f64; 2], unit: &str| {
+            format!("from {} to {} {unit}", fixed_or_scientific(from, 4), fixed_or_scientific(to, 4))
+        };
+        let share = |x: f64| fixed_or_scientific(100.0 * x, 1);
         format!(
             "force {} rms and moment {}, the mean square of both by {} ± {} %",
             pair(self.force, "N"),
@@ -71,7 +73,7 @@ pub fn correction_benefit(
         x.tr_mul(&x) / rows.count() as f64
     };
     let (force, moment): (DMatrix<f64>, DMatrix<f64>) = (mean(0) + mean(1), mean(2));
-    let by = DVector::from_iterator(count, mended.by.iter().flat_map(|by| [by.re, by.im]));
+    let by = DVector::from_iterator(count, mended.effects.iter().flat_map(|by| [by.re, by.im]));
     let now = fit.measured.rows(0, count).clone_owned();
     let then = &now + &by;
     let rms = |of: &DMatrix<f64>, x: &DVector<f64>| x.dot(&(of * x)).max(0.0).sqrt();

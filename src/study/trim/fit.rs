@@ -101,7 +101,7 @@ pub(super) fn estimate(machine: &Machine, rows: &Regressor) -> Result<Estimate, 
     for _ in 0..4 {
         let own = Solved::of(rows, &groups, &sigma, &nominal);
         let errors: Vec<DVector<f64>> =
-            rows.channels.iter().zip(&deviations).map(|(c, y)| y - &c.x * &own.by).collect();
+            rows.channels.iter().zip(&deviations).map(|(c, y)| y - &c.x * &own.deviation).collect();
         let now = [rms(&[&errors[0], &errors[1]]).max(floors[0]), rms(&[&errors[2]]).max(floors[1])];
         let same = now.iter().zip(&sigma).all(|(now, was)| (now / was - 1.0).abs() < 1e-3);
         sigma = now;
@@ -113,11 +113,11 @@ pub(super) fn estimate(machine: &Machine, rows: &Regressor) -> Result<Estimate, 
     let (solved, errors) = solved.ok_or(TrimError::NotFinite)?;
     let (confounded, identifiable) = solved.confounded(p);
     let count = rows.count();
-    let least = if rows.made == RegressorSource::Samples { 1 } else { MIN_LAGS };
+    let least = if rows.source == RegressorSource::Samples { 1 } else { MIN_LAGS };
     let parts: Vec<&[f64]> = errors.iter().map(|e| e.as_slice()).collect();
     let lags = bartlett_lags(&parts, &rows.motions, least);
     // For windows the larger number of lags compensates for the second parameter of the line.
-    let fitted = if rows.made == RegressorSource::Samples { TREND_PARAMETERS as i32 } else { 1 };
+    let fitted = if rows.source == RegressorSource::Samples { TREND_PARAMETERS as i32 } else { 1 };
     // Ratio of the long-run variance to the variance of one row: correlation length in rows.
     let correlation = |of: &[usize]| {
         let both = |f: &dyn Fn(usize) -> f64| of.iter().map(|c| f(*c)).sum::<f64>();
@@ -154,7 +154,7 @@ pub(super) fn estimate(machine: &Machine, rows: &Regressor) -> Result<Estimate, 
     let density = [0, 1].map(|of| sigma[of] * sigma[of] * correlation[of] * rows.spacing);
     let fit = Fit {
         unknowns: rows.unknowns.clone(),
-        measured: &nominal + &solved.by,
+        measured: &nominal + &solved.deviation,
         nominal,
         covariance,
         critical: t_quantile(lags as f64 / count as f64),
@@ -228,7 +228,7 @@ fn compressed(rows: &Regressor, deviations: &[DVector<f64>; 3], channels: &[usiz
 /// Solution for given weights.
 struct Solved {
     /// Deviation of each unknown from its nominal value.
-    by: DVector<f64>,
+    deviation: DVector<f64>,
     /// Pseudo-inverse of XᵀX over the identifiable directions, weighted.
     inverse: DMatrix<f64>,
     /// Orthonormal basis of the unobservable directions, in unknowns scaled by their column norms.
@@ -263,9 +263,9 @@ impl Solved {
         let svd = SVD::try_new(x, true, true, 5.0 * f64::EPSILON, MAX_ITERATIONS);
         let parts = svd.and_then(|svd| Some((svd.u?, svd.singular_values, svd.v_t?)));
         let Some((u, singular, v)) = parts else {
-            return Self { by: DVector::zeros(p), inverse: DMatrix::zeros(p, p), free: DMatrix::identity(p, p) };
+            return Self { deviation: DVector::zeros(p), inverse: DMatrix::zeros(p, p), free: DMatrix::identity(p, p) };
         };
-        let share = if let RegressorSource::Windows { noise, .. } = rows.made { noise } else { 0.0 };
+        let share = if let RegressorSource::Windows { noise, .. } = rows.source { noise } else { 0.0 };
         let threshold = singular.max() * RANK_TOLERANCE.max(NOISE_FACTOR * share);
         let kept: Vec<usize> = (0..p).filter(|i| singular[*i] > threshold).collect();
         let rest: Vec<usize> = (0..p).filter(|i| singular[*i] <= threshold).collect();
@@ -284,7 +284,7 @@ impl Solved {
         for _ in 0..2 {
             all = &plain + &inverse * (&noise * (nominal + &all));
         }
-        Self { by: all, inverse, free: v.select_columns(&rest) }
+        Self { deviation: all, inverse, free: v.select_columns(&rest) }
     }
 
     /// Returns the groups of unknowns that are only identifiable in combination, and whether each unknown is

@@ -38,14 +38,19 @@ pub struct MachineCorrection {
     /// Residual of each line of (7) and (8) after the change, if the machine is as identified.
     pub residuals: Vec<Vector>,
     /// Effect of the changes on each line of (7) and (8), independent of the identified machine.
-    pub by: Vec<Vector>,
+    pub effects: Vec<Vector>,
 }
 
 impl MachineCorrection {
     /// Returns a correction without any change.
-    pub fn not_at_all(machine: &Machine, taken: &AdoptedParameters) -> Self {
+    pub fn unchanged(machine: &Machine, taken: &AdoptedParameters) -> Self {
         let residuals = taken.residuals();
-        Self { changes: Vec::new(), machine: machine.clone(), by: vec![Vector::default(); residuals.len()], residuals }
+        Self {
+            changes: Vec::new(),
+            machine: machine.clone(),
+            effects: vec![Vector::default(); residuals.len()],
+            residuals,
+        }
     }
 }
 
@@ -112,7 +117,7 @@ pub fn correct_machine(
     let machine = Machine::new(rounded).map_err(|why| NoCorrection::Machine(why.to_string()))?;
     let now = balance_residuals(&machine);
     let left = now.iter().zip(&deviation).map(|(now, deviation)| now + deviation).collect();
-    Ok(MachineCorrection { changes, machine, residuals: left, by: difference(&now, &nominal) })
+    Ok(MachineCorrection { changes, machine, residuals: left, effects: difference(&now, &nominal) })
 }
 
 /// Returns the machine as built, before any correction, and the residuals of (7) and (8), by line, that it does not
@@ -128,7 +133,7 @@ pub fn identified_machine(
     let links = 0..machine.links().len();
     let mut request = RebalanceRequest::default();
     for (link, quantity) in links.flat_map(|j| [(j, BodyQuantity::Along), (j, BodyQuantity::Across)]) {
-        request.hold(machine, Parameter::new(Body::Link(link), quantity), ParameterBounds::Free);
+        request.set_bounds(machine, Parameter::new(Body::Link(link), quantity), ParameterBounds::Free);
     }
     // With the negative of the identified imbalance as offset, the balance conditions hold for a machine with that
     // imbalance.

@@ -52,7 +52,7 @@ impl Excitation {
 #[derive(Clone, Debug, PartialEq)]
 pub struct NextMeasurement {
     /// Index of the least known unknown of (7) or (8).
-    pub worst: usize,
+    pub least_known: usize,
     /// Present half width of its interval; infinite if it is not identifiable.
     pub half_width: f64,
     /// Duration of each candidate, s.
@@ -85,18 +85,18 @@ pub fn next_excitation(
     let scales = rows.unknowns.scales(&Inertia::of(machine));
     let balance = rows.unknowns.of_balance();
     let size = |i: usize| if fit.identifiable[i] { fit.half_width(i) / scales[i] } else { f64::INFINITY };
-    let worst = (0..balance).max_by(|a, b| size(*a).total_cmp(&size(*b))).unwrap_or_default();
-    let half_width = if fit.identifiable[worst] { fit.half_width(worst) } else { f64::INFINITY };
+    let least_known = (0..balance).max_by(|a, b| size(*a).total_cmp(&size(*b))).unwrap_or_default();
+    let half_width = if fit.identifiable[least_known] { fit.half_width(least_known) } else { f64::INFINITY };
     let duration = recording.motions.iter().map(MeasuredMotion::duration).sum::<f64>() / recording.motions.len() as f64;
     let now = Known::of(&fit.information, &scales);
     let assessed = |drives: Vec<(usize, f64)>, own_frequencies: bool| {
         let motion = limits.motion(machine, &drives, own_frequencies);
         let more = motion.information(machine, &rows.unknowns, duration, fit);
         let then = Known::of(&(&fit.information + more), &scales);
-        let half_width = match (fit.identifiable[worst], then.variance(worst)) {
+        let half_width = match (fit.identifiable[least_known], then.variance(least_known)) {
             (_, None) => f64::INFINITY,
-            (true, Some(after)) => half_width * now.variance(worst).map_or(1.0, |now| (after / now).sqrt()),
-            (false, Some(after)) => fit.critical * after.sqrt() * scales[worst],
+            (true, Some(after)) => half_width * now.variance(least_known).map_or(1.0, |now| (after / now).sqrt()),
+            (false, Some(after)) => fit.critical * after.sqrt() * scales[least_known],
         };
         let all = (0.5 * (then.log_volume(balance) - now.log_volume(balance)) / balance as f64).exp();
         let amplitude = drives.iter().map(|(k, _)| motion.amplitude[*k]).collect();
@@ -117,7 +117,7 @@ pub fn next_excitation(
         candidates.push(assessed(every(), true));
     }
     candidates.sort_by(|a, b| a.half_width.total_cmp(&b.half_width));
-    NextMeasurement { worst, half_width, duration, candidates }
+    NextMeasurement { least_known, half_width, duration, candidates }
 }
 
 /// Ranges and accelerations of the drives.

@@ -10,7 +10,7 @@ use super::next_excitation::{Excitation, NextMeasurement};
 use super::rows::{Regressor, RegressorSource};
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
-use stillbase_settings::number::{fixed, shown};
+use stillbase_settings::number::{fixed, fixed_or_scientific};
 
 /// Identified values of a machine, their correction, and the next measurement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -109,11 +109,11 @@ impl Suggestion {
     pub fn words(&self) -> Option<String> {
         let best = self.candidates.first()?;
         let now = match self.half_width {
-            Some(half) => format!("Least known is {}, ± {} {}", self.worst, shown(half, 6), self.unit),
+            Some(half) => format!("Least known is {}, ± {} {}", self.worst, fixed_or_scientific(half, 6), self.unit),
             None => format!("Nothing is known of {} yet", self.worst),
         };
         let then = match best.candidate.half_width {
-            half if half.is_finite() => format!("would make that ± {} {}", shown(half, 6), self.unit),
+            half if half.is_finite() => format!("would make that ± {} {}", fixed_or_scientific(half, 6), self.unit),
             _ => "would not tell it either".into(),
         };
         Some(format!("{now}; {} s of {} {then}.", fixed(self.duration, 2), best.motion))
@@ -181,7 +181,7 @@ impl TrimReport {
                 identifiable,
                 measured: identifiable.then_some(fit.measured[i] + 0.0),
                 half_width: identifiable.then_some(fit.half_width(i)),
-                off: taken.off[i],
+                off: taken.differs[i],
                 taken: taken.values[i] + 0.0,
                 taken_half_width: taken.half_widths[i],
                 residual: mended.filter(|_| balance).and_then(|m| m.residuals.get(i / 2)).map(|left| part(left) + 0.0),
@@ -189,7 +189,7 @@ impl TrimReport {
             }
         };
         let name = |i: &usize| unknowns.at(*i).name(machine);
-        let worst = unknowns.at(next.worst);
+        let worst = unknowns.at(next.least_known);
         let tried = |candidate: &Excitation| ExcitationReport {
             motion: candidate.words(machine),
             candidate: candidate.clone(),
@@ -198,8 +198,8 @@ impl TrimReport {
             machine: machine.name().to_owned(),
             motions: rows.motions.len(),
             rows: rows.count(),
-            made_of: if rows.made == RegressorSource::Samples { "samples" } else { "windows" },
-            window: if let RegressorSource::Windows { half, .. } = rows.made { Some(half) } else { None },
+            made_of: if rows.source == RegressorSource::Samples { "samples" } else { "windows" },
+            window: if let RegressorSource::Windows { half, .. } = rows.source { Some(half) } else { None },
             size: fit.size,
             noise: fit.noise,
             effective_rows: fit.effective,

@@ -30,7 +30,7 @@ pub struct Regressor {
     /// The unknowns.
     pub unknowns: Unknowns,
     /// Origin of the rows.
-    pub made: RegressorSource,
+    pub source: RegressorSource,
     /// Whether each drive moves.
     pub moves: Vec<bool>,
     /// Largest acceleration of each drive, rad/s².
@@ -143,7 +143,7 @@ impl Regressor {
 
     /// Returns the half width of the windows, s; 0 for samples.
     pub(super) fn half(&self) -> f64 {
-        if let RegressorSource::Windows { half, .. } = self.made { half } else { 0.0 }
+        if let RegressorSource::Windows { half, .. } = self.source { half } else { 0.0 }
     }
 
     fn of_windows(
@@ -332,7 +332,7 @@ impl<'a> Smooth<'a> {
                 made.unknowns.momentum(&e, &rate(j), [px, py, h]);
                 made.rows.iter_mut().zip(&one).for_each(|(sum, one)| add(sum, *d, one));
                 if made.gravity != Vector::default() {
-                    made.unknowns.still(&e, made.gravity, &mut one[2]);
+                    made.unknowns.weight_moment(&e, made.gravity, &mut one[2]);
                     add(&mut made.rows[2], *a, &one[2]);
                 }
                 force += self.motion.force[j] * *a;
@@ -414,7 +414,7 @@ impl Making {
         self.motions.push(self.y[0].len() - before);
     }
 
-    fn rows(mut self, made: RegressorSource, moves: Vec<bool>, time: f64) -> Regressor {
+    fn rows(mut self, source: RegressorSource, moves: Vec<bool>, time: f64) -> Regressor {
         let (count, p) = (self.y[0].len(), self.unknowns.count());
         self.motions.retain(|rows| *rows > 0);
         let spaces = count.saturating_sub(self.motions.len()).max(1);
@@ -431,6 +431,6 @@ impl Making {
         let place = self.unknowns.of_balance();
         let fastest = (0..moves.len()).map(|k| moment.x.column(place + k).amax()).collect();
         let Self { unknowns, motions, times, .. } = self;
-        Regressor { unknowns, made, moves, fastest, spacing, motions, times, channels }
+        Regressor { unknowns, source, moves, fastest, spacing, motions, times, channels }
     }
 }

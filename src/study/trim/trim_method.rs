@@ -23,11 +23,11 @@ impl TrimMethod {
         free_weights(&mut keep, machine, is_movable);
         for parameter in Parameter::all(machine) {
             if let Some(hold) = brief.hold.get(&parameter.key(machine)) {
-                keep.hold(machine, parameter, *hold);
+                keep.set_bounds(machine, parameter, *hold);
             }
         }
-        match keep.parameters.iter().all(|one| one.hold == ParameterBounds::Fixed) {
-            true => Self::Add(brief.weighing(machine)),
+        match keep.parameters.iter().all(|one| one.bounds == ParameterBounds::Fixed) {
+            true => Self::Add(brief.lightest_problem(machine)),
             false => Self::Change(keep),
         }
     }
@@ -37,6 +37,6 @@ impl TrimMethod {
 pub fn free_weights(keep: &mut RebalanceRequest, machine: &Machine, is_movable: impl Fn(&Counterweight) -> bool) {
     let movable = machine.spec().counterweights.iter().enumerate().filter(|(_, weight)| is_movable(weight));
     for (i, quantity) in movable.flat_map(|(i, _)| [(i, BodyQuantity::Mass), (i, BodyQuantity::Along)]) {
-        keep.hold(machine, Parameter::new(Body::Counterweight(i), quantity), ParameterBounds::Free);
+        keep.set_bounds(machine, Parameter::new(Body::Counterweight(i), quantity), ParameterBounds::Free);
     }
 }

@@ -28,7 +28,7 @@ pub struct TrimRequest {
     /// Whether to accept the columns as given, even if another sign, order or unit explains them far better.
     pub as_given: bool,
     /// Numbers that may change.
-    pub way: TrimMethod,
+    pub method: TrimMethod,
     /// Maximum acceleration of each drive in a next motion, rad/s²; by default the largest measured.
     pub accelerations: Option<Vec<f64>>,
 }
@@ -50,9 +50,9 @@ pub struct TrimResult {
     /// Report for the user.
     pub report: TrimReport,
     /// The machine as identified.
-    pub taken: AdoptedParameters,
+    pub adopted: AdoptedParameters,
     /// Correction, without changes if none is significant; or the reason that there is none.
-    pub mended: Result<MachineCorrection, NoCorrection>,
+    pub correction: Result<MachineCorrection, NoCorrection>,
 }
 
 /// Reason that a measurement has no result.
@@ -126,7 +126,7 @@ impl TrimQuery {
         let (stage, share) = match std::mem::replace(&mut self.stage, Stage::Begun) {
             Stage::Begun => {
                 let rows = Regressor::of(machine, recording, *angles_only).map_err(NoTrim::Unusable)?;
-                self.angle_noise = match rows.made {
+                self.angle_noise = match rows.source {
                     RegressorSource::Windows { noise, .. } if noise > MAX_ANGLE_NOISE => Some(noise),
                     _ => None,
                 };
@@ -171,13 +171,14 @@ impl TrimResult {
     /// Returns the result of a fit, with the correction and the proposal for the next motion.
     fn of(request: &TrimRequest, rows: &Regressor, fit: &Fit, next: &NextMeasurement) -> Self {
         let machine = &*request.machine.0;
-        let taken = adopt_parameters(fit);
-        let mended = correct_machine(machine, &taken, &request.way);
-        let worth = mended.as_ref().ok().map(|mended| correction_benefit(machine, rows, fit, &taken, mended));
+        let adopted = adopt_parameters(fit);
+        let mended = correct_machine(machine, &adopted, &request.method);
+        let worth = mended.as_ref().ok().map(|mended| correction_benefit(machine, rows, fit, &adopted, mended));
         let helps = worth.is_some_and(|worth| worth.helps());
         // A change whose effect is not significant is not proposed.
-        let mended = mended.map(|mended| if helps { mended } else { MachineCorrection::not_at_all(machine, &taken) });
-        let report = TrimReport::of(machine, rows, fit, &taken, mended.as_ref().ok(), worth, next);
-        Self { report, taken, mended }
+        let correction =
+            mended.map(|mended| if helps { mended } else { MachineCorrection::unchanged(machine, &adopted) });
+        let report = TrimReport::of(machine, rows, fit, &adopted, correction.as_ref().ok(), worth, next);
+        Self { report, adopted, correction }
     }
 }

@@ -106,7 +106,7 @@ impl Unknowns {
     /// Computes the dynamic force (x, y) and the moment, weight included, per unit of each unknown at a state.
     pub fn reaction(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, gravity: Vector, out: [&mut [f64]; 3]) {
         let [fx, fy, n] = out;
-        self.still(e, gravity, n);
+        self.weight_moment(e, gravity, n);
         for (i, condition) in self.conditions.iter().enumerate() {
             match *condition {
                 Condition::Force(k) => {
@@ -144,7 +144,7 @@ impl Unknowns {
     }
 
     /// Computes the moment of the weight per unit of each unknown.
-    pub fn still(&self, e: &UnitVectors, gravity: Vector, n: &mut [f64]) {
+    pub fn weight_moment(&self, e: &UnitVectors, gravity: Vector, n: &mut [f64]) {
         n.fill(0.0);
         for k in 0..self.drives {
             n[2 * k] = cross(e[k], gravity);

@@ -103,12 +103,12 @@ impl<'a> CoupledBodies<'a> {
             let said = |what: &str| format!("\"{}\" {what}", quote_clipped(&motor.name));
             if number_of(*to) != Some(k) || *to == self.base {
                 let what = said("turns what another motor turns, or nothing");
-                return Err(ImportError::whole(what, "one motor for each set of parallel bodies"));
+                return Err(ImportError::of_file(what, "one motor for each set of parallel bodies"));
             }
             let from = match *from {
                 from if from == self.base => None,
                 from => Some(number_of(from).ok_or_else(|| {
-                    ImportError::whole(said("sits on what no motor turns"), "a motor for every drive")
+                    ImportError::of_file(said("sits on what no motor turns"), "a motor for every drive")
                 })?),
             };
             Ok(ImportedMotor { from, ..motor.clone() })

@@ -47,8 +47,8 @@ impl RebalancedMachine {
 /// # Errors
 /// If the list is not valid, or if no such machine exists. The error then names the limits that contradict each other,
 /// and relaxed values that are sufficient.
-pub fn rebalance(machine: &Machine, asked: &RebalanceRequest) -> Result<RebalancedMachine, RebalanceError> {
-    rebalance_with(machine, asked, &[])
+pub fn rebalance(machine: &Machine, request: &RebalanceRequest) -> Result<RebalancedMachine, RebalanceError> {
+    rebalance_with(machine, request, &[])
 }
 
 /// As [`rebalance`], but each condition has a known additional residual in `beyond`, kg m or kg m², in the order of
@@ -58,12 +58,12 @@ pub fn rebalance(machine: &Machine, asked: &RebalanceRequest) -> Result<Rebalanc
 /// As [`rebalance`].
 pub fn rebalance_with(
     machine: &Machine,
-    asked: &RebalanceRequest,
+    request: &RebalanceRequest,
     beyond: &[Vector],
 ) -> Result<RebalancedMachine, RebalanceError> {
-    asked.check(machine)?;
-    let problem = Problem::of(machine, asked, beyond)?;
-    let n = asked.parameters.len();
+    request.check(machine)?;
+    let problem = Problem::of(machine, request, beyond)?;
+    let n = request.parameters.len();
     let mut equations = problem.balance.clone();
     equations.extend((0..n).filter_map(|i| problem.fixed(i)));
     let plane = SolutionSpace::of(&equations, n);
@@ -87,12 +87,12 @@ pub fn rebalance_with(
 /// If the list is not valid.
 pub fn unreachable_by_changes(
     machine: &Machine,
-    asked: &RebalanceRequest,
+    request: &RebalanceRequest,
     beyond: &[Vector],
 ) -> Result<Vec<Vector>, RebalanceError> {
-    asked.check(machine)?;
-    let problem = Problem::of(machine, asked, beyond)?;
-    let n = asked.parameters.len();
+    request.check(machine)?;
+    let problem = Problem::of(machine, request, beyond)?;
+    let n = request.parameters.len();
     let fixed = (0..n).filter_map(|i| problem.fixed(i));
     let equations: Vec<LinearEquation> = problem.balance.iter().cloned().chain(fixed).collect();
     let missed = SolutionSpace::of(&equations, n).residuals;
@@ -103,7 +103,7 @@ pub fn unreachable_by_changes(
 /// The conditions as equations in y, and the limits of y.
 struct Problem<'a> {
     machine: &'a Machine,
-    asked: &'a RebalanceRequest,
+    request: &'a RebalanceRequest,
     /// The machine with every parameter at its reference value.
     from: MachineSpec,
     conditions: Vec<Condition>,
@@ -114,19 +114,19 @@ struct Problem<'a> {
 }
 
 impl<'a> Problem<'a> {
-    fn of(machine: &'a Machine, asked: &'a RebalanceRequest, beyond: &[Vector]) -> Result<Self, RebalanceError> {
+    fn of(machine: &'a Machine, request: &'a RebalanceRequest, beyond: &[Vector]) -> Result<Self, RebalanceError> {
         let mut from = machine.spec().clone();
-        for one in &asked.parameters {
+        for one in &request.parameters {
             one.parameter.set(&mut from, one.from);
         }
         let (start, scale) = (Inertia::of(&Machine::new(from.clone()).map_err(of_machine)?), Inertia::of(machine));
         let conditions: Vec<Condition> = Condition::all(machine.drives()).collect();
         let more = |i: usize| beyond.get(i).copied().unwrap_or_default();
         let beyond = (0..conditions.len()).map(more).collect();
-        let mut problem = Self { machine, asked, from, conditions, beyond, balance: Vec::new() };
+        let mut problem = Self { machine, request, from, conditions, beyond, balance: Vec::new() };
         for across in [false, true] {
             for (&condition, beyond) in problem.conditions.iter().zip(&problem.beyond) {
-                let a = asked.parameters.iter().map(|one| problem.by(condition, one.parameter, across) / one.penalty);
+                let a = request.parameters.iter().map(|one| problem.by(condition, one.parameter, across) / one.penalty);
                 let residual = condition.residual(&start) + beyond;
                 // Ten times stricter than the check of the finished machine.
                 let tolerance = 0.1 * condition.tolerance(&scale).max(condition.tolerance(&start));
@@ -177,51 +177,52 @@ impl<'a> Problem<'a> {
     }
 
     fn listed(&self, parameter: Parameter) -> Option<usize> {
-        self.asked.parameters.iter().position(|one| one.parameter == parameter)
+        self.request.parameters.iter().position(|one| one.parameter == parameter)
     }
 
     /// Returns the minimisation problem for bodies whose mass and position may both change.
     fn search<'b>(&self, equations: &'b [LinearEquation], bounds: &'b [LinearRow]) -> RebalanceSearch<'b> {
-        let all = || self.asked.parameters.iter().enumerate();
+        let all = || self.request.parameters.iter().enumerate();
         let masses = all().filter(|(_, one)| one.parameter.quantity == BodyQuantity::Mass).map(|(at, one)| {
             let places = all().filter(|(_, other)| {
                 other.parameter.body == one.parameter.body
                     && other.parameter.quantity != BodyQuantity::Mass
-                    && other.hold != ParameterBounds::Fixed
+                    && other.bounds != ParameterBounds::Fixed
             });
             let ends = one.ends(self.machine).unwrap_or([one.from; 2]);
             MassVariable { at, from: one.from, penalty: one.penalty, ends, places: places.map(|(i, _)| i).collect() }
         });
-        let counts = all().map(|(_, one)| one.hold != ParameterBounds::Fixed).collect();
+        let counts = all().map(|(_, one)| one.bounds != ParameterBounds::Fixed).collect();
         RebalanceSearch { equations, counts, masses: masses.collect(), bounds }
     }
 
     /// Returns whether the problem is a convex quadratic program: no body may change both its mass and a position.
     fn is_convex(&self) -> bool {
-        let all =
-            || self.asked.parameters.iter().filter(|one| one.hold != ParameterBounds::Fixed).map(|one| one.parameter);
+        let all = || {
+            self.request.parameters.iter().filter(|one| one.bounds != ParameterBounds::Fixed).map(|one| one.parameter)
+        };
         let mut masses = all().filter(|mass| mass.quantity == BodyQuantity::Mass);
         !masses.any(|mass| all().any(|other| other.body == mass.body && other != mass))
     }
 
     /// Returns the row a · y = right that gives parameter i the value `value`, kg or m.
     fn row(&self, i: usize, value: f64) -> LinearRow {
-        let ListedParameter { parameter, penalty, from, .. } = self.asked.parameters[i];
+        let ListedParameter { parameter, penalty, from, .. } = self.request.parameters[i];
         let mut terms = vec![(i, 1.0)];
         let of_body = self.listed(Parameter::new(parameter.body, BodyQuantity::Mass));
         if let (Some(k), true) = (of_body, parameter.quantity != BodyQuantity::Mass) {
             let by = penalty * (value - from) / self.mass_from(parameter.body);
-            terms.push((k, -by / self.asked.parameters[k].penalty));
+            terms.push((k, -by / self.request.parameters[k].penalty));
         }
         LinearRow::new(terms, penalty * (value - from))
     }
 
     /// Returns the equation of parameter i if it is fixed.
     fn fixed(&self, i: usize) -> Option<LinearEquation> {
-        let one = &self.asked.parameters[i];
-        let value = one.parameter.value(self.machine.spec()).filter(|_| one.hold == ParameterBounds::Fixed)?;
+        let one = &self.request.parameters[i];
+        let value = one.parameter.value(self.machine.spec()).filter(|_| one.bounds == ParameterBounds::Fixed)?;
         let row = self.row(i, value);
-        let mut a = vec![0.0; self.asked.parameters.len()];
+        let mut a = vec![0.0; self.request.parameters.len()];
         row.terms.iter().for_each(|&(j, by)| a[j] += by);
         // Corresponds to at least 1e-12 m or kg.
         let tolerance = one.penalty * BALANCE_TOLERANCE * (value.abs() + one.from.abs()).max(1e-3);
@@ -231,16 +232,16 @@ impl<'a> Problem<'a> {
     /// Returns the limits with their rows a · y ≤ right; limits of fixed parameters are included only if `fixed`.
     fn limits(&self, fixed: bool) -> Vec<(ParameterLimit, LinearRow)> {
         let mut all = Vec::new();
-        for (i, one) in self.asked.parameters.iter().enumerate() {
-            let ends = one.ends(self.machine).filter(|_| fixed || one.hold != ParameterBounds::Fixed);
+        for (i, one) in self.request.parameters.iter().enumerate() {
+            let ends = one.ends(self.machine).filter(|_| fixed || one.bounds != ParameterBounds::Fixed);
             for (side, value) in [LimitSide::Least, LimitSide::Most].into_iter().zip(ends.into_iter().flatten()) {
-                let (key, fixed) = (one.parameter.key(self.machine), one.hold == ParameterBounds::Fixed);
-                let usual = one.hold == ParameterBounds::Free;
+                let (key, fixed) = (one.parameter.key(self.machine), one.bounds == ParameterBounds::Fixed);
+                let is_default = one.bounds == ParameterBounds::Free;
                 let carrier = match one.parameter.body {
                     Body::Counterweight(i) => Some(self.from.counterweights[i].link.clone()),
                     _ => None,
                 };
-                let limit = ParameterLimit { parameter: one.parameter, key, carrier, side, fixed, usual, value };
+                let limit = ParameterLimit { parameter: one.parameter, key, carrier, side, fixed, is_default, value };
                 all.push((limit, self.limit(i, side, value)));
             }
         }
@@ -253,7 +254,7 @@ impl<'a> Problem<'a> {
     }
 
     fn floors(&self) -> impl Iterator<Item = LinearRow> {
-        let masses = self.asked.parameters.iter().enumerate();
+        let masses = self.request.parameters.iter().enumerate();
         masses.filter(|(_, one)| one.parameter.quantity == BodyQuantity::Mass).map(|(i, one)| {
             let present = one.parameter.value(self.machine.spec()).unwrap_or(one.from);
             self.limit(i, LimitSide::Least, MIN_MASS * one.from.min(present))
@@ -271,8 +272,8 @@ impl<'a> Problem<'a> {
 
     /// Returns the value of parameter i at y, kg or m.
     fn value(&self, i: usize, y: &DVector<f64>) -> f64 {
-        let one = &self.asked.parameters[i];
-        let change = |i: usize| y[i] / self.asked.parameters[i].penalty;
+        let one = &self.request.parameters[i];
+        let change = |i: usize| y[i] / self.request.parameters[i].penalty;
         let ratio = match self.listed(Parameter::new(one.parameter.body, BodyQuantity::Mass)) {
             Some(k) if one.parameter.quantity != BodyQuantity::Mass => {
                 let mass = self.mass_from(one.parameter.body);
@@ -285,12 +286,12 @@ impl<'a> Problem<'a> {
 
     fn kept(&self, y: &DVector<f64>) -> Result<RebalancedMachine, RebalanceError> {
         let (mut spec, mut values, mut cost) = (self.machine.spec().clone(), Vec::new(), 0.0);
-        for (i, one) in self.asked.parameters.iter().enumerate() {
-            let value = match (one.hold, one.ends(self.machine)) {
+        for (i, one) in self.request.parameters.iter().enumerate() {
+            let value = match (one.bounds, one.ends(self.machine)) {
                 (ParameterBounds::Fixed, _) | (_, None) => one.parameter.value(&spec).unwrap_or_default(),
                 (_, Some([low, high])) => self.value(i, y).clamp(low, high),
             };
-            if one.hold != ParameterBounds::Fixed {
+            if one.bounds != ParameterBounds::Fixed {
                 one.parameter.set(&mut spec, value);
                 cost += (one.penalty * (value - one.from)).powi(2);
             }
@@ -311,7 +312,7 @@ impl<'a> Problem<'a> {
 
     /// Returns the reason why there is no solution.
     fn conflict(&self) -> RebalanceError {
-        let plane = SolutionSpace::of(&self.balance, self.asked.parameters.len());
+        let plane = SolutionSpace::of(&self.balance, self.request.parameters.len());
         if !plane.exists {
             return self.inconsistent(&plane);
         }
@@ -353,7 +354,7 @@ impl<'a> Problem<'a> {
         limits: &[(ParameterLimit, LinearRow)],
         relax_defaults: bool,
     ) -> Vec<LimitRelaxation> {
-        let widest = self.asked.parameters.iter().enumerate().filter(|_| !relax_defaults).flat_map(|(i, one)| {
+        let widest = self.request.parameters.iter().enumerate().filter(|_| !relax_defaults).flat_map(|(i, one)| {
             let ends =
                 [LimitSide::Least, LimitSide::Most].into_iter().zip(one.widest(self.machine).into_iter().flatten());
             ends.map(move |(side, value)| self.limit(i, side, value))
@@ -367,7 +368,7 @@ impl<'a> Problem<'a> {
             if i >= floors {
                 let slack = k + i - floors;
                 program.at_most.push(LinearRow::new([(slack, -1.0)], 0.0));
-                if relax_defaults || !limits[i - floors].0.usual {
+                if relax_defaults || !limits[i - floors].0.is_default {
                     terms.push((slack, -1.0));
                 }
             }

@@ -30,7 +30,7 @@ pub struct ParameterLimit {
     /// Whether the parameter is fixed.
     pub fixed: bool,
     /// Whether the limit is a default.
-    pub usual: bool,
+    pub is_default: bool,
     /// Value of the limit, m or kg.
     pub value: f64,
 }
@@ -50,7 +50,7 @@ impl fmt::Display for ParameterLimit {
             (false, LimitSide::Least) => write!(f, "{key} at least {value}"),
             (false, LimitSide::Most) => write!(f, "{key} at most {value}"),
         }?;
-        if self.usual { write!(f, " unless bounded otherwise") } else { Ok(()) }
+        if self.is_default { write!(f, " unless bounded otherwise") } else { Ok(()) }
     }
 }
 

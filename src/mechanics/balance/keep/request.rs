@@ -36,7 +36,7 @@ pub struct ListedParameter {
     /// The parameter.
     pub parameter: Parameter,
     /// Its bounds.
-    pub hold: ParameterBounds,
+    pub bounds: ParameterBounds,
     /// Penalty p on its change, 1/m or 1/kg.
     pub penalty: f64,
     /// Reference value from which its change is measured, m or kg.
@@ -47,7 +47,7 @@ impl ListedParameter {
     /// Returns its lower and upper bound, kg or m; both are the present value if it is fixed.
     pub(super) fn ends(&self, machine: &Machine) -> Option<[f64; 2]> {
         let value = self.parameter.value(machine.spec())?;
-        Some(match (self.hold, self.parameter.quantity) {
+        Some(match (self.bounds, self.parameter.quantity) {
             (ParameterBounds::Fixed, _) => [value; 2],
             (ParameterBounds::Within(ends), _) => ends,
             // The default bounds include the present value.
@@ -63,7 +63,8 @@ impl ListedParameter {
 
     /// Returns the bounds to which its limits may be relaxed, kg or m: the union of its bounds and the default bounds.
     pub(super) fn widest(&self, machine: &Machine) -> Option<[f64; 2]> {
-        let ([low, high], usual) = (self.ends(machine)?, Self { hold: ParameterBounds::Free, ..*self }.ends(machine)?);
+        let ([low, high], usual) =
+            (self.ends(machine)?, Self { bounds: ParameterBounds::Free, ..*self }.ends(machine)?);
         Some([low.min(usual[0]), high.max(usual[1])])
     }
 }
@@ -81,7 +82,7 @@ impl RebalanceRequest {
     pub fn coms(machine: &Machine, penalty: &[f64]) -> Self {
         let adjusted = |(j, link): (usize, &crate::machine::Link)| ListedParameter {
             parameter: Parameter::com(j),
-            hold: ParameterBounds::Free,
+            bounds: ParameterBounds::Free,
             penalty: penalty.get(j).copied().unwrap_or(1.0),
             from: link.com,
         };
@@ -105,12 +106,12 @@ impl RebalanceRequest {
 
     /// Sets the bounds of a parameter. A parameter that is not listed is added with its present value as reference and
     /// penalty 1.
-    pub fn hold(&mut self, machine: &Machine, parameter: Parameter, hold: ParameterBounds) {
+    pub fn set_bounds(&mut self, machine: &Machine, parameter: Parameter, hold: ParameterBounds) {
         match self.parameters.iter_mut().find(|one| one.parameter == parameter) {
-            Some(one) => one.hold = hold,
+            Some(one) => one.bounds = hold,
             None => {
                 let from = parameter.value(machine.spec()).unwrap_or_default();
-                self.parameters.push(ListedParameter { parameter, hold, penalty: 1.0, from });
+                self.parameters.push(ListedParameter { parameter, bounds: hold, penalty: 1.0, from });
             }
         }
     }
@@ -134,7 +135,7 @@ impl RebalanceRequest {
             if !range.contains(one.from) {
                 return bad("a change measured from", one.from, range.to_string());
             }
-            let ParameterBounds::Within([low, high]) = one.hold else { continue };
+            let ParameterBounds::Within([low, high]) = one.bounds else { continue };
             let zero_mass = low == 0.0 && one.parameter.quantity == BodyQuantity::Mass;
             if !(range.contains(low) || zero_mass) {
                 return bad("bounds from", low, range.to_string());

@@ -365,7 +365,7 @@ impl JointSection {
         let points: Vec<_> = self.course.iter().map(|q| self.point(q, b).map(|x| x as f32)).collect();
         let [first, .., last] = points[..] else { return };
         let path = Polyline::new("path", [points.clone()], 2.0, palette.ink).dashed(2.0, 3.5).on_top();
-        scene.lines.push(if self.range.is_fixed() { path.still() } else { path });
+        scene.lines.push(if self.range.is_fixed() { path.constant() } else { path });
         items::draw_ends(scene, palette, [first, last]);
     }
 }

@@ -62,7 +62,7 @@ impl BaseStage {
     }
 
     /// Returns the name of the constant force on the base.
-    pub fn rest(&self, options: &ViewOptions) -> &'static str {
+    pub fn static_force_name(&self, options: &ViewOptions) -> &'static str {
         match options.external_force {
             Some([x, y]) if x.hypot(y) > 0.0 && self.weightless => "the push",
             Some([x, y]) if x.hypot(y) > 0.0 => "its weight with the push",
@@ -107,8 +107,8 @@ impl BaseStage {
                     }));
                 }
                 scene.lines.push(Polyline::new("springs", springs, 1.6, colour));
-                scene.lines.push(Polyline::new("springs/feet", walls, 2.2, colour).still());
-                scene.lines.push(Polyline::new("springs/feet/ground", hatches, 1.0, faded(colour, 0.8)).still());
+                scene.lines.push(Polyline::new("springs/feet", walls, 2.2, colour).constant());
+                scene.lines.push(Polyline::new("springs/feet/ground", hatches, 1.0, faded(colour, 0.8)).constant());
             }
         }
         if self.base.moves() {

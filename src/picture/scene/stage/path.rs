@@ -14,7 +14,7 @@ pub struct PlannedPath {
     /// Height of the handles, m.
     z: f64,
     /// Start of the path, m.
-    pub begins: Option<Vector>,
+    pub start_point: Option<Vector>,
     path: Strips,
     /// Pose at the start.
     pub start: UnitVectors,
@@ -36,7 +36,7 @@ impl PlannedPath {
         };
         Some(Self {
             z,
-            begins: points.first().copied(),
+            start_point: points.first().copied(),
             path: [points.into_iter().map(|p| point(p, z)).collect()].into(),
             start: motion.path.at(0.0).q.units(),
             waypoints: waypoints(run),
@@ -52,7 +52,7 @@ impl PlannedPath {
     /// Draws the path and its points.
     pub fn draw(&self, scene: &mut Scene, palette: &Palette, options: &ViewOptions) {
         let path = Polyline::new("plan/path", self.path.clone(), 1.6, faded(palette.ink, 0.75));
-        scene.lines.push(path.dashed(2.0, 4.0).on_top().still());
+        scene.lines.push(path.dashed(2.0, 4.0).on_top().constant());
         for (i, name, at) in &self.waypoints {
             let hot = options.highlighted == Some(Handle::Waypoint(*i));
             let at = match (hot, options.drag_position) {
@@ -84,7 +84,13 @@ impl PlannedPath {
 }
 
 /// Draws the curve that the user is drawing, and a refused curve, at height `z`, m.
-pub fn by_hand(scene: &mut Scene, palette: &Palette, options: &ViewOptions, blocked: Option<&RefusedCurve>, z: f64) {
+pub fn draw_user_curves(
+    scene: &mut Scene,
+    palette: &Palette,
+    options: &ViewOptions,
+    blocked: Option<&RefusedCurve>,
+    z: f64,
+) {
     let drawn = |points: &[Vector]| [points.iter().map(|p| point(*p, z)).collect()];
     if options.stroke.len() > 1 {
         let stroke: Vec<Vector> = options.stroke.iter().map(|[x, y]| Vector::new(*x, *y)).collect();

@@ -38,7 +38,7 @@ impl Pins {
             return;
         }
         let (z, reach, e, frame) = (linkage.top(), linkage.reach(), shown.q.units(), shown.frame);
-        let full = round_up(frame.inside.worst.max(0.05 * frame.peaks.inertial_pull).max(1e-3));
+        let full = round_up(frame.inside.largest_force.max(0.05 * frame.peaks.inertial_pull).max(1e-3));
         let per_newton = 0.25 * reach / full;
         for (i, pin) in pins.iter().enumerate() {
             let Some(force) = frame.inside.pin(i) else { continue };

@@ -13,14 +13,14 @@ use crate::scene::{Anchor, Label, Polyline, Scene, Strips, point, posed};
 use stillbase_mechanics::planar::{Vector, unit};
 use stillbase_simulation::frame::Frame;
 
-/// Draws the reaction on the base and the centre of mass; `rest` is the name of the constant force.
+/// Draws the reaction on the base and the centre of mass; `static_force_name` is the name of the constant force.
 pub fn draw(
     scene: &mut Scene,
     linkage: &LinkageModel,
     palette: &Palette,
     shown: &DrawnFrame<'_>,
     options: &ViewOptions,
-    rest: &str,
+    static_force_name: &str,
 ) {
     let (z, reach, frame) = (linkage.top(), linkage.reach(), shown.frame);
     let (b, felt) = (shown.base.at, ReactionGlyph::of(frame));
@@ -69,7 +69,7 @@ pub fn draw(
     let rows = [
         force,
         moment,
-        (felt.beside(rest).unwrap_or_default(), palette.dim, 11.5),
+        (felt.static_force_text(static_force_name).unwrap_or_default(), palette.dim, 11.5),
         (centre_of_mass(frame, reach), palette.dim, 11.5),
         (scale.join(" · "), palette.dim, 11.5),
     ];

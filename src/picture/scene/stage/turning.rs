@@ -51,7 +51,7 @@ pub fn hook(link: usize, bar: &Bar, shown: &DrawnFrame<'_>, pointer: &Pointer) -
     let (root, direction, z) = bar.pose(&q.units());
     let along = dot(at - root, direction).clamp(0.0, bar.length());
     let off = root + direction * along - at;
-    let grip = Some(Grip::Pull(GrabPoint { along, off: [off.re, off.im] }));
+    let grip = Some(Grip::Pull(GrabPoint { along, offset: [off.re, off.im] }));
     Some(Pick { handle: Handle::Link(link), at: [at.re, at.im, z], grip })
 }
 
@@ -64,7 +64,7 @@ pub fn pulled(
     pointer: &Pointer,
 ) -> Option<DragAction> {
     let at = place(bar, shown, pointer)?;
-    Some(DragAction::Pull { link, along: hook.along, at: [at.re + hook.off[0], at.im + hook.off[1]] })
+    Some(DragAction::Pull { link, along: hook.along, at: [at.re + hook.offset[0], at.im + hook.offset[1]] })
 }
 
 /// Returns the angles (a_1, a_2), rad, on the plane b for which the link follows the pointer. The search starts at the

@@ -95,6 +95,15 @@ impl Query for OutlineQuery {
     }
 }
 
+/// Parts of the stage that a drawing of the workspace needs.
+#[derive(Clone, Copy, Debug)]
+pub struct WorkspaceParts {
+    /// Index of the mesh that fills the workspace.
+    pub fill: Option<usize>,
+    /// Pose constant b of the workspace for comparison, rad.
+    pub compared_b: Option<f64>,
+}
+
 impl Workspace {
     /// Returns the workspace of a machine with planes, which is known in closed form; `None` for other machines.
     pub fn known(space: &Arc<PoseSpace>) -> Option<Self> {
@@ -239,13 +248,15 @@ impl Workspace {
     pub fn draw(
         &self,
         scene: &mut Scene,
-        (linkage, fill): (&LinkageModel, Option<usize>),
+        linkage: &LinkageModel,
         palette: &Palette,
         shown: &DrawnFrame<'_>,
-        (options, compared): (&ViewOptions, Option<f64>),
+        options: &ViewOptions,
+        parts: WorkspaceParts,
     ) {
+        let WorkspaceParts { fill, compared_b } = parts;
         let floor = linkage.floor();
-        if let Some(b) = compared.filter(|_| options.compares) {
+        if let Some(b) = compared_b.filter(|_| options.compares) {
             self.compared(scene, palette, b, shown.base, floor - 2.0 * FILL_DEPTH * linkage.reach());
         }
         self.fill_own(scene, linkage, fill, palette, shown, options);

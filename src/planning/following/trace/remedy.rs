@@ -70,7 +70,7 @@ fn nearest_b(map: &PlaneMap, curves: &[Curve], b: f64, rule: Rule, common: &BSet
             if follows(middle) { inner = middle } else { good = middle }
         }
     }
-    Some((inner, Decimal::that(inner, 4, follows)))
+    Some((inner, Decimal::shortest_passing(inner, 4, follows)))
 }
 
 /// Finds the longest part of curves that can be followed on a plane, as an interval of s over all of them.

@@ -50,7 +50,7 @@ impl Timing {
             jets.push((t, jet));
             t += h * GAUSS_TIMES.map(|(at, weight)| weight / curved(y, at).cbrt()).iter().sum::<f64>();
         }
-        jets.push((t, PathProgress::still(1.0)));
+        jets.push((t, PathProgress::at_rest(1.0)));
         Profile::through_jets(&jets)
     }
 }

@@ -100,14 +100,14 @@ impl DoubtSearch {
     fn explained(&self, machine: &Machine, fault: &Fault) -> Option<Likely> {
         let Self { rows, given, .. } = self;
         let own = fault.angles.as_ref().map(|angles| angles.undo(&self.recording));
-        let (mut transformed, mut as_given, mut violation) = (rows.clone(), None, given.leaves);
+        let (mut transformed, mut as_given, mut violation) = (rows.clone(), None, given.limit_violation);
         if let Some(own) = &own {
             violation = limit_violation(machine, own);
             let fresh = Regressor::at_least(rows.half(), machine, own, self.angles_only).ok()?;
             // Residuals must be compared for the same windows.
             if fresh.half() > rows.half() {
                 let wide = Regressor::at_least(fresh.half(), machine, &self.recording, self.angles_only);
-                as_given = wide.and_then(|rows| try_fit(machine, &rows, given.leaves)).ok();
+                as_given = wide.and_then(|rows| try_fit(machine, &rows, given.limit_violation)).ok();
             }
             transformed = fresh;
         }
@@ -153,7 +153,7 @@ impl DoubtSearch {
             noise: tried.fit.noise,
             shares: shares(&tried.fit),
             furthest: furthest.map(|place| tried.fit.measured[place]),
-            leaves: tried.leaves,
+            limit_violation: tried.limit_violation,
         });
         let mut causes: Vec<Cause> = causes.collect();
         causes.dedup_by(|a, b| a.what == b.what && a.want == b.want);
@@ -164,7 +164,7 @@ impl DoubtSearch {
             furthest: furthest.map(measured_value),
             noise: fit.noise,
             shares: shares(fit),
-            leaves: self.given.leaves,
+            limit_violation: self.given.limit_violation,
         })
     }
 }

@@ -27,12 +27,12 @@ const MIN_RELATIVE_RESIDUAL: f64 = 1e-6;
 pub(super) struct FitTrial {
     pub fit: Fit,
     share: f64,
-    pub leaves: f64,
+    pub limit_violation: f64,
 }
 
-pub(super) fn try_fit(machine: &Machine, rows: &Regressor, leaves: f64) -> Result<FitTrial, TrimError> {
+pub(super) fn try_fit(machine: &Machine, rows: &Regressor, limit_violation: f64) -> Result<FitTrial, TrimError> {
     let estimate = estimate(machine, rows)?;
-    Ok(FitTrial { fit: estimate.fit, share: estimate.share.clamp(0.1, 1.0), leaves })
+    Ok(FitTrial { fit: estimate.fit, share: estimate.share.clamp(0.1, 1.0), limit_violation })
 }
 
 /// Returns the residuals of force and of moment as fractions of the measured values.
@@ -55,7 +55,7 @@ pub(super) fn likelihood_ratio(tolerances: &Tolerances, given: &FitTrial, other:
     // A change of units changes which unknowns are well determined; take the larger number.
     let p = before.numbers.max(after.numbers);
     let scale = before.balance.max(after.balance) + p;
-    let limits = match [given.leaves, other.leaves] {
+    let limits = match [given.limit_violation, other.limit_violation] {
         [was, now] if was > LIMIT_LEFT_BEYOND && now < LIMIT_KEPT_WITHIN => LIMITS_LOG_ODDS,
         [was, now] if was < LIMIT_KEPT_WITHIN && now > LIMIT_LEFT_BEYOND => -LIMITS_LOG_ODDS,
         _ => 0.0,

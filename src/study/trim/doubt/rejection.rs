@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::odds::{LIMIT_KEPT_WITHIN, LIMIT_LEFT_BEYOND};
-use stillbase_settings::number::shown;
+use stillbase_settings::number::fixed_or_scientific;
 
 /// Reason for rejecting a measurement.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +19,7 @@ pub struct Doubt {
     /// These residuals as fractions of the measured values.
     pub shares: [f64; 2],
     /// Violation of the limits of relative angles as given, rad; 0 if there is none.
-    pub leaves: f64,
+    pub limit_violation: f64,
 }
 
 /// A possible fault.
@@ -38,7 +38,7 @@ pub struct Cause {
     /// Value, after correction, of the unknown with the largest deviation.
     pub furthest: Option<f64>,
     /// Violation of the limits of relative angles after correction, rad; 0 if there is none.
-    pub leaves: f64,
+    pub limit_violation: f64,
 }
 
 /// Value of an unknown by the measurement as given.
@@ -58,7 +58,7 @@ pub struct MeasuredValue {
 
 impl fmt::Display for Doubt {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let number = |x: f64| shown(x, 4);
+        let number = |x: f64| fixed_or_scientific(x, 4);
         match self.causes.as_slice() {
             [] => {
                 write!(f, "this measurement is of no machine: want the columns, their signs and their units checked")?
@@ -96,8 +96,8 @@ impl fmt::Display for Doubt {
                     write!(f, " without the fault {}.", number(then.noise[i]))?;
                 }
             }
-            if self.leaves > LIMIT_LEFT_BEYOND && then.leaves < LIMIT_KEPT_WITHIN {
-                write!(f, "\n  As given, angles leave their limits by {} rad;", number(self.leaves))?;
+            if self.limit_violation > LIMIT_LEFT_BEYOND && then.limit_violation < LIMIT_KEPT_WITHIN {
+                write!(f, "\n  As given, angles leave their limits by {} rad;", number(self.limit_violation))?;
                 write!(f, " without the fault they keep them.")?;
             }
         }

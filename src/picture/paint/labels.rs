@@ -55,16 +55,16 @@ fn rank(name: &str) -> u8 {
 const OPTIONAL_RANK: u8 = 5;
 
 /// Paints a scene with its labels over the whole surface, without input.
-pub fn still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
+pub fn paint_still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
     CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
         let rect = ui.max_rect();
         paint(ui, 0, rect, scene, camera);
-        words(ui, &SceneViewport { rect, camera: *camera }, scene, &[]);
+        draw_labels(ui, &SceneViewport { rect, camera: *camera }, scene, &[]);
     });
 }
 
 /// Paints the labels of the scene outside the rectangles `taken`.
-pub fn words(ui: &Ui, spot: &SceneViewport, scene: &Scene, taken: &[Rect]) {
+pub fn draw_labels(ui: &Ui, spot: &SceneViewport, scene: &Scene, taken: &[Rect]) {
     let painter = ui.painter().with_clip_rect(spot.rect);
     for (label, galley, place) in placed(&painter, spot, scene, taken) {
         write(&painter, scene, label, galley, place);
