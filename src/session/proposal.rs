@@ -9,7 +9,7 @@ use crate::gentle_motion;
 use crate::refusal::Refusal;
 use crate::run::Run;
 use crate::scenario::{MAX_STEPS, PathShape, STEP_RANGE, Scenario, Task, TaskKind};
-use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::machine::{Inertia, is_of_machine};
 use stillbase_mechanics::planar::{Vector, unit};
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::reactionless::Decimal;
@@ -60,6 +60,11 @@ impl Proposal {
     /// Returns the settings, each as `--set` takes it: `task.b=2.2158`.
     pub fn settings(&self) -> Vec<String> {
         typed_settings(&self.change).collect()
+    }
+
+    /// Returns whether the proposal changes the machine.
+    pub fn is_of_machine(&self) -> bool {
+        self.change.keys().any(|key| is_of_machine(key))
     }
 
     /// Returns the proposal as one edit.
