@@ -1,7 +1,7 @@
 //! A [`Query`] derives an answer from an input. [`Queries`] computes the answer when the input changes, and caches it
 //! until then. This is the only cache of the program.
 //!
-//! Other crates reach this crate as `stillbase::query`; `stillbase` alone follows semantic versioning.
+//! Others reach this crate as `stillbase::query`; `stillbase` alone follows semantic versioning.
 //!
 //! | what | how |
 //! |---|---|

@@ -69,8 +69,8 @@ impl Case {
 }
 
 /// Every path stays on its line, at its b and within limits; dynamic programming over random poses and SLSQP from its
-/// result and from all paths of the program find none of less rates or nearer to the middle, and none where the program
-/// finds none.
+/// result and from all paths of the program find none of less rates or nearer to the middle, none beside it of less
+/// torques, and none where the program finds none.
 fn scipy_finds_no_path_of_less_cost() {
     let mut noise = Noise::of(count("SEED", 61));
     let all = [4, 5, 4, 6, 4, 5, 7, 8];
@@ -90,8 +90,8 @@ fn scipy_finds_no_path_of_less_cost() {
                 wrong.push(format!("{i}: {what} {}", found[what]));
             }
         }
-        // Torques are printed only: the second path here, of five drives, comes to 74 (N m)² s, SciPy's to 0.4.
-        for (kind, most) in [("rates", 1e-2), ("middle", 1e-3)] {
+        // SciPy's stations are few: the torques between them are known to some thousandths only.
+        for (kind, most) in [("rates", 1e-2), ("torque", 1e-2), ("middle", 1e-3)] {
             let (own, least) = (&found["own"][kind], &found["least"][kind]);
             match (own.as_f64(), least.as_f64()) {
                 (Some(own), Some(least)) if own > least * (1.0 + most) => {

@@ -10,10 +10,6 @@ use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
 
 /// Residual below which a point is treated as reached, as a fraction of the reach.
 const REACHED_TOLERANCE: f64 = 1e-9;
-/// Number of starting poses in the search for the nearest one.
-const MAX_STARTS: usize = 24;
-/// Another pose is preferred if it is nearer by at least this fraction of the reach.
-const MIN_IMPROVEMENT: f64 = 1e-4;
 /// Number of samples along the curve of two drives, and of steps of the ternary search between two samples.
 const CURVE_SAMPLES: usize = 240;
 const TERNARY_STEPS: usize = 60;
@@ -101,7 +97,7 @@ fn pose_for(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive) -> (PerDrive,
         let poses = space.poses(p, b, from);
         match poses.first() {
             Some(q) => (a, off) = (space.angles(q), 0.0),
-            None => (a, off) = nearest_of_all(space, p, b, a, off),
+            None => (a, off) = space.nearest_of_all(p, b, a, off),
         }
     }
     if is_at(space, off) {
@@ -115,14 +111,6 @@ fn pose_for(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive) -> (PerDrive,
     let displayed_b = set.as_ref().zip(feasible_b).and_then(|(set, b)| printed(set, b));
     let nearest = space.end_effector(&space.lift(&a, b));
     (a, Reach::Outside { nearest, feasible_b, displayed_b, other_sheet: false })
-}
-
-/// Returns the pose nearest to p, m, found from samples of all joint ranges; the given pose unless another is clearly
-/// nearer.
-fn nearest_of_all(space: &PoseSpace, p: Vector, b: f64, a: PerDrive, off: f64) -> (PerDrive, f64) {
-    let others = (0..MAX_STARTS).map(|i| space.drag_to(p, b, &space.sample(i)));
-    let best = others.min_by(|x, y| x.1.total_cmp(&y.1));
-    best.filter(|(_, other)| *other < off - MIN_IMPROVEMENT * space.farthest()).unwrap_or((a, off))
 }
 
 /// Returns the point of the curve of two drives that is nearest to p, and its distance, m. A joint that turns freely is

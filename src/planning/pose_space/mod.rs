@@ -37,6 +37,7 @@ mod joint;
 mod loops;
 mod nearest;
 mod no_pose_space;
+mod out_of_reach;
 mod outline;
 mod pattern;
 mod planes;

@@ -38,6 +38,20 @@ impl Envelope {
         &self.values[self.start[i]..self.start[i + 1]]
     }
 
+    /// Returns the product with a vector.
+    pub fn times(&self, x: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; x.len()];
+        for (i, own) in x.iter().enumerate() {
+            let (from, row) = (self.first[i], self.row(i));
+            for (j, value) in (from..i).zip(row) {
+                product[i] += value * x[j];
+                product[j] += value * own;
+            }
+            product[i] += row[i - from] * own;
+        }
+        product
+    }
+
     /// Replaces the matrix by its Cholesky factor. Returns `false` if it is not positive definite.
     pub fn factor(&mut self) -> bool {
         for i in 0..self.first.len() {

@@ -11,8 +11,9 @@
 //! The search optimises the whole path at once. It samples the set of poses of (p, b) at stations along the path
 //! (`layers`). It finds the cheapest route through the samples (`route`), and refines it to a local optimum (`refine`).
 //! The objective is ∫ |q′|² ds, ∫ |T q̈|² dt by the time law, or ∫ ½ Σ x_i² ds (`goal`). Each objective also starts
-//! from the results of the others, and the path with the least objective is taken. The layers find an existing path
-//! unless it has a passage narrower than the spacing of the samples.
+//! from the results of the others, and the path with the least objective is taken. It is a local optimum, the least one
+//! found from these starts: a path far from all of them may need less. The layers find an existing path unless it has a
+//! passage narrower than the spacing of the samples.
 
 mod emit;
 mod envelope;

@@ -5,12 +5,15 @@
 //! Zᵀ (∇²f + diag(ν·c_k e^{iq_k})) Z, a banded matrix, because ∂²p/∂q_k² = −c_k e^{iq_k} and ν are the multipliers of
 //! p. An augmented Lagrangian keeps the limits: their multipliers grow until no limit is passed. Every step is
 //! projected back onto (p, b).
+//!
+//! Each step finds the limits that are active at its end. With those at its start, it would pass others, and the line
+//! search would end at a path that is not optimal.
 
 use super::envelope::Envelope;
 use super::goal::{PostureCost, times};
 use super::rows::{ConstraintJacobian, PoseConstraint, arms};
 use super::stations::Stations;
-use stillbase_mechanics::planar::{PerDrive, dot};
+use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive, dot};
 
 /// Maximum number of Newton steps between updates of the multipliers.
 const MAX_STEPS: usize = 25;
@@ -20,10 +23,25 @@ const MAX_ROUNDS: usize = 10;
 const MAX_STEP_RAD: f64 = 0.3;
 /// Maximum number of halvings of a step.
 const MAX_HALVINGS: usize = 8;
+/// Maximum number of sets of active limits that are tried in a step: with any Hessian, and with a convex one.
+const MAX_ACTIVE_SETS: [usize; 2] = [6, 12];
+/// Bisections of a line search in the model of a step.
+const MAX_BISECTIONS: usize = 40;
+/// Slope at the end of a line search, relative to that at its start, that is attributed to rounding.
+const SLOPE_TOLERANCE: f64 = 1e-9;
 /// Tolerance of the limits, rad.
 const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
-/// Penalty factor of the limits, as a multiple of the stiffness of the objective.
-const PENALTY_FACTOR: f64 = 30.0;
+/// A path that stays this far beyond a limit from one update of the multipliers to the next is given up, rad.
+const FAILED_BEYOND_RAD: f64 = 1e-2;
+/// The penalty factor grows if an update of the multipliers leaves more than this share of the distance beyond limits.
+const SLOW_SHARE: f64 = 0.25;
+/// Growth of the penalty factor.
+const PENALTY_GROWTH: f64 = 10.0;
+/// First penalty factor of the limits, as a multiple of the stiffness of the objective.
+const PENALTY_FACTOR: f64 = 0.3;
+/// Relative gains below which a shortened step ends the iteration, of rough and of final paths.
+const ROUGH_GAIN: f64 = 1e-3;
+const FINE_GAIN: f64 = 1e-7;
 /// Relative increase of the objective that is attributed to rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -75,22 +93,104 @@ impl Frame {
     }
 }
 
-/// An active limit.
-struct ActiveLimit {
-    /// Index of the pose.
-    pose: usize,
-    /// Penalty factor.
-    penalty: f64,
-    /// Gradient of the angle.
-    row: PerDrive,
+/// A limit at one pose, linear in the step along the null space.
+struct ModelLimit {
+    /// First entry of the pose in the step.
+    place: usize,
+    /// Multiplier plus penalty at the start of the step; the limit is active if it is positive.
+    force: f64,
+    /// Derivative of the distance beyond the limit.
+    along: [f64; MAX_DRIVES],
 }
 
-/// The objective and its constraints, linearised at the poses of a path.
-struct Linearisation<'a> {
-    frames: &'a [Frame],
-    /// Gradient of the objective with its limit terms, for each pose.
-    gradient: &'a [PerDrive],
-    active: &'a [ActiveLimit],
+/// Quadratic model of the objective, with the piecewise quadratic terms of the limits.
+struct StepModel<'a> {
+    hessian: &'a Envelope,
+    /// Negative gradient without limits.
+    side: &'a [f64],
+    limits: &'a [ModelLimit],
+    penalty: f64,
+    /// Free directions of each pose.
+    d: usize,
+}
+
+impl StepModel<'_> {
+    /// Returns the step with the least value of the model; `None` if none is found.
+    ///
+    /// Each solution for a set of active limits shows which limits are active there. The step is the solution that
+    /// agrees with its own set. If the Hessian `is_convex`, an exact line search towards each solution ensures that such
+    /// a set is found.
+    fn least(&self, is_convex: bool) -> Option<Vec<f64>> {
+        let mut x = vec![0.0; self.side.len()];
+        let mut active: Vec<bool> = self.limits.iter().map(|limit| limit.force > 0.0).collect();
+        for _ in 0..MAX_ACTIVE_SETS[usize::from(is_convex)] {
+            let mut there = self.solved(&active)?;
+            let share = if is_convex { self.share(&x, &there) } else { 1.0 };
+            if share < 1.0 {
+                there.iter_mut().zip(&x).for_each(|(there, x)| *there = x + share * (*there - x));
+            }
+            x = there;
+            let next: Vec<bool> = self.limits.iter().map(|limit| self.force(limit, &x) > 0.0).collect();
+            if share >= 1.0 && next == active {
+                return Some(x);
+            }
+            active = next;
+        }
+        is_convex.then_some(x)
+    }
+
+    /// Returns the force of a limit after a step.
+    fn force(&self, limit: &ModelLimit, x: &[f64]) -> f64 {
+        limit.force + self.penalty * self.moved(limit, x)
+    }
+
+    /// Returns how much farther beyond a limit a step leads.
+    fn moved(&self, limit: &ModelLimit, x: &[f64]) -> f64 {
+        x[limit.place..limit.place + self.d].iter().zip(&limit.along).map(|(x, along)| x * along).sum()
+    }
+
+    /// Returns the stationary point of the model with a fixed set of active limits; `None` if it is no minimum.
+    fn solved(&self, active: &[bool]) -> Option<Vec<f64>> {
+        let (mut matrix, mut x) = (self.hessian.clone(), self.side.to_vec());
+        for (limit, _) in self.limits.iter().zip(active).filter(|(_, active)| **active) {
+            for k in 0..self.d {
+                x[limit.place + k] -= limit.force * limit.along[k];
+                for l in 0..=k {
+                    *matrix.entry(limit.place + k, limit.place + l) += self.penalty * limit.along[k] * limit.along[l];
+                }
+            }
+        }
+        if !matrix.factor() {
+            return None;
+        }
+        matrix.solve(&mut x);
+        x.iter().all(|x| x.is_finite()).then_some(x)
+    }
+
+    /// Returns the fraction of the way between two steps at which a convex model is least, at most 1.
+    fn share(&self, from: &[f64], to: &[f64]) -> f64 {
+        let way: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();
+        let turned = self.hessian.times(&way);
+        let curvature: f64 = turned.iter().zip(&way).map(|(turned, way)| turned * way).sum();
+        let start = turned.iter().zip(from).map(|(turned, from)| turned * from).sum::<f64>()
+            - self.side.iter().zip(&way).map(|(side, way)| side * way).sum::<f64>();
+        let ends: Vec<[f64; 2]> =
+            self.limits.iter().map(|limit| [self.force(limit, from), self.moved(limit, &way)]).collect();
+        // The derivative along the way rises.
+        let slope = |share: f64| {
+            let limits = ends.iter().map(|[force, moved]| (force + share * self.penalty * moved).max(0.0) * moved);
+            start + share * curvature + limits.sum::<f64>()
+        };
+        if slope(1.0) <= SLOPE_TOLERANCE * slope(0.0).abs() {
+            return 1.0;
+        }
+        let [mut low, mut high] = [0.0, 1.0];
+        for _ in 0..MAX_BISECTIONS {
+            let half = 0.5 * (low + high);
+            if slope(half) < 0.0 { low = half } else { high = half }
+        }
+        0.5 * (low + high)
+    }
 }
 
 /// Multipliers and penalty factor of the limits.
@@ -114,6 +214,7 @@ impl RefinementProblem<'_> {
             penalty: PENALTY_FACTOR * goal.stiffness(),
         };
         let mut matrix = Envelope::zeros(self.profile(d, q.len()));
+        let mut before = f64::INFINITY;
         for round in 0..MAX_ROUNDS {
             let done = self.done.max(1e-4 * 0.1f64.powi(2 * round as i32));
             for _ in 0..MAX_STEPS {
@@ -124,11 +225,22 @@ impl RefinementProblem<'_> {
                 }
             }
             let worst = self.raise(&q, &mut forces);
-            if worst <= LIMIT_TOLERANCE_RAD.max(self.done) && done <= self.done {
+            // Where no step keeps the limits, growing multipliers do not help.
+            let fails = worst > FAILED_BEYOND_RAD && worst > 0.9 * before;
+            if fails || (worst <= LIMIT_TOLERANCE_RAD.max(self.done) && done <= self.done) {
                 break;
             }
+            if worst > SLOW_SHARE * before {
+                forces.penalty *= PENALTY_GROWTH;
+            }
+            before = worst;
         }
         Some(q)
+    }
+
+    /// Returns the relative gain below which a shortened step ends the iteration.
+    fn least_gain(&self) -> f64 {
+        if self.done > 1e-8 { ROUGH_GAIN } else { FINE_GAIN }
     }
 
     /// Returns the first column of each row of the matrix.
@@ -203,36 +315,22 @@ impl RefinementProblem<'_> {
     ) -> Option<(Vec<PerDrive>, f64)> {
         let d = self.held.freedoms();
         let frames: Vec<Frame> = q.iter().map(|q| self.held.rows(q).map(Frame::of)).collect::<Option<_>>()?;
-        let mut gradient = goal.gradient(q);
-        let now = goal.value(q, &gradient) + self.limit_terms(q, forces);
-        let mut active: Vec<ActiveLimit> = Vec::new();
+        let plain = goal.gradient(q);
+        let now = goal.value(q, &plain) + self.limit_terms(q, forces);
+        let mut gradient = plain.clone();
         self.each_limit(q, |i, past, at, (sign, row)| {
-            let force = forces.multipliers[i] + forces.penalty * past;
-            if force > 0.0 {
-                gradient[at] = gradient[at].plus(sign * force, row);
-                active.push(ActiveLimit { pose: at, penalty: forces.penalty, row: *row });
-            }
+            let force = (forces.multipliers[i] + forces.penalty * past).max(0.0);
+            gradient[at] = gradient[at].plus(sign * force, row);
         });
         let (place, rows) = self.places(d, q.len());
         let mut side = vec![0.0; rows];
-        for (i, (frame, gradient)) in frames.iter().zip(&gradient).enumerate() {
+        for (i, (frame, gradient)) in frames.iter().zip(&plain).enumerate() {
             (0..d).for_each(|k| side[place(i) + k] -= frame.free[k].dot(gradient));
         }
+        let limits = self.model_limits(q, &frames, forces);
         let solved = [true, false].into_iter().find_map(|bent| {
-            self.assemble(
-                goal,
-                q,
-                &Linearisation { frames: &frames, gradient: &gradient, active: &active },
-                bent,
-                matrix,
-            );
-            if !matrix.factor() {
-                return None;
-            }
-            let mut x = side.clone();
-            matrix.solve(&mut x);
-            let falls = x.iter().zip(&side).map(|(x, s)| x * s).sum::<f64>() >= 0.0;
-            (falls && x.iter().all(|x| x.is_finite())).then_some(x)
+            self.assemble(goal, q, &frames, &gradient, bent, matrix);
+            StepModel { hessian: matrix, side: &side, limits: &limits, penalty: forces.penalty, d }.least(!bent)
         })?;
         let way: Vec<PerDrive> = frames
             .iter()
@@ -255,7 +353,8 @@ impl RefinementProblem<'_> {
                 }
                 let there = goal.value(&next, &goal.gradient(&next)) + self.limit_terms(&next, forces);
                 if there <= now + ROUNDING * now.abs() {
-                    return Some((next, share * size));
+                    let is_flat = now - there <= self.least_gain() * now.abs();
+                    return Some((next, if is_flat && share < 1.0 { 0.0 } else { share * size }));
                 }
             }
             share *= 0.5;
@@ -263,9 +362,28 @@ impl RefinementProblem<'_> {
         Some((q.to_vec(), 0.0))
     }
 
+    /// Returns the terms of all limits along the null spaces.
+    fn model_limits(&self, q: &[PerDrive], frames: &[Frame], forces: &Forces) -> Vec<ModelLimit> {
+        let (place, _) = self.places(self.held.freedoms(), q.len());
+        let mut limits = Vec::with_capacity(2 * self.bounds.len() * q.len());
+        self.each_limit(q, |i, past, at, (sign, row)| {
+            let mut along = [0.0; MAX_DRIVES];
+            along.iter_mut().zip(&frames[at].free).for_each(|(along, z)| *along = sign * z.dot(row));
+            limits.push(ModelLimit { place: place(at), force: forces.multipliers[i] + forces.penalty * past, along });
+        });
+        limits
+    }
+
     /// Assembles the reduced Hessian. Without `bent`, negative curvature of the constraint p is set to zero.
-    fn assemble(&self, goal: &PostureCost, q: &[PerDrive], at: &Linearisation<'_>, bent: bool, matrix: &mut Envelope) {
-        let Linearisation { frames, gradient, active } = *at;
+    fn assemble(
+        &self,
+        goal: &PostureCost,
+        q: &[PerDrive],
+        frames: &[Frame],
+        gradient: &[PerDrive],
+        bent: bool,
+        matrix: &mut Envelope,
+    ) {
         let (d, n) = (self.held.freedoms(), self.held.space.drives());
         let (place, _) = self.places(d, q.len());
         matrix.clear();
@@ -297,14 +415,6 @@ impl RefinementProblem<'_> {
                 for l in 0..=k {
                     let own: f64 = (0..n).map(|m| bend[m] * frame.free[k][m] * frame.free[l][m]).sum();
                     *matrix.entry(place(i) + k, place(i) + l) += own;
-                }
-            }
-        }
-        for ActiveLimit { pose: i, penalty, row } in active {
-            for k in 0..d {
-                for l in 0..=k {
-                    *matrix.entry(place(*i) + k, place(*i) + l) +=
-                        penalty * frames[*i].free[k].dot(row) * frames[*i].free[l].dot(row);
                 }
             }
         }
