@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use stillbase::mechanics::machine::Inertia;
+use stillbase::session::design::relaxations;
 use stillbase::session::scenario::{Scenario, TaskKind};
 use stillbase::session::{Proposal, Run, improvements, proposals};
 use stillbase::settings::change::{join, single_change, value};
@@ -96,6 +97,22 @@ fn a_balanced_machine_on_a_line_proposes_to_run_it_reactionless() {
     let found = improvements(&set("case-1", &[]));
     assert_eq!(texts(&found), ["run it reactionless"]);
     assert!(improvements(&set("case-3", &[])).is_empty(), "nothing to improve");
+}
+
+/// Bounds within which no counterweights balance the machine: bounds that do are proposed, and suffice as typed.
+#[test]
+fn bounds_that_are_too_tight_propose_wider_ones() {
+    for settings in [&[("design.heaviest", "0.5")][..], &[("design.heaviest", "2.5"), ("design.clearance", "0.2")]] {
+        let scenario = set("case-3", settings);
+        let bare = family_machine("nine-link-bare");
+        let Err(why) = scenario.design.front(&bare, 2) else { continue };
+        let found = relaxations(&why);
+        assert!(!found.is_empty() && found.iter().all(|one| one.text.starts_with("use ")), "{why}: {found:?}");
+        for proposal in found {
+            let changed = scenario.with_settings(&typed(&proposal)).expect("settings");
+            changed.design.front(&bare, 2).unwrap_or_else(|why| panic!("{proposal:?}: {why}"));
+        }
+    }
 }
 
 /// Whatever is refused of random machines and tasks, what is proposed starts; nearly everything has a way out.
