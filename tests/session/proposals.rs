@@ -10,7 +10,7 @@ use stillbase::settings::change::{join, single_change, value};
 use stillbase::settings::word::Choice as _;
 use toml::Table;
 
-use crate::support::{Noise, random};
+use crate::support::{Noise, family_machine, random};
 
 /// Reads the settings of a proposal as the command line does.
 fn typed(proposal: &Proposal) -> Table {
