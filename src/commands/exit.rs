@@ -1,13 +1,12 @@
 //! Messages on standard error, and the exit status.
 
-use std::borrow::Cow;
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
 use serde::Serialize;
 use stillbase_session::Proposal;
-use stillbase_settings::text::{plain, shorten_message};
+use stillbase_settings::text::{plain, shell_word, shorten_message};
 
 use super::failure::{Failure, RefusedScenario};
 use super::output::Format;
@@ -49,16 +48,11 @@ pub fn exit_code(done: Result<(), Failure>, as_json: bool) -> ExitCode {
     }
     print_message(why);
     for proposal in proposals {
-        let settings: Vec<String> = proposal.settings().iter().map(|set| format!("--set {}", quoted(set))).collect();
+        let settings: Vec<String> =
+            proposal.settings().iter().map(|set| format!("--set {}", shell_word(set))).collect();
         print_message(format!("{}: {}", proposal.text, settings.join(" ")));
     }
     ExitCode::from(status)
-}
-
-/// Returns a word as a shell takes it: in quotes if it holds more than letters, digits and harmless signs.
-fn quoted(word: &str) -> Cow<'_, str> {
-    let is_plain = |c: char| c.is_alphanumeric() || "=.,-_+:/".contains(c);
-    if word.chars().all(is_plain) { word.into() } else { format!("'{}'", word.replace('\'', r"'\''")).into() }
 }
 
 /// Prints help, or the error of a command line that cannot be parsed; returns the exit status.

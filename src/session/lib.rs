@@ -3,6 +3,7 @@
 //! Others reach this crate as `stillbase::session`; `stillbase` alone follows semantic versioning.
 
 mod changes;
+mod command_line;
 pub mod design;
 mod designs;
 mod document;
@@ -24,6 +25,7 @@ pub mod scenario;
 mod script;
 pub mod verdict;
 
+pub use command_line::simulate_command;
 #[doc(hidden)]
 pub use designs::{DesignVersion, designs};
 pub use document::ProgressCallback;

@@ -5,6 +5,7 @@ mod around;
 mod bounds;
 mod branches;
 mod cases;
+mod command_line;
 mod design;
 mod events;
 mod hand;

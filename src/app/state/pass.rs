@@ -34,6 +34,9 @@ impl AppState {
         if self.collect() | self.outline() {
             ui.ctx().request_repaint();
         }
+        if let Some(text) = self.clipboard.take() {
+            ui.ctx().copy_text(text);
+        }
         self.catch_up();
         self.background.count_repaint();
         if let Some(tour) = &mut self.view_state.open.tour {
@@ -124,7 +127,7 @@ impl AppState {
         keys::help(ui.ctx(), &self.view_state, &mut commands);
         saving::show(ui.ctx(), &self.saving, &self.session, &self.view_state, &mut commands);
         let recent = &self.saving.recent;
-        finder::show(ui.ctx(), &self.session, &facts, recent, &mut self.view_state, &mut commands);
+        finder::show(ui.ctx(), &self.session, &self.signals(), &facts, recent, &mut self.view_state, &mut commands);
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
         commands.extend(widgets::refused_entry(ui.ctx()).map(|it| Command::Window(WindowCommand::Refuse(it))));
         if widgets::drag_cancelled(ui.ctx()) {
