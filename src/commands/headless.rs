@@ -15,6 +15,7 @@ use super::failure::Failure;
 use super::input::{Settings, scenario};
 use super::output::{Format, TextTable, check_output};
 use super::simulate::require_audit;
+use super::size::size;
 use stillbase_settings::number::fixed;
 
 /// Simulate scenarios without a window and record them for the Rerun viewer
@@ -53,12 +54,6 @@ pub struct HeadlessArguments {
 fn frames_per_second(text: &str) -> Result<f64, String> {
     let fps = text.parse().ok().filter(|fps| *fps > 0.0 && *fps <= 1000.0);
     fps.ok_or_else(|| "want pictures per simulated second, above 0 and at most 1000".into())
-}
-
-fn size(text: &str) -> Result<[u32; 2], String> {
-    let side = |s: &str| s.parse().ok().filter(|n| (16..=8192).contains(n));
-    let both = text.split_once('x').and_then(|(w, h)| Some([side(w)?, side(h)?]));
-    both.ok_or_else(|| "want WIDTHxHEIGHT in pixels, 16 to 8192, such as 1280x800".into())
 }
 
 #[derive(Serialize)]

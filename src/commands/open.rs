@@ -3,7 +3,7 @@
 use clap::Args;
 #[cfg(feature = "window")]
 use stillbase_app::window::WindowError;
-#[cfg(feature = "window")]
+#[cfg(feature = "ui")]
 use stillbase_picture::scene::palette::Theme;
 use stillbase_session::scenario::Scenario;
 
@@ -24,14 +24,17 @@ pub struct OpenArguments {
     settings: Settings,
 }
 
-#[cfg(feature = "window")]
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum ThemeName {
+/// Colours of the window.
+#[cfg(feature = "ui")]
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum ThemeName {
+    /// Dark
     Dark,
+    /// Light
     Light,
 }
 
-#[cfg(feature = "window")]
+#[cfg(feature = "ui")]
 impl From<ThemeName> for Theme {
     fn from(name: ThemeName) -> Self {
         match name {
