@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser};
 use stillbase_commands as commands;
 
 /// Zero reaction manipulators: design, plan, simulate, see and record what a robot arm does to its base.
@@ -37,6 +37,12 @@ fn name_runtime_folder() {
     }
 }
 
+/// Returns whether the subcommand is to print JSON.
+fn asks_for_json(matches: &ArgMatches) -> bool {
+    let asks = |(_, own): (&str, &ArgMatches)| matches!(own.try_get_one::<bool>("json"), Ok(Some(true)));
+    matches.subcommand().is_some_and(asks)
+}
+
 fn main() -> ExitCode {
     name_runtime_folder();
     commands::watch();
@@ -44,10 +50,12 @@ fn main() -> ExitCode {
     if let Ok(wanted) = std::env::var("STILLBASE_FAULT") {
         stillbase::files::fault::arm_fault(&wanted);
     }
-    let arguments = match Arguments::try_parse_from(commands::words(std::env::args_os())) {
-        Ok(arguments) => arguments,
+    let matches = Arguments::command().try_get_matches_from(commands::words(std::env::args_os()));
+    let parsed = matches.and_then(|matches| Ok((Arguments::from_arg_matches(&matches)?, asks_for_json(&matches))));
+    let (arguments, as_json) = match parsed {
+        Ok(parsed) => parsed,
         Err(error) => return commands::usage(&error),
     };
     let done = arguments.command.map_or_else(|| arguments.open.run(), |command| command.run());
-    commands::exit_code(done)
+    commands::exit_code(done, as_json)
 }

@@ -201,6 +201,7 @@ pub const ACTIONS: &[Action] = actions![
         s.branch_count().checked_sub(1).map(|it| Command::Session(SessionCommand::CompareBranch(it)))
     };
     Run, "Play over and over, what plots show of it if a range was chosen" = "loop repeat cycle", [on(PLAIN, Key::O)], "top bar, loop" turns Loop;
+    Run, "Copy as command line" = "shell terminal script cli simulate", [on(CTRL_SHIFT, Key::C)], "keyboard", |_, _| Some(Command::Window(WindowCommand::CopyCommand));
     Run, "Twice as slow" = "speed slow motion", [on(PLAIN, Key::Comma)], "top bar, speed", |_, v| slower(v);
     Run, "Twice as fast" = "speed faster", [on(PLAIN, Key::Period)], "top bar, speed", |_, v| faster(v);
 

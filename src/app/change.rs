@@ -137,10 +137,12 @@ impl SessionSource {
                 (read(&path)?, true, ResumePoint::of(&text))
             }
         };
-        let change = scenario.task.whole();
-        let mut session = Session::open_while(scenario, watch).map_err(|refusal| NotOpened {
+        let mut session = Session::open_while(scenario.clone(), watch).map_err(|refusal| NotOpened {
             why: refusal.to_string(),
-            refused: from_file.then(|| RefusedEdit::of(&Edit::of("task", change), &refusal)),
+            refused: from_file.then(|| {
+                let change = scenario.task.whole();
+                RefusedEdit::of(&scenario, &Edit::of("task", change), &refusal)
+            }),
         })?;
         if let Some(ResumePoint { time, .. }) = &left_off {
             // The file may name any time: the run is not extended beyond its length.

@@ -219,6 +219,8 @@ pub enum WindowCommand {
     Fronts(FrontsCommand),
     /// Move the keyboard focus to the search for signals.
     LookFor,
+    /// Copy the command that runs the scenario on display.
+    CopyCommand,
     /// Show why a typed number is refused.
     Refuse(String),
     /// Stop an activity in the background.

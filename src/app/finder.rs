@@ -1,4 +1,5 @@
-//! The list of commands: every action, scenario, machine, setting and recent file, searched by a few letters.
+//! The list of commands: every action, scenario, machine, signal, setting and recent file, searched by a few letters. A
+//! setting followed by a value, such as `payload 0.4`, is set from here.
 
 use std::path::PathBuf;
 
@@ -11,9 +12,12 @@ use super::top::with_machine;
 use super::widgets::name;
 use super::{Command, SessionCommand, Switch, ViewChange, ViewState, search};
 use stillbase_mechanics::machine;
+use stillbase_picture::charts::choice::PlotChange;
 use stillbase_picture::scene::palette::Palette;
-use stillbase_session::Session;
 use stillbase_session::scenario::Scenario;
+use stillbase_session::{Edit, Session};
+use stillbase_settings::change;
+use stillbase_simulation::signals::Signal;
 
 /// A line of the list.
 struct Entry<'a> {
@@ -35,9 +39,10 @@ const MAX_ENTRIES: usize = 60;
 const VISIBLE_ROWS: f32 = 10.0;
 const ROW_HEIGHT_PT: f32 = 27.0;
 
-/// Returns the entries available now: actions, recent files, scenarios, machines and settings.
+/// Returns the entries available now: actions, recent files, scenarios, machines, signals and settings.
 fn entries<'a>(
     session: &'a Session,
+    signals: &'a [Signal],
     settings: &'a [Setting],
     recent: &'a [PathBuf],
     view_state: &ViewState,
@@ -80,12 +85,49 @@ fn entries<'a>(
             Box::new(|| Command::Session(SessionCommand::OpenFile(file.clone()))),
         )
     });
+    let signals = signals.iter().map(|signal| {
+        let plot = || Command::View(ViewChange::Charts(PlotChange::Plot(signal.path.clone())));
+        let title = format!("Plot: {} {}, {}", signal.label, signal.symbol, signal.unit);
+        Entry { hides: true, ..entry(title, "plots", "signal curve graph csv column", Box::new(plot)) }
+    });
     let settings = settings.iter().map(|setting| {
         let title = format!("Setting: {}", setting.path);
         let look_up = || Command::View(ViewChange::LookUp(setting.path.clone()));
         Entry { hides: true, ..entry(title, "left panel, all settings", setting.key.meaning, Box::new(look_up)) }
     });
-    actions.chain(recent).chain(scenarios).chain(machines).chain(settings).collect()
+    actions.chain(recent).chain(scenarios).chain(machines).chain(signals).chain(settings).collect()
+}
+
+/// Maximum number of settings that are offered for one typed value.
+const MAX_TYPED_ENTRIES: usize = 3;
+
+/// Returns entries that set what is typed: a setting by a few letters, and its value after a space or `=`.
+fn typed<'a>(settings: &'a [Setting], sought: &str) -> Vec<Entry<'a>> {
+    let Some((words, text)) = sought.trim().rsplit_once(['=', ' ']) else { return Vec::new() };
+    let (words, text) = (words.trim().to_owned(), text.trim().to_owned());
+    let value = change::value(&text);
+    let score = |setting: &Setting| search::score_with(&words, &setting.path, setting.key.meaning);
+    let mut scored: Vec<(i32, &Setting)> = settings
+        .iter()
+        .filter(|setting| !words.is_empty() && setting.key.value_type.accepts(&value))
+        .filter_map(|setting| Some((score(setting)?, setting)))
+        .collect();
+    scored.sort_by_key(|(score, _)| -score);
+    let entry = |(_, setting): (i32, &'a Setting)| {
+        let (path, value) = (setting.path.clone(), value.clone());
+        Entry {
+            title: format!(
+                "Set {path} = {text}, now {}",
+                if setting.typed.is_empty() { "none" } else { &setting.typed }
+            ),
+            place: "left panel, all settings",
+            also: "",
+            hides: false,
+            keys: String::new(),
+            command: Box::new(move || Command::Session(SessionCommand::Edit(Edit::set(&path, value)))),
+        }
+    };
+    scored.into_iter().take(MAX_TYPED_ENTRIES).map(entry).collect()
 }
 
 /// Returns the entries that match the search text, best first.
@@ -108,6 +150,7 @@ fn found<'a>(entries: Vec<Entry<'a>>, sought: &str) -> Vec<Entry<'a>> {
 pub fn show(
     ctx: &egui::Context,
     session: &Session,
+    signals: &[Signal],
     facts: &ScenarioFacts<'_>,
     recent: &[PathBuf],
     view_state: &mut ViewState,
@@ -116,7 +159,8 @@ pub fn show(
     let p = view_state.palette();
     let Some(mut finder) = view_state.open.finder.clone() else { return };
     let settings = facts.settings();
-    let list = found(entries(session, &settings, recent, view_state), &finder.search_text);
+    let found = found(entries(session, signals, &settings, recent, view_state), &finder.search_text);
+    let list: Vec<Entry<'_>> = typed(&settings, &finder.search_text).into_iter().chain(found).collect();
     finder.chosen = finder.chosen.min(list.len().saturating_sub(1));
     let pressed = |key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
     let (up, down, enter) = (pressed(Key::ArrowUp), pressed(Key::ArrowDown), pressed(Key::Enter));

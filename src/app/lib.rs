@@ -27,6 +27,7 @@ mod icon;
 mod intro;
 pub mod jobs;
 mod keys;
+mod lamp;
 mod layout;
 mod marks;
 mod menu;

@@ -4,7 +4,7 @@ use egui::{Align, Layout, Rect, RichText, Ui, UiBuilder, pos2, vec2};
 
 use super::icon::{Icon, IconButton};
 use super::theme::{bold, colour, plain};
-use super::{Command, Layout as WindowLayout, ViewChange, ViewState, status};
+use super::{Command, Layout as WindowLayout, ViewChange, ViewState, lamp};
 use stillbase_picture::numbers::signed;
 use stillbase_session::Session;
 
@@ -36,8 +36,8 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &Session, view_state: &ViewState, 
     let number = format!("{} N m", signed(if moment.abs() < ZERO_BELOW_N_M { 0.0 } else { moment }, 2));
     line(&mut corner, RichText::new(number).font(bold(large)).color(colour(tone)));
     line(&mut corner, RichText::new("moment on the base, n_B").font(plain(0.32 * large)).color(colour(p.dim)));
-    for named in status::statements(session).named() {
-        status::lamp(&mut corner, named, 0.32 * large, &p);
+    for named in lamp::statements(session).named() {
+        lamp::show(&mut corner, named, 0.32 * large, &p);
     }
     let b = session.run().pose_space().ok().map(|map| f.b.rem_euclid(map.period()));
     let b = b.map_or_else(String::new, |b| format!("b = {b:.3} rad   ·   "));

@@ -65,6 +65,8 @@ pub struct AppState {
     has_fonts: bool,
     /// Whether the next pass moves the keyboard focus to the search for signals.
     focuses_search: bool,
+    /// Text for the clipboard, taken with the next frame.
+    clipboard: Option<String>,
 }
 
 impl AppState {
@@ -99,6 +101,7 @@ impl AppState {
             applied_theme: None,
             has_fonts: false,
             focuses_search: false,
+            clipboard: None,
         };
         app_state.run_ahead();
         app_state
@@ -308,6 +311,7 @@ impl AppState {
     fn refresh(&mut self) {
         self.refresh_views();
         self.refresh_study();
+        self.refresh_proposals();
         self.refresh_comparison();
         self.refresh_given();
         self.refresh_seeking();

@@ -3,15 +3,15 @@
 use egui::{Align, Layout, Margin, Panel, RichText, Sense, Ui, vec2};
 
 use super::facts::ScenarioFacts;
+use super::lamp;
 use super::theme::{colour, plain};
 use super::widgets::name;
 use super::{Activity, Command, Message, SessionCommand, Tool, ViewState, WindowCommand};
 use stillbase_picture::numbers::signed;
-use stillbase_picture::scene::Rgba;
 use stillbase_picture::scene::palette::{Palette, faded};
 use stillbase_planning::pose_space::NoPoseSpace;
-use stillbase_session::verdict::{Statement, Statements, StatusLight, Verdict};
-use stillbase_session::{Edit, Session};
+use stillbase_session::verdict::Verdict;
+use stillbase_session::{Edit, Proposal, Session};
 use stillbase_simulation::frame::{Frame, Reach};
 
 /// Whether a problem message must be shown.
@@ -25,12 +25,13 @@ pub fn news_rect(ctx: &egui::Context) -> Option<egui::Rect> {
     ctx.memory(|memory| memory.area_rect(egui::Id::unique("news")))
 }
 
-/// Draws the problem message in full over the lower edge of a scene, with a button for the remedy if there is one.
+/// Draws the problem message in full over the lower edge of a scene, with a button for each proposal.
 pub fn news(
     ctx: &egui::Context,
     scene: egui::Rect,
     session: &Session,
     view_state: &ViewState,
+    proposals: &[Proposal],
     commands: &mut Vec<Command>,
 ) {
     let fault = fault(session.frame());
@@ -59,18 +60,11 @@ pub fn news(
             if let Some((_, said)) = also {
                 ui.add(egui::Label::new(RichText::new(said).font(plain(12.0)).color(colour(p.dim))).wrap());
             }
-            let remedy = view_state.status.refused.as_ref().and_then(|refused| refused.remedy.clone());
-            let mends = waits.and_then(|waiting| waiting.why.feasible_b().zip(waiting.why.displayed_b()));
-            let mends = mends.map(|(b, shown)| (Edit::set("task.b", b), shown));
-            if let Some((edit, b)) = remedy.or(mends) {
-                let way_out = ui.button(format!("take b = {b} rad"));
-                if way_out.on_hover_text("Asks for the same on the nearest plane that allows it").clicked() {
-                    commands.extend([
-                        Command::Session(SessionCommand::Edit(edit)),
-                        Command::Session(SessionCommand::EndGesture),
-                    ]);
+            ui.horizontal_wrapped(|ui| {
+                for proposal in proposals {
+                    lamp::proposal(ui, proposal, view_state.status.refused.as_ref(), commands);
                 }
-            }
+            });
         });
     });
 }
@@ -122,59 +116,12 @@ fn fault(frame: &Frame) -> Option<String> {
     ))
 }
 
-/// Returns the statements about machine, plan and the run so far.
-pub fn statements(session: &Session) -> Statements {
-    Statements::of(session.run(), session.frames().last().unwrap_or(session.frame()))
-}
-
-/// Draws a statement with its lamp: a disc if it is good, a triangle if it is bad, a ring if it is open.
-pub fn lamp(ui: &mut Ui, (about, statement): (&str, &Statement), size: f32, p: &Palette) {
-    let tone = tone_of(statement.outcome, p);
-    let ink = if statement.outcome == StatusLight::Bad { tone } else { p.ink };
-    // The words are painted instead of added as a widget, so that a screen reader announces lamp and words as one
-    // item.
-    let words = format!("{about}: {}", statement.words);
-    let words = ui.painter().layout_no_wrap(words, plain(size), colour(ink));
-    let [disc, gap] = [0.8 * size, 0.4 * size];
-    let (rect, response) = ui.allocate_exact_size(vec2(disc + gap + words.size().x, words.size().y), Sense::hover());
-    let middle = rect.left_center() + vec2(0.5 * disc, 0.0);
-    sign(ui.painter(), egui::Rect::from_center_size(middle, vec2(disc, disc)), statement.outcome, colour(tone));
-    ui.painter().galley(rect.left_top() + vec2(disc + gap, 0.0), words, colour(ink));
-    let spoken = format!("{about}: {}, {}", statement.words, statement.outcome.name());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &spoken));
-    response.on_hover_text(&statement.why);
-}
-
-fn tone_of(lamp: StatusLight, p: &Palette) -> Rgba {
-    match lamp {
-        StatusLight::Good => p.zero,
-        StatusLight::Bad => p.reaction,
-        StatusLight::Open => p.dim,
-    }
-}
-
-/// Draws a lamp whose shape shows the state without the colour.
-fn sign(painter: &egui::Painter, rect: egui::Rect, lamp: StatusLight, tone: egui::Color32) {
-    let (middle, r) = (rect.center(), 0.5 * rect.height());
-    match lamp {
-        StatusLight::Good => {
-            painter.circle_filled(middle, 0.9 * r, tone);
-        }
-        StatusLight::Open => {
-            painter.circle_stroke(middle, 0.75 * r, egui::Stroke::new(0.3 * r, tone));
-        }
-        StatusLight::Bad => {
-            let corners = [vec2(0.0, -1.0), vec2(1.05, 0.85), vec2(-1.05, 0.85)].map(|at| middle + at * r);
-            painter.add(egui::Shape::convex_polygon(corners.to_vec(), tone, egui::Stroke::NONE));
-        }
-    }
-}
-
 /// Draws this panel.
 pub fn show(
     ui: &mut Ui,
     session: &Session,
     found: &ScenarioFacts<'_>,
+    proposals: &[Proposal],
     view_state: &ViewState,
     under_way: Option<(Activity, f64)>,
     commands: &mut Vec<Command>,
@@ -185,9 +132,9 @@ pub fn show(
         ui.horizontal_centered(|ui| {
             let f = session.frame();
             ui.spacing_mut().item_spacing.x = 14.0;
-            let statements = statements(session);
+            let statements = lamp::statements(session);
             for named in statements.named() {
-                lamp(ui, named, 12.5, &p);
+                lamp::button(ui, named, 12.5, proposals, &p, commands);
             }
             audit_dots(ui, f, &p);
             let mut facts: Vec<String> = Vec::new();

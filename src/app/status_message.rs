@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use stillbase_picture::scene::options::RefusedCurve;
-use stillbase_planning::reactionless::Decimal;
-use stillbase_session::{Edit, Refusal};
+use stillbase_query::Shared;
+use stillbase_session::scenario::Scenario;
+use stillbase_session::{Edit, Proposal, Refusal};
 
 /// Messages shown until the next command.
 #[derive(Clone, Debug, Default)]
@@ -38,19 +39,26 @@ pub struct Message {
 pub struct RefusedEdit {
     /// The requested curve, and the point from which it cannot be followed.
     pub curve: Option<Arc<RefusedCurve>>,
-    /// The edit with a feasible b, rad, and this b as displayed.
-    pub remedy: Option<(Edit, Decimal)>,
+    /// The scenario with the edit, and the reason why it is refused; `None` if the edit is no change of settings.
+    pub refused: Option<(Shared<Scenario>, Refusal)>,
+    /// The edit.
+    edit: Edit,
 }
 
 impl RefusedEdit {
-    pub(super) fn of(edit: &Edit, refusal: &Refusal) -> Self {
-        let curve = RefusedCurve::of(refusal);
-        let remedy =
-            edit.part("task").zip(refusal.feasible_b().zip(refusal.displayed_b())).map(|(change, (b, shown))| {
-                let mut change = change.clone();
-                change.insert("b".into(), b.into());
-                (Edit::of("task", change), shown)
-            });
-        Self { curve: curve.map(Arc::new), remedy }
+    /// Returns the refusal of an edit of a scenario.
+    pub(super) fn of(scenario: &Scenario, edit: &Edit, refusal: &Refusal) -> Self {
+        let curve = RefusedCurve::of(refusal).map(Arc::new);
+        let changed = match edit {
+            Edit::Set { change } => scenario.without_edits().with_settings(change).ok(),
+            _ => None,
+        };
+        let refused = changed.map(|changed| (Shared(Arc::new(changed)), refusal.clone()));
+        Self { curve, refused, edit: edit.clone() }
+    }
+
+    /// Returns the edit with a proposal that makes it feasible.
+    pub fn edit_with(&self, proposal: &Proposal) -> Edit {
+        proposal.edit_after(&self.edit)
     }
 }

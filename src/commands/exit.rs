@@ -4,9 +4,12 @@ use std::fmt::Display;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use stillbase_settings::text::{plain, shorten_message};
+use serde::Serialize;
+use stillbase_session::Proposal;
+use stillbase_settings::text::{plain, shell_word, shorten_message};
 
-use super::failure::Failure;
+use super::failure::{Failure, RefusedScenario};
+use super::output::Format;
 
 /// Prints a message on standard error, in one line.
 pub fn print_message(message: impl Display) {
@@ -18,28 +21,47 @@ pub fn print_message(message: impl Display) {
     let _ = writeln!(io::stderr(), "stillbase: {line}");
 }
 
-/// Prints the reason of a failure, in one line, and returns the exit status.
-pub fn exit_code(done: Result<(), Failure>) -> ExitCode {
-    match done {
-        Ok(()) | Err(Failure::ReaderGone) => ExitCode::SUCCESS,
-        Err(Failure::NoAnswer(why)) => {
-            print_message(why);
-            ExitCode::from(1)
-        }
-        Err(Failure::WrongInput(why)) => {
-            print_message(why);
-            ExitCode::from(2)
-        }
+/// A failure as JSON.
+#[derive(Serialize)]
+struct FailureReport<'a> {
+    reason: &'a str,
+    proposals: &'a [Proposal],
+}
+
+/// Prints the reason of a failure in one line, and a line for each proposal that leads out of it. With `as_json`,
+/// prints both on standard output, too, unless the answer there holds them. Returns the exit status.
+pub fn exit_code(done: Result<(), Failure>, as_json: bool) -> ExitCode {
+    let Err(failure) = done else { return ExitCode::SUCCESS };
+    let RefusedScenario { failure, proposals, is_printed } = match failure {
+        Failure::Refused(refused) => *refused,
+        failure => RefusedScenario { failure, proposals: Vec::new(), is_printed: false },
+    };
+    let (status, why) = match failure {
+        Failure::NoAnswer(why) => (1, why),
+        Failure::WrongInput(why) => (2, why),
+        Failure::ReaderGone | Failure::Refused(_) => return ExitCode::SUCCESS,
+    };
+    if as_json && !is_printed {
+        // Where standard output cannot be written either, standard error holds the reason.
+        let report = FailureReport { reason: &why, proposals: &proposals };
+        let _ = Format { json: true }.print(&report, |_| String::new());
     }
+    print_message(why);
+    for proposal in proposals {
+        let settings: Vec<String> =
+            proposal.settings().iter().map(|set| format!("--set {}", shell_word(set))).collect();
+        print_message(format!("{}: {}", proposal.text, settings.join(" ")));
+    }
+    ExitCode::from(status)
 }
 
 /// Prints help, or the error of a command line that cannot be parsed; returns the exit status.
 pub fn usage(error: &clap::Error) -> ExitCode {
     if !error.use_stderr() {
         let printed = error.print().and_then(|()| io::stdout().flush());
-        return exit_code(printed.map_err(|e| Failure::standard_output(&e)));
+        return exit_code(printed.map_err(|e| Failure::standard_output(&e)), false);
     }
-    exit_code(Err(Failure::WrongInput(in_one_line(&error.render().to_string()))))
+    exit_code(Err(Failure::WrongInput(in_one_line(&error.render().to_string()))), false)
 }
 
 /// Returns the error and its tips in one line, without the usage that follows.

@@ -110,8 +110,7 @@ impl ExportArguments {
                         "note: tau_ff is of the model on a fixed base; --what simulated gives what control asks for",
                     );
                 }
-                let (rows, duration) =
-                    self.reference(&Run::new(&start).map_err(|e| Failure::from(e).with_context(&name))?)?;
+                let (rows, duration) = self.reference(&Run::new(&start).map_err(|e| Failure::refused(&start, e))?)?;
                 (rows, duration, None)
             }
             What::Simulated => self.simulated(&scenario)?,
@@ -210,7 +209,7 @@ impl ExportArguments {
                 );
             }
         })
-        .map_err(|e| Failure::from(e).with_context(&scenario.name))?;
+        .map_err(|e| Failure::refused(scenario, e))?;
         let last = run.frame();
         Ok((rows, last.time, last.first_violation().map(|lamp| lamp.to_string())))
     }

@@ -11,8 +11,8 @@ use stillbase_mechanics::machine::{FileError, MachineError};
 use stillbase_planning::pose_constant::Unreachable;
 use stillbase_planning::pose_space::{NoPoseSpace, PlaneError};
 use stillbase_planning::timing::TimeError;
-use stillbase_session::Refusal;
-use stillbase_session::scenario::ScenarioError;
+use stillbase_session::scenario::{Scenario, ScenarioError};
+use stillbase_session::{Proposal, Refusal, proposals};
 
 use super::remedy::option;
 
@@ -25,6 +25,19 @@ pub enum Failure {
     NoAnswer(String),
     /// The input is wrong: the place of the error, and the expected input.
     WrongInput(String),
+    /// A scenario was refused.
+    Refused(Box<RefusedScenario>),
+}
+
+/// Why a scenario was refused, and settings that lead out of it.
+#[derive(Debug)]
+pub struct RefusedScenario {
+    /// The reason.
+    pub failure: Failure,
+    /// Changes after which the scenario runs.
+    pub proposals: Vec<Proposal>,
+    /// Whether the answer on standard output already holds both.
+    pub is_printed: bool,
 }
 
 impl Failure {
@@ -51,6 +64,13 @@ impl Failure {
         }
     }
 
+    /// Returns the failure of a refused scenario, with the name of the scenario before the reason.
+    pub fn refused(scenario: &Scenario, refusal: Refusal) -> Self {
+        let proposals = proposals(scenario, &refusal);
+        let failure = Self::from(refusal).with_context(&scenario.name);
+        Self::Refused(Box::new(RefusedScenario { failure, proposals, is_printed: false }))
+    }
+
     /// Returns the failure with `what` before its reason.
     #[must_use]
     pub fn with_context(self, what: impl Display) -> Self {
@@ -58,6 +78,10 @@ impl Failure {
             Self::ReaderGone => Self::ReaderGone,
             Self::NoAnswer(why) => Self::NoAnswer(format!("{what}: {why}")),
             Self::WrongInput(why) => Self::WrongInput(format!("{what}: {why}")),
+            Self::Refused(refused) => {
+                let RefusedScenario { failure, proposals, is_printed } = *refused;
+                Self::Refused(Box::new(RefusedScenario { failure: failure.with_context(what), proposals, is_printed }))
+            }
         }
     }
 }

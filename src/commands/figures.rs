@@ -1,15 +1,13 @@
 //! `stillbase figures`
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use stillbase_app::{AppState, Command, ComparisonCommand, SessionCommand, Switch, ViewChange, WindowCommand};
 use stillbase_files::write_new;
 use stillbase_picture::canvas::Canvas;
-use stillbase_picture::render::offscreen::{NoAdapter, NoPicture, Picture};
-use stillbase_picture::scene::options::ViewOptions;
+use stillbase_picture::render::offscreen::{NoAdapter, Picture};
 use stillbase_picture::scene::palette::Theme;
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_session::Edit;
@@ -17,6 +15,7 @@ use stillbase_session::scenario::{TaskChange, Value};
 
 use super::exit::print_message;
 use super::failure::Failure;
+use super::shot::Shot;
 
 /// Draw the pictures of the documentation in both themes, without a display: the window, joint space and the tower
 #[derive(Args)]
@@ -39,6 +38,15 @@ enum Shown {
     Window(fn() -> Vec<Command>),
     /// A view alone.
     Scene(ViewKind),
+}
+
+impl Shown {
+    fn shot(&self) -> Shot {
+        match self {
+            Self::Window(_) => Shot::Window,
+            Self::Scene(view) => Shot::View(*view),
+        }
+    }
 }
 
 /// The pictures: name, scenario, time in s, and content.
@@ -64,7 +72,7 @@ impl FiguresArguments {
             // Both themes share a canvas, so that its fonts are loaded once.
             let mut canvas = shown.canvas().map_err(Failure::no_answer)?;
             for (theme, word) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
-                let picture = shown.draw(&mut canvas, &mut app_state, theme).map_err(Failure::no_answer)?;
+                let picture = shown.shot().draw(&mut canvas, &mut app_state, theme).map_err(Failure::no_answer)?;
                 self.write(&format!("{name}-{word}.png"), &picture)?;
             }
         }
@@ -84,21 +92,6 @@ impl Shown {
         match self {
             Self::Window(_) => Canvas::new([1440, 900], 1.0),
             Self::Scene(_) => Canvas::new([1200, 1000], 1.25),
-        }
-    }
-
-    fn draw(&self, canvas: &mut Canvas, app_state: &mut AppState, theme: Theme) -> Result<Picture, NoPicture> {
-        match *self {
-            Self::Window(_) => {
-                app_state.carry_out(ViewChange::Theme(theme));
-                canvas.draw(|ui| app_state.ui(ui))
-            }
-            Self::Scene(view) => {
-                let (options, camera) =
-                    (ViewOptions { theme, ..ViewOptions::default() }, app_state.views().camera(view));
-                let scene = Arc::new(app_state.views().scene(view, app_state.session().frame(), &options, &camera));
-                canvas.scene(&scene, &camera)
-            }
         }
     }
 }

@@ -15,6 +15,7 @@ use super::failure::Failure;
 use super::input::{Settings, scenario};
 use super::output::{Format, TextTable, check_output};
 use super::simulate::require_audit;
+use super::size::size;
 use stillbase_settings::number::fixed;
 
 /// Simulate scenarios without a window and record them for the Rerun viewer
@@ -53,12 +54,6 @@ pub struct HeadlessArguments {
 fn frames_per_second(text: &str) -> Result<f64, String> {
     let fps = text.parse().ok().filter(|fps| *fps > 0.0 && *fps <= 1000.0);
     fps.ok_or_else(|| "want pictures per simulated second, above 0 and at most 1000".into())
-}
-
-fn size(text: &str) -> Result<[u32; 2], String> {
-    let side = |s: &str| s.parse().ok().filter(|n| (16..=8192).contains(n));
-    let both = text.split_once('x').and_then(|(w, h)| Some([side(w)?, side(h)?]));
-    both.ok_or_else(|| "want WIDTHxHEIGHT in pixels, 16 to 8192, such as 1280x800".into())
 }
 
 #[derive(Serialize)]
@@ -168,19 +163,21 @@ pub fn record_with_bar(scenarios: &[Scenario], file: &Path, options: &Options) -
         true
     });
     bar.finish_and_clear();
-    let recordings = recordings?;
+    let recordings = recordings.map_err(|error| failed(error, scenarios))?;
     let notes: Vec<&String> = recordings.iter().flat_map(|r| &r.notes).collect();
     let is_first = |i: &usize| !notes[..*i].contains(&notes[*i]);
     (0..notes.len()).filter(is_first).for_each(|i| print_message(notes[i]));
     Ok(recordings)
 }
 
-impl From<RecordError> for Failure {
-    fn from(e: RecordError) -> Self {
-        match e {
-            RecordError::Refused { scenario, refusal } => Self::from(refusal).with_context(scenario),
-            other => Self::wrong_input(other),
-        }
+/// Returns the failure of a recording of scenarios.
+fn failed(error: RecordError, scenarios: &[Scenario]) -> Failure {
+    match error {
+        RecordError::Refused { scenario, refusal } => match scenarios.iter().find(|own| own.name == scenario) {
+            Some(scenario) => Failure::refused(scenario, refusal),
+            None => Failure::from(refusal).with_context(scenario),
+        },
+        other => Failure::wrong_input(other),
     }
 }
 

@@ -67,7 +67,7 @@ impl JointsArguments {
                 }
             },
         )
-        .map_err(|e| Failure::from(e).with_context(&scenario.name))?;
+        .map_err(|e| Failure::refused(&scenario, e))?;
         written?;
         if let Some(csv) = csv {
             csv.finish()?;

@@ -139,11 +139,11 @@ impl LearnArguments {
 
     fn state(&self, scenario: &Scenario) -> Result<DriveState, Failure> {
         let Some(at) = self.at else {
-            let session = Session::open(scenario.clone())?;
+            let session = Session::open(scenario.clone()).map_err(|why| Failure::refused(scenario, why))?;
             return Ok(DriveState::of(session.run(), session.frame()));
         };
         DriveState::at(scenario, at).map_err(|why| match why {
-            NoInstant::Refused(why) => why.into(),
+            NoInstant::Refused(why) => Failure::refused(scenario, why),
             later => Failure::wrong_input(format!("--at {at}: {later}")),
         })
     }

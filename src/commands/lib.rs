@@ -34,8 +34,14 @@ mod plan;
 mod pose;
 mod reach;
 mod remedy;
+#[cfg(feature = "ui")]
+mod render;
+#[cfg(feature = "ui")]
+mod shot;
 mod simulate;
 mod sites;
+#[cfg(any(feature = "record", feature = "ui"))]
+mod size;
 mod spectrum;
 mod tolerance;
 mod trim;
@@ -93,6 +99,8 @@ subcommands! {
     Tolerance: tolerance::ToleranceArguments,
     Spectrum: spectrum::SpectrumArguments,
     Trim: trim::TrimArguments,
+    #[cfg(feature = "ui")]
+    Render: render::RenderArguments,
     #[cfg(feature = "ui")]
     Figures: figures::FiguresArguments,
 }

@@ -3,7 +3,7 @@
 use clap::Args;
 #[cfg(feature = "window")]
 use stillbase_app::window::WindowError;
-#[cfg(feature = "window")]
+#[cfg(feature = "ui")]
 use stillbase_picture::scene::palette::Theme;
 use stillbase_session::scenario::Scenario;
 
@@ -24,14 +24,17 @@ pub struct OpenArguments {
     settings: Settings,
 }
 
-#[cfg(feature = "window")]
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum ThemeName {
+/// Colours of the window.
+#[cfg(feature = "ui")]
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum ThemeName {
+    /// Dark
     Dark,
+    /// Light
     Light,
 }
 
-#[cfg(feature = "window")]
+#[cfg(feature = "ui")]
 impl From<ThemeName> for Theme {
     fn from(name: ThemeName) -> Self {
         match name {
@@ -54,7 +57,7 @@ impl OpenArguments {
         #[cfg(feature = "window")]
         let why = match stillbase_app::window::run(scenario.clone(), self.theme.map(Theme::from)) {
             Ok(()) => return Ok(()),
-            Err(WindowError::Refused(refusal)) => return Err(Failure::from(refusal).with_context(&scenario.name)),
+            Err(WindowError::Refused(refusal)) => return Err(Failure::refused(&scenario, refusal)),
             Err(lost @ WindowError::DeviceLost { .. }) => return Err(Failure::no_answer(lost)),
             // Without a window, the scenario is recorded.
             Err(error) => error.to_string(),

@@ -17,7 +17,7 @@ use stillbase_simulation::plant::PlantDifferences;
 use stillbase_study::plan_summary::PlanSummary;
 
 use super::exit::print_message;
-use super::failure::Failure;
+use super::failure::{Failure, RefusedScenario};
 use super::input::{
     DEFAULT_SCENARIO, Settings, above_zero, change_task, choice, no_use, overlay_settings, overlay_unchecked, point,
     pose_constant, pose_space, refuse_ineffective, report_idle, report_tolerance,
@@ -123,7 +123,11 @@ impl PlanArguments {
         if run.is_ok() || self.format.json {
             self.format.print(&answer, table)?;
         }
-        run?;
+        if let Err(refusal) = run {
+            let refusal = Failure::from(refusal);
+            let proposals = answer.obstacle.map(|obstacle| obstacle.proposals).unwrap_or_default();
+            return Err(Failure::Refused(Box::new(RefusedScenario { failure: refusal, proposals, is_printed: true })));
+        }
         if let Some(file) = &self.output {
             // The name of the file tells plans apart in a recording or a table.
             if scenario.name == DEFAULT_NAME {

@@ -170,7 +170,7 @@ impl SimulateArguments {
                 columns.iter_mut().zip(&table).for_each(|(column, signal)| column.push(value(signal, frame)));
             }
         })
-        .map_err(|e| Failure::from(e).with_context(&scenario.name))?;
+        .map_err(|e| Failure::refused(&scenario, e))?;
         written?;
         if let Some(csv) = csv {
             csv.finish()?;

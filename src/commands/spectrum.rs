@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 use stillbase_files::{NewFile, WriteError};
+use stillbase_session::scenario::Scenario;
 use stillbase_study::base_spectrum::{BaseSpectrum, NoBaseSpectrum};
 use stillbase_study::spectrum::{JitterLimit, WindowFunction};
 
@@ -69,9 +70,9 @@ struct Answer {
 }
 
 /// Converts an error into a failure; the failure of a run names its scenario.
-fn failed(why: NoBaseSpectrum, scenario: &str) -> Failure {
+fn failed(why: NoBaseSpectrum, scenario: &Scenario) -> Failure {
     match why {
-        NoBaseSpectrum::Run(why) => Failure::from(why).with_context(scenario),
+        NoBaseSpectrum::Run(why) => Failure::refused(scenario, why),
         NoBaseSpectrum::Spectrum(why) => Failure::no_answer(why),
         beyond @ NoBaseSpectrum::Beyond { .. } => Failure::wrong_input(beyond),
     }
@@ -87,7 +88,7 @@ impl SpectrumArguments {
         if scenario.base.wheel.is_some() {
             print_message(format!("note: {}: n_B is what the reaction wheel leaves of it for the base", scenario.name));
         }
-        let failed = |why| failed(why, &scenario.name);
+        let failed = |why| failed(why, &scenario);
         let mut of = BaseSpectrum::of(&scenario, self.window).map_err(failed)?;
         if let Some(file) = &self.output {
             write(file, self.force, &of)?;

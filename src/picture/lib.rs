@@ -7,6 +7,8 @@
 pub mod canvas;
 #[doc(hidden)]
 pub mod charts;
+#[cfg(feature = "render")]
+pub mod film;
 #[cfg(feature = "ui")]
 #[doc(hidden)]
 pub mod gui;

@@ -6,16 +6,18 @@ use std::f64::consts::PI;
 use toml::{Table, Value};
 
 use super::edit::Edit;
+use super::proposal::Proposal;
 pub use super::scenario::DesignBrief;
 use crate::scenario::Scenario;
 use stillbase_mechanics::balance::{
     Body, BodyQuantity, ListedParameter, Parameter, ParameterBounds, RebalanceRequest, rebalance,
 };
 use stillbase_mechanics::counterweights::{
-    CounterweightError, CounterweightSite, CounterweightSpec, Disc, FreeRotor, Front, Objective, PlacedCounterweights,
-    RotorFreedom, front, place_weights,
+    BoundRelaxation, CounterweightError, CounterweightSite, CounterweightSpec, Disc, FreeRotor, Front, Objective,
+    PlacedCounterweights, RotorFreedom, front, place_weights,
 };
 use stillbase_mechanics::machine::{Counterweight, Drive, Inertia, Length, Link, Machine, MachineSpec};
+use stillbase_planning::reactionless::Decimal;
 use stillbase_settings::change::{DEFAULT_WORD, at, join, leaves, single_change};
 
 /// Penalty on a change of the mass of a counterweight, 1/kg.
@@ -219,6 +221,33 @@ pub fn brief_edit(scenario: &Scenario, change: &Table) -> Result<Edit, String> {
     }
     let follows = next.design.followed(&next.machine, &next.machine, &Table::new())?;
     Ok(Edit::Set { change: join(follows, change) })
+}
+
+/// Returns proposals that relax the bounds of a brief for which there are no counterweights; each is sufficient.
+pub fn relaxations(why: &CounterweightError) -> Vec<Proposal> {
+    let (CounterweightError::Conflict { reliefs, .. } | CounterweightError::Reaches { reliefs, .. }) = why else {
+        return Vec::new();
+    };
+    // Six decimals are what a refusal prints, and suffice.
+    let of_key = |relaxation: &BoundRelaxation| match relaxation {
+        BoundRelaxation::Most(mass) => Some(("design.heaviest", Decimal::nearest(*mass, 6), "kg a counterweight")),
+        BoundRelaxation::Clearance(length) => Some(("design.clearance", Decimal::nearest(*length, 4), "m from pins")),
+        // No key of a brief bounds these.
+        BoundRelaxation::Mass(_) | BoundRelaxation::Inertia(_) => None,
+    };
+    let proposal = |together: &Vec<BoundRelaxation>| {
+        let keys = together.iter().map(of_key).collect::<Option<Vec<_>>>()?;
+        let text: Vec<String> = keys.iter().map(|(_, value, unit)| format!("{value} {unit}")).collect();
+        let change = keys.iter().fold(Table::new(), |all, (key, x, _)| join(all, &single_change(key, x.value())));
+        Some(Proposal { text: format!("use {}", text.join(" and ")), change })
+    };
+    reliefs.iter().filter_map(proposal).collect()
+}
+
+/// Returns the least change of the free numbers that balances the machine of a scenario; `None` if there is none.
+pub(super) fn balancing_change(scenario: &Scenario) -> Option<Table> {
+    let brief = DesignBrief { keep_balanced: true, ..scenario.design.clone() };
+    brief.followed(&scenario.machine, &scenario.machine, &Table::new()).ok()
 }
 
 /// Returns the edit that turns the machine into another one with the same links. It sets the properties of links, the

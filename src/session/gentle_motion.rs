@@ -17,12 +17,14 @@ const SPAN_FRACTIONS: [f64; 4] = [0.3, 0.2, 0.1, 0.04];
 const MAX_SPAN_RAD: f64 = 0.8;
 /// Direction of the end effector from the base pin in the middle of the motion, rad.
 const DIRECTION_RAD: f64 = 0.3 * PI;
+/// Number of intervals between the samples of a motion of the drives.
+const SWEEP_ROWS: u32 = 40;
 /// Durations of the motion, s. The first one that exceeds no limit of a drive is used.
 const DURATIONS_S: [f64; 4] = [2.0, 4.0, 8.0, 16.0];
 
 /// Returns a scenario with a small motion near the middle of the joint limits. The motion is reactionless if possible,
-/// otherwise along a straight line. If all trials fail, returns one of them; the planner or the run then reports the
-/// reason.
+/// otherwise along a straight line, or else one of the drives over time. If all trials fail, returns one of them; the
+/// planner or the run then reports the reason.
 ///
 /// # Errors
 /// If no task can be stated for the machine.
@@ -47,8 +49,31 @@ pub fn gentle_motion(machine: &Machine) -> Result<Scenario, ScenarioError> {
             }
         }
     }
-    // If limits of the drives are exceeded, the run reports it; otherwise the planner says what prevents the motion.
-    slow.or(refused).map_or_else(|| stated(machine, &task(machine, "minimum-norm", 0.0, false)), Ok)
+    // If limits of the drives are exceeded, the run reports it.
+    if let Some(slow) = slow {
+        return Ok(slow);
+    }
+    let swept = stated(machine, &swept(machine))?;
+    match Run::new(&swept) {
+        Ok(_) => Ok(swept),
+        // The planner says what prevents the motion.
+        Err(_) => Ok(refused.unwrap_or(swept)),
+    }
+}
+
+/// Returns a motion of the drives over time, as TOML: it needs neither a pose for a point nor a path between points.
+fn swept(machine: &Machine) -> String {
+    let (middle, step) = (middle(machine), step(machine, &Inertia::of(machine).lambda(), SPAN_FRACTIONS[2]));
+    let rows: Vec<String> = (0..=SWEEP_ROWS)
+        .map(|i| {
+            let u = f64::from(i) / f64::from(SWEEP_ROWS);
+            let share = u * u * u * (10.0 + u * (6.0 * u - 15.0)) - 0.5;
+            let row = std::iter::once(u * DURATIONS_S[0]).chain((0..middle.len()).map(|k| middle[k] + share * step[k]));
+            let row: Vec<String> = row.map(|x| format!("{:?}", (1e6 * x).round() / 1e6)).collect();
+            format!("[{}]", row.join(", "))
+        })
+        .collect();
+    format!("kind = \"given\"\nsamples = [{}]\n", rows.join(", "))
 }
 
 /// Returns a scenario of a machine with a task, given as TOML.

@@ -3,6 +3,7 @@
 //! Others reach this crate as `stillbase::session`; `stillbase` alone follows semantic versioning.
 
 mod changes;
+mod command_line;
 pub mod design;
 mod designs;
 mod document;
@@ -15,6 +16,7 @@ mod interactive;
 mod machines;
 mod older;
 mod planner;
+mod proposal;
 mod refusal;
 mod replay;
 mod run;
@@ -23,6 +25,7 @@ pub mod scenario;
 mod script;
 pub mod verdict;
 
+pub use command_line::simulate_command;
 #[doc(hidden)]
 pub use designs::{DesignVersion, designs};
 pub use document::ProgressCallback;
@@ -35,6 +38,9 @@ pub use interactive::Session;
 #[doc(hidden)]
 pub use machines::Machines;
 pub use planner::{Plan, curves};
+pub use proposal::{Proposal, improvements, proposals};
+#[doc(hidden)]
+pub use proposal::{ProposalsQuery, is_improvable};
 pub use refusal::Refusal;
 pub use replay::{base_loads, replay, replay_if, replay_while, with_start_edits};
 pub use run::{Run, WaitReason};

@@ -22,6 +22,12 @@ pub fn control_character(text: &str) -> Option<char> {
     text.chars().find(|c| steers(*c))
 }
 
+/// Returns a word as a shell takes it: in quotes if it holds more than letters, digits and harmless signs.
+pub fn shell_word(word: &str) -> Cow<'_, str> {
+    let is_plain = |c: char| c.is_alphanumeric() || "=.,-_+:/".contains(c);
+    if word.chars().all(is_plain) { word.into() } else { format!("'{}'", word.replace('\'', r"'\''")).into() }
+}
+
 /// Returns a text as a cell of a spreadsheet: a text that a spreadsheet would read as a formula gets an apostrophe in
 /// front.
 pub fn sheet_cell(text: &str) -> Cow<'_, str> {

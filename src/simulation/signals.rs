@@ -20,6 +20,8 @@ pub struct Signal {
     pub unit: &'static str,
     /// Drive whose colour the signal has, counted from 0; `None` if it belongs to no single drive.
     pub drive: Option<usize>,
+    /// Largest permitted |value|, in the signal's unit: the limit of a drive.
+    pub limit: Option<f64>,
     quantity: Quantity,
 }
 
@@ -93,6 +95,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
                 label: format!("{label} {name}"),
                 unit,
                 drive: Some(k),
+                limit: machine.spec().drives[k].torque_limit.filter(|_| path == "torque"),
                 quantity: Quantity::PerIndex(k, value),
             });
         }
@@ -104,6 +107,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
             label: format!("relative joint angle {}", angle.name),
             unit: "rad",
             drive: Some(angle.to),
+            limit: None,
             quantity: Quantity::PerIndex(i, |f, i| f.a[i]),
         });
     }
@@ -178,6 +182,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
             label: label.into(),
             unit,
             drive: None,
+            limit: None,
             quantity: Quantity::Whole(value),
         });
     }
@@ -189,7 +194,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
 fn inside(machine: &Machine) -> Vec<Signal> {
     let mut table = Vec::new();
     let mut add = |path: String, symbol: String, label: String, unit, drive, quantity| {
-        table.push(Signal { path, symbol, label, unit, drive, quantity });
+        table.push(Signal { path, symbol, label, unit, drive, limit: None, quantity });
     };
     if let Ok(joints) = Joints::of(machine) {
         for (i, pin) in joints.pins().iter().enumerate().take(MAX_FRAME_PINS) {

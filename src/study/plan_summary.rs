@@ -11,7 +11,7 @@ use stillbase_planning::off_plane::price::{FloatingBase, PriceError};
 use stillbase_planning::pose_constant::PointCorrection;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_session::scenario::Scenario;
-use stillbase_session::{Refusal, Run};
+use stillbase_session::{Proposal, Refusal, Run, proposals};
 
 /// Summary of a task.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -109,6 +109,8 @@ pub struct Obstacle {
     /// Smallest move of one point after which all points have a b in common.
     #[serde(rename = "mend", skip_serializing_if = "Option::is_none")]
     pub correction: Option<PointCorrection>,
+    /// Settings after which the task is feasible.
+    pub proposals: Vec<Proposal>,
 }
 
 impl PlanSummary {
@@ -126,7 +128,7 @@ impl PlanSummary {
         let common = space.and_then(|space| common_b_set(space, &scenario.task.points()));
         let (b, cost, obstacle) = match planned {
             Ok(run) => (run.plan().forecast.b_start, Some(PlanCost::of(run, base)?), None),
-            Err(refusal) => (scenario.task.b, None, Some(Obstacle::of(refusal))),
+            Err(refusal) => (scenario.task.b, None, Some(Obstacle::of(scenario, refusal))),
         };
         Ok(Self {
             feasible: planned.is_ok(),
@@ -181,12 +183,13 @@ impl PlanCost {
 }
 
 impl Obstacle {
-    /// Returns the obstacle that a refusal states.
-    pub fn of(refusal: &Refusal) -> Self {
+    /// Returns the obstacle that the refusal of a scenario states.
+    pub fn of(scenario: &Scenario, refusal: &Refusal) -> Self {
         Self {
             blocked: if let Refusal::Blocked(blocked) = refusal { Some(blocked.clone()) } else { None },
             feasible_b: refusal.feasible_b(),
             correction: if let Refusal::NoCommonPlane { why, .. } = refusal { why.correction } else { None },
+            proposals: proposals(scenario, refusal),
         }
     }
 }

@@ -15,6 +15,7 @@ use crate::folder::Folder;
 
 pub const TESTS: &[Test] = tests![
     every_command_is_found_by_a_few_letters,
+    a_value_is_typed_where_its_setting_is_found,
     the_list_of_commands_is_led_by_keys_alone,
     the_list_of_commands_grows_again,
     what_follows_the_key_in_one_pass_is_no_shortcut,
@@ -57,6 +58,10 @@ fn every_command_is_found_by_a_few_letters() {
         ("gravity", "Setting: gravity"),
         ("recent", "Recent: mine.toml"),
         ("new", "New session: this machine and its task, nothing done yet"),
+        ("torque of drive 2", "Plot: torque of drive 2 τ₂, N m"),
+        ("payload mass 0.4", "Set plant.payload.mass = 0.4, now 0"),
+        ("task.time=3", "Set task.time = 3, now 1.0"),
+        ("task kind least-reaction", "Set task.kind = least-reaction, now reactionless"),
     ] {
         press(&mut h, Modifiers::COMMAND, Key::K);
         type_text(&mut h, typed);
@@ -69,6 +74,25 @@ fn every_command_is_found_by_a_few_letters() {
     press(&mut h, Modifiers::COMMAND, Key::K);
     type_text(&mut h, "qqxz");
     assert!(h.query_by_label("no command answers this").is_some());
+}
+
+/// A setting and a value, typed and entered, set it; a signal opens its plot; what is out of range is refused in words.
+fn a_value_is_typed_where_its_setting_is_found() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let mut enter = |text: &str| {
+        press(&mut h, Modifiers::COMMAND, Key::K);
+        type_text(&mut h, text);
+        press(&mut h, Modifiers::NONE, Key::Enter);
+        h.run_steps(4);
+        let state = h.state().app_state();
+        (state.session().scenario().clone(), state.view_state().status.problem().map(ToOwned::to_owned))
+    };
+    assert_eq!(enter("payload mass 0.4").0.plant.payload.mass, 0.4);
+    assert_eq!(enter("task.time = 3").0.task.time, 3.0);
+    let (kept, problem) = enter("task.time -1");
+    assert!(kept.task.time == 3.0 && problem.expect("a reason").contains("task.time"));
+    assert!(enter("torque of drive 2").1.is_none());
 }
 
 /// On a slow display the key and what is typed after it come in one pass: no letter is taken for a shortcut.

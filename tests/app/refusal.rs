@@ -5,8 +5,9 @@ use egui_kittest::kittest::Queryable as _;
 use stillbase::app::{AppState, Message, SessionCommand, WindowCommand};
 use stillbase::picture::scene::options::{Handle, ViewOptions};
 use stillbase::picture::scene::palette::Theme;
+use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::Edit;
-use stillbase::session::scenario::Scenario;
+use stillbase::session::scenario::{Scenario, TaskKind};
 
 use super::{Window, drag, on_screen, session, type_into, window, window_of};
 use crate::Test;
@@ -17,7 +18,44 @@ pub const TESTS: &[Test] = tests![
     a_scenario_that_cannot_be_planned_is_explained,
     limits_apply_and_the_run_waits,
     a_run_that_waits_says_so_and_keeps_its_way_out,
+    statements_open_what_improves_them,
+    a_limit_that_is_passed_proposes_more_time,
 ];
+
+/// A plan that changes b says so; the statement opens a button that runs the task reactionless.
+fn statements_open_what_improves_them() {
+    let mut h = window("case-1", Theme::Dark);
+    h.run_steps(6);
+    h.get_by_label_contains("plan: changes b by").click();
+    h.run_steps(3);
+    h.snapshot("statement-dark");
+    h.get_by_label("run it reactionless").click();
+    h.run_steps(6);
+    assert_eq!(session(&h).scenario().task.kind, TaskKind::Reactionless);
+    assert!(h.query_by_label_contains("plan: holds b, good").is_some());
+    // A good statement proposes nothing, but leads to where it is decided.
+    h.get_by_label_contains("machine: balanced").click();
+    h.run_steps(3);
+    h.get_by_label("show its masses and their balance").click();
+    h.run_steps(3);
+    assert_eq!(h.state().app_state().view_state().view, ViewKind::Design);
+}
+
+/// A torque past its limit: the plot shows the limit, the plan says how far past, and a button takes the time it needs.
+fn a_limit_that_is_passed_proposes_more_time() {
+    let mut scenario = Scenario::builtin("case-3").expect("built in");
+    let change = toml::from_str("task.time = 0.4\ndrive.1.torque_limit = 1.0").expect("keys");
+    scenario = scenario.with_settings(&change).expect("settings");
+    let mut h = window_of(scenario, Theme::Dark, 1000.0);
+    h.run_steps(10);
+    h.get_by_label_contains("times its limit").click();
+    h.run_steps(3);
+    h.snapshot("limit-dark");
+    h.query_all_by_label_contains("times as long").next().expect("a proposal").click();
+    h.run_steps(6);
+    assert!(session(&h).scenario().task.time > 0.4);
+    assert!(h.query_by_label_contains("plan: holds b, good").is_some());
+}
 
 fn opening_an_odd_scenario_changes_nothing_in_it() {
     let text = include_str!("../../assets/scenarios/case-3.toml")
@@ -64,13 +102,11 @@ fn a_scenario_that_cannot_be_planned_is_explained() {
     let mut app_state = AppState::open_or_explain(asked, Theme::Dark).expect("explained");
     let Message { text: words, is_problem: bad } = app_state.view_state().status.message.clone().expect("a reason");
     assert!(bad && words.contains("the path stops at"), "{words}");
-    let (edit, _) = app_state
-        .view_state()
-        .status
-        .refused
-        .as_ref()
-        .and_then(|wish| wish.remedy.clone())
-        .expect("another b would do");
+    let refused = app_state.view_state().status.refused.as_ref().expect("refused");
+    let (scenario, why) = refused.refused.clone().expect("a change of settings");
+    let proposals = stillbase::session::proposals(&scenario.0, &why);
+    assert!(proposals[0].text.starts_with("take b = "), "{proposals:?}");
+    let edit = refused.edit_with(&proposals[0]);
     app_state.carry_out(SessionCommand::Edit(edit));
     let done = &app_state.session().scenario().task;
     assert_eq!((done.points(), done.shape()), (task.points(), task.shape()));

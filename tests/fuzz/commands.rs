@@ -16,6 +16,7 @@ fn said(failure: &Failure) -> Result<(), String> {
     match failure {
         Failure::ReaderGone => Ok(()),
         Failure::NoAnswer(why) | Failure::WrongInput(why) => is_short(why),
+        Failure::Refused(refused) => said(&refused.failure),
     }
 }
 

@@ -18,7 +18,32 @@ pub const TESTS: &[Test] = tests![
     joints_is_current,
     design_is_current,
     no_picture_is_left_over,
+    films_and_pictures_are_rendered,
 ];
+
+/// What is rendered has the size, the instants and the number of pictures that were asked for; nothing is overwritten.
+fn films_and_pictures_are_rendered() {
+    let folder = Folder::new("render");
+    let render = |args: &[&str]| {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_stillbase"));
+        program.arg("render").args(args).current_dir(&folder.0).output().expect("the program starts")
+    };
+    let still = render(&["case-3", "-o", "still.png", "--at", "0.5", "--size", "320x200", "--json"]);
+    assert!(still.status.success(), "{}", String::from_utf8_lossy(&still.stderr));
+    let answer: serde_json::Value = serde_json::from_slice(&still.stdout).expect("an object");
+    assert_eq!(answer["times"], serde_json::json!([0.5, 0.5]));
+    let picture = image::open(folder.path("still.png")).expect("a picture").to_rgba8();
+    assert_eq!(picture.dimensions(), (320, 200));
+    for (file, view) in [("turn.gif", "window"), ("turn.png", "space")] {
+        let film = ["spacecraft", "-o", file, "--film", "0.2,0.6", "--fps", "10", "--size", "480x300", "--view", view];
+        let out = render(&film);
+        let said = String::from_utf8_lossy(&out.stdout).into_owned();
+        assert!(out.status.success() && said.contains("5 pictures, 0.200 to 0.600 s"), "{said} {:?}", out.stderr);
+        assert_eq!(render(&film).status.code(), Some(2), "it is not overwritten");
+    }
+    let late = render(&["case-3", "-o", "late.png", "--at", "9"]);
+    assert!(String::from_utf8_lossy(&late.stderr).contains("want a time within the run, 0 to 1.000 s"));
+}
 
 /// What the program does when it is asked for one picture.
 fn figures(folder: &Folder, picture: &str) -> Output {

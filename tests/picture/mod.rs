@@ -1,5 +1,7 @@
 //! Tests of `src/picture`: scenes, charts, meshes, and what the renderer draws.
 
+#[cfg(feature = "render")]
+mod film;
 mod mesh;
 mod palette;
 mod plots;

@@ -8,8 +8,8 @@ use crate::change::SessionSource;
 use crate::{Activity, BottomPanel, ComparisonCommand};
 use stillbase_picture::scene::stage::OutlineQuery;
 use stillbase_query::{ByIdentity, QueryResult, QueryStatus, Shared, Ticket};
-use stillbase_session::RunAhead;
 use stillbase_session::scenario::Scenario;
+use stillbase_session::{Proposal, ProposalsQuery, Refusal, RunAhead, is_improvable};
 use stillbase_study::comparison::{AlternativeRuns, ComparedRun, Comparison};
 use stillbase_study::tolerance::{StudiedRun, Study, StudyQuery};
 
@@ -72,6 +72,31 @@ impl AppState {
         } else if self.view_state.gesture.grabbed.is_none() {
             let _ = self.queries().ask_in_background::<StudyQuery>(&StudiedRun(Arc::new(self.session.run().clone())));
         }
+    }
+
+    /// Returns what proposals are for: the last refused edit, the task of a run that waits, or the plan on display.
+    fn improvable(&self) -> Option<(Shared<Scenario>, Option<Refusal>)> {
+        let refused = self.view_state.status.refused.as_ref().and_then(|refused| refused.refused.clone());
+        let run = self.session.run();
+        match (refused, run.waiting()) {
+            (Some((scenario, why)), _) => Some((scenario, Some(why))),
+            (None, Some(waiting)) => Some((run.shared_scenario(), Some(waiting.why.clone()))),
+            (None, None) => is_improvable(run).then(|| (run.shared_scenario(), None)),
+        }
+    }
+
+    /// Requests proposals that lead out of a refusal or improve the plan; a newer request replaces an older one.
+    pub(super) fn refresh_proposals(&mut self) {
+        match self.improvable() {
+            None => self.queries().forget::<ProposalsQuery>(),
+            Some(_) if self.view_state.gesture.grabbed.is_some() => {}
+            Some(improvable) => drop(self.queries().ask_in_background::<ProposalsQuery>(&improvable)),
+        }
+    }
+
+    /// Returns the proposals that lead out of a refusal or improve the plan, once they are known.
+    pub(super) fn proposals(&self) -> Option<Arc<Vec<Proposal>>> {
+        self.queries().known::<ProposalsQuery>(&self.improvable()?)
     }
 
     /// Returns the study of tolerances, or the reason why there is none.

@@ -7,6 +7,7 @@ use crate::marks;
 use crate::tour::Tour;
 use crate::{Command, FileDialog, FilePurpose, SessionCommand, Switch, ViewChange, WindowCommand};
 use stillbase_picture::scene::views::ViewKind;
+use stillbase_session::{Edit, TimedEdit, simulate_command};
 
 impl AppState {
     /// Carries out one command, after all earlier ones. A command that fails changes nothing, and a message says why.
@@ -142,6 +143,18 @@ impl AppState {
             WindowCommand::LookFor => {
                 self.view_state.arrangement.now_mut().plots.shown = true;
                 self.focuses_search = true;
+            }
+            WindowCommand::CopyCommand => {
+                let command = simulate_command(self.session.scenario());
+                let is_setting = |timed: &TimedEdit| timed.step == 0 && matches!(timed.edit, Edit::Set { .. });
+                let Some(command) = command.filter(|_| self.session.script().iter().all(is_setting)) else {
+                    return Err(
+                        "no settings alone lead here: save it (Ctrl S), then `stillbase simulate FILE.toml`".into()
+                    );
+                };
+                let said = format!("copied: {command}");
+                self.clipboard = Some(command);
+                return Ok(Some(said));
             }
             WindowCommand::Refuse(why) => return Err(why),
             WindowCommand::Cancel(activity) => return Ok(Some(self.cancel(activity))),

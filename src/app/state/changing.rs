@@ -64,7 +64,7 @@ impl AppState {
     /// Updates the state after a change of the session or its refusal.
     pub(super) fn changed(&mut self, change: &SessionChange, done: Result<Option<String>, Refusal>) {
         if let (SessionChange::Edit(edit), Err(refusal)) = (change, &done) {
-            self.view_state.status.refused = Some(RefusedEdit::of(edit, refusal));
+            self.view_state.status.refused = Some(RefusedEdit::of(self.session.scenario(), edit, refusal));
         }
         if done.is_ok() {
             self.saving.changes += u64::from(!matches!(change, SessionChange::Seek(_)));

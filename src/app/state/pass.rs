@@ -34,6 +34,9 @@ impl AppState {
         if self.collect() | self.outline() {
             ui.ctx().request_repaint();
         }
+        if let Some(text) = self.clipboard.take() {
+            ui.ctx().copy_text(text);
+        }
         self.catch_up();
         self.background.count_repaint();
         if let Some(tour) = &mut self.view_state.open.tour {
@@ -57,7 +60,11 @@ impl AppState {
             let line = (&marks, self.pace.lagging_rate());
             top::show(ui, &self.session, &facts, &self.saving.recent, line, &self.view_state, &mut commands);
             let under_way = self.background.under_way();
-            status::show(ui, &self.session, &facts, &self.view_state, under_way, &mut commands);
+            // While something is refused, the proposals stand beside the reason.
+            let refused = self.view_state.status.refused.is_some() || self.session.run().waiting().is_some();
+            let improvements = self.proposals().filter(|_| !refused);
+            let improvements = improvements.as_ref().map_or(&[][..], |known| known);
+            status::show(ui, &self.session, &facts, improvements, &self.view_state, under_way, &mut commands);
             rail::show(ui, &self.session, &self.session.forks(), &self.view_state, &mut commands);
         }
         if let Some(comparison) = &self.comparison {
@@ -114,11 +121,13 @@ impl AppState {
             weights: &chosen,
         };
         let scene = viewport::show(ui, content, &mut self.view_state, &mut commands);
-        status::news(ui.ctx(), scene, &self.session, &self.view_state, &mut commands);
+        let proposals = self.proposals();
+        let proposals = proposals.as_ref().map_or(&[][..], |known| known);
+        status::news(ui.ctx(), scene, &self.session, &self.view_state, proposals, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);
         saving::show(ui.ctx(), &self.saving, &self.session, &self.view_state, &mut commands);
         let recent = &self.saving.recent;
-        finder::show(ui.ctx(), &self.session, &facts, recent, &mut self.view_state, &mut commands);
+        finder::show(ui.ctx(), &self.session, &self.signals(), &facts, recent, &mut self.view_state, &mut commands);
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
         commands.extend(widgets::refused_entry(ui.ctx()).map(|it| Command::Window(WindowCommand::Refuse(it))));
         if widgets::drag_cancelled(ui.ctx()) {

@@ -49,7 +49,7 @@ pub struct DesignFacts {
 }
 
 /// The points of a Pareto front, by increasing mass, or the reason why there are none.
-type Points = Result<Vec<FrontMachine>, String>;
+type Points = Result<Vec<FrontMachine>, CounterweightError>;
 
 /// Sums over a machine.
 struct Sums {
@@ -121,7 +121,7 @@ impl QuickQuery for FrontPoints {
     type Answer = Points;
 
     fn answer(front: &Self::Input) -> Points {
-        let front = front.0.as_ref().as_ref().map_err(ToString::to_string)?;
+        let front = front.0.as_ref().as_ref().map_err(Clone::clone)?;
         let measures = front.measures().into_iter();
         let point = |(placed, [_, inertia]): (&PlacedCounterweights, [f64; 2])| FrontMachine {
             placed: placed.clone(),
@@ -261,7 +261,7 @@ impl DesignFacts {
     }
 
     /// Returns the points of the front, by increasing mass; empty before the first front is found.
-    pub(super) fn front(&self) -> Result<&[FrontMachine], &str> {
+    pub(super) fn front(&self) -> Result<&[FrontMachine], &CounterweightError> {
         match self.front.as_ref().and_then(|front| front.last.as_deref()) {
             Some(Ok(points)) => Ok(points),
             Some(Err(why)) => Err(why),

@@ -9,10 +9,11 @@ use super::other_fronts;
 use crate::plots::{base_plot, marks, small_axes, spaced};
 use crate::theme::{bold, colour, plain};
 use crate::widgets::{heading, name, note};
-use crate::{Command, SessionCommand, ViewChange, ViewState};
+use crate::{Command, SessionCommand, ViewChange, ViewState, lamp};
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::Rgba;
 use stillbase_picture::scene::palette::{Palette, faded, mix};
+use stillbase_session::design::relaxations;
 use stillbase_study::front_point::FrontMeasure;
 
 const PLOT_HEIGHT_PT: f32 = 210.0;
@@ -37,7 +38,11 @@ pub fn show(ui: &mut Ui, facts: &DesignFacts, view_state: &ViewState, commands: 
     let points = match facts.front() {
         Ok([]) => return,
         Ok(points) => points,
-        Err(why) => return note(ui, p, why),
+        Err(why) => {
+            note(ui, p, &why.to_string());
+            relaxations(why).iter().for_each(|relaxed| lamp::proposal(ui, relaxed, None, commands));
+            return;
+        }
     };
     if points.iter().all(|point| point.placed.added_mass < MIN_ADDED_MASS_KG) {
         return note(ui, p, "The links balance each other: nothing needs to be added.");

@@ -209,7 +209,7 @@ impl ToleranceArguments {
         if let Some(file) = &self.output {
             check_output(file, self.force, &["parquet", "csv"])?;
         }
-        let run = Run::new(&scenario).map_err(|e| Failure::from(e).with_context(&scenario.name))?;
+        let run = Run::new(&scenario).map_err(|e| Failure::refused(&scenario, e))?;
         let plant = scenario.plant_machine()?;
         let seed = section.seed.unwrap_or(1);
         let motion = &run.plan().motion;
@@ -225,7 +225,7 @@ impl ToleranceArguments {
             tracking: &tracking,
             simulated: self.simulate,
         };
-        let report = PartReport::of(&part, &section).map_err(|e| Failure::from(e).with_context(&scenario.name))?;
+        let report = PartReport::of(&part, &section).map_err(|e| Failure::refused(&scenario, e))?;
         let report = report.ok_or_else(|| Failure::no_answer("no machine was drawn"))?;
         let answer = ToleranceAnswer { report, file: self.output.as_ref().map(|file| file.display().to_string()) };
         if let Some(file) = &answer.file {

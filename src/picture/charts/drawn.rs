@@ -26,6 +26,9 @@ pub struct PlotLines {
     pub y: [f64; 2],
     /// Bounds of the vertical axis that show all values.
     pub all: [f64; 2],
+    /// Limits of the curves, each drawn at plus and minus this value, with the index of its curve. A limit much larger
+    /// than all values is left out.
+    pub limits: Vec<(usize, f64)>,
     /// Statistics of each curve of the plot; empty unless requested.
     pub statistics: Vec<Option<Statistics>>,
 }
@@ -47,7 +50,8 @@ impl PlotLines {
         statistics: bool,
     ) -> Self {
         let runs = others.iter().map(|(i, run)| (Some(*i), *run)).chain([(None, samples)]);
-        let mut drawn = Self { lines: Vec::new(), x: shown, y: EMPTY, all: EMPTY, statistics: Vec::new() };
+        let mut drawn =
+            Self { lines: Vec::new(), x: shown, y: EMPTY, all: EMPTY, limits: Vec::new(), statistics: Vec::new() };
         let mut across = [f64::INFINITY, f64::NEG_INFINITY];
         for (run, samples) in runs {
             for (i, curve) in plot.curves.iter().enumerate().filter(|(_, curve)| curve.on) {
@@ -80,6 +84,14 @@ impl PlotLines {
             let curves = plot.curves.iter();
             drawn.statistics = curves.map(|c| of(&c.signal.path).map(|s| scaled(s, c.scale))).collect();
         }
+        let largest = drawn.y[0].abs().max(drawn.y[1].abs());
+        for (i, curve) in plot.curves.iter().enumerate().filter(|(_, curve)| curve.on && plot.against.is_none()) {
+            let limit = curve.signal.limit.map(|limit| curve.scale * limit);
+            if let Some(limit) = limit.filter(|limit| largest.is_finite() && *limit <= LIMIT_SHOWN_BELOW * largest) {
+                widen(&mut drawn.y, [-limit, limit]);
+                drawn.limits.push((i, limit));
+            }
+        }
         drawn.all = rounded_bounds(plot, drawn.y);
         drawn.y = plot.values.unwrap_or(drawn.all);
         if plot.against.is_some() {
@@ -93,6 +105,9 @@ impl PlotLines {
         2e-4 * (self.y[1] - self.y[0])
     }
 }
+
+/// A limit is drawn if it is at most this multiple of the largest value, so that curves do not become flat.
+const LIMIT_SHOWN_BELOW: f64 = 2.0;
 
 /// Bounds of an empty set of values.
 const EMPTY: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];

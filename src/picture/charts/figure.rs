@@ -181,6 +181,17 @@ pub fn body(plot: &Plot<'_>, drawn: &PlotLines, axes: &Axes, look: &PlotContext<
         let at = [if anchor == 1.0 { right + 2.0 } else { x }, bottom + 3.0];
         words.push(FigureItem::Text { at, anchor: [anchor, 0.0], words: small(text) });
     }
+    for (curve, limit) in &drawn.limits {
+        let tone = faded(pen(plot, *curve, look).0, 0.7);
+        for y in [-limit, *limit].map(|y| axes.place([axes.x[0], y])[1]) {
+            items.push(line(vec![[left, y], [right, y]], 1.0, tone, Some([2.0, 3.0])));
+        }
+        let symbol = &plot.curves[*curve].signal.symbol;
+        let text =
+            vec![FigureText { text: format!("limit of {symbol}"), size: TICK_SIZE_PT, bold: false, colour: tone }];
+        let at = [right - 4.0, axes.place([axes.x[0], *limit])[1] + 2.0];
+        words.push(FigureItem::Text { at, anchor: [1.0, 0.0], words: text });
+    }
     for run in &drawn.lines {
         let points: Vec<[f32; 2]> = run.points.iter().map(|point| axes.place(*point)).collect();
         let points = simplify_line(&points, THINNING_TOLERANCE_PT);

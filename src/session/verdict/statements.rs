@@ -116,24 +116,32 @@ impl Statement {
                 let forecast = &run.plan().forecast;
                 let [least, greatest] = forecast.b;
                 let change = greatest - least;
-                if change <= B_TOLERANCE {
+                let (outcome, words, why) = if change <= B_TOLERANCE {
                     let why = format!("the whole path lies on the plane b = {:.3} rad", forecast.b_start);
-                    return Self::new(StatusLight::Good, "holds b", why);
-                }
-                let why = format!(
-                    "b goes from {:.3} rad to {:.3} rad, within {least:.3} to {greatest:.3}; n_B = −D₁ b̈, up to {} N m \
+                    (StatusLight::Good, "holds b".to_owned(), why)
+                } else {
+                    let why = format!(
+                        "b goes from {:.3} rad to {:.3} rad, within {least:.3} to {greatest:.3}; n_B = −D₁ b̈, up to {} N m \
                      foreseen",
-                    forecast.b_start,
-                    forecast.b_end,
-                    significant(forecast.moment)
-                );
-                Self::new(StatusLight::Bad, format!("changes b by {} rad", significant(change)), why)
+                        forecast.b_start,
+                        forecast.b_end,
+                        significant(forecast.moment)
+                    );
+                    (StatusLight::Bad, format!("changes b by {} rad", significant(change)), why)
+                };
+                match forecast.exceeded_limit {
+                    None => Self::new(outcome, words, why),
+                    Some((limit, factor)) => {
+                        let past = format!("the {limit} is {factor:.2} times its limit");
+                        Self::new(StatusLight::Bad, format!("{words}, but {past}"), format!("{why}; {past}"))
+                    }
+                }
             }
         }
     }
 
     /// States the reactions that a run up to a frame has transmitted to its base.
-    fn of_run(run: &Run, frame: &Frame, [machine, plan]: [&Self; 2]) -> Self {
+    fn of_run(run: &Run, frame: &Frame, machine: &Self) -> Self {
         let (verdict, peaks) = (Verdict::of(run.scenario(), frame), &frame.peaks);
         if let Some(figure) = &verdict.fault {
             return Self::new(StatusLight::Bad, "cannot be trusted", format!("an audit has failed: {figure}"));
@@ -164,9 +172,9 @@ impl Statement {
             peaks.transmits_force().then(|| format!("|f_B| {} N", significant(verdict.force))),
         ];
         let words = format!("peak {}", parts.into_iter().flatten().collect::<Vec<_>>().join(", "));
-        let cause = match (machine.outcome, plan.outcome) {
-            (StatusLight::Bad, _) => "the machine does this: it is not balanced",
-            (_, StatusLight::Bad) => "the path does this, not the machine: b changes on it",
+        let cause = match machine.outcome {
+            StatusLight::Bad => "the machine does this: it is not balanced",
+            _ if changes_b(run) => "the path does this, not the machine: b changes on it",
             _ => {
                 "neither machine nor path do this, but what the model leaves out: a payload, a push, friction, unequal \
                  gains, or a hand that turned b"
@@ -174,6 +182,18 @@ impl Statement {
         };
         Self::new(StatusLight::Bad, words, format!("{figures}; {cause}"))
     }
+}
+
+/// Returns whether the motion of a run, planned or dragged, changes b.
+fn changes_b(run: &Run) -> bool {
+    let change = match run.simulation().guide() {
+        Guide::Follow(follower) => (follower.b_aim() - follower.b()).abs(),
+        Guide::Motion { .. } => {
+            let [least, greatest] = run.plan().forecast.b;
+            greatest - least
+        }
+    };
+    change > B_TOLERANCE && Inertia::of(&run.scenario().machine).is_invariant()
 }
 
 /// The statements on a session.
@@ -188,17 +208,24 @@ pub struct Statements {
 }
 
 impl Statements {
+    /// Name of the statement on the machine.
+    pub const MACHINE: &str = "machine";
+    /// Name of the statement on the plan.
+    pub const PLAN: &str = "plan";
+    /// Name of the statement on the run.
+    pub const RUN: &str = "run";
+
     /// Makes the statements on a run up to a frame.
     pub fn of(run: &Run, frame: &Frame) -> Self {
         let inertia = Inertia::of(&run.scenario().machine);
         let (machine, plan) = (Statement::of_machine(&inertia), Statement::of_plan(run, &inertia));
-        let run = Statement::of_run(run, frame, [&machine, &plan]);
+        let run = Statement::of_run(run, frame, &machine);
         Self { machine, plan, run }
     }
 
     /// Returns each statement with the name of its subject.
     pub fn named(&self) -> [(&'static str, &Statement); 3] {
-        [("machine", &self.machine), ("plan", &self.plan), ("run", &self.run)]
+        [(Self::MACHINE, &self.machine), (Self::PLAN, &self.plan), (Self::RUN, &self.run)]
     }
 
     /// Returns all statements in one line, such as `machine: balanced · plan: holds b · run: none yet`.

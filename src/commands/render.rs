@@ -1,0 +1,191 @@
+//! `stillbase render`
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+use stillbase_app::{AppState, SessionCommand};
+use stillbase_files::write_new;
+use stillbase_picture::canvas::Canvas;
+use stillbase_picture::film::{Film, FilmFormat};
+use stillbase_picture::scene::palette::Theme;
+use stillbase_picture::scene::views::ViewKind;
+use stillbase_settings::number::{counted, fixed};
+
+use super::failure::Failure;
+use super::input::{DEFAULT_SCENARIO, Settings, scenario};
+use super::open::ThemeName;
+use super::output::{Format, check_output};
+use super::shot::Shot;
+use super::size::size;
+
+/// Draw a picture or a film of a run, without a display
+///
+/// A still picture shows the instant --at. With --film the run is shown from one time to another, and the file plays
+/// over and over: .gif for slides and mail, .png (animated) with all colours.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  stillbase render case-3 -o case-3.png --at 0.62
+  stillbase render case-1 -o shake.gif --film --view window
+  stillbase render spacecraft -o turning.png --film 0,1 --view space --fps 30 --slow 2")]
+pub struct RenderArguments {
+    /// A built-in scenario or machine, or a TOML file of either
+    #[arg(default_value = DEFAULT_SCENARIO)]
+    scenario: String,
+    /// The picture (.png) or film (.gif, .png) to write
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Instant of a still picture, s; default: the end of the run
+    #[arg(long, value_name = "T", conflicts_with = "film")]
+    at: Option<f64>,
+    /// A film of the run; from one time to another, s, if they are given
+    #[arg(long, value_name = "FROM,TO", num_args = 0..=1, default_missing_value = "", value_parser = range)]
+    film: Option<FilmRange>,
+    /// Pictures per second of the film
+    #[arg(long, value_name = "N", default_value_t = 25.0, requires = "film", value_parser = rate)]
+    fps: f64,
+    /// Show the film this many times slower than the run
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, requires = "film", value_parser = factor)]
+    slow: f64,
+    /// The whole window, or one of its views
+    #[arg(long, value_enum, default_value_t = ViewName::Flat)]
+    view: ViewName,
+    /// Colours
+    #[arg(long, value_enum, default_value_t = ThemeName::Dark)]
+    theme: ThemeName,
+    /// Width and height, pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x800", value_parser = size)]
+    size: [u32; 2],
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    settings: Settings,
+    #[command(flatten)]
+    format: Format,
+}
+
+#[derive(Serialize)]
+struct Answer {
+    file: String,
+    pictures: u32,
+    /// First and last instant, s.
+    times: [f64; 2],
+}
+
+/// Time interval of a film, s; `None` for the whole run.
+#[derive(Clone, Copy, Debug)]
+struct FilmRange(Option<[f64; 2]>);
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum ViewName {
+    /// The whole window
+    Window,
+    /// The machine from above
+    Flat,
+    /// The machine in perspective
+    Space,
+    /// Joint space with its planes
+    Joints,
+    /// All reactionless workspaces, b as height
+    Tower,
+}
+
+impl From<ViewName> for Shot {
+    fn from(name: ViewName) -> Self {
+        match name {
+            ViewName::Window => Self::Window,
+            ViewName::Flat => Self::View(ViewKind::Flat),
+            ViewName::Space => Self::View(ViewKind::Space),
+            ViewName::Joints => Self::View(ViewKind::Joints),
+            ViewName::Tower => Self::View(ViewKind::Tower),
+        }
+    }
+}
+
+/// Maximum number of pictures of a film.
+const MAX_PICTURES: f64 = 5000.0;
+
+fn range(text: &str) -> Result<FilmRange, String> {
+    if text.is_empty() {
+        return Ok(FilmRange(None));
+    }
+    let numbers: Option<Vec<f64>> = text.split(',').map(|x| x.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[from, to]) if from >= 0.0 && to > from && to.is_finite() => Ok(FilmRange(Some([from, to]))),
+        _ => Err("want FROM,TO in s, the first less than the second, such as 0,0.5".into()),
+    }
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate| (1.0..=50.0).contains(rate));
+    rate.ok_or_else(|| "want pictures per second, 1 to 50".into())
+}
+
+fn factor(text: &str) -> Result<f64, String> {
+    let factor = text.parse().ok().filter(|factor| (0.01..=1000.0).contains(factor));
+    factor.ok_or_else(|| "want a factor, 0.01 to 1000".into())
+}
+
+impl RenderArguments {
+    /// Draws, and writes the file.
+    pub fn run(&self) -> Result<(), Failure> {
+        let endings: &[&'static str] = if self.film.is_some() { &["gif", "png"] } else { &["png"] };
+        let ending = check_output(&self.output, self.force, endings)?;
+        let scenario = scenario(&self.scenario, &self.settings)?;
+        let mut app_state =
+            AppState::new(scenario.clone(), Theme::Dark).map_err(|why| Failure::refused(&scenario, why))?;
+        app_state.carry_out(SessionCommand::Seek(app_state.session().length()));
+        let end = app_state.session().frame().time;
+        // The scale of a window of this height, but large enough for labels to be legible.
+        let scale = (self.size[1] as f32 / 800.0).max(0.5);
+        let mut canvas = Canvas::new(self.size, scale).map_err(Failure::no_answer)?;
+        let theme = self.theme.into();
+        let mut bytes = Vec::new();
+        let Some(FilmRange(range)) = self.film else {
+            let at = within(self.at.unwrap_or(end), end, "--at")?;
+            app_state.carry_out(SessionCommand::Seek(at));
+            let picture = Shot::from(self.view).draw(&mut canvas, &mut app_state, theme).map_err(Failure::no_answer)?;
+            return self.write(&picture.to_png().map_err(Failure::no_answer)?, 1, [at; 2]);
+        };
+        let [from, to] = range.unwrap_or([0.0, end]);
+        let (from, to) = (within(from, end, "--film")?, within(to, end, "--film")?);
+        let count = ((to - from) * self.slow * self.fps).round() + 1.0;
+        if count > MAX_PICTURES {
+            let why = format!("a film of {count} pictures: want at most {MAX_PICTURES}, by --fps or a shorter --film");
+            return Err(Failure::wrong_input(why));
+        }
+        let format = if ending == "gif" { FilmFormat::Gif } else { FilmFormat::Png };
+        let begun = Film::begin(&mut bytes, format, self.size, count as u32, self.fps);
+        let mut film = begun.map_err(Failure::no_answer)?;
+        for i in 0..count as u32 {
+            let time = (from + f64::from(i) / (self.slow * self.fps)).min(to);
+            app_state.carry_out(SessionCommand::Seek(time));
+            let picture = Shot::from(self.view).draw(&mut canvas, &mut app_state, theme).map_err(Failure::no_answer)?;
+            film.push(picture).map_err(Failure::no_answer)?;
+        }
+        film.finish().map_err(Failure::no_answer)?;
+        self.write(&bytes, count as u32, [from, to])
+    }
+
+    fn write(&self, bytes: &[u8], pictures: u32, times: [f64; 2]) -> Result<(), Failure> {
+        write_new(&self.output, bytes, self.force)?;
+        let answer = Answer { file: self.output.display().to_string(), pictures, times };
+        self.format.print(&answer, |answer| {
+            let Answer { file, pictures, times: [from, to] } = answer;
+            let when = if from == to { format!("at {} s", fixed(*from, 3)) } else { format!("{} to {} s", fixed(*from, 3), fixed(*to, 3)) };
+            format!("{file}: {}, {when}\n", counted(*pictures, "picture"))
+        })
+    }
+}
+
+/// Returns a time, s, if it is within the run.
+fn within(time: f64, end: f64, option: &str) -> Result<f64, Failure> {
+    // The end is printed with three decimals, and works as printed.
+    let is_within = (0.0..=end + 5e-4).contains(&time);
+    is_within.then_some(time.min(end)).ok_or_else(|| {
+        Failure::wrong_input(format!("{option} {time}: want a time within the run, 0 to {} s", fixed(end, 3)))
+    })
+}

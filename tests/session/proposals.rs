@@ -1,0 +1,147 @@
+//! Proposals after a refusal: what is proposed works when its settings are typed, whatever was refused.
+
+use std::collections::BTreeMap;
+
+use stillbase::mechanics::machine::Inertia;
+use stillbase::session::design::relaxations;
+use stillbase::session::scenario::{Scenario, TaskKind};
+use stillbase::session::{Proposal, Run, improvements, proposals};
+use stillbase::settings::change::{join, single_change, value};
+use stillbase::settings::word::Choice as _;
+use toml::Table;
+
+use crate::support::{Noise, family_machine, random};
+
+/// Reads the settings of a proposal as the command line does.
+fn typed(proposal: &Proposal) -> Table {
+    proposal.settings().iter().fold(Table::new(), |all, setting| {
+        let (key, text) = setting.split_once('=').expect("KEY=VALUE");
+        join(all, &single_change(key, value(text)))
+    })
+}
+
+/// Returns the proposals for a scenario that is refused; each starts when its settings are typed.
+fn proven(scenario: &Scenario) -> Vec<Proposal> {
+    let refusal = Run::new(scenario).expect_err("refused");
+    let proposals = proposals(scenario, &refusal);
+    for proposal in &proposals {
+        let changed = scenario.with_settings(&typed(proposal)).unwrap_or_else(|why| panic!("{proposal:?}: {why}"));
+        Run::new(&changed).unwrap_or_else(|why| panic!("{refusal}: {:?}: {why}", proposal.settings()));
+    }
+    proposals
+}
+
+fn set(name: &str, settings: &[(&str, &str)]) -> Scenario {
+    let change = settings.iter().fold(Table::new(), |all, (key, text)| join(all, &single_change(key, value(text))));
+    Scenario::builtin(name).expect("built in").with_settings(&change).expect("settings")
+}
+
+fn texts(proposals: &[Proposal]) -> Vec<&str> {
+    proposals.iter().map(|proposal| proposal.text.as_str()).collect()
+}
+
+#[test]
+fn a_b_without_the_points_proposes_another_b_and_the_task_turned() {
+    let found = proven(&set("case-3", &[("task.b", "0.2")]));
+    assert!(
+        texts(&found)[..2] == ["take b = 2.2158 rad", "keep b = 0.2000 rad, and turn the task with it"],
+        "{found:?}"
+    );
+    assert_eq!(found[0].settings(), ["task.b=2.2158"]);
+}
+
+#[test]
+fn a_point_past_the_reach_proposes_a_task_of_the_machine() {
+    let found = proven(&set("case-3", &[("task.to", "5,5")]));
+    assert_eq!(texts(&found), ["take a task made for this machine"]);
+    // Only what changes is stated.
+    assert!(found[0].settings().len() < 8, "{:?}", found[0].settings());
+}
+
+#[test]
+fn a_machine_out_of_balance_proposes_to_balance_it() {
+    let scenario = set("case-3", &[("link.5.com", "0.2")]);
+    let found = improvements(&scenario);
+    assert_eq!(texts(&found), ["balance the machine"]);
+    let balanced = scenario.with_settings(&typed(&found[0])).expect("settings");
+    assert!(Inertia::of(&balanced.machine).is_balanced(), "{found:?}");
+}
+
+/// A torque past its limit: the motion made longer keeps it, and is not much longer than it has to be.
+#[test]
+fn a_limit_that_is_exceeded_proposes_more_time_and_the_fastest() {
+    let scenario = set(
+        "case-3",
+        &[
+            ("task.time", "0.3"),
+            ("drive.1.torque_limit", "0.6"),
+            ("drive.2.torque_limit", "0.6"),
+            ("drive.3.torque_limit", "0.6"),
+        ],
+    );
+    assert!(Run::new(&scenario).expect("it starts").plan().forecast.exceeded_limit.is_some());
+    let found = improvements(&scenario);
+    let [longer, fastest] = &found[..] else { panic!("{found:?}") };
+    assert!(longer.text.contains("times as long") && fastest.text.contains("fastest"), "{found:?}");
+    for proposal in &found {
+        let run = Run::new(&scenario.with_settings(&typed(proposal)).expect("settings")).expect("it starts");
+        assert!(run.plan().forecast.exceeded_limit.is_none(), "{proposal:?}");
+    }
+    let time = longer.change["task"]["time"].as_float().expect("a time");
+    let shorter = scenario.with_settings(&single_change("task.time", 0.93 * time)).expect("a time");
+    assert!(Run::new(&shorter).expect("it starts").plan().forecast.exceeded_limit.is_some(), "{time} s is too long");
+}
+
+#[test]
+fn a_balanced_machine_on_a_line_proposes_to_run_it_reactionless() {
+    let found = improvements(&set("case-1", &[]));
+    assert_eq!(texts(&found), ["run it reactionless"]);
+    assert!(improvements(&set("case-3", &[])).is_empty(), "nothing to improve");
+}
+
+/// Bounds within which no counterweights balance the machine: bounds that do are proposed, and suffice as typed.
+#[test]
+fn bounds_that_are_too_tight_propose_wider_ones() {
+    for settings in [&[("design.heaviest", "0.5")][..], &[("design.heaviest", "2.5"), ("design.clearance", "0.2")]] {
+        let scenario = set("case-3", settings);
+        let bare = family_machine("nine-link-bare");
+        let Err(why) = scenario.design.front(&bare, 2) else { continue };
+        let found = relaxations(&why);
+        assert!(!found.is_empty() && found.iter().all(|one| one.text.starts_with("use ")), "{why}: {found:?}");
+        for proposal in found {
+            let changed = scenario.with_settings(&typed(&proposal)).expect("settings");
+            changed.design.front(&bare, 2).unwrap_or_else(|why| panic!("{proposal:?}: {why}"));
+        }
+    }
+}
+
+/// Whatever is refused of random machines and tasks, what is proposed starts; nearly everything has a way out.
+#[test]
+fn what_is_proposed_starts() {
+    let mut noise = Noise::of(281);
+    let (mut refused, mut without) = (0, BTreeMap::new());
+    for _ in 0..80 {
+        let kinds = TaskKind::ALL;
+        let kind = kinds[noise.between(0.0, kinds.len() as f64) as usize];
+        let n = noise.between(2.0, 4.999) as usize;
+        let machine = if noise.sign() > 0.0 { random::a_chain(&mut noise, n) } else { random::a_machine(&mut noise) };
+        let mut scenario = Scenario { machine, ..Scenario::builtin("case-3").expect("built in") };
+        let size = noise.between(0.1, 4.0);
+        scenario.task.from = [noise.between(-size, size), noise.between(-size, size)];
+        scenario.task.to = [noise.between(-size, size), noise.between(-size, size)];
+        scenario.task.b = noise.between(-4.0, 8.0);
+        scenario.task.kind = kind;
+        if scenario.check("").is_err() {
+            continue;
+        }
+        let Err(why) = Run::new(&scenario) else { continue };
+        refused += 1;
+        if proven(&scenario).is_empty() {
+            let own = stillbase::session::gentle_motion(&scenario.machine).map(|own| Run::new(&own).err());
+            *without.entry(format!("{why} / {own:?}")).or_insert(0) += 1;
+        }
+    }
+    let dead_ends: i32 = without.values().sum();
+    assert!(refused > 30, "only {refused} are refused: too few to tell");
+    assert!(20 * dead_ends <= refused, "{dead_ends} of {refused} without a way out: {without:#?}");
+}
