@@ -175,7 +175,11 @@ impl RenderArguments {
         let answer = Answer { file: self.output.display().to_string(), pictures, times };
         self.format.print(&answer, |answer| {
             let Answer { file, pictures, times: [from, to] } = answer;
-            let when = if from == to { format!("at {} s", fixed(*from, 3)) } else { format!("{} to {} s", fixed(*from, 3), fixed(*to, 3)) };
+            let when = if from == to {
+                format!("at {} s", fixed(*from, 3))
+            } else {
+                format!("{} to {} s", fixed(*from, 3), fixed(*to, 3))
+            };
             format!("{file}: {}, {when}\n", counted(*pictures, "picture"))
         })
     }

@@ -88,7 +88,7 @@ impl<W: Write> Film<W> {
     pub fn finish(self) -> io::Result<()> {
         match self.encoder {
             // The end of a GIF is written when its encoder gives the file back.
-            FilmEncoder::Gif(encoder) => encoder.into_inner().map(drop),
+            FilmEncoder::Gif(encoder) => encoder.into_inner().map(drop).map_err(io::Error::other),
             FilmEncoder::Png(writer) => Ok(writer.finish()?),
         }
     }
