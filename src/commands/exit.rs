@@ -29,12 +29,13 @@ struct FailureReport<'a> {
 }
 
 /// Prints the reason of a failure in one line, and a line for each proposal that leads out of it. With `as_json`,
-/// prints both on standard output, too, unless the answer there holds them. Returns the exit status.
+/// prints both of a refused scenario on standard output, too, unless the answer there holds them. Returns the exit status.
 pub fn exit_code(done: Result<(), Failure>, as_json: bool) -> ExitCode {
     let Err(failure) = done else { return ExitCode::SUCCESS };
+    // A failure other than a refusal may follow an answer; it prints no second object.
     let RefusedScenario { failure, proposals, is_printed } = match failure {
         Failure::Refused(refused) => *refused,
-        failure => RefusedScenario { failure, proposals: Vec::new(), is_printed: false },
+        failure => RefusedScenario { failure, proposals: Vec::new(), is_printed: true },
     };
     let (status, why) = match failure {
         Failure::NoAnswer(why) => (1, why),

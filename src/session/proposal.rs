@@ -8,7 +8,7 @@ use crate::edit::Edit;
 use crate::gentle_motion;
 use crate::refusal::Refusal;
 use crate::run::Run;
-use crate::scenario::{MAX_STEPS, PathShape, STEP_RANGE, Scenario, Task, TaskKind};
+use crate::scenario::{MAX_STEPS, PathShape, Scenario, Task, TaskKind};
 use stillbase_mechanics::machine::{Inertia, is_of_machine};
 use stillbase_mechanics::planar::{Vector, unit};
 use stillbase_planning::pose_space::PoseSpace;
@@ -263,14 +263,18 @@ fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal> {
                 found.push(Proposal::new(text, single_change(what, nearest)));
             }
         }
-        Refusal::Diverged { .. } | Refusal::Untrusted { .. } => {
-            let step = (0.2 * scenario.step).max(STEP_RANGE.low());
-            found.push(Proposal::new(format!("take a step of {step} s"), single_change("step", step)));
-        }
         Refusal::TooManySteps { time, .. } => {
             let step = round_up(time / MAX_STEPS as f64);
             found.push(Proposal::new(format!("take a step of {step} s"), single_change("step", step)));
+            return found;
         }
+        // The task can be planned: no other task would help, and a finer step would have to be simulated to tell.
+        Refusal::TooLarge { .. }
+        | Refusal::Full { .. }
+        | Refusal::Stopped
+        | Refusal::Diverged { .. }
+        | Refusal::Untrusted { .. }
+        | Refusal::LeavesLimits { .. } => return found,
         _ => {}
     }
     let is_of_path = matches!(
