@@ -106,7 +106,11 @@ fn typed<'a>(settings: &'a [Setting], sought: &str) -> Vec<Entry<'a>> {
     let Some((words, text)) = sought.trim().rsplit_once(['=', ' ']) else { return Vec::new() };
     let (words, text) = (words.trim().to_owned(), text.trim().to_owned());
     let value = change::value(&text);
-    let score = |setting: &Setting| search::score_with(&words, &setting.path, setting.key.meaning);
+    // A path that is typed in full comes first.
+    let score = |setting: &Setting| match setting.path == words {
+        true => Some(i32::MAX),
+        false => search::score_with(&words, &setting.path, setting.key.meaning),
+    };
     let mut scored: Vec<(i32, &Setting)> = settings
         .iter()
         .filter(|setting| !words.is_empty() && setting.key.value_type.accepts(&value))

@@ -1,5 +1,7 @@
 //! The lamps: statements about machine, plan and run, each with its number, its reason and what would improve it.
 
+use std::sync::Arc;
+
 use egui::{Popup, RectAlign, RichText, Sense, Ui, vec2};
 
 use super::theme::{bold, colour, plain};
@@ -30,7 +32,7 @@ pub fn button(
     ui: &mut Ui,
     named: (&str, &Statement),
     size: f32,
-    proposals: &[Proposal],
+    improvements: &dyn Fn() -> Option<Arc<Vec<Proposal>>>,
     p: &Palette,
     commands: &mut Vec<Command>,
 ) {
@@ -41,12 +43,11 @@ pub fn button(
         let title = format!("{about}: {}", statement.words);
         ui.add(egui::Label::new(RichText::new(title).font(bold(13.0)).color(colour(p.ink))).wrap());
         ui.add(egui::Label::new(RichText::new(&statement.why).font(plain(12.0)).color(colour(p.dim))).wrap());
-        if statement.outcome != StatusLight::Good {
-            for improvement in proposals.iter().filter(|one| one.is_of_machine() == (about == Statements::MACHINE)) {
-                if about != Statements::RUN {
-                    proposal(ui, improvement, None, commands);
-                }
-            }
+        // What improves a plan is searched for only while it is asked for.
+        let asks = about != Statements::RUN && statement.outcome != StatusLight::Good;
+        if let Some(improvements) = asks.then(improvements).flatten() {
+            let is_here = |one: &&Proposal| one.is_of_machine() == (about == Statements::MACHINE);
+            improvements.iter().filter(is_here).for_each(|one| proposal(ui, one, None, commands));
         }
         let (words, to) = place(about);
         if ui.button(words).clicked() {

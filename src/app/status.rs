@@ -1,5 +1,7 @@
 //! The status line at the bottom: the verdict, and a hint on what to do next.
 
+use std::sync::Arc;
+
 use egui::{Align, Layout, Margin, Panel, RichText, Sense, Ui, vec2};
 
 use super::facts::ScenarioFacts;
@@ -121,7 +123,7 @@ pub fn show(
     ui: &mut Ui,
     session: &Session,
     found: &ScenarioFacts<'_>,
-    proposals: &[Proposal],
+    improvements: &dyn Fn() -> Option<Arc<Vec<Proposal>>>,
     view_state: &ViewState,
     under_way: Option<(Activity, f64)>,
     commands: &mut Vec<Command>,
@@ -134,7 +136,7 @@ pub fn show(
             ui.spacing_mut().item_spacing.x = 14.0;
             let statements = lamp::statements(session);
             for named in statements.named() {
-                lamp::button(ui, named, 12.5, proposals, &p, commands);
+                lamp::button(ui, named, 12.5, improvements, &p, commands);
             }
             audit_dots(ui, f, &p);
             let mut facts: Vec<String> = Vec::new();

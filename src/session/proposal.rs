@@ -212,7 +212,7 @@ fn long_enough(scenario: &Scenario, goes_on: ProgressCallback<'_>) -> Option<Opt
     }
     let of_factor = |factor: f64| {
         let time = round_up(factor * scenario.task.time);
-        let text = format!("take {} times as long, {time} s", round_up(factor));
+        let text = format!("take {:.1} times as long, {time} s", time / scenario.task.time);
         Proposal::new(text, single_change("task.time", time))
     };
     let keeps = |factor: f64| of_factor(factor).tried(scenario).is_some_and(|run| keeps_limits(&run));

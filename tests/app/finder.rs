@@ -88,7 +88,7 @@ fn a_value_is_typed_where_its_setting_is_found() {
         let state = h.state().app_state();
         (state.session().scenario().clone(), state.view_state().status.problem().map(ToOwned::to_owned))
     };
-    assert_eq!(enter("payload mass 0.4").0.plant.payload.mass, 0.4);
+    assert_eq!(enter("plant.payload.mass 0.4").0.plant.payload.mass, 0.4);
     assert_eq!(enter("task.time = 3").0.task.time, 3.0);
     let (kept, problem) = enter("task.time -1");
     assert!(kept.task.time == 3.0 && problem.expect("a reason").contains("task.time"));

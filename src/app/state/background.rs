@@ -74,29 +74,35 @@ impl AppState {
         }
     }
 
-    /// Returns what proposals are for: the last refused edit, the task of a run that waits, or the plan on display.
-    fn improvable(&self) -> Option<(Shared<Scenario>, Option<Refusal>)> {
+    /// Returns what is refused, with the reason: the last edit, or the task of a run that waits.
+    fn refused(&self) -> Option<(Shared<Scenario>, Option<Refusal>)> {
         let refused = self.view_state.status.refused.as_ref().and_then(|refused| refused.refused.clone());
         let run = self.session.run();
-        match (refused, run.waiting()) {
-            (Some((scenario, why)), _) => Some((scenario, Some(why))),
-            (None, Some(waiting)) => Some((run.shared_scenario(), Some(waiting.why.clone()))),
-            (None, None) => is_improvable(run).then(|| (run.shared_scenario(), None)),
-        }
+        let waiting = || Some((run.shared_scenario(), run.waiting()?.why.clone()));
+        refused.or_else(waiting).map(|(scenario, why)| (scenario, Some(why)))
     }
 
-    /// Requests proposals that lead out of a refusal or improve the plan; a newer request replaces an older one.
+    /// Requests proposals that lead out of what is refused; a newer request replaces an older one.
     pub(super) fn refresh_proposals(&mut self) {
-        match self.improvable() {
+        match self.refused() {
             None => self.queries().forget::<ProposalsQuery>(),
             Some(_) if self.view_state.gesture.grabbed.is_some() => {}
-            Some(improvable) => drop(self.queries().ask_in_background::<ProposalsQuery>(&improvable)),
+            Some(refused) => drop(self.queries().ask_in_background::<ProposalsQuery>(&refused)),
         }
     }
 
-    /// Returns the proposals that lead out of a refusal or improve the plan, once they are known.
+    /// Returns the proposals that lead out of what is refused, once they are known.
     pub(super) fn proposals(&self) -> Option<Arc<Vec<Proposal>>> {
-        self.queries().known::<ProposalsQuery>(&self.improvable()?)
+        self.queries().known::<ProposalsQuery>(&self.refused()?)
+    }
+
+    /// Requests proposals that improve the plan on display; returns them once they are known. While something is
+    /// refused, there are none.
+    pub(super) fn improvements(&self) -> Option<Arc<Vec<Proposal>>> {
+        let run = self.session.run();
+        let asks = self.refused().is_none() && is_improvable(run);
+        let input = asks.then(|| (run.shared_scenario(), None))?;
+        self.queries().ask_in_background::<ProposalsQuery>(&input).known().cloned()
     }
 
     /// Returns the study of tolerances, or the reason why there is none.

@@ -60,11 +60,8 @@ impl AppState {
             let line = (&marks, self.pace.lagging_rate());
             top::show(ui, &self.session, &facts, &self.saving.recent, line, &self.view_state, &mut commands);
             let under_way = self.background.under_way();
-            // While something is refused, the proposals stand beside the reason.
-            let refused = self.view_state.status.refused.is_some() || self.session.run().waiting().is_some();
-            let improvements = self.proposals().filter(|_| !refused);
-            let improvements = improvements.as_ref().map_or(&[][..], |known| known);
-            status::show(ui, &self.session, &facts, improvements, &self.view_state, under_way, &mut commands);
+            let improvements = || self.improvements();
+            status::show(ui, &self.session, &facts, &improvements, &self.view_state, under_way, &mut commands);
             rail::show(ui, &self.session, &self.session.forks(), &self.view_state, &mut commands);
         }
         if let Some(comparison) = &self.comparison {
