@@ -104,7 +104,8 @@ const MAX_TYPED_ENTRIES: usize = 3;
 /// Returns entries that set what is typed: a setting by a few letters, and its value after a space or `=`.
 fn typed<'a>(settings: &'a [Setting], sought: &str) -> Vec<Entry<'a>> {
     let Some((words, text)) = sought.trim().rsplit_once(['=', ' ']) else { return Vec::new() };
-    let (words, text) = (words.trim().to_owned(), text.trim().to_owned());
+    let words = words.trim_end_matches([' ', '=']).trim().to_owned();
+    let text = text.trim().to_owned();
     let value = change::value(&text);
     // A path that is typed in full comes first.
     let score = |setting: &Setting| match setting.path == words {
