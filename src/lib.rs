@@ -173,15 +173,15 @@
 //!
 //! | feature | what it adds | crates |
 //! |---|---|---|
-//! | none | machines, plans, simulations, sessions, studies, models for other programs, scenes as data | 78 |
-//! | `tables` | motions from tables of numbers (CSV) | 81 |
-//! | `cli` | the program and its subcommands; parquet files of a study | 122 |
-//! | `render` | pictures of scenes, drawn on the GPU by wgpu | 130 |
-//! | `ui` | panels, plots and figures, without a window | 162 |
-//! | `window` | the window around them | 271 |
+//! | none | machines, plans, simulations, sessions, studies, models for other programs, scenes as data | 77 |
+//! | `tables` | motions from tables of numbers (CSV) | 80 |
+//! | `cli` | the program and its subcommands; parquet files of a study | 121 |
+//! | `render` | pictures of scenes, drawn on the GPU by wgpu; films | 132 |
+//! | `ui` | panels, plots and figures, without a window | 164 |
+//! | `window` | the window around them | 273 |
 //! | `record` | recordings for the Rerun viewer | 296 |
 //!
-//! `window`, `record` and `cli` are enabled by default, 468 crates together. `tables`, `render` and `ui` are enabled by
+//! `window`, `record` and `cli` are enabled by default, 471 crates together. `tables`, `render` and `ui` are enabled by
 //! the features that need them.
 //!
 //! # Checking the interface
