@@ -19,8 +19,8 @@ use stillbase_settings::text::sheet_cell;
 
 /// Compare runs of one task done in several ways, or of several scenarios, by base reactions and cost
 ///
-/// One scenario: its task runs in up to five ways. They are a reactionless path, a straight line (case 1), another pose
-/// at the end (case 2), a straight line with a reaction wheel, and slow motion. Several scenarios: each runs as given.
+/// One scenario: its task runs in up to six ways. They are as given, reactionless, straight (case 1), to another pose
+/// (case 2), straight with a reaction wheel, and slowly. Several scenarios: each runs as given.
 /// If their machines differ, a second table gives mass and balance of each, and cost and benefit relative to the first.
 #[derive(Args)]
 #[command(after_help = "\

@@ -24,7 +24,7 @@ pub struct OpenArguments {
     settings: Settings,
 }
 
-/// Colours of the window.
+/// Colours of a window or a picture.
 #[cfg(feature = "ui")]
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 pub enum ThemeName {
@@ -48,7 +48,7 @@ impl OpenArguments {
     /// Shows the scenario in a window, or records it if there is no window.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = overlay_for_study(&self.scenario, &self.settings).map_err(|failure| match failure {
-            // The name is most likely a mistyped command.
+            // The name may be a mistyped command, or the fault is in `--set`.
             Failure::WrongInput(why) if !self.scenario.ends_with(".toml") => {
                 Failure::WrongInput(format!("{why}; `stillbase --help` lists the commands"))
             }

@@ -18,7 +18,7 @@ pub(crate) fn check_edits(scenario: &Scenario) -> Result<(), (usize, String)> {
     let script: Vec<&TimedEdit> = order.iter().map(|i| &edits[*i]).collect();
     let opening = opening(script.iter().copied());
     let mut now = scenario.without_edits();
-    // Edits before the first step need to give a valid scenario together, not one by one.
+    // Edits at step 0 before the first drag need to give a valid scenario together, not one by one.
     let mut unsound = None;
     for (place, (entry, timed)) in order.iter().zip(&script).enumerate() {
         let of_entry = |why: String| (*entry, why);

@@ -187,7 +187,7 @@ fn gutter(ui: &Ui, lines: &[Equality]) -> f32 {
     names.map(|line| terms::label(ui, line) + 4.0).fold(0.0, f32::max).min(MAX_NAME_WIDTH_PT)
 }
 
-/// Draws a symbol or a sentence with symbols as a row.
+/// Draws a symbol or a sentence with symbols, wrapped at the available width.
 fn symbols(ui: &mut Ui, text: &str, size: f32, tone: egui::Color32) {
     let galley = set(ui, text, size, tone, ui.available_width());
     let (rect, _) = ui.allocate_exact_size(galley.size(), Sense::hover());

@@ -153,7 +153,7 @@ pub fn common_axis(parts: &[ImportedPart]) -> Result<(Unit<Vector3<f64>>, Vec<f6
     let Some(first) = first else {
         return Err(ImportError::of_file("nothing turns", "links on revolute joints or hinges"));
     };
-    // The common axis points towards positive z, y or x if possible, so that angles have the sign of the file.
+    // The first large component of z, y and x becomes positive: a file's axis along it keeps the sign of its angle.
     let up = [first.z, first.y, first.x].into_iter().find(|x| x.abs() > 0.5).unwrap_or(1.0);
     let axis = if up < 0.0 { -first } else { first };
     let mut signs = Vec::with_capacity(parts.len());

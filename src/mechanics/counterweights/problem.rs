@@ -40,7 +40,7 @@ impl CounterweightProblem {
         Ok(Self { bare, inertia, conditions, reach })
     }
 
-    /// Checks that counterweights on the axes of these links can change every condition that is not satisfied.
+    /// Checks that counterweights on the axes of the sites' links can change every condition that is not satisfied.
     ///
     /// # Errors
     /// If they cannot change one of these conditions.

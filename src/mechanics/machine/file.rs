@@ -17,7 +17,7 @@ pub enum FileError {
     Unreadable {
         /// The file.
         file: PathBuf,
-        /// Reason given by the operating system.
+        /// Reason: that of the operating system, or that it is no plain file or too long.
         source: std::io::Error,
     },
     /// The file does not describe a machine.

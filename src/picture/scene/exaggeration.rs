@@ -100,7 +100,7 @@ impl<'a> DrawnFrame<'a> {
         Self { frame, base, q, end_effector: moved(frame.end_effector), com: moved(frame.com), target }
     }
 
-    /// Converts a drawn position, m, to the frame of the base, as if the base had not moved.
+    /// Converts a drawn position, m, to the axes of the drawn base.
     pub fn in_base(&self, place: Vector) -> Vector {
         (place - self.base.at) * unit(-self.base.angle)
     }

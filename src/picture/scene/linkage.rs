@@ -34,7 +34,7 @@ pub struct Bar {
     /// Name of the link.
     pub name: String,
     item: Name,
-    /// Index of the mesh, which extends along x from the root of the link.
+    /// Index of the mesh, which extends along x over the drawn interval; the root of the link is at x = 0.
     pub mesh: usize,
     /// Index of the drive that it follows, from 0.
     pub drive: usize,
@@ -42,7 +42,7 @@ pub struct Bar {
     pub carries_tip: bool,
     root: Chain,
     sign: f64,
-    /// Length, m: position of the next link or the end effector.
+    /// Length from root to tip, m.
     length: f64,
     /// Interval along the link in which it is drawn, m.
     span: [f64; 2],
@@ -200,7 +200,7 @@ impl LinkageModel {
         }
     }
 
-    /// Maximum distance of the end effector from B, m.
+    /// Upper bound of the end effector's distance from B, m.
     pub fn reach(&self) -> f64 {
         self.reach
     }
@@ -330,7 +330,7 @@ impl LinkageModel {
         })
     }
 
-    /// Returns drive and end points, m, of the links between base and end effector, from B outwards.
+    /// Returns drive and end points, m, of the links between base and end effector, in the machine's order of links.
     pub fn skeleton(&self, e: &UnitVectors) -> Vec<(usize, [Vector; 2])> {
         let carriers = self.bars.iter().filter(|b| b.carries_tip);
         carriers

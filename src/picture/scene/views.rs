@@ -1,4 +1,4 @@
-//! The linked views of one run: the machine from above and in perspective, joint space, and the tower of workspaces. A
+//! The linked views of one run: the machine from above and in perspective, joint space, the tower, and the design. A
 //! drag in one of them is a request to the session, so all views follow.
 
 use std::sync::Arc;
@@ -261,8 +261,8 @@ impl Views {
         }
     }
 
-    /// Prepares a whole run whose b lie in an interval, rad; joint space and tower show a constant interval that
-    /// contains it.
+    /// Prepares a whole run whose b lie in an interval, rad. Joint space shows a constant interval of b that
+    /// contains it; so does the tower, up to its maximum length.
     #[doc(hidden)]
     pub fn over(run: &Run, b: [f64; 2], queries: &Queries) -> Self {
         let mut stage = Stage::begun(run);

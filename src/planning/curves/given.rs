@@ -254,7 +254,7 @@ impl Samples {
     /// [`crate::curves::low_pass`].
     ///
     /// # Errors
-    /// If the cut-off is not below half of the mean rate.
+    /// If the cut-off is not above 0 and below half of the mean rate.
     pub fn smoothed(&self, cut_off: f64) -> Result<Self, SamplesError> {
         let wrong = || SamplesError::CutOff { cut_off, nyquist: 0.5 / self.spacing() };
         let pass = LowPass::new(&self.times(), cut_off).ok_or_else(wrong)?;

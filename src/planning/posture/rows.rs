@@ -24,7 +24,7 @@ pub(super) struct PoseConstraint<'a> {
     pub hand: Option<(usize, f64)>,
 }
 
-/// The rows ∂(p, b, hand)/∂q at a pose, scaled to the length of the arm, factorised as L U with orthonormal U.
+/// The rows ∂(p, b, hand)/∂q at a pose, in m: triangular `lower` times `across`, whose rows are orthonormal.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ConstraintJacobian {
     count: usize,
@@ -129,7 +129,7 @@ impl PoseConstraint<'_> {
 }
 
 impl ConstraintJacobian {
-    /// Returns the minimum-norm change of q for a wanted change of the rows.
+    /// Returns the minimum-norm change of q for a wanted change of the constrained quantities, scaled to m.
     pub fn least(&self, wanted: &[f64; ROWS]) -> PerDrive {
         let mut delta = PerDrive::zeros(self.across[0].len());
         let mut y = [0.0; ROWS];

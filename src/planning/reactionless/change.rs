@@ -47,7 +47,7 @@ impl AngleDifference {
         ]
     }
 
-    /// Returns the ends, within limits, of the line at a number of half turns; `None` if it lies outside.
+    /// Returns the ends of the line at a number of half turns, within limits; `None` if it is oblique and outside.
     pub fn segment(&self, limits: [AngleLimit; 2], half_turns: f64) -> Option<[[f64; 2]; 2]> {
         let level = self.level(half_turns);
         // The coordinate that parametrises the line: a_2 if a_1 is constant, else a_1.

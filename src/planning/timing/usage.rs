@@ -139,7 +139,7 @@ impl Demand {
         furthest
     }
 
-    /// Returns the factors on time with which the instant just keeps each limit. Rates are inversely proportional to a
+    /// Returns for each limit the factor of time stretch that just keeps it. Rates are inversely proportional to a
     /// factor, accelerations and the torque of motion to its square, jerks to its cube. A factor is infinite if holding
     /// still already requires the whole torque.
     pub(super) fn stretches(&self, limits: &DriveLimits) -> [f64; 4 * MAX_DRIVES] {

@@ -1,4 +1,4 @@
-//! [`Bars`]: contributions of the links to the conditions (7) or (8), as a group of bars for each condition.
+//! [`Bars`]: real parts of the links' contributions to the conditions (7) or (8), a group of bars for each condition.
 
 use crate::rerun::{BarChart, EntityPath};
 

@@ -52,7 +52,7 @@ pub fn key_of(path: &str) -> Option<&'static Key> {
     keys().find(|key| key.matches(path))
 }
 
-/// The parts of a scenario that are separate tables in its file.
+/// The parts of a scenario, other than its machine, that are separate tables in its file.
 pub(super) const SCENARIO_TABLES: [&str; 6] = ["task", "control", "plant", "base", "tolerance", "design"];
 
 /// Returns the effect of a change of settings: the largest effect of its keys.

@@ -33,7 +33,7 @@ pub struct DesignMeasures {
     /// Comparison with the machine of the first run, in the first run's motion; without β if that motion does not
     /// apply.
     pub comparison: Option<Measures>,
-    /// Reason for a missing comparison.
+    /// Reason, if any, for a missing comparison or a missing β.
     pub why_not: Option<String>,
 }
 
@@ -106,7 +106,7 @@ impl DesignCandidate {
             return design;
         }
         let motion = match (self.is_alike(first), self.differs(first)) {
-            // Compared with itself, every β is 1.
+            // Between equal machines every β is 1: no motion is needed.
             (true, _) => None,
             (_, Some(what)) => {
                 design.why_not = Some(format!("{what} differs from that of the first: no β of the same motion"));

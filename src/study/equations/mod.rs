@@ -66,7 +66,7 @@ pub fn equations(machine: &Machine, state: &DriveState, penalties: Preset) -> Ve
     ]
 }
 
-/// Couplings up to this fraction of the total inertia are attributed to the rounding of a table.
+/// Couplings up to this fraction of Σ H_kk are taken as rounding of printed data, such as the paper's tables.
 const COUPLING_TOLERANCE: f64 = 1e-3;
 
 /// Returns the reason if the mass matrix is not constant, else `None`.

@@ -20,7 +20,7 @@ pub struct ParameterChange {
     pub key: String,
     /// Present value; 0 for a new counterweight.
     pub from: f64,
-    /// New value, rounded so that it can be set: to 0.1 g or 0.1 mm.
+    /// New value; its change is rounded to 0.1 g or 0.1 mm, unless a mass would then not be positive.
     pub to: f64,
     /// New value before rounding.
     pub exact: f64,
@@ -73,8 +73,8 @@ const SETTING_STEP: f64 = 1e-4;
 /// New counterweights lighter than this fraction of the heaviest are omitted.
 const NEGLIGIBLE_MASS: f64 = 1e-3;
 
-/// Finds the least change that removes the identified imbalance. The part of the imbalance that no change on the axes
-/// of the links can remove is included in [`MachineCorrection::residuals`].
+/// Finds the least change that removes the identified imbalance. The part of the imbalance that no values of the
+/// numbers that `way` lets change can remove is included in [`MachineCorrection::residuals`].
 ///
 /// # Errors
 /// Fails if the bounds permit no solution.

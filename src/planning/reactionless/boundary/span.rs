@@ -1,7 +1,7 @@
-//! Spans: short pieces of the curves that can bound a workspace, which are images of limits, and folds with det = 0.
+//! Spans: short pieces of the curves whose images can bound a workspace: limits, change points, folds with det = 0.
 //!
 //! A span is a graph in (a_1, a_2): one coordinate varies linearly between the ends, the other follows the curve. It is
-//! oriented with the side of more poses on its left: one more for a limit, two more for a fold. So all spans together
+//! oriented with more poses on its left: two more for a fold, one more for any other curve. So all spans together
 //! are a weighted cycle whose winding number about p is the number of poses of p.
 
 use super::determinant::{Determinant, FOLD_INSET, upright};
@@ -39,7 +39,7 @@ pub(super) struct BoundarySpan {
     slopes: [f64; 2],
     /// Whether the other coordinate solves det = 0; else it varies linearly too.
     solved: bool,
-    /// Maximum distance between the chord and the curve, m; τ² times this for a part of parameter length τ.
+    /// Bound on the distance between chord and curve, m; τ² times this for a part of parameter length τ.
     pub deviation: f64,
 }
 

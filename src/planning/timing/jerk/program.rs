@@ -18,7 +18,7 @@ const END_PLACES: [(f64, f64); 5] =
 const END_INTERVALS: usize = 4;
 
 /// A two-sided limit at a point: |v · c + g y^⅓| ≤ y^⅓, or |v · c − k y′²/y| ≤ 1 for speed and jerk. Here y is θ̇³ and
-/// c are three coefficients of y, from [`LimitPoint::first`] on.
+/// c are three spline coefficients of y, from [`LimitPoint::first`] on.
 #[derive(Clone, Copy, Default)]
 pub(super) struct TwoSidedLimit {
     /// v.
