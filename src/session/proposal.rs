@@ -256,12 +256,10 @@ fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal> {
                 Some(Proposal::of_task(format!("move {} to ({x}, {y}) m", task.name_of(point)), change))
             }));
         }
-        Refusal::OutOfRange { what, value, want } => {
-            if let Requirement::Within(range) = want {
-                let nearest = value.clamp(range.low(), range.high());
-                let text = format!("take {what} = {}", typed(&nearest.into()));
-                found.push(Proposal::new(text, single_change(what, nearest)));
-            }
+        Refusal::OutOfRange { what, value, want: Requirement::Within(range) } => {
+            let nearest = value.clamp(range.low(), range.high());
+            let text = format!("take {what} = {}", typed(&nearest.into()));
+            found.push(Proposal::new(text, single_change(what, nearest)));
         }
         Refusal::TooManySteps { time, .. } => {
             let step = round_up(time / MAX_STEPS as f64);

@@ -36,7 +36,7 @@ impl CoupledBodies<'_> {
         if merged.len() > MAX_SIDES {
             return Err(element_error(
                 node,
-                &format!("its loop has {} sides, and at most {MAX_SIDES} are read", merged.len()),
+                format!("its loop has {} sides, and at most {MAX_SIDES} are read", merged.len()),
                 "loops of fewer bodies, such as parallelograms",
             ));
         }
