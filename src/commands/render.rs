@@ -8,6 +8,7 @@ use stillbase_app::{AppState, SessionCommand};
 use stillbase_files::write_new;
 use stillbase_picture::canvas::Canvas;
 use stillbase_picture::film::{Film, FilmFormat};
+use stillbase_picture::render::offscreen::legible_scale;
 use stillbase_picture::scene::palette::Theme;
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_settings::number::{counted, fixed};
@@ -139,9 +140,7 @@ impl RenderArguments {
             AppState::new(scenario.clone(), Theme::Dark).map_err(|why| Failure::refused(&scenario, why))?;
         app_state.carry_out(SessionCommand::Seek(app_state.session().length()));
         let end = app_state.session().frame().time;
-        // The scale of a window of this height, but large enough for labels to be legible.
-        let scale = (self.size[1] as f32 / 800.0).max(0.5);
-        let mut canvas = Canvas::new(self.size, scale).map_err(Failure::no_answer)?;
+        let mut canvas = Canvas::new(self.size, legible_scale(self.size[1])).map_err(Failure::no_answer)?;
         let theme = self.theme.into();
         let mut bytes = Vec::new();
         let Some(FilmRange(range)) = self.film else {

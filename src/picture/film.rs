@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use gif::{Encoder, Frame, Repeat};
 
-use crate::render::offscreen::Picture;
+use crate::render::offscreen::{Picture, png_encoder};
 
 /// Format of a film.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,10 +48,7 @@ impl<W: Write> Film<W> {
                 FilmEncoder::Gif(encoder)
             }
             FilmFormat::Png => {
-                let mut encoder = png::Encoder::new(to, width, height);
-                encoder.set_color(png::ColorType::Rgba);
-                encoder.set_depth(png::BitDepth::Eight);
-                encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
+                let mut encoder = png_encoder(to, [width, height]);
                 encoder.set_animated(count, 0)?;
                 encoder.set_frame_delay(1000, (1000.0 * fps).round().clamp(1.0, 65_535.0) as u16)?;
                 FilmEncoder::Png(encoder.write_header()?)

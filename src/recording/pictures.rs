@@ -6,7 +6,7 @@ use super::options::Pictures;
 use super::stop::CaseError;
 use super::store::{Instant, RowTimes, Store};
 #[cfg(feature = "render")]
-use stillbase_picture::render::offscreen::{NoAdapter, NoPicture, Picture};
+use stillbase_picture::render::offscreen::{NoAdapter, NoPicture, Picture, legible_scale};
 #[cfg(all(feature = "render", not(feature = "ui")))]
 use stillbase_picture::render::{View, offscreen::Gpu};
 use stillbase_picture::scene::{Scene, camera::Camera, options::ViewOptions, stage::Stage};
@@ -26,8 +26,7 @@ struct Painter(Gpu, View);
 impl Painter {
     fn new(wanted: Pictures) -> Result<Self, NoAdapter> {
         let size = [wanted.width, wanted.height];
-        // Scale as in a window of this height, but large enough for labels to be legible.
-        let scale = (wanted.height as f32 / 800.0).max(0.5);
+        let scale = legible_scale(wanted.height);
         #[cfg(feature = "ui")]
         return Ok(Self(stillbase_picture::canvas::Canvas::new(size, scale)?));
         #[cfg(not(feature = "ui"))]

@@ -9,6 +9,7 @@ use crate::gentle_motion;
 use crate::refusal::Refusal;
 use crate::run::Run;
 use crate::scenario::{MAX_STEPS, PathShape, Scenario, Task, TaskKind};
+use crate::verdict::changes_b;
 use stillbase_mechanics::machine::{Inertia, is_of_machine};
 use stillbase_mechanics::planar::{Vector, unit};
 use stillbase_planning::pose_space::PoseSpace;
@@ -23,8 +24,6 @@ use stillbase_settings::word::Choice;
 /// Maximum number of proposals for one refusal.
 const MAX_PROPOSALS: usize = 4;
 
-/// A plan holds b if b varies by no more than this, rad.
-const B_TOLERANCE: f64 = 1e-6;
 /// Largest factor by which a motion is made longer to keep the limits of the drives.
 const MAX_TIME_FACTOR: f64 = 64.0;
 /// Numbers of decimals of turned points, m, in the order of the trials.
@@ -141,19 +140,24 @@ pub fn proposals(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal> {
 /// Does the same as [`proposals`], unless `goes_on` cancels it.
 fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: ProgressCallback<'_>) -> Option<Vec<Proposal>> {
     let bare = scenario.without_edits();
-    let candidates: Vec<Proposal> = candidates(&bare, refusal).into_iter().map(|one| one.reduced(&bare)).collect();
-    let count = candidates.len();
+    let candidates = candidates(&bare, refusal);
+    let count = candidates.len() + 1;
+    // A task made for the machine is itself searched for: only if it is reached.
+    let made = std::iter::once_with(|| would_plan(refusal).then(|| made_task(&bare)).flatten()).flatten();
     let mut proposals: Vec<Proposal> = Vec::new();
-    for (i, candidate) in candidates.into_iter().enumerate() {
+    for (i, candidate) in candidates.into_iter().chain(made).enumerate() {
         if !goes_on(i as f64 / count as f64) {
             return None;
         }
-        if proposals.len() < MAX_PROPOSALS
-            && !candidate.change.is_empty()
+        let candidate = candidate.reduced(&bare);
+        if !candidate.change.is_empty()
             && proposals.iter().all(|known| known.text != candidate.text && known.change != candidate.change)
             && candidate.tried(&bare).is_some()
         {
             proposals.push(candidate);
+            if proposals.len() == MAX_PROPOSALS {
+                break;
+            }
         }
     }
     Some(proposals)
@@ -179,9 +183,9 @@ fn improvements_while(scenario: &Scenario, goes_on: ProgressCallback<'_>) -> Opt
         proposals.extend(Some(fastest).filter(|fastest| fastest.tried(&bare).is_some_and(|run| keeps_limits(&run))));
     }
     if !Inertia::of(&bare.machine).is_balanced() {
-        let balanced = |balanced: &Proposal| balanced.applied(&bare).is_some();
-        let change = balancing_change(&bare).map(|change| Proposal::new("balance the machine", change).reduced(&bare));
-        proposals.extend(change.filter(balanced));
+        let balanced =
+            balancing_change(&bare).map(|change| Proposal::new("balance the machine", change).reduced(&bare));
+        proposals.extend(balanced.filter(|balanced| balanced.tried(&bare).is_some()));
     } else if changes_b(&run) {
         let kind = single_change("task.kind", TaskKind::Reactionless.words().file);
         let reactionless = Proposal::new("run it reactionless", kind);
@@ -197,11 +201,6 @@ pub fn is_improvable(run: &Run) -> bool {
 
 fn keeps_limits(run: &Run) -> bool {
     run.plan().forecast.exceeded_limit.is_none()
-}
-
-fn changes_b(run: &Run) -> bool {
-    let [least, greatest] = run.plan().forecast.b;
-    greatest - least > B_TOLERANCE
 }
 
 /// Proposes the shortest duration found, to 2 %, at which the planned motion keeps all limits of the drives. The outer
@@ -264,16 +263,11 @@ fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal> {
         Refusal::TooManySteps { time, .. } => {
             let step = round_up(time / MAX_STEPS as f64);
             found.push(Proposal::new(format!("take a step of {step} s"), single_change("step", step)));
-            return found;
         }
-        // The task can be planned: no other task would help, and a finer step would have to be simulated to tell.
-        Refusal::TooLarge { .. }
-        | Refusal::Full { .. }
-        | Refusal::Stopped
-        | Refusal::Diverged { .. }
-        | Refusal::Untrusted { .. }
-        | Refusal::LeavesLimits { .. } => return found,
         _ => {}
+    }
+    if !would_plan(refusal) {
+        return found;
     }
     let is_of_path = matches!(
         refusal,
@@ -296,9 +290,29 @@ fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal> {
     if task.kind != TaskKind::MinimumNorm {
         found.push(kind(TaskKind::MinimumNorm, "follow the path, whatever the base feels"));
     }
-    let own = gentle_motion(machine).ok().map(|own| own.task.whole());
-    found.extend(own.map(|change| Proposal::of_task("take a task made for this machine", change)));
     found
+}
+
+/// Returns whether another plan may lead out of a refusal. It does not where the task can be planned already; whether a
+/// finer step helps would have to be simulated.
+fn would_plan(refusal: &Refusal) -> bool {
+    match refusal {
+        Refusal::Edit { refusal, .. } => would_plan(refusal),
+        Refusal::TooManySteps { .. }
+        | Refusal::TooLarge { .. }
+        | Refusal::Full { .. }
+        | Refusal::Stopped
+        | Refusal::Diverged { .. }
+        | Refusal::Untrusted { .. }
+        | Refusal::LeavesLimits { .. } => false,
+        _ => true,
+    }
+}
+
+/// Proposes a task made for the machine.
+fn made_task(scenario: &Scenario) -> Option<Proposal> {
+    let own = gentle_motion(&scenario.machine).ok()?;
+    Some(Proposal::of_task("take a task made for this machine", own.task.whole()))
 }
 
 /// Proposes to turn all points of the task about the base pin, as far as b turns the workspace past the nearest

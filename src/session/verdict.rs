@@ -8,6 +8,7 @@
 
 mod statements;
 
+pub(crate) use statements::changes_b;
 pub use statements::{Statement, Statements, StatusLight};
 
 use crate::scenario::{Scenario, TaskKind};

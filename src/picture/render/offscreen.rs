@@ -74,14 +74,25 @@ impl Picture {
     }
 
     fn encode(&self, to: &mut Vec<u8>) -> Result<(), png::EncodingError> {
-        let mut encoder = png::Encoder::new(to, self.width, self.height);
-        encoder.set_color(png::ColorType::Rgba);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
-        let mut writer = encoder.write_header()?;
+        let mut writer = png_encoder(to, [self.width, self.height]).write_header()?;
         writer.write_image_data(&self.rgba)?;
         writer.finish()
     }
+}
+
+/// Returns a PNG encoder for pictures of this size in pixels.
+pub(crate) fn png_encoder<'a, W: io::Write>(to: W, [width, height]: [u32; 2]) -> png::Encoder<'a, W> {
+    let mut encoder = png::Encoder::new(to, width, height);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
+    encoder
+}
+
+/// Returns the scale of a picture, pixels per point: that of a window of this height in pixels, but large enough for
+/// labels to be legible.
+pub fn legible_scale(height: u32) -> f32 {
+    (height as f32 / 800.0).max(0.5)
 }
 
 /// Creates a texture, size in pixels, that can be drawn on and read back.

@@ -185,7 +185,7 @@ impl Statement {
 }
 
 /// Returns whether the motion of a run, planned or dragged, changes b.
-fn changes_b(run: &Run) -> bool {
+pub(crate) fn changes_b(run: &Run) -> bool {
     let change = match run.simulation().guide() {
         Guide::Follow(follower) => (follower.b_aim() - follower.b()).abs(),
         Guide::Motion { .. } => {
