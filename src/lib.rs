@@ -1,4 +1,4 @@
-//! Zero reaction manipulators, after Papadopoulos & Abu-Abed, *On the Design of Zero Reaction Manipulators*: design
+//! Zero reaction manipulators, after Papadopoulos & Abu-Abed, *On the Design of Zero Reaction Manipulators*. Design
 //! robot arms, plan and simulate their motions, and see and record the reactions on their bases.
 //!
 //! An arm exerts no force on its base if it is balanced, so that its centre of mass never moves. It exerts no moment

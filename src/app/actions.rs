@@ -10,6 +10,7 @@ use super::{
     WindowCommand, set_b,
 };
 use stillbase_picture::charts::choice::PlotChange;
+use stillbase_picture::notation::{AngleUnit, LengthUnit, NameOrder, Notation};
 use stillbase_picture::scene::Measure;
 use stillbase_picture::scene::views::{ViewKind, Views};
 use stillbase_session::scenario::Scenario;
@@ -127,7 +128,7 @@ fn new_session(session: &Session) -> Option<Command> {
 /// Opens the dialog that saves the first plot to a file.
 fn plot_file(session: &Session, view_state: &ViewState, file: PlotFile) -> Option<Command> {
     let signals = signals(&session.scenario().machine);
-    let plots = view_state.charts.plots(session.scenario(), &signals, view_state.pins);
+    let plots = view_state.plots(session.scenario(), &signals);
     dialog(session, FilePurpose::Plot(plots.first()?.name.clone(), file))
 }
 
@@ -276,6 +277,16 @@ pub const ACTIONS: &[Action] = actions![
     View, "What a repaint takes, or no longer", [on(PLAIN, Key::F12)], "keyboard" turns Times;
     View, "Light or dark" = "theme night mode colours", [on(PLAIN, Key::L)], "top bar", |_, v| Some(Command::View(ViewChange::Theme(other(v.arrangement.theme))));
 
+    View, "Angles in degrees or radians" = "unit units deg rad angle", [], "tool bar, layout", |_, v| notation(v, |shown| {
+        shown.angle = if shown.angle == AngleUnit::Radians { AngleUnit::Degrees } else { AngleUnit::Radians };
+    });
+    View, "Lengths in millimetres or metres" = "unit units mm length size", [], "tool bar, layout", |_, v| notation(v, |shown| {
+        shown.length = if shown.length == LengthUnit::Metres { LengthUnit::Millimetres } else { LengthUnit::Metres };
+    });
+    View, "Plain terms first, or the paper's symbols" = "names notation greek words", [], "tool bar, layout", |_, v| notation(v, |shown| {
+        shown.names = if shown.names == NameOrder::Terms { NameOrder::Symbols } else { NameOrder::Terms };
+    });
+
     Analysis, "The same task done in other ways, side by side" = "compare alternatives table", [on(PLAIN, Key::C)], "tool bar" turns Compare;
     Analysis, "Add this run to the runs side by side", [], "side by side", |_, v| {
         (v.below == Some(BottomPanel::Runs)).then_some(Command::Session(SessionCommand::KeepRun))
@@ -351,6 +362,13 @@ pub const GESTURES: [(&str, &str); 22] = [
 
 fn view(view_state: &ViewState, kind: ViewKind) -> Option<Command> {
     (view_state.view != kind).then_some(Command::View(ViewChange::Kind(kind)))
+}
+
+/// Returns the command for a change of units or names.
+fn notation(view_state: &ViewState, change: fn(&mut Notation)) -> Option<Command> {
+    let mut notation = view_state.arrangement.notation;
+    change(&mut notation);
+    Some(Command::View(ViewChange::Notation(notation)))
 }
 
 fn look(right: f64, up: f64) -> Option<Command> {

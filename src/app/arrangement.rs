@@ -6,6 +6,7 @@ use super::actions::{key_of, key_of_switch};
 use super::icon::{Icon, IconButton, dot};
 use super::theme::{bold, colour};
 use super::{Command, Layout, Switch, ViewChange, ViewState};
+use stillbase_picture::notation::{AngleUnit, LengthUnit, NameOrder, Notation};
 
 /// Draws the button of the menu, and the menu while it is open.
 pub fn show(ui: &mut Ui, view_state: &ViewState, size: Vec2, commands: &mut Vec<Command>) {
@@ -46,6 +47,21 @@ pub fn show(ui: &mut Ui, view_state: &ViewState, size: Vec2, commands: &mut Vec<
             ("Settings on the right", Switch::Swapped, "Settings and plots change sides"),
         ] {
             line(ui, (text, key_of_switch(switch), tip), view_state.is_on(switch), view_state.other(switch));
+        }
+        ui.separator();
+        heading(ui, "UNITS AND NAMES");
+        let now = view_state.arrangement.notation;
+        let (degrees, millimetres) = (now.angle == AngleUnit::Degrees, now.length == LengthUnit::Millimetres);
+        let symbols = now.names == NameOrder::Symbols;
+        let angle = if degrees { AngleUnit::Radians } else { AngleUnit::Degrees };
+        let length = if millimetres { LengthUnit::Metres } else { LengthUnit::Millimetres };
+        let names = if symbols { NameOrder::Terms } else { NameOrder::Symbols };
+        for (text, tip, on, new) in [
+            ("Angles in degrees", "Else in radians; files and settings stay in radians", degrees, Notation { angle, ..now }),
+            ("Lengths in millimetres", "Else in metres; files and settings stay in metres", millimetres, Notation { length, ..now }),
+            ("Symbols first", "n_B before \"moment on the base\", as in the paper", symbols, Notation { names, ..now }),
+        ] {
+            line(ui, (text, None, tip), on, ViewChange::Notation(new).into());
         }
     });
 }

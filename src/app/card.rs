@@ -2,7 +2,9 @@
 
 use egui::{RichText, Ui};
 
+use super::notation;
 use super::theme::{bold, colour, plain};
+use stillbase_picture::notation::Notation;
 use stillbase_picture::numbers::{degrees, signed, three_digits};
 use stillbase_picture::scene::course::target_handle;
 use stillbase_picture::scene::options::Handle;
@@ -35,7 +37,7 @@ impl Card {
     }
 
     /// Returns the card of an object at the instant on display; `None` for objects without a card.
-    pub fn of(thing: Handle, session: &Session, views: &Views) -> Option<Self> {
+    pub fn of(thing: Handle, session: &Session, views: &Views, notation: Notation) -> Option<Self> {
         let (scenario, frame) = (session.scenario(), session.frame());
         let place = |x: f64, y: f64| format!("{}, {} m", signed(x, 3), signed(y, 3));
         Some(match thing {
@@ -94,11 +96,12 @@ impl Card {
             Handle::Force => {
                 let (now, peak) = (frame.wrench.dynamic.force.norm(), frame.peaks.force);
                 let rows = vec![format!("largest so far {} N", signed(peak, 3))];
-                Self::new(format!("force on the base, f_B = {} N", signed(now, 3)), rows, "")
+                Self::new(format!("{} = {} N", notation.name("force on the base", "f_B"), signed(now, 3)), rows, "")
             }
             Handle::Moment => {
                 let rows = vec![format!("largest so far {} N m", signed(frame.peaks.moment, 3))];
-                let title = format!("moment on the base, n_B = {} N m", signed(frame.net_base_moment(), 3));
+                let name = notation.name("turning moment on the base", "n_B");
+                let title = format!("{name} = {} N m", signed(frame.net_base_moment(), 3));
                 Self::new(title, rows, "")
             }
             Handle::Mass(i) => {
@@ -145,8 +148,10 @@ impl Card {
     /// Draws its content.
     pub fn show(&self, ui: &mut Ui, p: &Palette) {
         ui.spacing_mut().item_spacing.y = 3.0;
-        ui.label(RichText::new(&self.title).font(bold(12.5)).color(colour(p.ink)));
+        let title = notation::sentence(ui.ctx(), &self.title);
+        ui.label(RichText::new(title).font(bold(12.5)).color(colour(p.ink)));
         for row in &self.rows {
+            let row = notation::sentence(ui.ctx(), row);
             ui.label(RichText::new(row).font(plain(12.0)).color(colour(p.ink)));
         }
         if !self.hint.is_empty() {

@@ -9,6 +9,7 @@ use super::layout::Layout;
 use stillbase_mechanics::counterweights::Objective;
 use stillbase_mechanics::machine::Machine;
 use stillbase_picture::charts::choice::PlotChange;
+use stillbase_picture::notation::Notation;
 use stillbase_picture::scene::Measure;
 use stillbase_picture::scene::options::Handle;
 use stillbase_picture::scene::palette::Theme;
@@ -176,6 +177,8 @@ pub enum ViewChange {
     Layout(Layout),
     /// Light or dark colours.
     Theme(Theme),
+    /// Units and names.
+    Notation(Notation),
     /// Playback rate, simulated seconds per second.
     Speed(f64),
     /// Shade the workspace by this measure of dexterity, or by none.

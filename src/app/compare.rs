@@ -1,10 +1,12 @@
 //! The table of runs at the bottom: the same task done in several ways, and kept runs.
 
+use super::notation;
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, ComparisonCommand, SessionCommand, Switch, ViewChange, ViewState, WindowCommand};
 use egui::{Align, Button, CursorIcon, Frame, Grid, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui};
 use stillbase_picture::charts::figure::dashes;
+use stillbase_picture::notation::Notation;
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::{Palette, faded};
 use stillbase_session::scenario::Scenario;
@@ -66,31 +68,39 @@ struct Head {
     head: &'static str,
     meaning: &'static str,
     unit: &'static str,
+    /// Factor from SI values to displayed values.
+    factor: f64,
     decimals: usize,
 }
 
 impl Head {
-    fn of<T>(at: usize, column: &SummaryColumn<T>) -> Self {
+    fn of<T>(at: usize, column: &SummaryColumn<T>, notation: Notation) -> Self {
         let SummaryColumn { head, meaning, unit, decimals, .. } = *column;
-        Self { at, head, meaning, unit, decimals }
+        match notation.shown_unit(unit) {
+            Some(shown) => {
+                let decimals = shown.decimals(decimals);
+                Self { at, head, meaning, unit: shown.name, factor: shown.factor, decimals }
+            }
+            None => Self { at, head, meaning, unit, factor: 1.0, decimals },
+        }
     }
 }
 
 /// Returns the columns that have a value in any row. Columns of base motion need a base that moves; columns of
 /// designs need different machines.
-fn columns(comparison: &Comparison) -> Vec<Head> {
+fn columns(comparison: &Comparison, notation: Notation) -> Vec<Head> {
     let runs = || comparison.entries().iter().filter_map(|e| e.outcome.as_ref().ok());
     let moves = runs().any(|r| r.summary.base_shift > 0.0 || r.summary.base_tilt > 0.0);
     let has_value = |c: &SummaryColumn| runs().any(|r| (c.value)(&r.summary).is_some());
     let all = SUMMARY_COLUMNS.iter().enumerate();
     let of_runs = all.filter(|(_, c)| has_value(c) && (moves || !matches!(c.key, "base_shift" | "base_tilt")));
     let designs = if comparison.has_designs() { &DESIGN_COLUMNS[..] } else { &[] };
-    let of_designs = designs.iter().enumerate().map(|(i, c)| Head::of(SUMMARY_COLUMNS.len() + i, c));
-    of_runs.map(|(i, c)| Head::of(i, c)).chain(of_designs).collect()
+    let of_designs = designs.iter().enumerate().map(|(i, c)| Head::of(SUMMARY_COLUMNS.len() + i, c, notation));
+    of_runs.map(|(i, c)| Head::of(i, c, notation)).chain(of_designs).collect()
 }
 
 fn table(ui: &mut Ui, p: &Palette, comparison: &Comparison, commands: &mut Vec<Command>) {
-    let columns = columns(comparison);
+    let columns = columns(comparison, notation::of(ui.ctx()));
     ui.spacing_mut().button_padding = egui::vec2(0.0, 0.0);
     Grid::new("runs").num_columns(columns.len() + 3).spacing([14.0, 5.0]).min_col_width(0.0).show(ui, |ui| {
         ui.label("");
@@ -165,7 +175,7 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &ComparisonEntry, columns: &[H
         Ok(_) => {
             for column in columns {
                 let text = match entry.value(column.at) {
-                    Some(x) => signed(x, column.decimals),
+                    Some(x) => signed(column.factor * x, column.decimals),
                     None => "–".into(),
                 };
                 let zero = text.chars().all(|c| matches!(c, '0' | '.' | '–'));
@@ -176,6 +186,7 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &ComparisonEntry, columns: &[H
             }
         }
         Err(why) => {
+            let why = notation::sentence(ui.ctx(), why);
             ui.add(Label::new(RichText::new(why).font(plain(11.5)).color(colour(p.dim))).extend());
         }
     }

@@ -5,7 +5,6 @@ use egui::{Align2, Area, Id, Order, Rect, RichText, vec2};
 use super::theme::{bold, card, colour, plain};
 use super::widgets::name;
 use super::{Command, ViewChange, ViewState};
-use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::joints::{JointSpace, SYMBOLS};
 use stillbase_picture::scene::views::{ViewKind, Views};
 use stillbase_session::Session;
@@ -47,7 +46,7 @@ pub fn show(
                 ui.label(RichText::new("axes").font(plain(11.5)).color(colour(p.dim)));
                 for (k, symbol) in SYMBOLS.iter().enumerate().take(frame.q.len()) {
                     let on = shown.contains(&k);
-                    let words = if on { (*symbol).to_owned() } else { held(symbol, frame.relative(k)) };
+                    let words = if on { (*symbol).to_owned() } else { format!("{symbol} = {}", view_state.arrangement.notation.write(frame.relative(k), 3, "rad")) };
                     let ink = if on { p.drive(k) } else { p.dim };
                     let words = RichText::new(words).font(bold(12.0)).color(colour(ink));
                     let button = egui::Button::new(words).selected(false).frame(on);
@@ -69,8 +68,4 @@ pub fn show(
             });
         });
     });
-}
-
-fn held(symbol: &str, angle: f64) -> String {
-    format!("{symbol} = {} rad", signed(angle, 3))
 }

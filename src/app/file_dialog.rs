@@ -15,7 +15,7 @@ pub struct FileDialog {
 /// Purpose of a file name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FilePurpose {
-    /// Read a session.
+    /// Open a session, a machine or a table.
     Open,
     /// Write the session.
     Save,
@@ -66,7 +66,7 @@ impl FilePurpose {
         }
     }
 
-    /// Returns the title of the dialog, with the file extensions to choose from.
+    /// Returns the title of the dialog; that for a machine lists the file extensions to choose from.
     pub(super) fn title(&self) -> String {
         let [title, ..] = self.words();
         match self {

@@ -25,8 +25,8 @@ pub struct DragGesture {
     pub grabbed: Option<Pick>,
     /// Last position of the pointer in this drag, points of the screen.
     pub last_pointer: egui::Vec2,
-    /// Displacement from the dragged position to the pointer, which grows while Shift slows the drag, points of the
-    /// screen.
+    /// Displacement from the dragged position to the pointer, points of the screen. It grows while Shift slows the
+    /// drag.
     pub pointer_offset: egui::Vec2,
     /// Position to which the pointer drags the target or a point of the path, m.
     pub position: Option<[f64; 2]>,

@@ -195,9 +195,10 @@ impl Intro {
         let Some((frame, scene)) = self.straight(now, view_state.arrangement.theme) else { return };
         let (p, scene) = (view_state.palette(), Arc::new(scene));
         paint(ui, 1, rect, &scene, camera);
-        draw_labels(ui, &SceneViewport { rect, camera: *camera }, &scene, &[]);
+        draw_labels(ui, &SceneViewport { rect, camera: *camera }, &scene, &[], view_state.arrangement.notation);
         let turn = MOUNT_COMPLIANCE.to_degrees();
         let words = format!("From A to B along a line. The arm shakes its base, drawn {turn:.0}° for 1 N m.");
+        let words = view_state.arrangement.notation.sentence(&words);
         caption(ui, rect, &p, "Straight line", &words, frame.wrench.total().moment, p.reaction);
         ui.painter().vline(rect.right(), rect.y_range(), egui::Stroke::new(1.0, colour(p.line)));
     }
@@ -317,5 +318,5 @@ fn caption(ui: &Ui, rect: egui::Rect, p: &Palette, title: &str, about: &str, mom
     let shown = signed(moment + 0.0, 2);
     let number = painter.text(egui::pos2(left, below), Align2::LEFT_TOP, shown, bold(26.0), colour(tone));
     let unit = number.right_bottom() + vec2(8.0, -4.0);
-    painter.text(unit, Align2::LEFT_BOTTOM, "N m   moment on the base, n_B", plain(12.0), colour(p.dim));
+    painter.text(unit, Align2::LEFT_BOTTOM, "N m   turning moment on the base, n_B", plain(12.0), colour(p.dim));
 }

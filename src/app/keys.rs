@@ -3,6 +3,7 @@
 use egui::{Context, Grid, Key, KeyboardShortcut, Modifiers, RichText, ScrollArea, TextEdit, Ui};
 
 use super::actions::{ACTIONS, Action, ActionGroup, FINE_ACTIONS, GESTURES, shortcut_label};
+use super::notation;
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, Layout, OpenDialogs, SessionCommand, Switch, Tool, ViewChange, ViewState, WindowCommand, search};
@@ -159,7 +160,8 @@ fn groups(ui: &mut Ui, p: &Palette, column: usize, groups: &[(&str, Lines)]) {
         Grid::new((column, *title)).num_columns(2).spacing([18.0, 5.0]).show(ui, |ui| {
             for (keys, does) in lines {
                 ui.label(RichText::new(keys).font(bold(12.5)));
-                ui.label(RichText::new(*does).font(plain(12.5)).color(colour(p.dim)));
+                let does = notation::sentence(ui.ctx(), does);
+                ui.label(RichText::new(does).font(plain(12.5)).color(colour(p.dim)));
                 ui.end_row();
             }
         });

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use egui::{Popup, RectAlign, RichText, Sense, Ui, vec2};
 
+use super::notation;
 use super::theme::{bold, colour, plain};
 use super::{Command, RefusedEdit, SessionCommand, ViewChange};
 use stillbase_picture::charts::choice::PlotChange;
@@ -22,7 +23,7 @@ pub fn statements(session: &Session) -> Statements {
     Statements::of(session.run(), session.frames().last().unwrap_or(session.frame()))
 }
 
-/// Draws a statement with its lamp: a disc if it is good, a triangle if it is bad, a ring if it is open.
+/// Draws a statement with its lamp: a disc if it is good, a triangle if it is bad, a ring if it is undecided.
 pub fn show(ui: &mut Ui, named: (&str, &Statement), size: f32, p: &Palette) {
     paint(ui, named, size, Sense::hover(), p).on_hover_text(&named.1.why);
 }
@@ -41,8 +42,9 @@ pub fn button(
     let popup = Popup::menu(&response).align(RectAlign::TOP_START).gap(8.0).width(POPUP_WIDTH_PT);
     popup.show(|ui| {
         let title = format!("{about}: {}", statement.words);
+        let (title, why) = (notation::sentence(ui.ctx(), &title), notation::sentence(ui.ctx(), &statement.why));
         ui.add(egui::Label::new(RichText::new(title).font(bold(13.0)).color(colour(p.ink))).wrap());
-        ui.add(egui::Label::new(RichText::new(&statement.why).font(plain(12.0)).color(colour(p.dim))).wrap());
+        ui.add(egui::Label::new(RichText::new(why).font(plain(12.0)).color(colour(p.dim))).wrap());
         // What improves a plan is searched for only while it is asked for.
         let asks = about != Statements::RUN && statement.outcome != StatusLight::Good;
         if let Some(improvements) = asks.then(improvements).flatten() {
@@ -67,7 +69,8 @@ fn place(about: &str) -> (&'static str, ViewChange) {
 
 /// Draws the button of a proposal. The edit also makes the settings that were refused, if there are any.
 pub fn proposal(ui: &mut Ui, proposal: &Proposal, refused: Option<&RefusedEdit>, commands: &mut Vec<Command>) {
-    let response = ui.button(&proposal.text).on_hover_text(proposal.settings().join("\n"));
+    let text = notation::sentence(ui.ctx(), &proposal.text);
+    let response = ui.button(text).on_hover_text(proposal.settings().join("\n"));
     if response.clicked() {
         let edit = refused.map_or_else(|| proposal.edit(), |refused| refused.edit_with(proposal));
         commands.extend([Command::Session(SessionCommand::Edit(edit)), Command::Session(SessionCommand::EndGesture)]);
@@ -80,6 +83,7 @@ fn paint(ui: &mut Ui, (about, statement): (&str, &Statement), size: f32, sense: 
     // The words are painted instead of added as a widget, so that a screen reader announces lamp and words as one
     // item.
     let words = format!("{about}: {}", statement.words);
+    let words = notation::sentence(ui.ctx(), &words).into_owned();
     let words = ui.painter().layout_no_wrap(words, plain(size), colour(ink));
     let [disc, gap] = [0.8 * size, 0.4 * size];
     let (rect, response) = ui.allocate_exact_size(vec2(disc + gap + words.size().x, words.size().y), sense);

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use stillbase_picture::notation::Notation;
 use stillbase_picture::scene::palette::Theme;
 
 /// A layout of the window that serves one purpose.
@@ -95,6 +96,8 @@ pub enum BottomPanel {
 pub struct WindowArrangement {
     /// Light or dark.
     pub theme: Theme,
+    /// Units and names.
+    pub notation: Notation,
     /// The present layout.
     pub layout: Layout,
     /// Whether settings are on the right and plots on the left.
@@ -109,7 +112,7 @@ impl WindowArrangement {
     /// Returns the default arrangement.
     pub fn with_theme(theme: Theme) -> Self {
         let panels = Layout::ALL.map(Panels::default_of);
-        Self { theme, layout: Layout::Explore, swapped: false, shows_equations: false, panels }
+        Self { theme, notation: Notation::default(), layout: Layout::Explore, swapped: false, shows_equations: false, panels }
     }
 
     /// The panels on display.
@@ -122,7 +125,7 @@ impl WindowArrangement {
         &mut self.panels[self.layout as usize]
     }
 
-    /// Chooses a layout. Choosing `Present`, or the present layout again, restores its default panels.
+    /// Chooses a layout. Choosing `Present`, or the current layout again, restores its default panels.
     pub(super) fn lay_out(&mut self, layout: Layout) {
         if layout == self.layout || layout == Layout::Present {
             self.panels[layout as usize] = Panels::default_of(layout);

@@ -31,6 +31,7 @@ mod lamp;
 mod layout;
 mod marks;
 mod menu;
+mod notation;
 mod open;
 mod order;
 mod pace;

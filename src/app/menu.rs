@@ -2,6 +2,7 @@
 
 use egui::{Id, PointerButton, Response, Ui};
 
+use super::notation;
 use super::widgets::CLICK_PAYLOAD;
 use super::{Command, SessionCommand, ViewChange, place};
 use stillbase_mechanics::planar::Vector;
@@ -17,8 +18,8 @@ struct About {
     at: Option<[f64; 2]>,
 }
 
-/// Draws the menu while it is open; `hot` is the object under the pointer, and `at` its position in the plane of
-/// motion, m.
+/// Draws the menu while it is open. `hot` is the object under the pointer; `at` is the position of the pointer in the
+/// plane of motion, m.
 pub fn show(
     response: &Response,
     session: &Session,
@@ -73,7 +74,7 @@ fn entries(ui: &mut Ui, session: &Session, About { thing, at }: About, commands:
             entry(ui, "Add a point of the path here", once(Edit::of("task", change)));
         }
         let words = format!("Copy {}, {} m", signed(x, 3), signed(y, 3));
-        if ui.button(words).clicked() {
+        if ui.button(notation::sentence(ui.ctx(), &words)).clicked() {
             ui.ctx().copy_text(format!("{x:.4}, {y:.4}"));
             ui.close();
         }

@@ -344,7 +344,7 @@ fn kind_settings(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, comma
 }
 
 /// Draws the forecast of the planned motion: always two lines, so that nothing below moves. A limit that the motion
-/// exceeds takes the place of the first one.
+/// exceeds is named in place of the first line.
 fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
     let forecast = &session.run().plan().forecast;
     let torque = forecast.torque.max_abs();

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::layout::{Layout, Panel, Panels, WindowArrangement};
+use stillbase_picture::notation::Notation;
 use stillbase_picture::scene::palette::Theme;
 
 /// Preferences for the window. In a file, unknown keys are ignored, and missing keys have their defaults.
@@ -13,6 +14,8 @@ use stillbase_picture::scene::palette::Theme;
 pub struct Preferences {
     /// Colour theme.
     pub theme: Theme,
+    /// Units and names.
+    pub notation: Notation,
     /// Width and height of the window, logical points.
     pub size: [f32; 2],
     /// Whether to show the hints at the next start.
@@ -48,6 +51,7 @@ impl Default for Preferences {
     fn default() -> Self {
         Self {
             theme: Theme::Dark,
+            notation: Notation::default(),
             size: [1440.0, 900.0],
             hints: true,
             layout: Layout::Explore,
@@ -69,9 +73,11 @@ impl Default for Preferences {
 impl Preferences {
     /// Returns the preferences of a window with this arrangement and size, points of the screen.
     pub(super) fn of(arrangement: &WindowArrangement, size: [f32; 2], hints: bool, recent: &[PathBuf]) -> Self {
-        let WindowArrangement { theme, layout, swapped, shows_equations, panels: [explore, compare, _] } = arrangement;
+        let WindowArrangement { theme, notation, layout, swapped, shows_equations, panels: [explore, compare, _] } =
+            arrangement;
         Self {
             theme: *theme,
+            notation: *notation,
             size,
             hints,
             layout: *layout,
@@ -99,6 +105,7 @@ impl Preferences {
         };
         let panels = [explore, compare, Panels::default_of(Layout::Present)];
         WindowArrangement {
+            notation: self.notation,
             swapped: self.swapped,
             shows_equations: self.shows_equations,
             panels,

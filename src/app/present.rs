@@ -27,7 +27,7 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &Session, view_state: &ViewState, 
     let corner = covers(rect).shrink(0.4 * large);
     let mut corner = ui.new_child(UiBuilder::new().max_rect(corner).layout(Layout::top_down(Align::Min)));
     corner.spacing_mut().item_spacing.y = 0.08 * large;
-    let scenario = session.scenario();
+    let (scenario, notation) = (session.scenario(), view_state.arrangement.notation);
     let title = if scenario.title.is_empty() { &scenario.name } else { &scenario.title };
     let line = |ui: &mut Ui, text: RichText| ui.add(egui::Label::new(text).extend());
     line(&mut corner, RichText::new(title).font(bold(0.4 * large)).color(colour(p.ink)));
@@ -35,12 +35,12 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &Session, view_state: &ViewState, 
     let tone = if moment.abs() < ZERO_BELOW_N_M { p.zero } else { p.reaction };
     let number = format!("{} N m", signed(if moment.abs() < ZERO_BELOW_N_M { 0.0 } else { moment }, 2));
     line(&mut corner, RichText::new(number).font(bold(large)).color(colour(tone)));
-    line(&mut corner, RichText::new("moment on the base, n_B").font(plain(0.32 * large)).color(colour(p.dim)));
+    line(&mut corner, RichText::new(notation.name("turning moment on the base", "n_B")).font(plain(0.32 * large)).color(colour(p.dim)));
     for named in lamp::statements(session).named() {
         lamp::show(&mut corner, named, 0.32 * large, &p);
     }
     let b = session.run().pose_space().ok().map(|map| f.b.rem_euclid(map.period()));
-    let b = b.map_or_else(String::new, |b| format!("b = {b:.3} rad   ·   "));
+    let b = b.map_or_else(String::new, |b| format!("b = {}   ·   ", notation.write(b, 3, "rad")));
     let now = format!("{b}{:.2} s of {:.2} s", f.time, session.length());
     line(&mut corner, RichText::new(now).font(plain(0.32 * large)).color(colour(p.dim)));
     // A progress bar of the run along the lower edge.

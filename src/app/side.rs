@@ -12,6 +12,7 @@ use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
 use super::facts::ScenarioFacts;
 use super::theme::{bold, colour, plain};
+use super::notation;
 use super::widgets::{NumberRow, name, note, section, send, unit};
 use super::{Command, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, path, place, set_b};
 use stillbase_mechanics::machine::MAX_ANGLE;
@@ -231,8 +232,7 @@ fn all_points(session: &Session) -> String {
 fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
     section(ui, p, "Limits and gravity");
     for (i, angle) in session.scenario().machine.angles().iter().enumerate() {
-        let mut ends = [angle.limits.start().to_degrees(), angle.limits.end().to_degrees()];
-        let old = ends;
+        let mut ends = [*angle.limits.start(), *angle.limits.end()];
         ui.horizontal(|ui| {
             let symbol = format!("a{}", subscript(i + 1));
             let [to, from] = [angle.to, angle.from].map(|k| subscript(k + 1));
@@ -243,17 +243,16 @@ fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
                 return;
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                unit(ui, p, "°");
+                unit(ui, p, "rad");
                 let mut changed = Vec::new();
-                let widest = MAX_ANGLE.to_degrees();
                 for (end, word) in [(1, "greatest"), (0, "least")] {
-                    let range = if end == 1 { ends[0]..=widest } else { -widest..=ends[1] };
+                    let range = if end == 1 { ends[0]..=MAX_ANGLE } else { -MAX_ANGLE..=ends[1] };
                     let row = NumberRow {
                         label: &format!("{symbol} {word}"),
-                        unit: "°",
+                        unit: "rad",
                         tip: "Joint limit; the workspace is what (a₁, a₂) within them reach",
-                        decimals: 1,
-                        speed: 0.5,
+                        decimals: 3,
+                        speed: 0.01,
                         slide: range.clone(),
                         range,
                     };
@@ -262,12 +261,7 @@ fn limits(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
                         ui.label(RichText::new("…").color(colour(p.dim)));
                     }
                 }
-                send(commands, &changed, || {
-                    // A limit that was not changed keeps its exact value.
-                    let rad = |k: usize, was: f64| if ends[k] == old[k] { was } else { ends[k].to_radians() };
-                    let ends = [rad(0, *angle.limits.start()), rad(1, *angle.limits.end())];
-                    Edit::at(&["limits", &angle.name], ends.to_vec())
-                });
+                send(commands, &changed, || Edit::at(&["limits", &angle.name], ends.to_vec()));
             });
         });
     }
@@ -290,16 +284,16 @@ fn gravity(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comma
 
 fn balance(ui: &mut Ui, session: &Session, facts: &ScenarioFacts<'_>, p: &Palette) {
     section(ui, p, "Balance");
-    let balance = &facts.balance;
+    let (balance, notation) = (&facts.balance, notation::of(ui.ctx()));
     let rows = [
         (
-            "γ",
+            notation.name("leftover imbalance", "γ"),
             "kg m",
             balance.force,
             "Force balance, Eq. (7): largest |g_k|; zero means the centre of mass never moves",
         ),
         (
-            "coupling",
+            notation.name("coupling of drives", "C"),
             "kg m²",
             balance.coupling,
             "Invariance, Eq. (8): largest |C_kl|; zero means a constant mass matrix",
@@ -307,11 +301,11 @@ fn balance(ui: &mut Ui, session: &Session, facts: &ScenarioFacts<'_>, p: &Palett
     ];
     for (label, in_unit, (value, good), tip) in rows {
         let tone = if good { p.zero } else { p.reaction };
-        fact(ui, p, label, &significant(value), in_unit, tone, tip);
+        fact(ui, p, &label, &significant(value), in_unit, tone, tip);
     }
     for (k, inertia) in balance.inertia.iter().enumerate() {
         let tip = "What the angular momentum has of the drive: D in Eq. (11), without what gears only add to H";
-        let label = format!("D{}", subscript(k + 1));
+        let label = notation.name("effective inertia", &format!("D{}", subscript(k + 1)));
         fact(ui, p, &label, &format!("{inertia:.4}"), "kg m²", p.drive(k), tip);
     }
     fact(
@@ -334,11 +328,13 @@ fn fact(
     tone: stillbase_picture::scene::Rgba,
     tip: &str,
 ) {
-    ui.horizontal(|ui| {
-        ui.label(label).on_hover_text(tip);
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            unit(ui, p, in_unit);
-            ui.label(RichText::new(value).color(colour(tone))).on_hover_text(tip);
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        ui.set_height(20.0);
+        ui.label(RichText::new(in_unit).font(plain(11.5)).color(colour(p.dim)));
+        ui.label(RichText::new(value).color(colour(tone))).on_hover_text(tip);
+        // The name gets the space that is left, and is shortened if it is too long.
+        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            ui.add(egui::Label::new(RichText::new(label).font(plain(12.5))).truncate()).on_hover_text(tip);
         });
     });
 }

@@ -6,6 +6,7 @@ use egui::{Align, Layout, Margin, Panel, RichText, Sense, Ui, vec2};
 
 use super::facts::ScenarioFacts;
 use super::lamp;
+use super::notation;
 use super::theme::{colour, plain};
 use super::widgets::name;
 use super::{Activity, Command, Message, SessionCommand, Tool, ViewState, WindowCommand};
@@ -58,8 +59,10 @@ pub fn news(
     area.fixed_pos(scene.center_bottom() - vec2(0.0, 34.0)).show(ctx, |ui| {
         frame.show(ui, |ui| {
             ui.set_max_width(width);
+            let text = notation::sentence(ui.ctx(), text);
             ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(p.ink))).wrap());
             if let Some((_, said)) = also {
+                let said = notation::sentence(ui.ctx(), said);
                 ui.add(egui::Label::new(RichText::new(said).font(plain(12.0)).color(colour(p.dim))).wrap());
             }
             ui.horizontal_wrapped(|ui| {
@@ -154,7 +157,9 @@ pub fn show(
                     false => many,
                 });
             }
-            let label = ui.label(RichText::new(facts.join("  ·  ")).font(plain(12.0)).color(colour(p.dim)));
+            let facts = facts.join("  ·  ");
+            let facts = notation::sentence(ui.ctx(), &facts);
+            let label = ui.label(RichText::new(facts).font(plain(12.0)).color(colour(p.dim)));
             if !remarks.is_empty() {
                 let long: Vec<&str> = remarks.iter().map(|r| r.long.as_str()).collect();
                 label.on_hover_text(long.join("\n"));
@@ -189,7 +194,7 @@ pub fn show(
                         ("this session is full: save or record it, then start over".into(), p.reaction)
                     }
                     (None, Reach::Outside { feasible_b: Some(b), displayed_b: Some(shown), .. }) => {
-                        let way_out = ui.button(format!("go to b = {shown} rad"));
+                        let way_out = ui.button(notation::sentence(ui.ctx(), &format!("go to b = {shown} rad")));
                         if way_out
                             .on_hover_text(
                                 "On that plane the target can be reached; to go there exerts a moment on the base",
@@ -225,6 +230,7 @@ pub fn show(
                     }
                     (None, _) => ("Space plays  ·  F1 keys".into(), p.dim),
                 };
+                let text = notation::sentence(ui.ctx(), &text);
                 ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(tone))).truncate());
             });
         });

@@ -214,7 +214,7 @@ fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
         }
         plot.vline(VLine::new("now", time).color(colour(p.amber)).width(1.0).allow_hover(false));
     });
-    name(&response.response, "Band of the base moment over time, N m");
+    name(&response.response, "Band of the turning moment on the base over time, N m");
 }
 
 /// Plots the histogram of peak |n_B|, N m, over the machines.
@@ -241,7 +241,7 @@ fn peaks(ui: &mut Ui, p: &Palette, study: &Study) {
         },
     );
     let words = format!("half below {half:.5}, 95 % below {most:.5}, 99 % below {nearly:.5} N m");
-    name(&response.response, "Histogram of peaks of the base moment over machines, N m");
+    name(&response.response, "Histogram of peaks of the turning moment on the base over machines, N m");
     response.response.on_hover_text(words);
 }
 

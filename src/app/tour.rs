@@ -105,8 +105,8 @@ const ZERO_BELOW_N_M: f64 = 1e-6;
 /// Payload of the exercises, kg.
 const LOAD_KG: f64 = 0.3;
 
-/// Minimum displacement of the target, m, and minimum change of b, rad, paused and during a run, that complete an
-/// exercise.
+/// Minimum displacement of the end effector, m, and minimum change of b, rad, paused and during a run, that
+/// complete an exercise.
 const MIN_DRAG_M: f64 = 0.02;
 const MIN_B_CHANGE_PAUSED_RAD: f64 = 0.2;
 const MIN_B_CHANGE_RUNNING_RAD: f64 = 0.05;

@@ -112,6 +112,13 @@ impl ViewState {
             ViewChange::Kind(view) => self.view = view,
             ViewChange::Layout(layout) => self.lay_out(layout),
             ViewChange::Theme(theme) => self.arrangement.theme = theme,
+            ViewChange::Notation(notation) => {
+                // Bounds of value axes are numbers in the units before.
+                if notation != self.arrangement.notation {
+                    self.charts.forget_values();
+                }
+                self.arrangement.notation = notation;
+            }
             ViewChange::Speed(speed) => self.speed = speed,
             ViewChange::Dexterity(shown) => self.dexterity = shown,
             ViewChange::Fit => self.framing[self.view as usize] = Framing::Pending,

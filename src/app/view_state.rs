@@ -7,14 +7,16 @@ use super::gesture::{DragGesture, HoverTarget, Tool};
 use super::layout::{BottomPanel, Layout, WindowArrangement};
 use super::open::OpenDialogs;
 use super::status_message::StatusMessage;
-use stillbase_picture::charts::choice::PlotChoice;
+use stillbase_picture::charts::choice::{Plot, PlotChoice};
 use stillbase_picture::scene::Measure;
 use stillbase_picture::scene::camera::Camera;
 use stillbase_picture::scene::framing::ViewContent;
 use stillbase_picture::scene::options::Handle;
 use stillbase_picture::scene::palette::{Palette, Theme, palette};
 use stillbase_picture::scene::views::{ViewKind, Views};
+use stillbase_session::scenario::Scenario;
 use stillbase_session::{Edit, Session};
+use stillbase_simulation::signals::Signal;
 use stillbase_study::front_point::FrontMeasure;
 
 /// Framing of a view: whether it shows everything.
@@ -40,8 +42,8 @@ impl Framing {
     }
 }
 
-/// The view state, which is not part of the session. Its parts last as long as a preference, a gesture, a dialog or a
-/// message; its other fields last as long as the window.
+/// The view state, which is not part of the session. Preferences, gestures, dialogs and messages have structures of
+/// their own, each with its own lifetime; the other fields last as long as the window.
 #[derive(Clone, Debug)]
 pub struct ViewState {
     /// Arrangement of the window: a preference of the user.
@@ -130,6 +132,11 @@ impl ViewState {
         palette(self.arrangement.theme)
     }
 
+    /// Returns the plots on display.
+    pub fn plots<'a>(&self, scenario: &Scenario, signals: &'a [Signal]) -> Vec<Plot<'a>> {
+        self.charts.plots(scenario, signals, self.pins, self.arrangement.notation)
+    }
+
     /// Returns the camera of the view on display.
     pub fn camera(&self) -> &Camera {
         &self.cameras[self.view as usize]
@@ -164,8 +171,8 @@ impl ViewState {
 }
 
 /// Returns the edit for a new b, rad. While time runs, the machine moves to the plane b; otherwise the edit puts it
-/// there. If the points of the task may not rotate with the plane, the edit takes the nearest b that is feasible for
-/// them.
+/// there. A dragged machine takes any b, and so does a task whose points may rotate with the plane. Otherwise the
+/// edit takes the nearest b that is feasible for the points.
 pub(super) fn set_b(session: &Session, view_state: &ViewState, b: f64) -> Edit {
     if session.is_playing() && session.is_at_end() {
         return Edit::SlideB { b };

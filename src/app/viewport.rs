@@ -112,13 +112,14 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
             weights: weights.to_vec(),
             links: view_state.pointed.lit_links.clone(),
             scale: None,
+            notation: view_state.arrangement.notation,
         };
         let scene = Arc::new(views.scene(view_state.view, session.frame(), &options, view_state.camera()));
         paint(ui, 0, rect, &scene, view_state.camera());
         let spot = SceneViewport { rect, camera: *view_state.camera() };
         // The problem message covers the scene while it lasts.
         covered.extend(status::has_bad_news(session, view_state).then(|| status::news_rect(ui.ctx())).flatten());
-        draw_labels(ui, &spot, &scene, &covered);
+        draw_labels(ui, &spot, &scene, &covered, view_state.arrangement.notation);
         corner::show(ui, rect, view_state, views, commands);
         coordinates::show(ui, rect, session, views, view_state, commands);
         let seen = |at: [f64; 3]| spot.screen(at).is_some_and(|at| rect.contains(at));
@@ -217,7 +218,7 @@ fn show_card(response: &egui::Response, session: &Session, views: &Views, view_s
     let waits = since + CARD_DELAY_S - now;
     if waits > 0.0 {
         ctx.request_repaint_after_secs(waits as f32);
-    } else if let Some(card) = Card::of(thing, session, views) {
+    } else if let Some(card) = Card::of(thing, session, views, view_state.arrangement.notation) {
         let p = view_state.palette();
         tooltip().show(|ui| card.show(ui, &p));
     }

@@ -7,7 +7,8 @@ use egui::response::Flags;
 use egui::{Align, DragValue, Key, Layout, Response, RichText, Slider, SliderClamping, Ui};
 
 use super::theme::{bold, colour, plain};
-use super::{Command, SessionCommand};
+use super::{Command, SessionCommand, notation};
+use stillbase_picture::notation::ShownUnit;
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Edit;
@@ -34,6 +35,7 @@ pub(super) fn section(ui: &mut Ui, p: &Palette, title: &str) {
 pub(super) fn heading(ui: &mut Ui, p: &Palette, title: &str, words: &str) {
     ui.horizontal(|ui| {
         ui.label(RichText::new(title).font(bold(13.5)).color(colour(p.ink)));
+        let words = notation::sentence(ui.ctx(), words);
         ui.label(RichText::new(words).font(plain(11.5)).color(colour(p.dim)));
     });
     ui.add_space(2.0);
@@ -91,7 +93,31 @@ impl NumberRow<'_> {
         .inner
     }
 
+    /// Returns this row in another unit.
+    fn in_unit(&self, unit: &ShownUnit) -> NumberRow<'_> {
+        let scaled = |range: &RangeInclusive<f64>| unit.factor * range.start()..=unit.factor * range.end();
+        NumberRow {
+            unit: unit.name,
+            decimals: unit.decimals(self.decimals),
+            speed: unit.factor * self.speed,
+            range: scaled(&self.range),
+            slide: scaled(&self.slide),
+            ..*self
+        }
+    }
+
+    /// Draws the number in the user's unit.
     pub fn number(&self, ui: &mut Ui, value: &mut f64) -> Response {
+        let Some(unit) = notation::of(ui.ctx()).shown_unit(self.unit) else { return self.own_number(ui, value) };
+        let mut shown = unit.factor * *value;
+        let response = self.in_unit(&unit).own_number(ui, &mut shown);
+        if response.changed() {
+            *value = (shown / unit.factor).clamp(*self.range.start(), *self.range.end());
+        }
+        response
+    }
+
+    fn own_number(&self, ui: &mut Ui, value: &mut f64) -> Response {
         let shown = ui.style().number_formatter.format(*value, self.decimals..=self.decimals);
         let before = *value;
         let refused = Cell::new(None);
@@ -142,6 +168,7 @@ impl NumberRow<'_> {
             "rad" => 0.05,
             "°" => 5.0,
             "m" => 0.01,
+            "mm" => 10.0,
             _ => 10.0 * 0.1_f64.powi(self.decimals as i32),
         }
     }
@@ -168,7 +195,21 @@ impl NumberRow<'_> {
         self.stopped_slider(ui, value, logarithmic, |requested| requested)
     }
 
+    /// Draws the slider in the user's unit.
     fn stopped_slider(&self, ui: &mut Ui, value: &mut f64, logarithmic: bool, stops: impl Fn(f64) -> f64) -> Response {
+        let Some(unit) = notation::of(ui.ctx()).shown_unit(self.unit) else {
+            return self.own_slider(ui, value, logarithmic, stops);
+        };
+        let mut shown = unit.factor * *value;
+        let stops = |requested: f64| unit.factor * stops(requested / unit.factor);
+        let response = self.in_unit(&unit).own_slider(ui, &mut shown, logarithmic, stops);
+        if response.changed() {
+            *value = (shown / unit.factor).clamp(*self.slide.start(), *self.slide.end());
+        }
+        response
+    }
+
+    fn own_slider(&self, ui: &mut Ui, value: &mut f64, logarithmic: bool, stops: impl Fn(f64) -> f64) -> Response {
         ui.spacing_mut().slider_width = ui.available_width();
         // The slider's size follows from the row height.
         ui.spacing_mut().interact_size.y = 15.0;
@@ -259,13 +300,16 @@ pub(super) fn refused_entry(ctx: &egui::Context) -> Option<String> {
     ctx.data_mut(|data| data.remove_temp(refused_id()))
 }
 
+/// Writes a unit behind a number, in the user's notation.
 pub(super) fn unit(ui: &mut Ui, p: &Palette, text: &str) {
+    let text = notation::of(ui.ctx()).unit_name(text);
     let size = if text.chars().count() > 6 { 10.5 } else { 11.5 };
     let text = RichText::new(text).font(plain(size)).color(colour(p.dim));
     ui.add_sized([44.0, 18.0], egui::Label::new(text).halign(Align::LEFT));
 }
 
 pub(super) fn note(ui: &mut Ui, p: &Palette, text: &str) {
+    let text = notation::sentence(ui.ctx(), text);
     ui.add(egui::Label::new(RichText::new(text).font(plain(11.0)).color(colour(p.dim))).wrap());
 }
 

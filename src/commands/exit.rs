@@ -29,7 +29,8 @@ struct FailureReport<'a> {
 }
 
 /// Prints the reason of a failure in one line, and a line for each proposal that leads out of it; returns the exit
-/// status. With `as_json`, prints both of a refused scenario on standard output, too, unless the answer there holds them.
+/// status. With `as_json`, also prints the reason and the proposals of a refused scenario on standard output, unless
+/// the answer there already holds them.
 pub fn exit_code(done: Result<(), Failure>, as_json: bool) -> ExitCode {
     let Err(failure) = done else { return ExitCode::SUCCESS };
     // A failure other than a refusal may follow an answer; it prints no second object.

@@ -142,7 +142,7 @@ impl ImportArguments {
             Kept::Tip => PreservedPath::Tip,
             Kept::Joints => PreservedPath::Joints,
         });
-        let scenario = Shared(Scenario { name: stem, title, machine, ..base }.into());
+        let scenario = Shared(Scenario { name: stem, title, summary: String::new(), machine, ..base }.into());
         let request = Request { scenario, motion: Shared(motion.into()), b: self.b, keep };
         let found = answer_now::<ImportQuery>(request)?;
         found.notes.iter().for_each(|note| print_message(format!("note: {}", note.worded(option))));

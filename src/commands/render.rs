@@ -186,7 +186,7 @@ impl RenderArguments {
 
 /// Returns a time, s, if it is within the run.
 fn within(time: f64, end: f64, option: &str) -> Result<f64, Failure> {
-    // The end is printed with three decimals, and works as printed.
+    // Messages print the end with three decimals; that rounded value must be accepted too.
     let is_within = (0.0..=end + 5e-4).contains(&time);
     is_within.then_some(time.min(end)).ok_or_else(|| {
         Failure::wrong_input(format!("{option} {time}: want a time within the run, 0 to {} s", fixed(end, 3)))

@@ -22,8 +22,8 @@ impl PinAngleSum {
         Self { pins: down.chain(up).collect() }
     }
 
-    /// Returns the angle q_to − q_from between two drives, or q_to if `from` is `None`; `None` if no link follows one
-    /// of them. A single pin between links of the two drives is preferred.
+    /// Returns the angle q_to − q_from between two drives, or q_to if `from` is `None`; `None` if one
+    /// of them has no link. A single pin between links of the two drives is preferred.
     pub fn of_drives(machine: &Machine, from: Option<usize>, to: usize) -> Option<Self> {
         let parts = machine.resolved_links();
         let first = |k: usize| parts.iter().position(|part| part.drive == k);

@@ -249,8 +249,9 @@ fn copy_into(from: &Path, to: &Path) -> io::Result<()> {
     to.sync_all()
 }
 
-/// Keeps the content of a file that is about to be replaced under a temporary name, if the file system allows it. This
-/// is a copy if the file will be overwritten, or else a hard link. If the program is killed, a later write removes it.
+/// Keeps, under a temporary name, the content of a file that is about to be replaced, if the file system allows it.
+/// This is a copy if the file will be overwritten, or else a hard link. If the program is killed, a later write
+/// removes it.
 fn aside(part: &Path, file: &Path, copied: bool) -> Option<PathBuf> {
     let aside =
         part.with_file_name(format!("{}0{PART_ENDING}", part.file_name()?.to_str()?.strip_suffix(PART_ENDING)?));

@@ -61,8 +61,9 @@ pub fn minimum_norm(tip: &Chain, e: &UnitVectors, n: usize, v: Vector, vd: Vecto
     Some((qd, qdd))
 }
 
-/// Returns the minimum-norm rates, rad/s, that give the end effector the velocity v, m/s, at constant Σ λ_k q_k: q̇ =
-/// Aᵀ (A Aᵀ)⁻¹ (v, 0) with A = [J; λ]. Also returns their exact time derivative for v̇. `None` where A is rank
+/// Returns the minimum-norm rates, rad/s, that give the end effector the velocity v, m/s, at constant Σ λ_k q_k.
+/// They are q̇ = Aᵀ (A Aᵀ)⁻¹ (v, 0) with A = [J; λ]. Also returns their exact time derivative for v̇. `None` where
+/// A is rank
 /// deficient, as it always is for fewer than three drives.
 pub fn minimum_norm_held(
     tip: &Chain,

@@ -64,7 +64,7 @@ pub const EMPTY_CHART: Chart = Chart {
 
 const TORQUE: Chart = Chart { title: "Torque", unit: "N m", signals: &["torque"], ..EMPTY_CHART };
 const MOMENT: Chart = Chart {
-    title: "Base moment",
+    title: "Turning moment on the base",
     unit: "N m",
     signals: &["moment/total"],
     min_range: 0.5,
@@ -74,9 +74,9 @@ const MOMENT: Chart = Chart {
 /// The moment that the machine transmits, and the moment on the base after compensation by its reaction wheel.
 const MOMENT_PAST_WHEEL: Chart = Chart { signals: &["moment/total", "moment/felt"], ..MOMENT };
 const FORCE: Chart =
-    Chart { title: "Base force", unit: "N, from motion", signals: &["force/dynamic"], min_range: 0.5, ..EMPTY_CHART };
+    Chart { title: "Force on the base", unit: "N, from motion", signals: &["force/dynamic"], min_range: 0.5, ..EMPTY_CHART };
 const BASE: Chart = Chart {
-    title: "Base",
+    title: "Motion of the base",
     unit: "mm, mrad",
     signals: &["base", "attitude"],
     min_range: 0.01,

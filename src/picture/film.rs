@@ -17,7 +17,7 @@ pub enum FilmFormat {
 
 /// Speed of the choice of colours, 1 (best) to 30.
 const QUANTISATION_SPEED: i32 = 10;
-/// Unit of the delay between the pictures of a GIF, 1/s.
+/// Number of units in which a GIF counts the delays between pictures, per second.
 const GIF_DELAYS_PER_SECOND: f64 = 100.0;
 
 /// A film that is being written.
@@ -38,7 +38,7 @@ impl<W: Write> Film<W> {
     /// Begins a film of `count` pictures of a size in pixels, shown at `fps` pictures per second.
     ///
     /// # Errors
-    /// If the head cannot be written, a side of a GIF is longer than 65,535 pixels, or there is no picture.
+    /// If the head cannot be written, a side of a GIF is longer than 65,535 pixels, or `count` is 0 for a PNG.
     pub fn begin(to: W, format: FilmFormat, [width, height]: [u32; 2], count: u32, fps: f64) -> io::Result<Self> {
         let encoder = match format {
             FilmFormat::Gif => {
@@ -60,14 +60,14 @@ impl<W: Write> Film<W> {
     /// Adds a picture.
     ///
     /// # Errors
-    /// If it cannot be written or has another size.
+    /// If it cannot be written, or if a PNG gets a picture with another number of pixels.
     pub fn push(&mut self, picture: Picture) -> io::Result<()> {
         match &mut self.encoder {
             FilmEncoder::Gif(encoder) => {
                 let side = |side: u32| u16::try_from(side).map_err(io::Error::other);
                 let (width, height, mut rgba) = (side(picture.width)?, side(picture.height)?, picture.rgba);
                 let mut frame = Frame::from_rgba_speed(width, height, &mut rgba, QUANTISATION_SPEED);
-                // Rounded sums, not the rounded delay, so that the film is as long as the run.
+                // Rounded sums, not the rounded delay, so that a film of up to 655 s is as long as the run.
                 let until = |count: u32| (f64::from(count) * GIF_DELAYS_PER_SECOND / self.fps).round() as u16;
                 frame.delay = until(self.count + 1) - until(self.count);
                 encoder.write_frame(&frame).map_err(io::Error::other)?;

@@ -13,6 +13,8 @@ pub mod film;
 #[doc(hidden)]
 pub mod gui;
 #[doc(hidden)]
+pub mod notation;
+#[doc(hidden)]
 pub mod numbers;
 #[cfg(feature = "ui")]
 #[doc(hidden)]

@@ -10,7 +10,7 @@ pub(super) fn golden([mut low, mut high]: [f64; 2], sections: usize, mut f: impl
     let (mut left, mut right) = (at(low + SMALLER_SECTION * (high - low)), at(high - SMALLER_SECTION * (high - low)));
     let mut best = if right.1 < left.1 { right } else { left };
     for _ in 1..sections {
-        // The new sample is placed relative to the one on the far side of the kept sample, so that rounding does not
+        // The new sample divides the interval from the kept sample to the farther bound, so that rounding does not
         // accumulate.
         let new = if left.1 < right.1 {
             (high, right) = (right.0, left);

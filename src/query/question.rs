@@ -26,7 +26,7 @@ pub trait Query: Send + Sized + 'static {
 /// Progress callback: takes the fraction done, from 0 to 1; returns whether the work is to continue.
 pub type ProgressCallback<'a> = &'a mut dyn FnMut(f64) -> bool;
 
-/// Returns a progress callback for a part of the work that takes the whole from the fraction `from` to `to`.
+/// Returns a progress callback for the part of the work between the fractions `from` and `to` of the whole.
 pub fn part(goes_on: ProgressCallback<'_>, [from, to]: [f64; 2]) -> impl FnMut(f64) -> bool {
     move |done| goes_on(from + (to - from) * done)
 }

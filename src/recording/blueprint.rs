@@ -420,7 +420,7 @@ fn name_of(chart: &Chart) -> String {
 }
 
 /// Returns the title of a plot, with symbol and colour of each series if there is one per drive, at most four. A legend
-/// would cover the curves of such a low plot. With many series, the viewer names the series under the pointer.
+/// would cover the curves, as the plot is not high. With many series, the viewer names the series under the pointer.
 fn titled(chart: &Chart, case: &Preview) -> String {
     let signals = case.topics.iter().flat_map(|topic| &topic.signals);
     let all: Vec<_> = signals.filter(|signal| chart.contains(signal)).collect();

@@ -33,7 +33,7 @@
 //!
 //! Constant parts of an item are written once. Moving parts have at most 200 rows a second, and signals have a row at
 //! every step. Machine, scenario, version and verdict are properties of the recording. Equal scenarios give equal
-//! recordings, independent of time and machine.
+//! recordings, independent of the time and the computer.
 
 mod blueprint;
 mod dashes;

@@ -36,7 +36,8 @@ impl<T: Clone + PartialEq> SparseRows<T> {
     }
 }
 
-/// A list of every n-th item, with at most `most` items: if there are more, every other one is dropped and n is
+/// A list of every n-th item, with at most `most` items besides the last: if there are more, every other one is
+/// dropped and n is
 /// doubled.
 #[derive(Debug)]
 pub struct Thinned<T> {

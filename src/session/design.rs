@@ -228,7 +228,7 @@ pub fn relaxations(why: &CounterweightError) -> Vec<Proposal> {
     let (CounterweightError::Conflict { reliefs, .. } | CounterweightError::Reaches { reliefs, .. }) = why else {
         return Vec::new();
     };
-    // Six decimals are what a refusal prints, and suffice.
+    // These are the decimals that a refusal prints; they suffice.
     let of_key = |relaxation: &BoundRelaxation| match relaxation {
         BoundRelaxation::Most(mass) => Some(("design.heaviest", Decimal::nearest(*mass, 6), "kg a counterweight")),
         BoundRelaxation::Clearance(length) => Some(("design.clearance", Decimal::nearest(*length, 4), "m from pins")),

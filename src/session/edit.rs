@@ -210,7 +210,7 @@ impl Edit {
         self.changes_plan() || self.affects_no_frame()
     }
 
-    /// Reason for refusing an edit [of the start](Self::changes_plan) after the first step.
+    /// Reason for refusing, after the first step, an edit that [changes the plan](Self::changes_plan).
     pub(super) const START_ONLY_REASON: &str =
         "task, time, base and step can change only before the first step: want step = 0";
 

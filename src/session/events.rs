@@ -48,7 +48,8 @@ pub struct Event {
 /// Maximum time between successive edits of one gesture, s; a drag sends one edit for each picture.
 pub(super) const GESTURE_PAUSE: f64 = 0.25;
 
-/// Minimum time without reactions before an event reports their end, s, because a moment may only pass through zero.
+/// Minimum time without reactions before an event reports their end, s. A moment that changes sign is zero
+/// only for an instant.
 const MIN_QUIET_S: f64 = 0.05;
 
 /// A motor counts as at its torque limit from this fraction of the limit on, until its torque is below

@@ -23,7 +23,8 @@ const SWEEP_ROWS: u32 = 40;
 const DURATIONS_S: [f64; 4] = [2.0, 4.0, 8.0, 16.0];
 
 /// Returns a scenario with a small motion near the middle of the joint limits. The motion is reactionless if possible,
-/// otherwise along a straight line, or else one of the drives over time. If all trials fail, returns one of them; the
+/// otherwise along a straight line, or else prescribed as drive angles over time. If all trials fail, returns one of
+/// them; the
 /// planner or the run then reports the reason.
 ///
 /// # Errors

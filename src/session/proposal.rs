@@ -1,4 +1,4 @@
-//! [`Proposal`]: settings that make a refused task run, or a run better. Each has been tried.
+//! [`Proposal`]: settings that let a refused task run, or that improve a run. Each has been tried.
 
 use serde::{Serialize, Serializer};
 use toml::Table;
@@ -142,7 +142,7 @@ fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: ProgressCall
     let bare = scenario.without_edits();
     let candidates = candidates(&bare, refusal);
     let count = candidates.len() + 1;
-    // A task made for the machine is itself searched for: only if it is reached.
+    // Making a task for the machine takes a search, so this is done only if the loop below gets to it.
     let made = std::iter::once_with(|| would_plan(refusal).then(|| made_task(&bare)).flatten()).flatten();
     let mut proposals: Vec<Proposal> = Vec::new();
     for (i, candidate) in candidates.into_iter().chain(made).enumerate() {
@@ -293,8 +293,8 @@ fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal> {
     found
 }
 
-/// Returns whether another plan may lead out of a refusal. It does not where the task can be planned already; whether a
-/// finer step helps would have to be simulated.
+/// Returns whether another plan may lead out of a refusal. It cannot if the task could be planned already. A
+/// finer step may help then, but only a simulation shows whether it does.
 fn would_plan(refusal: &Refusal) -> bool {
     match refusal {
         Refusal::Edit { refusal, .. } => would_plan(refusal),
@@ -315,8 +315,8 @@ fn made_task(scenario: &Scenario) -> Option<Proposal> {
     Some(Proposal::of_task("take a task made for this machine", own.task.whole()))
 }
 
-/// Proposes to turn all points of the task about the base pin, as far as b turns the workspace past the nearest
-/// feasible b, rad.
+/// Proposes to keep b and turn all points of the task about the base pin. The workspace turns by the same angle when
+/// b changes from `feasible_b`, rad, to the b of the task.
 fn turned_task(scenario: &Scenario, feasible_b: f64) -> Vec<Proposal> {
     let task = &scenario.task;
     let Ok(space) = PoseSpace::of(&scenario.machine) else { return Vec::new() };

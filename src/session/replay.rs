@@ -80,7 +80,7 @@ pub fn base_loads(scenario: &Scenario) -> Result<([Vec<f64>; 3], Option<AuditFig
     Ok((course, run.frame().first_violation()))
 }
 
-/// Runs a scenario with a script in the order of steps to the step that `end` returns. Calls `see` with every frame;
+/// Runs a scenario up to the step that `end` returns; the script is in order of steps. Calls `see` with every frame;
 /// `see` returns whether the run is to go on. If the task does not fit its machine, the run is refused or, if `patient`
 /// is true, waits at its first step.
 pub(super) fn perform(

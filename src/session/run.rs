@@ -75,7 +75,8 @@ impl Run {
     /// Queries of a `known` run are reused.
     ///
     /// # Errors
-    /// If an edit is out of range, or the task cannot be planned.
+    /// If an edit is out of range, or the scenario after the edits is not valid. If the task cannot be planned, the
+    /// run waits.
     pub(super) fn begin(
         scenario: &Scenario,
         script: &[TimedEdit],

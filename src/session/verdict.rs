@@ -88,10 +88,10 @@ fn gives_drives(scenario: &Scenario, frame: &Frame) -> bool {
     of_drives && (frame.target.at - Vector::new(x, y)).norm() <= TARGET_TOLERANCE
 }
 
-/// A remark on a verdict, in two or three words and in a sentence.
+/// A remark on a verdict, in a few words and in a sentence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remark {
-    /// Two or three words, for a cell of a table.
+    /// A few words, for a cell of a table.
     pub short: String,
     /// A sentence, for a line of text.
     pub long: String,

@@ -65,6 +65,11 @@ pub fn nine_digits(x: f64) -> String {
     ShortNumber(rounded).to_string()
 }
 
+/// Returns a symbol without subscript digits at its end: τ₁₂ as τ.
+pub fn without_subscript(symbol: &str) -> &str {
+    symbol.trim_end_matches(|c| ('₀'..='₉').contains(&c))
+}
+
 /// Returns a number in subscript digits: 12 as ₁₂.
 pub fn subscript(number: usize) -> String {
     number.to_string().chars().filter_map(|c| char::from_u32(c as u32 - '0' as u32 + '₀' as u32)).collect()

@@ -44,8 +44,8 @@ impl Range {
         self.high
     }
 
-    /// Returns the interval with bounds rounded to nine digits, which are easier to read for a quotient of typed
-    /// numbers.
+    /// Returns the interval with bounds rounded to nine digits. A bound that is a quotient of typed numbers is then
+    /// easier to read.
     #[must_use]
     pub fn rounded(&self) -> Self {
         let nine = |x: f64| format!("{x:.8e}").parse().unwrap_or(x);

@@ -35,7 +35,7 @@ keyed! {
         // A wheel in the base is not part of the model.
         /// Whether the model of control includes the base that moves; otherwise control takes the base to be fixed.
         knows_base: bool = "true", when: "base.kind = free or compliant: a fixed base does not move";
-        /// Rate at which torques are computed; between samples, a whole number of steps, they stay constant, and 0
+        /// Rate at which torques are computed, a whole number of steps apart; they stay constant in between, and 0
         /// means continuous control.
         rate: f64 = "0", range: Range::new(0.0, 1e5, "Hz");
         // Encoders are sampled at every step if no rate is given. Until the first torque arrives, the motors hold the

@@ -106,7 +106,7 @@ pub struct LengthsReport {
     pub workspace: Option<f64>,
 }
 
-/// A rotor whose inertia and ratio were optimised.
+/// A rotor whose inertia or gear ratio was optimised; the other value is that of the machine.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChosenRotor {
     /// Name of the drive.

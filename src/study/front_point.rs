@@ -21,7 +21,8 @@ pub struct FrontPoint {
     /// Largest |torque| of a motor in a motion, weight included, N m; `None` without a motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub torque: Option<f64>,
-    /// Area of the reactionless workspace, m²; `None` unless the machine has three drives and a b.
+    /// Area of the reactionless workspace, m²; `None` if not requested, or unless the machine has three drives, two
+    /// relative angles with limits, and a b.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub workspace: Option<f64>,
     /// Largest |g_k| if every counterweight deviates by the usual tolerance ([`PlacementTolerance::DEFAULT`]), kg m.

@@ -59,10 +59,10 @@ pub struct PlanCost {
     pub moment_impulse: f64,
     /// Largest dynamic |f_B|, N.
     pub peak_base_force: f64,
-    /// For the fastest motion: the limit that is reached most.
+    /// For the fastest motion: the limit that is active for the greatest share of its first part.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limiting: Option<String>,
-    /// For the fastest smooth motion: T/T* − 1, where T* has no limits on jerk.
+    /// For the fastest smooth motion: T/T* − 1, where T* is the least time without limits on jerk.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gap: Option<f64>,
     /// Duration with rounded corners, s; given only if the motion stops at the corners because that is faster.

@@ -11,7 +11,7 @@ use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 
 use super::screen::{Screen, whole};
-use super::{Window, drag, on_screen, session};
+use super::{painted, Window, drag, on_screen, session};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![
@@ -261,20 +261,6 @@ fn numbers_of_the_first_screen_are_those_of_the_run() {
         let at = session(&h).frame().end_effector;
         assert!(said.contains(&format!("{:.3}, {:.3} m", at.re, at.im)), "{said:?}");
     }
-}
-
-/// All texts on the screen.
-fn painted(h: &Window) -> Vec<String> {
-    fn texts(shape: &egui::Shape, all: &mut Vec<String>) {
-        match shape {
-            egui::Shape::Text(text) => all.push(text.galley.text().to_owned()),
-            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| texts(shape, all)),
-            _ => {}
-        }
-    }
-    let mut all = Vec::new();
-    h.output().shapes.iter().for_each(|clipped| texts(&clipped.shape, &mut all));
-    all
 }
 
 /// A hint speaks of an area only where there is one, of nothing where nothing can be dragged, and stands beside what it

@@ -9,6 +9,7 @@ mod hands;
 mod intro;
 mod jobs;
 mod layout;
+mod notation;
 mod panel;
 mod plots;
 mod pointer;
@@ -31,7 +32,7 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 19] = [
+pub const TESTS: [&[Test]; 20] = [
     saving::TESTS,
     family::TESTS,
     files::TESTS,
@@ -42,6 +43,7 @@ pub const TESTS: [&[Test]; 19] = [
     intro::TESTS,
     jobs::TESTS,
     layout::TESTS,
+    notation::TESTS,
     panel::TESTS,
     plots::TESTS,
     pointer::TESTS,
@@ -115,6 +117,20 @@ fn hold(h: &mut Window) {
     h.get_by_label("payload").click();
     h.run_steps(2);
     assert_eq!(session(h).scenario().plant.payload.mass, 0.3);
+}
+
+/// All texts on the screen.
+fn painted(h: &Window) -> Vec<String> {
+    fn texts(shape: &egui::Shape, all: &mut Vec<String>) {
+        match shape {
+            egui::Shape::Text(text) => all.push(text.galley.text().to_owned()),
+            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| texts(shape, all)),
+            _ => {}
+        }
+    }
+    let mut all = Vec::new();
+    h.output().shapes.iter().for_each(|clipped| texts(&clipped.shape, &mut all));
+    all
 }
 
 /// Types into a field and leaves it.

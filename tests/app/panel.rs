@@ -198,13 +198,13 @@ fn a_link_that_differs_is_named() {
 fn a_base_that_moves_is_seen_to_move() {
     let mut h = window_of(Scenario::builtin("case-1").expect("built in"), Theme::Dark, 1700.0);
     h.step();
-    assert!(h.query_by_label_contains("Base over time").is_none());
+    assert!(h.query_by_label_contains("Motion of the base over time").is_none());
     h.get_by_label("Base section").click();
     h.run_steps(2);
     h.get_by_label("free").click();
     h.run_steps(2);
     assert_eq!(session(&h).scenario().base.kind, BaseKind::Free);
-    assert!(h.query_by_label_contains("Base over time").is_some());
+    assert!(h.query_by_label_contains("Motion of the base over time").is_some());
     let foreseen = h.state().app_state().base_exaggeration();
     h.get_by_label("Play").click();
     h.run_steps(70);
@@ -250,7 +250,7 @@ fn tolerances_are_shown_and_set() {
     h.run_steps(3);
     h.key_press(Key::T);
     h.run_steps(2);
-    assert!(h.query_by_label("Histogram of peaks of the base moment over machines, N m").is_some());
+    assert!(h.query_by_label("Histogram of peaks of the turning moment on the base over machines, N m").is_some());
     assert!(h.query_by_label_contains("20000 machines, varied in 41 numbers each").is_some());
     h.get_by_label("Spread of limit on |n_B| N m").set_value_accesskit(0.01);
     h.run_steps(3);

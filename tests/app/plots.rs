@@ -79,7 +79,7 @@ fn hands_move_the_time_that_plots_show() {
     drag(&mut h, at, to);
     assert!((session(&h).frame().time - 0.6).abs() < 0.006 && range(&h).is_none());
     // Ctrl and the wheel go closer to the time under the pointer, which stays there.
-    let at = at_share(&h, "Base moment over time", 0.25);
+    let at = at_share(&h, "Turning moment on the base over time", 0.25);
     wheel(&mut h, at, 120.0, Modifiers::COMMAND);
     let [from, to] = range(&h).expect("closer");
     let share = (0.25 - from) / (to - from);
@@ -116,7 +116,7 @@ fn hands_move_the_time_that_plots_show() {
     h.state_mut().app_state_mut().carry_out(ViewChange::Mark(Some(0.2)));
     h.run_steps(2);
     let before = session(&h).frame().time;
-    let way = [0.2, 0.4].map(|share| at_share(&h, "Base force over time", share));
+    let way = [0.2, 0.4].map(|share| at_share(&h, "Force on the base over time", share));
     drag(&mut h, way[0], way[1]);
     let mark = h.state().app_state().view_state().mark.expect("still there");
     assert!((mark - 0.4).abs() < 0.01 && session(&h).frame().time == before, "{mark}");
@@ -125,7 +125,7 @@ fn hands_move_the_time_that_plots_show() {
 fn the_plain_wheel_scrolls_the_panel() {
     let mut h = after_case("case-1", Theme::Light, 600.0);
     let place = |h: &Window| h.get_by_label_contains("Torque over time").rect().top();
-    let (before, at) = (place(&h), at_share(&h, "Base moment over time", 0.5));
+    let (before, at) = (place(&h), at_share(&h, "Turning moment on the base over time", 0.5));
     wheel(&mut h, at, -60.0, Modifiers::NONE);
     assert!(place(&h) < before - 20.0, "from {before} to {}", place(&h));
     assert_eq!(range(&h), None);
@@ -134,9 +134,9 @@ fn the_plain_wheel_scrolls_the_panel() {
 /// The numbers beside a plot are dragged along and gone closer to; the plain wheel scrolls there too.
 fn hands_move_the_values_that_a_plot_shows() {
     let mut h = after_case("case-1", Theme::Dark, 600.0);
-    let name = "Base moment";
+    let name = "Turning moment on the base";
     let values = |h: &Window| h.state().app_state().view_state().charts.changes.get(name).and_then(|c| c.values);
-    let numbers = |h: &Window| h.get_by_label_contains("Base moment over time").rect().left_center() + vec2(12.0, -8.0);
+    let numbers = |h: &Window| h.get_by_label_contains("Turning moment on the base over time").rect().left_center() + vec2(12.0, -8.0);
     let (at, time) = (numbers(&h), session(&h).frame().time);
     h.hover_at(at);
     h.run_steps(40);
@@ -144,11 +144,11 @@ fn hands_move_the_values_that_a_plot_shows() {
     wheel(&mut h, at, 120.0, Modifiers::COMMAND);
     let [low, high] = values(&h).expect("closer");
     assert!(high - low > 0.1 && range(&h).is_none(), "{low} to {high}; time stays");
-    let inside = at_share(&h, "Base moment over time", 0.5);
+    let inside = at_share(&h, "Turning moment on the base over time", 0.5);
     wheel(&mut h, inside, 120.0, Modifiers::ALT);
     let [from, to] = values(&h).expect("closer still");
     assert!(to - from < 0.8 * (high - low) && range(&h).is_none(), "{from} to {to}");
-    assert_eq!(h.get_by_label_contains("Base moment over time").rect().left_center() + vec2(12.0, -8.0), at);
+    assert_eq!(h.get_by_label_contains("Turning moment on the base over time").rect().left_center() + vec2(12.0, -8.0), at);
     drag(&mut h, at, at + vec2(0.0, 20.0));
     let [moved, end] = values(&h).expect("moved along");
     assert!(moved > from + 0.05 * (to - from) && (end - moved - (to - from)).abs() < 1e-9, "{moved} to {end}");
@@ -293,14 +293,14 @@ fn one_signal_stands_against_another() {
     assert!(h.query_by_label_contains("End effector, y over").is_none());
     assert_eq!(h.state().app_state().view_state().charts, Default::default());
     // A plot of the table can be put away and brought back.
-    h.get_by_label_contains("Base force over time").click_secondary();
+    h.get_by_label_contains("Force on the base over time").click_secondary();
     h.run_steps(3);
     h.get_by_label("Put this plot away").click();
     h.run_steps(3);
-    assert!(h.query_by_label_contains("Base force over time").is_none());
+    assert!(h.query_by_label_contains("Force on the base over time").is_none());
     h.get_by_label("Bring plots back").click();
     h.run_steps(3);
-    assert!(h.query_by_label_contains("Base force over time").is_some());
+    assert!(h.query_by_label_contains("Force on the base over time").is_some());
 }
 
 fn values_under_the_pointer_are_those_of_the_frame() {
@@ -379,7 +379,7 @@ fn plots_look_as_they_should() {
         Command::Session(SessionCommand::Seek(1.0)),
         Command::Session(SessionCommand::Seek(0.62)),
         Command::View(ViewChange::Mark(Some(0.3))),
-        Command::View(ViewChange::Charts(PlotChange::Close("Base force".into()))),
+        Command::View(ViewChange::Charts(PlotChange::Close("Force on the base".into()))),
         Command::View(ViewChange::Charts(PlotChange::Show("Torque".into(), "torque/2".into(), false))),
         Command::View(ViewChange::Charts(PlotChange::Plot("tip/y".into()))),
         Command::View(ViewChange::Charts(PlotChange::Against("plot 1".into(), Some("tip/x".into())))),

@@ -123,7 +123,7 @@ fn limits_apply_and_the_run_waits() {
         named.map(|l| l.text.clone()).collect::<Vec<_>>()
     };
     for way_out in ["take b", "take back", "by hand"] {
-        type_into(&mut h, "a₁ greatest °", "150");
+        type_into(&mut h, "a₁ greatest rad", "150 deg");
         let limit = *session(&h).scenario().machine.angles()[0].limits.end();
         assert!((limit - 150f64.to_radians()).abs() < 1e-12, "{limit}");
         let waiting = session(&h).run().waiting().cloned().expect("B does not fit");
@@ -171,7 +171,7 @@ fn a_run_that_waits_says_so_and_keeps_its_way_out() {
         scene.labels.iter().any(|label| label.text == "drag me")
     };
     assert!(words(&h) && session(&h).can_be_dragged());
-    type_into(&mut h, "a₁ greatest °", "150");
+    type_into(&mut h, "a₁ greatest rad", "150 deg");
     assert!(session(&h).run().waiting().is_some() && !session(&h).can_be_dragged() && !words(&h));
     assert!(h.query_by_label_contains("the run waits: change points, limits or b").is_some());
     let tip = session(&h).frame().end_effector;

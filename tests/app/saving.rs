@@ -124,9 +124,9 @@ fn changes_in_no_file_are_marked_and_asked_for() {
     let mut h = window("case-3", Theme::Dark);
     h.run_steps(2);
     let state = |h: &Window| (h.state().app_state().may_leave(), h.state().app_state().title());
-    assert_eq!(state(&h), (true, "Case 3 · reactionless – Stillbase".into()));
+    assert_eq!(state(&h), (true, "Reactionless, from A to B – Stillbase".into()));
     tell(&mut h, heavier());
-    assert_eq!(state(&h), (false, "Case 3 · reactionless * – Stillbase".into()));
+    assert_eq!(state(&h), (false, "Reactionless, from A to B * – Stillbase".into()));
     tell(&mut h, Command::Window(WindowCommand::Quit));
     assert!(h.query_by_label("One change of this session is in no file.").is_some());
     assert!(!h.state().app_state().wants_to_leave());

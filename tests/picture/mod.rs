@@ -3,6 +3,7 @@
 #[cfg(feature = "render")]
 mod film;
 mod mesh;
+mod notation;
 mod palette;
 mod plots;
 mod scene;

@@ -3,6 +3,7 @@
 use proptest::prelude::*;
 use stillbase::mechanics::machine::builtin;
 use stillbase::picture::charts::choice::{PlotChange, PlotChoice};
+use stillbase::picture::notation::Notation;
 use stillbase::picture::charts::drawn::PlotLines;
 use stillbase::picture::charts::figure::{Figure, FigureItem, PlotContext};
 use stillbase::picture::charts::range::TimeExtent;
@@ -58,19 +59,19 @@ fn plots_are_what_was_chosen_and_remembered() {
     let (scenario, table) = (Scenario::builtin("case-3").expect("built in"), table());
     let mut choice = PlotChoice::default();
     let names = |choice: &PlotChoice| -> Vec<String> {
-        choice.plots(&scenario, &table, false).into_iter().map(|plot| plot.name).collect()
+        choice.plots(&scenario, &table, false, Notation::default()).into_iter().map(|plot| plot.name).collect()
     };
-    assert_eq!(names(&choice), ["Torque", "Base moment", "Base force", "Drive angles", "Pose constant"]);
+    assert_eq!(names(&choice), ["Torque", "Turning moment on the base", "Force on the base", "Drive angles", "Pose constant"]);
     let plot = |name: &str| name.to_owned();
     choice.change(PlotChange::Show(plot("Torque"), plot("torque/2"), false));
     choice.change(PlotChange::Plot(plot("tip/y")));
     choice.change(PlotChange::Against(plot("plot 1"), Some(plot("tip/x"))));
     choice.change(PlotChange::Add(plot("Pose constant"), plot("pose/b_reference")));
-    choice.change(PlotChange::Close(plot("Base force")));
+    choice.change(PlotChange::Close(plot("Force on the base")));
     choice.change(PlotChange::Range(Some([0.2, 0.4])));
     choice.change(PlotChange::Range(Some([0.4, f64::NAN])));
-    assert_eq!(names(&choice), ["Torque", "Base moment", "Drive angles", "Pose constant", "plot 1"]);
-    let plots = choice.plots(&scenario, &table, false);
+    assert_eq!(names(&choice), ["Torque", "Turning moment on the base", "Drive angles", "Pose constant", "plot 1"]);
+    let plots = choice.plots(&scenario, &table, false, Notation::default());
     let on = |i: usize| -> Vec<&str> { plots[i].shown().map(|c| c.signal.path.as_str()).collect() };
     assert_eq!((on(0), on(3)), (vec!["torque/1", "torque/3"], vec!["pose/b", "pose/b_reference"]));
     assert_eq!(plots[4].heading(), "End effector, y against x");
@@ -166,7 +167,7 @@ fn a_drawing_holds_what_the_plot_shows() {
     let mut choice = PlotChoice::default();
     choice.change(PlotChange::Show("Torque".into(), "torque/2".into(), false));
     choice.change(PlotChange::Plot("transmission/12".into()));
-    let plots = choice.plots(session.scenario(), &table, false);
+    let plots = choice.plots(session.scenario(), &table, false, Notation::default());
     let wanted: Vec<Signal> = plots.iter().flat_map(|plot| plot.curves.iter().map(|c| c.signal.clone())).collect();
     let samples: SignalSamples = stillbase::query::answer_sequence(&wanted, session.frames());
     let p = palette(Theme::Light);

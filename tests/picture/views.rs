@@ -441,13 +441,15 @@ fn nothing_drawn_is_lost() {
 #[test]
 fn axes_mark_their_values() {
     let axis = Axis {
-        title: "b, rad",
+        symbol: "b",
+        unit: "rad",
         colour: palette(Theme::Dark).amber,
         ends: [0.0, 2.0],
         values: [-0.3, 4.7],
         step: 1.0,
         decimals: 0,
         now: None,
+        now_decimals: 3,
     };
     assert_eq!(axis.marks().collect::<Vec<_>>(), [0.0, 1.0, 2.0, 3.0, 4.0]);
     assert!((axis.place(-0.3) - 0.0).abs() < 1e-12 && (axis.place(4.7) - 2.0).abs() < 1e-12);

@@ -63,7 +63,7 @@ fn the_main_job_is_done_by_hand() {
     // Start: the first minute, something to see, and the name of what is open.
     let took = desk.open(&[]);
     println!("open and readable after {:.2} s", took.as_secs_f64());
-    desk.titled("Case 3 · reactionless – Stillbase");
+    desk.titled("Reactionless, from A to B – Stillbase");
     desk.reads("Drag the white ring.");
     wait_for("a picture", 20, || (desk.display.picture().colours() > 200).then_some(()));
     assert!(desk.journal().is_none(), "nothing was done yet");

@@ -79,7 +79,7 @@ pub(super) fn show(
 
 /// Plots the base moment n_B, N m, over time, s, for both motions.
 fn moments(ui: &mut Ui, p: &Palette, imported: &ImportedMotion) {
-    title(ui, p, "Base moment n_B", "N m over s; dashed as given");
+    title(ui, p, "Turning moment on the base n_B", "N m over s; dashed as given");
     let given = imported.given.as_ref().map(|given| &given.moment);
     let proposed = imported.proposal.as_ref().map(|proposal| &proposal.account.moment);
     small_axes(ui);
@@ -98,7 +98,7 @@ fn moments(ui: &mut Ui, p: &Palette, imported: &ImportedMotion) {
                 plot.line(line.allow_hover(false));
             }
         });
-    named(&response.response, "Base moment over time as given and as proposed, N m");
+    named(&response.response, "Turning moment on the base over time as given and as proposed, N m");
 }
 
 fn numbers(ui: &mut Ui, p: &Palette, imported: &ImportedMotion) {

@@ -6,13 +6,13 @@ use std::sync::Arc;
 use egui::{RichText, Ui};
 use egui_plot::{Line, PlotPoint, PlotPoints, Points, VLine};
 
-use super::small::{base_plot, marks, small_axes, spaced, which_b_title};
+use super::small::{SmallAxis, base_plot, small_axes, which_b_title};
 use super::which_b::WhichB;
+use crate::notation;
 use crate::theme::{colour, plain};
 use crate::widgets::name;
 use crate::{Command, SessionCommand, set_b};
 use stillbase_mechanics::planar::Vector;
-use stillbase_picture::numbers::signed;
 use stillbase_planning::pose_constant::CommonB;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_query::{ByIdentity, QuickWork};
@@ -39,16 +39,18 @@ pub fn bars(
     let feasible = queries.ask_in_background::<QuickWork<CommonB>>(&(ByIdentity(space.clone()), places)).last;
     // While new intervals are computed, the last ones are shown, unless they belong to another number of points.
     let sets = feasible.as_ref().map(|feasible| &feasible.each[..]).filter(|sets| sets.len() == points.len());
-    which_b_title(ui, p, "of each point, rad; click to choose");
+    let unit = notation::of(ui.ctx()).unit_name("rad");
+    which_b_title(ui, p, &format!("of each point, {unit}; click to choose"));
     let b_now = now.b_reference;
     let half = 0.5 * space.period();
     let count = points.len() as f64;
+    let axis = SmallAxis::of_angle(ui);
     small_axes(ui);
     let response = base_plot("which b of points", p, height - 16.0)
         .show_axes([true, false])
         .show_grid([false, false])
-        .x_grid_spacer(move |_| marks(&spaced(b_now - half, b_now + half), half))
-        .x_axis_formatter(|mark, _| signed(mark.value, 1))
+        .x_grid_spacer(move |_| axis.marks(b_now - half, b_now + half))
+        .x_axis_formatter(move |mark, _| axis.write(mark.value))
         .show(ui, |plot| {
             plot.set_plot_bounds_x(b_now - half..=b_now + half);
             plot.set_plot_bounds_y(-count..=0.4);

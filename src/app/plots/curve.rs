@@ -89,10 +89,10 @@ pub fn show(
 
 /// Describes the plot to a screen reader: the title, and the values at the time on display.
 fn describe(response: &Response, plot: &Plot<'_>, look: &PlotContext<'_>) {
-    let over = plot.against.map_or_else(|| "over time".into(), |signal| format!("over {}", signal.label));
+    let over = plot.against.map_or_else(|| "over time".into(), |across| format!("over {}", across.signal.label));
     let label = format!("{} {over}, {}", plot.title, plot.unit());
     let value = |curve: &stillbase_picture::charts::choice::PlotCurve<'_>| {
-        format!("{} {}", curve.signal.symbol, at_step(curve.scale * curve.signal.value(look.now), 1e-3))
+        format!("{} {}", curve.signal.symbol, at_step(curve.value(look.now), 1e-3))
     };
     let values: Vec<String> = plot.shown().map(value).collect();
     let at = format!("at {} s: {}", at_step(look.now.time, 1e-3), values.join(", "));

@@ -57,15 +57,15 @@ pub fn show(ui: &mut Ui, plot: &Plot<'_>, drawn: &PlotLines, look: &PlotContext<
 /// Returns a curve's symbol with its value at the cursor, or with the difference from the second cursor; `fewer`
 /// digits are omitted.
 fn words(plot: &Plot<'_>, curve: &PlotCurve<'_>, drawn: &PlotLines, look: &PlotContext<'_>, fewer: usize) -> String {
-    let (signal, thousandths) = (curve.signal, curve.scale != 1.0);
-    // Values in thousandths get two decimals; the index B of their symbols is omitted, since the plot names it.
-    let symbol = if thousandths { signal.symbol.trim_end_matches("_B") } else { signal.symbol.as_str() };
+    let signal = curve.signal;
+    // The index B is omitted where the plot names the base.
+    let symbol = if plot.chart.scale != 1.0 { signal.symbol.trim_end_matches("_B") } else { signal.symbol.as_str() };
     if fewer >= SYMBOLS_ONLY {
         return symbol.into();
     }
     let shown = |value: f64| match plot.added_by_user || curve.added {
         true => at_step(curve.scale * value, 5.0 * drawn.finest() * 10f64.powi(fewer as i32)),
-        false => signed(curve.scale * value, if thousandths { 2 } else { 3 } - fewer),
+        false => signed(curve.scale * value, curve.decimals.saturating_sub(fewer)),
     };
     match look.mark.map(|marked| SignalDifference::of(signal, marked, look.now)) {
         Some(d) => format!("Δ{symbol} {}", shown(d.difference())),
@@ -96,7 +96,7 @@ fn switch(
         let d = SignalDifference::of(signal, marked, look.now);
         format!(": {} at the second cursor, {} now", at(d.from), at(d.to))
     });
-    let unit = if curve.unit().is_empty() { String::new() } else { format!(", {}", curve.unit()) };
+    let unit = if curve.unit.is_empty() { String::new() } else { format!(", {}", curve.unit) };
     let verb = if curve.on { "away" } else { "back" };
     let button = button.on_hover_cursor(CursorIcon::PointingHand);
     if button.on_hover_text(format!("{}{unit}{differs}\nClick: {verb}", signal.label)).clicked() {

@@ -54,17 +54,17 @@ pub fn card(
     });
     Grid::new("values").num_columns(4).spacing([8.0, 2.0]).min_row_height(0.0).show(ui, |ui| {
         if let Some(against) = plot.against {
-            ui.label(RichText::new(&against.symbol).font(bold(11.5)).color(colour(p.amber)));
+            ui.label(RichText::new(&against.signal.symbol).font(bold(11.5)).color(colour(p.amber)));
             ui.label(RichText::new(signed(against.value(frame), 4)).font(plain(11.5)));
             ui.label(dim(against.unit.into()));
             ui.end_row();
         }
         for (i, curve) in plot.curves.iter().enumerate().filter(|(_, curve)| curve.on) {
             let tone = colour(pen(plot, i, look).0);
-            let value = |frame: &Frame| curve.scale * curve.signal.value(frame);
+            let value = |frame: &Frame| curve.value(frame);
             ui.label(RichText::new(&curve.signal.symbol).font(bold(11.5)).color(tone));
             ui.label(RichText::new(number(value(frame))).font(plain(11.5)));
-            ui.label(dim(curve.unit()));
+            ui.label(dim(curve.unit.into()));
             if let Some(marked) = look.mark {
                 ui.label(dim(format!("Δ {}", number(value(frame) - value(marked)))));
             }
@@ -77,7 +77,7 @@ pub fn card(
         let each = plot.shown().filter_map(|curve| {
             // The machine of another run may lack this drive.
             let has = curve.signal.drive.is_none_or(|k| k < run.machine().drives());
-            let value = curve.scale * curve.signal.value(there);
+            let value = curve.value(there);
             has.then(|| format!("{} {}", curve.signal.symbol, number(value)))
         });
         ui.label(dim(format!("run {}: {}", place + 1, each.collect::<Vec<_>>().join("  "))));

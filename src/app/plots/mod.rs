@@ -62,7 +62,7 @@ pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, commands: &mut Vec<Command>)
     let panel = if view_state.arrangement.swapped { Panel::left(salt) } else { Panel::right(salt) };
     let panel = panel.default_size(width).size_range(260.0..=most).resizable(true);
     let made = panel.frame(frame).show(ui, |ui| {
-        let plots = view_state.charts.plots(session.scenario(), signals, view_state.pins);
+        let plots = view_state.plots(session.scenario(), signals);
         search::show(ui, what, &plots, SCROLL_BAR_WIDTH_PT as i8, commands);
         let columns = ((ui.available_width() - SCROLL_BAR_WIDTH_PT - LEFT_MARGIN) * ui.ctx().pixels_per_point())
             .clamp(16.0, 8192.0) as usize;

@@ -6,6 +6,7 @@ use super::shown::DisplayContext;
 use stillbase_picture::charts::choice::{Plot, PlotChoice};
 use stillbase_picture::charts::drawn::PlotLines;
 use stillbase_picture::charts::range::TimeExtent;
+use stillbase_picture::notation::Notation;
 use stillbase_query::{ByIdentity, IncrementalAnswer, QuickQuery, QuickWork, Sequence, Shared};
 use stillbase_session::Session;
 use stillbase_session::scenario::Scenario;
@@ -27,6 +28,7 @@ pub struct PlotInput {
     signals: ByIdentity<Vec<Signal>>,
     choice: PlotChoice,
     pins: bool,
+    notation: Notation,
     samples: IncrementalAnswer<SignalSamples>,
     /// Runs shown in comparison, with their indices.
     others: Vec<(usize, IncrementalAnswer<SignalSamples>)>,
@@ -39,11 +41,11 @@ impl QuickQuery for PlotPreparation {
     type Answer = Vec<PlotLines>;
 
     fn answer(input: &PlotInput) -> Vec<PlotLines> {
-        let PlotInput { scenario, signals, choice, pins, shown, columns, .. } = input;
+        let PlotInput { scenario, signals, choice, pins, notation, shown, columns, .. } = input;
         let Some(samples) = input.samples.answer() else { return Vec::new() };
         let others: Vec<(usize, &SignalSamples)> =
             input.others.iter().filter_map(|(place, other)| Some((*place, &**other.answer()?))).collect();
-        let plots = choice.plots(&scenario.0, &signals.0, *pins);
+        let plots = choice.plots(&scenario.0, &signals.0, *pins, *notation);
         plots.iter().map(|plot| PlotLines::of(plot, samples, &others, *shown, *columns, choice.statistics)).collect()
     }
 
@@ -76,6 +78,7 @@ pub fn drawn(what: &DisplayContext<'_>, plots: &[Plot<'_>], columns: usize) -> (
         signals: ByIdentity(what.signals.clone()),
         choice: view_state.charts.clone(),
         pins: view_state.pins,
+        notation: view_state.arrangement.notation,
         samples,
         others,
         shown: extent(session).shown(view_state.charts.range),
@@ -87,7 +90,7 @@ pub fn drawn(what: &DisplayContext<'_>, plots: &[Plot<'_>], columns: usize) -> (
 /// Returns the signals of the plots, without repetitions.
 fn wanted(plots: &[Plot<'_>]) -> Vec<Signal> {
     let mut wanted: Vec<Signal> = Vec::new();
-    for signal in plots.iter().flat_map(|plot| plot.curves.iter().map(|curve| curve.signal).chain(plot.against)) {
+    for signal in plots.iter().flat_map(|plot| plot.curves.iter().chain(&plot.against)).map(|curve| curve.signal) {
         if !wanted.contains(signal) {
             wanted.push(signal.clone());
         }

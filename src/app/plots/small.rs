@@ -3,8 +3,9 @@
 use egui::{RichText, TextStyle, Ui};
 use egui_plot::{GridMark, Plot};
 
+use crate::notation;
 use crate::theme::{bold, colour, plain};
-use stillbase_picture::numbers::round_up;
+use stillbase_picture::numbers::{round_up, signed};
 use stillbase_picture::scene::palette::{Palette, faded};
 
 /// Font size of the axis numbers, points.
@@ -43,6 +44,35 @@ pub fn base_plot<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
 /// Sets the small font of the signal plots for the axes that follow.
 pub fn small_axes(ui: &mut Ui) {
     ui.style_mut().text_styles.insert(TextStyle::Body, plain(AXIS_FONT_PT));
+}
+
+/// An axis of angles in the user's unit; its coordinates are in radians.
+#[derive(Clone, Copy)]
+pub struct SmallAxis {
+    factor: f64,
+    decimals: usize,
+}
+
+impl SmallAxis {
+    /// Returns the axis of the present notation.
+    pub fn of_angle(ui: &Ui) -> Self {
+        match notation::of(ui.ctx()).shown_unit("rad") {
+            Some(unit) => Self { factor: unit.factor, decimals: unit.decimals(1) },
+            None => Self { factor: 1.0, decimals: 1 },
+        }
+    }
+
+    /// Returns marks at values that are round in the user's unit.
+    pub fn marks(self, low: f64, high: f64) -> Vec<GridMark> {
+        let round: Vec<f64> =
+            spaced(self.factor * low, self.factor * high).iter().map(|value| value / self.factor).collect();
+        marks(&round, high - low)
+    }
+
+    /// Writes a value, rad, in the user's unit.
+    pub fn write(self, value: f64) -> String {
+        signed(self.factor * value, self.decimals)
+    }
 }
 
 /// Returns axis marks at these values; egui draws marks of a larger `step` more strongly.

@@ -6,13 +6,13 @@ use egui::{RichText, Ui};
 use egui_plot::{Line, LineStyle, PlotPoint, PlotPoints, Points, Span, VLine};
 
 use super::bands::bars;
-use super::small::{base_plot, marks, small_axes, spaced, which_b_title};
+use super::small::{SmallAxis, base_plot, small_axes, which_b_title};
+use crate::notation;
 use crate::theme::{colour, plain};
 use crate::widgets::name;
 use crate::{Command, SessionCommand, ViewChange, ViewState, set_b};
 use stillbase_mechanics::planar::Vector;
 use stillbase_picture::charts::figure::BOTTOM_MARGIN;
-use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::{Palette, faded};
 use stillbase_planning::pose_constant::CommonB;
 use stillbase_planning::pose_space::{Planes, PoseSpace};
@@ -81,7 +81,8 @@ fn lines(
     let places: Vec<Vector> = points.iter().map(|(_, x)| *x).collect();
     let branches = queries.ask::<QuickWork<Branches>>(&(ByIdentity(planes.clone()), places.clone()));
     let feasible = queries.ask::<QuickWork<CommonB>>(&(ByIdentity(space.clone()), places));
-    which_b_title(ui, p, "q₁ against b, rad; click to choose");
+    let unit = notation::of(ui.ctx()).unit_name("rad");
+    which_b_title(ui, p, &format!("q₁ against b, {unit}; click to choose"));
     let map = planes.map();
     let common = feasible.all.as_ref().map(|common| common.shifted_near(now.b_reference));
     let mut bounds = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
@@ -111,13 +112,14 @@ fn lines(
     let [b_low, b_high] = [bounds[0].min(b_now) - 0.15, bounds[1].max(b_now) + 0.15];
     let room = 0.18 * (bounds[3] - bounds[2]).max(0.5);
     let [q_low, q_high] = [bounds[2] - room, bounds[3] + room];
+    let axis = SmallAxis::of_angle(ui);
     small_axes(ui);
     let response = base_plot("which b", p, height - 16.0)
         .show_axes([true, true])
-        .y_grid_spacer(move |_| marks(&spaced(q_low, q_high), q_high - q_low))
-        .x_grid_spacer(move |_| marks(&spaced(b_low, b_high), b_high - b_low))
-        .x_axis_formatter(|mark, _| signed(mark.value, 1))
-        .y_axis_formatter(|mark, _| signed(mark.value, 1))
+        .y_grid_spacer(move |_| axis.marks(q_low, q_high))
+        .x_grid_spacer(move |_| axis.marks(b_low, b_high))
+        .x_axis_formatter(move |mark, _| axis.write(mark.value))
+        .y_axis_formatter(move |mark, _| axis.write(mark.value))
         .show(ui, |plot| {
             plot.set_plot_bounds_x(b_low..=b_high);
             plot.set_plot_bounds_y(q_low..=q_high);

@@ -24,7 +24,7 @@ type Content = Box<dyn FnOnce() -> Result<Vec<u8>, String> + Send>;
 /// If the plot does not exist any more.
 pub fn written(what: &DisplayContext<'_>, name: &str, file: PlotFile) -> Result<Content, String> {
     let DisplayContext { session, signals, view_state, .. } = *what;
-    let plots = view_state.charts.plots(session.scenario(), signals, view_state.pins);
+    let plots = view_state.plots(session.scenario(), signals);
     let lines = what.queries.last::<QuickWork<PlotPreparation>>().unwrap_or_default();
     let found = plots.iter().zip(&*lines).find(|(plot, _)| plot.name == name);
     let Some((plot, drawn)) = found else {
@@ -48,7 +48,7 @@ pub fn written(what: &DisplayContext<'_>, name: &str, file: PlotFile) -> Result<
 
 /// Returns the signals whose values a plot shows.
 pub fn columns(plot: &Plot<'_>) -> Vec<Signal> {
-    plot.against.into_iter().chain(plot.shown().map(|curve| curve.signal)).cloned().collect()
+    plot.against.iter().chain(plot.shown()).map(|curve| curve.signal.clone()).collect()
 }
 
 fn png(figure: &Figure) -> Result<Vec<u8>, String> {

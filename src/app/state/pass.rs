@@ -5,7 +5,7 @@ use crate::facts::ScenarioFacts;
 use crate::marks::Marks;
 use crate::{
     BottomPanel, Command, DrawingGuard, Intro, Layout, SessionCommand, StatusMessage, ViewChange, WindowCommand,
-    compare, finder, given, keys, order, place, plots, rail, saving, side, status, studio, study, theme, top, viewport,
+    compare, finder, given, keys, notation, order, place, plots, rail, saving, side, status, studio, study, theme, top, viewport,
     widgets,
 };
 use stillbase_picture::scene::views::ViewKind;
@@ -24,6 +24,7 @@ impl AppState {
     /// Runs one pass of the user interface; the commands of its panels are carried out at the end.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         self.apply_style(ui.ctx());
+        notation::set(ui.ctx(), self.view_state.arrangement.notation);
         // Panels have no fill; content that fades out at their edges needs the background colour.
         let behind = egui::Frame::new().fill(ui.visuals().panel_fill);
         let info = egui::UiStackInfo::new(egui::UiKind::Frame).with_frame(behind);

@@ -3,6 +3,7 @@
 use egui::{Align, CollapsingHeader, Layout, RichText, Ui};
 
 use super::brief::{BoundRow, draw_bound, optional};
+use crate::notation;
 use crate::theme::{bold, colour, plain};
 use crate::widgets::{NumberRow, note, send, tip_of, unit};
 use crate::{Command, SessionCommand, WindowCommand};
@@ -117,8 +118,9 @@ fn found<'a>(
             return;
         }
     };
+    let notation = notation::of(ui.ctx());
     let lengths: Vec<String> =
-        names.zip(&found.lengths).map(|(name, metres)| format!("{name} {} m", signed(*metres, 3))).collect();
+        names.zip(&found.lengths).map(|(name, metres)| format!("{name} {}", notation.write(*metres, 3, "m"))).collect();
     let added = signed(found.placed.added_mass, 2);
     ui.label(RichText::new(format!("{}: {added} kg added", lengths.join(", "))).font(plain(12.5)));
     let [starts, alike] = found.starts;

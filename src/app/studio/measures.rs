@@ -3,6 +3,7 @@
 use egui::{Align, Layout, RichText, Ui};
 
 use super::facts::DesignFacts;
+use crate::notation;
 use crate::theme::{colour, plain};
 use crate::widgets::heading;
 use stillbase_picture::numbers::signed;
@@ -19,35 +20,37 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, p: &Palette) {
     let (machine, run) = (&session.scenario().machine, session.run());
     let lambda: Vec<String> = facts.lambda().iter().map(|lambda| signed(*lambda, 3)).collect();
     let is_balanced = facts.terms.iter().all(|term| term.is_balanced);
+    let notation = notation::of(ui.ctx());
+    let ratios = if is_balanced { "ratios of the inertias" } else { "ratios of the inertias without coupling" };
     let mut rows = vec![
-        ("mass of all", format!("{} kg", signed(machine.mass(), 2))),
-        ("inertia of all drives, Σ D", format!("{} kg m²", signed(facts.now()[1], 3))),
-        (if is_balanced { "λ" } else { "λ if no C were left" }, lambda.join("  ")),
+        ("mass of all".into(), format!("{} kg", signed(machine.mass(), 2))),
+        (notation.name("effective inertia of all drives", "Σ D"), format!("{} kg m²", signed(facts.now()[1], 3))),
+        (notation.name(ratios, "λ"), lambda.join("  ")),
     ];
     if let Some(planes) = run.planes() {
         let noun = if planes.is_reactionless() { "reactionless workspace" } else { "nearly reactionless workspace" };
-        rows.push((noun, format!("{} m²", signed(planes.boundary().area(), 3))));
+        rows.push((noun.into(), format!("{} m²", signed(planes.boundary().area(), 3))));
     }
     if let Some(measures) = &facts.measures
         && measures.added_mass > 1e-9
     {
         let of = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), |x| signed(x, 3));
-        rows.push(("mass–inertia factor, 2 is bare", of(measures.mass_inertia_factor)));
+        rows.push(("mass–inertia factor, 2 is bare".into(), of(measures.mass_inertia_factor)));
         if let Some(beta) = &measures.beta {
-            rows.push(("β of force · moment · torque", [beta.force, beta.moment, beta.torque].map(of).join(" · ")));
+            rows.push(("β of force · moment · torque".into(), [beta.force, beta.moment, beta.torque].map(of).join(" · ")));
         }
     }
     let forecast = &run.plan().forecast;
     if run.waiting().is_none() {
         rows.extend([
-            ("the task: greatest torque", format!("{} N m", signed(forecast.torque.max_abs(), 3))),
-            ("moment on the base, n_B", format!("{} N m", signed(forecast.moment, 3))),
-            ("force on the base, f_B", format!("{} N", signed(forecast.force, 3))),
+            (notation.name("the task: greatest torque", "τ"), format!("{} N m", signed(forecast.torque.max_abs(), 3))),
+            (notation.name("turning moment on the base", "n_B"), format!("{} N m", signed(forecast.moment, 3))),
+            (notation.name("force on the base", "f_B"), format!("{} N", signed(forecast.force, 3))),
         ]);
     }
     for (words, value) in rows {
         ui.horizontal(|ui| {
-            let label = ui.label(RichText::new(words).font(plain(12.0)).color(colour(p.dim)));
+            let label = ui.label(RichText::new(&words).font(plain(12.0)).color(colour(p.dim)));
             if words.starts_with('β') {
                 label.on_hover_text(BETA);
             }

@@ -2,6 +2,7 @@
 
 use egui::{Align, Layout, Response, RichText, Sense, Stroke, Ui, vec2};
 
+use crate::notation;
 use crate::theme::{bold, colour, plain};
 use crate::widgets::{NumberRow, heading, name, send, tip_of, undoable_edit};
 use crate::{Command, ViewState, place};
@@ -162,8 +163,11 @@ fn cell<R>(ui: &mut Ui, width: f32, align: Align, add: impl FnOnce(&mut Ui) -> R
     });
 }
 
+/// Draws a name, or a name and the SI unit behind it, in the user's unit.
 fn head(ui: &mut Ui, p: &Palette, words: &str) {
-    ui.label(RichText::new(words).font(plain(11.0)).color(colour(p.dim)));
+    let (what, unit) = words.rsplit_once(' ').map_or(("", words), |(what, unit)| (what, unit));
+    let unit = notation::of(ui.ctx()).unit_name(unit);
+    ui.label(RichText::new(format!("{what} {unit}").trim_start()).font(plain(11.0)).color(colour(p.dim)));
 }
 
 /// A number of the machine in a cell of the table.

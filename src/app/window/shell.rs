@@ -25,7 +25,7 @@ const HIDDEN_PASS_INTERVAL: Duration = Duration::from_millis(250);
 /// Events that wake the event loop from outside the window system.
 #[derive(Debug)]
 enum Wake {
-    /// egui requests a pass at a time; holds the number of the pass that requested it.
+    /// egui requests a pass at this instant. The number is that of the pass in which it was requested.
     Pass(Instant, u64),
     /// The graphics device is lost.
     Lost,
@@ -209,7 +209,7 @@ impl Shell<'_> {
         }
         if !is_unseen {
             let shapes = ctx.tessellate(shapes, pixels_per_point);
-            // Presenting may wait for the screen, so the work held back starts before that.
+            // Presenting may wait for the screen. So the guard is dropped before, and background work can start.
             drop(drawing);
             let behind = ctx.global_style().visuals.panel_fill;
             if screen.draw(window, &shapes, pixels_per_point, behind) == PaintOutcome::Again {

@@ -52,7 +52,7 @@ pub struct WeightArguments {
     #[arg(long, value_parser = number, value_name = "C", requires = "counterweights")]
     clearance: Option<f64>,
     /// Minimum and maximum payload, kg. First the largest residual of Eqs (7) and (8) over this interval is minimised,
-    /// |g_k| or |C_kl| divided by the reach; then the objective
+    /// |g_k|, or |C_kl| divided by the reach; then the objective
     #[arg(long, value_name = "LO,HI", requires = "counterweights", value_parser = payload)]
     payload: Option<[f64; 2]>,
     /// Optimise the inertia of a drive's rotor within these bounds, kg m²; its ratio stays unchanged

@@ -1,4 +1,4 @@
-//! Projects a linkage onto the plane of motion and makes a machine of the family.
+//! Projects a linkage onto the plane of motion and makes a machine whose links each follow one drive.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -57,7 +57,7 @@ pub struct BaseBody {
 /// Makes a machine of a linkage.
 ///
 /// # Errors
-/// If the linkage is outside the family of machines.
+/// If the linkage is not that of a machine whose links each follow one drive.
 pub fn imported(linkage: &ImportedLinkage) -> Result<ImportedMachine, ImportError> {
     let flat = Flat::of(linkage)?;
     let mut notes = linkage.notes.clone();

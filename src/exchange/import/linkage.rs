@@ -153,7 +153,8 @@ pub fn common_axis(parts: &[ImportedPart]) -> Result<(Unit<Vector3<f64>>, Vec<f6
     let Some(first) = first else {
         return Err(ImportError::of_file("nothing turns", "links on revolute joints or hinges"));
     };
-    // The first large component of z, y and x becomes positive: a file's axis along it keeps the sign of its angle.
+    // The first of z, y and x with a magnitude above 0.5 becomes positive. So the angle about an axis of the file
+    // along +z, +y or +x keeps its sign.
     let up = [first.z, first.y, first.x].into_iter().find(|x| x.abs() > 0.5).unwrap_or(1.0);
     let axis = if up < 0.0 { -first } else { first };
     let mut signs = Vec::with_capacity(parts.len());

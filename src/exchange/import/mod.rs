@@ -27,7 +27,8 @@ const MAX_NODES: u32 = 400_000;
 /// Reads a machine from the text of a URDF or MJCF file.
 ///
 /// # Errors
-/// If the file is not a machine of the family. The error names the first wrong element, its line, and the expected
+/// If the file is not a planar machine whose links each follow one drive. The error names the first wrong element,
+/// its line, and the expected
 /// input.
 pub fn import(text: &str) -> Result<ImportedMachine, ImportError> {
     let options = ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, ..ParsingOptions::default() };

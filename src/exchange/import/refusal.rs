@@ -1,4 +1,4 @@
-//! [`ImportError`]: the reason why a file is not a machine of the family.
+//! [`ImportError`]: the reason why a file cannot be imported as a machine.
 
 use roxmltree::Node;
 

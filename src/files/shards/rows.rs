@@ -374,7 +374,7 @@ impl StudyPart {
         Ok(Self { file: file.into(), head, reader })
     }
 
-    /// Calls `see` with the sample number and the finite numbers of each row, until `see` returns a break.
+    /// Calls `see` with the sample number and the other numbers of each row, all finite, until `see` returns a break.
     ///
     /// # Errors
     /// If a row cannot be read or is not plausible, or if `see` fails.

@@ -3,7 +3,8 @@
 //! A disc of mass w on a link, at x along its axis, enters balance (7), (8) linearly through w and s = w x. Bounds lo
 //! and hi of its position are lo w ≤ s ≤ hi w. To the inertia about the root it adds s²/w from its position and w²/(2 π
 //! ρ t) about its centre; both are convex. So the problem is a cone program with one optimum, which the solver
-//! certifies.
+//! certifies. A clearance of pins, or Σ |D_k| in the objective, can make it nonconvex; it is then solved by branch
+//! and bound.
 //!
 //! # Symbols
 //! | letter | meaning | unit |

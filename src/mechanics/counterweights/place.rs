@@ -94,8 +94,8 @@ pub fn unreachable_by_weights(
 }
 
 impl CounterweightTask<'_> {
-    /// Finds the counterweights. If there are none, returns the weights of the bounds in the certificate of
-    /// infeasibility without clearance. These are empty if only the clearance of pins makes the problem infeasible.
+    /// Finds the counterweights. If there are none, returns the multipliers of the bounds in the certificate of
+    /// infeasibility of the problem without clearance. These are empty if only the clearance makes it infeasible.
     fn found(&self) -> Result<Result<PlacedCounterweights, Vec<f64>>, CounterweightError> {
         if self.balance() == BalanceGoal::Nearest {
             return self.nearest();

@@ -28,13 +28,14 @@ impl CounterweightProblem {
             return Ok(first);
         }
         // The relaxation may overestimate inertia, so that a rotor seems to cancel more momentum than there is.
-        // Therefore the optimum of least mass and Σ H_kk is taken: its inertias are exact where that is possible.
+        // So of all optima, the one with the least mass plus Σ H_kk is taken: its inertias are exact where possible.
         let most = first.value + SOLVER_ROUNDING[0] * first.value.abs() + SOLVER_ROUNDING[1];
         let second = solve(&SearchNode { most: Some(most), ..node.clone() });
         Ok(second.map_or(first.clone(), |second| Optimum { x: second.x, ..first }))
     }
 
-    /// Returns a minimal set of bounds that contradict each other without clearance. It is a subset of the bounds in
+    /// Returns a minimal set of bounds that contradict each other even if clearances are ignored. It is a
+    /// subset of the bounds in
     /// the solver's certificate of infeasibility. Empty if the problem is infeasible even without bounds.
     pub fn conflict(
         &self,

@@ -123,7 +123,7 @@ impl CounterweightProblem {
 
     /// Removes the residual of the conditions by the least change of the counterweights.
     fn refine(&self, request: &CounterweightSpec, found: &mut Found) {
-        // Without counterweights the links balance each other.
+        // A solution without counterweights needs no change: the links balance each other.
         if found.is_empty() {
             return;
         }

@@ -4,9 +4,14 @@ use super::problem::CounterweightProblem;
 use super::spec::{CounterweightSpec, RotorFreedom};
 use crate::machine::Machine;
 
-/// Indices of the unknowns, in this order: w and s of each site; u and v of each site and H_kk of each drive without
-/// free rotors, if the objective or a bound depends on inertia; two for each free rotor; |D_k| of each drive, if the
-/// objective contains it; and the greatest torque.
+/// Indices of the unknowns, in this order:
+///
+/// - w and s of each site;
+/// - if the objective or a bound depends on inertia: u and v of each site, and H_kk of each drive without the share
+///   of free rotors;
+/// - two for each free rotor;
+/// - if the objective contains |D_k|: |D_k| of each drive;
+/// - the greatest torque.
 #[derive(Clone, Copy)]
 pub(super) struct UnknownIndices {
     sites: usize,

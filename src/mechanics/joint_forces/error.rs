@@ -14,7 +14,7 @@ pub enum JointsError {
         /// Pins of the machine.
         count: usize,
     },
-    /// A drive has no link at B, and several links follow it.
+    /// A drive has no link at the base, and it is not clear which of several links it turns.
     #[error(
         "drive {drive} has no link at the base, and links {links} follow it: want one link on \"base\", or one link only, so \
          that it is known which one it turns"

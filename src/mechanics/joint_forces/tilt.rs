@@ -1,7 +1,7 @@
 //! Moments that tilt the base out of the plane of motion, which arise from the heights of the links.
 //!
 //! The motion is planar, but the links lie at different heights. A force f in the plane at height z has the moment (−z
-//! f_y, z f_x, …) about B; written as a complex number x + iy it is i z f. So a force balanced machine, whose forces
+//! f_y, z f_x, …) about B. Written as a complex number x + iy, it is i z f. So a force balanced machine, whose forces
 //! cancel, may still transmit a couple.
 //!
 //! # Symbols

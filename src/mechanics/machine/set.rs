@@ -28,7 +28,7 @@ impl Machine {
     }
 
     /// Returns the machine with one setting changed. `value` is a number, two numbers separated by a comma, `true` or
-    /// `false`, or the word `default`.
+    /// `false`, or the word `default` or `none`.
     ///
     /// # Errors
     /// If there is no such key, the value cannot be read, or the machine would no longer be valid.

@@ -5,7 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::{Deserialize, Serialize};
 
 use super::{Chart, EMPTY_CHART, charts};
+use crate::notation::{NameOrder, Notation, ShownUnit};
 use stillbase_session::scenario::Scenario;
+use stillbase_settings::number::without_subscript;
+use stillbase_simulation::frame::Frame;
 use stillbase_simulation::signals::Signal;
 
 /// Maximum number of plots that the user can add, and of curves added to one plot.
@@ -123,19 +126,32 @@ impl PlotChoice {
         self.changes.retain(|_, changes| *changes != PlotSettings::default());
     }
 
-    /// Returns the plots of a scenario in order of display; `pins` says whether pin forces are switched on.
-    pub fn plots<'a>(&self, scenario: &Scenario, signals: &'a [Signal], pins: bool) -> Vec<Plot<'a>> {
+    /// Returns the plots of a scenario in order of display, in the user's units; `pins` says whether pin forces are
+    /// switched on.
+    pub fn plots<'a>(
+        &self,
+        scenario: &Scenario,
+        signals: &'a [Signal],
+        pins: bool,
+        notation: Notation,
+    ) -> Vec<Plot<'a>> {
         let none = PlotSettings::default();
         let of = |name: &str| self.changes.get(name).unwrap_or(&none);
         let table = charts(scenario).into_iter().filter(|chart| chart.in_window(pins));
         let open = table.filter(|chart| !of(chart.title).closed);
-        let known = open.map(|chart| Plot::of(chart.title, chart, false, of(chart.title), signals));
+        let known = open.map(|chart| Plot::of(chart.title, chart, false, of(chart.title), (signals, notation)));
         let own = self.own.iter().map(|name| {
             let chart = Chart { centred: false, min_range: 0.0, ..EMPTY_CHART };
-            Plot::of(name, chart, true, of(name), signals)
+            Plot::of(name, chart, true, of(name), (signals, notation))
         });
         // An added plot is omitted if the machine has none of its signals.
         known.chain(own.filter(|plot| !plot.curves.is_empty())).collect()
+    }
+
+    /// Shows all values of every plot.
+    pub fn forget_values(&mut self) {
+        self.changes.values_mut().for_each(|changes| changes.values = None);
+        self.changes.retain(|_, changes| *changes != PlotSettings::default());
     }
 
     /// Number of closed plots.
@@ -151,14 +167,16 @@ pub struct Plot<'a> {
     pub name: String,
     /// Title.
     pub title: String,
-    /// Chart of the table; a chart without signals if the user added the plot.
+    /// Chart from the table of charts; a chart without signals if the user added the plot.
     pub chart: Chart,
+    /// Order of the title and the symbol of its curves.
+    pub names: NameOrder,
     /// Whether the user added the plot.
     pub added_by_user: bool,
     /// All curves, including those that are switched off.
     pub curves: Vec<PlotCurve<'a>>,
     /// Signal on the horizontal axis; `None` for time.
-    pub against: Option<&'a Signal>,
+    pub against: Option<PlotCurve<'a>>,
     /// Bounds of the vertical axis; `None` shows all values.
     pub values: Option<[f64; 2]>,
 }
@@ -174,34 +192,53 @@ pub struct PlotCurve<'a> {
     pub added: bool,
     /// Factor from SI values to displayed values.
     pub scale: f64,
+    /// Unit of the displayed values; empty if dimensionless.
+    pub unit: &'static str,
+    /// Decimals of the displayed values.
+    pub decimals: usize,
 }
 
-impl PlotCurve<'_> {
-    /// Returns the unit of the displayed values; empty if dimensionless.
-    pub fn unit(&self) -> String {
-        match (self.scale == 1.0, self.signal.unit) {
-            (_, "1") => String::new(),
-            (true, unit) => unit.into(),
-            (false, unit) => format!("m{unit}"),
-        }
+impl<'a> PlotCurve<'a> {
+    /// Returns a curve in the user's units; `in_thousandths` says whether its plot shows lengths and angles in
+    /// thousandths of their SI units.
+    fn of(signal: &'a Signal, added: bool, on: bool, in_thousandths: bool, notation: Notation) -> Self {
+        let (unit, scale, decimals) = match (in_thousandths, signal.unit) {
+            (true, "m") => ("mm", 1e3, 2),
+            (true, "rad") => ("mrad", 1e3, 2),
+            (_, "1") => ("", 1.0, 3),
+            (_, unit) => (unit, 1.0, 3),
+        };
+        let shown = notation.shown_unit(unit).unwrap_or(ShownUnit { name: unit, factor: 1.0, decimals: 0 });
+        // Fewer than one decimal would hide the motion of a curve.
+        let decimals = shown.decimals(decimals).max(1);
+        Self { signal, on, added, scale: scale * shown.factor, unit: shown.name, decimals }
+    }
+
+    /// Returns the displayed value at one instant.
+    pub fn value(&self, frame: &Frame) -> f64 {
+        self.scale * self.signal.value(frame)
     }
 }
 
 impl<'a> Plot<'a> {
-    fn of(name: &str, chart: Chart, added_by_user: bool, changes: &PlotSettings, signals: &'a [Signal]) -> Self {
+    fn of(
+        name: &str,
+        chart: Chart,
+        added_by_user: bool,
+        changes: &PlotSettings,
+        (signals, notation): (&'a [Signal], Notation),
+    ) -> Self {
         let find = |path: &String| signals.iter().find(|signal| signal.path == *path);
         let held = signals.iter().filter(|signal| chart.contains(signal)).map(|signal| (signal, false));
         let added = changes.added.iter().filter_map(find).filter(|signal| !chart.contains(signal));
         let curves: Vec<PlotCurve<'a>> = held
             .chain(added.map(|signal| (signal, true)))
-            .map(|(signal, added)| PlotCurve {
-                signal,
-                on: !changes.off.contains(&signal.path),
-                added,
-                scale: if !added || matches!(signal.unit, "m" | "rad") { chart.scale } else { 1.0 },
+            .map(|(signal, added)| {
+                PlotCurve::of(signal, added, !changes.off.contains(&signal.path), chart.scale != 1.0, notation)
             })
             .collect();
-        let against = changes.against.as_ref().and_then(find);
+        let against =
+            changes.against.as_ref().and_then(find).map(|signal| PlotCurve::of(signal, true, true, false, notation));
         let mut title = match curves.first() {
             Some(first) if added_by_user => capital(&first.signal.label),
             _ => chart.title.to_owned(),
@@ -209,15 +246,33 @@ impl<'a> Plot<'a> {
         if added_by_user && curves.len() > 1 {
             title += " …";
         }
-        Self { name: name.into(), title, chart, added_by_user, curves, against, values: changes.values }
+        let in_units = match (chart.scale == 1.0, notation.shown_unit(chart.unit)) {
+            // Of a plot with several units, each curve has its own.
+            (true, Some(shown)) => Chart { unit: shown.name, min_range: shown.factor * chart.min_range, ..chart },
+            _ => chart,
+        };
+        let names = notation.names;
+        Self { name: name.into(), title, chart: in_units, names, added_by_user, curves, against, values: changes.values }
     }
 
-    /// Returns the title, with the symbol of the horizontal axis unless that is time.
+    /// Returns the title, with the symbol of the horizontal axis unless that is time. If symbols come first, that of the
+    /// curves precedes the title.
     pub fn heading(&self) -> String {
-        match self.against {
-            Some(across) => format!("{} against {}", self.title, across.symbol),
-            None => self.title.clone(),
+        let name = match (self.names, self.symbol()) {
+            (NameOrder::Symbols, Some(symbol)) => format!("{symbol}  {}", self.title),
+            _ => self.title.clone(),
+        };
+        match &self.against {
+            Some(across) => format!("{name} against {}", across.signal.symbol),
+            None => name,
         }
+    }
+
+    /// Returns the symbol that the curves share but for their indices.
+    fn symbol(&self) -> Option<&str> {
+        let mut symbols = self.shown().map(|curve| without_subscript(&curve.signal.symbol));
+        let first = symbols.next()?;
+        symbols.all(|other| other == first).then_some(first)
     }
 
     /// The curves that are switched on.
@@ -227,11 +282,12 @@ impl<'a> Plot<'a> {
 
     /// Returns the units of the values, each once, separated by commas.
     pub fn unit(&self) -> String {
-        if !self.added_by_user && !self.curves.iter().any(|curve| curve.added) {
+        // The units of a chart with several units follow from its curves.
+        if !self.added_by_user && self.chart.scale == 1.0 && !self.curves.iter().any(|curve| curve.added) {
             return self.chart.unit.into();
         }
-        let mut units: Vec<String> = Vec::new();
-        for unit in self.curves.iter().map(PlotCurve::unit) {
+        let mut units: Vec<&str> = Vec::new();
+        for unit in self.curves.iter().map(|curve| curve.unit) {
             if !units.contains(&unit) && !unit.is_empty() {
                 units.push(unit);
             }

@@ -59,13 +59,15 @@ impl PlotLines {
                 if let Some(bounds) = samples.bounds(path, shown) {
                     widen(&mut drawn.y, bounds.map(|y| factor * y));
                 }
-                let mut points = match plot.against {
+                let mut points = match &plot.against {
                     None => samples.line(path, shown, columns),
                     Some(against) => {
-                        if let Some(bounds) = samples.bounds(&against.path, shown) {
-                            widen(&mut across, bounds);
+                        if let Some(bounds) = samples.bounds(&against.signal.path, shown) {
+                            widen(&mut across, bounds.map(|x| against.scale * x));
                         }
-                        samples.line_against(&against.path, path, shown, 4 * columns)
+                        let mut points = samples.line_against(&against.signal.path, path, shown, 4 * columns);
+                        points.iter_mut().for_each(|[x, _]| *x *= against.scale);
+                        points
                     }
                 };
                 points.iter_mut().for_each(|[_, y]| *y *= factor);

@@ -170,7 +170,6 @@ pub fn body(plot: &Plot<'_>, drawn: &PlotLines, axes: &Axes, look: &PlotContext<
         let unit = match plot.against {
             _ if i < last => "",
             None => "s",
-            Some(against) if against.unit == "1" => "",
             Some(against) => against.unit,
         };
         let text = at_step(*value, step);
@@ -229,7 +228,7 @@ fn cursors(plot: &Plot<'_>, axes: &Axes, look: &PlotContext<'_>) -> Vec<FigureIt
                 items.push(FigureItem::Line { points, width: 1.0, colour: tone, dash, inside: true });
             }
             Some(against) => items.extend(plot.shown().filter_map(|curve| {
-                let at = [against.value(frame), curve.scale * curve.signal.value(frame)];
+                let at = [against.value(frame), curve.value(frame)];
                 // Values outside the vertical axis have no dot.
                 let seen = at.iter().all(|x| x.is_finite()) && (axes.y[0]..=axes.y[1]).contains(&at[1]);
                 seen.then(|| FigureItem::Dot { at: axes.place(at), radius: 3.5, colour: tone })

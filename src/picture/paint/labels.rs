@@ -5,6 +5,7 @@ use std::sync::Arc;
 use egui::{Align2, CentralPanel, Frame, Galley, Painter, Pos2, Rect, Ui, Vec2, vec2};
 
 use super::{SceneViewport, colour, paint, plain};
+use crate::notation::Notation;
 use crate::scene::camera::Camera;
 use crate::scene::palette::faded;
 use crate::scene::{Anchor, Label, Scene};
@@ -59,14 +60,14 @@ pub fn paint_still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
     CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
         let rect = ui.max_rect();
         paint(ui, 0, rect, scene, camera);
-        draw_labels(ui, &SceneViewport { rect, camera: *camera }, scene, &[]);
+        draw_labels(ui, &SceneViewport { rect, camera: *camera }, scene, &[], Notation::default());
     });
 }
 
-/// Paints the labels of the scene outside the rectangles `taken`.
-pub fn draw_labels(ui: &Ui, spot: &SceneViewport, scene: &Scene, taken: &[Rect]) {
+/// Paints the labels of the scene, in the user's units, outside the rectangles `taken`.
+pub fn draw_labels(ui: &Ui, spot: &SceneViewport, scene: &Scene, taken: &[Rect], notation: Notation) {
     let painter = ui.painter().with_clip_rect(spot.rect);
-    for (label, galley, place) in placed(&painter, spot, scene, taken) {
+    for (label, galley, place) in placed(&painter, spot, scene, taken, notation) {
         write(&painter, scene, label, galley, place);
     }
 }
@@ -77,11 +78,12 @@ pub fn placed<'a>(
     spot: &SceneViewport,
     scene: &'a Scene,
     taken: &[Rect],
+    notation: Notation,
 ) -> Vec<(&'a Label, Arc<Galley>, Rect)> {
     let mut groups: Vec<(Pos2, Group<'_>)> = Vec::new();
     for label in &scene.labels {
         let Some(at) = spot.screen(label.at.map(f64::from)) else { continue };
-        let galley = painter.layout_no_wrap(label.text.clone(), plain(label.size), colour(label.colour));
+        let galley = painter.layout_no_wrap(notation.sentence(&label.text).into_owned(), plain(label.size), colour(label.colour));
         let word = (label, galley, Rect::NOTHING);
         let of = |(l, ..): &(&Label, Arc<Galley>, Rect)| l.at == label.at && l.name == label.name;
         let same = groups.iter_mut().find(|(_, group)| group.words.first().is_some_and(of));
@@ -209,7 +211,8 @@ fn cheapest_shift(boxes: &[Rect], taken: &[Rect], bars: &[[Pos2; 2]], view: Rect
     cheapest.map_or(Vec2::ZERO, |(_, shift)| shift)
 }
 
-/// Returns the smallest vertical shift, points, for which the boxes are in view and overlap no rectangle in `taken`;
+/// Returns the smallest vertical shift, points, for which the boxes overlap no rectangle in `taken`. A shift other
+/// than 0 also keeps them between the upper and the lower edge of the view.
 /// `None` if there is none within [`MAX_SHIFT_PT`].
 fn clearing_shift(boxes: &[Rect], taken: &[Rect], view: Rect) -> Option<f32> {
     let moved = |shift: f32| boxes.iter().map(move |place| place.translate(vec2(0.0, shift)));

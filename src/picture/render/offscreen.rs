@@ -89,8 +89,8 @@ pub(crate) fn png_encoder<'a, W: io::Write>(to: W, [width, height]: [u32; 2]) ->
     encoder
 }
 
-/// Returns the scale of a picture, pixels per point: that of a window of this height in pixels, but large enough for
-/// labels to be legible.
+/// Returns the scale, pixels per point, at which a picture of this height in pixels is 800 points high.
+/// It is at least 0.5, so that labels are legible.
 pub fn legible_scale(height: u32) -> f32 {
     (height as f32 / 800.0).max(0.5)
 }

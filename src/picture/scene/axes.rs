@@ -2,13 +2,16 @@
 
 use super::palette::{Palette, faded};
 use super::{Anchor, ItemChanges, Label, Polyline, Rgba, Scene};
-use crate::numbers::signed;
+use crate::notation::Notation;
+use crate::numbers::{round_up, signed};
 
 /// One axis of the box: its quantity and interval.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// Quantity and unit: `b, rad`.
-    pub title: &'static str,
+    /// Symbol of the quantity.
+    pub symbol: &'static str,
+    /// Unit of the values.
+    pub unit: &'static str,
     /// Colour of the title.
     pub colour: Rgba,
     /// Coordinates of both ends of the box, in the units of the scene.
@@ -21,6 +24,8 @@ pub struct Axis {
     pub decimals: usize,
     /// Current value, which is highlighted, and its colour.
     pub now: Option<(f64, Rgba)>,
+    /// Decimals of the current value.
+    pub now_decimals: usize,
 }
 
 /// Names of the marks of the current values on the axes.
@@ -30,6 +35,27 @@ const NOW: [&str; 3] = ["axes/now/1", "axes/now/2", "axes/now/3"];
 const MAX_TICKS: usize = 40;
 
 impl Axis {
+    /// Returns this axis with its values in the user's units, at round ticks.
+    #[must_use]
+    pub fn shown_in(self, notation: Notation) -> Self {
+        let Some(unit) = notation.shown_unit(self.unit) else { return self };
+        let step = round_up(unit.factor * self.step);
+        Self {
+            unit: unit.name,
+            values: self.values.map(|value| unit.factor * value),
+            step,
+            decimals: if step < 1.0 { self.decimals.max(1) } else { 0 },
+            now: self.now.map(|(value, colour)| (unit.factor * value, colour)),
+            now_decimals: unit.decimals(self.now_decimals),
+            ..self
+        }
+    }
+
+    /// Returns quantity and unit: `b, rad`.
+    fn title(&self) -> String {
+        format!("{}, {}", self.symbol, self.unit)
+    }
+
     /// Returns the coordinate of a value in the scene.
     pub fn place(&self, value: f64) -> f64 {
         let share = (value - self.values[0]) / (self.values[1] - self.values[0]);
@@ -167,7 +193,7 @@ fn mark(scene: &mut Scene, ticks: &mut Vec<Vec<[f32; 3]>>, palette: &Palette, si
     if let Some((now, colour)) = axis.now {
         scene.lines.push(Polyline::new(NOW[k], [tick(now, 0.022)], 2.0, colour));
         let offset = if upright { [9.0, 0.0] } else { beside(19.0) };
-        scene.labels.push(label("axes/now/words", place(now, 0.022), offset, signed(now, 3), colour, 12.5));
+        scene.labels.push(label("axes/now/words", place(now, 0.022), offset, signed(now, axis.now_decimals), colour, 12.5));
     }
     // The title is above the vertical axis, and beyond the rear ends of the others.
     let (at, offset) = match upright {
@@ -180,7 +206,7 @@ fn mark(scene: &mut Scene, ticks: &mut Vec<Vec<[f32; 3]>>, palette: &Palette, si
             (place(beyond, 0.012), beside(if shared { 48.0 } else { 19.0 }))
         }
     };
-    scene.labels.push(Label::new("axes/titles", at, offset, axis.title, axis.colour, 12.5, Anchor::Centre));
+    scene.labels.push(Label::new("axes/titles", at, offset, axis.title(), axis.colour, 12.5, Anchor::Centre));
 }
 
 /// Returns an interval of length `width` that contains the given interval with a `margin` on both sides. Its centre is

@@ -60,7 +60,7 @@ impl Measure {
     }
 
     /// Returns the ends of the colour scale: minimum and maximum within the joint limits. The scale of det starts at 0,
-    /// because sheets may meet.
+    /// because two sheets (branches of the inverse kinematics) may meet, and det = 0 there.
     pub fn range(self, map: &PlaneMap) -> [f64; 2] {
         let least = if self == Self::Det { 0.0 } else { -greatest(map, |a| -self.of(map, a)) };
         let most = greatest(map, |a| self.of(map, a));

@@ -81,7 +81,7 @@ struct Motor {
     name: Name,
     mesh: usize,
     drive: usize,
-    /// The pin that it turns; `None` if it is mounted on the base.
+    /// The pin about which it turns its link; `None` if it is mounted on the base.
     at: Option<Chain>,
     z: f64,
 }

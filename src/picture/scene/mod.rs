@@ -2,8 +2,9 @@
 //!
 //! A [`Scene`] holds solids, lines, areas, markers and labels in world coordinates, in metres. x and y lie in the
 //! plane of motion; z points along the drive axis, towards the viewer of the flat view. Numbers are converted from
-//! `f64` to `f32` here and nowhere else. Every item has a name, which is also its path in a recording, a pose
-//! `world_from_item`, and a statement of which parts [may change](ItemChanges). Most geometry is built once;
+//! `f64` to `f32` here and nowhere else. Every item has a name, which is also its path in a recording. Solids and
+//! lines also have a pose `world_from_item` and a statement of which parts [may change](ItemChanges). Most geometry
+//! is built once;
 //! afterwards only poses change. Colours are sRGB with straight alpha, as in the [`palette`]. Sizes in `px` are
 //! logical pixels.
 

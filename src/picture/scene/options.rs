@@ -6,6 +6,7 @@ use super::Measure;
 use super::exaggeration::Exaggeration;
 use super::palette::Theme;
 use super::reaction::Scale;
+use crate::notation::Notation;
 use stillbase_mechanics::planar::{DriveAngles, Vector};
 use stillbase_session::Refusal;
 use stillbase_simulation::frame::Frame;
@@ -51,6 +52,8 @@ pub struct ViewOptions {
     pub links: Vec<usize>,
     /// Scale of the arrow and arc of the reaction; `None` uses the largest values so far.
     pub scale: Option<Scale>,
+    /// Units and names.
+    pub notation: Notation,
 }
 
 impl Default for ViewOptions {
@@ -75,6 +78,7 @@ impl Default for ViewOptions {
             weights: Vec::new(),
             links: Vec::new(),
             scale: None,
+            notation: Notation::default(),
         }
     }
 }

@@ -18,6 +18,7 @@ use super::pointer::Pointer;
 use super::stage::Workspace;
 use super::wall::Wall;
 use super::{Anchor, ItemChanges, Label, Marker, Mesh, MeshSet, Polyline, Scene, Solid, Strips, point, posed};
+use crate::notation::Notation;
 use crate::numbers::round_up;
 use stillbase_mechanics::machine::place_of;
 use stillbase_mechanics::planar::{Vector, unit};
@@ -32,7 +33,7 @@ pub const TOWER_SPAN: f64 = 5.0;
 pub const MAX_TOWER_SPAN: f64 = 4.0 * TOWER_SPAN;
 /// Factor of the mesh size of the wall in a recording.
 const RECORDED_GRAIN: f64 = 2.6;
-/// Spacing of contours, rad; contours are at multiples of this.
+/// Spacing of contours, rad; contours are at multiples of this, and at both ends of the interval.
 const CONTOUR_STEP_RAD: f64 = 0.5;
 /// Minimum distance of the present b from top and bottom, as a fraction of the interval.
 const MARGIN_FRACTION: f64 = 0.08;
@@ -65,7 +66,7 @@ pub struct Tower {
     span: f64,
     /// The interval of b that is shown, rad, if it does not follow the present b.
     fixed: Option<[f64; 2]>,
-    /// Outlines at round b, if the interval is fixed.
+    /// Outlines at the b of the contours, if the interval is fixed.
     contours: Strips,
 }
 
@@ -259,7 +260,7 @@ impl Tower {
             solid("wall", 1, low, faded(palette.amber, 0.1), item_changes),
         ];
         let eye = camera.eye_direction().map(f64::from);
-        axes::draw(&mut scene, &palette, &self.axes(&palette, frame), eye, item_changes);
+        axes::draw(&mut scene, &palette, &self.axes(&palette, frame, options.notation), eye, item_changes);
         self.contours(&mut scene, &palette, [low, high], eye);
         let outline = Polyline::new("slice/boundary", self.outline.clone(), if hot { 3.4 } else { 2.2 }, palette.amber);
         scene.lines.push(outline.on_top().moving(turned(b)));
@@ -273,26 +274,30 @@ impl Tower {
         scene
     }
 
-    fn axes(&self, palette: &Palette, frame: &Frame) -> [Axis; 3] {
-        let across = |title| Axis {
-            title,
+    fn axes(&self, palette: &Palette, frame: &Frame, notation: Notation) -> [Axis; 3] {
+        let across = |symbol| Axis {
+            symbol,
+            unit: "m",
             colour: palette.dim,
             ends: [-self.radius, self.radius],
             values: [-self.radius, self.radius],
             step: round_up(self.radius / 3.0),
             decimals: 1,
             now: None,
+            now_decimals: 3,
         };
         let up = Axis {
-            title: "b, rad",
+            symbol: "b",
+            unit: "rad",
             colour: palette.amber,
             ends: [0.0, HEIGHT_PER_RADIUS * self.radius],
             values: self.window(frame.b_reference),
             step: round_up(self.span / 6.0),
             decimals: 0,
             now: Some((frame.b_reference, palette.amber)),
+            now_decimals: 3,
         };
-        [across("x, m"), across("y, m"), up]
+        [across("x"), across("y"), up].map(|axis| axis.shown_in(notation))
     }
 
     /// Draws the contours; those on the far side of the wall are fainter. A fixed tower is recorded for all directions
@@ -317,7 +322,8 @@ impl Tower {
         scene.lines.push(line("contours/hidden", far_ones.into(), 0.2));
     }
 
-    /// Draws the vertical lines of A and B, or of the target, and the intervals of b for which they are reachable.
+    /// Draws the vertical lines of the task's points, or of the target, and the intervals of b for which they are
+    /// reachable.
     fn bars(
         &self,
         scene: &mut Scene,

@@ -273,7 +273,7 @@ impl Views {
         Self { joints, tower, draft: DesignDrawing::of(&machine), stage, machine }
     }
 
-    /// Prepares a run for drawing, without outline and tower if the outline takes longer to compute.
+    /// Prepares a run for drawing, without outline and tower if the outline takes long to compute.
     #[doc(hidden)]
     pub fn begun(run: &Run) -> Self {
         Self::with(Stage::begun(run), run)

@@ -24,7 +24,7 @@ pub enum Path {
         /// At s = 1.
         to: DriveAngles,
     },
-    /// Nodes joined by quintics: integrated, or followed on a plane.
+    /// Nodes joined by quintics, such as those of an integrated path.
     Table(PathTable),
     /// A curve of (a_1, a_2) on the plane of a pose constant: reactionless.
     OnPlane {

@@ -329,7 +329,7 @@ impl Follower {
                     return d;
                 }
                 let room = d - 0.5 * h * v;
-                // For speeds between n and n + 1 steps of braking, the stopping distance is linear in the speed.
+                // If braking takes between n and n + 1 steps, the stopping distance is linear in the speed.
                 let n = (0.5 * (1.0 + 8.0 * room.max(0.0) / (brake * h * h)).sqrt() - 0.5).floor();
                 let s = room.max(0.0) / (h * (n + 1.0)) + 0.5 * brake * h * n;
                 let most = if room < 0.0 && d > 0.0 { -0.5 * v * v / d } else { (s - v) / h };

@@ -1,5 +1,5 @@
-//! Motions with b constant: following a curve on one sheet of a plane, the motion nearest to a given one, and
-//! following pointer and slider.
+//! Motions with b constant: following a curve on one sheet of a plane, and the motion nearest to a given one.
+//! Following the pointer also keeps b; following the slider changes it.
 
 mod braking;
 mod closest;

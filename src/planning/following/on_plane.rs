@@ -1,4 +1,4 @@
-//! The motion on a plane that is nearest to a given one and has the same end effector path, followed on one sheet.
+//! For a given motion: the nearest motion with the same end effector path on a plane b = const and on one sheet.
 
 use super::deviation::{angle_distance, least};
 use super::trace::{self, Blocked, Rule};

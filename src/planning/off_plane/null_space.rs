@@ -215,8 +215,9 @@ pub(super) fn solve(lines: &Matrix3<f64>, v: Vector, h: f64) -> Option<PerDrive>
     x.iter().all(|x| x.is_finite()).then(|| PerDrive::from([x[0], x[1], x[2]]))
 }
 
-/// Returns the violation of integrability of D q̇ = 0 at a pose, (kg m²)²: the largest component of D ∧ dD, 2 |D_j Im
-/// Z_kl + D_k Im Z_lj + D_l Im Z_jk| over three drives j, k, l. It is 0 for one or two drives, and if D is constant.
+/// Returns the violation of integrability of D q̇ = 0 at a pose, (kg m²)²: the largest component of D ∧ dD. The
+/// component of three drives j, k, l is 2 |D_j Im Z_kl + D_k Im Z_lj + D_l Im Z_jk|.
+/// The violation is 0 for one or two drives, and if D is constant.
 pub fn integrability_violation(model: &Inertia, q: &DriveAngles) -> f64 {
     let (n, e) = (model.drives(), q.units());
     let d = momentum_coefficients(model, &e);

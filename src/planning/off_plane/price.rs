@@ -153,7 +153,7 @@ impl Price {
         self.delta_b
     }
 
-    /// Returns the peak |n_B| of a law that takes `duration`, s: 4 or 5.7735 … times D_1 |Δb|/T², N m.
+    /// Returns the peak |n_B| of a law that takes `duration`, s: 4, 6 or 5.7735 … times D_1 |Δb|/T², N m.
     pub fn peak(&self, law: PoseLaw, duration: f64) -> f64 {
         law.peak() * self.size() / (duration * duration)
     }

@@ -3,8 +3,8 @@
 use super::critical::CriticalPose;
 use crate::reactionless::BSet;
 
-/// Critical values farther than this from a gap, as a fraction of the period of b, cannot pass it between
-/// neighbouring distances.
+/// Critical values farther than this from a gap, as a fraction of the period of b, cannot cross the gap from one
+/// distance from B to the next.
 const NEAR_GAP: f64 = 0.125;
 
 /// The circle of b at a distance from B, divided by the critical values into gaps that are feasible or not. Feasible

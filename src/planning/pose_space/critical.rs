@@ -52,7 +52,7 @@ impl CriticalPose {
 
     /// Merges another critical pose at the same b. Where a curve of critical poses meets a limit, both may be the same
     /// pose. Then the one with more compounds decides whether b can rise or fall. If each has two, b can rise or fall
-    /// only if it can from both. In all other cases it suffices that b can from either.
+    /// only if it can do so from both poses. In all other cases, one of the two poses suffices.
     pub fn merge(&mut self, other: &Self) {
         let near = |apart: f64| self.a.iter().zip(other.a.iter()).all(|(x, y)| (x - y).abs() < apart);
         let one = near(SAME_POSE_RAD);
@@ -64,7 +64,8 @@ impl CriticalPose {
             }
             return;
         }
-        // The lower curve wins. The result is then independent of the order of merging, and the same at other
+        // The curve that is less in `PartialOrd` is kept. The result is then independent of the order of merging, and
+        // the same at other
         // distances.
         if other.spot.curve < self.spot.curve {
             (self.spot, self.a, self.count) = (other.spot, other.a, other.count);
@@ -114,7 +115,7 @@ impl CriticalCurve {
 const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
 
 /// Tolerance of the distance of a corner of the limits, as a fraction of the reach: twice the effect of the tolerance
-/// of the limits. It is only checked for angles within the second tolerance, rad, of a limit.
+/// of the limits. A corner is checked only if its angle is within [`CORNER_ANGLE_RAD`] of a limit.
 const CORNER_TOLERANCE: f64 = 2e-9;
 const CORNER_ANGLE_RAD: f64 = 1e-3;
 
@@ -348,7 +349,8 @@ impl PoseSpace {
                 }
             }
         }
-        // `first` is b of the whole machine turned with drive 1; the relative angles, and so their windings, add the
+        // `first` is the b of the machine turned rigidly by the angle of drive 1. The relative angles, with their
+        // windings, add the
         // rest of b.
         let first = turn(c.of[0]) * self.lambda_sum;
         self.each_winding(0, c, a, name, &mut |a, name| {

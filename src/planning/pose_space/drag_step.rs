@@ -11,8 +11,8 @@ use super::space::{GuidanceMode, PoseSpace};
 use nalgebra::{SMatrix, SVector};
 use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, dot, unit};
 
-/// Rows of C: two for the point, one for b, and one for each relative angle. The last is for a drive that keeps its
-/// angle.
+/// Rows of C: two for the point, one for b, and one for each relative angle. The last row is for a drive that
+/// keeps its angle.
 const ROWS: usize = KEPT_ROW + 1;
 const KEPT_ROW: usize = 3 + MAX_DRIVES - 1;
 /// Maximum number of steps.

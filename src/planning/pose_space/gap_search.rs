@@ -1,4 +1,4 @@
-//! Search for poses at a given distance from B with b between two critical values.
+//! Search for poses at a given distance from B with b in a gap, an interval between two critical values.
 //!
 //! # Method
 //! A connected set of poses between two critical values of b extends to both of them, and ends or merges at critical

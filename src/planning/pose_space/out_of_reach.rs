@@ -3,7 +3,8 @@
 //! # Method
 //! The distance from the point has many local minima. Turning one relative angle at constant b moves the end effector
 //! along a known curve, and two angles span a grid of known points. From samples of all joint ranges, each angle in turn
-//! is set to the best of a grid over its whole range. Newton's iteration from both ends at local minima. From the best
+//! is set to the best of a grid over its whole range. From this pose and from the sample, Newton's iteration
+//! converges to local minima. From the best
 //! of these minima, grids over all pairs of angles lead to other ones, until none is nearer.
 
 use std::array::from_fn;

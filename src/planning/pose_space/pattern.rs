@@ -36,7 +36,7 @@ pub(super) enum LimitState {
     Greatest,
 }
 
-/// The drives grouped into compounds, with some joints held at a limit.
+/// The drives grouped into compounds: groups that turn as one because the joints within them are held at a limit.
 #[derive(Debug)]
 pub(super) struct Pattern {
     /// State of each joint.

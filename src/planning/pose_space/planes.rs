@@ -68,7 +68,7 @@ impl PlaneError {
 }
 
 impl Planes {
-    /// Returns the planes of a machine, with λ from the constant diagonal D_k = H_kk of its inertia matrix.
+    /// Returns the planes of a machine, with λ_k = D_k / D_1, (12).
     ///
     /// # Errors
     /// If it does not have three drives and two relative angles with limits, or has no b.

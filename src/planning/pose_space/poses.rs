@@ -12,7 +12,7 @@ const B_TOLERANCE: f64 = 1e-6;
 /// sought.
 const START_SAMPLES: usize = 32;
 const MAX_DESCENTS: usize = 12;
-/// Number of climbs from critical poses after which no more are tried if a pose has been found.
+/// Maximum number of climbs from critical poses once a pose has been found; until then, all are tried.
 const MAX_CLIMBS: usize = 32;
 /// Poses whose angles all differ by less than this are equal, rad.
 const SAME_POSE_RAD: f64 = 1e-6;
@@ -33,8 +33,9 @@ impl PoseSpace {
         poses.iter().map(|(_, a)| self.lift(a, b)).collect()
     }
 
-    /// Returns relative angles of poses at `p`, m, and `b`, rad: of all poses with up to three drives. With more, of at
-    /// least one pose in each connected component, and of further poses found from samples, in no particular order.
+    /// Returns relative angles of poses at `p`, m, and `b`, rad: of all poses with up to three drives. With more, of
+    /// poses found by climbs from critical poses and from samples, in no particular order. The number of climbs is
+    /// bounded by `MAX_CLIMBS`, so a connected component may be missed.
     pub fn representative_poses(&self, p: Vector, b: f64) -> Vec<PerDrive> {
         if let Some(map) = self.map() {
             return map.poses(p, b).iter().map(|pose| PerDrive::from(pose.a)).collect();

@@ -17,7 +17,7 @@ const NEIGHBOUR_OFFSET: f64 = 4.1e-9;
 
 impl PoseSpace {
     /// Returns all b at which the end effector can be on `p`, m, within the limits. With one and two drives each
-    /// interval is a single value.
+    /// interval is a single value, except at B: two drives that reach B do so at every b.
     ///
     /// # Errors
     /// If there are none: the reason.

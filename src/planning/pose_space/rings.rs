@@ -160,7 +160,8 @@ impl PoseSpace {
             let covered = self.covered(r, last.as_slice(), &mut sweep.work);
             all.push(covered);
         }
-        // A gap of b that is feasible on one circle is feasible on the neighbouring circles to which it continues.
+        // An interval between critical values of b that is feasible on one circle is feasible on the neighbouring
+        // circles to which it continues.
         let circles = if carries { 1..all.len() } else { 0..0 };
         for i in circles.clone() {
             let (before, from) = all.split_at_mut(i);

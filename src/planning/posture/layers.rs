@@ -43,7 +43,7 @@ pub(super) struct Layers<'a> {
     pub spacing: f64,
 }
 
-/// A pose nearer to another than this fraction of `apart` is omitted.
+/// A pose nearer to another than this fraction of [`Detail::spacing`] is omitted.
 const THINNING_SHARE: f64 = 0.5;
 /// If fewer poses than this reach a station, all its poses are computed, to replace failed continuations.
 pub(super) const FEW_POSES: usize = 8;

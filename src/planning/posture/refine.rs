@@ -2,12 +2,12 @@
 //!
 //! # Method
 //! The poses q_i keep (p_i, b), so a step is Z_i z_i, with a null space basis Z_i at each pose. The reduced Hessian is
-//! Zᵀ (∇²f + diag(ν·c_k e^{iq_k})) Z, a banded matrix, because ∂²p/∂q_k² = −c_k e^{iq_k} and ν are the multipliers of
-//! p. An augmented Lagrangian keeps the limits: their multipliers grow until no limit is passed. Every step is
+//! Zᵀ (∇²f + diag(ν·c_k e^{iq_k})) Z, because ∂²p/∂q_k² = −c_k e^{iq_k}; ν are the multipliers of p. It is a banded
+//! matrix. An augmented Lagrangian keeps the limits: their multipliers grow until no limit is passed. Every step is
 //! projected back onto (p, b).
 //!
-//! Each step finds the limits that are active at its end. With those at its start, it would pass others, and the line
-//! search would end at a path that is not optimal.
+//! Each step finds the limits that are active at its end. A step found with the limits active at its start would pass
+//! other limits, and the line search would end at a path that is not optimal.
 
 use super::envelope::Envelope;
 use super::goal::{PostureCost, times};
@@ -280,8 +280,8 @@ impl RefinementProblem<'_> {
         sum
     }
 
-    /// Calls `what` for each limit of each pose. Its arguments are the index of the limit, the distance beyond it, rad,
-    /// the index of the pose, and the sign of the limit with the gradient of the angle.
+    /// Calls `what` for each limit of each pose, with the index of the limit, the distance beyond it, rad, and the
+    /// index of the pose. The last argument is a pair: the sign of the limit, and the gradient of the angle.
     fn each_limit(&self, q: &[PerDrive], mut what: impl FnMut(usize, f64, usize, (f64, &PerDrive))) {
         let count = self.bounds.len();
         for (i, q) in q.iter().enumerate() {

@@ -7,11 +7,11 @@ use super::rows::lifted;
 use super::stations::Stations;
 use stillbase_mechanics::planar::PerDrive;
 
-/// A continued pose is connected to the poses within this multiple of `apart`.
+/// A continued pose is connected to the poses within this multiple of `spacing`.
 const NEXT_POSE_FACTOR: f64 = 1.25;
 /// Maximum number of routes that are tried before the search fails.
 const MAX_TRIES: usize = 40;
-/// Approximate maximum number of start poses that are tried for closed paths.
+/// Maximum number of start poses that are tried for closed paths.
 const MAX_STARTS: usize = 60;
 /// Maximum step of a path between stations, as a multiple of the mean step of the route there.
 const STRETCH_FACTOR: f64 = 4.0;
@@ -67,7 +67,8 @@ impl Layers<'_> {
         layer.next.iter().enumerate().map(each).collect()
     }
 
-    /// Finds the index of the pose in each layer along the cheapest route, from one start or any, and its cost. Routes
+    /// Finds the index of the pose in each layer along the cheapest route, from the given start or from any,
+    /// and its cost. Routes
     /// from a given start also end there.
     fn cheapest(
         &self,

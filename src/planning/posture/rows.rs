@@ -83,8 +83,8 @@ impl PoseConstraint<'_> {
         Some(rows)
     }
 
-    /// Finds the pose of a point near a pose by Newton's method with minimum-norm steps; `None` if it does not
-    /// converge.
+    /// Finds a pose near `q` with the end effector on `p`, by Newton's method with minimum-norm steps. Returns `None`
+    /// if it does not converge.
     pub fn onto(&self, q: &PerDrive, p: Vector) -> Option<PerDrive> {
         let reach = self.space.farthest();
         let mut q = *q;

@@ -71,7 +71,7 @@ impl BSet {
     }
 }
 
-/// Describes an interval: `from 2.216 to 2.661`, with its bounds rounded inwards to as many decimals as keep it
+/// Describes an interval: `from 2.2160 to 2.6610`, with its bounds rounded inwards to as many decimals as keep it
 /// non-empty.
 pub fn describe_interval(low: f64, high: f64) -> String {
     let ends = (4..=MAX_DECIMALS).find_map(|decimals| {
@@ -92,7 +92,7 @@ pub fn describe_interval(low: f64, high: f64) -> String {
 }
 
 /// Formats a length, m, with this number of decimals, or in scientific notation if these would show fewer than two
-/// digits.
+/// digits, or if the length is 1e9 m or more.
 pub fn metres(x: f64, decimals: usize) -> String {
     match x.abs() {
         small if small != 0.0 && small < 10f64.powi(1 - decimals as i32) => format!("{x:.3e}"),

@@ -136,7 +136,8 @@ impl PlaneMap {
         poses
     }
 
-    /// Refines a pose by Newton's iteration; returns the last iterate before it leaves the start, as near a fold.
+    /// Refines a pose by Newton's iteration. If a step would lead far from the start, as may happen near a fold,
+    /// returns the pose before that step.
     fn polished(&self, p: Vector, b: f64, start: [f64; 2]) -> [f64; 2] {
         let goal = p * unit(-self.turn(b));
         let mut a = start;

@@ -1,7 +1,7 @@
 //! The quadrilateral of the three arms and the vector from B to a point. Its configurations form the curve of poses
 //! that keep the end effector on the point (the self-motion). The curve is split into arcs along which b is monotone.
 //!
-//! In a frame with the arm that both relative angles share on the real axis, the curve is the level set
+//! In a frame whose real axis is along the arm that both relative angles share, the curve is the level set
 //! |m + x e^{iα} + y e^{iβ}| = |p|. For each α the law of cosines gives two β, so the curve consists of two graphs,
 //! along which b has a closed form without jumps. The split points have closed forms too. They are the turning points
 //! of α, the intersections with the joint limits, and the folds det = 0. The values of cos α at the folds are roots of

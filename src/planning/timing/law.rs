@@ -83,7 +83,8 @@ words! {
             kinks: &[0.0, 0.5, 1.0],
             at: |u| mirrored(u, |u| [2.0 * u * u, 4.0 * u, 4.0, 0.0]),
         };
-        /// For a given T: s⃛ is 32, −32 and 32 over a quarter, a half and a quarter of T, the least peak of all laws.
+        /// For a given T: s⃛ is 32, −32 and 32 over a quarter, a half and a quarter of T, the least peak of
+        /// |s⃛| of all laws.
         /// The peak of acceleration is 8.
         FastestSmooth = "fastest-smooth", "Fastest, smooth", "The same with limits on jerk" => Law {
             is_fastest: true,

@@ -164,7 +164,7 @@ pub struct Constraints<'a> {
     model: &'a Inertia,
     around: ExternalLoads,
     limits: &'a DriveLimits,
-    /// 1/limit of each q̈_k, from the limits on torque and acceleration; only if torque is D_k q̈_k in every pose.
+    /// 1/limit of each q̈_k, from the limits on torque and acceleration; only if torque is H_kk q̈_k in every pose.
     constant: Option<PerDrive>,
     rows: Vec<DriveLimit>,
     /// Drives with a limit on speed.

@@ -295,7 +295,7 @@ impl Profile {
         }
     }
 
-    /// Returns the time at which s is first reached, s, by bisection.
+    /// Returns the time, s, at which the position s on the path is first reached, by bisection.
     pub fn time_at(&self, s: f64) -> f64 {
         let (mut low, mut high) = (0.0, self.duration);
         for _ in 0..60 {

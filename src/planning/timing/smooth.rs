@@ -24,13 +24,13 @@ const USAGE_SAMPLES: usize = 2000;
 const INTERVALS_BY_TIME: f64 = 200.0;
 /// Number of intervals distributed evenly over θ.
 const INTERVALS_BY_THETA: f64 = 80.0;
-/// Number of intervals added for each interval of the grid of that motion.
+/// Number of intervals added for each interval of the grid of the motion without limits on jerk.
 const INTERVALS_BY_GRID: f64 = 0.1;
 /// Number of intervals over which the distance of θ from an end grows by the factor e.
 const INTERVALS_BY_ENDS: f64 = 4.0;
-/// Distance of θ to an end below which this density no longer grows.
+/// Distance of θ to an end below which the density of [`INTERVALS_BY_ENDS`] no longer grows.
 const END_DISTANCE: f64 = 0.003;
-/// Minimum number of intervals between two joints of the path.
+/// Minimum number of intervals between two joints of a path that has at most 40 joints.
 const MIN_INTERVALS_PER_PIECE: usize = 12;
 /// Maximum number of refinements where a limit is exceeded between the points at which it is imposed.
 const MAX_REFINEMENTS: usize = 3;

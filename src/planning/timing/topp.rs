@@ -1,7 +1,7 @@
 //! Time-optimal path parameterisation: the maximum rate that limits allow everywhere on a path.
 //!
 //! With x = ṡ² and u = s̈ the motion is x′ = 2 u, and every limit is linear in (u, x). Over an interval Δ of the grid u
-//! has a mean u_i, so x_{i+1} = x_i + 2 Δ u_i exactly; rows are kept at both ends of the interval. Backwards from rest
+//! has a mean u_i, so x_{i+1} = x_i + 2 Δ u_i exactly. Limits hold at both ends of the interval. Backwards from rest
 //! at the end, the *controllable* x at each station, from which the end can be reached, form an interval. Forwards from
 //! rest, the maximum u that stays within these gives the fastest motion (reachability analysis, Pham & Pham 2018).
 //!
@@ -30,7 +30,7 @@ const MAX_INTERVALS: usize = 60_000;
 
 /// Number of parts into which an interval with an exceeded limit is divided.
 const PARTS_IF_EXCEEDED: usize = 4;
-/// Relative excess of the factor on time from which an interval is divided.
+/// An interval is divided if the factor on the duration that it needs exceeds 1 by more than this.
 pub(super) const REPAIR_THRESHOLD: f64 = 1e-4;
 
 /// The constraints of a path at all stations, at least two.
@@ -178,8 +178,8 @@ impl PathConstraints {
         &self.speeds[i * self.per..(i + 1) * self.per]
     }
 
-    /// Returns the factors on time with which a station, passed with given progress, just keeps each limit except those
-    /// on jerk.
+    /// Returns the factors on the duration with which each limit, except those on jerk, is just met at a station.
+    /// `at` is the progress there.
     pub(super) fn stretches(&self, i: usize, at: &PathProgress) -> Stretches {
         stretches(self.rows_at(i), self.speeds_at(i), at)
     }

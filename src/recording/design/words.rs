@@ -9,7 +9,7 @@ use stillbase_settings::number::counted;
 use stillbase_settings::range::shortened;
 use stillbase_study::comparison::{DESIGN_COLUMNS, DesignMeasures};
 
-/// Maximum number of conditions as columns of a table; of more conditions the table is transposed.
+/// Maximum number of conditions as columns of a table; with more conditions, the table is transposed.
 const MAX_COLUMNS: usize = 10;
 
 /// Maximum number of characters of a name.
@@ -108,7 +108,7 @@ pub(super) fn links(machine: &Machine) -> String {
     table(&heads, &rows) + &sum
 }
 
-/// Returns the table of the conditions (7) and (8): contribution of each link with all that it carries, and the
+/// Returns the table of the conditions (7) and (8): contribution of each link with its discs and payload, and the
 /// residual.
 pub(super) fn balance(machine: &Machine, breakdown: &Breakdown) -> String {
     let terms = &breakdown.terms;

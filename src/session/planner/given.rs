@@ -1,4 +1,5 @@
-//! Motions given by samples: samples of drive angles are used unchanged; for samples of the end effector the redundancy
+//! Motions given by samples. Samples of drive angles are used as they are, turned as a whole by the task's `turn`.
+//! For samples of the end effector the redundancy
 //! is resolved.
 
 use super::held::along_curves;
@@ -74,7 +75,8 @@ pub(super) fn given(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan
     Ok(Plan::foreseen(motion, forecast))
 }
 
-/// Follows a sampled curve of the end effector with b held, or with least rates if no drive turns the base.
+/// Follows a sampled curve of the end effector with b held, or with least rates if no drive puts a moment on
+/// the base.
 ///
 /// # Errors
 /// If the curve cannot be followed.

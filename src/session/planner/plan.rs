@@ -57,7 +57,7 @@ pub struct TimingBottleneck {
     pub time: f64,
     /// Least time T* without limits on jerk, s, if the law has such limits and T* is known.
     pub unlimited: Option<f64>,
-    /// Limit that is active for the greatest share of the first part.
+    /// Limit that is active for the longest time in the first part of the path that has any active limit.
     pub leading: Option<DriveLimit>,
 }
 

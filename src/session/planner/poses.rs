@@ -18,9 +18,9 @@ pub(super) fn poses_at_b(task: &Task, space: &PoseSpace, points: &[Vector]) -> R
     posed::poses_of_points(space, points, task.b).map_err(|(i, unreachable)| refusal(task, i, unreachable))
 }
 
-/// Returns a pose of the first point. If intervals of b reach a point, the pose is at the b of the task. On machines
-/// with planes it is also on the same sheet as the other points, if possible. Otherwise the pose is at the nearest b
-/// that reaches the point.
+/// Returns a pose of the first point. If the workspace at fixed b is an area, the pose is at the b of the task. On
+/// machines with planes it is also on the same sheet as the other points, if possible. If the workspace is no area,
+/// the pose is at the nearest b that reaches the point.
 pub(super) fn start(scenario: &Scenario, space: PlannerSpace<'_>, points: &[Vector]) -> Result<DriveAngles, Refusal> {
     let task = &scenario.task;
     match space {

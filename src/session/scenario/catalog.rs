@@ -7,8 +7,8 @@ use super::definition::Scenario;
 /// Number of the paper's cases, which are the first scenarios of the list.
 const CASE_COUNT: usize = 3;
 
-/// The built-in scenarios: the paper's three cases, other kinds of tasks, plants and bases that are not ideal. Each of
-/// the other machines has one scenario, which bears the name of the machine.
+/// The built-in scenarios: the paper's three cases, other kinds of tasks, plants and bases that are not ideal.
+/// Every built-in machine except `nine-link` and `nine-link-table-1` has one scenario, which bears its name.
 const BUILTIN: [(&str, &str); 20] = [
     ("case-1", include_str!("../../../assets/scenarios/case-1.toml")),
     ("case-2", include_str!("../../../assets/scenarios/case-2.toml")),

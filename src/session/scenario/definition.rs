@@ -17,8 +17,10 @@ use stillbase_simulation::plant::{Base, PlantDifferences};
 pub struct Scenario {
     /// Short name: `case-3`.
     pub name: String,
-    /// Description in one line.
+    /// Description in a few words.
     pub title: String,
+    /// Description in one sentence.
+    pub summary: String,
     /// Nominal machine, which control assumes.
     pub machine: Machine,
     /// Differences of the plant, the machine that moves, from the nominal machine.
@@ -73,11 +75,12 @@ impl Scenario {
 
     /// Returns the scenario without edits, bookmarks and branches.
     pub fn without_edits(&self) -> Self {
-        let Self { name, title, machine, plant, base, task, control, step, .. } = self;
+        let Self { name, title, summary, machine, plant, base, task, control, step, .. } = self;
         let Self { pose_acceleration, compare_b, duration, tolerance, design, .. } = self;
         Self {
             name: name.clone(),
             title: title.clone(),
+            summary: summary.clone(),
             machine: machine.clone(),
             plant: plant.clone(),
             base: *base,

@@ -25,6 +25,8 @@ struct File {
     name: Option<String>,
     #[serde(default)]
     title: String,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    summary: String,
     machine: MachineRef,
     /// Settings of the machine, as on the command line: `payload.mass=0.5`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -118,7 +120,8 @@ impl Scenario {
             let message = format!("{} is not a finite number: want one", quote_clipped(&key));
             return Err(ScenarioError::Syntax { file: label.into(), line: line_of(&key), message });
         }
-        for (key, text) in [("name", file.name.as_deref().unwrap_or_default()), ("title", &file.title)] {
+        let name = file.name.as_deref().unwrap_or_default();
+        for (key, text) in [("name", name), ("title", &file.title), ("summary", &file.summary)] {
             if let Some(c) = control_character(text) {
                 let message = format!("{key} holds the control character U+{:04X}: {PRINTABLE}", u32::from(c));
                 return Err(ScenarioError::Syntax { file: label.into(), line: line_of(key), message });
@@ -164,6 +167,7 @@ impl Scenario {
         let mut scenario = Self {
             name: file.name.unwrap_or(stem),
             title: file.title,
+            summary: file.summary,
             machine,
             plant: file.plant,
             base: file.base,
@@ -234,6 +238,7 @@ impl Scenario {
         let Self {
             name,
             title,
+            summary,
             machine: _,
             plant,
             base,
@@ -252,6 +257,7 @@ impl Scenario {
         let file = File {
             name: Some(name),
             title,
+            summary,
             machine,
             set: Vec::new(),
             step,

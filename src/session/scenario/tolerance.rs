@@ -25,7 +25,7 @@ pub const MAX_SAMPLES: u64 = 1_000_000_000;
 /// force_limit = 0.5                       # N
 /// "link.*.com" = { normal = 0.0005 }      # standard deviation, m
 /// "link.*.mass" = { uniform = "1%" }      # half-width, of the nominal mass
-/// "link.5.mass" = { uniform = 0.01 }      # a name goes before *
+/// "link.5.mass" = { uniform = 0.01 }      # a name takes precedence over *
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "BTreeMap<String, toml::Value>", into = "BTreeMap<String, toml::Value>")]

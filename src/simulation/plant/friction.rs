@@ -25,7 +25,7 @@ keyed! {
     /// stator.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Friction at "plant.friction" {
-        /// Viscous friction in the bearings of the drives: a torque against the rate relative to the base.
+        /// Viscous friction in the bearings of the drives: a torque against the rate relative to the stator.
         viscous: DriveValues = "0", range: VISCOUS_RANGE;
         /// Coulomb friction in the bearings of the drives; a drive at rest sticks until a larger torque acts on it.
         coulomb: DriveValues = "0", range: TORQUE_RANGE;

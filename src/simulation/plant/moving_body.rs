@@ -349,7 +349,8 @@ impl MovingBody {
         self.contacts.reduced_inertia(i, |k| self.rotating.c[k][k].re + self.rotating.spin[k])
     }
 
-    /// Returns a state in which stuck contacts have exactly zero sliding rate. Internal impulses between the two sides
+    /// Returns a state in which stuck contacts have a sliding rate of zero to rounding.
+    /// Internal impulses between the two sides
     /// remove the residual rate; they do not change the total momentum. The residual is rounding and integration error.
     /// The energy removed is not counted as lost, so that the audits show any larger residual.
     #[must_use]

@@ -234,7 +234,8 @@ impl MovingBody {
         };
         let Actuation { torque, spin, rotor } = control(&e, &rate, base, velocity);
 
-        // Generalised forces: outer forces, whose sum changes L, and torques between the drives and the base.
+        // Generalised forces: outer forces, whose sum changes the angular momentum,
+        // and torques between the drives and the base.
         let tip = |k: usize| if MOVES { self.end_effector_chain[k] * e[k] } else { e[k] * self.arm.end_effector[k] };
         let (mut support_force, mut moment) = Default::default();
         if MOVES {

@@ -12,8 +12,8 @@
 //! # At the maximum rate
 //! Ω never exceeds its limit Ω_top, not even within a step. In a step of h seconds, the torque is at most J (Ω_top −
 //! Ω)/h. With this torque, the wheel reaches the limit at the end of the step. The other direction has the
-//! corresponding limit. Thus the impulse is right even in the step that reaches the limit, and later steps give no
-//! torque beyond it.
+//! corresponding limit. So the impulse is exact even in the step in which Ω reaches its limit. In later steps no
+//! torque drives Ω beyond the limit.
 
 use stillbase_settings::key::Key;
 use stillbase_settings::keyed::keyed;

@@ -61,7 +61,8 @@ impl Mismatch {
     }
 }
 
-/// Lower bound of scales: moment, force, base shift as a fraction of torques, inertial forces, reach; base angle, rad.
+/// Lower bound of the scales of moment, force and base shift, as fractions of torques, inertial forces and reach.
+/// It also bounds the scale of the base angle, rad.
 pub(super) const MIN_SCALE_SHARE: f64 = 1e-4;
 
 /// Scale of end effector errors, as a fraction of the arm length.

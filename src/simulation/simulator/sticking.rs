@@ -203,7 +203,7 @@ impl Simulation {
         best
     }
 
-    /// Makes contacts stick whose sliding rate is zero and whose acceleration does not point in the slip direction.
+    /// Makes contacts stick if their sliding rate is zero and they do not accelerate in the slip direction.
     /// Contacts that cannot hold then slide the other way. Returns whether any contact stopped.
     fn stick_stopped(&self, reached: &mut StepState, segment: &Segment) -> bool {
         let contacts = self.body().contacts();

@@ -137,8 +137,8 @@ impl Alternative {
     }
 }
 
-/// Returns the angle of drive 1 at A and the task's b, rad. `None` if the machine has neither planes nor free drives at
-/// a given point and b.
+/// Returns the angle of drive 1 at A and the task's b, rad. `None` if no pose of A is found, or if the machine has
+/// neither planes nor more than three drives.
 fn start_of_first_drive(scenario: &Scenario) -> Option<f64> {
     let points = scenario.task.points();
     let space = PoseSpace::of(&scenario.machine).ok()?;

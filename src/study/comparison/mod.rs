@@ -83,7 +83,7 @@ impl ComparedRun {
         self.frames.last().map_or(0.0, |f| f.time)
     }
 
-    /// Returns the last frame up to a time, s; the first frame before the start.
+    /// Returns the last frame up to a time, s. For a time before the start, returns the first frame.
     pub fn at(&self, time: f64) -> Option<&Frame> {
         let after = self.frames.partition_point(|f| f.time <= time + 1e-9);
         self.frames.get(after.saturating_sub(1))

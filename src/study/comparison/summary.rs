@@ -68,21 +68,21 @@ pub struct SummaryColumn<T = Summary> {
 
 /// Columns of the table, in order.
 pub const SUMMARY_COLUMNS: [SummaryColumn; 15] = [
-    column("time", "T", "time of the motion", "s", 3, |s| Some(s.time)),
-    column("peak_moment", "peak n", "largest moment that the base feels", "N m", 4, |s| Some(s.peak_moment)),
-    column("rms_moment", "rms n", "its root mean square", "N m", 4, |s| Some(s.rms_moment)),
-    column("moment_impulse", "∫|n|dt", "its impulse", "N m s", 4, |s| Some(s.moment_impulse)),
-    column("peak_force", "peak f", "largest force on the base, from motion", "N", 4, |s| Some(s.peak_force)),
-    column("rms_force", "rms f", "its root mean square", "N", 4, |s| Some(s.rms_force)),
-    column("force_impulse", "∫|f|dt", "its impulse", "N s", 4, |s| Some(s.force_impulse)),
-    column("base_shift", "shift", "largest displacement of the base", "m", 5, |s| Some(s.base_shift)),
-    column("base_tilt", "angle", "largest angle of the base", "rad", 5, |s| Some(s.base_tilt)),
+    column("time", "time", "time of the motion", "s", 3, |s| Some(s.time)),
+    column("peak_moment", "peak moment", "largest moment that the base feels", "N m", 4, |s| Some(s.peak_moment)),
+    column("rms_moment", "RMS moment", "its root mean square", "N m", 4, |s| Some(s.rms_moment)),
+    column("moment_impulse", "moment impulse", "its impulse, ∫|n|dt", "N m s", 4, |s| Some(s.moment_impulse)),
+    column("peak_force", "peak force", "largest force on the base, from motion", "N", 4, |s| Some(s.peak_force)),
+    column("rms_force", "RMS force", "its root mean square", "N", 4, |s| Some(s.rms_force)),
+    column("force_impulse", "force impulse", "its impulse, ∫|f|dt", "N s", 4, |s| Some(s.force_impulse)),
+    column("base_shift", "base shift", "largest displacement of the base", "m", 5, |s| Some(s.base_shift)),
+    column("base_tilt", "base angle", "largest angle of the base", "rad", 5, |s| Some(s.base_tilt)),
     column("miss", "miss", "distance of the end effector from its target at the end", "m", 5, |s| Some(s.miss)),
-    column("peak_torque", "peak τ", "largest torque of any drive", "N m", 4, |s| Some(s.peak_torque)),
+    column("peak_torque", "peak torque", "largest torque of any drive", "N m", 4, |s| Some(s.peak_torque)),
     column("energy", "energy", "energy that motors took, none given back", "J", 4, |s| Some(s.energy)),
-    column("wheel_rate", "wheel", "largest rate of the reaction wheel", "rad/s", 1, |s| s.wheel_rate),
-    column("saturated_at", "saturates", "when the wheel could give no more", "s", 3, |s| s.saturated_at),
-    column("peak_arm_moment", "peak n_B", "largest moment of the arm, before the wheel", "N m", 4, |s| {
+    column("wheel_rate", "wheel rate", "largest rate of the reaction wheel", "rad/s", 1, |s| s.wheel_rate),
+    column("saturated_at", "saturates at", "when the wheel could give no more", "s", 3, |s| s.saturated_at),
+    column("peak_arm_moment", "peak arm moment", "largest moment of the arm, before the wheel", "N m", 4, |s| {
         s.peak_arm_moment
     }),
 ];

@@ -19,8 +19,8 @@ pub enum PreservedPath {
 /// A given motion, and requirements on the proposal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
-    /// Machine, base and control; the task and the edits are ignored. The scenario of the proposal has its name, and
-    /// its title followed by the proposal's [`way`](super::Proposal::way).
+    /// Machine, base and control; the task and the edits are ignored. The proposal's scenario has the name of this
+    /// one, and the title of this one followed by the proposal's [`way`](super::Proposal::way).
     pub scenario: Shared<Scenario>,
     /// The given motion.
     pub motion: Shared<GivenMotion>,

@@ -13,7 +13,7 @@ use stillbase_session::scenario::{Task, TaskKind};
 
 /// The given motion, and candidates for the proposal.
 pub(super) struct MotionProposals {
-    /// The given motion; for samples of the end effector, with minimum-norm rates if these can follow them.
+    /// The given motion; samples of the end effector are followed with minimum-norm rates, `None` if that fails.
     pub given: Option<AssessedMotion>,
     /// Candidates, or why there are none.
     pub candidates: Result<Vec<MotionCandidate>, Advice>,

@@ -192,7 +192,7 @@ pub struct BandDifference {
 /// Agreement of first-order results with exact or sampled ones.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Agreement {
-    /// Tolerance between two exact results, in standard deviations.
+    /// Tolerance if neither result is sampled, in standard deviations.
     pub tolerance: f64,
     /// Tolerance if one result is sampled: at least four standard errors, in standard deviations.
     pub sampled_tolerance: f64,

@@ -76,7 +76,7 @@ pub struct Yield {
 }
 
 impl Yield {
-    /// Returns the yield of `good` out of `of`; for `of` = 0 the interval is 0 to 1.
+    /// Returns the yield of `good` out of `total`; for `total` = 0 the interval is 0 to 1.
     pub fn new(good: u64, total: u64) -> Self {
         if total == 0 {
             return Self { good, total, share: 0.0, interval: [0.0, 1.0] };

@@ -35,7 +35,7 @@ pub enum TrimError {
         /// Number of unknowns.
         unknowns: usize,
     },
-    /// A motion is too short for windows.
+    /// A motion is too short for the windows over which rows are averaged.
     #[error(
         "motion {} has {} in {} s: want at least {want} without measured rates and accelerations", motion + 1,
         counted(rows, "row"), fixed(*time, 6)

@@ -36,7 +36,7 @@ pub struct Fit {
     pub effective: [f64; 2],
     /// Pseudo-inverse of XᵀX over the identifiable directions, rows weighted by 1/σ.
     pub(super) inverse: DMatrix<f64>,
-    /// Information matrix: XᵀX with rows weighted by 1/σ² and divided by the correlation length in rows.
+    /// Information matrix: XᵀX with rows weighted by 1/σ, divided by the correlation length in rows.
     pub(super) information: DMatrix<f64>,
     /// σ² times the correlation time of the residuals, of force and of moment, N² s and N² m² s.
     pub(super) density: [f64; 2],
@@ -48,7 +48,7 @@ const RANK_TOLERANCE: f64 = 1e-9;
 const NOISE_FACTOR: f64 = 4.0;
 /// An unknown is identifiable if the norm of its components along all unobservable directions is smaller than this.
 const IDENTIFIABLE_BELOW: f64 = 1e-3;
-/// Minimum number of lags of Bartlett's window for averaged rows, which overlapping windows correlate.
+/// Minimum number of lags of Bartlett's window for averaged rows: their averaging windows overlap and correlate them.
 const MIN_LAGS: usize = 48;
 /// Maximum number of iterations of the singular value solver.
 const MAX_ITERATIONS: usize = 10_000;

@@ -73,8 +73,8 @@ const SETTING_STEP: f64 = 1e-4;
 /// New counterweights lighter than this fraction of the heaviest are omitted.
 const NEGLIGIBLE_MASS: f64 = 1e-3;
 
-/// Finds the least change that removes the identified imbalance. The part of the imbalance that no values of the
-/// numbers that `way` lets change can remove is included in [`MachineCorrection::residuals`].
+/// Finds the least change that removes the identified imbalance. `way` states which numbers may change. The imbalance
+/// that no values of these numbers can remove is included in [`MachineCorrection::residuals`].
 ///
 /// # Errors
 /// Fails if the bounds permit no solution.

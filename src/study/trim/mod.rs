@@ -20,7 +20,8 @@
 //! If rates and accelerations are given, each sample is a row. Otherwise windows φ avoid a second differentiation of
 //! the data: ∫ φ f = ∫ φ̇ p + const and ∫ φ n = ∫ φ̇ h + ∫ φ (Σ g e × gravity) + const. Both sides are averaged with
 //! the same window, so a wide window loses information but causes no bias. p and h need q̇, from five neighbouring
-//! samples (error h⁴). Noise in the angles biases the least-squares estimate towards 0; the bias is removed to first
+//! samples (error of fourth order in their spacing). Noise in the angles biases the least-squares estimate towards 0;
+//! the bias is removed to first
 //! order.
 //!
 //! Intervals have a confidence of 95 %. The covariance is the sandwich (XᵀX)⁻¹ S (XᵀX)⁻¹ with Bartlett's window over

@@ -152,7 +152,7 @@ impl Limits {
         }
     }
 
-    /// Returns sines of some drives, as large as the joint limits permit.
+    /// Returns sines of some drives with the amplitudes `reach`, reduced as far as the joint limits require.
     fn motion(&self, machine: &Machine, drives: &[(usize, f64)], own_frequencies: bool) -> Sines {
         let n = machine.drives();
         let signs: Vec<f64> =

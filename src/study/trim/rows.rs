@@ -50,7 +50,7 @@ pub(super) struct Channel {
     /// Matrix, rows × unknowns.
     pub x: DMatrix<f64>,
     pub y: Vec<f64>,
-    /// Expected contribution of the noise in the angles to xᵀ x.
+    /// Expected contribution of the noise in the angles or measured rates to xᵀ x.
     pub noise: DMatrix<f64>,
 }
 
@@ -83,7 +83,7 @@ impl Regressor {
         Self::at_least(0.0, machine, recording, angles_only)
     }
 
-    /// Builds the equations with windows of at least a half width, s.
+    /// Builds the equations with windows whose half width is at least `half`, s.
     ///
     /// # Errors
     /// Fails if the recording cannot be used.

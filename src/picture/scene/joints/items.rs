@@ -1,5 +1,6 @@
 //! Items of joint space for any number of drives: axes, pose, and ends of the planned path.
 
+use crate::notation::Notation;
 use crate::numbers::round_up;
 use crate::scene::axes::Axis;
 use crate::scene::palette::{Palette, faded};
@@ -8,9 +9,6 @@ use stillbase_simulation::frame::Frame;
 
 /// Symbols of the drive angles.
 pub const SYMBOLS: [&str; 8] = ["q₁", "q₂", "q₃", "q₄", "q₅", "q₆", "q₇", "q₈"];
-/// Titles of the axes, with units.
-pub(super) const TITLES: [&str; 8] =
-    ["q₁, rad", "q₂, rad", "q₃, rad", "q₄, rad", "q₅, rad", "q₆, rad", "q₇, rad", "q₈, rad"];
 
 /// Maximum number of ticks on the longest axis.
 const MAX_TICKS: f64 = 10.0;
@@ -23,19 +21,23 @@ pub(super) fn axes(
     drives: [usize; 3],
     bounds: [[f64; 2]; 3],
     origin: &[f64],
+    notation: Notation,
 ) -> [Axis; 3] {
     let longest = bounds.iter().map(|[from, to]| to - from).fold(0.0, f64::max);
     [0, 1, 2].map(|i| {
         let (k, [from, to]) = (drives[i], bounds[i]);
         Axis {
-            title: TITLES[k],
+            symbol: SYMBOLS[k],
+            unit: "rad",
             colour: palette.drive(k),
             ends: [from, to],
             values: [from + origin[k], to + origin[k]],
             step: round_up(longest / MAX_TICKS),
             decimals: 0,
             now: Some((frame.relative(k), palette.drive(k))),
+            now_decimals: 3,
         }
+        .shown_in(notation)
     })
 }
 

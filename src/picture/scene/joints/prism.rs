@@ -242,7 +242,7 @@ impl Prism {
             solid("plane", 0, plane, faded(palette.amber, if hot { 0.42 } else { 0.34 }), ItemChanges::Pose),
         ];
         let eye = camera.eye_direction().map(f64::from);
-        let axes = items::axes(&palette, frame, self.drives, self.bounds(b), &self.origin(b));
+        let axes = items::axes(&palette, frame, self.drives, self.bounds(b), &self.origin(b), options.notation);
         axes::draw(&mut scene, &palette, &axes, eye, self.range.changes());
         self.prism(&mut scene, &palette, b);
         self.neighbours(&mut scene, &palette, b);

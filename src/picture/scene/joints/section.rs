@@ -7,8 +7,9 @@
 
 use std::sync::Arc;
 
-use super::items::{self, TITLES};
+use super::items::{self, SYMBOLS};
 use super::range::ShownRange;
+use crate::notation::Notation;
 use crate::numbers::{degrees, round_up, signed};
 use crate::scene::camera::{Camera, FlatCamera, Orbit};
 use crate::scene::course::stations;
@@ -260,7 +261,7 @@ impl JointSection {
         let part = self.surface(b, frame);
         let mut scene = Scene::new(palette.background, Arc::new(MeshSet { meshes: vec![fan(&part)] }));
         if self.is_flat() {
-            self.grid(&mut scene, &palette, frame);
+            self.grid(&mut scene, &palette, frame, options.notation);
             self.limits(&mut scene, &palette, frame);
         } else {
             let colour = faded(palette.amber, if hot { 0.42 } else { 0.34 });
@@ -268,7 +269,7 @@ impl JointSection {
             scene.solids.push(Solid { name, mesh: 0, world_from_item: IN_PLACE, colour, changes });
             let eye = camera.eye_direction().map(f64::from);
             let drives = [0, 1, 2].map(|i| self.shown[i]);
-            let axes = items::axes(&palette, frame, drives, self.bounds, &self.origin(b));
+            let axes = items::axes(&palette, frame, drives, self.bounds, &self.origin(b), options.notation);
             axes::draw(&mut scene, &palette, &axes, eye, self.range.changes());
         }
         self.neighbours(&mut scene, &palette, frame);
@@ -291,12 +292,15 @@ impl JointSection {
         Some([0, 1, 2].map(|i| (far[i] + 0.06 * (far[i] - middle[i])) as f32))
     }
 
-    /// Draws the grid of the plane of two drives at round angles, with the current angles at its edges.
-    fn grid(&self, scene: &mut Scene, palette: &Palette, frame: &Frame) {
+    /// Draws the grid of the plane of two drives at angles that are round in the user's unit, with the current angles
+    /// at its edges.
+    fn grid(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, notation: Notation) {
         let (bounds, origin, pose) = (self.bounds, self.origin(frame.b_reference), self.pose(frame));
         let longest = (0..2).map(|i| bounds[i][1] - bounds[i][0]).fold(0.0, f64::max);
-        let step = round_up(longest / 8.0);
-        let decimals = usize::from(step < 1.0);
+        let unit = notation.shown_unit("rad");
+        let factor = unit.map_or(1.0, |unit| unit.factor);
+        let step = round_up(factor * longest / 8.0);
+        let (decimals, step) = (usize::from(step < 1.0), step / factor);
         let at = |i: usize, x: f64, y: f64| if i == 0 { [x, y] } else { [y, x] }.map(|x| x as f32);
         let flat = |[x, y]: [f32; 2]| [x, y, 0.0_f32];
         let mut lines = Vec::new();
@@ -310,14 +314,14 @@ impl JointSection {
                 lines.push([low, high].map(|y| flat(at(i, x, y))).to_vec());
                 // The label of the current value replaces a nearby tick label.
                 if (x - pose[i]).abs() > 0.05 * (to - from) {
-                    let text = signed(value + 0.0, decimals);
+                    let text = signed(factor * value + 0.0, decimals);
                     let label = Label::new("axes/words", flat(at(i, x, low)), offset, text, palette.dim, 11.5, anchor);
                     scene.labels.push(label);
                 }
                 value += step;
             }
             let tone = palette.drive(k);
-            let text = signed(frame.relative(k), 3);
+            let text = signed(factor * frame.relative(k), unit.map_or(3, |unit| unit.decimals(3)));
             let foot = flat(at(i, pose[i], low));
             let label = Label::new("axes/now/words", foot, offset, text, tone, 12.5, anchor);
             scene.labels.push(label);
@@ -327,7 +331,8 @@ impl JointSection {
             let end = flat(at(i, to, low));
             let offset = if i == 0 { [12.0, 13.0] } else { [-8.0, -14.0] };
             let anchor = if i == 0 { Anchor::Left } else { Anchor::Right };
-            scene.labels.push(Label::new("axes/titles", end, offset, TITLES[k], tone, 12.5, anchor));
+            let title = format!("{}, {}", SYMBOLS[k], notation.unit_name("rad"));
+            scene.labels.push(Label::new("axes/titles", end, offset, title, tone, 12.5, anchor));
         }
         scene.lines.insert(0, Polyline::new("axes/grid", lines, 1.0, faded(palette.line, 0.7)));
     }

@@ -11,8 +11,8 @@ use stillbase_mechanics::planar::{Vector, cross, dot};
 const INTERSECTION_TOLERANCE: f64 = 1e-11;
 /// Ends within this distance are joined, as a fraction of the unit of the map.
 const JOIN_TOLERANCE: f64 = 1e-9;
-/// Parts shorter than this, as a fraction of the unit of the map, touch without crossing if their chords are still not
-/// separated.
+/// Parts shorter than this are taken to touch without crossing, if their chords are still not separated. It is a
+/// fraction of the unit of the map.
 const MIN_LENGTH: f64 = 1e-9;
 /// Maximum number of pairs of parts that are tested for two spans; beyond it, the spans are taken to overlap.
 const MAX_PAIRS: usize = 3000;
@@ -109,7 +109,7 @@ impl<'a> Arrangement<'a> {
         strands
     }
 
-    /// Determines the sides that no sample could separate, from the sides of the neighbouring strands.
+    /// Determines the numbers of poses beside strands for which no sample gave them, from neighbouring strands.
     fn settle(&self, strands: &mut [Strand]) {
         let weight = |s: &Strand| self.spans[s.parts[0].span].weight();
         if strands.iter().all(|s| s.left - s.right == weight(s)) {

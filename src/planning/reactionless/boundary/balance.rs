@@ -1,6 +1,6 @@
 //! Derives the numbers of poses on both sides of curves in slivers too thin to be sampled, from the curves around them.
 //!
-//! The curves that bound the points of at least n poses are closed: at each node as many of them end as begin. If a
+//! The curves that bound the points with at least n poses are closed: at each node as many of them end as begin. If a
 //! fold cuts off a corner of the limits, the sides of the long curves around it are known. This leaves few solutions
 //! for the short curves between. The one nearest to the samples is right: of two curves in a sliver, the longer extends
 //! beyond the other, where it can be sampled.

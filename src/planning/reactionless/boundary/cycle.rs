@@ -26,7 +26,7 @@ pub(super) struct Cycle {
 }
 
 impl Cycle {
-    /// Returns the cycle of spans; `unit` is that of the map, m.
+    /// Returns the cycle of spans; `unit` is the map's unit of tolerances, m.
     pub fn of(spans: Vec<BoundarySpan>, unit: f64) -> Self {
         let bounds: Vec<CycleBounds> = spans
             .iter()

@@ -12,7 +12,7 @@ pub fn uneased(s: f64) -> f64 {
     if s > 0.5 {
         return 1.0 - uneased(1.0 - s);
     }
-    // s is convex below the middle, so that Newton's method converges monotonically from above.
+    // s rises and is convex below the middle, so that Newton's method converges.
     let mut theta = (s / 5.0).cbrt().min(0.5);
     for _ in 0..60 {
         let [at, slope, ..] = eased(theta);

@@ -11,7 +11,7 @@ impl JerkProgram {
     }
 
     /// Computes the trial slacks of all limits. Returns whether each exceeds `share` times the present slack. If
-    /// `share` is 0, the trial slacks become the present ones.
+    /// so, and if `share` is 0, the trial slacks become the present ones.
     pub(super) fn compute_slacks(&mut self, c: &[f64], share: f64) -> bool {
         for (place, sides) in self.places.iter().zip(self.sides.chunks_exact_mut(self.each)) {
             let c = &c[place.first..];

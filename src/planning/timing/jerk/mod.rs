@@ -9,7 +9,8 @@
 //! | c_i | coefficients of y, a quadratic spline over the nodes θ_i | 1/s³ |
 //!
 //! # Method
-//! With θ̇ = y^⅓, θ̈ = y′/(3 y^⅓) and θ⃛ = y″/3 − y′²/(9 y), T = ∫ y^−⅓ dθ is convex in y. A limit on a u + c x + g is
+//! With θ̇ = y^⅓, θ̈ = y′/(3 y^⅓) and θ⃛ = y″/3 − y′²/(9 y), T = ∫ y^−⅓ dθ is convex in y. A limit
+//! |a θ̈ + c θ̇² + g| ≤ 1 is
 //! |a y′/3 + c y + g y^⅓| ≤ y^⅓. This is convex, and so is a limit on speed. Jerk is q′ y″/3 + q″ y′ + q‴ y − q′ y′²/(9
 //! y): linear except for its last term, which makes one of its two sides non-convex. With θ as parameter, rest at both
 //! ends is not a singularity: y stays above 0 there.
