@@ -6,7 +6,7 @@ use super::widgets::name;
 use super::{Command, ComparisonCommand, SessionCommand, Switch, ViewChange, ViewState, WindowCommand};
 use egui::{Align, Button, CursorIcon, Frame, Grid, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui};
 use stillbase_picture::charts::figure::dashes;
-use stillbase_picture::notation::Notation;
+use stillbase_picture::notation::{NameOrder, Notation};
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::{Palette, faded};
 use stillbase_session::scenario::Scenario;
@@ -75,7 +75,8 @@ struct Head {
 
 impl Head {
     fn of<T>(at: usize, column: &SummaryColumn<T>, notation: Notation) -> Self {
-        let SummaryColumn { head, meaning, unit, decimals, .. } = *column;
+        let SummaryColumn { term, head, meaning, unit, decimals, .. } = *column;
+        let head = if notation.names == NameOrder::Symbols { head } else { term };
         match notation.shown_unit(unit) {
             Some(shown) => {
                 let decimals = shown.decimals(decimals);

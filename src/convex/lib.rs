@@ -2,7 +2,7 @@
 //! rows, by an interior-point method (Clarabel). The same program always has the same answer. The dual solution bounds
 //! how far the answer is from the optimum.
 //!
-//! This crate is internal to this Cargo workspace, and may change in any version.
+//! This crate serves the workspace alone, and may change in any version.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{

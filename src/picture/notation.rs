@@ -189,9 +189,13 @@ impl Number {
 fn next_number(text: &str, from: usize) -> Option<Number> {
     let starts = text[from..].char_indices().map(|(i, c)| (from + i, c));
     let mut before = text[..from].chars().next_back();
+    let mut in_word = false;
     for (i, c) in starts {
-        let is_free = !before.is_some_and(|b| b.is_alphanumeric() || matches!(b, '_' | '.'));
         let signed = matches!(c, '-' | '−' | '+');
+        let follows_word = before.is_some_and(|b| b.is_alphanumeric() || matches!(b, '_' | '.'));
+        // A sign within a word, such as that of an exponent, begins no number.
+        in_word = follows_word || in_word && before.is_some_and(|b| matches!(b, '-' | '−' | '+'));
+        let is_free = !in_word;
         if is_free && (c.is_ascii_digit() || signed)
             && let Some(number) = Number::read(text, i)
         {

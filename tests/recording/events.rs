@@ -24,7 +24,7 @@ fn what_happened_and_what_was_run_is_told() {
     }
     let events = contents.texts("/case-1/events", "TextLog:text");
     for part in [
-        "start: Case 1",
+        "start: Straight line: it shakes",
         "plan: minimum-norm, line, quintic, 2 points, T = 1.000 s",
         "peak |n_B| 1.0891 N m",
         "end of motion",

@@ -39,22 +39,23 @@ pub struct DesignMeasures {
 
 /// Columns of a table of designs, in order.
 pub const DESIGN_COLUMNS: [SummaryColumn<DesignMeasures>; 10] = [
-    column("mass", "mass", "mass of the machine", "kg", 3, |d| Some(d.mass)),
-    column("inertia", "Σ D", "inertia of all drives, Σ D", "kg m²", 4, |d| Some(d.inertia)),
-    column("force_left", "worst (7)", "largest |g|, what is left of force balance (7)", "kg m", 5, |d| {
+    column("mass", "mass", "mass", "mass of the machine", "kg", 3, |d| Some(d.mass)),
+    column("inertia", "effective inertia", "Σ D", "inertia of all drives, Σ D", "kg m²", 4, |d| Some(d.inertia)),
+    column("force_left", "worst imbalance", "worst (7)", "largest |g|, what is left of force balance (7)", "kg m", 5, |d| {
         Some(d.residuals[0])
     }),
-    column("coupling_left", "worst (8)", "largest |C|, what is left of invariance (8)", "kg m²", 5, |d| {
+    column("coupling_left", "worst coupling", "worst (8)", "largest |C|, what is left of invariance (8)", "kg m²", 5, |d| {
         Some(d.residuals[1])
     }),
-    column("added_mass", "added", "mass less that of the first run's machine", "kg", 3, |d| {
+    column("added_mass", "added mass", "added", "mass less that of the first run's machine", "kg", 3, |d| {
         Some(d.comparison?.added_mass)
     }),
-    column("added_inertia", "added Σ D", "Σ D less that of the first run's machine", "kg m²", 4, |d| {
+    column("added_inertia", "added inertia", "added Σ D", "Σ D less that of the first run's machine", "kg m²", 4, |d| {
         Some(d.comparison?.added_inertia)
     }),
     column(
         "mass_inertia_factor",
+        "mass–inertia factor",
         "factor",
         "mass–inertia factor: both as ratios to the first, summed",
         "1",
@@ -63,6 +64,7 @@ pub const DESIGN_COLUMNS: [SummaryColumn<DesignMeasures>; 10] = [
     ),
     column(
         "beta_force",
+        "share of force",
         "β force",
         "force on the base in the first run's motion, of what the first does",
         "1",
@@ -71,13 +73,14 @@ pub const DESIGN_COLUMNS: [SummaryColumn<DesignMeasures>; 10] = [
     ),
     column(
         "beta_moment",
+        "share of moment",
         "β moment",
         "moment on the base in the first run's motion, of what the first does",
         "1",
         4,
         |d| d.beta()?.moment,
     ),
-    column("beta_torque", "β torque", "torques in the first run's motion, of what the first takes", "1", 4, |d| {
+    column("beta_torque", "share of torque", "β torque", "torques in the first run's motion, of what the first takes", "1", 4, |d| {
         d.beta()?.torque
     }),
 ];
