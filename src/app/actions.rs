@@ -37,6 +37,11 @@ pub struct Action {
 }
 
 impl Action {
+    /// Returns its name without explanation, for a menu.
+    pub fn title(&self) -> &'static str {
+        self.name.split([':', ';']).next().unwrap_or(self.name)
+    }
+
     /// Returns its command in the present state; `None` while it has no effect.
     pub fn command(&self, session: &Session, view_state: &ViewState) -> Option<Command> {
         let other = |switch| view_state.has(switch, session).then(|| view_state.other(switch));
@@ -58,22 +63,41 @@ pub enum ActionGroup {
     View,
     /// Analyses.
     Analysis,
-    /// Files and history.
-    File,
+    /// New sessions and files to open.
+    Open,
+    /// Files of the session.
+    Save,
+    /// Results and machines for other programs.
+    Export,
+    /// The end of the program.
+    Quit,
+    /// History and help.
+    Help,
 }
 
 impl ActionGroup {
     /// All of them.
-    pub const ALL: [Self; 5] = [Self::Run, Self::Task, Self::View, Self::Analysis, Self::File];
+    pub const ALL: [Self; 9] = [
+        Self::Run,
+        Self::Task,
+        Self::View,
+        Self::Analysis,
+        Self::Open,
+        Self::Save,
+        Self::Export,
+        Self::Quit,
+        Self::Help,
+    ];
 
-    /// Returns the heading.
+    /// Returns the heading, which groups of one menu share.
     pub const fn title(self) -> &'static str {
         match self {
             Self::Run => "Run",
             Self::Task => "Machine and task",
             Self::View => "View",
             Self::Analysis => "Analysis",
-            Self::File => "File, history and help",
+            Self::Open | Self::Save | Self::Export | Self::Quit => "File",
+            Self::Help => "History and help",
         }
     }
 }
@@ -202,7 +226,7 @@ pub const ACTIONS: &[Action] = actions![
         s.branch_count().checked_sub(1).map(|it| Command::Session(SessionCommand::CompareBranch(it)))
     };
     Run, "Play over and over, what plots show of it if a range was chosen" = "loop repeat cycle", [on(PLAIN, Key::O)], "top bar, loop" turns Loop;
-    Run, "Copy as command line" = "shell terminal script cli simulate", [on(CTRL_SHIFT, Key::C)], "keyboard", |_, _| Some(Command::Window(WindowCommand::CopyCommand));
+    Export, "Copy as command line" = "shell terminal script cli simulate", [on(CTRL_SHIFT, Key::C)], "top bar, File", |_, _| Some(Command::Window(WindowCommand::CopyCommand));
     Run, "Twice as slow" = "speed slow motion", [on(PLAIN, Key::Comma)], "top bar, speed", |_, v| slower(v);
     Run, "Twice as fast" = "speed faster", [on(PLAIN, Key::Period)], "top bar, speed", |_, v| faster(v);
 
@@ -303,25 +327,26 @@ pub const ACTIONS: &[Action] = actions![
         Some(Command::View(ViewChange::Mark(v.mark.is_none().then(|| s.frame().time))))
     };
 
-    File, "Undo" = "back revert", [on(CTRL, Key::Z)], "keyboard", |s, _| s.undo_title().map(|_| Command::Session(SessionCommand::Undo));
-    File, "Redo", [on(CTRL, Key::Y), on(CTRL_SHIFT, Key::Z)], "keyboard", |s, _| s.redo_title().map(|_| Command::Session(SessionCommand::Redo));
-    File, "History: what was done, to go back and forth in" = "log changes branches undo", [on(PLAIN, Key::H)], "tool bar" turns History;
-    File, "New session: this machine and its task, nothing done yet" = "start over fresh clear reset blank", [],
-        "top bar, scenario", |s, _| new_session(s);
-    File, "Open a session, scenario, machine, model or table" = "load file import machine model urdf mjcf xml toml csv recent", [on(CTRL, Key::O)], "top bar, scenario", |s, _| dialog(s, FilePurpose::Open);
-    File, "Save the session" = "store file export toml keep", [on(CTRL, Key::S)], "top bar, scenario", |s, _| dialog(s, FilePurpose::Save);
-    File, "Quit; asks first if changes are in no file" = "exit close leave", [on(CTRL, Key::Q)], "window frame", |_, _| Some(Command::Window(WindowCommand::Quit));
-    File, "Values of the first plot as CSV" = "export table data numbers spreadsheet excel signals save", [],
+    Help, "Undo" = "back revert", [on(CTRL, Key::Z)], "keyboard", |s, _| s.undo_title().map(|_| Command::Session(SessionCommand::Undo));
+    Help, "Redo", [on(CTRL, Key::Y), on(CTRL_SHIFT, Key::Z)], "keyboard", |s, _| s.redo_title().map(|_| Command::Session(SessionCommand::Redo));
+    Help, "History: what was done, to go back and forth in" = "log changes branches undo", [on(PLAIN, Key::H)], "tool bar" turns History;
+    Open, "New session: this machine and its task, nothing done yet" = "start over fresh clear reset blank", [],
+        "top bar, File", |s, _| new_session(s);
+    Open, "Open: a session, scenario, machine, model or table" = "load file import machine model urdf mjcf xml toml csv recent", [on(CTRL, Key::O)], "top bar, File", |s, _| dialog(s, FilePurpose::Open);
+    Save, "Save" = "store file keep toml session", [on(CTRL, Key::S)], "top bar, File", |_, _| Some(Command::Session(SessionCommand::Save));
+    Save, "Save as" = "store file export toml keep copy name session", [on(CTRL_SHIFT, Key::S)], "top bar, File", |s, _| dialog(s, FilePurpose::Save);
+    Quit, "Quit; asks first if changes are in no file" = "exit close leave", [on(CTRL, Key::Q)], "window frame", |_, _| Some(Command::Window(WindowCommand::Quit));
+    Export, "Values of the first plot as CSV" = "export table data numbers spreadsheet excel signals save", [],
         "menu of a plot", |s, v| plot_file(s, v, PlotFile::Csv);
-    File, "Picture of the first plot as PNG" = "image export screenshot figure save", [], "menu of a plot",
+    Export, "Picture of the first plot as PNG" = "image export screenshot figure save", [], "menu of a plot",
         |s, v| plot_file(s, v, PlotFile::Png);
-    File, "Drawing of the first plot as SVG" = "picture image vector export figure save", [], "menu of a plot",
+    Export, "Drawing of the first plot as SVG" = "picture image vector export figure save", [], "menu of a plot",
         |s, v| plot_file(s, v, PlotFile::Svg);
-    File, "Take the machine elsewhere: MJCF, URDF, DXF…" = "export cad mujoco ros robot svg csv parts list write", [], "design", |s, _| dialog(s, FilePurpose::Machine);
-    File, "Record for the Rerun viewer" = "rrd video capture export movie", [on(PLAIN, Key::R)], "top bar", |s, _| dialog(s, FilePurpose::Record);
-    File, "Find a command" = "palette search", [on(CTRL, Key::K)], "top bar" turns Finder;
-    File, "Tour: what this is about, in seven steps" = "tutorial introduction learn guide start help", [], "?", |_, v| Some(Command::Window(WindowCommand::Tour(v.open.tour.is_none())));
-    File, "Keys and gestures" = "shortcuts help keyboard", [on(PLAIN, Key::F1)], "top bar, ?" turns Help;
+    Export, "Take the machine elsewhere: MJCF, URDF, DXF…" = "export cad mujoco ros robot svg csv parts list write", [], "design", |s, _| dialog(s, FilePurpose::Machine);
+    Save, "Record for the Rerun viewer" = "rrd video capture export movie", [on(PLAIN, Key::R)], "top bar", |s, _| dialog(s, FilePurpose::Record);
+    Help, "Find a command" = "palette search", [on(CTRL, Key::K)], "top bar" turns Finder;
+    Help, "Tour: what this is about, in seven steps" = "tutorial introduction learn guide start help", [], "?", |_, v| Some(Command::Window(WindowCommand::Tour(v.open.tour.is_none())));
+    Help, "Keys and gestures" = "shortcuts help keyboard", [on(PLAIN, Key::F1)], "top bar, ?" turns Help;
 ];
 
 /// Actions of keys with Shift, which change the target and b by finer steps.

@@ -103,7 +103,7 @@ pub(super) struct OpenedSession {
     pub session: Session,
     /// A note about the source, for the user.
     pub note: Option<String>,
-    /// Instant and plots on display when the journal was written, if the journal has them.
+    /// What the window showed when the file was written, if the file says so.
     pub left_off: Option<ResumePoint>,
 }
 
@@ -131,8 +131,7 @@ impl SessionSource {
         }
         let (FoundScenario { scenario, note }, from_file, left_off) = match self {
             Self::Scenario(scenario) => (FoundScenario { scenario: *scenario, note: None }, false, None),
-            Self::File(path) => (read(&path)?, true, None),
-            Self::Journal(path) => {
+            Self::File(path) | Self::Journal(path) => {
                 let text = stillbase_files::text::read(&path).unwrap_or_default();
                 (read(&path)?, true, ResumePoint::of(&text))
             }

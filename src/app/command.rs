@@ -80,7 +80,9 @@ pub enum SessionCommand {
     OpenFile(PathBuf),
     /// Answer the question about a session left by an earlier program run.
     Recover(Recovery),
-    /// Save the session.
+    /// Save the session to its own file, or ask for one.
+    Save,
+    /// Save the session to a file, which becomes its own.
     SaveFile(PathBuf),
     /// Write a recording for the Rerun viewer.
     Record(PathBuf),

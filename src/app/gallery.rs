@@ -1,4 +1,4 @@
-//! The built-in machines as pictures to choose from.
+//! The built-in machines and scenarios as pictures to choose from.
 
 use std::sync::LazyLock;
 
@@ -9,9 +9,73 @@ use super::widgets::name;
 use stillbase_mechanics::machine::{self, Machine};
 use stillbase_picture::paint::portrait::Portrait;
 use stillbase_picture::scene::palette::Palette;
+use stillbase_query::{Queries, QuickQuery, QuickWork};
+use stillbase_session::Run;
+use stillbase_session::scenario::Scenario;
+
+/// A choice of the gallery.
+pub struct Choice<'a> {
+    /// Its name.
+    pub title: &'a str,
+    /// A few words beside the name.
+    pub second: String,
+    /// What it is, in a sentence or two.
+    pub summary: &'a str,
+    /// Its picture, once it has been drawn.
+    pub portrait: Option<&'a Portrait>,
+    /// Whether it is the present one.
+    pub is_present: bool,
+}
 
 /// Pictures of the built-in machines, in their order; drawn when the list is first opened.
-static PORTRAITS: LazyLock<Vec<Portrait>> = LazyLock::new(|| machine::builtins().iter().map(Portrait::of).collect());
+static MACHINES: LazyLock<Vec<Portrait>> = LazyLock::new(|| machine::builtins().iter().map(Portrait::of).collect());
+
+/// Draws the built-in machines; returns the machine that the user has chosen, if it differs from the present one.
+pub fn machines(ui: &mut Ui, present: &Machine, p: &Palette) -> Option<&'static Machine> {
+    let choice = |(machine, portrait): (&'static Machine, &'static Portrait)| Choice {
+        title: machine.name(),
+        second: format!("{} {}", machine.drives(), if machine.drives() == 1 { "drive" } else { "drives" }),
+        summary: &machine.spec().summary,
+        portrait: Some(portrait),
+        is_present: machine.name() == present.name(),
+    };
+    let choices: Vec<Choice<'_>> = machine::builtins().iter().zip(MACHINES.iter()).map(choice).collect();
+    show(ui, &choices, p).map(|i| &machine::builtins()[i]).filter(|machine| *machine != present)
+}
+
+/// Query for the pictures of scenarios: the machine at the start of its path, and the path. `None` for a scenario that
+/// cannot be planned.
+pub struct ScenarioPortraits;
+
+impl QuickQuery for ScenarioPortraits {
+    type Input = ();
+    type Answer = Vec<Portrait>;
+
+    fn answer((): &()) -> Vec<Portrait> {
+        Scenario::builtins().map(portrait_of).collect()
+    }
+}
+
+/// Returns the picture of a scenario: with its path, or of its machine alone if there is no path.
+pub fn portrait_of(scenario: &Scenario) -> Portrait {
+    Run::new(scenario).map_or_else(|_| Portrait::of(&scenario.machine), |run| Portrait::of_path(&scenario.machine, &run.plan().motion))
+}
+
+/// Draws the built-in scenarios; returns the one that the user has chosen.
+pub fn scenarios(ui: &mut Ui, present: &Scenario, queries: &Queries, p: &Palette) -> Option<&'static Scenario> {
+    let portraits = queries.ask_in_background::<QuickWork<ScenarioPortraits>>(&()).last;
+    let count = Scenario::cases().count();
+    let choice = |(i, scenario): (usize, &'static Scenario)| Choice {
+        title: &scenario.title,
+        second: if i < count { format!("key {}", i + 1) } else { String::new() },
+        summary: &scenario.summary,
+        portrait: portraits.as_ref().and_then(|all| all.get(i)),
+        is_present: scenario.name == present.name,
+    };
+    let all: Vec<&'static Scenario> = Scenario::builtins().collect();
+    let choices: Vec<Choice<'_>> = all.iter().copied().enumerate().map(choice).collect();
+    show(ui, &choices, p).map(|i| all[i])
+}
 
 const CARD_SIZE: egui::Vec2 = vec2(282.0, 222.0);
 const PICTURE_HEIGHT: f32 = 112.0;
@@ -25,26 +89,20 @@ pub fn room(ui: &Ui) -> f32 {
     (ui.ctx().content_rect().height() - 76.0).clamp(160.0, 3.0 * (CARD_SIZE.y + GAP))
 }
 
-/// Draws the list; returns the machine that the user has chosen, if it differs from the present one.
-pub fn show(ui: &mut Ui, present: &Machine, p: &Palette) -> Option<&'static Machine> {
+/// Draws the choices as cards; returns the index of the one that the user has chosen.
+fn show(ui: &mut Ui, choices: &[Choice<'_>], p: &Palette) -> Option<usize> {
     let wide = ui.ctx().content_rect().width() - 60.0;
     let columns = ((wide + GAP) / (CARD_SIZE.x + GAP)).floor().clamp(1.0, MAX_COLUMNS) as usize;
     ui.set_width(columns as f32 * (CARD_SIZE.x + GAP) - GAP);
     ui.spacing_mut().item_spacing = vec2(GAP, GAP);
     let opened = ui.ctx().memory(|memory| memory.focused()).is_none();
-    let machines: Vec<_> = machine::builtins().iter().zip(PORTRAITS.iter()).collect();
-    let mut cards = Vec::with_capacity(machines.len());
-    for row in machines.chunks(columns) {
-        ui.horizontal(|ui| {
-            for (machine, portrait) in row {
-                cards.push(card(ui, p, machine, portrait, machine.name() == present.name()));
-            }
-        });
+    let mut cards = Vec::with_capacity(choices.len());
+    for row in choices.chunks(columns) {
+        ui.horizontal(|ui| cards.extend(row.iter().map(|choice| card(ui, p, choice))));
     }
-    let own = machines.iter().position(|(machine, _)| machine.name() == present.name());
     if opened {
-        // Arrow keys start from the present machine.
-        let card = &cards[own.unwrap_or(0)];
+        // Arrow keys start from the present choice.
+        let card = &cards[choices.iter().position(|choice| choice.is_present).unwrap_or(0)];
         card.request_focus();
         card.scroll_to_me(None);
     }
@@ -53,7 +111,7 @@ pub fn show(ui: &mut Ui, present: &Machine, p: &Palette) -> Option<&'static Mach
     }
     let picked = cards.iter().position(egui::Response::clicked)?;
     ui.close();
-    Some(machines[picked].0).filter(|machine| *machine != present)
+    Some(picked)
 }
 
 /// Moves the keyboard focus between cards by the arrow keys, and consumes these keys.
@@ -77,11 +135,12 @@ fn move_focus(ui: &Ui, cards: &[egui::Response], at: usize, columns: usize) {
     }
 }
 
-fn card(ui: &mut Ui, p: &Palette, machine: &Machine, portrait: &Portrait, present: bool) -> egui::Response {
+fn card(ui: &mut Ui, p: &Palette, choice: &Choice<'_>) -> egui::Response {
     let (rect, response) = ui.allocate_exact_size(CARD_SIZE, Sense::click());
-    let drives = format!("{} {}", machine.drives(), if machine.drives() == 1 { "drive" } else { "drives" });
-    let summary = &machine.spec().summary;
-    let words = format!("{}, {drives}{}. {summary}", machine.name(), if present { ", on display" } else { "" });
+    let Choice { title, second, summary, portrait, is_present: present } = choice;
+    let present = *present;
+    let beside = if second.is_empty() { String::new() } else { format!(", {second}") };
+    let words = format!("{title}{beside}{}. {summary}", if present { ", on display" } else { "" });
     name(&response, &words);
     if !ui.is_rect_visible(rect) {
         return response;
@@ -96,13 +155,15 @@ fn card(ui: &mut Ui, p: &Palette, machine: &Machine, portrait: &Portrait, presen
     painter.rect(rect, 8.0, colour(p.background), edge, egui::StrokeKind::Inside);
     let inner = rect.shrink(MARGIN);
     let picture = egui::Rect::from_min_size(inner.min, vec2(inner.width(), PICTURE_HEIGHT - MARGIN));
-    portrait.paint(painter, picture.shrink2(vec2(8.0, 4.0)), p);
+    if let Some(portrait) = portrait {
+        portrait.paint(painter, picture.shrink2(vec2(8.0, 4.0)), p);
+    }
     let line = inner.top() + PICTURE_HEIGHT;
     let at = |x| egui::pos2(x, line);
-    let title = if present { colour(p.amber) } else { colour(p.ink) };
-    painter.text(at(inner.left()), Align2::LEFT_TOP, machine.name(), bold(13.5), title);
-    painter.text(at(inner.right()), Align2::RIGHT_TOP, drives, plain(12.0), colour(p.dim));
-    let about = RichText::new(summary).font(plain(11.5)).color(colour(p.dim));
+    let ink = if present { colour(p.amber) } else { colour(p.ink) };
+    painter.text(at(inner.left()), Align2::LEFT_TOP, title, bold(13.5), ink);
+    painter.text(at(inner.right()), Align2::RIGHT_TOP, second, plain(12.0), colour(p.dim));
+    let about = RichText::new(*summary).font(plain(11.5)).color(colour(p.dim));
     let about = WidgetText::from(about).into_galley(ui, Some(TextWrapMode::Wrap), inner.width(), TextStyle::Small);
     ui.painter().galley(egui::pos2(inner.left(), line + 20.0), about, colour(p.dim));
     response

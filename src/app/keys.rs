@@ -143,8 +143,14 @@ fn sheet(sought: &str) -> Vec<(&'static str, Lines)> {
     };
     let pointer = GESTURES.iter().filter(|(keys, does)| matches(keys, does));
     let pointer = ("Pointer", pointer.map(|(keys, does)| ((*keys).to_owned(), *does)).collect::<Lines>());
-    let all = ActionGroup::ALL.into_iter().map(|group| (group.title(), of(group))).chain([pointer]);
-    all.filter(|(_, lines)| !lines.is_empty()).collect()
+    let mut all: Vec<(&'static str, Lines)> = Vec::new();
+    for group in ActionGroup::ALL {
+        match all.last_mut().filter(|(title, _)| *title == group.title()) {
+            Some((_, lines)) => lines.extend(of(group)),
+            None => all.push((group.title(), of(group))),
+        }
+    }
+    all.into_iter().chain([pointer]).filter(|(_, lines)| !lines.is_empty()).collect()
 }
 
 /// Returns the keys of an action, without repetitions.

@@ -81,7 +81,8 @@ impl Panels {
 }
 
 /// Content of the panel below the scene; there is room for only one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum BottomPanel {
     /// The table of runs side by side.
     Runs,

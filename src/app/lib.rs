@@ -17,6 +17,7 @@ mod coordinates;
 mod corner;
 mod facts;
 mod file_dialog;
+mod file_menu;
 mod finder;
 mod framing;
 mod gallery;

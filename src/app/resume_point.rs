@@ -1,22 +1,106 @@
-//! [`ResumePoint`]: the state of the display that no edit contains: the instant, and the user's plots. A journal
-//! contains this state in comments before the session, so that a crash does not lose it.
+//! [`ResumePoint`]: the state of the display that no edit contains: the instant, the plots, the layout and the view. Saved
+//! sessions and journals contain this state in comments before the session.
 
 use serde::{Deserialize, Serialize};
 
+use super::layout::{BottomPanel, Layout};
+use super::view_state::ViewState;
 use stillbase_files::heading;
 use stillbase_picture::charts::choice::PlotChoice;
+use stillbase_picture::scene::Measure;
+use stillbase_picture::scene::views::{ViewKind, Views};
+use stillbase_session::{Run, Session};
 
-/// Instant and plots on display.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// What the window shows of a session.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ResumePoint {
     /// The instant on display, s.
     pub time: f64,
+    /// Layout of the window.
+    pub layout: Layout,
+    /// The view of the scene.
+    pub view: ViewKind,
+    /// The panel below the scene.
+    pub below: Option<BottomPanel>,
+    /// The measure of dexterity that shades the workspace.
+    pub dexterity: Option<Measure>,
+    /// Playback rate, simulated seconds per second.
+    pub speed: f64,
+    /// Whether the run is played in a loop.
+    pub loops: bool,
+    /// Time of the second cursor, s.
+    pub mark: Option<f64>,
+    /// Whether pin forces are shown.
+    pub pins: bool,
+    /// Whether snapshots along the motion are shown.
+    pub snapshots: bool,
+    /// Whether the points of the task turn with b.
+    pub turn_task: bool,
     /// The choice of plots.
     pub plots: PlotChoice,
 }
 
+impl Default for ResumePoint {
+    fn default() -> Self {
+        Self {
+            time: 0.0,
+            layout: Layout::default(),
+            view: ViewKind::default(),
+            below: None,
+            dexterity: None,
+            speed: 1.0,
+            loops: false,
+            mark: None,
+            pins: false,
+            snapshots: false,
+            turn_task: false,
+            plots: PlotChoice::default(),
+        }
+    }
+}
+
 impl ResumePoint {
+    /// Returns what a window shows. The panel of an open table is left out, because the table is a file of its own.
+    pub(super) fn of_view(session: &Session, view_state: &ViewState) -> Self {
+        Self {
+            time: session.frame().time,
+            layout: view_state.arrangement.layout,
+            view: view_state.view,
+            below: view_state.below.filter(|below| *below != BottomPanel::Table),
+            dexterity: view_state.dexterity,
+            speed: view_state.speed,
+            loops: view_state.loops,
+            mark: view_state.mark,
+            pins: view_state.pins,
+            snapshots: view_state.snapshots,
+            turn_task: view_state.turn_task,
+            plots: view_state.charts.clone(),
+        }
+    }
+
+    /// Shows this state, without a view that the machine lacks. The instant is that of the session.
+    pub(super) fn show(self, view_state: &mut ViewState, run: &Run) {
+        if self.layout != view_state.arrangement.layout {
+            view_state.lay_out(self.layout);
+        }
+        view_state.view = if Views::has(self.view, run).is_ok() { self.view } else { ViewKind::default() };
+        view_state.below = self.below.or(view_state.below.filter(|below| *below == BottomPanel::Table));
+        view_state.dexterity = self.dexterity;
+        view_state.speed = self.speed;
+        view_state.loops = self.loops;
+        view_state.mark = self.mark;
+        view_state.pins = self.pins;
+        view_state.snapshots = self.snapshots;
+        view_state.turn_task = self.turn_task;
+        view_state.charts = self.plots;
+    }
+
+    /// Whether another state differs from this one in the instant at most.
+    pub fn is_alike_at_another_time(&self, other: &Self) -> bool {
+        Self { time: self.time, ..other.clone() } == *self
+    }
+
     /// Returns the text of a session, with this state in comments before it.
     pub fn before(&self, session: &str) -> String {
         heading::under(self, session)
@@ -24,6 +108,13 @@ impl ResumePoint {
 
     /// Reads the state from the comments before a session; `None` if they contain no valid state.
     pub fn of(text: &str) -> Option<Self> {
-        heading::of(text).filter(|left: &Self| left.time.is_finite() && left.time >= 0.0)
+        let is_time = |time: f64| time.is_finite() && time >= 0.0;
+        heading::of(text).filter(|left: &Self| {
+            is_time(left.time) && left.mark.is_none_or(is_time) && (MIN_SPEED..=MAX_SPEED).contains(&left.speed)
+        })
     }
 }
+
+/// Limits of a playback rate that is read from a file, simulated seconds per second.
+const MIN_SPEED: f64 = 1e-3;
+const MAX_SPEED: f64 = 1e3;

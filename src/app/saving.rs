@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 use egui::{Frame, Id, Key, Modal, Modifiers, RichText};
 
 use super::theme::{bold, colour, plain};
-use super::{Command, FileDialog, FilePurpose, Recovery, SessionCommand, ViewChange, ViewState, WindowCommand};
+use super::{Command, Recovery, SessionCommand, ViewState, WindowCommand};
 use stillbase_picture::scene::palette::faded;
-use stillbase_session::Session;
 
 /// Record of the saved and unsaved changes of a session, and of its files.
 #[derive(Clone, Debug, Default)]
@@ -24,6 +23,9 @@ pub(super) struct Saving {
     pub left_session: Option<(PathBuf, String)>,
     /// The file of a recovered or discarded session; it is removed once a journal contains the present session.
     pub recovered: Option<PathBuf>,
+    /// The file of the session: the one that this program wrote and from which the session was opened, or to which it
+    /// was saved. A file written by hand is none, so that saving never drops its comments.
+    pub own: Option<PathBuf>,
     /// Recently opened and saved files, newest first.
     pub recent: Vec<PathBuf>,
     /// The file that the user has agreed to replace.
@@ -64,12 +66,26 @@ impl Saving {
     }
 }
 
+/// Drops the keys that answer no question, so that nothing behind the question receives them.
+pub(super) fn keep_keys(ctx: &egui::Context) {
+    let answers = |key: Key| {
+        use Key::{ArrowDown, ArrowLeft, ArrowRight, ArrowUp, Enter, Escape, Space, Tab};
+        matches!(key, Tab | Enter | Space | Escape | ArrowLeft | ArrowRight | ArrowUp | ArrowDown)
+    };
+    ctx.input_mut(|input| {
+        input.events.retain(|event| match event {
+            egui::Event::Key { key, .. } => answers(*key),
+            egui::Event::Text(_) | egui::Event::Copy | egui::Event::Cut | egui::Event::Paste(_) => false,
+            _ => true,
+        });
+    });
+}
+
 /// Shows the question about a session left by an earlier program run, or about unsaved changes before the window
 /// closes.
 pub(super) fn show(
     ctx: &egui::Context,
     saving: &Saving,
-    session: &Session,
     view_state: &ViewState,
     commands: &mut Vec<Command>,
 ) {
@@ -80,7 +96,7 @@ pub(super) fn show(
             1 => "One change of this session is in no file.".to_owned(),
             n => format!("{n} changes of this session are in no file."),
         };
-        let save = Command::View(ViewChange::Dialog(Some(FileDialog::suggest(session, FilePurpose::Save))));
+        let (save, own) = (Command::Session(SessionCommand::Save), saving.own.is_some());
         card(
             ctx,
             view_state,
@@ -88,7 +104,7 @@ pub(super) fn show(
             &words,
             commands,
             [
-                ("Save…", vec![Command::Window(WindowCommand::AskToLeave(false)), save]),
+                (if own { "Save" } else { "Save…" }, vec![Command::Window(WindowCommand::AskToLeave(false)), save]),
                 ("Close without saving", vec![Command::Window(WindowCommand::Leave)]),
                 ("Cancel", vec![Command::Window(WindowCommand::AskToLeave(false))]),
             ],

@@ -200,7 +200,7 @@ impl AppState {
 
     /// Returns the state of the display that no edit contains: the instant and the plots.
     pub fn left_off(&self) -> ResumePoint {
-        ResumePoint { time: self.session.frame().time, plots: self.view_state.charts.clone() }
+        ResumePoint::of_view(&self.session, &self.view_state)
     }
 
     /// Returns the window title: the scenario, with ` *` if there are unsaved changes.

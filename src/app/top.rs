@@ -11,9 +11,10 @@ use super::facts::ScenarioFacts;
 use super::icon::{Icon, IconButton};
 use super::marks::Marks;
 use super::theme::{bold, colour, plain};
-use super::{Command, FileDialog, FilePurpose, SessionCommand, Switch, ViewChange, ViewState, gallery, timeline};
+use super::{Command, FileDialog, FilePurpose, SessionCommand, Switch, ViewChange, ViewState, file_menu, gallery, timeline};
 use stillbase_mechanics::machine::Machine;
 use stillbase_picture::scene::palette::Theme;
+use stillbase_query::Queries;
 use stillbase_session::Session;
 use stillbase_session::scenario::Scenario;
 
@@ -23,6 +24,7 @@ pub fn show(
     ui: &mut Ui,
     session: &Session,
     facts: &ScenarioFacts<'_>,
+    queries: &Queries,
     recent: &[PathBuf],
     line: (&Marks, Option<f64>),
     view_state: &ViewState,
@@ -31,10 +33,14 @@ pub fn show(
     let frame = Frame::new().inner_margin(Margin::symmetric(16, 0));
     Panel::top("top").exact_size(44.0).resizable(false).frame(frame).show(ui, |ui| {
         ui.horizontal_centered(|ui| {
-            ui.label(RichText::new("Stillbase").font(bold(17.0)));
-            ui.add_space(6.0);
+            // A narrow window has its name in its frame only.
+            if !is_narrow(ui) {
+                ui.label(RichText::new("Stillbase").font(bold(17.0)));
+                ui.add_space(2.0);
+            }
+            file_menu::show(ui, session, queries, recent, view_state, commands);
             machines(ui, session, facts.machine_differs, view_state, commands);
-            scenarios(ui, session, recent, facts.work_differs, commands);
+            scenarios(ui, session, queries, facts.work_differs, view_state, commands);
             ui.add_space(8.0);
             transport(ui, session, view_state, commands);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -65,7 +71,7 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewStat
         .height(gallery::room(ui))
         .truncate();
     let response = combo.show_ui(ui, |ui| {
-        if let Some(machine) = gallery::show(ui, present, &view_state.palette()) {
+        if let Some(machine) = gallery::machines(ui, present, &view_state.palette()) {
             commands.push(SessionCommand::Open(Box::new(with_machine(session, machine))).into());
         }
     });
@@ -79,44 +85,29 @@ pub(super) fn with_machine(session: &Session, machine: &Machine) -> Scenario {
     Scenario::builtin(machine.name()).unwrap_or_else(alike)
 }
 
-fn scenarios(ui: &mut Ui, session: &Session, recent: &[PathBuf], changed: bool, commands: &mut Vec<Command>) {
+fn scenarios(
+    ui: &mut Ui,
+    session: &Session,
+    queries: &Queries,
+    changed: bool,
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) {
     let current = session.scenario();
     let shown = if current.title.is_empty() { &current.name } else { &current.title };
     let shown = if changed { format!("{shown} *") } else { shown.clone() };
     let combo = ComboBox::from_id_salt("scenario")
         .selected_text(shown)
         .width(if is_narrow(ui) { 150.0 } else { 196.0 })
+        .height(gallery::room(ui))
         .truncate();
     let response = combo.show_ui(ui, |ui| {
-        let cases = Scenario::cases().count();
-        for (i, builtin) in Scenario::builtins().enumerate() {
-            let chosen = builtin.name == current.name;
-            let label =
-                if i < cases { format!("{}   {}", i + 1, builtin.title) } else { format!("     {}", builtin.title) };
-            if ui.selectable_label(chosen, label).clicked() {
-                commands.push(match Scenario::cases().find(|name| *name == builtin.name) {
-                    Some(name) => Command::Session(SessionCommand::Case(name)),
-                    // All other built-in scenarios open with their own machine.
-                    None => Command::Session(SessionCommand::Open(Box::new(builtin.clone()))),
-                });
-            }
-        }
-        ui.separator();
-        for (label, purpose) in [("Open…   Ctrl O", FilePurpose::Open), ("Save session…   Ctrl S", FilePurpose::Save)]
-        {
-            if ui.selectable_label(false, label).clicked() {
-                commands.push(ViewChange::Dialog(Some(FileDialog::suggest(session, purpose))).into());
-            }
-        }
-        if !recent.is_empty() {
-            ui.separator();
-        }
-        for file in recent {
-            let shown = file.file_name().map_or_else(|| file.to_string_lossy(), |name| name.to_string_lossy());
-            if ui.selectable_label(false, format!("     {shown}")).on_hover_text(file.to_string_lossy()).clicked() {
-                commands.push(SessionCommand::OpenFile(file.clone()).into());
-            }
-        }
+        let Some(chosen) = gallery::scenarios(ui, current, queries, &view_state.palette()) else { return };
+        commands.push(match Scenario::cases().find(|name| *name == chosen.name) {
+            Some(name) => Command::Session(SessionCommand::Case(name)),
+            // All other built-in scenarios open with their own machine.
+            None => Command::Session(SessionCommand::Open(Box::new(chosen.clone()))),
+        });
     });
     let tip = match changed {
         true => {

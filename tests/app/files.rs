@@ -6,17 +6,22 @@ use std::sync::Arc;
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::{Message, SessionCommand};
+use stillbase::app::{Layout, Message, SessionCommand, ViewChange};
+use stillbase::picture::charts::choice::PlotChange;
 use stillbase::picture::scene::palette::Theme;
+use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 
-use super::{Window, hold, session, window};
+use super::{Window, hold, painted, session, window};
 use crate::Test;
 use crate::folder::Folder;
 
 pub const TESTS: &[Test] = tests![
     a_session_is_saved_and_opened_as_it_was,
+    the_file_menu_leads_to_every_file,
+    a_session_keeps_its_file_and_what_the_window_showed,
+    a_file_written_by_hand_is_not_written_over,
     what_is_no_scenario_is_refused_and_changes_nothing,
     a_file_that_is_dropped_is_opened,
     a_machine_that_is_dropped_gets_a_task,
@@ -59,7 +64,7 @@ enum Ask {
 fn ask(h: &mut Window, what: Ask) {
     match what {
         Ask::Open => h.key_press_modifiers(Modifiers::COMMAND, Key::O),
-        Ask::Save => h.key_press_modifiers(Modifiers::COMMAND, Key::S),
+        Ask::Save => h.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::S),
         Ask::Record => h.key_press(Key::R),
     }
     h.run_steps(3);
@@ -110,6 +115,81 @@ fn a_machine_goes_elsewhere_from_the_design_view() {
     answer(&mut h, &folder.path("arm.svg"));
     refused(&h, "exists", true);
     assert_eq!(folder.names().len(), 6);
+}
+
+/// The File menu comes first; it opens, saves, exports and quits, and shows recent files with their folder.
+fn the_file_menu_leads_to_every_file() {
+    let folder = Folder::new("menu");
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    name_file(&mut h, Ask::Save, &folder.path("mine.toml"));
+    done(&h, "saved");
+    let left = |h: &Window, label: &str| h.get_by_label(label).rect().left();
+    assert!(left(&h, "File") < left(&h, "Machine") && left(&h, "Machine") < left(&h, "Scenario"));
+    h.get_by_label("File").click();
+    h.run_steps(3);
+    for entry in ["New session", "Open", "Open recent", "Save", "Save as", "Record for the Rerun viewer", "Export", "Quit"] {
+        assert!(h.query_by_label(entry).is_some() || h.query_by_label_contains(entry).is_some(), "{entry}");
+    }
+    h.get_by_label_contains("Open recent").click();
+    h.run_steps(4);
+    let said = painted(&h);
+    let (file, within) = ("mine.toml".to_owned(), folder.0.display().to_string());
+    let named = |text: &String| *text == file || !text.is_empty() && within.starts_with(text.trim_end_matches('…'));
+    assert!(said.iter().filter(|text| named(text)).count() >= 2, "{said:?}");
+    h.get_by_label("Open mine.toml").click();
+    h.run_steps(4);
+    done(&h, "opened");
+}
+
+/// Once a session has a file, Save asks no more; the file brings back plots, layout, view and instant.
+fn a_session_keeps_its_file_and_what_the_window_showed() {
+    let folder = Folder::new("kept");
+    let file = folder.path("mine.toml");
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    name_file(&mut h, Ask::Save, &file);
+    done(&h, "saved");
+    let first = fs::read_to_string(&file).expect("it is there");
+    let app_state = h.state_mut().app_state_mut();
+    app_state.carry_out(ViewChange::Layout(Layout::Compare));
+    app_state.carry_out(ViewChange::Kind(ViewKind::Tower));
+    app_state.carry_out(ViewChange::Charts(PlotChange::Plot("torque/2".into())));
+    app_state.carry_out(ViewChange::Speed(0.25));
+    app_state.carry_out(SessionCommand::Edit(Edit::set("task.time", 2.0)));
+    app_state.carry_out(SessionCommand::Seek(0.25));
+    h.run_steps(3);
+    let kept = h.state().app_state().left_off();
+    h.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    h.run_steps(4);
+    done(&h, "saved");
+    assert_ne!(fs::read_to_string(&file).expect("it is there"), first);
+    assert!(!h.state().app_state().changes().1, "all is saved");
+    let mut other = window("two-drive", Theme::Dark);
+    other.run_steps(2);
+    drop_on(&mut other, &file);
+    assert_eq!(other.state().app_state().left_off(), kept);
+    // It has its file there, too.
+    other.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::set("task.time", 3.0)));
+    other.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    other.run_steps(4);
+    done(&other, "saved");
+    assert!(fs::read_to_string(&file).expect("it is there").contains("time = 3.0"));
+}
+
+/// A scenario written by hand has comments that a saved session lacks: Save asks for a name.
+fn a_file_written_by_hand_is_not_written_over() {
+    let folder = Folder::new("by-hand");
+    let text = include_str!("../../assets/scenarios/case-3.toml");
+    let file = folder.file("mine.toml", text);
+    let mut h = window("two-drive", Theme::Dark);
+    h.run_steps(2);
+    drop_on(&mut h, &file);
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::set("task.time", 2.0)));
+    h.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    h.run_steps(4);
+    assert!(h.query_by_label("File name").is_some(), "the name is asked for");
+    assert_eq!(fs::read_to_string(&file).expect("it is there"), text);
 }
 
 /// What the window says, if it is good news.

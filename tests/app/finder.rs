@@ -51,7 +51,7 @@ fn every_command_is_found_by_a_few_letters() {
         ("rec rerun", "Record for the Rerun viewer"),
         ("tow", "Tower of workspaces"),
         ("table 1", "Machine: nine-link-table-1"),
-        ("import", "Open a session, scenario, machine, model or table"),
+        ("import", "Open: a session, scenario, machine, model or table"),
         ("urdf", "Take the machine elsewhere: MJCF, URDF, DXF…"),
         ("csv", "Values of the first plot as CSV"),
         ("picture", "Picture of the first plot as PNG"),

@@ -92,21 +92,21 @@ fn the_main_job_is_done_by_keyboard() {
 
     // Cases, and a list that is opened, gone through and left.
     desk.display.tap(u32::from('1'));
-    desk.titled("Case 1");
+    desk.titled("Straight line");
     desk.bus.wait_for("the end of the run", 60, |tree| {
         (numbers(&tree.containing("run: peak |n_B|")?.name)[0] > 0.5).then_some(())
     });
     go_to(&desk, "Scenario", 60);
     desk.display.tap(ENTER);
-    desk.reads("Open…   Ctrl O");
+    desk.reads("Circle without reaction. ");
     for _ in 0..3 {
         desk.display.tap(DOWN);
         pause(150);
     }
     desk.display.tap(ESC);
-    desk.reads_no("Open…   Ctrl O");
+    desk.reads_no("Circle without reaction. ");
     command(&desk, "case 3");
-    desk.titled("Case 3");
+    desk.titled("Reactionless");
 
     // Undo by its name, record and save, quit.
     desk.display.keys(&[CTRL], DOWN);

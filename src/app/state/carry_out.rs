@@ -106,6 +106,15 @@ impl AppState {
             SessionCommand::Case(name) => self.open_case(name),
             SessionCommand::OpenFile(path) => self.open_file(path),
             SessionCommand::Recover(what) => self.recover(what),
+            SessionCommand::Save => match self.saving.own.clone() {
+                Some(file) => {
+                    self.saving.replaces = Some(file.clone());
+                    self.save(&file)?;
+                }
+                None => {
+                    self.view_state.open.dialog = Some(FileDialog::suggest(&self.session, FilePurpose::Save));
+                }
+            },
             SessionCommand::SaveFile(path) => self.save(&path)?,
             SessionCommand::Record(path) => self.record(&path)?,
             SessionCommand::WritePlot(path, plot, file) => self.write_plot(&path, &plot, file)?,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::AppState;
 use crate::background::{Opening, SessionFile};
 use crate::change::{NotOpened, Opened, OpenedSession, SessionSource};
-use crate::{Activity, Framing, Recovery, ResumePoint};
+use crate::{Activity, Framing, Recovery};
 use stillbase_mechanics::machine::Machine;
 use stillbase_query::{Shared, Ticket};
 use stillbase_session::Session;
@@ -28,9 +28,15 @@ impl AppState {
             Ok(Opened::Session(opened)) => {
                 let OpenedSession { session, note, left_off } = *opened;
                 let message = note.or_else(|| opening.message.clone());
+                // Only a file that the window wrote says where the session was left.
+                let own = match &opening.file {
+                    Some(SessionFile::Own(file)) if left_off.is_some() => Some(file.clone()),
+                    _ => None,
+                };
                 self.take_over(session, Opening { message, ..opening });
-                if let Some(ResumePoint { plots, .. }) = left_off {
-                    self.view_state.charts = plots;
+                self.saving.own = own;
+                if let Some(left_off) = left_off {
+                    left_off.show(&mut self.view_state, self.session.run());
                 }
             }
             Err(_) if opening.instead.is_some() => {
@@ -52,6 +58,7 @@ impl AppState {
 
     pub(super) fn take_over(&mut self, next: Session, Opening { plays, closes, message: news, file, .. }: Opening) {
         self.saving.opened();
+        self.saving.own = None;
         match file {
             Some(SessionFile::Own(file)) => self.saving.uses(&file),
             // A recovered session is in no file of the user yet.

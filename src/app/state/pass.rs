@@ -52,14 +52,16 @@ impl AppState {
         }
         let mut commands = Vec::new();
         // While a question is open, it alone receives the keys.
-        if !self.saving.has_question() {
+        if self.saving.has_question() {
+            saving::keep_keys(ui.ctx());
+        } else {
             keys::read(ui.ctx(), &self.session, &self.view_state, &mut commands);
         }
         let presents = self.view_state.arrangement.layout == Layout::Present;
         let facts = ScenarioFacts::of(&queries, &self.session);
         if !presents {
             let line = (&marks, self.pace.lagging_rate());
-            top::show(ui, &self.session, &facts, &self.saving.recent, line, &self.view_state, &mut commands);
+            top::show(ui, &self.session, &facts, &queries, &self.saving.recent, line, &self.view_state, &mut commands);
             let under_way = self.background.under_way();
             let improvements = || self.improvements();
             status::show(ui, &self.session, &facts, &improvements, &self.view_state, under_way, &mut commands);
@@ -123,7 +125,7 @@ impl AppState {
         let proposals = proposals.as_ref().map_or(&[][..], |known| known);
         status::news(ui.ctx(), scene, &self.session, &self.view_state, proposals, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);
-        saving::show(ui.ctx(), &self.saving, &self.session, &self.view_state, &mut commands);
+        saving::show(ui.ctx(), &self.saving, &self.view_state, &mut commands);
         let recent = &self.saving.recent;
         finder::show(ui.ctx(), &self.session, &self.signals(), &facts, recent, &mut self.view_state, &mut commands);
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);

@@ -46,6 +46,7 @@ impl AppState {
             if let (Ok(_), Some((changes, file))) = (&said, of) {
                 app_state.saving.saved = changes;
                 app_state.saving.uses(&file);
+                app_state.saving.own = Some(file);
             }
             app_state.show_outcome(said.map(Some));
         });
@@ -78,8 +79,8 @@ impl AppState {
     pub(super) fn save(&mut self, path: &Path) -> Result<(), String> {
         let of = Some((self.saving.changes, path.to_owned()));
         self.write_content(path, "one session is being saved: want that to end first", of, |app_state| {
-            let scenario = app_state.session.to_scenario();
-            Ok(Box::new(move || Ok(scenario.to_toml().into_bytes())))
+            let (scenario, left_off) = (app_state.session.to_scenario(), app_state.left_off());
+            Ok(Box::new(move || Ok(left_off.before(&scenario.to_toml()).into_bytes())))
         })
     }
 

@@ -99,7 +99,7 @@ impl Keeper {
         // A change of the displayed time alone does not begin a journal, and is not written while the run plays.
         let time_changed =
             self.journal.is_some() && !app_state.session().is_playing() && left_off.time != self.held.1.time;
-        if *changes == self.held.0 && left_off.plots == self.held.1.plots && !time_changed {
+        if *changes == self.held.0 && left_off.is_alike_at_another_time(&self.held.1) && !time_changed {
             self.going.take().iter().for_each(|file| journal::remove_journal(file));
             return;
         }

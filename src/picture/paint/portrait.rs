@@ -1,5 +1,5 @@
-//! A small picture of a machine, seen from above in a pose that separates its links. It needs kinematics only, so it is
-//! cheap.
+//! A small picture of a machine, seen from above in a pose that separates its links, or at the start of its path. It
+//! needs kinematics only, so it is cheap.
 
 use std::f64::consts::PI;
 
@@ -10,6 +10,7 @@ use crate::scene::linkage::{FlatLink, LinkageModel};
 use crate::scene::palette::{Palette, mix};
 use stillbase_mechanics::machine::{Machine, place_of};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
+use stillbase_planning::Motion;
 
 /// Position of each relative angle between its limits, from 0 to 1. At 0.5, arms with symmetric limits would be
 /// straight.
@@ -18,6 +19,8 @@ const BEND_FRACTION: f64 = 0.62;
 const FREE_ANGLE_RAD: f64 = 1.0;
 /// Number of orientations tried, over half a turn; the one that fills the picture best is chosen.
 const ORIENTATIONS: usize = 24;
+/// Number of parts of a path.
+const PATH_POINTS: usize = 48;
 /// Ratio of width to height of the picture for which the orientation is chosen.
 const ASPECT_RATIO: f64 = 2.2;
 
@@ -27,6 +30,8 @@ pub struct Portrait {
     pins: Vec<Vector>,
     tip: Vector,
     foot: f64,
+    /// Path of the end effector; empty if there is none.
+    path: Vec<Vector>,
     /// Lower left and upper right corner of the bounding box.
     bounds: [Vector; 2],
 }
@@ -59,7 +64,22 @@ impl Portrait {
             bounds[1] = Vector::new(bounds[1].re.max(at.re + radius), bounds[1].im.max(at.im + radius));
         }
         let pins = linkage.joints(&e).map(|([x, y, _], _)| Vector::new(x, y)).collect();
-        Self { links, pins, tip, foot, bounds }
+        Self { links, pins, tip, foot, path: Vec::new(), bounds }
+    }
+
+    /// Computes the picture of a machine at the start of a motion, with the path of its end effector.
+    pub fn of_path(machine: &Machine, motion: &Motion) -> Self {
+        let pose = |i: usize| motion.path.at(i as f64 / PATH_POINTS as f64).q;
+        let drives = machine.drives();
+        let mut portrait = Self::posed(machine, &LinkageModel::of(machine), &pose(0).0[..drives]);
+        let tip = |i: usize| place_of(machine.end_effector(), &pose(i).units());
+        portrait.path = (0..=PATH_POINTS).map(tip).collect();
+        for at in &portrait.path {
+            let [low, high] = &mut portrait.bounds;
+            *low = Vector::new(low.re.min(at.re), low.im.min(at.im));
+            *high = Vector::new(high.re.max(at.re), high.im.max(at.im));
+        }
+        portrait
     }
 
     /// Height of the smallest picture with [`ASPECT_RATIO`] that contains the machine, m.
@@ -94,6 +114,14 @@ impl Portrait {
             for (at, size) in &link.weights {
                 disc(spot(*at), long(*size), tone);
             }
+        }
+        if self.path.len() > 1 {
+            let points: Vec<Pos2> = self.path.iter().map(|at| spot(*at)).collect();
+            if let (Some(first), Some(last)) = (points.first(), points.last()) {
+                disc(*first, 2.4, p.amber);
+                disc(*last, 2.4, p.amber);
+            }
+            painter.line(points, Stroke::new(1.8, colour(p.amber)));
         }
         for pin in &self.pins {
             disc(spot(*pin), 1.5, p.background);

@@ -251,7 +251,8 @@ pub struct Shade {
 }
 
 /// A measure of dexterity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 #[repr(u32)]
 pub enum Measure {
     /// |det ∂(x, y)/∂(a_1, a_2)|, m².

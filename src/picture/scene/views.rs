@@ -39,7 +39,8 @@ const RING_RADIUS_PX: f64 = 14.0;
 const TIP_SNAP: f64 = 0.015;
 
 /// The views.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum ViewKind {
     /// The machine from straight above.
     #[default]

@@ -1,0 +1,122 @@
+//! The File menu: new, open, recent, save, export and quit, made from the table of actions.
+
+use std::path::PathBuf;
+use std::time::SystemTime;
+
+use egui::{Button, Label, RichText, Sense, Ui, vec2};
+
+use super::actions::{ACTIONS, Action, ActionGroup, shortcut_label};
+use super::gallery::portrait_of;
+use super::theme::{colour, plain};
+use super::widgets::name;
+use super::{Command, SessionCommand, ViewState};
+use stillbase_picture::paint::portrait::Portrait;
+use stillbase_picture::scene::palette::Palette;
+use stillbase_query::{Queries, QuickQuery, QuickWork};
+use stillbase_session::Session;
+
+/// Width of the menu, and size of the picture of a recent file, points.
+const WIDTH_PT: f32 = 330.0;
+const PICTURE_PT: egui::Vec2 = vec2(64.0, 40.0);
+
+/// Query for the pictures of recent files, each with the time of its last change. `None` for a file that cannot be
+/// opened.
+struct RecentPortraits;
+
+impl QuickQuery for RecentPortraits {
+    type Input = Vec<(PathBuf, Option<SystemTime>)>;
+    type Answer = Vec<Option<Portrait>>;
+
+    fn answer(files: &Self::Input) -> Self::Answer {
+        let picture = |path: &PathBuf| {
+            let found = stillbase_files::scenario(&path.display().to_string()).ok()?;
+            Some(portrait_of(&found.scenario))
+        };
+        files.iter().map(|(path, _)| picture(path)).collect()
+    }
+}
+
+/// Draws the button of the menu, and the menu while it is open.
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    queries: &Queries,
+    recent: &[PathBuf],
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) {
+    let p = view_state.palette();
+    let menu = ui.menu_button(RichText::new("File").font(plain(13.5)), |ui| {
+        let mut entries = |ui: &mut Ui, group: ActionGroup| {
+            ui.set_width(WIDTH_PT);
+            let all = ACTIONS.iter().filter(|action| action.group == group);
+            all.for_each(|action| entry(ui, &p, action, session, view_state, commands));
+        };
+        entries(ui, ActionGroup::Open);
+        let opened = ui.menu_button("Open recent", |ui| recent_files(ui, &p, queries, recent)).inner.flatten();
+        ui.separator();
+        entries(ui, ActionGroup::Save);
+        ui.menu_button("Export", |ui| entries(ui, ActionGroup::Export));
+        ui.separator();
+        entries(ui, ActionGroup::Quit);
+        commands.extend(opened.map(|path| Command::Session(SessionCommand::OpenFile(path))));
+    });
+    name(&menu.response.on_hover_text("New, open, save, export, quit"), "File");
+}
+
+/// Draws an action with its key.
+fn entry(
+    ui: &mut Ui,
+    p: &Palette,
+    action: &Action,
+    session: &Session,
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) {
+    let command = action.command(session, view_state);
+    let key = action.keys.first().map(shortcut_label).unwrap_or_default();
+    let button = Button::new(action.title()).right_text(RichText::new(key).color(colour(p.dim)));
+    let response = ui.add_enabled(command.is_some(), button.wrap_mode(egui::TextWrapMode::Truncate));
+    if response.clicked() {
+        commands.extend(command);
+        ui.close();
+    }
+}
+
+/// Draws the recent files: picture, name and folder; returns the one that the user opens.
+fn recent_files(ui: &mut Ui, p: &Palette, queries: &Queries, recent: &[PathBuf]) -> Option<PathBuf> {
+    let mut opened = None;
+    ui.set_width(WIDTH_PT);
+    if recent.is_empty() {
+        ui.add(Label::new(RichText::new("no file was opened or saved yet").color(colour(p.dim))));
+    }
+    let changed = |path: &PathBuf| std::fs::metadata(path).and_then(|file| file.modified()).ok();
+    let files: Vec<_> = recent.iter().map(|path| (path.clone(), changed(path))).collect();
+    let portraits = queries.ask_in_background::<QuickWork<RecentPortraits>>(&files).last;
+    for (i, path) in recent.iter().enumerate() {
+        let (rect, response) = ui.allocate_exact_size(vec2(WIDTH_PT, PICTURE_PT.y + 8.0), Sense::click());
+        if response.hovered() || response.has_focus() {
+            ui.painter().rect_filled(rect, 6.0, colour(p.line));
+        }
+        let picture = egui::Rect::from_min_size(rect.min + vec2(6.0, 4.0), PICTURE_PT);
+        if let Some(portrait) = portraits.as_ref().and_then(|all| all.get(i)?.as_ref()) {
+            portrait.paint(ui.painter(), picture, p);
+        }
+        let text = |ui: &Ui, y: f32, words: String, font, ink| {
+            let room = rect.right() - picture.right() - 18.0;
+            let words = egui::WidgetText::from(RichText::new(words).font(font));
+            let words = words.into_galley(ui, Some(egui::TextWrapMode::Truncate), room, egui::TextStyle::Body);
+            ui.painter().galley(egui::pos2(picture.right() + 10.0, y), words, ink);
+        };
+        let file = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        let folder = path.parent().map_or_else(String::new, |folder| folder.display().to_string());
+        text(ui, rect.top() + 6.0, file.clone(), plain(13.0), colour(p.ink));
+        text(ui, rect.top() + 26.0, folder, plain(11.0), colour(p.dim));
+        name(&response, &format!("Open {file}"));
+        if response.on_hover_text(path.display().to_string()).clicked() {
+            opened = Some(path.clone());
+            ui.close();
+        }
+    }
+    opened
+}
