@@ -328,8 +328,8 @@ fn fact(
     tone: stillbase_picture::scene::Rgba,
     tip: &str,
 ) {
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-        ui.set_height(20.0);
+    let size = egui::vec2(ui.available_width(), 20.0);
+    ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
         ui.label(RichText::new(in_unit).font(plain(11.5)).color(colour(p.dim)));
         ui.label(RichText::new(value).color(colour(tone))).on_hover_text(tip);
         // The name gets the space that is left, and is shortened if it is too long.
