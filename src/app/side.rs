@@ -11,8 +11,8 @@ pub use all::look_up;
 use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
 use super::facts::ScenarioFacts;
-use super::theme::{bold, colour, plain};
 use super::notation;
+use super::theme::{bold, colour, plain};
 use super::widgets::{NumberRow, name, note, section, send, unit};
 use super::{Command, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, path, place, set_b};
 use stillbase_mechanics::machine::MAX_ANGLE;

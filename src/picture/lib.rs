@@ -22,3 +22,5 @@ pub mod paint;
 #[cfg(feature = "render")]
 pub mod render;
 pub mod scene;
+#[doc(hidden)]
+pub mod thin;

@@ -495,6 +495,7 @@ fn nonsense_is_survived() {
         positions: vec![nan; 3],
         normals: vec![[0.0; 3]; 2],
         triangles: vec![[0, 1, 2], [7, 8, 9]],
+        coarse: None,
         shell: false,
     };
     scene.model = Arc::new(MeshSet { meshes: vec![bad, Mesh::default()] });

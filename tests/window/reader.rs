@@ -135,7 +135,6 @@ type Item = (Reference, Reference, Reference, i32, i32, Vec<String>, String, u32
 const ACCESSIBLE: &str = "org.a11y.atspi.Accessible";
 
 /// Roles by their number on the bus.
-pub const COMBO_BOX: u32 = 11;
 pub const LABEL: u32 = 29;
 pub const BUTTON: u32 = 43;
 pub const SLIDER: u32 = 51;

@@ -252,7 +252,16 @@ impl<'a> Plot<'a> {
             _ => chart,
         };
         let names = notation.names;
-        Self { name: name.into(), title, chart: in_units, names, added_by_user, curves, against, values: changes.values }
+        Self {
+            name: name.into(),
+            title,
+            chart: in_units,
+            names,
+            added_by_user,
+            curves,
+            against,
+            values: changes.values,
+        }
     }
 
     /// Returns the title, with the symbol of the horizontal axis unless that is time. If symbols come first, that of the

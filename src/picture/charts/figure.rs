@@ -4,10 +4,10 @@
 use super::choice::Plot;
 use super::colour;
 use super::drawn::PlotLines;
-use super::thin::simplify_line;
 use crate::numbers::{at_step, round_ticks, ticks};
 use crate::scene::Rgba;
 use crate::scene::palette::{Palette, faded};
+use crate::thin::simplify_line;
 use stillbase_simulation::frame::{Frame, Peaks};
 
 /// A graphic item; coordinates and lengths in points.

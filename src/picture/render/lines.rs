@@ -1,9 +1,14 @@
 //! Polylines as antialiased ribbons of constant width on the screen.
 
 use super::kit::{List, Recipe, SharedBindings, Upload};
+use super::quality::Quality;
 use super::shader::{Shader, embedded, twin};
 use super::view::View;
 use crate::scene::{IN_PLACE, Polyline, Scene, place};
+use crate::thin::for_each_kept;
+
+/// Distance of dropped vertices from a line in draft quality, physical pixels.
+const DRAFT_TOLERANCE_PX: f32 = 0.25;
 
 twin! {
     /// One segment from `a` to `b`, with the vertices before and after it.
@@ -32,6 +37,8 @@ pub(super) struct LineRenderer {
     tested: u32,
     /// Vertices of the current line, without repetitions.
     path: Vec<[f32; 3]>,
+    /// The same vertices on the screen, physical pixels.
+    on_screen: Vec<[f32; 2]>,
 }
 
 impl LineRenderer {
@@ -51,27 +58,29 @@ impl LineRenderer {
             list: List::new(device, kit, "lines"),
             tested: 0,
             path: Vec::new(),
+            on_screen: Vec::new(),
         }
     }
 
     pub(super) fn prepare(&mut self, kit: &SharedBindings, upload: &mut Upload, scene: &Scene, view: &View) {
         self.shader.reload(upload.device);
         self.list.items.clear();
-        scene.lines.iter().filter(|line| !line.on_top).for_each(|line| self.add(line, view));
+        let quality = kit.quality;
+        scene.lines.iter().filter(|line| !line.on_top).for_each(|line| self.add(line, view, quality));
         self.tested = self.list.items.len() as u32;
-        scene.lines.iter().filter(|line| line.on_top).for_each(|line| self.add(line, view));
+        scene.lines.iter().filter(|line| line.on_top).for_each(|line| self.add(line, view, quality));
         self.list.upload(kit, upload);
         self.tested = self.tested.min(self.list.items.len() as u32);
     }
 
-    fn add(&mut self, line: &Polyline, view: &View) {
+    fn add(&mut self, line: &Polyline, view: &View, quality: Quality) {
         if line.width.is_nan() || line.width <= 0.0 || line.colour[3] <= 0.0 {
             return;
         }
-        line.strips.iter().for_each(|strip| self.add_strip(strip, line, view));
+        line.strips.iter().for_each(|strip| self.add_strip(strip, line, view, quality));
     }
 
-    fn add_strip(&mut self, strip: &[[f32; 3]], line: &Polyline, view: &View) {
+    fn add_strip(&mut self, strip: &[[f32; 3]], line: &Polyline, view: &View, quality: Quality) {
         let Polyline { name: _, strips: _, world_from_item, width, colour, dash, on_top: _, changes: _ } = line;
         self.path.clear();
         self.path.extend(strip.iter().filter(|p| p.iter().all(|x| x.is_finite())));
@@ -79,6 +88,9 @@ impl LineRenderer {
             self.path.iter_mut().for_each(|p| *p = place(world_from_item, *p));
         }
         self.path.dedup();
+        if quality == Quality::Draft {
+            self.simplify(view);
+        }
         let path = &self.path;
         let n = path.len();
         if n < 2 {
@@ -116,6 +128,21 @@ impl LineRenderer {
                 arc += view.pixels_between(a, b);
             }
         }
+    }
+
+    /// Drops vertices of the current line that no eye misses. A line that is partly behind the eye is kept whole.
+    fn simplify(&mut self, view: &View) {
+        self.on_screen.clear();
+        self.on_screen.extend(self.path.iter().map_while(|point| view.project(*point)));
+        if self.on_screen.len() < self.path.len() {
+            return;
+        }
+        let mut count = 0;
+        for_each_kept(&self.on_screen, DRAFT_TOLERANCE_PX, |i| {
+            self.path[count] = self.path[i];
+            count += 1;
+        });
+        self.path.truncate(count);
     }
 
     pub(super) fn draw_tested(&self, pass: &mut wgpu::RenderPass) {

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use bytemuck::Zeroable as _;
 
 use super::kit::{ENTRIES, List, Recipe, SharedBindings, Upload};
+use super::quality::Quality;
 use super::shader::{Shader, embedded, twin};
 use crate::scene::{MeshSet, Scene};
 
@@ -138,7 +139,7 @@ impl SolidRenderer {
     pub(super) fn prepare(&mut self, queue: &wgpu::Queue, kit: &SharedBindings, upload: &mut Upload, scene: &Scene) {
         self.shader.reload(upload.device);
         if !self.meshes.as_ref().is_some_and(|meshes| Arc::ptr_eq(&meshes.model, &scene.model)) {
-            self.meshes = Some(Meshes::new(upload.device, queue, &scene.model, self.meshes.take()));
+            self.meshes = Some(Meshes::new(upload.device, queue, &scene.model, kit.quality, self.meshes.take()));
         }
         let solids = &scene.solids;
         let layer = |k: &usize| match (&scene.model.meshes[solids[*k].mesh], solids[*k].colour[3] < 1.0) {
@@ -204,9 +205,16 @@ impl SolidRenderer {
 
 impl Meshes {
     /// Copies the meshes of a model to the GPU; reuses the buffers of `old` if they are large enough.
-    fn new(device: &wgpu::Device, queue: &wgpu::Queue, model: &Arc<MeshSet>, old: Option<Self>) -> Self {
+    fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        model: &Arc<MeshSet>,
+        quality: Quality,
+        old: Option<Self>,
+    ) -> Self {
         let (mut vertices, mut triangles, mut parts) = (Vec::new(), Vec::<[u32; 3]>::new(), Vec::new());
         for mesh in &model.meshes {
+            let mesh = mesh.coarse.as_deref().filter(|_| quality == Quality::Draft).unwrap_or(mesh);
             let (first_vertex, first_index) = (vertices.len(), 3 * triangles.len() as u32);
             let corners = mesh.positions.iter().zip(&mesh.normals);
             vertices.extend(corners.map(|(&position, &normal)| Vertex { position, normal, ..Vertex::zeroed() }));

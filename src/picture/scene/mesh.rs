@@ -11,19 +11,26 @@ use std::f64::consts::{PI, TAU};
 
 use super::Mesh;
 
-/// Number of chords of a circle; the vertices lie on the circle.
+/// Number of chords of a circle; the vertices lie on the circle. A multiple of four.
 pub const SEGMENTS: usize = 64;
+/// Number of chords of a circle in a coarse mesh.
+const COARSE_SEGMENTS: usize = 20;
+
+/// Returns a mesh made with the usual number of chords, with its coarse counterpart.
+fn with_coarse(mesh: impl Fn(usize) -> Mesh) -> Mesh {
+    Mesh { coarse: Some(Box::new(mesh(COARSE_SEGMENTS))), ..mesh(SEGMENTS) }
+}
 
 /// A bar with round ends: the points within `radius` of the segment from `(length_from, 0)` to `(length_to, 0)`,
 /// from z = 0 to `height`. Its top and bottom edges are bevelled by `bevel`, so that shading shows them.
 pub fn bar(length_from: f64, length_to: f64, radius: f64, height: f64, bevel: f64) -> Mesh {
     let [from, to] = [length_from, length_to].map(|x| if x.is_finite() { x } else { 0.0 });
-    prism(&stadium(from.min(to), from.max(to)), radius, height, bevel)
+    with_coarse(|segments| prism(&stadium(from.min(to), from.max(to), segments), radius, height, bevel))
 }
 
 /// A disc around the z axis with bevelled edges.
 pub fn cylinder(radius: f64, height: f64, bevel: f64) -> Mesh {
-    prism(&stadium(0.0, 0.0), radius, height, bevel)
+    with_coarse(|segments| prism(&stadium(0.0, 0.0, segments), radius, height, bevel))
 }
 
 /// A flat ring around the z axis, of rectangular section.
@@ -31,18 +38,19 @@ pub fn ring(outer: f64, inner: f64, height: f64) -> Mesh {
     let [outer, inner, height] = [outer, inner, height].map(size);
     let (outer, inner) = (outer.max(inner), outer.min(inner));
     if inner == 0.0 {
-        return prism(&stadium(0.0, 0.0), outer, height, 0.0);
+        return with_coarse(|segments| prism(&stadium(0.0, 0.0, segments), outer, height, 0.0));
     }
     if outer == inner || height == 0.0 {
         return Mesh::default();
     }
-    let outline = stadium(0.0, 0.0);
     let corners = [[inner, 0.0], [outer, 0.0], [outer, height], [inner, height], [inner, 0.0]];
-    let mut mesh = Mesh::default();
-    for side in corners.windows(2) {
-        strip(&mut mesh, &outline, side[0], side[1]);
-    }
-    mesh
+    with_coarse(|segments| {
+        let mut mesh = Mesh::default();
+        for side in corners.windows(2) {
+            strip(&mut mesh, &stadium(0.0, 0.0, segments), side[0], side[1]);
+        }
+        mesh
+    })
 }
 
 /// A vertex of an outline: x of the centre that it is offset from, and the outward unit vector.
@@ -52,28 +60,28 @@ struct Spoke {
 }
 
 /// Returns the outline of a stadium with centres at x = `from` and x = `to`, counter-clockwise from (0, -1). This is
-/// a circle if they are equal.
-fn stadium(from: f64, to: f64) -> Vec<Spoke> {
-    let half = SEGMENTS / 2;
+/// a circle if they are equal. `segments` is the number of chords of a circle, a multiple of four.
+fn stadium(from: f64, to: f64, segments: usize) -> Vec<Spoke> {
+    let half = segments / 2;
     let spoke = |centre, k: usize| {
         // Exact at the quarter turns, so that straight sides are parallel to x and join the round ends exactly.
         let out = match 4 * k {
             0 => [0.0, -1.0],
-            x if x == SEGMENTS => [1.0, 0.0],
-            x if x == 2 * SEGMENTS => [0.0, 1.0],
-            x if x == 3 * SEGMENTS => [-1.0, 0.0],
+            x if x == segments => [1.0, 0.0],
+            x if x == 2 * segments => [0.0, 1.0],
+            x if x == 3 * segments => [-1.0, 0.0],
             _ => {
-                let angle = TAU * k as f64 / SEGMENTS as f64 - 0.5 * PI;
+                let angle = TAU * k as f64 / segments as f64 - 0.5 * PI;
                 [angle.cos(), angle.sin()]
             }
         };
         Spoke { centre, out }
     };
     if from == to {
-        return (0..SEGMENTS).map(|k| spoke(from, k)).collect();
+        return (0..segments).map(|k| spoke(from, k)).collect();
     }
     let right = (0..=half).map(|k| spoke(to, k));
-    let left = (half..=SEGMENTS).map(|k| spoke(from, k % SEGMENTS));
+    let left = (half..=segments).map(|k| spoke(from, k % segments));
     right.chain(left).collect()
 }
 

@@ -64,6 +64,8 @@ pub struct Mesh {
     pub normals: Vec<[f32; 3]>,
     /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
+    /// The same body with fewer triangles, for drawing in draft quality.
+    pub coarse: Option<Box<Mesh>>,
     /// Whether the mesh is an open translucent surface: visible from both sides, all layers are drawn, and it hides
     /// nothing.
     pub shell: bool,

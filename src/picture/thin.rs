@@ -7,22 +7,25 @@
 /// with every point. A point outside the wedge, or one that turns back, starts the next segment. Takes one pass.
 pub fn simplify_line(points: &[[f32; 2]], tolerance: f32) -> Vec<[f32; 2]> {
     let mut kept = Vec::with_capacity(points.len().min(256));
-    let Some((&first, rest)) = points.split_first() else { return kept };
-    kept.push(first);
+    for_each_kept(points, tolerance, |i| kept.push(points[i]));
+    kept
+}
+
+/// Calls `keep` with the index of each point that [`simplify_line`] keeps, in order.
+pub fn for_each_kept(points: &[[f32; 2]], tolerance: f32, mut keep: impl FnMut(usize)) {
+    let Some(&first) = points.first() else { return };
+    keep(0);
     let mut wedge = Wedge::from(first);
-    let mut last = first;
-    for &point in rest {
+    for (i, &point) in points.iter().enumerate().skip(1) {
         if !wedge.takes(point, tolerance) {
-            kept.push(last);
-            wedge = Wedge::from(last);
+            keep(i - 1);
+            wedge = Wedge::from(points[i - 1]);
             wedge.takes(point, tolerance);
         }
-        last = point;
     }
-    if !rest.is_empty() {
-        kept.push(last);
+    if points.len() > 1 {
+        keep(points.len() - 1);
     }
-    kept
 }
 
 /// Wedge of directions from a point; angles, rad, are relative to the direction of the first later point.
