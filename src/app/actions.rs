@@ -4,6 +4,7 @@
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::command::CameraMove;
+use super::export::Export;
 use super::theme::other;
 use super::{
     BottomPanel, Command, FileDialog, FilePurpose, Layout, PlotFile, SessionCommand, Switch, ViewChange, ViewState,
@@ -117,6 +118,11 @@ fn case(i: usize) -> Option<Command> {
 
 fn dialog(session: &Session, purpose: FilePurpose) -> Option<Command> {
     Some(Command::View(ViewChange::Dialog(Some(FileDialog::suggest(session, purpose)))))
+}
+
+/// Opens the card with the choices for a result that becomes a file.
+fn export(wanted: Export) -> Option<Command> {
+    Some(Command::View(ViewChange::Export(Some(wanted))))
 }
 
 /// Opens the present machine and task as a new session without edits.
@@ -306,6 +312,16 @@ pub const ACTIONS: &[Action] = actions![
         |s, v| plot_file(s, v, PlotFile::Png);
     File, "Drawing of the first plot as SVG" = "picture image vector export figure save", [], "menu of a plot",
         |s, v| plot_file(s, v, PlotFile::Svg);
+    File, "Picture of the scene or the whole window as PNG" = "image export screenshot snapshot figure save transparent", [on(CTRL, Key::E)], "keyboard", |_, v| {
+        export(Export::picture(v.arrangement.theme))
+    };
+    File, "Film of the run: GIF, animated PNG, MP4 or pictures" = "movie video animation export mp4 frames save", [on(CTRL_SHIFT, Key::E)], "keyboard", |_, v| {
+        export(Export::film(v.arrangement.theme))
+    };
+    File, "Values of signals as CSV or Parquet" = "export table data numbers spreadsheet excel columns save", [], "keyboard", |_, _| export(Export::values());
+    File, "Report as HTML: machine, task, verdicts and plots" = "print page document pdf summary export save", [on(CTRL, Key::P)], "keyboard", |s, _| {
+        dialog(s, FilePurpose::Export(Export::Report))
+    };
     File, "Take the machine elsewhere: MJCF, URDF, DXF…" = "export cad mujoco ros robot svg csv parts list write", [], "design", |s, _| dialog(s, FilePurpose::Machine);
     File, "Record for the Rerun viewer" = "rrd video capture export movie", [on(PLAIN, Key::R)], "top bar", |s, _| dialog(s, FilePurpose::Record);
     File, "Find a command" = "palette search", [on(CTRL, Key::K)], "top bar" turns Finder;

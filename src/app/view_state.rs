@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::CameraMove;
+use super::export::DisplaySize;
 use super::gesture::{DragGesture, HoverTarget, Tool};
 use super::layout::{BottomPanel, Layout, WindowArrangement};
 use super::open::OpenDialogs;
@@ -88,6 +89,8 @@ pub struct ViewState {
     pub turn_task: bool,
     /// Whether the drawn motion of the base is enlarged.
     pub exaggerates_base: bool,
+    /// Size of window and scene on display.
+    pub displayed: DisplaySize,
     /// Index of the point of the Pareto front whose counterweights are shown.
     pub ghost: Option<usize>,
     /// The measure that colours the points of the Pareto front.
@@ -120,6 +123,7 @@ impl ViewState {
             drives: [0, 1, 2],
             turn_task: false,
             exaggerates_base: true,
+            displayed: DisplaySize::default(),
             ghost: None,
             front_by: None,
         }

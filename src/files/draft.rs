@@ -35,7 +35,7 @@ pub fn abandon() -> WriteBlock {
     let parts = making();
     for part in parts.iter() {
         // The program ends, so errors cannot be reported.
-        let _ = fs::remove_file(part);
+        let _ = if part.is_dir() { fs::remove_dir_all(part) } else { fs::remove_file(part) };
     }
     WriteBlock(parts)
 }
@@ -61,12 +61,13 @@ fn is_part(name: &OsStr) -> bool {
 /// the system releases the lock when the program ends.
 fn sweep(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
-    let plain = |entry: &fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_file());
-    for entry in entries.flatten().filter(|entry| is_part(&entry.file_name()) && plain(entry)) {
-        let Ok(part) = File::open(entry.path()) else { continue };
+    for entry in entries.flatten().filter(|entry| is_part(&entry.file_name())) {
+        let Ok(kind) = entry.file_type() else { continue };
+        // A link or a pipe is none of this program's; a system that cannot open folders keeps theirs.
+        let Some(part) = File::open(entry.path()).ok().filter(|_| kind.is_file() || kind.is_dir()) else { continue };
         if part.try_lock().is_ok() {
-            // A file that cannot be removed belongs to another user.
-            let _ = fs::remove_file(entry.path());
+            // What cannot be removed belongs to another user.
+            let _ = if kind.is_dir() { fs::remove_dir_all(entry.path()) } else { fs::remove_file(entry.path()) };
         }
     }
 }
@@ -107,6 +108,53 @@ impl Drop for TemporaryFile {
         let mut parts = making();
         // The file no longer exists if it has taken its final name. If it cannot be removed, a later sweep tries again.
         let _ = fs::remove_file(&self.part);
+        parts.remove(&self.part);
+    }
+}
+
+/// A temporary folder beside the folder that it will become.
+#[derive(Debug)]
+pub(super) struct TemporaryFolder {
+    pub part: PathBuf,
+    /// Holds the lock, where a system can open folders.
+    _lock: Option<File>,
+}
+
+impl TemporaryFolder {
+    /// Creates a locked temporary folder for `folder`.
+    pub fn create(folder: &Path) -> io::Result<Self> {
+        sweep(folder_of(folder));
+        let mut parts = making();
+        for attempt in 0..1000 {
+            let part = part_of(folder, attempt);
+            super::fault::fail_if_due(WriteStep::Fallible)?;
+            match fs::create_dir(&part) {
+                Err(e) if e.kind() == ErrorKind::AlreadyExists => continue,
+                made => made?,
+            }
+            let lock = File::open(&part).ok();
+            let swept = lock.as_ref().is_some_and(|lock| matches!(lock.try_lock(), Err(TryLockError::WouldBlock)));
+            if !swept && part.is_dir() {
+                parts.insert(part.clone());
+                return Ok(Self { part, _lock: lock });
+            }
+        }
+        Err(io::Error::new(ErrorKind::AlreadyExists, "a thousand folders in the making stand beside it"))
+    }
+
+    /// Returns a temporary name for the folder that this one replaces.
+    pub fn aside(&self) -> PathBuf {
+        let mut name = self.part.as_os_str().to_owned();
+        name.push(".before");
+        name.into()
+    }
+}
+
+impl Drop for TemporaryFolder {
+    fn drop(&mut self) {
+        let mut parts = making();
+        // The folder no longer exists if it has taken its final name.
+        let _ = fs::remove_dir_all(&self.part);
         parts.remove(&self.part);
     }
 }

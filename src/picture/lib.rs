@@ -19,4 +19,6 @@ pub mod numbers;
 pub mod paint;
 #[cfg(feature = "render")]
 pub mod render;
+#[doc(hidden)]
+pub mod report;
 pub mod scene;
