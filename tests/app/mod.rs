@@ -13,6 +13,7 @@ mod panel;
 mod plots;
 mod pointer;
 mod refusal;
+mod results;
 mod run;
 mod saving;
 mod screen;
@@ -31,7 +32,7 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 19] = [
+pub const TESTS: [&[Test]; 20] = [
     saving::TESTS,
     family::TESTS,
     files::TESTS,
@@ -46,6 +47,7 @@ pub const TESTS: [&[Test]; 19] = [
     plots::TESTS,
     pointer::TESTS,
     refusal::TESTS,
+    results::TESTS,
     run::TESTS,
     sizes::TESTS,
     studio::TESTS,
