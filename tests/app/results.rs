@@ -8,7 +8,8 @@ use egui_kittest::kittest::Queryable as _;
 use stillbase::app::export::{
     Export, FilmChoice, FilmForm, FilmOrder, Look, PictureSize, RowForm, ValuesChoice, write_film,
 };
-use stillbase::app::{AppState, Message, PictureOrder, SessionCommand, Shot, ViewChange};
+use stillbase::app::jobs::Threads;
+use stillbase::app::{Activity, AppState, Message, PictureOrder, SessionCommand, Shot, ViewChange, WindowCommand};
 use stillbase::picture::charts::choice::PlotChange;
 use stillbase::picture::render::offscreen::Picture;
 use stillbase::picture::scene::palette::Theme;
@@ -26,8 +27,10 @@ pub const TESTS: &[Test] = tests![
     a_film_that_is_stopped_leaves_nothing,
     a_folder_of_pictures_replaces_only_its_like,
     without_its_encoder_an_mp4_says_what_to_install,
+    a_film_is_drawn_beside_the_window_and_can_be_cancelled,
     values_are_those_of_the_plots_or_all,
     a_report_of_the_window_shows_its_plots,
+    an_encoder_gets_every_picture,
 ];
 
 const SIZE: [u32; 2] = [320, 200];
@@ -111,7 +114,7 @@ fn a_scene_may_be_transparent() {
         };
         assert_eq!(alpha(&filled, |a| a == 255), (SIZE[0] * SIZE[1]) as usize, "{view:?}");
         assert!(alpha(&clear, |a| a == 0) > 5000, "{view:?}: nothing behind it");
-        assert!(alpha(&clear, |a| a == 255) > 100, "{view:?}: the machine is solid");
+        assert!(alpha(&clear, |a| a == 255) > 100 || !view.shows_machine(), "{view:?}: the machine is solid");
         // Laid over white, it looks as the light picture does.
         let over = |c: u8, a: u8| (u32::from(c) * u32::from(a) + 255 * (255 - u32::from(a))).div_ceil(255);
         let far = clear.rgba.as_chunks::<4>().0.iter().zip(filled.rgba.as_chunks::<4>().0).filter(|(c, f)| {
@@ -218,6 +221,47 @@ fn without_its_encoder_an_mp4_says_what_to_install() {
             assert_eq!(&fs::read(&file).expect("a file")[4..8], b"ftyp");
         }
     }
+}
+
+fn a_film_is_drawn_beside_the_window_and_can_be_cancelled() {
+    let folder = Folder::new("results");
+    let mut app_state = app_state("case-1").with_workers(Threads::Background);
+    let choice = FilmChoice { look: look(Shot::Scene), form: FilmForm::Gif, whole: true, fps: 50.0, slow: 20.0 };
+    app_state.carry_out(SessionCommand::Export(folder.path("film.gif"), Export::Film(choice)));
+    assert!(app_state.under_way().contains(&Activity::Exporting), "the hand does not wait");
+    app_state.carry_out(SessionCommand::Export(folder.path("other.gif"), Export::Film(choice)));
+    let said = app_state.view_state().status.message.clone().expect("it is said");
+    assert!(said.is_problem && said.text.contains("one result is being written"), "{said:?}");
+    app_state.carry_out(WindowCommand::Cancel(Activity::Exporting));
+    let said = app_state.view_state().status.message.clone().expect("it is said");
+    assert_eq!(said.text, "cancelled: no file is left");
+    // The work ends at its next picture, and takes its temporary file with it.
+    let is_empty = || folder.names().is_empty();
+    (0..500).find(|_| is_empty() || std::thread::sleep(std::time::Duration::from_millis(20)) != ());
+    assert!(is_empty(), "{:?}", folder.names());
+}
+
+/// A system with an encoder, or with one that fails: programs that say they are ffmpeg.
+fn an_encoder_gets_every_picture() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let folder = Folder::new("results");
+    let film = |script: &str| {
+        let encoder = folder.file("ffmpeg", format!("#!/bin/sh\n[ \"$1\" = -version ] && exit 0\n{script}\n"));
+        fs::set_permissions(&encoder, fs::Permissions::from_mode(0o755)).expect("it may run");
+        let path = format!("{}:{}", folder.0.display(), std::env::var("PATH").expect("a path"));
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_stillbase"));
+        command.args(["render", "case-1", "-o", "film.mp4", "--film", "--fps", "10", "--size", "32x20"]);
+        command.current_dir(&folder.0).env("PATH", path).output().expect("the program starts")
+    };
+    let out = film("echo 'no such codec' >&2; exit 1");
+    let why = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert_eq!(out.status.code(), Some(1), "{why}");
+    assert!(why.contains("ffmpeg failed: no such codec"), "{why}");
+    assert_eq!(folder.names(), ["ffmpeg"], "nothing else is left");
+    let out = film("for last; do :; done; cat > \"${last#file:}\"");
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    assert_eq!(fs::read(folder.path("film.mp4")).expect("a file").len(), 11 * 32 * 20 * 4);
+    assert_eq!(folder.names(), ["ffmpeg", "film.mp4"]);
 }
 
 fn values_are_those_of_the_plots_or_all() {

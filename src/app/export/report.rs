@@ -15,8 +15,11 @@ use stillbase_settings::number::fixed;
 /// Size of a picture of the scene, pixels.
 const PICTURE_SIZE_PX: [u32; 2] = [1040, 700];
 
+/// Pixels per point in a picture: labels stay legible at half its width.
+const PICTURE_SCALE: f32 = 1.6;
+
 /// Width and height of a plot, points.
-const PLOT_SIZE_PT: [f32; 2] = [520.0, 230.0];
+const PLOT_SIZE_PT: [f32; 2] = [420.0, 200.0];
 
 /// A report that was made.
 #[derive(Clone, Debug)]
@@ -61,7 +64,7 @@ pub fn report(app_state: &mut AppState, command: Option<String>) -> (String, Rep
 
 /// Draws the scene at some instants, s; fails with the reason if nothing can draw.
 fn pictures(app_state: &mut AppState, times: [f64; 2]) -> Result<Vec<ReportPicture>, String> {
-    let order = PictureOrder::new(Shot::Scene, Theme::Light, PICTURE_SIZE_PX);
+    let order = PictureOrder { scale: PICTURE_SCALE, ..PictureOrder::new(Shot::Scene, Theme::Light, PICTURE_SIZE_PX) };
     let mut canvas = order.canvas().map_err(|why| why.to_string())?;
     let mut pictures = Vec::new();
     for time in times {

@@ -66,7 +66,7 @@ impl Report<'_> {
     fn pictures_html(&self) -> String {
         match &self.pictures {
             Err(why) => format!("<p>No picture was drawn: {}</p>\n", escaped(why)),
-            Ok(pictures) => row_of(pictures.iter().map(|picture| {
+            Ok(pictures) => row_of("row", pictures.iter().map(|picture| {
                 let (caption, png) = (escaped(&picture.caption), base64(&picture.png));
                 format!(
                     "<figure><img alt=\"{caption}\" src=\"data:image/png;base64,{png}\"/><figcaption>{caption}\
@@ -78,7 +78,7 @@ impl Report<'_> {
 
     fn figures_html(&self) -> String {
         let figures = self.figures.iter().enumerate();
-        row_of(figures.map(|(i, figure)| format!("<figure>{}</figure>\n", svg_element(figure, &format!("axes-{i}")))))
+        row_of("row small", figures.map(|(i, figure)| format!("<figure>{}</figure>\n", svg_element(figure, &format!("axes-{i}")))))
     }
 
     fn repeat(&self) -> String {
@@ -97,9 +97,9 @@ fn section(page: &mut String, heading: &str, content: &str) {
     }
 }
 
-fn row_of(figures: impl Iterator<Item = String>) -> String {
+fn row_of(class: &str, figures: impl Iterator<Item = String>) -> String {
     let figures: String = figures.collect();
-    if figures.is_empty() { figures } else { format!("<div class=\"row\">\n{figures}</div>\n") }
+    if figures.is_empty() { figures } else { format!("<div class=\"{class}\">\n{figures}</div>\n") }
 }
 
 const STYLE: &str = "\
@@ -114,10 +114,11 @@ p { margin: 4px 0; }
 .bad { color: #c81e1e; font-weight: 600; }
 .open { color: #6b7280; font-weight: 600; }
 table { border-collapse: collapse; font-size: 12px; font-variant-numeric: tabular-nums; margin: 4px 0 8px; }
+.side { display: inline-table; vertical-align: top; margin-right: 28px; }
 th { text-align: left; font-weight: 600; color: #6b7280; }
-th, td { padding: 2px 14px 2px 0; vertical-align: top; overflow-wrap: anywhere; }
+th, td { padding: 2px 14px 2px 0; vertical-align: top; overflow-wrap: break-word; }
 tbody tr { border-top: 1px solid #eef0f3; break-inside: avoid; }
-.number { text-align: right; overflow-wrap: normal; }
+.number { text-align: right; }
 .row { display: flex; flex-wrap: wrap; gap: 10px; }
 figure { margin: 0; flex: 1 1 460px; max-width: 520px; break-inside: avoid; }
 figure img, figure svg { width: 100%; height: auto; border: 1px solid #dfe2e7; border-radius: 4px; }
@@ -125,11 +126,16 @@ figcaption { font-size: 12px; color: #6b7280; }
 pre { background: #f5f6f8; padding: 8px 10px; border-radius: 4px; white-space: pre-wrap; overflow-wrap: anywhere; }
 @page { size: A4; margin: 11mm; }
 @media print {
-  body { font-size: 9pt; max-width: none; margin: 0; padding: 0; }
-  h1 { font-size: 15pt; }
-  h2 { font-size: 10pt; margin: 8px 0 3px; }
-  table, figcaption { font-size: 7.5pt; }
-  figure { flex: 1 1 30%; max-width: 49%; }
-  .row { gap: 5px; }
+  body { font-size: 8.5pt; line-height: 1.3; max-width: none; margin: 0; padding: 0; }
+  h1 { font-size: 15pt; margin-bottom: 2px; }
+  h2 { font-size: 9.5pt; margin: 7px 0 2px; padding-bottom: 1px; }
+  p { margin: 2px 0; }
+  table, figcaption, pre { font-size: 7pt; }
+  table { margin: 2px 0 4px; }
+  th, td { padding: 1px 9px 1px 0; }
+  .side { margin-right: 16px; }
+  .row { display: block; }
+  figure { display: inline-block; vertical-align: top; width: 49%; margin: 0 0.5% 3px 0; }
+  .small figure { width: 32.5%; }
 }
 ";

@@ -2,7 +2,7 @@
 
 use super::Report;
 use super::markup::escaped;
-use super::table::PageTable;
+use super::table::{NO_VALUE, PageTable};
 use stillbase_mechanics::machine::{Inertia, MachineSpec};
 use stillbase_session::verdict::{Statements, Verdict};
 use stillbase_settings::change;
@@ -37,11 +37,7 @@ impl Report<'_> {
                 escaped(&statement.why)
             );
         }
-        text += "</tbody>\n</table>\n";
-        for remark in verdict.remarks() {
-            text += &format!("<p>{}</p>\n", escaped(&remark.long));
-        }
-        text
+        text + "</tbody>\n</table>\n"
     }
 
     /// Returns the peaks and the means of the run.
@@ -82,12 +78,12 @@ impl Report<'_> {
     }
 
     fn changed(&self, is_wanted: impl Fn(&Key) -> bool) -> String {
-        let mut table = PageTable::new(5, ["setting", "value", "unit", "default", "meaning"]);
+        let mut table = PageTable::new(1, ["setting", "value", "unit", "default", "meaning"]);
         for (path, key, value) in self.run.scenario().settings() {
             let typed = change::typed(&value);
             let is_default = typed == change::DEFAULT_WORD || change::same_value(&value, &change::value(key.default));
             if is_wanted(key) && !is_default {
-                let default = if key.default == Key::REQUIRED { "–" } else { key.default };
+                let default = if key.default == Key::REQUIRED { NO_VALUE } else { key.default };
                 table.row([path, shortened(&typed), key.unit().into(), default.into(), key.meaning.into()]);
             }
         }
@@ -99,7 +95,10 @@ impl Report<'_> {
         let machine = &self.run.scenario().machine;
         let (spec, inertia) = (machine.spec(), Inertia::of(machine));
         let balance = BalanceConstants::of(&inertia);
-        let summary = if spec.summary.is_empty() { String::new() } else { format!("{}. ", spec.summary) };
+        let summary = match spec.summary.trim().trim_end_matches('.') {
+            "" => String::new(),
+            summary => format!("{summary}. "),
+        };
         let mut text = format!(
             "<p>{}</p>\n",
             escaped(&format!("{summary}Mass {} kg, reach {} m.", fixed(inertia.mass(), 3), fixed(machine.reach(), 3)))
@@ -171,7 +170,7 @@ pub(super) fn compared(comparison: &Comparison) -> String {
         match &entry.outcome {
             Ok(run) => {
                 let cells = columns.iter().map(|(column, (_, _, decimals, _))| {
-                    entry.value(*column).map_or_else(|| "–".into(), |x| fixed(x, *decimals))
+                    entry.value(*column).map_or_else(|| NO_VALUE.into(), |x| fixed(x, *decimals))
                 });
                 let verdict = run.summary.verdict.answer();
                 table.row([entry.title.clone()].into_iter().chain(cells).chain([verdict]));

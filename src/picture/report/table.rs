@@ -2,18 +2,24 @@
 
 use super::markup::escaped;
 
-/// A table: the first column and columns of words to the left, numbers to the right.
+/// Tables of at most this many columns are narrow.
+const MAX_NARROW_COLUMNS: usize = 6;
+
+/// What stands where there is no value.
+pub const NO_VALUE: &str = "–";
+
+/// A table: names and words to the left, numbers to the right.
 pub struct PageTable {
     heads: Vec<String>,
-    /// Number of columns of words at the left.
-    words: usize,
+    /// Number of columns of names at the left, which may be numbers.
+    names: usize,
     rows: Vec<Vec<String>>,
 }
 
 impl PageTable {
-    /// Returns a table with its heads, the first `words` of which stand over words.
-    pub fn new<S: Into<String>>(words: usize, heads: impl IntoIterator<Item = S>) -> Self {
-        Self { heads: heads.into_iter().map(Into::into).collect(), words, rows: Vec::new() }
+    /// Returns a table with its heads, the first `names` of which stand over names.
+    pub fn new<S: Into<String>>(names: usize, heads: impl IntoIterator<Item = S>) -> Self {
+        Self { heads: heads.into_iter().map(Into::into).collect(), names, rows: Vec::new() }
     }
 
     /// Adds a row.
@@ -26,15 +32,20 @@ impl PageTable {
         if self.rows.is_empty() {
             return String::new();
         }
-        let class = |i: usize| if i < self.words { "" } else { " class=\"number\"" };
+        let is_number = |cell: &String| ["", NO_VALUE].contains(&cell.as_str()) || cell.parse::<f64>().is_ok();
+        let has_numbers = |i: usize| i >= self.names && self.rows.iter().filter_map(|row| row.get(i)).all(is_number);
+        let classes: Vec<&str> =
+            (0..self.heads.len()).map(|i| if has_numbers(i) { " class=\"number\"" } else { "" }).collect();
         let line = |tag: &str, cells: &[String]| {
-            let cells = cells.iter().enumerate();
+            let cells = cells.iter().zip(&classes);
             let cells: String =
-                cells.map(|(i, cell)| format!("<{tag}{}>{}</{tag}>", class(i), escaped(cell))).collect();
+                cells.map(|(cell, class)| format!("<{tag}{class}>{}</{tag}>", escaped(cell))).collect();
             format!("<tr>{cells}</tr>\n")
         };
         let head = if self.heads.iter().all(String::is_empty) { String::new() } else { line("th", &self.heads) };
         let rows: String = self.rows.iter().map(|row| line("td", row)).collect();
-        format!("<table>\n<thead>{head}</thead>\n<tbody>\n{rows}</tbody>\n</table>\n")
+        // Narrow tables stand beside each other.
+        let class = if self.heads.len() <= MAX_NARROW_COLUMNS { " class=\"side\"" } else { "" };
+        format!("<table{class}>\n<thead>{head}</thead>\n<tbody>\n{rows}</tbody>\n</table>\n")
     }
 }
