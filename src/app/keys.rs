@@ -12,8 +12,10 @@ use stillbase_session::Session;
 /// Turns pressed keys into commands. While a text field has the focus, only keys that it does not use count: Ctrl S,
 /// Ctrl O, Ctrl K, Ctrl P and F1.
 pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
-    let typing =
-        ctx.egui_wants_keyboard_input() || view_state.open.dialog.is_some() || view_state.open.export.is_some() || view_state.open.finder.is_some();
+    let typing = ctx.egui_wants_keyboard_input()
+        || view_state.open.dialog.is_some()
+        || view_state.open.export.is_some()
+        || view_state.open.finder.is_some();
     let pressed = |key: &KeyboardShortcut| ctx.input_mut(|i| i.consume_shortcut(key));
     // During a drag or with a list open, Esc only ends the drag or closes the list.
     let busy = view_state.gesture.grabbed.is_some()

@@ -7,9 +7,9 @@ use std::io;
 use stillbase_app::export::ExportError;
 use stillbase_files::WriteError;
 use stillbase_files::row_file::RowError;
+use stillbase_files::table::TableError;
 #[cfg(feature = "ui")]
 use stillbase_files::video::VideoError;
-use stillbase_files::table::TableError;
 use stillbase_mechanics::balance::DesignError;
 use stillbase_mechanics::joint_forces::JointsError;
 use stillbase_mechanics::machine::{FileError, MachineError};

@@ -13,8 +13,8 @@ use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{Settings, scenario};
 use super::output::{Format, TextTable, check_output};
-use super::simulate::require_audit;
 use super::progress::bar;
+use super::simulate::require_audit;
 use super::size::size;
 use stillbase_settings::number::fixed;
 

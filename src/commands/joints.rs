@@ -8,11 +8,11 @@ use stillbase_session::replay_if;
 use stillbase_simulation::frame::Frame;
 use stillbase_study::joint_extremes::{JointExtremes, JointReport};
 
-use super::rows::Rows;
 use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, check_output, check_size};
+use super::rows::Rows;
 use super::simulate::require_audit;
 use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
 

@@ -31,10 +31,10 @@ mod open;
 mod output;
 mod plan;
 mod pose;
-mod reach;
-mod remedy;
 #[cfg(any(feature = "record", feature = "ui"))]
 mod progress;
+mod reach;
+mod remedy;
 #[cfg(feature = "ui")]
 mod render;
 #[cfg(feature = "ui")]

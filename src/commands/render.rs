@@ -151,7 +151,7 @@ impl RenderArguments {
         let Some(FilmRange(range)) = self.film else {
             let at = within(self.at.unwrap_or(end), end, "--at")?;
             app_state.carry_out(SessionCommand::Seek(at));
-            write_picture(&mut app_state, &picture, &self.output, self.force)?;
+            write_picture(&mut app_state, &picture, &self.output, self.force, &mut |_| true)?;
             return self.print(FilmDone { pictures: 1, times: [at; 2] });
         };
         let [from, to] = range.unwrap_or([0.0, end]);

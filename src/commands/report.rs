@@ -67,7 +67,7 @@ impl ReportArguments {
         if self.compare {
             app_state.carry_out(ViewChange::Switch(Switch::Compare, true));
         }
-        let done = write_report(&mut app_state, Some(self.command()), &self.output, self.force)?;
+        let done = write_report(&mut app_state, Some(self.command()), &self.output, self.force, &mut |_| true)?;
         let ReportDone { pictures, plots, statements, fault } = done;
         let pictures = pictures.unwrap_or_else(|why| {
             print_message(format!("the report has no pictures: {why}"));

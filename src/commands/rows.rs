@@ -17,7 +17,7 @@ pub struct Rows {
 
 enum Sink {
     File(RowFile, PathBuf),
-    Standard(csv::Writer<StdoutLock<'static>>),
+    Standard(Box<csv::Writer<StdoutLock<'static>>>),
 }
 
 impl Rows {
@@ -32,7 +32,7 @@ impl Rows {
             None => {
                 let mut writer = csv::Writer::from_writer(io::stdout().lock());
                 writer.write_record(head.iter().map(|name| plain(name).into_owned())).map_err(failure)?;
-                Sink::Standard(writer)
+                Sink::Standard(Box::new(writer))
             }
         };
         Ok(Self { sink, row: Vec::new() })

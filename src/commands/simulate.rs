@@ -259,7 +259,8 @@ impl SimulateArguments {
         chosen_signals(&all, &self.signals).map_err(|name| {
             let mut known: Vec<&str> = all.iter().map(Signal::group).collect();
             known.dedup();
-            let why = format!("no signal {}: want one of {}, or one of their parts", quote_clipped(name), known.join(", "));
+            let why =
+                format!("no signal {}: want one of {}, or one of their parts", quote_clipped(name), known.join(", "));
             Failure::wrong_input(why).with_context("--signals")
         })
     }

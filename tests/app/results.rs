@@ -40,9 +40,8 @@ fn look(shot: Shot) -> Look {
 }
 
 fn picture_in(file: &Path) -> Picture {
-    let mut reader = png::Decoder::new(std::io::BufReader::new(fs::File::open(file).expect("a file")))
-        .read_info()
-        .expect("a PNG");
+    let mut reader =
+        png::Decoder::new(std::io::BufReader::new(fs::File::open(file).expect("a file"))).read_info().expect("a PNG");
     let mut rgba = vec![0; reader.output_buffer_size().expect("a size")];
     let info = reader.next_frame(&mut rgba).expect("a picture");
     Picture { width: info.width, height: info.height, rgba }
@@ -117,9 +116,13 @@ fn a_scene_may_be_transparent() {
         assert!(alpha(&clear, |a| a == 255) > 100 || !view.shows_machine(), "{view:?}: the machine is solid");
         // Laid over white, it looks as the light picture does.
         let over = |c: u8, a: u8| (u32::from(c) * u32::from(a) + 255 * (255 - u32::from(a))).div_ceil(255);
-        let far = clear.rgba.as_chunks::<4>().0.iter().zip(filled.rgba.as_chunks::<4>().0).filter(|(c, f)| {
-            (0..3).any(|i| over(c[i], c[3]).abs_diff(u32::from(f[i])) > 40)
-        });
+        let far = clear
+            .rgba
+            .as_chunks::<4>()
+            .0
+            .iter()
+            .zip(filled.rgba.as_chunks::<4>().0)
+            .filter(|(c, f)| (0..3).any(|i| over(c[i], c[3]).abs_diff(u32::from(f[i])) > 40));
         let far = far.count();
         assert!(far < 600, "{view:?}: {far} pixels differ");
     }
@@ -236,9 +239,13 @@ fn a_film_is_drawn_beside_the_window_and_can_be_cancelled() {
     let said = app_state.view_state().status.message.clone().expect("it is said");
     assert_eq!(said.text, "cancelled: no file is left");
     // The work ends at its next picture, and takes its temporary file with it.
-    let is_empty = || folder.names().is_empty();
-    (0..500).find(|_| is_empty() || std::thread::sleep(std::time::Duration::from_millis(20)) != ());
-    assert!(is_empty(), "{:?}", folder.names());
+    for _ in 0..500 {
+        if folder.names().is_empty() {
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    panic!("left: {:?}", folder.names());
 }
 
 /// A system with an encoder, or with one that fails: programs that say they are ffmpeg.
@@ -266,8 +273,8 @@ fn an_encoder_gets_every_picture() {
 
 fn values_are_those_of_the_plots_or_all() {
     let folder = Folder::new("results");
+    // Nothing is computed yet of the run: what is to be written is computed first.
     let mut app_state = app_state("case-1");
-    app_state.run_to_end();
     app_state.carry_out(ViewChange::Charts(PlotChange::Range(Some([0.25, 0.5]))));
     let choice = ValuesChoice { all: false, whole: false, form: RowForm::Csv };
     saved(&mut app_state, &folder.path("part.csv"), Export::Values(choice));

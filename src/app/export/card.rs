@@ -129,8 +129,7 @@ fn film_rows(ui: &mut Ui, choice: &mut FilmChoice, session: &Session, view_state
     ui.vertical(|ui| {
         ui.set_width(WIDTH_PT);
         for form in FilmForm::ALL {
-            let [title, use_for] = form.words();
-            ui.radio_value(&mut choice.form, form, title).on_hover_text(use_for);
+            ui.radio_value(&mut choice.form, form, form.words()[0]);
         }
         let words = egui::RichText::new(choice.form.words()[1]).font(plain(11.5));
         ui.add(egui::Label::new(words.color(colour(view_state.palette().dim))).wrap());

@@ -76,18 +76,22 @@ fn pictures(app_state: &mut AppState, times: [f64; 2]) -> Result<Vec<ReportPictu
     Ok(pictures)
 }
 
-/// Writes the report to a file.
+/// Writes the report to a file, unless `goes_on` stops it before.
 ///
 /// # Errors
-/// If the file cannot be written.
+/// If the file cannot be written, or is stopped.
 pub fn write_report(
     app_state: &mut AppState,
     command: Option<String>,
     file: &Path,
     force: bool,
+    goes_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<ReportDone, ExportError> {
     stillbase_files::check_new(file, force)?;
     let (page, done) = report(app_state, command);
+    if !goes_on(1.0) {
+        return Err(ExportError::Stopped);
+    }
     stillbase_files::write_new(file, page.as_bytes(), force)?;
     Ok(done)
 }

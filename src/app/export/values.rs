@@ -81,6 +81,9 @@ pub fn write_values(
             return Err(ExportError::Stopped);
         }
     }
+    if !goes_on(1.0) {
+        return Err(ExportError::Stopped);
+    }
     out.finish()?;
     Ok(end - start)
 }

@@ -22,6 +22,11 @@ pub struct DisplayCopy {
 }
 
 impl DisplayCopy {
+    /// Simulates the run to its end, as long as `goes_on` says so; it gets the fraction done.
+    pub fn run_to_end(&mut self, goes_on: &mut dyn FnMut(f64) -> bool) {
+        self.session.seek_while(self.session.length(), goes_on);
+    }
+
     /// Opens the copy, with all of its work done at once.
     pub fn open(self) -> AppState {
         let Self { session, view_state, comparison, fronts, opened_table } = self;

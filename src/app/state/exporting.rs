@@ -47,8 +47,9 @@ impl AppState {
 
     fn picture_work(&self, look: &Look) -> Work {
         let (copy, order) = (self.copy(), self.order(look));
-        Box::new(move |_, path, force| {
-            write_picture(&mut copy.open(), &order, path, force).map_err(|e| e.to_string())?;
+        Box::new(move |ticket, path, force| {
+            let goes_on = &mut |done| ticket.goes_on(done);
+            write_picture(&mut copy.open(), &order, path, force, goes_on).map_err(|e| e.to_string())?;
             let [width, height] = order.size_px;
             Ok(format!("saved {}, {width} × {height} pixels", absolute(path)))
         })
@@ -58,12 +59,12 @@ impl AppState {
         let FilmChoice { ref look, whole, fps, slow, .. } = *choice;
         let order = FilmOrder { picture: self.order(look), times: self.chosen_times(whole), fps, slow };
         order.count().map_err(|e| e.to_string())?;
-        let copy = self.copy();
+        let mut copy = self.copy();
         Ok(Box::new(move |ticket, path, force| {
-            let mut app_state = copy.open();
-            app_state.run_to_end();
             let goes_on = &mut |done| ticket.goes_on(done);
-            let done = write_film(&mut app_state, &order, path, force, goes_on).map_err(|e| e.to_string())?;
+            // The pictures take most of the time.
+            copy.run_to_end(&mut |_| goes_on(0.0));
+            let done = write_film(&mut copy.open(), &order, path, force, goes_on).map_err(|e| e.to_string())?;
             Ok(format!("saved {}, {}", absolute(path), counted(done.pictures, "picture")))
         }))
     }
@@ -78,20 +79,22 @@ impl AppState {
             }
         };
         let order = ValuesOrder { signals, times: self.chosen_times(choice.whole) };
-        let frames = self.session.frames().clone();
+        let mut session = self.session.clone();
         Box::new(move |ticket, path, force| {
             let goes_on = &mut |done| ticket.goes_on(done);
-            let rows = write_values(&frames, &order, path, force, goes_on).map_err(|e| e.to_string())?;
+            session.seek_while(order.times[1], &mut |_| goes_on(0.0));
+            let rows = write_values(session.frames(), &order, path, force, goes_on).map_err(|e| e.to_string())?;
             let columns = counted(order.signals.len(), "signal");
             Ok(format!("saved {}, {} of {columns}", absolute(path), counted(rows, "row")))
         })
     }
 
     fn report_work(&self) -> Work {
-        let copy = self.copy();
-        Box::new(move |_, path, force| {
-            let mut app_state = copy.open();
-            write_report(&mut app_state, None, path, force).map_err(|e| e.to_string())?;
+        let mut copy = self.copy();
+        Box::new(move |ticket, path, force| {
+            let goes_on = &mut |done| ticket.goes_on(done);
+            copy.run_to_end(&mut |done| goes_on(0.5 * done));
+            write_report(&mut copy.open(), None, path, force, goes_on).map_err(|e| e.to_string())?;
             Ok(format!("saved {}; a browser shows and prints it", absolute(path)))
         })
     }

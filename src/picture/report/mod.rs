@@ -66,19 +66,25 @@ impl Report<'_> {
     fn pictures_html(&self) -> String {
         match &self.pictures {
             Err(why) => format!("<p>No picture was drawn: {}</p>\n", escaped(why)),
-            Ok(pictures) => row_of("row", pictures.iter().map(|picture| {
-                let (caption, png) = (escaped(&picture.caption), base64(&picture.png));
-                format!(
-                    "<figure><img alt=\"{caption}\" src=\"data:image/png;base64,{png}\"/><figcaption>{caption}\
+            Ok(pictures) => row_of(
+                "row",
+                pictures.iter().map(|picture| {
+                    let (caption, png) = (escaped(&picture.caption), base64(&picture.png));
+                    format!(
+                        "<figure><img alt=\"{caption}\" src=\"data:image/png;base64,{png}\"/><figcaption>{caption}\
                      </figcaption></figure>\n"
-                )
-            })),
+                    )
+                }),
+            ),
         }
     }
 
     fn figures_html(&self) -> String {
         let figures = self.figures.iter().enumerate();
-        row_of("row small", figures.map(|(i, figure)| format!("<figure>{}</figure>\n", svg_element(figure, &format!("axes-{i}")))))
+        row_of(
+            "row small",
+            figures.map(|(i, figure)| format!("<figure>{}</figure>\n", svg_element(figure, &format!("axes-{i}")))),
+        )
     }
 
     fn repeat(&self) -> String {
@@ -136,6 +142,6 @@ pre { background: #f5f6f8; padding: 8px 10px; border-radius: 4px; white-space: p
   .side { margin-right: 16px; }
   .row { display: block; }
   figure { display: inline-block; vertical-align: top; width: 49%; margin: 0 0.5% 3px 0; }
-  .small figure { width: 32.5%; }
+  .small figure { width: 31.8%; margin-right: 0.8%; }
 }
 ";

@@ -9,7 +9,7 @@ use stillbase_settings::change;
 use stillbase_settings::key::Key;
 use stillbase_settings::number::{counted, fixed, nine_digits};
 use stillbase_study::balance_constants::BalanceConstants;
-use stillbase_study::comparison::{Comparison, DESIGN_COLUMNS, SUMMARY_COLUMNS, Summary};
+use stillbase_study::comparison::{Comparison, DESIGN_COLUMNS, SUMMARY_COLUMNS, Summary, SummaryColumn};
 
 /// Decimals of torques, and of reactions and motions of the base, as on the command line.
 const TORQUE_DECIMALS: usize = 6;
@@ -146,22 +146,36 @@ fn shortened(value: &str) -> String {
     }
 }
 
+/// A column of the table of runs.
+struct Column {
+    /// Its index among all columns.
+    place: usize,
+    head: &'static str,
+    unit: &'static str,
+    decimals: usize,
+}
+
+impl Column {
+    fn of<T>(place: usize, column: &SummaryColumn<T>) -> Self {
+        let SummaryColumn { head, unit, decimals, .. } = *column;
+        Self { place, head, unit, decimals }
+    }
+}
+
 /// Returns the table of runs in the order on display; columns without a value are left out.
 pub(super) fn compared(comparison: &Comparison) -> String {
     let entries = comparison.entries();
     let runs = || entries.iter().filter_map(|entry| Some(&entry.outcome.as_ref().ok()?.summary));
     let moves = runs().any(|run: &Summary| run.base_shift > 0.0 || run.base_tilt > 0.0);
-    let of_runs = SUMMARY_COLUMNS.iter().map(|c| {
-        let has_value = runs().any(|run| (c.value)(run).is_some());
-        (c.head, c.unit, c.decimals, has_value && (moves || !matches!(c.key, "base_shift" | "base_tilt")))
-    });
+    let has_value = |c: &SummaryColumn| runs().any(|run| (c.value)(run).is_some());
+    let is_shown = |c: &SummaryColumn| has_value(c) && (moves || !matches!(c.key, "base_shift" | "base_tilt"));
+    let of_runs = SUMMARY_COLUMNS.iter().enumerate().filter(|(_, c)| is_shown(c)).map(|(i, c)| Column::of(i, c));
     let designs = if comparison.has_designs() { &DESIGN_COLUMNS[..] } else { &[] };
-    let of_designs = designs.iter().map(|c| (c.head, c.unit, c.decimals, true));
-    let columns: Vec<(usize, (&str, &str, usize, bool))> =
-        of_runs.chain(of_designs).enumerate().filter(|(_, (.., shown))| *shown).collect();
-    let heads = columns.iter().map(|(_, (head, unit, ..))| match *unit {
-        "1" => (*head).to_owned(),
-        unit => format!("{head} {unit}"),
+    let of_designs = designs.iter().enumerate().map(|(i, c)| Column::of(SUMMARY_COLUMNS.len() + i, c));
+    let columns: Vec<Column> = of_runs.chain(of_designs).collect();
+    let heads = columns.iter().map(|column| match column.unit {
+        "1" => column.head.to_owned(),
+        unit => format!("{} {unit}", column.head),
     });
     let mut table = PageTable::new(1, ["run".to_owned()].into_iter().chain(heads).chain(["reactionless".to_owned()]));
     let mut refused = String::new();
@@ -169,9 +183,8 @@ pub(super) fn compared(comparison: &Comparison) -> String {
         let entry = &entries[i];
         match &entry.outcome {
             Ok(run) => {
-                let cells = columns.iter().map(|(column, (_, _, decimals, _))| {
-                    entry.value(*column).map_or_else(|| NO_VALUE.into(), |x| fixed(x, *decimals))
-                });
+                let value = |column: &Column| entry.value(column.place).map(|x| fixed(x, column.decimals));
+                let cells = columns.iter().map(|column| value(column).unwrap_or_else(|| NO_VALUE.into()));
                 let verdict = run.summary.verdict.answer();
                 table.row([entry.title.clone()].into_iter().chain(cells).chain([verdict]));
             }

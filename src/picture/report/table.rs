@@ -32,14 +32,18 @@ impl PageTable {
         if self.rows.is_empty() {
             return String::new();
         }
-        let is_number = |cell: &String| ["", NO_VALUE].contains(&cell.as_str()) || cell.parse::<f64>().is_ok();
-        let has_numbers = |i: usize| i >= self.names && self.rows.iter().filter_map(|row| row.get(i)).all(is_number);
+        let column = |i: usize| self.rows.iter().filter_map(move |row| row.get(i).map(String::as_str));
+        let is_number = |cell: &str| cell.parse::<f64>().is_ok();
+        let has_numbers = |i: usize| {
+            i >= self.names
+                && column(i).any(is_number)
+                && column(i).all(|cell| is_number(cell) || ["", NO_VALUE].contains(&cell))
+        };
         let classes: Vec<&str> =
             (0..self.heads.len()).map(|i| if has_numbers(i) { " class=\"number\"" } else { "" }).collect();
         let line = |tag: &str, cells: &[String]| {
             let cells = cells.iter().zip(&classes);
-            let cells: String =
-                cells.map(|(cell, class)| format!("<{tag}{class}>{}</{tag}>", escaped(cell))).collect();
+            let cells: String = cells.map(|(cell, class)| format!("<{tag}{class}>{}</{tag}>", escaped(cell))).collect();
             format!("<tr>{cells}</tr>\n")
         };
         let head = if self.heads.iter().all(String::is_empty) { String::new() } else { line("th", &self.heads) };
