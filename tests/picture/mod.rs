@@ -5,6 +5,7 @@ mod film;
 mod mesh;
 mod palette;
 mod plots;
+mod report;
 mod scene;
 #[cfg(feature = "render")]
 mod shaders;

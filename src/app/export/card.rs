@@ -1,6 +1,6 @@
 //! The card with the choices for a result that becomes a file.
 
-use egui::{Align2, ComboBox, DragValue, Grid, Ui};
+use egui::{Align2, ComboBox, DragValue, Grid, ScrollArea, Ui};
 
 use super::{DisplaySize, Export, FilmChoice, FilmForm, Look, PictureSize, RowForm, ValuesChoice};
 use crate::shot::Shot;
@@ -14,17 +14,26 @@ use stillbase_settings::number::fixed;
 /// Width of the column of choices, points.
 const WIDTH_PT: f32 = 330.0;
 
+/// Distance of the card from the upper edge of a large window, points.
+const MAX_TOP_PT: f32 = 120.0;
+/// Height of title and buttons of the card, and of the status line, points.
+const FRAME_HEIGHT_PT: f32 = 160.0;
+
 /// Draws the card, if it is open.
 pub fn show(ctx: &egui::Context, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let Some(before) = &view_state.open.export else { return };
     let (mut export, mut open) = (before.clone(), true);
+    let height = ctx.content_rect().height();
+    let top = (0.13 * height).min(MAX_TOP_PT);
     egui::Window::new(export.title())
         .open(&mut open)
         .collapsible(false)
         .resizable(false)
-        .anchor(Align2::CENTER_TOP, [0.0, 120.0])
+        .anchor(Align2::CENTER_TOP, [0.0, top])
         .show(ctx, |ui| {
-            Grid::new("choices").num_columns(2).spacing([14.0, 8.0]).show(ui, |ui| match &mut export {
+            // In a small window the choices scroll, so that the buttons stay in view.
+            let choices = ScrollArea::vertical().max_height((height - top - FRAME_HEIGHT_PT).max(60.0));
+            let rows = |ui: &mut Ui| match &mut export {
                 Export::Picture(look) => {
                     look_rows(ui, look, &view_state.displayed);
                     let has_scene = look.shot != Shot::Window;
@@ -37,7 +46,8 @@ pub fn show(ctx: &egui::Context, session: &Session, view_state: &ViewState, comm
                 Export::Film(choice) => film_rows(ui, choice, session, view_state),
                 Export::Values(choice) => values_rows(ui, choice, session, view_state),
                 Export::Report => {}
-            });
+            };
+            choices.show(ui, |ui| Grid::new("choices").num_columns(2).spacing([14.0, 8.0]).show(ui, rows));
             ui.add_space(6.0);
             ui.horizontal(|ui| {
                 let choose = ui.button("Choose a file…");
@@ -128,9 +138,13 @@ fn film_rows(ui: &mut Ui, choice: &mut FilmChoice, session: &Session, view_state
     ui.label("Format");
     ui.vertical(|ui| {
         ui.set_width(WIDTH_PT);
-        for form in FilmForm::ALL {
-            ui.radio_value(&mut choice.form, form, form.words()[0]);
-        }
+        let chooser = ComboBox::from_id_salt("format").selected_text(choice.form.words()[0]).width(240.0);
+        let chooser = chooser.show_ui(ui, |ui| {
+            for form in FilmForm::ALL {
+                ui.selectable_value(&mut choice.form, form, form.words()[0]);
+            }
+        });
+        name(&chooser.response, "Format of the film");
         let words = egui::RichText::new(choice.form.words()[1]).font(plain(11.5));
         ui.add(egui::Label::new(words.color(colour(view_state.palette().dim))).wrap());
     });
