@@ -204,7 +204,7 @@ impl SimulateArguments {
         written?;
         if rows == 0 {
             let end = fixed(run.frame().time, 3);
-            let why = format!("no row from {from} to {to} s: want times within the run, 0 to {end} s");
+            let why = format!("no step from {from} to {to} s: want an interval with one, within the run, 0 to {end} s");
             return Err(Failure::wrong_input(why).with_context(&scenario.name));
         }
         if let Some(csv) = csv {
@@ -257,10 +257,14 @@ impl SimulateArguments {
             return Ok(all);
         }
         chosen_signals(&all, &self.signals).map_err(|name| {
-            let mut known: Vec<&str> = all.iter().map(Signal::group).collect();
-            known.dedup();
+            let mut known: Vec<&str> = Vec::new();
+            for group in all.iter().map(Signal::group) {
+                if !known.contains(&group) {
+                    known.push(group);
+                }
+            }
             let why =
-                format!("no signal {}: want one of {}, or one of their parts", quote_clipped(name), known.join(", "));
+                format!("no signal {:?}: want one of {}, or one of their parts", quote_clipped(name), known.join(", "));
             Failure::wrong_input(why).with_context("--signals")
         })
     }

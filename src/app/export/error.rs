@@ -45,14 +45,6 @@ pub enum ExportError {
         /// Largest number of pictures.
         most: f64,
     },
-    /// No signal has this name.
-    #[error("there is no signal {name}: want one of {known}")]
-    Signal {
-        /// The name.
-        name: String,
-        /// Names of signals.
-        known: String,
-    },
     /// The user has stopped it.
     #[error("stopped: no file is left")]
     Stopped,

@@ -15,7 +15,7 @@ pub use error::ExportError;
 pub use film::{FilmDone, FilmOrder, check_film, write_film};
 pub use film_form::FilmForm;
 pub use picture::write_picture;
-pub use report::{ReportDone, report, write_report};
+pub use report::{ReportDone, write_report};
 pub use size::{DisplaySize, PictureSize};
 pub use values::{RowForm, ValuesOrder, write_values};
 

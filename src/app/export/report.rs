@@ -36,7 +36,7 @@ pub struct ReportDone {
 
 /// Simulates the run on display to its end and returns the report as a page. `command` repeats the run; without one,
 /// the settings of the session make one if they can.
-pub fn report(app_state: &mut AppState, command: Option<String>) -> (String, ReportDone) {
+fn report(app_state: &mut AppState, command: Option<String>) -> (String, ReportDone) {
     let end = app_state.run_to_end();
     let pictures = pictures(app_state, [0.0, end]);
     app_state.carry_out(SessionCommand::Seek(end));
