@@ -177,8 +177,8 @@
 //! | `tables` | motions from tables of numbers (CSV) | 80 |
 //! | `cli` | the program and its subcommands; parquet files of a study | 121 |
 //! | `render` | pictures of scenes, drawn on the GPU by wgpu; films | 132 |
-//! | `ui` | panels, plots and figures, without a window | 164 |
-//! | `window` | the window around them | 273 |
+//! | `ui` | panels, plots and figures, without a window | 177 |
+//! | `window` | the window around them | 285 |
 //! | `record` | recordings for the Rerun viewer | 296 |
 //!
 //! `window`, `record` and `cli` are enabled by default, 471 crates together. `tables`, `render` and `ui` are enabled by
@@ -268,6 +268,8 @@
 //!   of the view a `ViewChange` (`app/view_change.rs` applies it), and things that are on or off a `Switch`. Its words
 //!   and its keys are one row of `app/actions.rs`, which the keyboard, the list of commands, the card of keys and the
 //!   menus use.
+//! * **A result that becomes a file**: a variant of `Export` (`app/export/`) with its choices on the card and its
+//!   function that writes it, which the command line calls too; `app/state/exporting.rs` runs it beside the window.
 //! * **A panel**: a file in `app/` that shows an answer and pushes commands, called in `app/state/pass.rs`. A panel
 //!   below the scene is also a variant of `BottomPanel` (`app/layout.rs`) and of `Switch`. Its button is a row of
 //!   `app/rail.rs`, its icon is in `app/icon.rs`, and its words and its key are a row of `app/actions.rs`.

@@ -4,6 +4,7 @@
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::command::CameraMove;
+use super::export::Export;
 use super::theme::other;
 use super::{
     BottomPanel, Command, FileDialog, FilePurpose, Layout, PlotFile, SessionCommand, Switch, ViewChange, ViewState,
@@ -142,6 +143,11 @@ fn case(i: usize) -> Option<Command> {
 
 fn dialog(session: &Session, purpose: FilePurpose) -> Option<Command> {
     Some(Command::View(ViewChange::Dialog(Some(FileDialog::suggest(session, purpose)))))
+}
+
+/// Opens the card with the choices for a result that becomes a file.
+fn export(wanted: Export) -> Option<Command> {
+    Some(Command::View(ViewChange::Export(Some(wanted))))
 }
 
 /// Opens the present machine and task as a new session without edits.
@@ -342,6 +348,16 @@ pub const ACTIONS: &[Action] = actions![
         |s, v| plot_file(s, v, PlotFile::Png);
     Export, "Drawing of the first plot as SVG" = "picture image vector export figure save", [], "menu of a plot",
         |s, v| plot_file(s, v, PlotFile::Svg);
+    Export, "Picture of the scene or the whole window as PNG" = "image export screenshot snapshot figure save transparent", [on(CTRL, Key::E)], "top bar, File", |_, v| {
+        export(Export::picture(v.arrangement.theme))
+    };
+    Export, "Film of the run: GIF, animated PNG, MP4 or pictures" = "movie video animation export mp4 frames save", [on(CTRL_SHIFT, Key::E)], "top bar, File", |_, v| {
+        export(Export::film(v.arrangement.theme))
+    };
+    Export, "Values of signals as CSV or Parquet" = "export table data numbers spreadsheet excel columns save", [], "top bar, File", |_, _| export(Export::values());
+    Export, "Report as HTML: machine, task, verdicts and plots" = "print page document pdf summary export save", [on(CTRL, Key::P)], "top bar, File", |s, _| {
+        dialog(s, FilePurpose::Export(Export::Report))
+    };
     Export, "Take the machine elsewhere: MJCF, URDF, DXF…" = "export cad mujoco ros robot svg csv parts list write", [], "design", |s, _| dialog(s, FilePurpose::Machine);
     Save, "Record for the Rerun viewer" = "rrd video capture export movie", [on(PLAIN, Key::R)], "top bar", |s, _| dialog(s, FilePurpose::Record);
     Help, "Find a command" = "palette search", [on(CTRL, Key::K)], "top bar" turns Finder;

@@ -11,6 +11,8 @@ pub enum Activity {
     Saving,
     /// Writing a recording.
     Recording,
+    /// Writing a picture, a film, values of signals or a report.
+    Exporting,
     /// Assessing a table.
     Table,
     /// Sampling machines for a study of tolerances.
@@ -34,6 +36,7 @@ impl Activity {
             Self::Opening => ("opening", Some("cancelled: nothing was opened")),
             Self::Saving => ("saving", None),
             Self::Recording => ("recording", Some("cancelled: no file is left")),
+            Self::Exporting => ("writing the file", Some("cancelled: no file is left")),
             Self::Table => ("finding what the table says", Some("cancelled: another choice asks the table again")),
             Self::Study => ("drawing machines", Some("cancelled: no machines were drawn for the run as it is")),
             Self::TaskVariants => {

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::activity::Activity;
+use super::export::Export;
 use super::file_dialog::{FileDialog, FilePurpose, PlotFile};
 use super::given::assess::{TableAction, TableOptions};
 use super::layout::Layout;
@@ -88,6 +89,8 @@ pub enum SessionCommand {
     Record(PathBuf),
     /// Write the plot of a name to a file.
     WritePlot(PathBuf, String, PlotFile),
+    /// Write a picture, a film, values of signals or a report.
+    Export(PathBuf, Export),
     /// Write the machine to a file for another program, in the format of its extension.
     TakeElsewhere(PathBuf),
     /// Allow the next write to replace this file: the user has agreed.
@@ -209,6 +212,8 @@ pub enum ViewChange {
     LeaveNaming,
     /// Open or close the file dialog.
     Dialog(Option<FileDialog>),
+    /// Open, change or close the card with the choices for a result that becomes a file.
+    Export(Option<Export>),
 }
 
 /// A command to the window, or to the work in the background.
@@ -296,6 +301,7 @@ impl FileDialog {
             FilePurpose::Save => SessionCommand::SaveFile(file),
             FilePurpose::Record => SessionCommand::Record(file),
             FilePurpose::Plot(plot, kind) => SessionCommand::WritePlot(file, plot, kind),
+            FilePurpose::Export(wanted) => SessionCommand::Export(file, wanted),
             FilePurpose::Machine => SessionCommand::TakeElsewhere(file),
         }
     }

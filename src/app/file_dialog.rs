@@ -1,5 +1,6 @@
 //! [`FileDialog`]: the dialog for a file name.
 
+use super::export::Export;
 use stillbase_exchange::form;
 use stillbase_session::Session;
 
@@ -13,7 +14,7 @@ pub struct FileDialog {
 }
 
 /// Purpose of a file name.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum FilePurpose {
     /// Open a session, a machine or a table.
     Open,
@@ -23,6 +24,8 @@ pub enum FilePurpose {
     Record,
     /// Write the plot of this name.
     Plot(String, PlotFile),
+    /// Write a picture, a film, values of signals or a report.
+    Export(Export),
     /// Write the machine for another program.
     Machine,
 }
@@ -59,6 +62,7 @@ impl FilePurpose {
             Self::Open => ["Open a file", "Open", ".toml .urdf .xml .csv"],
             Self::Save => ["Save the session", "Save", "session.toml"],
             Self::Record => ["Record for the Rerun viewer", "Record", "run.rrd"],
+            Self::Export(wanted) => [wanted.title(), "Save", wanted.example()],
             Self::Machine => ["Take along", "Save", "machine.urdf"],
             Self::Plot(_, PlotFile::Csv) => ["Save the values of the time shown", "Save", "plot.csv"],
             Self::Plot(_, PlotFile::Svg) => ["Save the plot as a drawing", "Save", "plot.svg"],
@@ -71,6 +75,10 @@ impl FilePurpose {
         let [title, ..] = self.words();
         match self {
             Self::Machine => format!("{title}: .{}", form::endings().join(" .")),
+            Self::Export(wanted) => match &wanted.naming().1[..] {
+                [] => format!("{title}: a folder"),
+                endings => format!("{title}: .{}", endings.join(" .")),
+            },
             _ => title.into(),
         }
     }
@@ -91,6 +99,10 @@ impl FileDialog {
             FilePurpose::Save => free(own, "toml"),
             FilePurpose::Record => free(own, "rrd"),
             FilePurpose::Machine => free(session.scenario().machine.name(), form::DEFAULT_EXTENSION),
+            FilePurpose::Export(wanted) => {
+                let (addition, endings) = wanted.naming();
+                free(&format!("{own}{addition}"), endings.first().copied().unwrap_or_default())
+            }
             FilePurpose::Plot(plot, file) => {
                 free(&format!("{own} {}", plot.to_lowercase()), &file.words().to_lowercase())
             }

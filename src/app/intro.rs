@@ -193,9 +193,10 @@ impl Intro {
     /// Draws the straight run on the left of a view, with its caption.
     pub fn show_straight(&self, ui: &Ui, rect: egui::Rect, now: &Instant, camera: &Camera, view_state: &ViewState) {
         let Some((frame, scene)) = self.straight(now, view_state.arrangement.theme) else { return };
+        let scene = Scene { notation: view_state.arrangement.notation, ..scene };
         let (p, scene) = (view_state.palette(), Arc::new(scene));
         paint(ui, 1, rect, &scene, camera);
-        draw_labels(ui, &SceneViewport { rect, camera: *camera }, &scene, &[], view_state.arrangement.notation);
+        draw_labels(ui, &SceneViewport { rect, camera: *camera }, &scene, &[]);
         let turn = MOUNT_COMPLIANCE.to_degrees();
         let words = format!("From A to B along a line. The arm shakes its base, drawn {turn:.0}° for 1 N m.");
         let words = view_state.arrangement.notation.sentence(&words);

@@ -11,10 +11,12 @@ use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Session;
 
 /// Turns pressed keys into commands. While a text field has the focus, only keys that it does not use count: Ctrl S,
-/// Ctrl O, Ctrl K and F1.
+/// Ctrl O, Ctrl K, Ctrl P and F1.
 pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
-    let typing =
-        ctx.egui_wants_keyboard_input() || view_state.open.dialog.is_some() || view_state.open.finder.is_some();
+    let typing = ctx.egui_wants_keyboard_input()
+        || view_state.open.dialog.is_some()
+        || view_state.open.export.is_some()
+        || view_state.open.finder.is_some();
     let pressed = |key: &KeyboardShortcut| ctx.input_mut(|i| i.consume_shortcut(key));
     // During a drag or with a list open, Esc only ends the drag or closes the list.
     let busy = view_state.gesture.grabbed.is_some()
@@ -59,7 +61,7 @@ fn works_while_typing(key: &KeyboardShortcut) -> bool {
 
 /// Whether the key opens a text field: the list of commands, or a file name.
 fn asks_for_text(key: &KeyboardShortcut) -> bool {
-    key.modifiers.command && [Key::S, Key::O, Key::K].contains(&key.logical_key)
+    key.modifiers.command && [Key::S, Key::O, Key::K, Key::P].contains(&key.logical_key)
 }
 
 /// Returns the command of Esc.
@@ -67,6 +69,7 @@ fn escape(view_state: &ViewState) -> Command {
     let ViewState { open, tool, arrangement, .. } = view_state;
     match open {
         OpenDialogs { dialog: Some(_), .. } => ViewChange::Dialog(None).into(),
+        OpenDialogs { export: Some(_), .. } => ViewChange::Export(None).into(),
         OpenDialogs { finder: Some(_), .. } => ViewChange::Switch(Switch::Finder, false).into(),
         OpenDialogs { help: true, .. } => ViewChange::Switch(Switch::Help, false).into(),
         _ if matches!(tool, Tool::Draw(_)) => ViewChange::Switch(Switch::Drawing, false).into(),

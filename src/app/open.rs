@@ -1,6 +1,7 @@
 //! Dialogs, lists and cards that are open over the window.
 
 use super::FileDialog;
+use super::export::Export;
 use super::tour::Tour;
 
 /// State of the list of commands.
@@ -27,6 +28,8 @@ pub struct OpenDialogs {
     pub finder: Option<Finder>,
     /// The file dialog.
     pub dialog: Option<FileDialog>,
+    /// The card with the choices for a result that becomes a file.
+    pub export: Option<Export>,
     /// The time of the bookmark that is being named, s.
     pub naming: Option<f64>,
 }

@@ -3,7 +3,9 @@
 mod background;
 mod carry_out;
 mod changing;
+mod copy;
 mod designing;
+mod exporting;
 mod given;
 mod opening;
 mod pass;

@@ -145,6 +145,7 @@ impl ViewState {
             }
             ViewChange::LeaveNaming => self.open.naming = None,
             ViewChange::Dialog(dialog) => self.open.dialog = dialog,
+            ViewChange::Export(export) => self.open.export = export,
         }
     }
 }

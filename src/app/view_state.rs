@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::CameraMove;
+use super::export::DisplaySize;
 use super::gesture::{DragGesture, HoverTarget, Tool};
 use super::layout::{BottomPanel, Layout, WindowArrangement};
 use super::open::OpenDialogs;
@@ -90,6 +91,8 @@ pub struct ViewState {
     pub turn_task: bool,
     /// Whether the drawn motion of the base is enlarged.
     pub exaggerates_base: bool,
+    /// Size of window and scene on display.
+    pub displayed: DisplaySize,
     /// Index of the point of the Pareto front whose counterweights are shown.
     pub ghost: Option<usize>,
     /// The measure that colours the points of the Pareto front.
@@ -122,6 +125,7 @@ impl ViewState {
             drives: [0, 1, 2],
             turn_task: false,
             exaggerates_base: true,
+            displayed: DisplaySize::default(),
             ghost: None,
             front_by: None,
         }

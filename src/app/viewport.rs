@@ -16,6 +16,8 @@ use super::{
 use stillbase_mechanics::planar::{DriveAngles, Vector};
 use stillbase_picture::paint::labels::draw_labels;
 use stillbase_picture::paint::{SceneViewport, paint};
+use stillbase_picture::scene::Scene;
+use stillbase_picture::scene::camera::Camera;
 use stillbase_picture::scene::exaggeration::{DrawnFrame, Exaggeration};
 use stillbase_picture::scene::options::{Handle, OtherRun, ViewOptions, WeightOption};
 use stillbase_picture::scene::pick::Pick;
@@ -40,7 +42,7 @@ pub struct SceneContent<'a> {
 
 /// Draws the scene and handles the pointer; returns the rectangle of the scene.
 pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, commands: &mut Vec<Command>) -> Rect {
-    let SceneContent { session, views, exaggeration, comparison, intro, weights } = content;
+    let SceneContent { session, views, exaggeration, intro, .. } = content;
     let shown = CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let mut room = ui.available_size();
@@ -88,38 +90,19 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
             }
         }
         let options = ViewOptions {
-            theme: view_state.arrangement.theme,
-            dexterity: view_state.dexterity,
-            highlighted: view_state
-                .gesture
-                .grabbed
-                .map(|pick| pick.handle)
-                .or(view_state.pointed.object)
-                .or(view_state.pointed.panel_object),
             drag_position: view_state.gesture.position,
-            preview_b: view_state.pointed.preview,
             stroke: drawn(&view_state.tool),
             refused: view_state.status.refused.as_ref().and_then(|r| r.curve.clone()),
-            snapshots: if view_state.snapshots { snapshots(session) } else { Vec::new() },
-            others: comparison.map_or_else(Vec::new, |comparison| others(comparison, session.frame().time)),
-            exaggeration,
-            external_force: force(session),
-            pin_forces: view_state.pins,
-            limits: true,
-            shadows: view_state.view == ViewKind::Space,
             show_hints: session.can_be_dragged(),
             compares: both.is_none(),
-            weights: weights.to_vec(),
-            links: view_state.pointed.lit_links.clone(),
-            scale: None,
-            notation: view_state.arrangement.notation,
+            ..options(content, view_state)
         };
         let scene = Arc::new(views.scene(view_state.view, session.frame(), &options, view_state.camera()));
         paint(ui, 0, rect, &scene, view_state.camera());
         let spot = SceneViewport { rect, camera: *view_state.camera() };
         // The problem message covers the scene while it lasts.
         covered.extend(status::has_bad_news(session, view_state).then(|| status::news_rect(ui.ctx())).flatten());
-        draw_labels(ui, &spot, &scene, &covered, view_state.arrangement.notation);
+        draw_labels(ui, &spot, &scene, &covered);
         corner::show(ui, rect, view_state, views, commands);
         coordinates::show(ui, rect, session, views, view_state, commands);
         let seen = |at: [f64; 3]| spot.screen(at).is_some_and(|at| rect.contains(at));
@@ -142,6 +125,43 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
         rect
     });
     shown.inner
+}
+
+/// Returns the scene on display without hints at gestures, framed for a picture of a size in points.
+pub fn still(content: SceneContent<'_>, size: [f32; 2], view_state: &mut ViewState) -> (Scene, Camera) {
+    let SceneContent { session, views, .. } = content;
+    let rect = Rect::from_min_size(Pos2::ZERO, size.into());
+    framing::keep_framed(rect, &[], session, views, || motion(session), view_state);
+    let options = ViewOptions { show_hints: false, ..options(content, view_state) };
+    let camera = *view_state.camera();
+    (views.scene(view_state.view, session.frame(), &options, &camera), camera)
+}
+
+/// Returns the options of the scene on display that do not come from a gesture.
+fn options(content: SceneContent<'_>, view_state: &ViewState) -> ViewOptions {
+    let SceneContent { session, exaggeration, comparison, weights, .. } = content;
+    ViewOptions {
+        theme: view_state.arrangement.theme,
+        dexterity: view_state.dexterity,
+        highlighted: view_state
+            .gesture
+            .grabbed
+            .map(|pick| pick.handle)
+            .or(view_state.pointed.object)
+            .or(view_state.pointed.panel_object),
+        preview_b: view_state.pointed.preview,
+        snapshots: if view_state.snapshots { snapshots(session) } else { Vec::new() },
+        others: comparison.map_or_else(Vec::new, |comparison| others(comparison, session.frame().time)),
+        exaggeration: Exaggeration::Times(exaggeration),
+        external_force: force(session),
+        pin_forces: view_state.pins,
+        limits: true,
+        shadows: view_state.view == ViewKind::Space,
+        weights: weights.to_vec(),
+        links: view_state.pointed.lit_links.clone(),
+        notation: view_state.arrangement.notation,
+        ..ViewOptions::default()
+    }
 }
 
 /// Returns the screen rectangles of the objects that hints mention: the target, and the ring of b with its label.

@@ -110,7 +110,8 @@ impl CompareArguments {
 
     #[cfg(not(feature = "record"))]
     fn record(&self, _: &[Scenario], file: &std::path::Path) -> Result<(), Failure> {
-        Err(Failure::wrong_input("this build cannot record: want a name that ends in .csv").of(file.display()))
+        Err(Failure::wrong_input("this build cannot record: want a name that ends in .csv")
+            .with_context(file.display()))
     }
 
     fn csv(&self, runs: &[ComparisonRow], file: &std::path::Path) -> Result<(), Failure> {

@@ -3,8 +3,13 @@
 use std::fmt::Display;
 use std::io;
 
+#[cfg(feature = "ui")]
+use stillbase_app::export::ExportError;
 use stillbase_files::WriteError;
+use stillbase_files::row_file::RowError;
 use stillbase_files::table::TableError;
+#[cfg(feature = "ui")]
+use stillbase_files::video::VideoError;
 use stillbase_mechanics::balance::DesignError;
 use stillbase_mechanics::joint_forces::JointsError;
 use stillbase_mechanics::machine::{FileError, MachineError};
@@ -101,6 +106,23 @@ impl From<ScenarioError> for Failure {
 impl From<TableError> for Failure {
     fn from(e: TableError) -> Self {
         Self::wrong_input(e.worded(option))
+    }
+}
+
+impl From<RowError> for Failure {
+    fn from(e: RowError) -> Self {
+        Self::wrong_input(e)
+    }
+}
+
+#[cfg(feature = "ui")]
+impl From<ExportError> for Failure {
+    fn from(e: ExportError) -> Self {
+        match e {
+            ExportError::Adapter(_) | ExportError::Picture(_) | ExportError::Stopped => Self::no_answer(e),
+            ExportError::Video(VideoError::NoEncoder | VideoError::Encoder { .. }) => Self::no_answer(e),
+            _ => Self::wrong_input(e),
+        }
     }
 }
 

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use stillbase_app::{AppState, Command, ComparisonCommand, SessionCommand, Switch, ViewChange, WindowCommand};
+use stillbase_app::{
+    AppState, Command, ComparisonCommand, PictureOrder, SessionCommand, Shot, Switch, ViewChange, WindowCommand,
+};
 use stillbase_files::write_new;
-use stillbase_picture::canvas::Canvas;
-use stillbase_picture::render::offscreen::{NoAdapter, Picture};
+use stillbase_picture::render::offscreen::Picture;
 use stillbase_picture::scene::palette::Theme;
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_session::Edit;
@@ -15,7 +16,6 @@ use stillbase_session::scenario::{TaskChange, Value};
 
 use super::exit::print_message;
 use super::failure::Failure;
-use super::shot::Shot;
 
 /// Draw the pictures of the documentation in both themes, without a display: the window, joint space and the tower
 #[derive(Args)]
@@ -41,10 +41,12 @@ enum Shown {
 }
 
 impl Shown {
-    fn shot(&self) -> Shot {
+    fn order(&self, theme: Theme) -> PictureOrder {
         match self {
-            Self::Window(_) => Shot::Window,
-            Self::Scene(view) => Shot::View(*view),
+            Self::Window(_) => PictureOrder { scale: 1.0, ..PictureOrder::new(Shot::Window, theme, [1440, 900]) },
+            Self::Scene(view) => {
+                PictureOrder { scale: 1.25, ..PictureOrder::new(Shot::View(*view), theme, [1200, 1000]) }
+            }
         }
     }
 }
@@ -70,9 +72,10 @@ impl FiguresArguments {
                 commands().into_iter().for_each(|command| app_state.carry_out(command));
             }
             // Both themes share a canvas, so that its fonts are loaded once.
-            let mut canvas = shown.canvas().map_err(Failure::no_answer)?;
+            let mut canvas = shown.order(Theme::Dark).canvas().map_err(Failure::no_answer)?;
             for (theme, word) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
-                let picture = shown.shot().draw(&mut canvas, &mut app_state, theme).map_err(Failure::no_answer)?;
+                let drawn = shown.order(theme).draw(&mut canvas, &mut app_state);
+                let picture = drawn.map_err(Failure::no_answer)?;
                 self.write(&format!("{name}-{word}.png"), &picture)?;
             }
         }
@@ -84,15 +87,6 @@ impl FiguresArguments {
         write_new(&file, &picture.to_png().map_err(Failure::no_answer)?, self.force)?;
         print_message(format!("wrote {}", file.display()));
         Ok(())
-    }
-}
-
-impl Shown {
-    fn canvas(&self) -> Result<Canvas, NoAdapter> {
-        match self {
-            Self::Window(_) => Canvas::new([1440, 900], 1.0),
-            Self::Scene(_) => Canvas::new([1200, 1000], 1.25),
-        }
     }
 }
 

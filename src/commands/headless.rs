@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use stillbase_recording::{Options, Pictures, RecordError, Recording, RecordingProgress, record};
 use stillbase_session::scenario::Scenario;
@@ -14,6 +13,7 @@ use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{Settings, scenario};
 use super::output::{Format, TextTable, check_output};
+use super::progress::bar;
 use super::simulate::require_audit;
 use super::size::size;
 use stillbase_settings::number::fixed;
@@ -149,10 +149,7 @@ pub fn unpictured() -> Options {
 
 /// Records with a progress bar on standard error, if that is a terminal.
 pub fn record_with_bar(scenarios: &[Scenario], file: &Path, options: &Options) -> Result<Vec<Recording>, Failure> {
-    let bar = ProgressBar::new(0);
-    if let Ok(style) = ProgressStyle::with_template("{msg:12} {wide_bar} {percent:>3} %  {eta:>4}") {
-        bar.set_style(style);
-    }
+    let bar = bar(0);
     let recordings = record(scenarios, file, options, &mut |progress: RecordingProgress| {
         let what = plain(progress.what);
         if bar.message() != what {

@@ -13,7 +13,7 @@ use stillbase_session::scenario::{POINT_RANGE, POSE_CONSTANT_RANGE, Scenario, Ta
 use stillbase_settings::change;
 use stillbase_settings::key::Key;
 use stillbase_settings::range::Range;
-use stillbase_settings::text::MAX_TEXT_BYTES;
+use stillbase_settings::text::{MAX_TEXT_BYTES, shell_word};
 use stillbase_settings::word::Choice;
 
 use super::exit::print_message;
@@ -77,6 +77,11 @@ impl Settings {
             key.split('.').next() == Some("tolerance") && ![change::DEFAULT_WORD, Key::NONE].contains(&value.as_str())
         };
         self.pairs.iter().find(given).map_or(Ok(()), |(key, _)| Err(no_use(key, STUDY).with_context("--set")))
+    }
+
+    /// Returns the options as a shell takes them, each with a space in front.
+    pub fn as_typed(&self) -> String {
+        self.pairs.iter().map(|(key, value)| format!(" --set {}", shell_word(&format!("{key}={value}")))).collect()
     }
 
     /// Whether a key is set.

@@ -8,11 +8,11 @@ use stillbase_session::replay_if;
 use stillbase_simulation::frame::Frame;
 use stillbase_study::joint_extremes::{JointExtremes, JointReport};
 
-use super::csv_file::Csv;
 use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, check_output, check_size};
+use super::rows::Rows;
 use super::simulate::require_audit;
 use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
 
@@ -77,14 +77,14 @@ impl JointsArguments {
         require_audit(&answer.scenario, answer.audit_failed)
     }
 
-    fn csv<'a>(&self, begun: &'a mut Option<Csv>, pins: &[Pin]) -> Result<&'a mut Csv, Failure> {
+    fn csv<'a>(&self, begun: &'a mut Option<Rows>, pins: &[Pin]) -> Result<&'a mut Rows, Failure> {
         match begun {
             Some(csv) => Ok(csv),
             None => {
                 let axes = |pin: &Pin| ["x", "y"].map(|axis| format!("{} {axis} N", pin.name));
                 let head = ["time s".to_string()].into_iter().chain(pins.iter().flat_map(axes));
-                let head = head.chain(["tilt x N m", "tilt y N m"].map(String::from));
-                Ok(begun.insert(Csv::begin(self.output.as_deref(), self.force, head)?))
+                let head: Vec<String> = head.chain(["tilt x N m", "tilt y N m"].map(String::from)).collect();
+                Ok(begun.insert(Rows::begin(self.output.as_deref(), self.force, &head)?))
             }
         }
     }

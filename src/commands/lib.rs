@@ -7,7 +7,6 @@
 
 mod check;
 mod compare;
-mod csv_file;
 mod design;
 pub mod dynamics;
 mod ends;
@@ -32,12 +31,15 @@ mod open;
 mod output;
 mod plan;
 mod pose;
+#[cfg(any(feature = "record", feature = "ui"))]
+mod progress;
 mod reach;
 mod remedy;
 #[cfg(feature = "ui")]
 mod render;
 #[cfg(feature = "ui")]
-mod shot;
+mod report;
+mod rows;
 mod simulate;
 mod sites;
 #[cfg(any(feature = "record", feature = "ui"))]
@@ -101,6 +103,8 @@ subcommands! {
     Trim: trim::TrimArguments,
     #[cfg(feature = "ui")]
     Render: render::RenderArguments,
+    #[cfg(feature = "ui")]
+    Report: report::ReportArguments,
     #[cfg(feature = "ui")]
     Figures: figures::FiguresArguments,
 }

@@ -4,11 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use stillbase_app::{AppState, SessionCommand};
-use stillbase_files::write_new;
-use stillbase_picture::canvas::Canvas;
-use stillbase_picture::film::{Film, FilmFormat};
-use stillbase_picture::render::offscreen::legible_scale;
+use stillbase_app::export::{FilmDone, FilmOrder, check_film, write_film, write_picture};
+use stillbase_app::{AppState, PictureOrder, SessionCommand, Shot};
 use stillbase_picture::scene::palette::Theme;
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_settings::number::{counted, fixed};
@@ -17,24 +14,27 @@ use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::open::ThemeName;
 use super::output::{Format, check_output};
-use super::shot::Shot;
+use super::progress::bar;
 use super::size::size;
 
 /// Draw a picture or a film of a run, without a display
 ///
-/// A still picture shows the instant --at. With --film the run is shown from one time to another, and the file plays
-/// over and over: .gif for slides and mail, .png (animated) with all colours.
+/// A still picture shows the instant --at. With --film the run is shown from one time to another: .gif for slides and
+/// mail and .png (animated) with all colours play over and over; .mp4 is written by the program ffmpeg; a name without
+/// an ending gives a folder of numbered pictures.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   stillbase render case-3 -o case-3.png --at 0.62
+  stillbase render case-3 -o slide.png --view space --theme light --transparent
   stillbase render case-1 -o shake.gif --film --view window
+  stillbase render case-1 -o pictures --film 0,0.5 --size 1920x1080
   stillbase render spacecraft -o turning.png --film 0,1 --view space --fps 30 --slow 2")]
 pub struct RenderArguments {
     /// A built-in scenario or machine, or a TOML file of either
     #[arg(default_value = DEFAULT_SCENARIO)]
     scenario: String,
-    /// The picture (.png) or film (.gif, .png) to write
+    /// The picture (.png) or film (.gif, .png, .mp4, or a folder) to write
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Instant of a still picture, s; default: the end of the run
@@ -58,6 +58,9 @@ pub struct RenderArguments {
     /// Width and height, pixels
     #[arg(long, value_name = "WxH", default_value = "1280x800", value_parser = size)]
     size: [u32; 2],
+    /// Draw nothing behind the scene, to lay it over a page or a slide
+    #[arg(long, conflicts_with = "film")]
+    transparent: bool,
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
@@ -106,9 +109,6 @@ impl From<ViewName> for Shot {
     }
 }
 
-/// Maximum number of pictures of a film.
-const MAX_PICTURES: f64 = 5000.0;
-
 fn range(text: &str) -> Result<FilmRange, String> {
     if text.is_empty() {
         return Ok(FilmRange(None));
@@ -133,44 +133,42 @@ fn factor(text: &str) -> Result<f64, String> {
 impl RenderArguments {
     /// Draws, and writes the file.
     pub fn run(&self) -> Result<(), Failure> {
-        let endings: &[&'static str] = if self.film.is_some() { &["gif", "png"] } else { &["png"] };
-        let ending = check_output(&self.output, self.force, endings)?;
+        match self.film {
+            Some(_) => drop(check_film(&self.output, self.force)?),
+            None => drop(check_output(&self.output, self.force, &["png"])?),
+        }
+        let shot = Shot::from(self.view);
+        if self.transparent && shot == Shot::Window {
+            let why = "the window has no background to leave out: want a view, such as --view flat";
+            return Err(Failure::wrong_input(why).with_context("--transparent"));
+        }
         let scenario = scenario(&self.scenario, &self.settings)?;
         let mut app_state =
             AppState::new(scenario.clone(), Theme::Dark).map_err(|why| Failure::refused(&scenario, why))?;
-        app_state.carry_out(SessionCommand::Seek(app_state.session().length()));
-        let end = app_state.session().frame().time;
-        let mut canvas = Canvas::new(self.size, legible_scale(self.size[1])).map_err(Failure::no_answer)?;
-        let theme = self.theme.into();
-        let mut bytes = Vec::new();
+        let end = app_state.run_to_end();
+        let transparent = self.transparent;
+        let picture = PictureOrder { transparent, ..PictureOrder::new(shot, self.theme.into(), self.size) };
         let Some(FilmRange(range)) = self.film else {
             let at = within(self.at.unwrap_or(end), end, "--at")?;
             app_state.carry_out(SessionCommand::Seek(at));
-            let picture = Shot::from(self.view).draw(&mut canvas, &mut app_state, theme).map_err(Failure::no_answer)?;
-            return self.write(&picture.to_png().map_err(Failure::no_answer)?, 1, [at; 2]);
+            write_picture(&mut app_state, &picture, &self.output, self.force, &mut |_| true)?;
+            return self.print(FilmDone { pictures: 1, times: [at; 2] });
         };
         let [from, to] = range.unwrap_or([0.0, end]);
-        let (from, to) = (within(from, end, "--film")?, within(to, end, "--film")?);
-        let count = ((to - from) * self.slow * self.fps).round() + 1.0;
-        if count > MAX_PICTURES {
-            let why = format!("a film of {count} pictures: want at most {MAX_PICTURES}, by --fps or a shorter --film");
-            return Err(Failure::wrong_input(why));
-        }
-        let format = if ending == "gif" { FilmFormat::Gif } else { FilmFormat::Png };
-        let begun = Film::begin(&mut bytes, format, self.size, count as u32, self.fps);
-        let mut film = begun.map_err(Failure::no_answer)?;
-        for i in 0..count as u32 {
-            let time = (from + f64::from(i) / (self.slow * self.fps)).min(to);
-            app_state.carry_out(SessionCommand::Seek(time));
-            let picture = Shot::from(self.view).draw(&mut canvas, &mut app_state, theme).map_err(Failure::no_answer)?;
-            film.push(picture).map_err(Failure::no_answer)?;
-        }
-        film.finish().map_err(Failure::no_answer)?;
-        self.write(&bytes, count as u32, [from, to])
+        let times = [within(from, end, "--film")?, within(to, end, "--film")?];
+        let order = FilmOrder { picture, times, fps: self.fps, slow: self.slow };
+        let bar = bar(u64::from(order.count()?));
+        bar.set_message("pictures");
+        let goes_on = &mut |done: f64| {
+            bar.set_position((done * bar.length().unwrap_or(0) as f64).round() as u64);
+            true
+        };
+        let done = write_film(&mut app_state, &order, &self.output, self.force, goes_on);
+        bar.finish_and_clear();
+        self.print(done?)
     }
 
-    fn write(&self, bytes: &[u8], pictures: u32, times: [f64; 2]) -> Result<(), Failure> {
-        write_new(&self.output, bytes, self.force)?;
+    fn print(&self, FilmDone { pictures, times }: FilmDone) -> Result<(), Failure> {
         let answer = Answer { file: self.output.display().to_string(), pictures, times };
         self.format.print(&answer, |answer| {
             let Answer { file, pictures, times: [from, to] } = answer;

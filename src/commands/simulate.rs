@@ -6,31 +6,36 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::{Serialize, Serializer};
+use stillbase_files::row_file::ROW_ENDINGS;
+use stillbase_mechanics::machine::Machine;
 use stillbase_session::verdict::{Statements, Verdict};
 use stillbase_session::{Run, replay_if};
 use stillbase_simulation::frame::Frame;
-use stillbase_simulation::signals::{Signal, signals};
+use stillbase_simulation::signals::{Signal, chosen_signals, row_heads, signals};
 
-use super::csv_file::Csv;
 use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, check_output, check_size};
+use super::rows::Rows;
 use stillbase_settings::number::{counted, fixed};
+use stillbase_settings::range::quote_clipped;
 
-/// Run a scenario and print every signal over time as CSV
+/// Run a scenario and print every signal over time, or some of them, as CSV or Parquet
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   stillbase simulate case-1 -o case-1.csv
   stillbase simulate --every 10 --set payload.mass=0.1 | head
+  stillbase simulate case-1 -o part.parquet --signals torque,moment/total --from 0.2 --to 0.8
   stillbase simulate case-3 --json")]
 pub struct SimulateArguments {
     /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenario: String,
-    /// Write the CSV to this file; by default it goes to standard output, but a terminal gets a summary instead
-    #[arg(short, long, value_name = "FILE.csv")]
+    /// Write the rows to this file, .csv or .parquet; by default CSV goes to standard output, but a terminal gets a
+    /// summary instead
+    #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Replace the file if it exists
     #[arg(long)]
@@ -38,6 +43,15 @@ pub struct SimulateArguments {
     /// Print only every N-th step, and the last one
     #[arg(long, value_name = "N", default_value = "1", value_parser = every)]
     every: NonZeroU64,
+    /// Print only these signals, by name, such as torque/1, or by its first part, such as torque; default: all
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    signals: Vec<String>,
+    /// Print only rows from this time on, s
+    #[arg(long, value_name = "T", value_parser = instant)]
+    from: Option<f64>,
+    /// Print only rows up to this time, s
+    #[arg(long, value_name = "T", value_parser = instant)]
+    to: Option<f64>,
     #[command(flatten)]
     settings: Settings,
     #[command(flatten)]
@@ -47,6 +61,14 @@ pub struct SimulateArguments {
 fn every(text: &str) -> Result<NonZeroU64, String> {
     text.trim().parse().map_err(|_| "want a whole number of steps, 1 or more".into())
 }
+
+fn instant(text: &str) -> Result<f64, String> {
+    let time = text.trim().parse().ok().filter(|time: &f64| time.is_finite() && *time >= 0.0);
+    time.ok_or_else(|| "want a time in s, 0 or later".into())
+}
+
+/// Tolerance of the bounds of a time interval, s.
+const TIME_TOLERANCE_S: f64 = 1e-9;
 
 /// Results of a run.
 #[derive(Serialize)]
@@ -147,10 +169,16 @@ impl SimulateArguments {
     /// Simulates the scenario, and writes its signals as CSV or prints the verdict.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = scenario(&self.scenario, &self.settings)?;
-        let table = signals(&scenario.machine);
+        let table = self.table(&scenario.machine)?;
         if let Some(file) = &self.output {
-            check_output(file, self.force, &["csv"])?;
+            check_output(file, self.force, &ROW_ENDINGS)?;
         }
+        let [from, to] = [self.from.unwrap_or(0.0), self.to.unwrap_or(f64::INFINITY)];
+        if from > to {
+            return Err(Failure::wrong_input(format!("--from {from} --to {to}: want the first before the second")));
+        }
+        let wanted = from - TIME_TOLERANCE_S..=to + TIME_TOLERANCE_S;
+        let mut rows = 0_u64;
         // The CSV is begun at the first step, so that a run that cannot start prints nothing.
         let mut csv = None;
         let (mut time, mut columns) = (Vec::new(), vec![Vec::new(); table.len()]);
@@ -158,12 +186,14 @@ impl SimulateArguments {
         let mut written = Ok(());
         let fits = |last: u64| check_size(last / self.every + 2, table.len() + 1, self.format.json);
         let run = replay_if(&scenario, fits, |run, frame| {
-            if frame.step % self.every != 0 && frame.step != run.last_step() {
+            let is_due = frame.step % self.every == 0 || frame.step == run.last_step();
+            if !is_due || !wanted.contains(&frame.time) {
                 return;
             }
+            rows += 1;
             if self.writes_csv() && written.is_ok() {
                 let values = [frame.time].into_iter().chain(table.iter().map(|s| s.value(frame)));
-                written = self.csv(&mut csv, &table).and_then(|csv| csv.row(values));
+                written = self.rows(&mut csv, &table).and_then(|csv| csv.row(values));
             }
             if self.format.json {
                 time.push(frame.time);
@@ -172,6 +202,11 @@ impl SimulateArguments {
         })
         .map_err(|e| Failure::refused(&scenario, e))?;
         written?;
+        if rows == 0 {
+            let end = fixed(run.frame().time, 3);
+            let why = format!("no step from {from} to {to} s: want an interval with one, within the run, 0 to {end} s");
+            return Err(Failure::wrong_input(why).with_context(&scenario.name));
+        }
         if let Some(csv) = csv {
             csv.finish()?;
         }
@@ -215,15 +250,30 @@ impl SimulateArguments {
         self.output.is_some() || !(self.format.json || std::io::stdout().is_terminal())
     }
 
-    /// Returns the CSV file; the first call opens it and writes its head.
-    fn csv<'a>(&self, begun: &'a mut Option<Csv>, table: &[Signal]) -> Result<&'a mut Csv, Failure> {
-        match begun {
-            Some(csv) => Ok(csv),
-            None => {
-                let head = table.iter().map(|s| format!("{} {}", s.path, s.unit));
-                let head = ["time s".to_string()].into_iter().chain(head);
-                Ok(begun.insert(Csv::begin(self.output.as_deref(), self.force, head)?))
+    /// Returns the signals to print.
+    fn table(&self, machine: &Machine) -> Result<Vec<Signal>, Failure> {
+        let all = signals(machine);
+        if self.signals.is_empty() {
+            return Ok(all);
+        }
+        chosen_signals(&all, &self.signals).map_err(|name| {
+            let mut known: Vec<&str> = Vec::new();
+            for group in all.iter().map(Signal::group) {
+                if !known.contains(&group) {
+                    known.push(group);
+                }
             }
+            let why =
+                format!("no signal {:?}: want one of {}, or one of their parts", quote_clipped(name), known.join(", "));
+            Failure::wrong_input(why).with_context("--signals")
+        })
+    }
+
+    /// Returns the rows; the first call opens the file and writes its head.
+    fn rows<'a>(&self, begun: &'a mut Option<Rows>, table: &[Signal]) -> Result<&'a mut Rows, Failure> {
+        match begun {
+            Some(rows) => Ok(rows),
+            None => Ok(begun.insert(Rows::begin(self.output.as_deref(), self.force, &row_heads(table))?)),
         }
     }
 }

@@ -35,7 +35,7 @@ pub fn abandon() -> WriteBlock {
     let parts = making();
     for part in parts.iter() {
         // The program ends, so errors cannot be reported.
-        let _ = fs::remove_file(part);
+        let _ = if part.is_dir() { fs::remove_dir_all(part) } else { fs::remove_file(part) };
     }
     WriteBlock(parts)
 }
@@ -43,30 +43,40 @@ pub fn abandon() -> WriteBlock {
 /// Ending of the names of temporary files.
 pub(super) const PART_ENDING: &str = ".stillbase.part";
 
-/// Returns the path of a temporary file, hidden in the same folder: `.case.csv.4711-0.stillbase.part`.
-fn part_of(file: &Path, attempt: u32) -> PathBuf {
+/// Ending of the names of temporary folders.
+const FOLDER_ENDING: &str = ".stillbase.parts";
+
+/// Returns the path of a temporary file, hidden in the same folder: `.case.csv.4711-0.stillbase.part`; that of a
+/// temporary folder has another `ending`.
+fn part_of(file: &Path, attempt: u32, ending: &str) -> PathBuf {
     // The name may already be as long as the file system allows.
     let name: String = file.file_name().unwrap_or_default().to_string_lossy().chars().take(40).collect();
-    file.with_file_name(format!(".{name}.{}-{attempt}{PART_ENDING}", std::process::id()))
+    file.with_file_name(format!(".{name}.{}-{attempt}{ending}", std::process::id()))
 }
 
-fn is_part(name: &OsStr) -> bool {
+fn is_part(name: &OsStr, ending: &str) -> bool {
     let counted = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
-    let middle = name.to_str().and_then(|name| name.strip_prefix('.')?.strip_suffix(PART_ENDING));
+    let middle = name.to_str().and_then(|name| name.strip_prefix('.')?.strip_suffix(ending));
     let number = middle.and_then(|middle| middle.rsplit_once('.')?.1.split_once('-'));
     number.is_some_and(|(process, attempt)| counted(process) && counted(attempt))
 }
 
-/// Removes temporary files of killed programs from a folder. A program holds a lock on each of its temporary files, and
+/// Removes temporary files and folders of killed programs from a folder. A program holds a lock on each of them, and
 /// the system releases the lock when the program ends.
 fn sweep(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
-    let plain = |entry: &fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_file());
-    for entry in entries.flatten().filter(|entry| is_part(&entry.file_name()) && plain(entry)) {
+    for entry in entries.flatten() {
+        let Ok(kind) = entry.file_type() else { continue };
+        let is_file = kind.is_file() && is_part(&entry.file_name(), PART_ENDING);
+        let is_folder = kind.is_dir() && is_part(&entry.file_name(), FOLDER_ENDING);
+        if !(is_file || is_folder) {
+            continue;
+        }
+        // A system that cannot open folders keeps them.
         let Ok(part) = File::open(entry.path()) else { continue };
         if part.try_lock().is_ok() {
-            // A file that cannot be removed belongs to another user.
-            let _ = fs::remove_file(entry.path());
+            // What cannot be removed belongs to another user.
+            let _ = if is_folder { fs::remove_dir_all(entry.path()) } else { fs::remove_file(entry.path()) };
         }
     }
 }
@@ -84,7 +94,7 @@ impl TemporaryFile {
         sweep(folder_of(&file));
         let mut parts = making();
         for attempt in 0..1000 {
-            let part = part_of(&file, attempt);
+            let part = part_of(&file, attempt, PART_ENDING);
             super::fault::fail_if_due(WriteStep::Fallible)?;
             let out = match OpenOptions::new().read(true).write(true).create_new(true).open(&part) {
                 Err(e) if e.kind() == ErrorKind::AlreadyExists => continue,
@@ -107,6 +117,53 @@ impl Drop for TemporaryFile {
         let mut parts = making();
         // The file no longer exists if it has taken its final name. If it cannot be removed, a later sweep tries again.
         let _ = fs::remove_file(&self.part);
+        parts.remove(&self.part);
+    }
+}
+
+/// A temporary folder beside the folder that it will become.
+#[derive(Debug)]
+pub(super) struct TemporaryFolder {
+    pub part: PathBuf,
+    /// Holds the lock, where a system can open folders.
+    _lock: Option<File>,
+}
+
+impl TemporaryFolder {
+    /// Creates a locked temporary folder for `folder`.
+    pub fn create(folder: &Path) -> io::Result<Self> {
+        sweep(folder_of(folder));
+        let mut parts = making();
+        for attempt in 0..1000 {
+            let part = part_of(folder, attempt, FOLDER_ENDING);
+            super::fault::fail_if_due(WriteStep::Fallible)?;
+            match fs::create_dir(&part) {
+                Err(e) if e.kind() == ErrorKind::AlreadyExists => continue,
+                made => made?,
+            }
+            let lock = File::open(&part).ok();
+            let swept = lock.as_ref().is_some_and(|lock| matches!(lock.try_lock(), Err(TryLockError::WouldBlock)));
+            if !swept && part.is_dir() {
+                parts.insert(part.clone());
+                return Ok(Self { part, _lock: lock });
+            }
+        }
+        Err(io::Error::new(ErrorKind::AlreadyExists, "a thousand folders in the making stand beside it"))
+    }
+
+    /// Returns a temporary name for the folder that this one replaces.
+    pub fn aside(&self) -> PathBuf {
+        let mut name = self.part.as_os_str().to_owned();
+        name.push(".before");
+        name.into()
+    }
+}
+
+impl Drop for TemporaryFolder {
+    fn drop(&mut self) {
+        let mut parts = making();
+        // The folder no longer exists if it has taken its final name.
+        let _ = fs::remove_dir_all(&self.part);
         parts.remove(&self.part);
     }
 }

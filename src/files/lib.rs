@@ -13,15 +13,24 @@ pub mod heading;
 #[doc(hidden)]
 pub mod journal;
 mod new_file;
+#[doc(hidden)]
+pub mod new_folder;
+#[cfg(feature = "rows")]
+mod parquet_rows;
 #[cfg(feature = "window")]
 #[doc(hidden)]
 pub mod preferences;
+#[cfg(feature = "rows")]
+#[doc(hidden)]
+pub mod row_file;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod shards;
 #[cfg(feature = "tables")]
 pub mod table;
 pub mod text;
+#[doc(hidden)]
+pub mod video;
 
 #[doc(hidden)]
 pub use draft::{WriteBlock, abandon};

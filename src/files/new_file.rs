@@ -21,6 +21,12 @@ pub enum WriteError {
     /// The name belongs to a device or a pipe, which is not replaced.
     #[error("{} is no plain file: want the name of a new one", .0.display())]
     NotPlain(PathBuf),
+    /// The name of a folder belongs to a file.
+    #[error("{} is no folder: want a new name, or one that ends in .gif or .png", .0.display())]
+    NotAFolder(PathBuf),
+    /// The folder to be replaced holds other files.
+    #[error("{} holds more than numbered pictures: want another name", .0.display())]
+    HoldsOthers(PathBuf),
     /// Its folder does not exist.
     #[error("{}: no folder {}: want one that exists", file.display(), folder.display())]
     NoFolder {
@@ -141,6 +147,11 @@ impl NewFile {
     /// Returns the requested path.
     pub fn path(&self) -> &Path {
         &self.requested
+    }
+
+    /// Returns the temporary path, to which another program may write the content.
+    pub(super) fn draft_path(&self) -> &Path {
+        &self.draft.part
     }
 
     /// Returns the last bytes written so far, at most `most`, with their offset in the file.
@@ -380,14 +391,16 @@ pub fn is_same_place(a: &Path, b: &Path) -> bool {
     a == b || place(a).is_some_and(|a| place(b) == Some(a))
 }
 
-/// Returns the first of `name.ending`, `name-1.ending` and so on that is free in the current folder.
+/// Returns the first of `name.ending`, `name-1.ending` and so on that is free in the current folder. Without an ending,
+/// there is no point.
 pub fn free_name(name: &str, ending: &str) -> PathBuf {
     // `name` is free text; the file must stay in this folder.
     let plain = |c: char| if c.is_alphanumeric() || matches!(c, '-' | '_' | ' ') { c } else { '-' };
     let name: String = name.chars().map(plain).take(100).collect();
-    let numbered = (1..1000).map(|i| PathBuf::from(format!("{name}-{i}.{ending}")));
-    std::iter::once(PathBuf::from(format!("{name}.{ending}")))
+    let ending = if ending.is_empty() { String::new() } else { format!(".{ending}") };
+    let numbered = (1..1000).map(|i| PathBuf::from(format!("{name}-{i}{ending}")));
+    std::iter::once(PathBuf::from(format!("{name}{ending}")))
         .chain(numbered)
         .find(|file| file.symlink_metadata().is_err())
-        .unwrap_or_else(|| PathBuf::from(format!("{name}-{}.{ending}", std::process::id())))
+        .unwrap_or_else(|| PathBuf::from(format!("{name}-{}{ending}", std::process::id())))
 }

@@ -45,7 +45,7 @@ impl Canvas {
     pub fn draw(&mut self, mut draw: impl FnMut(&mut egui::Ui)) -> Result<Picture, NoPicture> {
         // The first passes load fonts and settle the layout; only the picture of the last pass is used.
         for _ in 0..4 {
-            self.pass(&mut draw);
+            self.pass(None, &mut draw);
         }
         self.read()
     }
@@ -55,12 +55,13 @@ impl Canvas {
     /// # Errors
     /// If the picture cannot be read back.
     pub fn scene(&mut self, scene: &Arc<Scene>, camera: &Camera) -> Result<Picture, NoPicture> {
+        let behind = Some(paint::colour(scene.background));
         if !self.fonts {
             paint::install_fonts(&self.ctx);
             self.fonts = true;
-            self.pass(|ui| labels::paint_still(ui, scene, camera));
+            self.pass(behind, |ui| labels::paint_still(ui, scene, camera));
         }
-        self.pass(|ui| labels::paint_still(ui, scene, camera));
+        self.pass(behind, |ui| labels::paint_still(ui, scene, camera));
         self.read()
     }
 
@@ -68,7 +69,8 @@ impl Canvas {
         self.gpu.readback(&self.texture)
     }
 
-    fn pass(&mut self, draw: impl FnMut(&mut egui::Ui)) {
+    /// Draws one pass over a colour; without one, over that of panels.
+    fn pass(&mut self, behind: Option<egui::Color32>, draw: impl FnMut(&mut egui::Ui)) {
         let scale = self.pixels_per_point;
         let [width, height] = self.size_px.map(|n| n as f32 / scale);
         let size = egui::vec2(width, height);
@@ -82,7 +84,7 @@ impl Canvas {
         let mut output = self.ctx.run_ui(input, draw);
         let shapes = self.ctx.tessellate(output.shapes, output.pixels_per_point);
         let view = self.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let behind = self.ctx.global_style().visuals.panel_fill;
+        let behind = behind.unwrap_or_else(|| self.ctx.global_style().visuals.panel_fill);
         let sheet = RenderTarget { view: &view, size_px: self.size_px, pixels_per_point: scale, behind };
         self.gui.draw(&sheet, &mut output.textures_delta, &shapes);
     }

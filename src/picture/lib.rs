@@ -21,6 +21,8 @@ pub mod numbers;
 pub mod paint;
 #[cfg(feature = "render")]
 pub mod render;
+#[doc(hidden)]
+pub mod report;
 pub mod scene;
 #[doc(hidden)]
 pub mod thin;

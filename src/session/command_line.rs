@@ -1,6 +1,7 @@
-//! [`simulate_command`]: the command that runs a scenario as it is on display.
+//! [`simulate_command`] and [`session_command`]: the command that runs a scenario as it is on display.
 
 use super::scenario::Scenario;
+use super::{Edit, Session, TimedEdit};
 use stillbase_settings::change::{join, leaves, same_value, single_change, typed};
 use stillbase_settings::text::shell_word;
 use toml::Table;
@@ -20,4 +21,11 @@ pub fn simulate_command(scenario: &Scenario) -> Option<String> {
         leaves(&change).into_iter().map(|(path, value)| shell_word(&format!("{path}={}", typed(value))).into_owned());
     let settings: String = words.map(|word| format!(" --set {word}")).collect();
     same.then(|| format!("stillbase simulate {}{settings}", shell_word(&scenario.name)))
+}
+
+/// Returns the command that simulates a session from its start, as [`simulate_command`]. Returns `None` if the session
+/// has edits other than settings at its start; a file is then needed.
+pub fn session_command(session: &Session) -> Option<String> {
+    let is_setting = |timed: &TimedEdit| timed.step == 0 && matches!(timed.edit, Edit::Set { .. });
+    simulate_command(session.scenario()).filter(|_| session.script().iter().all(is_setting))
 }

@@ -59,6 +59,24 @@ impl Signal {
     }
 }
 
+/// Returns the heads of the columns of a table of signals over time: the name and the unit of each.
+pub fn row_heads(signals: &[Signal]) -> Vec<String> {
+    let heads = signals.iter().map(|signal| format!("{} {}", signal.path, signal.unit));
+    ["time s".to_owned()].into_iter().chain(heads).collect()
+}
+
+/// Returns the signals of some names, in the order of the table. A name is a path, or the first part of several paths.
+///
+/// # Errors
+/// If no signal has one of the names; the error is that name.
+pub fn chosen_signals<'a>(table: &[Signal], names: &'a [String]) -> Result<Vec<Signal>, &'a String> {
+    let is_of = |signal: &Signal, name: &String| signal.path == *name || signal.group() == name;
+    match names.iter().find(|name| !table.iter().any(|signal| is_of(signal, name))) {
+        Some(unknown) => Err(unknown),
+        None => Ok(table.iter().filter(|signal| names.iter().any(|name| is_of(signal, name))).cloned().collect()),
+    }
+}
+
 /// Query for the signals of a machine.
 #[derive(Debug)]
 pub struct SignalsOf;

@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::series::{Series, Statistics};
 use stillbase_query::IncrementalQuery;
 use stillbase_simulation::frame::Frame;
-use stillbase_simulation::signals::Signal;
+use stillbase_simulation::signals::{Signal, row_heads};
 
 /// Samples of some signals of one run. A signal that was added later has fewer samples until it catches up.
 #[derive(Clone, Debug, Default)]
@@ -156,12 +156,8 @@ impl SignalSamples {
 
     /// Returns every sample of a time interval as CSV, in SI units, with the header that `simulate` writes.
     pub fn csv(&self, shown: [f64; 2]) -> String {
-        let mut text = String::from("time s");
-        for signal in &self.signals {
-            // Paths and units contain neither commas nor quotes.
-            let _ = write!(text, ",{} {}", signal.path, signal.unit);
-        }
-        text.push('\n');
+        // Paths and units contain neither commas nor quotes.
+        let mut text = row_heads(&self.signals).join(",") + "\n";
         let taken = self.count();
         for i in self.within(shown).take_while(|i| *i < taken) {
             let _ = write!(text, "{}", self.times[i] + 0.0);

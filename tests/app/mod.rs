@@ -14,6 +14,7 @@ mod panel;
 mod plots;
 mod pointer;
 mod refusal;
+mod results;
 mod run;
 mod saving;
 mod screen;
@@ -32,7 +33,7 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 20] = [
+pub const TESTS: [&[Test]; 21] = [
     saving::TESTS,
     family::TESTS,
     files::TESTS,
@@ -48,6 +49,7 @@ pub const TESTS: [&[Test]; 20] = [
     plots::TESTS,
     pointer::TESTS,
     refusal::TESTS,
+    results::TESTS,
     run::TESTS,
     sizes::TESTS,
     studio::TESTS,

@@ -3,7 +3,6 @@
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::app::SessionCommand;
-use stillbase::picture::notation::Notation;
 use stillbase::picture::paint::labels::placed;
 use stillbase::picture::paint::{SceneViewport, enable_draft_quality};
 use stillbase::picture::scene::framing::PictureArea;
@@ -63,7 +62,7 @@ fn clear_words(h: &Window, name: &str, view: ViewKind, size: egui::Vec2) {
     let painter = egui::Painter::new(h.ctx.clone(), egui::LayerId::background(), rect);
     let grid = egui::Rect::from_min_max(rect.right_bottom() - egui::vec2(90.0, 28.0), rect.right_bottom());
     let spot = SceneViewport { rect, camera };
-    let all = placed(&painter, &spot, &scene, &[grid], Notation::default());
+    let all = placed(&painter, &spot, &scene, &[grid]);
     assert!(all.is_empty() == scene.labels.is_empty() && all.len() <= scene.labels.len());
     let bars = scene.bars.iter().flat_map(|[a, b]| {
         let along = (0..=40).map(move |i| [0, 1, 2].map(|k| f64::from(a[k] + (b[k] - a[k]) * i as f32 / 40.0)));

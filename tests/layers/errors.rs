@@ -65,6 +65,11 @@ errors! {
     study::trim::NoTrim,
     study::trim::TrimError,
     files::WriteError,
+    files::video::VideoError,
+    #[cfg(feature = "cli")]
+    files::row_file::RowError,
+    #[cfg(feature = "ui")]
+    stillbase::app::export::ExportError,
     #[cfg(feature = "cli")]
     files::shards::ShardError,
     #[cfg(feature = "tables")]

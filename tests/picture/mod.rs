@@ -6,6 +6,7 @@ mod mesh;
 mod notation;
 mod palette;
 mod plots;
+mod report;
 mod scene;
 #[cfg(feature = "render")]
 mod shaders;

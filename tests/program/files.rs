@@ -7,6 +7,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use stillbase::files::new_folder::NewFolder;
 use stillbase::files::text::read;
 use stillbase::files::{NewFile, WriteError, finish_all, write_new, write_temporary};
 use stillbase::settings::text::{MAX_TEXT_BYTES, plain, shorten_message};
@@ -120,6 +121,38 @@ fn what_was_left_over_is_swept_and_what_is_being_made_is_not() {
     // As long a name as there may be.
     write_new(&folder.path(&"n".repeat(255)), b"whole", false).expect("a long name");
     assert_eq!(folder.names().len(), names.len() + 1);
+}
+
+/// A folder of pictures, too: whole or not at all, swept if its program was killed, and never over other files.
+#[test]
+fn a_folder_of_pictures_appears_whole() {
+    let folder = Folder::new("files-folder");
+    let film = folder.path("film");
+    let left = folder.path(".film.1-0.stillbase.parts");
+    fs::create_dir(&left).expect("a folder");
+    fs::write(left.join("frame-00001.png"), "left").expect("written");
+    let mut being_made = NewFolder::create(&film, false).expect("free");
+    being_made.push(b"one").expect("there is room");
+    let names = folder.names();
+    assert!(names.len() == 1 && names[0].ends_with(".stillbase.parts") && !left.exists(), "{names:?}");
+    let mut beside = NewFolder::create(&film, false).expect("still free");
+    beside.push(b"two").expect("there is room");
+    drop(being_made);
+    assert_eq!(folder.names().len(), 1, "nothing is left of it, and what another makes is not swept");
+    beside.finish().expect("the name is free");
+    assert_eq!(fs::read(film.join("frame-00001.png")).expect("a picture"), b"two");
+    assert!(matches!(NewFolder::create(&film, false), Err(WriteError::Exists(_))));
+    // Its name is taken while the next is being made.
+    let other = folder.path("other");
+    let late = NewFolder::create(&other, false).expect("free");
+    fs::create_dir(&other).expect("a folder");
+    assert!(matches!(late.finish(), Err(WriteError::Exists(_))));
+    fs::write(other.join("notes.txt"), "mine").expect("written");
+    assert!(matches!(NewFolder::create(&other, true), Err(WriteError::HoldsOthers(_))));
+    let file = folder.file("file", "mine");
+    assert!(matches!(NewFolder::create(&file, true), Err(WriteError::NotAFolder(_))));
+    assert!(matches!(NewFolder::create(&folder.path("no/film"), true), Err(WriteError::NoFolder { .. })));
+    assert_eq!(folder.names(), ["file", "film", "other"]);
 }
 
 /// Something that takes long and writes.

@@ -13,6 +13,7 @@ mod machines;
 mod net;
 mod plan;
 mod reach;
+mod results;
 mod simulate;
 mod study;
 mod trim;

@@ -19,12 +19,12 @@ use self::header::{HEADER_HEIGHT, STATISTICS_HEIGHT};
 use super::{Command, Layout};
 use stillbase_picture::charts::figure::{BOTTOM_MARGIN, LEFT_MARGIN, PlotContext};
 
-pub use prepared::extent;
+pub use prepared::{extent, shown_signals};
 pub use search::focus;
 pub use search::is_looking;
 pub use shown::DisplayContext;
 pub use small::{base_plot, marks, small_axes, spaced};
-pub use written::written;
+pub use written::{figures, written};
 
 /// Default width of the panel: a fraction of the window width, within bounds, points.
 const WIDTH_FRACTION: f32 = 0.233;

@@ -98,7 +98,18 @@ fn wanted(plots: &[Plot<'_>]) -> Vec<Signal> {
     wanted
 }
 
+/// Returns the signals whose curves plots show, without repetitions.
+pub fn shown_signals(plots: &[Plot<'_>]) -> Vec<Signal> {
+    let mut shown: Vec<Signal> = Vec::new();
+    for signal in plots.iter().flat_map(|plot| plot.shown().chain(&plot.against)).map(|curve| curve.signal) {
+        if !shown.contains(signal) {
+            shown.push(signal.clone());
+        }
+    }
+    shown
+}
+
 /// Returns the frames of the runs shown in comparison, with their indices.
-fn laid_over(comparison: Option<&Comparison>) -> impl Iterator<Item = (usize, &Sequence<Frame>)> {
+pub fn laid_over(comparison: Option<&Comparison>) -> impl Iterator<Item = (usize, &Sequence<Frame>)> {
     comparison.into_iter().flat_map(Comparison::shown).map(|(place, run)| (place, &run.frames))
 }

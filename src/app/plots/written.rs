@@ -1,13 +1,15 @@
 //! Export of a plot to a file.
 
-use super::prepared::{PlotPreparation, extent};
+use super::prepared::{PlotPreparation, extent, laid_over, shown_signals};
 use super::shown::DisplayContext;
 use crate::PlotFile;
 use stillbase_picture::canvas::Canvas;
 use stillbase_picture::charts::choice::Plot;
+use stillbase_picture::charts::drawn::PlotLines;
 use stillbase_picture::charts::figure::{Figure, PlotContext};
 use stillbase_picture::charts::svg::svg;
 use stillbase_picture::paint::figure::paint_figure;
+use stillbase_picture::scene::palette::Palette;
 use stillbase_query::{QuickWork, answer_sequence};
 use stillbase_simulation::signals::Signal;
 use stillbase_study::samples::SignalSamples;
@@ -44,6 +46,23 @@ pub fn written(what: &DisplayContext<'_>, name: &str, file: PlotFile) -> Result<
         PlotFile::Svg => Box::new(move || Ok(svg(&figure).into_bytes())),
         PlotFile::Png => Box::new(move || png(&figure)),
     })
+}
+
+/// Returns drawings of all plots on display, of a size in points and in the colours of `palette`. They show `times`, s,
+/// with the cursors of the window.
+pub fn figures(what: &DisplayContext<'_>, times: [f64; 2], size: [f32; 2], palette: &Palette) -> Vec<Figure> {
+    let DisplayContext { session, signals, view_state, .. } = *what;
+    let plots = view_state.plots(session.scenario(), signals);
+    let shown = shown_signals(&plots);
+    let samples: SignalSamples = answer_sequence(&shown, session.frames());
+    let others: Vec<(usize, SignalSamples)> =
+        laid_over(what.comparison).map(|(place, frames)| (place, answer_sequence(&shown, frames))).collect();
+    let others: Vec<(usize, &SignalSamples)> = others.iter().map(|(place, samples)| (*place, samples)).collect();
+    let newest = session.frames().last().unwrap_or(session.frame());
+    let mark = view_state.mark.map(|time| super::shown::instant(session, time));
+    let look = PlotContext { palette, peaks: &newest.peaks, now: session.frame(), mark, hover: None };
+    let drawn = |plot: &Plot<'_>| PlotLines::of(plot, &samples, &others, times, size[0] as usize, false);
+    plots.iter().map(|plot| Figure::of(plot, &drawn(plot), size, &look)).collect()
 }
 
 /// Returns the signals whose values a plot shows.

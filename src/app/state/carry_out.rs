@@ -7,7 +7,7 @@ use crate::marks;
 use crate::tour::Tour;
 use crate::{Command, FileDialog, FilePurpose, SessionCommand, Switch, ViewChange, WindowCommand};
 use stillbase_picture::scene::views::ViewKind;
-use stillbase_session::{Edit, TimedEdit, simulate_command};
+use stillbase_session::session_command;
 
 impl AppState {
     /// Carries out one command, after all earlier ones. A command that fails changes nothing, and a message says why.
@@ -118,6 +118,7 @@ impl AppState {
             SessionCommand::SaveFile(path) => self.save(&path)?,
             SessionCommand::Record(path) => self.record(&path)?,
             SessionCommand::WritePlot(path, plot, file) => self.write_plot(&path, &plot, file)?,
+            SessionCommand::Export(path, wanted) => self.export(&path, &wanted)?,
             SessionCommand::TakeElsewhere(path) => self.take_elsewhere(&path)?,
             SessionCommand::Replace(file) => self.saving.replaces = Some(file),
             SessionCommand::Undo => self.change(SessionChange::Undo),
@@ -154,9 +155,7 @@ impl AppState {
                 self.focuses_search = true;
             }
             WindowCommand::CopyCommand => {
-                let command = simulate_command(self.session.scenario());
-                let is_setting = |timed: &TimedEdit| timed.step == 0 && matches!(timed.edit, Edit::Set { .. });
-                let Some(command) = command.filter(|_| self.session.script().iter().all(is_setting)) else {
+                let Some(command) = session_command(&self.session) else {
                     return Err(
                         "no settings alone lead here: save it (Ctrl S), then `stillbase simulate FILE.toml`".into()
                     );

@@ -1,6 +1,7 @@
 //! One pass of the user interface.
 
 use super::AppState;
+use crate::export::{self, DisplaySize};
 use crate::facts::ScenarioFacts;
 use crate::marks::Marks;
 use crate::{
@@ -121,6 +122,9 @@ impl AppState {
             weights: &chosen,
         };
         let scene = viewport::show(ui, content, &mut self.view_state, &mut commands);
+        let window = ui.ctx().content_rect().size();
+        self.view_state.displayed =
+            DisplaySize { window: window.into(), scene: scene.size().into(), scale: ui.ctx().pixels_per_point() };
         let proposals = self.proposals();
         let proposals = proposals.as_ref().map_or(&[][..], |known| known);
         status::news(ui.ctx(), scene, &self.session, &self.view_state, proposals, &mut commands);
@@ -129,6 +133,7 @@ impl AppState {
         let recent = &self.saving.recent;
         finder::show(ui.ctx(), &self.session, &self.signals(), &facts, recent, &mut self.view_state, &mut commands);
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
+        export::show(ui.ctx(), &self.session, &self.view_state, &mut commands);
         commands.extend(widgets::refused_entry(ui.ctx()).map(|it| Command::Window(WindowCommand::Refuse(it))));
         if widgets::drag_cancelled(ui.ctx()) {
             // The cancelled drag is undone before its gesture ends.

@@ -24,7 +24,7 @@ impl AppState {
 
     /// Starts to write a file, if it does not exist or may be replaced, and if no work of this activity is under way.
     /// The dialog closes unless the work fails at once. `of` is as for `write_content`.
-    fn write<W>(
+    pub(super) fn write<W>(
         &mut self,
         path: &Path,
         activity: Activity,
@@ -138,6 +138,6 @@ impl AppState {
 const FILE_BEING_SAVED: &str = "one file is being saved: want that to end first";
 
 /// Returns the absolute path of a file as text, so that the user can find it.
-fn absolute(path: &Path) -> String {
+pub(super) fn absolute(path: &Path) -> String {
     stillbase_files::absolute_path(path).unwrap_or_else(|| path.into()).display().to_string()
 }

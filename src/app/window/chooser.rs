@@ -60,7 +60,10 @@ impl Chooser {
                 // A file to open keeps its name.
                 let file = match dialog.purpose {
                     FilePurpose::Open => file,
-                    _ => with_ending(file, endings(&dialog.purpose)[0]),
+                    _ => match endings(&dialog.purpose).first() {
+                        Some(ending) => with_ending(file, ending),
+                        None => file,
+                    },
                 };
                 app_state.carry_out(dialog.named(file));
                 ctx.request_repaint();
@@ -84,6 +87,7 @@ fn endings(purpose: &FilePurpose) -> Vec<&'static str> {
         FilePurpose::Plot(_, PlotFile::Csv) => vec!["csv"],
         FilePurpose::Plot(_, PlotFile::Svg) => vec!["svg"],
         FilePurpose::Plot(_, PlotFile::Png) => vec!["png"],
+        FilePurpose::Export(wanted) => wanted.naming().1,
         FilePurpose::Machine => {
             let mut endings = form::endings().to_vec();
             endings.sort_by_key(|ending| *ending != form::DEFAULT_EXTENSION);
@@ -102,14 +106,18 @@ type DialogFuture = std::pin::Pin<Box<dyn Future<Output = Option<FileHandle>> + 
 /// Creates the dialog of the system, in front of the window.
 fn system_dialog(dialog: &FileDialog, folder: Option<&Path>, window: &Window) -> DialogFuture {
     let (title, endings) = (dialog.purpose.title(), endings(&dialog.purpose));
-    let kind = match dialog.purpose {
+    let kind = match &dialog.purpose {
         FilePurpose::Open => "Sessions, machines, models and tables",
         FilePurpose::Save => "Sessions",
         FilePurpose::Record => "Recordings",
         FilePurpose::Plot(..) => "Plots",
+        FilePurpose::Export(wanted) => wanted.kind(),
         FilePurpose::Machine => "Models, drawings and lists",
     };
-    let mut asks = AsyncFileDialog::new().set_parent(window).set_title(title).add_filter(kind, &endings);
+    let mut asks = AsyncFileDialog::new().set_parent(window).set_title(title);
+    if !endings.is_empty() {
+        asks = asks.add_filter(kind, &endings);
+    }
     if let Some(folder) = folder {
         asks = asks.set_directory(folder);
     }

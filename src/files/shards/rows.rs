@@ -8,19 +8,18 @@ use std::panic::{self, AssertUnwindSafe};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use parquet::basic::{Compression, Repetition, Type as Physical};
+use parquet::basic::{Compression, Type as Physical};
 use parquet::column::reader::get_typed_column_reader;
 use parquet::data_type::{DoubleType, Int64Type};
 use parquet::errors::ParquetError;
-use parquet::file::metadata::{KeyValue, RowGroupMetaData};
-use parquet::file::properties::WriterProperties;
+use parquet::file::metadata::RowGroupMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
-use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
 use super::checksum::{self, CHECKSUM_BLANK, CHECKSUM_PREFIX, CheckedFile, ChecksumPlace};
 use super::error::{ShardError, shard_error};
 use super::hash::fnv_1a;
+use crate::parquet_rows::{GROUP_ROWS, ParquetHead, ParquetRows};
 use crate::{NewFile, WriteError};
 use stillbase_session::scenario::{Scenario, Tolerance};
 use stillbase_study::tolerance::SampleOutcome;
@@ -130,9 +129,6 @@ fn kind_of(file: &Path) -> Result<Kind, ShardError> {
     }
 }
 
-/// Maximum number of rows of a Parquet row group.
-const GROUP_ROWS: usize = 65_536;
-
 /// Maximum number of columns of a file: far more than any machine has parameters.
 const MAX_COLUMNS: usize = 1000;
 
@@ -155,10 +151,8 @@ pub enum Writer {
 
 /// A Parquet file that is being written.
 pub struct Groups {
-    writer: SerializedFileWriter<CheckedFile>,
+    rows: ParquetRows<CheckedFile>,
     file: PathBuf,
-    samples: Vec<i64>,
-    columns: Vec<Vec<f64>>,
 }
 
 impl Writer {
@@ -234,57 +228,22 @@ fn parquet_failure(file: &Path) -> impl Fn(ParquetError) -> ShardError + use<> {
 impl Groups {
     fn create(out: CheckedFile, head: &ShardHeader) -> Result<Self, ShardError> {
         let file = out.path().to_owned();
-        let failed = parquet_failure(&file);
-        let column = |name: &str, physical| {
-            Type::primitive_type_builder(name, physical).with_repetition(Repetition::REQUIRED).build().map(Arc::new)
-        };
-        let sample = std::iter::once(column("sample", Physical::INT64));
-        let others = head.columns.iter().map(|name| column(name, Physical::DOUBLE));
-        let fields = sample.chain(others).collect::<Result<Vec<_>, _>>().map_err(&failed)?;
-        let schema = Type::group_type_builder("machine").with_fields(fields).build().map_err(&failed)?;
-        // Random numbers do not compress with a dictionary.
-        let properties = WriterProperties::builder()
-            .set_dictionary_enabled(false)
-            .set_created_by(format!("stillbase {}", env!("CARGO_PKG_VERSION")))
-            .set_key_value_metadata(Some(vec![KeyValue::new(STUDY_KEY.into(), head.study.to_string())]))
-            .build();
-        let writer = SerializedFileWriter::new(out, Arc::new(schema), Arc::new(properties)).map_err(&failed)?;
-        Ok(Self { writer, file, samples: Vec::new(), columns: vec![Vec::new(); head.columns.len()] })
+        let study = head.study.to_string();
+        let note = Some([STUDY_KEY, &study]);
+        let named = ParquetHead { row: "machine", count: Some("sample"), columns: &head.columns, note };
+        let rows = ParquetRows::begin(out, &named).map_err(parquet_failure(&file))?;
+        Ok(Self { rows, file })
     }
 
     fn row(&mut self, sample: u64, values: &[f64]) -> Result<(), ShardError> {
-        self.samples.push(i64::try_from(sample).unwrap_or(i64::MAX));
-        self.columns.iter_mut().zip(values).for_each(|(column, value)| column.push(*value));
-        if self.samples.len() < GROUP_ROWS {
-            return Ok(());
-        }
-        self.write_group().map_err(parquet_failure(&self.file))
+        let sample = i64::try_from(sample).unwrap_or(i64::MAX);
+        self.rows.row(sample, values.iter().copied()).map_err(parquet_failure(&self.file))
     }
 
-    fn write_group(&mut self) -> Result<(), ParquetError> {
-        let mut group = self.writer.next_row_group()?;
-        if let Some(mut column) = group.next_column()? {
-            column.typed::<Int64Type>().write_batch(&self.samples, None, None)?;
-            column.close()?;
-        }
-        for values in &mut self.columns {
-            if let Some(mut column) = group.next_column()? {
-                column.typed::<DoubleType>().write_batch(values, None, None)?;
-                column.close()?;
-            }
-            values.clear();
-        }
-        self.samples.clear();
-        group.close().map(|_| ())
-    }
-
-    fn finish(mut self) -> Result<(), ShardError> {
-        let failed = parquet_failure(&self.file);
-        if !self.samples.is_empty() {
-            self.write_group().map_err(&failed)?;
-        }
-        let mut out = self.writer.into_inner().map_err(&failed)?;
-        out.flush().map_err(|source| WriteError::Failed { file: self.file.clone(), source })?;
+    fn finish(self) -> Result<(), ShardError> {
+        let Self { rows, file } = self;
+        let mut out = rows.finish().map_err(parquet_failure(&file))?;
+        out.flush().map_err(|source| WriteError::Failed { file, source })?;
         Ok(out.finish(ChecksumPlace::Tail)?)
     }
 }

@@ -3,22 +3,28 @@
 use std::fmt::Write as _;
 
 use super::figure::{Figure, FigureItem, FigureText};
+use crate::report::markup::escaped;
 use crate::scene::Rgba;
 
 /// Returns the text of the SVG file.
 pub fn svg(figure: &Figure) -> String {
+    format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{}", svg_element(figure, "axes"))
+}
+
+/// Returns the element of a drawing within a page; `id` names the rectangle that clips its curves.
+pub fn svg_element(figure: &Figure, id: &str) -> String {
     let [width, height] = figure.size;
-    let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+    let mut text = String::new();
     let _ = writeln!(
         text,
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} \
          {height}\" font-family=\"Inter, DejaVu Sans, Verdana, sans-serif\">"
     );
     let [left, top, right, bottom] = figure.axes.sides;
-    let _ = writeln!(text, "<clipPath id=\"axes\">{}</clipPath>", rect([left, top, right, bottom + 4.0], ""));
+    let _ = writeln!(text, "<clipPath id=\"{id}\">{}</clipPath>", rect([left, top, right, bottom + 4.0], ""));
     let _ = writeln!(text, "{}", rect([0.0, 0.0, width, height], &paint("fill", figure.background)));
     for item in &figure.items {
-        let _ = writeln!(text, "{}", element(item));
+        let _ = writeln!(text, "{}", element(item, id));
     }
     text + "</svg>\n"
 }
@@ -35,7 +41,7 @@ fn paint(what: &str, [r, g, b, a]: Rgba) -> String {
     format!(" {what}=\"#{r:02x}{g:02x}{b:02x}\"{opacity}")
 }
 
-fn element(item: &FigureItem) -> String {
+fn element(item: &FigureItem, id: &str) -> String {
     match item {
         FigureItem::Line { points, width, colour, dash, inside } => {
             let mut places = String::new();
@@ -43,7 +49,7 @@ fn element(item: &FigureItem) -> String {
                 let _ = write!(places, "{x:.2},{y:.2} ");
             }
             let dash = dash.map_or_else(String::new, |[on, off]| format!(" stroke-dasharray=\"{on} {off}\""));
-            let clip = if *inside { " clip-path=\"url(#axes)\"" } else { "" };
+            let clip = if *inside { format!(" clip-path=\"url(#{id})\"") } else { String::new() };
             format!(
                 "<polyline points=\"{}\" fill=\"none\" stroke-width=\"{width}\" stroke-linejoin=\"round\"{}{dash}{clip}/>",
                 places.trim_end(),
@@ -73,6 +79,6 @@ fn element(item: &FigureItem) -> String {
 
 fn span(words: &FigureText) -> String {
     let weight = if words.bold { " font-weight=\"bold\"" } else { "" };
-    let text = words.text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    let text = escaped(&words.text);
     format!("<tspan font-size=\"{}\"{weight}{}>{text}</tspan>", words.size, paint("fill", words.colour))
 }

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use egui::{Align2, CentralPanel, Frame, Galley, Painter, Pos2, Rect, Ui, Vec2, vec2};
 
 use super::{SceneViewport, colour, paint, plain};
-use crate::notation::Notation;
 use crate::scene::camera::Camera;
 use crate::scene::palette::faded;
 use crate::scene::{Anchor, Label, Scene};
@@ -60,14 +59,14 @@ pub fn paint_still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
     CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
         let rect = ui.max_rect();
         paint(ui, 0, rect, scene, camera);
-        draw_labels(ui, &SceneViewport { rect, camera: *camera }, scene, &[], Notation::default());
+        draw_labels(ui, &SceneViewport { rect, camera: *camera }, scene, &[]);
     });
 }
 
-/// Paints the labels of the scene, in the user's units, outside the rectangles `taken`.
-pub fn draw_labels(ui: &Ui, spot: &SceneViewport, scene: &Scene, taken: &[Rect], notation: Notation) {
+/// Paints the labels of the scene, in its units, outside the rectangles `taken`.
+pub fn draw_labels(ui: &Ui, spot: &SceneViewport, scene: &Scene, taken: &[Rect]) {
     let painter = ui.painter().with_clip_rect(spot.rect);
-    for (label, galley, place) in placed(&painter, spot, scene, taken, notation) {
+    for (label, galley, place) in placed(&painter, spot, scene, taken) {
         write(&painter, scene, label, galley, place);
     }
 }
@@ -78,13 +77,12 @@ pub fn placed<'a>(
     spot: &SceneViewport,
     scene: &'a Scene,
     taken: &[Rect],
-    notation: Notation,
 ) -> Vec<(&'a Label, Arc<Galley>, Rect)> {
     let mut groups: Vec<(Pos2, Group<'_>)> = Vec::new();
     for label in &scene.labels {
         let Some(at) = spot.screen(label.at.map(f64::from)) else { continue };
         let galley = painter.layout_no_wrap(
-            notation.sentence(&label.text).into_owned(),
+            scene.notation.sentence(&label.text).into_owned(),
             plain(label.size),
             colour(label.colour),
         );

@@ -47,6 +47,7 @@ pub mod views;
 #[doc(hidden)]
 pub mod wall;
 
+use crate::notation::Notation;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -376,6 +377,8 @@ pub struct Scene {
     pub labels: Vec<Label>,
     /// Centre lines of the bars of the machine, which labels avoid.
     pub bars: Vec<[[f32; 3]; 2]>,
+    /// Units in which labels are written; their texts are in SI units.
+    pub notation: Notation,
 }
 
 impl Scene {
@@ -391,12 +394,13 @@ impl Scene {
             markers: Vec::new(),
             labels: Vec::new(),
             bars: Vec::new(),
+            notation: Notation::default(),
         }
     }
 
     /// Whether another scene looks the same except for its labels.
     pub fn looks_like(&self, other: &Self) -> bool {
-        let Self { background, model, areas, shadows, solids, lines, markers, labels: _, bars: _ } = self;
+        let Self { background, model, areas, shadows, solids, lines, markers, labels: _, bars: _, notation: _ } = self;
         Arc::ptr_eq(model, &other.model)
             && (background, areas, solids, markers) == (&other.background, &other.areas, &other.solids, &other.markers)
             && (shadows, lines) == (&other.shadows, &other.lines)

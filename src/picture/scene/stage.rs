@@ -343,6 +343,7 @@ impl Stage {
         let shown = &DrawnFrame::of(frame, options.exaggeration);
         let (linkage, z) = (&self.linkage, self.handle_height());
         let mut scene = Scene::new(palette.background, linkage.model.clone());
+        scene.notation = options.notation;
         self.bodies(&mut scene, &palette, shown, options);
         self.grid.draw(&mut scene, &palette);
         self.base.unmoved(&mut scene, linkage, &palette, shown, options.exaggeration.factor());

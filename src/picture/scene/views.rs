@@ -383,12 +383,13 @@ impl Views {
 
     /// Returns the scene of a frame.
     pub fn scene(&self, kind: ViewKind, frame: &Frame, options: &ViewOptions, camera: &Camera) -> Scene {
-        match (kind, &self.joints, &self.tower) {
+        let scene = match (kind, &self.joints, &self.tower) {
             (ViewKind::Joints, Some(joints), _) => joints.scene(frame, options, camera),
             (ViewKind::Tower, _, Some(tower)) => tower.scene(frame, options, camera),
             (ViewKind::Design, ..) => self.stage.drafted(&self.draft, frame, options),
             _ => self.stage.scene(frame, options),
-        }
+        };
+        Scene { notation: options.notation, ..scene }
     }
 
     /// Picks the end effector, if it is under the pointer.

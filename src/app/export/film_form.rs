@@ -1,0 +1,53 @@
+//! [`FilmForm`]: the formats of a film.
+
+use std::path::Path;
+
+use super::ExportError;
+
+/// Format of a film.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FilmForm {
+    /// GIF, with 256 colours a picture.
+    Gif,
+    /// Animated PNG.
+    Png,
+    /// MP4, which the system's encoder writes.
+    Mp4,
+    /// A folder of numbered pictures, PNG.
+    Frames,
+}
+
+impl FilmForm {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Gif, Self::Png, Self::Mp4, Self::Frames];
+
+    /// Returns the file name extension; empty for a folder.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Gif => "gif",
+            Self::Png => "png",
+            Self::Mp4 => "mp4",
+            Self::Frames => "",
+        }
+    }
+
+    /// Returns the name, and what it is good for.
+    pub fn words(self) -> [&'static str; 2] {
+        match self {
+            Self::Gif => ["GIF", "plays everywhere: slides, mail, browsers; 256 colours a picture"],
+            Self::Png => ["Animated PNG", "plays in browsers; all colours"],
+            Self::Mp4 => ["MP4", "small, for video players; the program ffmpeg writes it and has to be installed"],
+            Self::Frames => ["Numbered PNG pictures", "a folder for a video program: frame-00001.png and so on"],
+        }
+    }
+
+    /// Returns the format of a file by its extension; a name without one is a folder of pictures.
+    ///
+    /// # Errors
+    /// If no film has this extension.
+    pub fn of(file: &Path) -> Result<Self, ExportError> {
+        let own = file.extension().unwrap_or_default();
+        let known = Self::ALL.into_iter().find(|form| own.eq_ignore_ascii_case(form.ending()));
+        known.ok_or_else(|| ExportError::FilmEnding(file.into()))
+    }
+}

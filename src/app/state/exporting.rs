@@ -1,0 +1,129 @@
+//! Writing of results in the background: pictures, films, values of signals and the report.
+
+use std::path::Path;
+
+use super::AppState;
+use super::writing::absolute;
+use crate::export::{
+    self, Export, FilmChoice, FilmOrder, Look, ValuesChoice, ValuesOrder, write_film, write_picture, write_report,
+    write_values,
+};
+use crate::shot::PictureOrder;
+use crate::{Activity, SessionCommand, plots};
+use stillbase_picture::charts::figure::Figure;
+use stillbase_picture::scene::palette::{Theme, palette};
+use stillbase_query::Ticket;
+use stillbase_settings::number::counted;
+
+/// Message when another result is being written.
+const BUSY: &str = "one result is being written: want that to end first";
+
+/// Makes a file in the background; returns what to say of it.
+type Work = Box<dyn FnOnce(&Ticket, &Path, bool) -> Result<String, String> + Send>;
+
+impl AppState {
+    /// Writes a result to a file.
+    pub(super) fn export(&mut self, path: &Path, wanted: &Export) -> Result<(), String> {
+        if let Export::Film(_) = wanted {
+            // What would fail fails before the film is drawn.
+            let replaces = self.saving.replaces.as_deref() == Some(path);
+            export::check_film(path, replaces).map_err(|e| e.to_string())?;
+        }
+        self.write(path, Activity::Exporting, BUSY, None, |app_state| {
+            Ok(match wanted {
+                Export::Picture(look) => app_state.picture_work(look),
+                Export::Film(choice) => app_state.film_work(choice)?,
+                Export::Values(choice) => app_state.values_work(*choice),
+                Export::Report => app_state.report_work(),
+            })
+        })
+    }
+
+    fn order(&self, look: &Look) -> PictureOrder {
+        let (size_px, scale) = look.size.of(look.shot, &self.view_state.displayed);
+        let Look { shot, theme, transparent, .. } = *look;
+        PictureOrder { shot, theme, transparent, size_px, scale }
+    }
+
+    fn picture_work(&self, look: &Look) -> Work {
+        let (copy, order) = (self.copy(), self.order(look));
+        Box::new(move |ticket, path, force| {
+            let goes_on = &mut |done| ticket.goes_on(done);
+            write_picture(&mut copy.open(), &order, path, force, goes_on).map_err(|e| e.to_string())?;
+            let [width, height] = order.size_px;
+            Ok(format!("saved {}, {width} × {height} pixels", absolute(path)))
+        })
+    }
+
+    fn film_work(&self, choice: &FilmChoice) -> Result<Work, String> {
+        let FilmChoice { ref look, whole, fps, slow, .. } = *choice;
+        let order = FilmOrder { picture: self.order(look), times: self.chosen_times(whole), fps, slow };
+        order.count().map_err(|e| e.to_string())?;
+        let mut copy = self.copy();
+        Ok(Box::new(move |ticket, path, force| {
+            let goes_on = &mut |done| ticket.goes_on(done);
+            // The pictures take most of the time.
+            copy.run_to_end(&mut |_| goes_on(0.0));
+            let done = write_film(&mut copy.open(), &order, path, force, goes_on).map_err(|e| e.to_string())?;
+            Ok(format!("saved {}, {}", absolute(path), counted(done.pictures, "picture")))
+        }))
+    }
+
+    fn values_work(&self, choice: ValuesChoice) -> Work {
+        let all = self.signals();
+        let signals = match choice.all {
+            true => all.to_vec(),
+            false => {
+                let plots = self.view_state.plots(self.session.scenario(), &all);
+                plots::shown_signals(&plots)
+            }
+        };
+        let order = ValuesOrder { signals, times: self.chosen_times(choice.whole) };
+        let mut session = self.session.clone();
+        Box::new(move |ticket, path, force| {
+            let goes_on = &mut |done| ticket.goes_on(done);
+            session.seek_while(order.times[1], &mut |_| goes_on(0.0));
+            let rows = write_values(session.frames(), &order, path, force, goes_on).map_err(|e| e.to_string())?;
+            let columns = counted(order.signals.len(), "signal");
+            Ok(format!("saved {}, {} of {columns}", absolute(path), counted(rows, "row")))
+        })
+    }
+
+    fn report_work(&self) -> Work {
+        let mut copy = self.copy();
+        Box::new(move |ticket, path, force| {
+            let goes_on = &mut |done| ticket.goes_on(done);
+            copy.run_to_end(&mut |done| goes_on(0.5 * done));
+            write_report(&mut copy.open(), None, path, force, goes_on).map_err(|e| e.to_string())?;
+            Ok(format!("saved {}; a browser shows and prints it", absolute(path)))
+        })
+    }
+
+    /// Returns the time interval to be written, s: the whole run, or what plots show of it.
+    fn chosen_times(&self, whole: bool) -> [f64; 2] {
+        let extent = plots::extent(&self.session);
+        let end = self.session.length();
+        match whole {
+            true => [0.0, end],
+            false => extent.shown(self.view_state.charts.range).map(|time| time.clamp(0.0, end)),
+        }
+    }
+
+    /// Returns drawings of the plots on display, of a size in points.
+    pub(crate) fn figures(&self, size: [f32; 2], theme: Theme) -> Vec<Figure> {
+        let Self { session, view_state, comparison, .. } = self;
+        let (queries, signals, comparison) = (self.queries(), &self.signals(), comparison.as_ref());
+        let what = plots::DisplayContext { session, queries, signals, comparison, view_state };
+        let times = match view_state.charts.range {
+            None => [0.0, session.length()],
+            chosen => plots::extent(session).shown(chosen),
+        };
+        plots::figures(&what, times, size, &palette(theme))
+    }
+
+    /// Simulates the run to its end and shows that instant; returns its time, s.
+    pub fn run_to_end(&mut self) -> f64 {
+        self.carry_out(SessionCommand::Seek(self.session.length()));
+        self.session.frame().time
+    }
+}

@@ -1,0 +1,76 @@
+//! Rows of numbers, as CSV on standard output, or in a new file as CSV or Parquet.
+
+use std::io::{self, StdoutLock};
+use std::path::{Path, PathBuf};
+
+use stillbase_files::row_file::RowFile;
+use stillbase_settings::text::plain;
+
+use super::exit::print_message;
+use super::failure::Failure;
+
+/// Rows that are being written.
+pub struct Rows {
+    sink: Sink,
+    row: Vec<Option<f64>>,
+}
+
+enum Sink {
+    File(RowFile, PathBuf),
+    Standard(Box<csv::Writer<StdoutLock<'static>>>),
+}
+
+impl Rows {
+    /// Begins a file with the names of its columns, CSV or Parquet by its ending; without a file, writes CSV to standard
+    /// output.
+    ///
+    /// # Errors
+    /// If the file or standard output cannot be written.
+    pub fn begin(file: Option<&Path>, force: bool, head: &[String]) -> Result<Self, Failure> {
+        let sink = match file {
+            Some(file) => Sink::File(RowFile::create(file, force, "instant", head)?, file.into()),
+            None => {
+                let mut writer = csv::Writer::from_writer(io::stdout().lock());
+                writer.write_record(head.iter().map(|name| plain(name).into_owned())).map_err(failure)?;
+                Sink::Standard(Box::new(writer))
+            }
+        };
+        Ok(Self { sink, row: Vec::new() })
+    }
+
+    /// Writes a row. Zero has no sign, and `None` gives an empty cell.
+    ///
+    /// # Errors
+    /// If the file or standard output cannot be written.
+    pub fn row<T: Into<Option<f64>>>(&mut self, values: impl IntoIterator<Item = T>) -> Result<(), Failure> {
+        self.row.clear();
+        self.row.extend(values.into_iter().map(|x| x.into().map(|x| x + 0.0)));
+        match &mut self.sink {
+            Sink::File(file, _) => Ok(file.row(&self.row)?),
+            Sink::Standard(writer) => writer.serialize(&self.row).map_err(failure),
+        }
+    }
+
+    /// Completes the file and prints its name.
+    ///
+    /// # Errors
+    /// If the file or standard output cannot be written.
+    pub fn finish(self) -> Result<(), Failure> {
+        match self.sink {
+            Sink::File(file, name) => {
+                file.finish()?;
+                print_message(format!("wrote {}", name.display()));
+                Ok(())
+            }
+            Sink::Standard(mut writer) => writer.flush().map_err(|e| Failure::standard_output(&e)),
+        }
+    }
+}
+
+/// Returns the failure to write standard output.
+fn failure(error: csv::Error) -> Failure {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => Failure::standard_output(&error),
+        other => Failure::WrongInput(format!("CSV: {other:?}")),
+    }
+}

@@ -1,0 +1,319 @@
+//! Results that leave the window as files: pictures, films, values of signals, the report.
+
+use std::fs;
+use std::path::Path;
+
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable as _;
+use stillbase::app::export::{
+    Export, FilmChoice, FilmForm, FilmOrder, Look, PictureSize, RowForm, ValuesChoice, write_film,
+};
+use stillbase::app::jobs::Threads;
+use stillbase::app::{Activity, AppState, Message, PictureOrder, SessionCommand, Shot, ViewChange, WindowCommand};
+use stillbase::picture::charts::choice::PlotChange;
+use stillbase::picture::render::offscreen::Picture;
+use stillbase::picture::scene::palette::Theme;
+use stillbase::picture::scene::views::ViewKind;
+use stillbase::session::scenario::Scenario;
+
+use super::{Window, window};
+use crate::Test;
+use crate::folder::Folder;
+
+pub const TESTS: &[Test] = tests![
+    a_picture_is_chosen_on_a_card_and_written,
+    a_scene_may_be_transparent,
+    a_film_holds_the_range_that_plots_show,
+    a_film_that_is_stopped_leaves_nothing,
+    a_folder_of_pictures_replaces_only_its_like,
+    without_its_encoder_an_mp4_says_what_to_install,
+    a_film_is_drawn_beside_the_window_and_can_be_cancelled,
+    values_are_those_of_the_plots_or_all,
+    a_report_of_the_window_shows_its_plots,
+    an_encoder_gets_every_picture,
+];
+
+const SIZE: [u32; 2] = [320, 200];
+
+fn look(shot: Shot) -> Look {
+    Look { shot, size: PictureSize::Pixels(SIZE), theme: Theme::Light, transparent: false }
+}
+
+fn picture_in(file: &Path) -> Picture {
+    let mut reader =
+        png::Decoder::new(std::io::BufReader::new(fs::File::open(file).expect("a file"))).read_info().expect("a PNG");
+    let mut rgba = vec![0; reader.output_buffer_size().expect("a size")];
+    let info = reader.next_frame(&mut rgba).expect("a picture");
+    Picture { width: info.width, height: info.height, rgba }
+}
+
+fn app_state(case: &str) -> AppState {
+    AppState::new(Scenario::builtin(case).expect("built in"), Theme::Dark).expect("it starts")
+}
+
+/// What is said after the file was written, or why it was not.
+#[track_caller]
+fn said(app_state: &mut AppState, file: &Path, wanted: Export) -> Message {
+    app_state.carry_out(SessionCommand::Export(file.into(), wanted));
+    app_state.view_state().status.message.clone().expect("it is said")
+}
+
+#[track_caller]
+fn saved(app_state: &mut AppState, file: &Path, wanted: Export) {
+    let said = said(app_state, file, wanted);
+    assert!(!said.is_problem && said.text.contains("saved"), "{said:?}");
+}
+
+fn a_picture_is_chosen_on_a_card_and_written() {
+    let folder = Folder::new("results");
+    let file = folder.path("shot.png");
+    let mut h: Window = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    h.key_press_modifiers(Modifiers::COMMAND, Key::E);
+    h.run_steps(3);
+    h.get_by_label("the whole window").click();
+    h.get_by_label("light").click();
+    h.run_steps(3);
+    let chosen = h.state().app_state().view_state().open.export.clone();
+    let Some(Export::Picture(look)) = chosen else { panic!("{chosen:?}") };
+    assert_eq!((look.shot, look.theme, look.size), (Shot::Window, Theme::Light, PictureSize::Display));
+    h.get_by_label("Choose a file…").click();
+    h.run_steps(3);
+    assert!(h.state().app_state().view_state().open.export.is_none(), "the card has gone");
+    h.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    h.step();
+    h.event(egui::Event::Text(file.display().to_string()));
+    h.run_steps(2);
+    h.key_press(Key::Enter);
+    h.run_steps(4);
+    let picture = picture_in(&file);
+    assert_eq!([picture.width, picture.height], [1280, 800], "as on display");
+    assert_eq!(picture.pixel(640, 2).map(|p| p[0] > 200), Some(true), "light, though the window is dark");
+    assert_eq!(h.state().app_state().view_state().arrangement.theme, Theme::Dark, "the window stays as it is");
+    // Esc closes the card.
+    h.key_press_modifiers(Modifiers::COMMAND, Key::E);
+    h.run_steps(3);
+    h.key_press(Key::Escape);
+    h.run_steps(3);
+    assert!(h.state().app_state().view_state().open.export.is_none());
+}
+
+fn a_scene_may_be_transparent() {
+    let folder = Folder::new("results");
+    let mut app_state = app_state("case-3");
+    for view in [ViewKind::Flat, ViewKind::Space, ViewKind::Joints, ViewKind::Tower, ViewKind::Design] {
+        app_state.carry_out(ViewChange::Kind(view));
+        let [clear, filled] = [true, false].map(|transparent| {
+            let file = folder.path(&format!("{}-{transparent}.png", view.name()));
+            saved(&mut app_state, &file, Export::Picture(Look { transparent, ..look(Shot::Scene) }));
+            picture_in(&file)
+        });
+        let alpha = |picture: &Picture, wanted: fn(u8) -> bool| {
+            picture.rgba.iter().skip(3).step_by(4).filter(|a| wanted(**a)).count()
+        };
+        assert_eq!(alpha(&filled, |a| a == 255), (SIZE[0] * SIZE[1]) as usize, "{view:?}");
+        assert!(alpha(&clear, |a| a == 0) > 5000, "{view:?}: nothing behind it");
+        assert!(alpha(&clear, |a| a == 255) > 100 || !view.shows_machine(), "{view:?}: the machine is solid");
+        // Laid over white, it looks as the light picture does.
+        let over = |c: u8, a: u8| (u32::from(c) * u32::from(a) + 255 * (255 - u32::from(a))).div_ceil(255);
+        let far = clear
+            .rgba
+            .as_chunks::<4>()
+            .0
+            .iter()
+            .zip(filled.rgba.as_chunks::<4>().0)
+            .filter(|(c, f)| (0..3).any(|i| over(c[i], c[3]).abs_diff(u32::from(f[i])) > 40));
+        let far = far.count();
+        assert!(far < 600, "{view:?}: {far} pixels differ");
+    }
+}
+
+fn a_film_holds_the_range_that_plots_show() {
+    let folder = Folder::new("results");
+    let mut app_state = app_state("case-1");
+    app_state.carry_out(ViewChange::Charts(PlotChange::Range(Some([0.2, 0.6]))));
+    let choice = FilmChoice { look: look(Shot::Scene), form: FilmForm::Gif, whole: false, fps: 10.0, slow: 1.0 };
+    saved(&mut app_state, &folder.path("frames"), Export::Film(choice));
+    let names: Vec<String> = (1..=5).map(|i| format!("frame-{i:05}.png")).collect();
+    let mut found: Vec<String> = fs::read_dir(folder.path("frames"))
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+        .collect();
+    found.sort();
+    assert_eq!(found, names, "0.2, 0.3 … 0.6 s");
+    assert_eq!(app_state.session().frame().time, 0.0, "the window stays where it is");
+    // The first picture shows the first instant of the range.
+    app_state.carry_out(SessionCommand::Seek(0.2));
+    saved(&mut app_state, &folder.path("at.png"), Export::Picture(look(Shot::Scene)));
+    assert!(picture_in(&folder.path("at.png")) == picture_in(&folder.path("frames/frame-00001.png")));
+    saved(&mut app_state, &folder.path("film.gif"), Export::Film(FilmChoice { whole: true, ..choice }));
+    saved(&mut app_state, &folder.path("film.png"), Export::Film(choice));
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::RGBA);
+    let mut decoder = options.read_info(fs::File::open(folder.path("film.gif")).expect("a file")).expect("a GIF");
+    let mut count = 0;
+    while decoder.read_next_frame().expect("a picture").is_some() {
+        count += 1;
+    }
+    assert_eq!(count, 11, "0, 0.1 … 1 s");
+    for bad in ["film.avi", "film.gif"] {
+        let said = said(&mut app_state, &folder.path(bad), Export::Film(choice));
+        assert!(said.is_problem, "{said:?}");
+    }
+    assert_eq!(folder.names(), ["at.png", "film.gif", "film.png", "frames"]);
+}
+
+fn film_order(app_state: &AppState) -> FilmOrder {
+    let picture = PictureOrder::new(Shot::View(ViewKind::Flat), Theme::Dark, [64, 40]);
+    FilmOrder { picture, times: [0.0, app_state.session().length()], fps: 10.0, slow: 1.0 }
+}
+
+fn a_film_that_is_stopped_leaves_nothing() {
+    let folder = Folder::new("results");
+    let mut app_state = app_state("case-1");
+    app_state.run_to_end();
+    let order = film_order(&app_state);
+    for name in ["a.gif", "a.png", "frames"] {
+        let mut pictures = 0;
+        let goes_on = &mut |_: f64| {
+            pictures += 1;
+            pictures < 3
+        };
+        let stopped = write_film(&mut app_state, &order, &folder.path(name), false, goes_on);
+        assert!(stopped.is_err_and(|why| why.to_string().contains("no file is left")), "{name}");
+        assert_eq!(pictures, 3, "{name}: it stops at once");
+    }
+    assert!(folder.names().is_empty());
+    let order = FilmOrder { slow: 1000.0, fps: 50.0, ..order };
+    let long = write_film(&mut app_state, &order, &folder.path("a.gif"), false, &mut |_| true);
+    assert!(long.is_err_and(|why| why.to_string().contains("want at most 5000")));
+}
+
+fn a_folder_of_pictures_replaces_only_its_like() {
+    let folder = Folder::new("results");
+    let mut app_state = app_state("case-1");
+    app_state.run_to_end();
+    let (order, frames) = (film_order(&app_state), folder.path("frames"));
+    let mut film = |order: &FilmOrder, force| write_film(&mut app_state, order, &frames, force, &mut |_| true);
+    assert_eq!(film(&order, false).expect("a film").pictures, 11);
+    assert!(film(&order, false).is_err_and(|why| why.to_string().contains("exists")));
+    let short = FilmOrder { times: [0.0, 0.2], ..order };
+    assert_eq!(film(&short, true).expect("a film").pictures, 3);
+    assert_eq!(fs::read_dir(&frames).expect("a folder").count(), 3, "nothing of the longer film is left");
+    fs::write(frames.join("notes.txt"), "mine").expect("a file");
+    assert!(film(&order, true).is_err_and(|why| why.to_string().contains("more than numbered pictures")));
+    assert_eq!(fs::read_dir(&frames).expect("a folder").count(), 4);
+    assert_eq!(folder.names(), ["frames"]);
+}
+
+/// On a system with the encoder, the film is written.
+fn without_its_encoder_an_mp4_says_what_to_install() {
+    let folder = Folder::new("results");
+    let mut app_state = app_state("case-1");
+    app_state.run_to_end();
+    let order = film_order(&app_state);
+    let file = folder.path("film.mp4");
+    match write_film(&mut app_state, &order, &file, false, &mut |_| true) {
+        Err(why) => {
+            assert!(!stillbase::files::video::has_encoder(), "{why}");
+            assert!(why.to_string().contains("apt-get install ffmpeg"), "{why}");
+            assert!(folder.names().is_empty());
+        }
+        Ok(done) => {
+            assert_eq!((done.pictures, folder.names()), (11, vec!["film.mp4".to_owned()]));
+            assert_eq!(&fs::read(&file).expect("a file")[4..8], b"ftyp");
+        }
+    }
+}
+
+fn a_film_is_drawn_beside_the_window_and_can_be_cancelled() {
+    let folder = Folder::new("results");
+    let mut app_state = app_state("case-1").with_workers(Threads::Background);
+    let choice = FilmChoice { look: look(Shot::Scene), form: FilmForm::Gif, whole: true, fps: 50.0, slow: 20.0 };
+    app_state.carry_out(SessionCommand::Export(folder.path("film.gif"), Export::Film(choice)));
+    assert!(app_state.under_way().contains(&Activity::Exporting), "the hand does not wait");
+    app_state.carry_out(SessionCommand::Export(folder.path("other.gif"), Export::Film(choice)));
+    let said = app_state.view_state().status.message.clone().expect("it is said");
+    assert!(said.is_problem && said.text.contains("one result is being written"), "{said:?}");
+    app_state.carry_out(WindowCommand::Cancel(Activity::Exporting));
+    let said = app_state.view_state().status.message.clone().expect("it is said");
+    assert_eq!(said.text, "cancelled: no file is left");
+    // The work ends at its next picture, and takes its temporary file with it.
+    for _ in 0..500 {
+        if folder.names().is_empty() {
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    panic!("left: {:?}", folder.names());
+}
+
+/// A system with an encoder, or with one that fails: programs that say they are ffmpeg.
+fn an_encoder_gets_every_picture() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let folder = Folder::new("results");
+    let film = |script: &str| {
+        let encoder = folder.file("ffmpeg", format!("#!/bin/sh\n[ \"$1\" = -version ] && exit 0\n{script}\n"));
+        fs::set_permissions(&encoder, fs::Permissions::from_mode(0o755)).expect("it may run");
+        let path = format!("{}:{}", folder.0.display(), std::env::var("PATH").expect("a path"));
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_stillbase"));
+        command.args(["render", "case-1", "-o", "film.mp4", "--film", "--fps", "10", "--size", "32x20"]);
+        command.current_dir(&folder.0).env("PATH", path).output().expect("the program starts")
+    };
+    let out = film("echo 'no such codec' >&2; exit 1");
+    let why = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert_eq!(out.status.code(), Some(1), "{why}");
+    assert!(why.contains("ffmpeg failed: no such codec"), "{why}");
+    assert_eq!(folder.names(), ["ffmpeg"], "nothing else is left");
+    let out = film("for last; do :; done; cat > \"${last#file:}\"");
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    assert_eq!(fs::read(folder.path("film.mp4")).expect("a file").len(), 11 * 32 * 20 * 4);
+    assert_eq!(folder.names(), ["ffmpeg", "film.mp4"]);
+}
+
+fn values_are_those_of_the_plots_or_all() {
+    let folder = Folder::new("results");
+    // Nothing is computed yet of the run: what is to be written is computed first.
+    let mut app_state = app_state("case-1");
+    app_state.carry_out(ViewChange::Charts(PlotChange::Range(Some([0.25, 0.5]))));
+    let choice = ValuesChoice { all: false, whole: false, form: RowForm::Csv };
+    saved(&mut app_state, &folder.path("part.csv"), Export::Values(choice));
+    let text = fs::read_to_string(folder.path("part.csv")).expect("a file");
+    let head = text.lines().next().expect("a head");
+    assert!(head.starts_with("time s,torque/1 N m,"), "{head}");
+    assert_eq!(text.lines().count(), 252, "0.25, 0.251 … 0.5 s and the head");
+    assert!(text.lines().nth(1).is_some_and(|line| line.starts_with("0.25,")));
+    saved(&mut app_state, &folder.path("all.csv"), Export::Values(ValuesChoice { all: true, whole: true, ..choice }));
+    let all = fs::read_to_string(folder.path("all.csv")).expect("a file");
+    let columns = |line: &str| line.split(',').count();
+    assert!(all.lines().next().map(columns) > Some(columns(head)));
+    assert_eq!(all.lines().count(), 1002);
+    saved(&mut app_state, &folder.path("all.parquet"), Export::Values(choice));
+    assert!(fs::read(folder.path("all.parquet")).expect("a file").starts_with(b"PAR1"));
+    let why = said(&mut app_state, &folder.path("all.xls"), Export::Values(choice));
+    assert!(why.is_problem && why.text.contains(".csv or .parquet"), "{why:?}");
+    let why = said(&mut app_state, &folder.path("all.csv"), Export::Values(choice));
+    assert!(why.is_problem && why.text.contains("exists"), "{why:?}");
+    let why = said(&mut app_state, &folder.path("no/all.csv"), Export::Values(choice));
+    assert!(why.is_problem && why.text.contains("no folder"), "{why:?}");
+}
+
+fn a_report_of_the_window_shows_its_plots() {
+    let folder = Folder::new("results");
+    let mut app_state = app_state("case-1");
+    app_state.carry_out(ViewChange::Charts(PlotChange::Plot("angle/1".into())));
+    app_state.carry_out(ViewChange::Switch(stillbase::app::Switch::Compare, true));
+    let file = folder.path("report.html");
+    saved(&mut app_state, &file, Export::Report);
+    let page = fs::read_to_string(&file).expect("a page");
+    assert!(page.contains("Angle of drive 1"), "the plot that was added");
+    assert!(page.contains("Runs compared"));
+    assert!(page.contains("<pre>stillbase simulate case-1</pre>"));
+    assert_eq!(page.matches("data:image/png;base64,").count(), 2);
+    // A page of the command line shows the same numbers, and so does one of a session that was led by hand.
+    app_state.carry_out(SessionCommand::Seek(0.3));
+    app_state.carry_out(SessionCommand::Edit(stillbase::session::Edit::DragTarget { x: 0.5, y: 0.8 }));
+    saved(&mut app_state, &folder.path("led.html"), Export::Report);
+    let page = fs::read_to_string(folder.path("led.html")).expect("a page");
+    assert!(page.contains("Save the session"), "no settings alone lead there");
+}
