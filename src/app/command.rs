@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::activity::Activity;
 use super::file_dialog::{FileDialog, FilePurpose, PlotFile};
 use super::given::assess::{TableAction, TableOptions};
+use super::guide::GuideStep;
 use super::layout::Layout;
 use stillbase_mechanics::counterweights::Objective;
 use stillbase_mechanics::machine::Machine;
@@ -141,6 +142,8 @@ pub enum Switch {
     Snapshots,
     /// The card of keys.
     Help,
+    /// The guide.
+    Guide,
     /// The display of repaint times.
     Times,
     /// The list of commands.
@@ -202,6 +205,10 @@ pub enum ViewChange {
     LookUp(String),
     /// Close the field for the name of a bookmark.
     LeaveNaming,
+    /// Take a step in the guide; opens it if it is closed.
+    Guide(GuideStep),
+    /// End the search in the guide.
+    LeaveGuideSearch,
     /// Open or close the file dialog.
     Dialog(Option<FileDialog>),
 }
@@ -221,6 +228,8 @@ pub enum WindowCommand {
     LookFor,
     /// Copy the command that runs the scenario on display.
     CopyCommand,
+    /// Copy a text, and say so.
+    Copy(String),
     /// Show why a typed number is refused.
     Refuse(String),
     /// Stop an activity in the background.

@@ -10,7 +10,7 @@ use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Session;
 
 /// Turns pressed keys into commands. While a text field has the focus, only keys that it does not use count: Ctrl S,
-/// Ctrl O, Ctrl K and F1.
+/// Ctrl O, Ctrl K, F1 and F2.
 pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let typing =
         ctx.egui_wants_keyboard_input() || view_state.open.dialog.is_some() || view_state.open.finder.is_some();
@@ -53,7 +53,7 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
 
 /// Whether no text field uses the key.
 fn works_while_typing(key: &KeyboardShortcut) -> bool {
-    asks_for_text(key) || key.logical_key == Key::F1
+    asks_for_text(key) || matches!(key.logical_key, Key::F1 | Key::F2)
 }
 
 /// Whether the key opens a text field: the list of commands, or a file name.
@@ -68,6 +68,7 @@ fn escape(view_state: &ViewState) -> Command {
         OpenDialogs { dialog: Some(_), .. } => ViewChange::Dialog(None).into(),
         OpenDialogs { finder: Some(_), .. } => ViewChange::Switch(Switch::Finder, false).into(),
         OpenDialogs { help: true, .. } => ViewChange::Switch(Switch::Help, false).into(),
+        OpenDialogs { guide: Some(_), .. } => ViewChange::Switch(Switch::Guide, false).into(),
         _ if matches!(tool, Tool::Draw(_)) => ViewChange::Switch(Switch::Drawing, false).into(),
         _ if view_state.mark.is_some() => ViewChange::Mark(None).into(),
         _ if *tool == Tool::Push => ViewChange::Switch(Switch::Pushing, false).into(),
@@ -91,6 +92,9 @@ pub fn help(ctx: &Context, view_state: &ViewState, commands: &mut Vec<Command>) 
                 commands.push(WindowCommand::Tour(true).into());
             }
             ui.label(RichText::new("what this is about, in seven steps on the machine itself").color(colour(p.dim)));
+            if ui.button("Open the guide").on_hover_text("F2").clicked() {
+                commands.push(ViewChange::Switch(Switch::Guide, true).into());
+            }
         });
         ui.add_space(4.0);
         let id = egui::Id::unique("keys sought");

@@ -22,6 +22,7 @@ mod framing;
 mod gallery;
 mod gesture;
 mod given;
+mod guide;
 mod history;
 mod icon;
 mod intro;
@@ -68,6 +69,7 @@ pub use command::{
 };
 pub use file_dialog::{FileDialog, FilePurpose, PlotFile};
 pub use gesture::{DragGesture, HoverTarget, Tool};
+pub use guide::{GuidePlace, GuideStep, GuideView, Page as GuidePage};
 pub use given::assess::{TableAction, TableContent, TableOptions};
 use intro::Intro;
 pub use layout::{BottomPanel, Layout, Panel, Panels, WindowArrangement};

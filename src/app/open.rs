@@ -1,6 +1,7 @@
 //! Dialogs, lists and cards that are open over the window.
 
 use super::FileDialog;
+use super::guide::GuideView;
 use super::tour::Tour;
 
 /// State of the list of commands.
@@ -25,6 +26,8 @@ pub struct OpenDialogs {
     pub tour: Option<Tour>,
     /// The list of commands.
     pub finder: Option<Finder>,
+    /// The guide.
+    pub guide: Option<GuideView>,
     /// The file dialog.
     pub dialog: Option<FileDialog>,
     /// The time of the bookmark that is being named, s.

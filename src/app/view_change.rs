@@ -1,6 +1,6 @@
 //! Application of a [`ViewChange`] to a [`ViewState`].
 
-use super::{BottomPanel, Command, Finder, Framing, Layout, Switch, Tool, ViewChange, ViewState};
+use super::{BottomPanel, Command, Finder, Framing, GuideStep, GuideView, Layout, Switch, Tool, ViewChange, ViewState};
 use stillbase_picture::scene::Measure;
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_session::Session;
@@ -29,6 +29,7 @@ impl ViewState {
             Switch::Pins => self.pins,
             Switch::Snapshots => self.snapshots,
             Switch::Help => self.open.help,
+            Switch::Guide => self.open.guide.is_some(),
             Switch::Times => self.open.times,
             Switch::Finder => self.open.finder.is_some(),
             Switch::Equations => {
@@ -73,9 +74,18 @@ impl ViewState {
             Switch::Table => self.put_below(BottomPanel::Table, on),
             Switch::Pins => self.pins = on,
             Switch::Snapshots => self.snapshots = on,
-            Switch::Help => self.open.help = on,
+            Switch::Help => {
+                self.open.help = on;
+                self.open.finder = self.open.finder.take().filter(|_| !on);
+            }
+            // The caller opens it at the page that belongs to what is on display.
+            Switch::Guide => self.open.guide = self.open.guide.take().filter(|_| on),
             Switch::Times => self.open.times = on,
-            Switch::Finder => self.open.finder = on.then(Finder::default),
+            // A file dialog that is open keeps the keyboard.
+            Switch::Finder => {
+                self.open.finder = (on && self.open.dialog.is_none()).then(Finder::default);
+                self.open.help &= !on;
+            }
             Switch::Equations => {
                 self.arrangement.shows_equations = on;
                 // No point of the Pareto front is under the pointer any more.
@@ -103,6 +113,16 @@ impl ViewState {
             true => self.below = Some(thing),
             false if self.below == Some(thing) => self.below = None,
             false => {}
+        }
+    }
+
+    /// Takes a step in the guide; opens it if it is closed.
+    fn read(&mut self, step: GuideStep) {
+        (self.open.help, self.open.finder) = (false, None);
+        match (&mut self.open.guide, step) {
+            (Some(guide), step) => guide.take(step),
+            (closed, GuideStep::Go(place)) => *closed = Some(GuideView::at(place)),
+            (None, GuideStep::Back | GuideStep::Forward) => {}
         }
     }
 
@@ -137,7 +157,12 @@ impl ViewState {
                 self.looked_up = Some(path);
             }
             ViewChange::LeaveNaming => self.open.naming = None,
-            ViewChange::Dialog(dialog) => self.open.dialog = dialog,
+            ViewChange::Guide(step) => self.read(step),
+            ViewChange::LeaveGuideSearch => self.open.guide.iter_mut().for_each(GuideView::leave_search),
+            ViewChange::Dialog(dialog) => {
+                self.open.finder = self.open.finder.take().filter(|_| dialog.is_none());
+                self.open.dialog = dialog;
+            }
         }
     }
 }

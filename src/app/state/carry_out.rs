@@ -3,6 +3,8 @@
 use super::AppState;
 use crate::background::Opening;
 use crate::change::{SessionChange, SessionSource};
+use crate::given::TableView;
+use crate::guide::{GuidePlace, GuideStep};
 use crate::marks;
 use crate::tour::Tour;
 use crate::{Command, FileDialog, FilePurpose, SessionCommand, Switch, ViewChange, WindowCommand};
@@ -46,6 +48,15 @@ impl AppState {
             // Without an open table, the file dialog opens, so that the user can choose one.
             Command::View(ViewChange::Switch(Switch::Table, true)) if self.opened_table.is_none() => {
                 self.view_state.open.dialog = Some(FileDialog::suggest(&self.session, FilePurpose::Open));
+                Ok(None)
+            }
+            Command::View(ViewChange::Switch(Switch::Guide, true)) => {
+                let found = self.assessed();
+                let answer = found.as_ref().map(|(answer, _)| &**answer);
+                let table = self.opened_table.as_ref();
+                let table = table.and_then(|table| TableView { table, answer, is_known: true }.content());
+                let place = GuidePlace::of_display(&self.view_state, table);
+                self.view_state.apply(ViewChange::Guide(GuideStep::Go(place)));
                 Ok(None)
             }
             Command::View(change) => {
@@ -156,10 +167,15 @@ impl AppState {
                 self.clipboard = Some(command);
                 return Ok(Some(said));
             }
+            WindowCommand::Copy(text) => {
+                let said = format!("copied: {}", stillbase_settings::text::shorten_message(&text));
+                self.clipboard = Some(text);
+                return Ok(Some(said));
+            }
             WindowCommand::Refuse(why) => return Err(why),
             WindowCommand::Cancel(activity) => return Ok(Some(self.cancel(activity))),
-            WindowCommand::AskToLeave(asks) => self.saving.asks = asks,
-            WindowCommand::Quit if !self.may_leave() => self.saving.asks = true,
+            WindowCommand::AskToLeave(asks) => self.ask_to_leave(asks),
+            WindowCommand::Quit if !self.may_leave() => self.ask_to_leave(true),
             WindowCommand::Quit | WindowCommand::Leave => (self.saving.asks, self.saving.leaves) = (false, true),
             WindowCommand::SkipHints => {
                 self.hints &= self.intro.is_none();
@@ -177,6 +193,12 @@ impl AppState {
             }
         }
         Ok(None)
+    }
+
+    /// Opens or closes the question whether the window may close; it takes the place of the list of commands.
+    fn ask_to_leave(&mut self, asks: bool) {
+        self.saving.asks = asks;
+        self.view_state.open.finder = self.view_state.open.finder.take().filter(|_| !asks);
     }
 
     /// Opens the field for the name of the bookmark at `time`, s; creates the bookmark if there is none.

@@ -5,7 +5,7 @@ use crate::facts::ScenarioFacts;
 use crate::marks::Marks;
 use crate::{
     BottomPanel, Command, DrawingGuard, Intro, Layout, SessionCommand, StatusMessage, ViewChange, WindowCommand,
-    compare, finder, given, keys, order, place, plots, rail, saving, side, status, studio, study, theme, top, viewport,
+    compare, finder, given, guide, keys, order, place, plots, rail, saving, side, status, studio, study, theme, top, viewport,
     widgets,
 };
 use stillbase_picture::scene::views::ViewKind;
@@ -121,6 +121,7 @@ impl AppState {
         let proposals = self.proposals();
         let proposals = proposals.as_ref().map_or(&[][..], |known| known);
         status::news(ui.ctx(), scene, &self.session, &self.view_state, proposals, &mut commands);
+        guide::show(ui.ctx(), &queries, &mut self.view_state, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);
         saving::show(ui.ctx(), &self.saving, &self.session, &self.view_state, &mut commands);
         let recent = &self.saving.recent;
