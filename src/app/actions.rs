@@ -277,6 +277,7 @@ pub const ACTIONS: &[Action] = actions![
     View, "Light or dark" = "theme night mode colours color white black background appearance", [on(PLAIN, Key::L)], "top bar", |_, v| Some(Command::View(ViewChange::Theme(other(v.arrangement.theme))));
 
     Analysis, "The same task done in other ways, side by side" = "compare alternatives table difference versus runs", [on(PLAIN, Key::C)], "tool bar" turns Compare;
+    Analysis, "Shake and still: two runs side by side" = "compare split contrast straight line vibration beside demo machine branch double", [on(PLAIN, Key::Y)], "scene" turns Pair;
     Analysis, "Add this run to the runs side by side", [], "side by side", |_, v| {
         (v.below == Some(BottomPanel::Runs)).then_some(Command::Session(SessionCommand::KeepRun))
     };
@@ -310,6 +311,7 @@ pub const ACTIONS: &[Action] = actions![
     File, "Record for the Rerun viewer" = "rrd video capture export movie", [on(PLAIN, Key::R)], "top bar", |s, _| dialog(s, FilePurpose::Record);
     File, "Find a command" = "palette search help how menu", [on(CTRL, Key::K)], "top bar" turns Finder;
     File, "Tour: what this is about, in seven steps" = "tutorial introduction learn guide start help", [], "?", |_, v| Some(Command::Window(WindowCommand::Tour(v.open.tour.is_none())));
+    File, "Hints: the first three things to do" = "help tutorial start begin beginner first learn introduction", [], "?", |_, _| Some(Command::Window(WindowCommand::Hints));
     File, "Guide: what all this is and how it is used" = "help manual documentation handbook read pages learn explain how", [on(PLAIN, Key::F2)], "?" turns Guide;
     File, "Keys and gestures" = "shortcuts help keyboard", [on(PLAIN, Key::F1)], "top bar, ?" turns Help;
 ];

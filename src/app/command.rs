@@ -7,6 +7,7 @@ use super::file_dialog::{FileDialog, FilePurpose, PlotFile};
 use super::given::assess::{TableAction, TableOptions};
 use super::guide::GuideStep;
 use super::layout::Layout;
+use super::pair::Pair;
 use stillbase_mechanics::counterweights::Objective;
 use stillbase_mechanics::machine::Machine;
 use stillbase_picture::charts::choice::PlotChange;
@@ -132,6 +133,8 @@ pub enum Switch {
     History,
     /// Runs side by side.
     Compare,
+    /// The run on display and another one in one view.
+    Pair,
     /// The study of tolerances.
     Study,
     /// The panel of the open table.
@@ -207,6 +210,8 @@ pub enum ViewChange {
     LeaveNaming,
     /// Take a step in the guide; opens it if it is closed.
     Guide(GuideStep),
+    /// Show two runs.
+    Pair(Pair),
     /// End the search in the guide.
     LeaveGuideSearch,
     /// Open or close the file dialog.
@@ -242,6 +247,8 @@ pub enum WindowCommand {
     Leave,
     /// Show no more hints, now and at the next start.
     SkipHints,
+    /// Begin the hints: the first things to do.
+    Hints,
     /// Begin or leave the tour.
     Tour(bool),
     /// Go to the next step of the tour (`true`), or to the previous one.

@@ -63,7 +63,7 @@ fn asks_for_text(key: &KeyboardShortcut) -> bool {
 
 /// Returns the command of Esc.
 fn escape(view_state: &ViewState) -> Command {
-    let ViewState { open, tool, arrangement, .. } = view_state;
+    let ViewState { open, tool, arrangement, pair, .. } = view_state;
     match open {
         OpenDialogs { dialog: Some(_), .. } => ViewChange::Dialog(None).into(),
         OpenDialogs { finder: Some(_), .. } => ViewChange::Switch(Switch::Finder, false).into(),
@@ -72,6 +72,7 @@ fn escape(view_state: &ViewState) -> Command {
         _ if matches!(tool, Tool::Draw(_)) => ViewChange::Switch(Switch::Drawing, false).into(),
         _ if view_state.mark.is_some() => ViewChange::Mark(None).into(),
         _ if *tool == Tool::Push => ViewChange::Switch(Switch::Pushing, false).into(),
+        _ if pair.as_ref().is_some_and(|pair| !pair.demonstrates) => ViewChange::Switch(Switch::Pair, false).into(),
         _ if arrangement.layout == Layout::Present => ViewChange::Layout(Layout::Explore).into(),
         OpenDialogs { tour: Some(_), .. } => WindowCommand::Tour(false).into(),
         _ => WindowCommand::SkipHints.into(),

@@ -8,7 +8,7 @@ use stillbase_session::Session;
 impl Switch {
     /// Whether only views of the machine have this switch.
     pub fn is_of_machine(self) -> bool {
-        matches!(self, Self::Dexterity | Self::Snapshots | Self::Holding | Self::Drawing | Self::Pushing)
+        matches!(self, Self::Dexterity | Self::Snapshots | Self::Pair | Self::Holding | Self::Drawing | Self::Pushing)
     }
 }
 
@@ -24,6 +24,7 @@ impl ViewState {
             Switch::Swapped => self.arrangement.swapped,
             Switch::History => self.open.history,
             Switch::Compare => self.below == Some(BottomPanel::Runs),
+            Switch::Pair => self.pair.is_some(),
             Switch::Study => self.below == Some(BottomPanel::Tolerances),
             Switch::Table => self.below == Some(BottomPanel::Table),
             Switch::Pins => self.pins,
@@ -70,6 +71,8 @@ impl ViewState {
             Switch::Swapped => self.arrangement.swapped = on,
             Switch::History => self.open.history = on,
             Switch::Compare => self.put_below(BottomPanel::Runs, on),
+            // The caller knows which run is to stand beside this one.
+            Switch::Pair => self.pair = self.pair.take().filter(|_| on),
             Switch::Study => self.put_below(BottomPanel::Tolerances, on),
             Switch::Table => self.put_below(BottomPanel::Table, on),
             Switch::Pins => self.pins = on,
@@ -158,6 +161,7 @@ impl ViewState {
             }
             ViewChange::LeaveNaming => self.open.naming = None,
             ViewChange::Guide(step) => self.read(step),
+            ViewChange::Pair(pair) => self.pair = Some(pair),
             ViewChange::LeaveGuideSearch => self.open.guide.iter_mut().for_each(GuideView::leave_search),
             ViewChange::Dialog(dialog) => {
                 self.open.finder = self.open.finder.take().filter(|_| dialog.is_none());

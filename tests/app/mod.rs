@@ -5,10 +5,13 @@ mod files;
 mod finder;
 mod gallery;
 mod given;
+mod guide;
 mod hands;
 mod intro;
 mod jobs;
 mod layout;
+mod lessons;
+mod pair;
 mod panel;
 mod plots;
 mod pointer;
@@ -31,17 +34,20 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 19] = [
+pub const TESTS: [&[Test]; 22] = [
     saving::TESTS,
     family::TESTS,
     files::TESTS,
     finder::TESTS,
     gallery::TESTS,
     given::TESTS,
+    guide::TESTS,
     hands::TESTS,
     intro::TESTS,
     jobs::TESTS,
     layout::TESTS,
+    lessons::TESTS,
+    pair::TESTS,
     panel::TESTS,
     plots::TESTS,
     pointer::TESTS,

@@ -42,8 +42,9 @@ impl AppState {
         if let Some(tour) = &mut self.view_state.open.tour {
             tour.follow(&self.session);
         }
-        let beside = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
-        let beside = beside.and_then(Intro::straight_comparison).or(self.comparison.as_ref());
+        let other = self.view_state.pair.as_ref().and_then(|_| self.beside());
+        let table = other.as_deref().and_then(|other| other.as_ref().ok()).map(|other| &other.table);
+        let beside = table.or(self.comparison.as_ref());
         let queries = self.queries().clone();
         let marks = Marks::of(&queries, &self.session, beside);
         if !marks.is_whole {
@@ -76,7 +77,8 @@ impl AppState {
             let shown = given::TableView { table, answer: found.as_ref().map(|(answer, _)| &**answer), is_known };
             given::show(ui, shown, &self.view_state, &mut commands);
         }
-        let contrast = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
+        let width = ui.ctx().content_rect().width();
+        let contrasts = self.view_state.pair.as_ref().is_some_and(|pair| pair.hides_settings(width));
         let designs = self.view_state.view == ViewKind::Design && !presents;
         let mut chosen = Vec::new();
         if designs {
@@ -87,7 +89,7 @@ impl AppState {
             studio::show(ui, &self.session, &found, &self.view_state, &mut commands);
             chosen = self.view_state.ghost.map_or_else(Vec::new, |i| found.weights(i));
         }
-        if contrast.is_none() && self.view_state.arrangement.now().side.shown && !designs {
+        if !contrasts && self.view_state.arrangement.now().side.shown && !designs {
             if let Some(thing) = self.view_state.revealed.take() {
                 place::open(ui.ctx(), thing, &self.session);
             }
@@ -100,7 +102,6 @@ impl AppState {
         self.view_state.pointed.panel_object = place::lit(ui.ctx());
         self.view_state.pointed.lit_links = place::lit_links(ui.ctx());
         if self.view_state.arrangement.now().plots.shown && !designs {
-            let beside = contrast.and_then(Intro::straight_comparison).or(self.comparison.as_ref());
             if std::mem::take(&mut self.focuses_search) {
                 plots::focus(ui.ctx());
             }
@@ -115,6 +116,7 @@ impl AppState {
             exaggeration: self.base_exaggeration(),
             comparison: self.comparison.as_ref(),
             intro: self.intro.as_ref().filter(|_| !presents),
+            other: other.as_deref(),
             weights: &chosen,
         };
         let scene = viewport::show(ui, content, &mut self.view_state, &mut commands);
@@ -145,12 +147,16 @@ impl AppState {
             let seen = self.intro.is_some().then(|| command.clone());
             self.carry_out(command);
             let held = self.view_state.gesture.grabbed.is_some();
-            if let (Some(intro), Some(command)) = (&mut self.intro, seen) {
-                intro.observe(&command, &self.session, held);
+            if let (Some(intro), Some(command)) = (&mut self.intro, seen)
+                && intro.observe(&command, &self.session, held)
+            {
+                self.view_state.pair = self.view_state.pair.take().filter(|pair| !pair.demonstrates);
             }
         }
-        if self.intro.as_ref().is_some_and(Intro::is_over) {
-            (self.intro, self.hints) = (None, false);
+        if self.intro.as_ref().is_some_and(Intro::is_over) && self.view_state.gesture.grabbed.is_none() {
+            self.hints = false;
+            self.hand_back();
+            self.announce("the hints are over: your session is as it was");
         }
         if (self.session.is_moving() || self.loops()) && !self.background.is_changing() {
             ui.ctx().request_repaint();
