@@ -177,11 +177,11 @@
 //! | `tables` | motions from tables of numbers (CSV) | 80 |
 //! | `cli` | the program and its subcommands; parquet files of a study | 121 |
 //! | `render` | pictures of scenes, drawn on the GPU by wgpu; films | 132 |
-//! | `ui` | panels, plots and figures, without a window | 164 |
-//! | `window` | the window around them | 273 |
+//! | `ui` | panels, plots and figures, without a window | 166 |
+//! | `window` | the window around them | 275 |
 //! | `record` | recordings for the Rerun viewer | 296 |
 //!
-//! `window`, `record` and `cli` are enabled by default, 471 crates together. `tables`, `render` and `ui` are enabled by
+//! `window`, `record` and `cli` are enabled by default, 472 crates together. `tables`, `render` and `ui` are enabled by
 //! the features that need them.
 //!
 //! # Checking the interface

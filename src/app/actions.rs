@@ -243,7 +243,7 @@ pub const ACTIONS: &[Action] = actions![
     };
     View, "Equations of the paper with today's numbers, beside the design view" = "learn formulas theory math mathematics", [on(PLAIN, Key::E)], "design view, tab" turns Equations;
     View, "Show everything" = "fit frame zoom home centre center reset camera view lost find", [on(PLAIN, Key::F)], "tool bar", |_, _| Some(Command::View(ViewChange::Fit));
-    View, "Zoom in" = "bigger closer magnify", [on(PLAIN, Key::Plus), on(PLAIN, Key::Equals)], "scene, wheel", |_, _| {
+    View, "Zoom in" = "bigger nearer magnify", [on(PLAIN, Key::Plus), on(PLAIN, Key::Equals)], "scene, wheel", |_, _| {
         Some(Command::View(ViewChange::Look(CameraMove::Zoom(ZOOM_FACTOR))))
     };
     View, "Zoom out" = "smaller farther", [on(PLAIN, Key::Minus)], "scene, wheel", |_, _| Some(Command::View(ViewChange::Look(CameraMove::Zoom(1.0 / ZOOM_FACTOR))));

@@ -3,7 +3,8 @@
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{
-    Command, ComparisonCommand, GuidePage, GuidePlace, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, guide,
+    Command, ComparisonCommand, GuidePage, GuidePlace, SessionCommand, Switch, ViewChange, ViewState, WindowCommand,
+    guide,
 };
 use egui::{Align, Button, CursorIcon, Frame, Grid, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui};
 use stillbase_picture::charts::figure::dashes;

@@ -28,6 +28,8 @@ struct Entry<'a> {
     also: &'a str,
     /// Shown only if there is a search text.
     hides: bool,
+    /// A heading of the guide: its words count half, so that what does a thing comes before what tells of it.
+    tells: bool,
     keys: String,
     /// Makes the command; called only for the line that the user picks.
     command: Box<dyn FnOnce() -> Command + 'a>,
@@ -58,13 +60,14 @@ fn entries<'a>(known: Known<'a>, view_state: &ViewState) -> Vec<Entry<'a>> {
         let command = action.command(session, view_state)?;
         let keys = action.keys.first().map(shortcut_label).unwrap_or_default();
         let (title, place, also) = (action.name.into(), action.place, action.also);
-        Some(Entry { title, place, also, hides: false, keys, command: Box::new(|| command) })
+        Some(Entry { title, place, also, hides: false, tells: false, keys, command: Box::new(|| command) })
     });
     let entry = |title: String, place, also, command: Box<dyn FnOnce() -> Command + 'a>| Entry {
         title,
         place,
         also,
         hides: false,
+        tells: false,
         keys: String::new(),
         command,
     };
@@ -105,8 +108,9 @@ fn entries<'a>(known: Known<'a>, view_state: &ViewState) -> Vec<Entry<'a>> {
         Entry { hides: true, ..entry(title, "left panel, all settings", setting.key.meaning, Box::new(look_up)) }
     });
     let pages = guide::entries(sections).map(|(title, place)| {
+        let also = guide::search_words(&place);
         let read = || Command::View(ViewChange::Guide(GuideStep::Go(place)));
-        Entry { hides: true, ..entry(title, "guide", "help page manual read explain what", Box::new(read)) }
+        Entry { hides: true, tells: true, ..entry(title, "guide", also, Box::new(read)) }
     });
     actions.chain(recent).chain(scenarios).chain(machines).chain(signals).chain(settings).chain(pages).collect()
 }
@@ -136,6 +140,7 @@ fn typed<'a>(settings: &'a [Setting], sought: &str) -> Vec<Entry<'a>> {
             place: "left panel, all settings",
             also: "",
             hides: false,
+            tells: false,
             keys: String::new(),
             command: Box::new(move || Command::Session(SessionCommand::Edit(Edit::set(&path, value)))),
         }
@@ -147,7 +152,10 @@ fn typed<'a>(settings: &'a [Setting], sought: &str) -> Vec<Entry<'a>> {
 fn found<'a>(entries: Vec<Entry<'a>>, sought: &str) -> Vec<Entry<'a>> {
     let score = |entry: &Entry<'_>| {
         let place = || search::score(sought, &format!("{} {}", entry.place, entry.keys)).map(|s| s / 4);
-        let score = search::score_with(sought, &entry.title, entry.also).or_else(place)?;
+        let score = match entry.tells {
+            true => search::score_of_prose(sought, entry.also, &entry.title)?,
+            false => search::score_with(sought, &entry.title, entry.also).or_else(place)?,
+        };
         Some(score - i32::from(entry.hides))
     };
     let offered = entries.into_iter().filter(|entry| !(entry.hides && sought.trim().is_empty()));

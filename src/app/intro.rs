@@ -78,10 +78,7 @@ impl Intro {
 
     /// Adds wall time, s, to the pause at the end of the run; returns whether the run must start over.
     pub fn advance_rest(&mut self, session: &Session, wall: f64) -> bool {
-        let waits = session.is_playing()
-            && session.is_at_end()
-            && !session.is_moving()
-            && self.rounds < MAX_RESTARTS;
+        let waits = session.is_playing() && session.is_at_end() && !session.is_moving() && self.rounds < MAX_RESTARTS;
         self.rested = if waits && session.frame().time >= session.length() { self.rested + wall } else { 0.0 };
         let over = self.rested > REST_AT_END_S;
         if over {

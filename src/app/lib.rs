@@ -71,8 +71,8 @@ pub use command::{
 };
 pub use file_dialog::{FileDialog, FilePurpose, PlotFile};
 pub use gesture::{DragGesture, HoverTarget, Tool};
-pub use guide::{GuidePlace, GuideStep, GuideView, Page as GuidePage};
 pub use given::assess::{TableAction, TableContent, TableOptions};
+pub use guide::{GuidePlace, GuideStep, GuideView, Page as GuidePage};
 use intro::Intro;
 pub use layout::{BottomPanel, Layout, Panel, Panels, WindowArrangement};
 pub use open::{Finder, OpenDialogs};

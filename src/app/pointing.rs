@@ -92,7 +92,9 @@ pub fn outline(ctx: &Context, p: &Palette, rects: &[Rect]) {
     let painter = ctx.layer_painter(LayerId::new(Order::Middle, Id::unique("outlines")));
     for rect in rects {
         let rect = rect.expand(4.0);
-        let radius = 0.5 * rect.width().min(rect.height()).min(20.0);
+        // Things of the scene are round, widgets are not.
+        let is_round = (rect.width() - rect.height()).abs() < 1.0;
+        let radius = if is_round { 0.5 * rect.width() } else { 0.5 * rect.height().min(16.0) };
         painter.rect_stroke(rect, radius, Stroke::new(2.0, colour(p.amber)), egui::StrokeKind::Outside);
     }
 }

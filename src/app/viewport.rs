@@ -141,20 +141,23 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
         }
         let tour = view_state.open.tour.as_ref();
         let things = tour.map(Tour::points_at).or(intro.map(Intro::points_at)).unwrap_or_default();
-        let in_scene = |thing: &Pointed| {
+        let in_scene = |thing: Pointed| {
             let shows = view_state.view.shows_machine();
             thing.in_scene(&spot, views.stage(), &shown).filter(|place| shows && rect.contains(place.center()))
         };
-        let mentioned: Vec<Rect> = things.iter().filter_map(in_scene).collect();
+        let mentioned: Vec<Rect> = things.iter().copied().filter_map(in_scene).collect();
+        // A card leaves free what can be dragged, too.
+        let free = [Pointed::Target, Pointed::Ring].into_iter().filter_map(in_scene);
+        let left_free: Vec<Rect> = mentioned.iter().copied().chain(free).collect();
         let widgets = pointing::widgets(ui.ctx(), things);
         if view_state.gesture.grabbed.is_none() {
             pointing::outline(ui.ctx(), &view_state.palette(), &[mentioned.as_slice(), &widgets].concat());
         }
         if let Some(tour) = tour {
-            tour.show(ui.ctx(), rect, &mentioned, session, view_state, commands);
+            tour.show(ui.ctx(), rect, &left_free, session, view_state, commands);
         }
         if let Some(intro) = intro {
-            intro.show_hint(ui.ctx(), rect, &mentioned, session, view_state, commands);
+            intro.show_hint(ui.ctx(), rect, &left_free, session, view_state, commands);
         }
         rect
     });

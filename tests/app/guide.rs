@@ -135,11 +135,12 @@ fn what_is_sought_is_found() {
 
 fn a_heading_comes_to_the_top() {
     let mut h = window("case-3", Theme::Dark);
-    for (page, heading) in [(GuidePage::CommandLine, "Settings"), (GuidePage::Planning, "Time laws")] {
+    for (page, heading) in [(GuidePage::CommandLine, "Settings"), (GuidePage::Planning, "When a path is refused")] {
         open(&mut h, GuidePlace::under(page, heading));
         h.run_steps(3);
         let top = h.get_by_label("Search the guide").rect().bottom();
-        let at = h.get_all_by_label(heading).map(|node| node.rect().top()).filter(|at| *at > top).fold(f32::MAX, f32::min);
+        let at =
+            h.get_all_by_label(heading).map(|node| node.rect().top()).filter(|at| *at > top).fold(f32::MAX, f32::min);
         assert!((0.0..60.0).contains(&(at - top)), "{heading}: {at}, below {top}");
     }
 }
@@ -152,8 +153,11 @@ fn a_block_is_copied() {
     let first = block.lines().nth(1).expect("a line").trim_start_matches("$ ").to_owned();
     h.get_all_by_label(&format!("Copy: {first}")).next().expect("a button").click();
     h.step();
-    let copied = h.output().platform_output.commands.iter().any(|command| {
-        matches!(command, egui::OutputCommand::CopyText(text) if text.contains(&first))
-    });
+    let copied = h
+        .output()
+        .platform_output
+        .commands
+        .iter()
+        .any(|command| matches!(command, egui::OutputCommand::CopyText(text) if text.contains(&first)));
     assert!(copied, "{first}");
 }

@@ -76,6 +76,17 @@ impl GuidePlace {
     }
 }
 
+/// Returns further search words for a place of the guide.
+pub fn search_words(place: &GuidePlace) -> &'static str {
+    match (place.page, place.anchor.as_str()) {
+        (Page::FirstRun, "") => "units degrees radians millimetres",
+        (Page::Recording, "pictures-and-films") => "film movie video gif animation",
+        (Page::Paper, "symbols") => "notation letters meaning",
+        (Page::Index, "") => "help manual documentation contents",
+        _ => "",
+    }
+}
+
 /// Returns the anchor of a heading, as code hosts make it.
 pub fn anchor_of(heading: &str) -> String {
     let kept = heading.trim().chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
@@ -126,7 +137,14 @@ impl GuideView {
     /// Opens the guide at a place.
     pub fn at(place: GuidePlace) -> Self {
         let (back, forward) = (Vec::new(), Vec::new());
-        Self { place, offset: 0.0, scroll: Some((Scroll::Anchor, MORE_PASSES)), back, forward, search_text: String::new() }
+        Self {
+            place,
+            offset: 0.0,
+            scroll: Some((Scroll::Anchor, MORE_PASSES)),
+            back,
+            forward,
+            search_text: String::new(),
+        }
     }
 
     /// Takes a step; without a place to go to, nothing changes.

@@ -78,9 +78,7 @@ fn draw(ui: &mut Ui, p: &Palette, block: &Block, i: usize, commands: &mut Vec<Co
             shown.response
         }
         Content::Code(kind, text) => block_of_code(ui, p, kind, text, (indent, i)),
-        Content::Table(rows) => {
-            ui.push_id(i, |ui| table(ui, p, rows, commands)).response
-        }
+        Content::Table(rows) => ui.push_id(i, |ui| table(ui, p, rows, commands)).response,
         Content::Picture(spans) => {
             let words = format!("Picture on the pages of the source: {}", plain_words(spans));
             let frame = Frame::new().stroke((1.0, colour(p.line))).corner_radius(6).inner_margin(8);

@@ -100,9 +100,8 @@ fn bar(ui: &mut Ui, view: &GuideView, p: &Palette, commands: &mut Vec<Command>) 
 fn list(ui: &mut Ui, queries: &Queries, view: &GuideView, p: &Palette, commands: &mut Vec<Command>) {
     let sections = queries.ask::<QuickWork<Sections>>(&());
     let seeks = !view.search_text.trim().is_empty();
-    let found = seeks.then(|| {
-        queries.ask::<QuickWork<Found>>(&(ByIdentity(sections.clone()), view.search_text.trim().to_owned()))
-    });
+    let found = seeks
+        .then(|| queries.ask::<QuickWork<Found>>(&(ByIdentity(sections.clone()), view.search_text.trim().to_owned())));
     let shown: Vec<(&Section, Option<&str>)> = match &found {
         Some(found) => found.iter().map(|(i, words)| (&sections[*i], Some(words.as_str()))).collect(),
         None => sections.iter().filter(|s| s.place.anchor.is_empty()).map(|s| (s, None)).collect(),

@@ -177,7 +177,10 @@ impl AppState {
             Command::View(change) => matches!(change, ViewChange::Dialog(Some(_))),
             Command::Window(command) => matches!(
                 command,
-                WindowCommand::Quit | WindowCommand::Leave | WindowCommand::AskToLeave(true) | WindowCommand::CopyCommand
+                WindowCommand::Quit
+                    | WindowCommand::Leave
+                    | WindowCommand::AskToLeave(true)
+                    | WindowCommand::CopyCommand
             ),
         };
         let is_held = self.view_state.gesture.grabbed.is_some();
@@ -203,8 +206,13 @@ fn is_of_hints(command: &Command) -> bool {
             _ => false,
         },
         Command::View(change) => match change {
-            ViewChange::Switch(Switch::Drawing | Switch::Pushing | Switch::Compare | Switch::Study | Switch::Table, on) => !on,
-            ViewChange::Switch(Switch::Equations | Switch::Pair, _) | ViewChange::Reveal(_) | ViewChange::LookUp(_) => false,
+            ViewChange::Switch(
+                Switch::Drawing | Switch::Pushing | Switch::Compare | Switch::Study | Switch::Table,
+                on,
+            ) => !on,
+            ViewChange::Switch(Switch::Equations | Switch::Pair, _) | ViewChange::Reveal(_) | ViewChange::LookUp(_) => {
+                false
+            }
             ViewChange::Layout(layout) => *layout == Layout::Explore,
             ViewChange::Kind(view) => view.shows_machine(),
             _ => true,
