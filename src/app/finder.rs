@@ -35,6 +35,10 @@ struct Entry<'a> {
     command: Box<dyn FnOnce() -> Command + 'a>,
 }
 
+/// Place of the signals. There are many of one name, one for each drive, so that they step back by this score.
+const SIGNALS_PLACE: &str = "plots";
+const SIGNALS_STEP_BACK: i32 = 12;
+
 /// Maximum number of lines.
 const MAX_ENTRIES: usize = 60;
 
@@ -100,7 +104,7 @@ fn entries<'a>(known: Known<'a>, view_state: &ViewState) -> Vec<Entry<'a>> {
     let signals = signals.iter().map(|signal| {
         let plot = || Command::View(ViewChange::Charts(PlotChange::Plot(signal.path.clone())));
         let title = format!("Plot: {} {}, {}", signal.label, signal.symbol, signal.unit);
-        Entry { hides: true, ..entry(title, "plots", "signal curve graph csv column", Box::new(plot)) }
+        Entry { hides: true, ..entry(title, SIGNALS_PLACE, "signal curve graph csv column", Box::new(plot)) }
     });
     let settings = settings.iter().map(|setting| {
         let title = format!("Setting: {}", setting.path);
@@ -156,7 +160,7 @@ fn found<'a>(entries: Vec<Entry<'a>>, sought: &str) -> Vec<Entry<'a>> {
             true => search::score_of_prose(sought, entry.also, &entry.title)?,
             false => search::score_with(sought, &entry.title, entry.also).or_else(place)?,
         };
-        Some(score - i32::from(entry.hides))
+        Some(score - if entry.place == SIGNALS_PLACE { SIGNALS_STEP_BACK } else { i32::from(entry.hides) })
     };
     let offered = entries.into_iter().filter(|entry| !(entry.hides && sought.trim().is_empty()));
     search::best_first(offered, score, MAX_ENTRIES)

@@ -222,7 +222,7 @@ impl Other<'_> {
 
     /// Draws the choice of the other run, the buttons of the arrangement, and the button that closes the view.
     fn controls(&self, ui: &mut Ui, rect: Rect, beside: bool, commands: &mut Vec<Command>) {
-        let at = Rect::from_min_size(pos2(rect.left() + 16.0, rect.bottom() - 62.0), vec2(rect.width() - 32.0, 26.0));
+        let at = Rect::from_min_size(pos2(rect.left() + 16.0, rect.bottom() - 34.0), vec2(rect.width() - 32.0, 26.0));
         let layout = egui::Layout::left_to_right(egui::Align::Center);
         let mut row = ui.new_child(UiBuilder::new().max_rect(at).layout(layout));
         let set = |pair: Pair| Command::View(ViewChange::Pair(pair));

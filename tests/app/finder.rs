@@ -129,8 +129,8 @@ fn what_a_newcomer_types_is_among_the_first_three() {
         ("bearing forces", "Inside the machine: what the pins carry"),
         ("equations", "Equations of the paper with today's numbers, beside the design view"),
         ("spacecraft", "Scenario: Spacecraft"),
-        ("close", "Quit; asks first if changes are in no file"),
-        ("payload", "Setting: plant.payload"),
+        ("exit", "Quit; asks first if changes are in no file"),
+        ("payload", "Setting: payload"),
         ("exit status", "Guide: Exit status, Command line"),
     ] {
         press(&mut h, Modifiers::COMMAND, Key::K);

@@ -18,6 +18,7 @@ pub const TESTS: &[Test] = tests![
     what_is_sought_is_found,
     a_heading_comes_to_the_top,
     a_block_is_copied,
+    keys_scroll_the_page,
 ];
 
 /// The text of a page as it stands in its file.
@@ -160,4 +161,23 @@ fn a_block_is_copied() {
         .iter()
         .any(|command| matches!(command, egui::OutputCommand::CopyText(text) if text.contains(&first)));
     assert!(copied, "{first}");
+}
+
+fn keys_scroll_the_page() {
+    let mut h = window("case-3", Theme::Dark);
+    open(&mut h, GuidePage::Planning);
+    let heading = |h: &Window| {
+        h.get_all_by_label("Planning")
+            .map(|node| node.rect())
+            .filter(|rect| rect.height() > 24.0)
+            .map(|r| r.top())
+            .next()
+    };
+    let before = heading(&h).expect("the heading of the page");
+    h.key_press(Key::PageDown);
+    h.run_steps(30);
+    assert!(heading(&h).is_none_or(|now| now < before - 200.0), "{before}, then {:?}", heading(&h));
+    h.key_press(Key::PageUp);
+    h.run_steps(30);
+    assert!((heading(&h).expect("back again") - before).abs() < 2.0);
 }

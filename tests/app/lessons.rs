@@ -151,7 +151,8 @@ fn a_file_is_of_the_own_session() {
 fn a_machine_without_an_amber_area_says_why() {
     let mut h = window("nine-link-bare", Theme::Dark);
     h.run_steps(2);
-    let why = session(&h).run().pose_space().err().expect("it has no planes").to_string();
+    let Err(why) = session(&h).run().pose_space() else { panic!("it has no planes") };
+    let why = why.to_string();
     tell(&mut h, WindowCommand::Hints);
     assert!(h.query_by_label_contains("has nothing amber").is_some());
     assert!(h.query_by_label_contains(&format!("The reason: {why}")).is_some());

@@ -1,7 +1,7 @@
 //! Drawing of a page of the guide: headings, paragraphs with links, lists, tables, blocks of code.
 
 use egui::text::LayoutJob;
-use egui::{Color32, FontId, Frame, Label, Link, RichText, ScrollArea, Stroke, TextFormat, Ui, vec2};
+use egui::{Color32, FontId, Frame, Key, Label, Link, Modifiers, RichText, ScrollArea, Stroke, TextFormat, Ui, vec2};
 
 use super::document::{Block, Content, Document, Span, Target};
 use super::{GuideStep, Scroll, plain_words};
@@ -19,6 +19,8 @@ const INDENT_PT: f32 = 18.0;
 /// Gap between paragraphs, and between columns of a table, points.
 const GAP_PT: f32 = 8.0;
 const COLUMN_GAP_PT: f32 = 14.0;
+/// Fraction of the height by which a key scrolls.
+const PAGE_FRACTION: f32 = 0.85;
 /// Width of a letter of tables on average, points, and the exponent that gives long columns less than their share.
 const LETTER_PT: f32 = 6.9;
 const COLUMN_POWER: f32 = 0.6;
@@ -42,6 +44,12 @@ pub fn show(
         ui.set_width(ui.available_width() - 14.0);
         ui.style_mut().interaction.selectable_labels = true;
         ui.spacing_mut().item_spacing = vec2(0.0, 3.0);
+        let page = PAGE_FRACTION * ui.clip_rect().height();
+        for (key, down) in [(Key::PageDown, -page), (Key::PageUp, page)] {
+            if ui.input_mut(|i| i.consume_key(Modifiers::NONE, key)) {
+                ui.scroll_with_delta(vec2(0.0, down));
+            }
+        }
         for (i, block) in document.blocks.iter().enumerate() {
             let heading = draw(ui, p, block, i, commands);
             let is_here = matches!(&block.content, Content::Heading(_, own, _) if own == anchor);
