@@ -18,6 +18,7 @@ use super::background::Background;
 use super::change::SessionChange;
 use super::given::assess::OpenedTable;
 use super::pace::PlaybackRate;
+use super::pair::Pair;
 use super::saving::Saving;
 use super::{Activity, Framing, Intro, Layout, Message, Preferences, ResumePoint, SessionCommand, ViewState};
 use stillbase_mechanics::machine::Machine;
@@ -123,9 +124,10 @@ impl AppState {
         self.saving.recent.clone_from(&liked.recent);
         let usual = Scenario::builtin("case-3").is_some_and(|case| case == *self.session.scenario());
         if liked.hints && usual && liked.layout == Layout::Explore {
-            let begun = self.begin_hints();
-            self.session.pause();
-            self.show_outcome(begun.map(|()| None));
+            // Nothing was done yet: the hints accompany the person's own session, and set none aside.
+            self.intro = Some(Intro::of(&self.session));
+            self.view_state.pair = Some(Pair::demonstration());
+            self.refresh();
         }
         self
     }
@@ -134,10 +136,6 @@ impl AppState {
     /// words.
     #[must_use]
     pub fn offering_recovery(mut self, left: Option<(PathBuf, String)>) -> Self {
-        if left.is_some() {
-            // The question comes first; the hints wait for the next start.
-            self.hand_back();
-        }
         self.saving.left_session = left;
         self
     }

@@ -23,7 +23,7 @@ const COLUMN_GAP_PT: f32 = 14.0;
 const PAGE_FRACTION: f32 = 0.85;
 /// Width of a letter of tables on average, points, and the exponent that gives long columns less than their share.
 const LETTER_PT: f32 = 6.9;
-const COLUMN_POWER: f32 = 0.6;
+const COLUMN_POWER: f32 = 0.8;
 
 /// Draws a page and scrolls to what is asked for; returns the distance of the display from the top, points.
 pub fn show(
@@ -228,7 +228,7 @@ fn widths(rows: &[Vec<Vec<Span>>], columns: usize, room: f32) -> Vec<f32> {
     }
     // No column is narrower than its longest word, as far as there is room.
     let longest = |text: &str| text.split_whitespace().map(|word| word.chars().count()).max().unwrap_or_default();
-    let least: Vec<f32> = (0..columns).map(|i| (LETTER_PT * letters(i, longest)).min(0.4 * room)).collect();
+    let least: Vec<f32> = (0..columns).map(|i| (LETTER_PT * letters(i, longest)).min(0.3 * room)).collect();
     let shares: Vec<f32> = whole.iter().map(|width| width.powf(COLUMN_POWER)).collect();
     let (all, free) = (shares.iter().sum::<f32>(), (room - least.iter().sum::<f32>()).max(0.0));
     least.iter().zip(&shares).map(|(least, share)| least + free * share / all).collect()

@@ -79,11 +79,13 @@ impl AppState {
         Ok(())
     }
 
-    /// Ends the tour or the hints and shows the person's own session again, as it was; returns whether there was one.
+    /// Ends the tour or the hints and shows the person's own session again, as it was. Returns whether one was set aside:
+    /// the hints of the first start set none aside.
     pub(super) fn hand_back(&mut self) -> bool {
         let hints = self.intro.take().is_some();
         let Some(aside) = self.aside.take() else {
             self.view_state.open.tour = None;
+            self.view_state.pair = self.view_state.pair.take().filter(|pair| !pair.demonstrates);
             return false;
         };
         // Work that the lesson has begun ends with it.

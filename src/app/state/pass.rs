@@ -155,8 +155,9 @@ impl AppState {
         }
         if self.intro.as_ref().is_some_and(Intro::is_over) && self.view_state.gesture.grabbed.is_none() {
             self.hints = false;
-            self.hand_back();
-            self.announce("the hints are over: your session is as it was");
+            if self.hand_back() {
+                self.announce("the hints are over: your session is as it was");
+            }
         }
         if (self.session.is_moving() || self.loops()) && !self.background.is_changing() {
             ui.ctx().request_repaint();
