@@ -181,7 +181,7 @@
 //! | `window` | the window around them | 285 |
 //! | `record` | recordings for the Rerun viewer | 296 |
 //!
-//! `window`, `record` and `cli` are enabled by default, 471 crates together. `tables`, `render` and `ui` are enabled by
+//! `window`, `record` and `cli` are enabled by default, 472 crates together. `tables`, `render` and `ui` are enabled by
 //! the features that need them.
 //!
 //! # Checking the interface

@@ -206,50 +206,50 @@ macro_rules! actions {
 
 /// Every action.
 pub const ACTIONS: &[Action] = actions![
-    Run, "Play, pause, start over" = "run start stop animate", [on(PLAIN, Key::Space)], "top bar", |_, _| Some(Command::Session(SessionCommand::TogglePlay));
-    Run, "One step on", [on(PLAIN, Key::ArrowRight)], "top bar", |_, _| Some(Command::Session(SessionCommand::Step(1)));
-    Run, "One step back", [on(PLAIN, Key::ArrowLeft)], "keyboard", |_, _| Some(Command::Session(SessionCommand::Step(-1)));
-    Run, "Ten steps on", [on(SHIFT, Key::ArrowRight)], "keyboard", |_, _| Some(Command::Session(SessionCommand::Step(10)));
-    Run, "Ten steps back", [on(SHIFT, Key::ArrowLeft)], "keyboard", |_, _| Some(Command::Session(SessionCommand::Step(-10)));
+    Run, "Play, pause, start over" = "run start stop animate simulate go animation again", [on(PLAIN, Key::Space)], "top bar", |_, _| Some(Command::Session(SessionCommand::TogglePlay));
+    Run, "One step on" = "forward next frame advance", [on(PLAIN, Key::ArrowRight)], "top bar", |_, _| Some(Command::Session(SessionCommand::Step(1)));
+    Run, "One step back" = "previous frame backward", [on(PLAIN, Key::ArrowLeft)], "keyboard", |_, _| Some(Command::Session(SessionCommand::Step(-1)));
+    Run, "Ten steps on" = "forward skip", [on(SHIFT, Key::ArrowRight)], "keyboard", |_, _| Some(Command::Session(SessionCommand::Step(10)));
+    Run, "Ten steps back" = "backward skip", [on(SHIFT, Key::ArrowLeft)], "keyboard", |_, _| Some(Command::Session(SessionCommand::Step(-10)));
     Run, "To the start" = "rewind reset beginning", [on(PLAIN, Key::Home)], "top bar", |_, _| Some(Command::Session(SessionCommand::Seek(0.0)));
-    Run, "To the newest instant" = "end last", [on(PLAIN, Key::End)], "keyboard", |s, _| Some(Command::Session(SessionCommand::Seek(s.length())));
-    Run, "Bookmark here, or away" = "remember mark pin", [on(PLAIN, Key::K)], "time line", |s, _| {
+    Run, "To the newest instant" = "end last finish latest now", [on(PLAIN, Key::End)], "keyboard", |s, _| Some(Command::Session(SessionCommand::Seek(s.length())));
+    Run, "Bookmark here, or away" = "remember mark pin note flag", [on(PLAIN, Key::K)], "time line", |s, _| {
         let time = s.frame().time;
         let name = if s.bookmark_at(time).is_some() { String::new() } else { s.free_name() };
         Some(Command::Session(SessionCommand::Bookmark(time, name)))
     };
-    Run, "Name the bookmark here", [on(SHIFT, Key::K)], "time line, right button", |s, v| {
+    Run, "Name the bookmark here" = "rename label", [on(SHIFT, Key::K)], "time line, right button", |s, v| {
         (v.arrangement.layout != Layout::Present).then(|| Command::Session(SessionCommand::NameBookmark(s.frame().time)))
     };
-    Run, "To the next mark: bookmark, event, branch", [on(PLAIN, Key::N)], "time line", |_, _| {
+    Run, "To the next mark: bookmark, event, branch" = "jump", [on(PLAIN, Key::N)], "time line", |_, _| {
         Some(Command::Session(SessionCommand::ToMark(true)))
     };
-    Run, "To the mark before", [on(SHIFT, Key::N)], "time line", |_, _| Some(Command::Session(SessionCommand::ToMark(false)));
+    Run, "To the mark before" = "previous jump", [on(SHIFT, Key::N)], "time line", |_, _| Some(Command::Session(SessionCommand::ToMark(false)));
     Run, "The newest branch; again: back", [on(PLAIN, Key::G)], "history", |s, _| {
         s.branch_count().checked_sub(1).map(|it| Command::Session(SessionCommand::Branch(it)))
     };
-    Run, "Compare with the newest branch", [on(SHIFT, Key::G)], "history", |s, _| {
+    Run, "Compare with the newest branch" = "difference", [on(SHIFT, Key::G)], "history", |s, _| {
         s.branch_count().checked_sub(1).map(|it| Command::Session(SessionCommand::CompareBranch(it)))
     };
     Run, "Play over and over, what plots show of it if a range was chosen" = "loop repeat cycle", [on(PLAIN, Key::O)], "top bar, loop" turns Loop;
     Export, "Copy as command line" = "shell terminal script cli simulate", [on(CTRL_SHIFT, Key::C)], "top bar, File", |_, _| Some(Command::Window(WindowCommand::CopyCommand));
-    Run, "Twice as slow" = "speed slow motion", [on(PLAIN, Key::Comma)], "top bar, speed", |_, v| slower(v);
-    Run, "Twice as fast" = "speed faster", [on(PLAIN, Key::Period)], "top bar, speed", |_, v| faster(v);
+    Run, "Twice as slow" = "speed slow motion slower rate", [on(PLAIN, Key::Comma)], "top bar, speed", |_, v| slower(v);
+    Run, "Twice as fast" = "speed faster speed up rate quick", [on(PLAIN, Key::Period)], "top bar, speed", |_, v| faster(v);
 
     Task, "The paper's case 1, as it is in the paper" = "example demo straight line", [on(PLAIN, Key::Num1)], "top bar, scenario", |_, _| case(0);
     Task, "The paper's case 2, as it is in the paper" = "example demo", [on(PLAIN, Key::Num2)], "top bar, scenario", |_, _| case(1);
     Task, "The paper's case 3, as it is in the paper" = "example demo reactionless", [on(PLAIN, Key::Num3)], "top bar, scenario", |_, _| case(2);
-    Task, "Put the machine back on its planned path" = "reset return stop leading by hand", [on(PLAIN, Key::B)], "left panel", |s, _| {
+    Task, "Put the machine back on its planned path" = "reset return stop leading by hand release undo drag", [on(PLAIN, Key::B)], "left panel", |s, _| {
         s.is_dragged().then_some(Command::Session(SessionCommand::BackToPath))
     };
-    Task, "Target to the right by 10 mm; Shift: by 1 mm", [on(CTRL, Key::ArrowRight)], "scene", |s, _| {
+    Task, "Target to the right by 10 mm; Shift: by 1 mm" = "move tip end effector goal", [on(CTRL, Key::ArrowRight)], "scene", |s, _| {
         nudge(s, [TARGET_STEP_M, 0.0])
     };
-    Task, "Target to the left by 10 mm; Shift: by 1 mm", [on(CTRL, Key::ArrowLeft)], "scene", |s, _| {
+    Task, "Target to the left by 10 mm; Shift: by 1 mm" = "move tip end effector goal", [on(CTRL, Key::ArrowLeft)], "scene", |s, _| {
         nudge(s, [-TARGET_STEP_M, 0.0])
     };
-    Task, "Target up by 10 mm; Shift: by 1 mm", [on(CTRL, Key::ArrowUp)], "scene", |s, _| nudge(s, [0.0, TARGET_STEP_M]);
-    Task, "Target down by 10 mm; Shift: by 1 mm", [on(CTRL, Key::ArrowDown)], "scene", |s, _| {
+    Task, "Target up by 10 mm; Shift: by 1 mm" = "move tip end effector goal", [on(CTRL, Key::ArrowUp)], "scene", |s, _| nudge(s, [0.0, TARGET_STEP_M]);
+    Task, "Target down by 10 mm; Shift: by 1 mm" = "move tip end effector goal", [on(CTRL, Key::ArrowDown)], "scene", |s, _| {
         nudge(s, [0.0, -TARGET_STEP_M])
     };
     Task, "Turn b on by 0.01 rad; Shift: by 0.001 rad" = "pose constant plane", [on(PLAIN, Key::CloseBracket)], "left panel", |s, v| {
@@ -258,54 +258,54 @@ pub const ACTIONS: &[Action] = actions![
     Task, "Turn b back by 0.01 rad; Shift: by 0.001 rad" = "pose constant plane", [on(PLAIN, Key::OpenBracket)], "left panel", |s, v| {
         turn(s, v, -B_STEP_RAD)
     };
-    Task, "Turn the task along with b", [], "left panel" turns TurnTask;
+    Task, "Turn the task along with b" = "rotate points", [], "left panel" turns TurnTask;
     Task, "Draw a path with the pointer" = "curve freehand sketch trajectory", [on(PLAIN, Key::P)], "tool bar" turns Drawing;
-    Task, "Push the end effector with the pointer" = "force disturb", [on(PLAIN, Key::U)], "tool bar" turns Pushing;
+    Task, "Push the end effector with the pointer" = "force disturb poke load kick", [on(PLAIN, Key::U)], "tool bar" turns Pushing;
 
-    View, "The next view: 2D, 3D, joint space, tower, design", [on(PLAIN, Key::V)], "tool bar", |s, v| {
+    View, "The next view: 2D, 3D, joint space, tower, design" = "camera change switch", [on(PLAIN, Key::V)], "tool bar", |s, v| {
         next_view(s, v)
     };
-    View, "2D: the machine from above" = "flat top", [], "tool bar", |_, v| view(v, ViewKind::Flat);
-    View, "3D: the machine in space" = "perspective orbit", [], "tool bar", |_, v| view(v, ViewKind::Space);
+    View, "2D: the machine from above" = "flat top camera plan", [], "tool bar", |_, v| view(v, ViewKind::Flat);
+    View, "3D: the machine in space" = "perspective orbit camera rotate", [], "tool bar", |_, v| view(v, ViewKind::Space);
     View, "Joint space" = "configuration plane q", [], "tool bar", |s, v| view_of_planes(s, v, ViewKind::Joints);
     View, "Tower of workspaces" = "b height stack", [], "tool bar", |s, v| view_of_planes(s, v, ViewKind::Tower);
     View, "Design: masses, centres of mass, lengths and counterweights" = "balance edit machine links trim", [on(PLAIN, Key::D)], "tool bar", |_, v| {
         Some(Command::View(ViewChange::Kind(if v.view == ViewKind::Design { ViewKind::Flat } else { ViewKind::Design })))
     };
-    View, "Equations of the paper with today's numbers, beside the design view" = "learn formulas theory", [on(PLAIN, Key::E)], "design view, tab" turns Equations;
-    View, "Show everything" = "fit frame zoom home centre", [on(PLAIN, Key::F)], "tool bar", |_, _| Some(Command::View(ViewChange::Fit));
-    View, "Zoom in", [on(PLAIN, Key::Plus), on(PLAIN, Key::Equals)], "scene, wheel", |_, _| {
+    View, "Equations of the paper with today's numbers, beside the design view" = "learn formulas theory math mathematics", [on(PLAIN, Key::E)], "design view, tab" turns Equations;
+    View, "Show everything" = "fit frame zoom home centre center reset camera view lost find", [on(PLAIN, Key::F)], "tool bar", |_, _| Some(Command::View(ViewChange::Fit));
+    View, "Zoom in" = "bigger nearer magnify", [on(PLAIN, Key::Plus), on(PLAIN, Key::Equals)], "scene, wheel", |_, _| {
         Some(Command::View(ViewChange::Look(CameraMove::Zoom(ZOOM_FACTOR))))
     };
-    View, "Zoom out", [on(PLAIN, Key::Minus)], "scene, wheel", |_, _| Some(Command::View(ViewChange::Look(CameraMove::Zoom(1.0 / ZOOM_FACTOR))));
+    View, "Zoom out" = "smaller farther", [on(PLAIN, Key::Minus)], "scene, wheel", |_, _| Some(Command::View(ViewChange::Look(CameraMove::Zoom(1.0 / ZOOM_FACTOR))));
     View, "Plots closer to the instant shown", [on(ALT, Key::Plus), on(ALT, Key::Equals)], "plots, Ctrl wheel", |s, v| {
         charts(s, v, Some(1.5))
     };
     View, "Plots from farther away", [on(ALT, Key::Minus)], "plots, Ctrl wheel", |s, v| charts(s, v, Some(1.0 / 1.5));
-    View, "Plots show all time", [on(ALT, Key::Num0)], "plots, double click", |s, v| charts(s, v, None);
-    View, "Turn or pan the view left", [on(ALT, Key::ArrowLeft)], "scene, drag", |_, _| look(-VIEW_TURN_RAD, 0.0);
-    View, "Turn or pan the view right", [on(ALT, Key::ArrowRight)], "scene, drag", |_, _| look(VIEW_TURN_RAD, 0.0);
-    View, "Turn or pan the view up", [on(ALT, Key::ArrowUp)], "scene, drag", |_, _| look(0.0, VIEW_TURN_RAD);
-    View, "Turn or pan the view down", [on(ALT, Key::ArrowDown)], "scene, drag", |_, _| look(0.0, -VIEW_TURN_RAD);
-    View, "Shade the workspace by dexterity, one measure after the other" = "manipulability heat map colour", [on(PLAIN, Key::J)], "tool bar" turns Dexterity,
+    View, "Plots show all time" = "reset zoom range whole", [on(ALT, Key::Num0)], "plots, double click", |s, v| charts(s, v, None);
+    View, "Turn or pan the view left" = "rotate camera move", [on(ALT, Key::ArrowLeft)], "scene, drag", |_, _| look(-VIEW_TURN_RAD, 0.0);
+    View, "Turn or pan the view right" = "rotate camera move", [on(ALT, Key::ArrowRight)], "scene, drag", |_, _| look(VIEW_TURN_RAD, 0.0);
+    View, "Turn or pan the view up" = "rotate camera move", [on(ALT, Key::ArrowUp)], "scene, drag", |_, _| look(0.0, VIEW_TURN_RAD);
+    View, "Turn or pan the view down" = "rotate camera move", [on(ALT, Key::ArrowDown)], "scene, drag", |_, _| look(0.0, -VIEW_TURN_RAD);
+    View, "Shade the workspace by dexterity, one measure after the other" = "manipulability heat map colour color shading singularity", [on(PLAIN, Key::J)], "tool bar" turns Dexterity,
         |_, v| of_machine(v, Command::View(ViewChange::Dexterity(Measure::after(v.dexterity))));
     View, "Snapshots along the motion" = "ghost poses strobe", [on(PLAIN, Key::S)], "tool bar" turns Snapshots;
     View, "Exaggerate the motion of the base, or show it as it is" = "enlarge magnify shake", [on(PLAIN, Key::X)], "left panel, base" turns Exaggeration;
-    View, "Panel of settings, shown or hidden" = "left sidebar parameters", [on(PLAIN, Key::Num8)], "tool bar, layout" turns Side;
+    View, "Panel of settings, shown or hidden" = "left sidebar parameters options preferences properties", [on(PLAIN, Key::Num8)], "tool bar, layout" turns Side;
     View, "Panel of plots, shown or hidden" = "right sidebar charts graphs", [on(PLAIN, Key::Num9)], "tool bar, layout" turns Plots;
     View, "Nothing but the scene, or all panels" = "full screen hide", [on(PLAIN, Key::Num0)], "keyboard" turns Panels;
-    View, "Settings and plots change sides", [on(PLAIN, Key::Num4)], "tool bar, layout" turns Swapped;
-    View, "Explore: settings, scene and plots", [on(PLAIN, Key::Num5)], "tool bar, layout", |_, _| {
+    View, "Settings and plots change sides" = "swap left right", [on(PLAIN, Key::Num4)], "tool bar, layout" turns Swapped;
+    View, "Explore: settings, scene and plots" = "layout default normal", [on(PLAIN, Key::Num5)], "tool bar, layout", |_, _| {
         Some(Command::View(ViewChange::Layout(Layout::Explore)))
     };
-    View, "Compare: scene, wide plots and the runs side by side", [on(PLAIN, Key::Num6)], "tool bar, layout", |_, _| {
+    View, "Compare: scene, wide plots and the runs side by side" = "layout", [on(PLAIN, Key::Num6)], "tool bar, layout", |_, _| {
         Some(Command::View(ViewChange::Layout(Layout::Compare)))
     };
-    View, "Present: the scene alone, what counts in large type" = "presentation slides talk full screen", [on(PLAIN, Key::Num7)], "tool bar, layout", |_, _| {
+    View, "Present: the scene alone, what counts in large type" = "presentation slides talk full screen projector lecture fullscreen", [on(PLAIN, Key::Num7)], "tool bar, layout", |_, _| {
         Some(Command::View(ViewChange::Layout(Layout::Present)))
     };
-    View, "What a repaint takes, or no longer", [on(PLAIN, Key::F12)], "keyboard" turns Times;
-    View, "Light or dark" = "theme night mode colours", [on(PLAIN, Key::L)], "top bar", |_, v| Some(Command::View(ViewChange::Theme(other(v.arrangement.theme))));
+    View, "What a repaint takes, or no longer" = "fps performance frame rate", [on(PLAIN, Key::F12)], "keyboard" turns Times;
+    View, "Light or dark" = "theme night mode colours color white black background appearance", [on(PLAIN, Key::L)], "top bar", |_, v| Some(Command::View(ViewChange::Theme(other(v.arrangement.theme))));
 
     View, "Angles in degrees or radians" = "unit units deg rad angle", [], "tool bar, layout", |_, v| notation(v, |shown| {
         shown.angle = if shown.angle == AngleUnit::Radians { AngleUnit::Degrees } else { AngleUnit::Radians };
@@ -317,24 +317,25 @@ pub const ACTIONS: &[Action] = actions![
         shown.names = if shown.names == NameOrder::Terms { NameOrder::Symbols } else { NameOrder::Terms };
     });
 
-    Analysis, "The same task done in other ways, side by side" = "compare alternatives table", [on(PLAIN, Key::C)], "tool bar" turns Compare;
+    Analysis, "The same task done in other ways, side by side" = "compare alternatives table difference versus runs", [on(PLAIN, Key::C)], "tool bar" turns Compare;
+    Analysis, "Shake and still: two runs side by side" = "compare split contrast straight line vibration beside demo machine branch double", [on(PLAIN, Key::Y)], "scene" turns Pair;
     Analysis, "Add this run to the runs side by side", [], "side by side", |_, v| {
         (v.below == Some(BottomPanel::Runs)).then_some(Command::Session(SessionCommand::KeepRun))
     };
-    Analysis, "Tolerances: what the bases of many machines feel, and the spectrum" = "monte carlo errors scatter", [on(PLAIN, Key::T)],
+    Analysis, "Tolerances: what the bases of many machines feel, and the spectrum" = "monte carlo errors scatter manufacturing frequency jitter vibration fft uncertainty random", [on(PLAIN, Key::T)],
         "tool bar" turns Study;
     Analysis, "A table: a motion of your own, or a measured machine" = "import trim csv samples measurement", [on(PLAIN, Key::W)], "tool bar" turns Table;
-    Analysis, "Inside the machine: what the pins carry" = "forces joints bearings loads", [on(PLAIN, Key::I)], "tool bar" turns Pins;
-    Analysis, "Plot any signal" = "chart graph curve add", [on(PLAIN, Key::A)], "below the plots", |_, _| Some(Command::Window(WindowCommand::LookFor));
-    Analysis, "Statistics of the time that plots show", [], "menu of a plot", |_, v| {
+    Analysis, "Inside the machine: what the pins carry" = "forces joints bearings loads stress strength bearing", [on(PLAIN, Key::I)], "tool bar" turns Pins;
+    Analysis, "Plot any signal" = "chart graph curve add torque velocity acceleration momentum", [on(PLAIN, Key::A)], "below the plots", |_, _| Some(Command::Window(WindowCommand::LookFor));
+    Analysis, "Statistics of the time that plots show" = "mean average maximum minimum rms", [], "menu of a plot", |_, v| {
         Some(Command::View(ViewChange::Charts(PlotChange::Statistics(!v.charts.statistics))))
     };
-    Analysis, "Second cursor here, or away", [on(PLAIN, Key::M)], "plots, Shift click", |s, v| {
+    Analysis, "Second cursor here, or away" = "measure difference delta", [on(PLAIN, Key::M)], "plots, Shift click", |s, v| {
         Some(Command::View(ViewChange::Mark(v.mark.is_none().then(|| s.frame().time))))
     };
 
     Help, "Undo" = "back revert", [on(CTRL, Key::Z)], "keyboard", |s, _| s.undo_title().map(|_| Command::Session(SessionCommand::Undo));
-    Help, "Redo", [on(CTRL, Key::Y), on(CTRL_SHIFT, Key::Z)], "keyboard", |s, _| s.redo_title().map(|_| Command::Session(SessionCommand::Redo));
+    Help, "Redo" = "again forward repeat", [on(CTRL, Key::Y), on(CTRL_SHIFT, Key::Z)], "keyboard", |s, _| s.redo_title().map(|_| Command::Session(SessionCommand::Redo));
     Help, "History: what was done, to go back and forth in" = "log changes branches undo", [on(PLAIN, Key::H)], "tool bar" turns History;
     Open, "New session: this machine and its task, nothing done yet" = "start over fresh clear reset blank", [],
         "top bar, File", |s, _| new_session(s);
@@ -360,8 +361,10 @@ pub const ACTIONS: &[Action] = actions![
     };
     Export, "Take the machine elsewhere: MJCF, URDF, DXF…" = "export cad mujoco ros robot svg csv parts list write", [], "design", |s, _| dialog(s, FilePurpose::Machine);
     Save, "Record for the Rerun viewer" = "rrd video capture export movie", [on(PLAIN, Key::R)], "top bar", |s, _| dialog(s, FilePurpose::Record);
-    Help, "Find a command" = "palette search", [on(CTRL, Key::K)], "top bar" turns Finder;
+    Help, "Find a command" = "palette search help how menu", [on(CTRL, Key::K)], "top bar" turns Finder;
     Help, "Tour: what this is about, in seven steps" = "tutorial introduction learn guide start help", [], "?", |_, v| Some(Command::Window(WindowCommand::Tour(v.open.tour.is_none())));
+    Help, "Hints: the first three things to do" = "help tutorial start begin beginner first learn introduction", [], "?", |_, _| Some(Command::Window(WindowCommand::Hints));
+    Help, "Guide: what all this is and how it is used" = "help manual documentation handbook read pages learn explain how", [on(PLAIN, Key::F2)], "?" turns Guide;
     Help, "Keys and gestures" = "shortcuts help keyboard", [on(PLAIN, Key::F1)], "top bar, ?" turns Help;
 ];
 

@@ -6,7 +6,9 @@ use super::activity::Activity;
 use super::export::Export;
 use super::file_dialog::{FileDialog, FilePurpose, PlotFile};
 use super::given::assess::{TableAction, TableOptions};
+use super::guide::GuideStep;
 use super::layout::Layout;
+use super::pair::Pair;
 use stillbase_mechanics::counterweights::Objective;
 use stillbase_mechanics::machine::Machine;
 use stillbase_picture::charts::choice::PlotChange;
@@ -137,6 +139,8 @@ pub enum Switch {
     History,
     /// Runs side by side.
     Compare,
+    /// The run on display and another one in one view.
+    Pair,
     /// The study of tolerances.
     Study,
     /// The panel of the open table.
@@ -147,6 +151,8 @@ pub enum Switch {
     Snapshots,
     /// The card of keys.
     Help,
+    /// The guide.
+    Guide,
     /// The display of repaint times.
     Times,
     /// The list of commands.
@@ -210,6 +216,12 @@ pub enum ViewChange {
     LookUp(String),
     /// Close the field for the name of a bookmark.
     LeaveNaming,
+    /// Take a step in the guide; opens it if it is closed.
+    Guide(GuideStep),
+    /// Show two runs.
+    Pair(Pair),
+    /// End the search in the guide.
+    LeaveGuideSearch,
     /// Open or close the file dialog.
     Dialog(Option<FileDialog>),
     /// Open, change or close the card with the choices for a result that becomes a file.
@@ -231,6 +243,8 @@ pub enum WindowCommand {
     LookFor,
     /// Copy the command that runs the scenario on display.
     CopyCommand,
+    /// Copy a text, and say so.
+    Copy(String),
     /// Show why a typed number is refused.
     Refuse(String),
     /// Stop an activity in the background.
@@ -243,6 +257,8 @@ pub enum WindowCommand {
     Leave,
     /// Show no more hints, now and at the next start.
     SkipHints,
+    /// Begin the hints: the first things to do.
+    Hints,
     /// Begin or leave the tour.
     Tour(bool),
     /// Go to the next step of the tour (`true`), or to the previous one.

@@ -3,7 +3,10 @@
 use super::notation;
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
-use super::{Command, ComparisonCommand, SessionCommand, Switch, ViewChange, ViewState, WindowCommand};
+use super::{
+    Command, ComparisonCommand, GuidePage, GuidePlace, SessionCommand, Switch, ViewChange, ViewState, WindowCommand,
+    guide,
+};
 use egui::{Align, Button, CursorIcon, Frame, Grid, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui};
 use stillbase_picture::charts::figure::dashes;
 use stillbase_picture::notation::{NameOrder, Notation};
@@ -22,6 +25,8 @@ pub fn show(ui: &mut Ui, comparison: &Comparison, view_state: &ViewState, comman
     Panel::bottom("compare").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {
         ui.horizontal(|ui| {
             ui.label(RichText::new("Side by side").font(bold(13.5)));
+            let place = GuidePlace::under(GuidePage::Plants, "Runs side by side");
+            guide::button(ui, &p, "runs side by side", place, commands);
             let words = "the same task done in several ways: tick a row to draw it in plots and scene, click a column title to sort";
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 buttons(ui, comparison, commands);

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::guide::{Section, Sections};
 use stillbase_mechanics::machine::{Inertia, Machine, builtins};
 use stillbase_mechanics::planar::Vector;
 use stillbase_planning::pose_space::Planes;
@@ -146,6 +147,11 @@ impl<'a> ScenarioFacts<'a> {
             queries,
             scenario,
         }
+    }
+
+    /// Queries the sections of the guide.
+    pub fn guide(&self) -> Arc<Vec<Section>> {
+        self.queries.ask::<QuickWork<Sections>>(&())
     }
 
     /// Queries all settings except tables of samples.

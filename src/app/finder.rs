@@ -1,5 +1,5 @@
-//! The list of commands: every action, scenario, machine, signal, setting and recent file, searched by a few letters. A
-//! setting followed by a value, such as `payload 0.4`, is set from here.
+//! The list of commands: every action, scenario, machine, signal, setting, recent file and heading of the guide, searched
+//! by a few letters. A setting followed by a value, such as `payload 0.4`, is set from here.
 
 use std::path::PathBuf;
 
@@ -7,6 +7,7 @@ use egui::{Align2, Area, Frame, Id, Key, Modifiers, Order, RichText, ScrollArea,
 
 use super::actions::{ACTIONS, shortcut_label};
 use super::facts::{ScenarioFacts, Setting};
+use super::guide::{self, GuideStep, Section};
 use super::theme::{bold, colour, plain};
 use super::top::with_machine;
 use super::widgets::name;
@@ -27,10 +28,16 @@ struct Entry<'a> {
     also: &'a str,
     /// Shown only if there is a search text.
     hides: bool,
+    /// A heading of the guide: its words count half, so that what does a thing comes before what tells of it.
+    tells: bool,
     keys: String,
     /// Makes the command; called only for the line that the user picks.
     command: Box<dyn FnOnce() -> Command + 'a>,
 }
+
+/// Place of the signals. There are many of one name, one for each drive, so that they step back by this score.
+const SIGNALS_PLACE: &str = "plots";
+const SIGNALS_STEP_BACK: i32 = 12;
 
 /// Maximum number of lines.
 const MAX_ENTRIES: usize = 60;
@@ -39,25 +46,32 @@ const MAX_ENTRIES: usize = 60;
 const VISIBLE_ROWS: f32 = 10.0;
 const ROW_HEIGHT_PT: f32 = 27.0;
 
-/// Returns the entries available now: actions, recent files, scenarios, machines, signals and settings.
-fn entries<'a>(
+/// What there is to be found, beside the actions.
+#[derive(Clone, Copy)]
+struct Known<'a> {
     session: &'a Session,
     signals: &'a [Signal],
     settings: &'a [Setting],
     recent: &'a [PathBuf],
-    view_state: &ViewState,
-) -> Vec<Entry<'a>> {
+    sections: &'a [Section],
+}
+
+/// Returns the entries available now: actions, recent files, scenarios, machines, signals, settings, and the headings
+/// of the guide.
+fn entries<'a>(known: Known<'a>, view_state: &ViewState) -> Vec<Entry<'a>> {
+    let Known { session, signals, settings, recent, sections } = known;
     let actions = ACTIONS.iter().filter_map(|action| {
         let command = action.command(session, view_state)?;
         let keys = action.keys.first().map(shortcut_label).unwrap_or_default();
         let (title, place, also) = (action.name.into(), action.place, action.also);
-        Some(Entry { title, place, also, hides: false, keys, command: Box::new(|| command) })
+        Some(Entry { title, place, also, hides: false, tells: false, keys, command: Box::new(|| command) })
     });
     let entry = |title: String, place, also, command: Box<dyn FnOnce() -> Command + 'a>| Entry {
         title,
         place,
         also,
         hides: false,
+        tells: false,
         keys: String::new(),
         command,
     };
@@ -70,7 +84,9 @@ fn entries<'a>(
         )
     };
     let scenarios = Scenario::builtins().map(|scenario| {
-        open(format!("Scenario: {}", scenario.title), "top bar, scenario", Box::new(|| scenario.clone()))
+        let key = Scenario::cases().position(|case| case == scenario.name).map(|i| (i + 1).to_string());
+        let entry = open(format!("Scenario: {}", scenario.title), "top bar, scenario", Box::new(|| scenario.clone()));
+        Entry { keys: key.unwrap_or_default(), ..entry }
     });
     let present = &session.scenario().machine;
     let machines = machine::builtins().iter().filter(move |machine| *machine != present).map(|machine| {
@@ -88,14 +104,19 @@ fn entries<'a>(
     let signals = signals.iter().map(|signal| {
         let plot = || Command::View(ViewChange::Charts(PlotChange::Plot(signal.path.clone())));
         let title = format!("Plot: {} {}, {}", signal.label, signal.symbol, signal.unit);
-        Entry { hides: true, ..entry(title, "plots", "signal curve graph csv column", Box::new(plot)) }
+        Entry { hides: true, ..entry(title, SIGNALS_PLACE, "signal curve graph csv column", Box::new(plot)) }
     });
     let settings = settings.iter().map(|setting| {
         let title = format!("Setting: {}", setting.path);
         let look_up = || Command::View(ViewChange::LookUp(setting.path.clone()));
         Entry { hides: true, ..entry(title, "left panel, all settings", setting.key.meaning, Box::new(look_up)) }
     });
-    actions.chain(recent).chain(scenarios).chain(machines).chain(signals).chain(settings).collect()
+    let pages = guide::entries(sections).map(|(title, place)| {
+        let also = guide::search_words(&place);
+        let read = || Command::View(ViewChange::Guide(GuideStep::Go(place)));
+        Entry { hides: true, tells: true, ..entry(title, "guide", also, Box::new(read)) }
+    });
+    actions.chain(recent).chain(scenarios).chain(machines).chain(signals).chain(settings).chain(pages).collect()
 }
 
 /// Maximum number of settings that are offered for one typed value.
@@ -108,17 +129,12 @@ fn typed<'a>(settings: &'a [Setting], sought: &str) -> Vec<Entry<'a>> {
     let text = text.trim().to_owned();
     let value = change::value(&text);
     // A path that is typed in full comes first.
-    let score = |setting: &Setting| match setting.path == words {
+    let score = |setting: &&Setting| match setting.path == words {
         true => Some(i32::MAX),
         false => search::score_with(&words, &setting.path, setting.key.meaning),
     };
-    let mut scored: Vec<(i32, &Setting)> = settings
-        .iter()
-        .filter(|setting| !words.is_empty() && setting.key.value_type.accepts(&value))
-        .filter_map(|setting| Some((score(setting)?, setting)))
-        .collect();
-    scored.sort_by_key(|(score, _)| -score);
-    let entry = |(_, setting): (i32, &'a Setting)| {
+    let fit = settings.iter().filter(|setting| !words.is_empty() && setting.key.value_type.accepts(&value));
+    let entry = |setting: &'a Setting| {
         let (path, value) = (setting.path.clone(), value.clone());
         Entry {
             title: format!(
@@ -128,27 +144,26 @@ fn typed<'a>(settings: &'a [Setting], sought: &str) -> Vec<Entry<'a>> {
             place: "left panel, all settings",
             also: "",
             hides: false,
+            tells: false,
             keys: String::new(),
             command: Box::new(move || Command::Session(SessionCommand::Edit(Edit::set(&path, value)))),
         }
     };
-    scored.into_iter().take(MAX_TYPED_ENTRIES).map(entry).collect()
+    search::best_first(fit, score, MAX_TYPED_ENTRIES).into_iter().map(entry).collect()
 }
 
 /// Returns the entries that match the search text, best first.
 fn found<'a>(entries: Vec<Entry<'a>>, sought: &str) -> Vec<Entry<'a>> {
-    let score = |entry: &Entry| {
+    let score = |entry: &Entry<'_>| {
         let place = || search::score(sought, &format!("{} {}", entry.place, entry.keys)).map(|s| s / 4);
-        search::score_with(sought, &entry.title, entry.also).or_else(place)
+        let score = match entry.tells {
+            true => search::score_of_prose(sought, entry.also, &entry.title)?,
+            false => search::score_with(sought, &entry.title, entry.also).or_else(place)?,
+        };
+        Some(score - if entry.place == SIGNALS_PLACE { SIGNALS_STEP_BACK } else { i32::from(entry.hides) })
     };
-    let mut scored: Vec<(i32, Entry<'a>)> = entries
-        .into_iter()
-        .filter(|entry| !(entry.hides && sought.trim().is_empty()))
-        .filter_map(|entry| Some((score(&entry)? - i32::from(entry.hides), entry)))
-        .collect();
-    // The sort is stable: entries of equal scores keep their order.
-    scored.sort_by_key(|(score, _)| -score);
-    scored.into_iter().take(MAX_ENTRIES).map(|(_, entry)| entry).collect()
+    let offered = entries.into_iter().filter(|entry| !(entry.hides && sought.trim().is_empty()));
+    search::best_first(offered, score, MAX_ENTRIES)
 }
 
 /// Draws the list and handles its keys.
@@ -164,7 +179,9 @@ pub fn show(
     let p = view_state.palette();
     let Some(mut finder) = view_state.open.finder.clone() else { return };
     let settings = facts.settings();
-    let found = found(entries(session, signals, &settings, recent, view_state), &finder.search_text);
+    let sections = facts.guide();
+    let known = Known { session, signals, settings: &settings, recent, sections: &sections };
+    let found = found(entries(known, view_state), &finder.search_text);
     let list: Vec<Entry<'_>> = typed(&settings, &finder.search_text).into_iter().chain(found).collect();
     finder.chosen = finder.chosen.min(list.len().saturating_sub(1));
     let pressed = |key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));

@@ -10,7 +10,7 @@ use egui::{Align, ComboBox, Frame, Label, Layout, Margin, Panel, RichText, Scrol
 
 use super::theme::{bold, colour, plain};
 use super::widgets::{NumberRow, name, note, unit};
-use super::{Command, FileDialog, Switch, ViewChange, ViewState};
+use super::{Command, FileDialog, GuidePage, Switch, ViewChange, ViewState, guide};
 use assess::{TableAssessment, TableContent};
 pub(super) use parts::TableView;
 use parts::{column, worded};
@@ -52,6 +52,11 @@ pub(super) fn show(ui: &mut Ui, shown: TableView<'_>, view_state: &ViewState, co
                     None => "Table",
                 };
                 ui.label(RichText::new(title).font(bold(13.5)));
+                let page = match shown.content() {
+                    Some(TableContent::Measurement) => GuidePage::Trim,
+                    _ => GuidePage::OwnMotion,
+                };
+                guide::button(ui, &p, title, page, commands);
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     if ui.button("Close").on_hover_text("What was taken from it stays").clicked() {
                         commands.push(ViewChange::Switch(Switch::Table, false).into());

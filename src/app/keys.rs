@@ -11,7 +11,7 @@ use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Session;
 
 /// Turns pressed keys into commands. While a text field has the focus, only keys that it does not use count: Ctrl S,
-/// Ctrl O, Ctrl K, Ctrl P and F1.
+/// Ctrl O, Ctrl K, Ctrl P, F1 and F2.
 pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let typing = ctx.egui_wants_keyboard_input()
         || view_state.open.dialog.is_some()
@@ -56,7 +56,7 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
 
 /// Whether no text field uses the key.
 fn works_while_typing(key: &KeyboardShortcut) -> bool {
-    asks_for_text(key) || key.logical_key == Key::F1
+    asks_for_text(key) || matches!(key.logical_key, Key::F1 | Key::F2)
 }
 
 /// Whether the key opens a text field: the list of commands, or a file name.
@@ -66,15 +66,17 @@ fn asks_for_text(key: &KeyboardShortcut) -> bool {
 
 /// Returns the command of Esc.
 fn escape(view_state: &ViewState) -> Command {
-    let ViewState { open, tool, arrangement, .. } = view_state;
+    let ViewState { open, tool, arrangement, pair, .. } = view_state;
     match open {
         OpenDialogs { dialog: Some(_), .. } => ViewChange::Dialog(None).into(),
         OpenDialogs { export: Some(_), .. } => ViewChange::Export(None).into(),
         OpenDialogs { finder: Some(_), .. } => ViewChange::Switch(Switch::Finder, false).into(),
         OpenDialogs { help: true, .. } => ViewChange::Switch(Switch::Help, false).into(),
+        OpenDialogs { guide: Some(_), .. } => ViewChange::Switch(Switch::Guide, false).into(),
         _ if matches!(tool, Tool::Draw(_)) => ViewChange::Switch(Switch::Drawing, false).into(),
         _ if view_state.mark.is_some() => ViewChange::Mark(None).into(),
         _ if *tool == Tool::Push => ViewChange::Switch(Switch::Pushing, false).into(),
+        _ if pair.as_ref().is_some_and(|pair| !pair.demonstrates) => ViewChange::Switch(Switch::Pair, false).into(),
         _ if arrangement.layout == Layout::Present => ViewChange::Layout(Layout::Explore).into(),
         OpenDialogs { tour: Some(_), .. } => WindowCommand::Tour(false).into(),
         _ => WindowCommand::SkipHints.into(),
@@ -95,6 +97,9 @@ pub fn help(ctx: &Context, view_state: &ViewState, commands: &mut Vec<Command>) 
                 commands.push(WindowCommand::Tour(true).into());
             }
             ui.label(RichText::new("what this is about, in seven steps on the machine itself").color(colour(p.dim)));
+            if ui.button("Open the guide").on_hover_text("F2").clicked() {
+                commands.push(ViewChange::Switch(Switch::Guide, true).into());
+            }
         });
         ui.add_space(4.0);
         let id = egui::Id::unique("keys sought");

@@ -96,6 +96,7 @@ fn paint(ui: &mut Ui, (about, statement): (&str, &Statement), size: f32, sense: 
     let spoken = format!("{about}: {}, {}", statement.words, statement.outcome.name());
     let role = if sense.senses_click() { egui::Role::Button } else { egui::Role::Image };
     response.widget_info(|| egui::WidgetInfo::labeled(role, true, &spoken));
+    super::pointing::drawn(&response, &spoken);
     response
 }
 

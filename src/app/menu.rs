@@ -4,7 +4,7 @@ use egui::{Id, PointerButton, Response, Ui};
 
 use super::notation;
 use super::widgets::CLICK_PAYLOAD;
-use super::{Command, SessionCommand, ViewChange, place};
+use super::{Command, GuidePage, GuidePlace, GuideStep, SessionCommand, ViewChange, place};
 use stillbase_mechanics::planar::Vector;
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::options::Handle;
@@ -81,4 +81,18 @@ fn entries(ui: &mut Ui, session: &Session, About { thing, at }: About, commands:
     }
     ui.separator();
     entry(ui, "Show everything", vec![Command::View(ViewChange::Fit)]);
+    let about = guide_of(thing);
+    entry(ui, "What the guide says of it", vec![Command::View(ViewChange::Guide(GuideStep::Go(about)))]);
+}
+
+/// Returns the place of the guide that explains an object of the scene.
+fn guide_of(thing: Option<Handle>) -> GuidePlace {
+    match thing {
+        Some(Handle::Base | Handle::Force | Handle::Moment) => GuidePlace::under(GuidePage::Plants, "Bases"),
+        Some(Handle::Payload) => GuidePlace::under(GuidePage::Plants, "What a payload is"),
+        Some(Handle::Ring | Handle::Boundary) => GuidePlace::under(GuidePage::Planning, "Which b reaches a point"),
+        Some(Handle::Waypoint(_)) => GuidePlace::under(GuidePage::Planning, "A motion through points"),
+        Some(Handle::Mass(_) | Handle::Weight(_) | Handle::End(_)) => GuidePage::Design.into(),
+        _ => GuidePlace::under(GuidePage::FirstRun, "What you see"),
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::FileDialog;
 use super::export::Export;
+use super::guide::GuideView;
 use super::tour::Tour;
 
 /// State of the list of commands.
@@ -26,6 +27,8 @@ pub struct OpenDialogs {
     pub tour: Option<Tour>,
     /// The list of commands.
     pub finder: Option<Finder>,
+    /// The guide.
+    pub guide: Option<GuideView>,
     /// The file dialog.
     pub dialog: Option<FileDialog>,
     /// The card with the choices for a result that becomes a file.

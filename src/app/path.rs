@@ -5,8 +5,8 @@ use std::f64::consts::{PI, TAU};
 use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
 use super::theme::{colour, plain};
-use super::widgets::{NumberRow, name, note, section, send, unit};
-use super::{Command, SessionCommand, place};
+use super::widgets::{NumberRow, name, note, send, unit};
+use super::{Command, GuidePage, SessionCommand, guide, place};
 use stillbase_mechanics::planar::Vector;
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::options::Handle;
@@ -24,7 +24,7 @@ const MAX_LISTED_POINTS: usize = 8;
 
 /// Draws this panel.
 pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
-    section(ui, p, "Path");
+    guide::section(ui, p, "Path", GuidePage::Planning, commands);
     let task = &session.scenario().task;
     let half = 0.5 * (ui.available_width() - ui.spacing().item_spacing.x);
     let mut kinds = TaskKind::ALL.to_vec();

@@ -12,8 +12,8 @@ use stillbase_session::Session;
 const ZERO_BELOW_N_M: f64 = 0.005;
 
 /// Returns the height of the largest digits in a scene, points.
-fn size(rect: Rect) -> f32 {
-    (0.075 * rect.height()).clamp(38.0, 110.0)
+pub fn size(rect: Rect) -> f32 {
+    (0.075 * rect.height()).min(rect.width() / 7.5).clamp(30.0, 110.0)
 }
 
 /// Returns the rectangle of a scene that the results cover.

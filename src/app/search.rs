@@ -4,23 +4,52 @@
 /// found. The name must contain the letters of each word in order: contiguous, at the beginnings of words, or
 /// scattered.
 pub fn score(sought: &str, name: &str) -> Option<i32> {
-    let name: Vec<char> = name.to_lowercase().chars().collect();
-    sought.split_whitespace().map(|word| score_of(&word.to_lowercase(), &name)).sum()
+    let name = letters(name);
+    of_all(sought, |word| anyhow(word, &name))
 }
 
 /// Like [`score`], but a word may also be found contiguously in `also`, for half the score.
 pub fn score_with(sought: &str, name: &str, also: &str) -> Option<i32> {
-    let [name, also] = [name, also].map(|text| text.to_lowercase().chars().collect::<Vec<_>>());
-    let best = |word: String| {
-        let letters: Vec<char> = word.chars().collect();
-        score_of(&word, &name).max(whole(&letters, &also).map(|score| score / 2))
-    };
-    sought.split_whitespace().map(|word| best(word.to_lowercase())).sum()
+    let [name, also] = [name, also].map(letters);
+    of_all(sought, |word| anyhow(word, &name).max(whole(word, &also).map(|score| score / 2)))
 }
 
-fn score_of(word: &str, name: &[char]) -> Option<i32> {
-    let word: Vec<char> = word.chars().collect();
-    whole(&word, name).or_else(|| scattered(&word, name, &|i| starts(name, i)))
+/// Like [`score_with`], but words count only where they are contiguous: for prose, where any letters are found.
+pub fn score_of_prose(sought: &str, heading: &str, text: &str) -> Option<i32> {
+    let [heading, text] = [heading, text].map(letters);
+    of_all(sought, |word| whole(word, &heading).max(whole(word, &text).map(|score| score / 2)))
+}
+
+fn letters(text: &str) -> Vec<char> {
+    text.to_lowercase().chars().collect()
+}
+
+/// Words of a question that say nothing of what is sought.
+const FILLERS: [&str; 14] = ["a", "an", "the", "to", "of", "do", "i", "how", "is", "in", "on", "with", "my", "can"];
+
+/// Returns the sum of the scores of all words of a search text; `None` if a word has none. Fillers do not count beside
+/// other words, and a plural is found by its singular.
+fn of_all(sought: &str, score: impl Fn(&[char]) -> Option<i32>) -> Option<i32> {
+    let words: Vec<String> = sought.split_whitespace().map(str::to_lowercase).collect();
+    let says = |word: &String| !FILLERS.contains(&word.as_str());
+    let only_fillers = !words.iter().any(says);
+    let one = |word: &String| {
+        let singular = || word.strip_suffix('s').filter(|rest| rest.len() > 2).and_then(|rest| score(&letters(rest)));
+        score(&letters(word)).or_else(singular)
+    };
+    words.iter().filter(|word| only_fillers || says(word)).map(one).sum()
+}
+
+/// Returns what has a score, best first; of equal scores the first one stays first.
+pub fn best_first<T>(all: impl IntoIterator<Item = T>, score: impl Fn(&T) -> Option<i32>, most: usize) -> Vec<T> {
+    let mut scored: Vec<(i32, T)> = all.into_iter().filter_map(|one| Some((score(&one)?, one))).collect();
+    scored.sort_by_key(|(score, _)| -score);
+    scored.into_iter().take(most).map(|(_, one)| one).collect()
+}
+
+/// Returns the score of a word that is contiguous or scattered in the name.
+fn anyhow(word: &[char], name: &[char]) -> Option<i32> {
+    whole(word, name).or_else(|| scattered(word, name, &|i| starts(name, i)))
 }
 
 /// Whether a word of the name begins at letter `i`.

@@ -14,7 +14,9 @@ use super::facts::ScenarioFacts;
 use super::notation;
 use super::theme::{bold, colour, plain};
 use super::widgets::{NumberRow, name, note, section, send, unit};
-use super::{Command, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, path, place, set_b};
+use super::{
+    Command, GuidePage, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, guide, path, place, set_b,
+};
 use stillbase_mechanics::machine::MAX_ANGLE;
 use stillbase_picture::scene::course::target_handle;
 use stillbase_picture::scene::options::Handle;
@@ -63,7 +65,7 @@ pub fn show(
             plant::show(ui, session, &p, commands);
             base::show(ui, session, view_state, commands);
             control::show(ui, session, &p, commands);
-            balance(ui, session, facts, &p);
+            balance(ui, session, facts, &p, commands);
             all::show(ui, facts, &p, commands);
         });
     });
@@ -282,8 +284,8 @@ fn gravity(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comma
     send(commands, &responses, || Edit::set("gravity", vec![gravity.re, 0.0 - down]));
 }
 
-fn balance(ui: &mut Ui, session: &Session, facts: &ScenarioFacts<'_>, p: &Palette) {
-    section(ui, p, "Balance");
+fn balance(ui: &mut Ui, session: &Session, facts: &ScenarioFacts<'_>, p: &Palette, commands: &mut Vec<Command>) {
+    guide::section(ui, p, "Balance", GuidePage::Design, commands);
     let (balance, notation) = (&facts.balance, notation::of(ui.ctx()));
     let rows = [
         (

@@ -1,5 +1,6 @@
 //! The [`AppState`]: a session, its view state, and the execution of commands. Every window, test and figure has one.
 
+mod aside;
 mod background;
 mod carry_out;
 mod changing;
@@ -19,6 +20,7 @@ use super::background::Background;
 use super::change::SessionChange;
 use super::given::assess::OpenedTable;
 use super::pace::PlaybackRate;
+use super::pair::Pair;
 use super::saving::Saving;
 use super::{Activity, Framing, Intro, Layout, Message, Preferences, ResumePoint, SessionCommand, ViewState};
 use stillbase_mechanics::machine::Machine;
@@ -43,7 +45,9 @@ pub struct AppState {
     /// The machine before the gesture under way in the design view.
     designed_from: Option<Machine>,
     view_state: ViewState,
-    /// The introduction while it is shown, and whether to show it at the next start.
+    /// The person's own session while the tour or the hints are on display.
+    aside: Option<Box<aside::SetAside>>,
+    /// The hints while they are shown, and whether to show them at the next start.
     intro: Option<Intro>,
     hints: bool,
     /// Record of saved and unsaved changes, with the questions about unsaved ones.
@@ -89,6 +93,7 @@ impl AppState {
             views,
             session,
             view_state,
+            aside: None,
             intro: None,
             hints: true,
             saving: Saving::default(),
@@ -121,7 +126,10 @@ impl AppState {
         self.saving.recent.clone_from(&liked.recent);
         let usual = Scenario::builtin("case-3").is_some_and(|case| case == *self.session.scenario());
         if liked.hints && usual && liked.layout == Layout::Explore {
-            self.intro = Intro::for_session(&self.session).ok();
+            // Nothing was done yet: the hints accompany the person's own session, and set none aside.
+            self.intro = Some(Intro::of(&self.session));
+            self.view_state.pair = Some(Pair::demonstration());
+            self.refresh();
         }
         self
     }
@@ -143,7 +151,13 @@ impl AppState {
 
     /// Returns the preferences to be stored, for a window of this size, points.
     pub fn preferences(&self, size: [f32; 2]) -> Preferences {
-        Preferences::of(&self.view_state.arrangement, size, self.hints, &self.saving.recent)
+        let mut arrangement = self.view_state.arrangement.clone();
+        if self.intro.is_none() {
+            // The tour arranges the window in its own way.
+            arrangement = self.own_view_state().arrangement.clone();
+            arrangement.theme = self.view_state.arrangement.theme;
+        }
+        Preferences::of(&arrangement, size, self.hints, &self.saving.recent)
     }
 
     /// Opens a scenario. If its task cannot be planned, opens its machine with the paper's task and shows the reason.
@@ -202,25 +216,25 @@ impl AppState {
 
     /// Returns the state of the display that no edit contains: the instant and the plots.
     pub fn left_off(&self) -> ResumePoint {
-        ResumePoint::of_view(&self.session, &self.view_state)
+        ResumePoint::of_view(self.own_session(), self.own_view_state())
     }
 
     /// Returns the window title: the scenario, with ` *` if there are unsaved changes.
     pub fn title(&self) -> String {
-        let scenario = self.session.scenario();
+        let scenario = self.own_session().scenario();
         let name = if scenario.title.is_empty() { &scenario.name } else { &scenario.title };
-        let mark = if self.saving.is_unsaved() { " *" } else { "" };
+        let mark = if self.own_saving().is_unsaved() { " *" } else { "" };
         format!("{}{mark} – Stillbase", stillbase_settings::text::shorten_message(name))
     }
 
-    /// Returns the number of changes so far, and whether some of them are not saved in a file of the user.
+    /// Returns the number of changes of the person's own session so far, and whether some of them are not saved in a file of the user.
     pub fn changes(&self) -> (u64, bool) {
-        (self.saving.changes, self.saving.is_unsaved())
+        (self.own_saving().changes, self.own_saving().is_unsaved())
     }
 
     /// Whether the window may close without a question.
     pub fn may_leave(&self) -> bool {
-        self.saving.leaves || !(self.saving.is_unsaved() || self.is_making())
+        self.saving.leaves || !(self.own_saving().is_unsaved() || (self.aside.is_none() && self.is_making()))
     }
 
     /// Whether a change is being made in the background that the count of changes does not contain yet.
@@ -315,6 +329,7 @@ impl AppState {
         self.refresh_study();
         self.refresh_proposals();
         self.refresh_comparison();
+        self.refresh_pair();
         self.refresh_given();
         self.refresh_seeking();
         self.refresh_fronts();

@@ -7,7 +7,7 @@ use egui_plot::{Bar, BarChart, FilledArea, GridMark, Line, LineStyle, Plot, Plot
 use super::plots::{base_plot, small_axes};
 use super::theme::{bold, colour, plain};
 use super::widgets::{NumberRow, name, send};
-use super::{Command, Switch, ViewChange, ViewState};
+use super::{Command, GuidePage, Switch, ViewChange, ViewState, guide};
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::{Palette, faded};
 use stillbase_session::Edit;
@@ -31,6 +31,7 @@ pub fn show(
     Panel::bottom("study").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {
         ui.horizontal(|ui| {
             ui.label(RichText::new("Tolerances").font(bold(13.5)));
+            guide::button(ui, &p, "tolerances", GuidePage::Tolerances, commands);
             let words = match study {
                 Some(Ok(study)) => summary(study),
                 Some(Err(_)) => String::new(),

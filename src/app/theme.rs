@@ -2,7 +2,7 @@
 
 use egui::{Color32, CornerRadius, Frame, Margin, Stroke, TextStyle, vec2};
 
-pub use stillbase_picture::paint::{bold, colour, install_fonts, plain};
+pub use stillbase_picture::paint::{bold, code, colour, install_fonts, plain};
 use stillbase_picture::scene::palette::{Palette, Theme, faded, palette};
 
 /// Applies a theme to egui.

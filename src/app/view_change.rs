@@ -1,6 +1,6 @@
 //! Application of a [`ViewChange`] to a [`ViewState`].
 
-use super::{BottomPanel, Command, Finder, Framing, Layout, Switch, Tool, ViewChange, ViewState};
+use super::{BottomPanel, Command, Finder, Framing, GuideStep, GuideView, Layout, Switch, Tool, ViewChange, ViewState};
 use stillbase_picture::scene::Measure;
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_session::Session;
@@ -8,7 +8,7 @@ use stillbase_session::Session;
 impl Switch {
     /// Whether only views of the machine have this switch.
     pub fn is_of_machine(self) -> bool {
-        matches!(self, Self::Dexterity | Self::Snapshots | Self::Holding | Self::Drawing | Self::Pushing)
+        matches!(self, Self::Dexterity | Self::Snapshots | Self::Pair | Self::Holding | Self::Drawing | Self::Pushing)
     }
 }
 
@@ -24,11 +24,13 @@ impl ViewState {
             Switch::Swapped => self.arrangement.swapped,
             Switch::History => self.open.history,
             Switch::Compare => self.below == Some(BottomPanel::Runs),
+            Switch::Pair => self.pair.is_some(),
             Switch::Study => self.below == Some(BottomPanel::Tolerances),
             Switch::Table => self.below == Some(BottomPanel::Table),
             Switch::Pins => self.pins,
             Switch::Snapshots => self.snapshots,
             Switch::Help => self.open.help,
+            Switch::Guide => self.open.guide.is_some(),
             Switch::Times => self.open.times,
             Switch::Finder => self.open.finder.is_some(),
             Switch::Equations => {
@@ -69,13 +71,24 @@ impl ViewState {
             Switch::Swapped => self.arrangement.swapped = on,
             Switch::History => self.open.history = on,
             Switch::Compare => self.put_below(BottomPanel::Runs, on),
+            // The caller knows which run is to stand beside this one.
+            Switch::Pair => self.pair = self.pair.take().filter(|_| on),
             Switch::Study => self.put_below(BottomPanel::Tolerances, on),
             Switch::Table => self.put_below(BottomPanel::Table, on),
             Switch::Pins => self.pins = on,
             Switch::Snapshots => self.snapshots = on,
-            Switch::Help => self.open.help = on,
+            Switch::Help => {
+                self.open.help = on;
+                self.open.finder = self.open.finder.take().filter(|_| !on);
+            }
+            // The caller opens it at the page that belongs to what is on display.
+            Switch::Guide => self.open.guide = self.open.guide.take().filter(|_| on),
             Switch::Times => self.open.times = on,
-            Switch::Finder => self.open.finder = on.then(Finder::default),
+            // A file dialog that is open keeps the keyboard.
+            Switch::Finder => {
+                self.open.finder = (on && self.open.dialog.is_none()).then(Finder::default);
+                self.open.help &= !on;
+            }
             Switch::Equations => {
                 self.arrangement.shows_equations = on;
                 // No point of the Pareto front is under the pointer any more.
@@ -103,6 +116,16 @@ impl ViewState {
             true => self.below = Some(thing),
             false if self.below == Some(thing) => self.below = None,
             false => {}
+        }
+    }
+
+    /// Takes a step in the guide; opens it if it is closed.
+    fn read(&mut self, step: GuideStep) {
+        (self.open.help, self.open.finder) = (false, None);
+        match (&mut self.open.guide, step) {
+            (Some(guide), step) => guide.take(step),
+            (closed, GuideStep::Go(place)) => *closed = Some(GuideView::at(place)),
+            (None, GuideStep::Back | GuideStep::Forward) => {}
         }
     }
 
@@ -144,7 +167,13 @@ impl ViewState {
                 self.looked_up = Some(path);
             }
             ViewChange::LeaveNaming => self.open.naming = None,
-            ViewChange::Dialog(dialog) => self.open.dialog = dialog,
+            ViewChange::Guide(step) => self.read(step),
+            ViewChange::Pair(pair) => self.pair = Some(pair),
+            ViewChange::LeaveGuideSearch => self.open.guide.iter_mut().for_each(GuideView::leave_search),
+            ViewChange::Dialog(dialog) => {
+                self.open.finder = self.open.finder.take().filter(|_| dialog.is_none());
+                self.open.dialog = dialog;
+            }
             ViewChange::Export(export) => self.open.export = export,
         }
     }

@@ -7,6 +7,7 @@ use super::export::DisplaySize;
 use super::gesture::{DragGesture, HoverTarget, Tool};
 use super::layout::{BottomPanel, Layout, WindowArrangement};
 use super::open::OpenDialogs;
+use super::pair::Pair;
 use super::status_message::StatusMessage;
 use stillbase_picture::charts::choice::{Plot, PlotChoice};
 use stillbase_picture::scene::Measure;
@@ -67,6 +68,8 @@ pub struct ViewState {
     pub framing: [Framing; ViewKind::ALL.len()],
     /// The panel below the scene.
     pub below: Option<BottomPanel>,
+    /// Two runs in one view, while they are shown.
+    pub pair: Option<Pair>,
     /// The object whose rows the panel of settings must show.
     pub revealed: Option<Handle>,
     /// The path of the setting that the list of all settings must show.
@@ -113,6 +116,7 @@ impl ViewState {
             cameras: ViewKind::ALL.map(|kind| views.camera(kind)),
             framing: Default::default(),
             below: None,
+            pair: None,
             revealed: None,
             looked_up: None,
             dexterity: None,

@@ -6,22 +6,23 @@ use egui::{CentralPanel, CursorIcon, Frame, PointerButton, PopupAnchor, Pos2, Re
 
 use super::card::Card;
 use super::intro::Intro;
+use super::pointing::{self, Pointed};
 use super::scene_pointer::{PointedScene, ScenePointer};
 use super::tour::Tour;
 use super::widgets::name;
 use super::{
-    Command, Layout, SessionCommand, Switch, Tool, ViewChange, ViewState, coordinates, corner, framing, menu, present,
-    status,
+    Command, Layout, SessionCommand, Switch, Tool, ViewChange, ViewState, coordinates, corner, framing, menu, pair,
+    present, status,
 };
 use stillbase_mechanics::planar::{DriveAngles, Vector};
 use stillbase_picture::paint::labels::draw_labels;
 use stillbase_picture::paint::{SceneViewport, paint};
 use stillbase_picture::scene::Scene;
+use stillbase_picture::scene::beside::Beside;
 use stillbase_picture::scene::camera::Camera;
 use stillbase_picture::scene::exaggeration::{DrawnFrame, Exaggeration};
 use stillbase_picture::scene::options::{Handle, OtherRun, ViewOptions, WeightOption};
 use stillbase_picture::scene::pick::Pick;
-use stillbase_picture::scene::stage::Stage;
 use stillbase_picture::scene::views::{ViewKind, Views};
 use stillbase_session::scenario::Task;
 use stillbase_session::{Edit, Session};
@@ -36,42 +37,49 @@ pub struct SceneContent<'a> {
     pub exaggeration: f64,
     pub comparison: Option<&'a Comparison>,
     pub intro: Option<&'a Intro>,
+    /// The run beside that on display, or why there is none; `None` while it is being made.
+    pub other: Option<&'a Result<Beside, String>>,
     /// Counterweights of the point of a Pareto front that the user has chosen.
     pub weights: &'a [WeightOption],
 }
 
 /// Draws the scene and handles the pointer; returns the rectangle of the scene.
 pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, commands: &mut Vec<Command>) -> Rect {
-    let SceneContent { session, views, exaggeration, intro, .. } = content;
+    let SceneContent { session, views, exaggeration, comparison, intro, other, .. } = content;
     let shown = CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        let mut room = ui.available_size();
         let intro = intro.filter(|_| view_state.view.shows_machine());
-        let both = intro.filter(|intro| intro.shows_both(room.x));
-        if let Some(intro) = both {
-            room.x *= 0.5;
-            let left = Rect::from_min_size(ui.cursor().min, room);
-            intro.show_straight(ui, left, session.frame(), view_state.camera(), view_state);
+        let pair = view_state.pair.clone().filter(|_| view_state.view.shows_machine());
+        let usual = Exaggeration::Times(exaggeration);
+        let beside = other.and_then(|other| other.as_ref().ok());
+        let divided = pair.as_ref().and_then(|pair| pair.divide(ui.available_rect_before_wrap()));
+        let both = pair.as_ref().zip(divided);
+        let exaggeration = match &both {
+            Some((pair, _)) if view_state.gesture.grabbed.is_none() => pair.exaggeration(beside, session, usual),
+            _ => usual,
+        };
+        let rect = both.as_ref().map_or(ui.available_rect_before_wrap(), |(_, [_, own])| *own);
+        if let Some((pair, [place, _])) = both {
+            let other = pair::Other { pair, found: other, session, table: comparison, exaggeration };
+            other.show(ui, place, view_state.camera(), view_state, commands);
         }
-        let whole = ui.available_rect_before_wrap();
-        let rect = Rect::from_min_max(whole.right_bottom() - room, whole.right_bottom());
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         let mut covered = vec![corner::strip(rect)];
-        covered.extend(intro.into_iter().flat_map(|intro| intro.covers(ui.ctx(), rect, session, both.is_some())));
+        covered.extend(intro.and_then(|intro| intro.covers(ui.ctx(), rect, session)));
         covered.extend(coordinates::covers(rect, views, view_state));
         let presents = view_state.arrangement.layout == Layout::Present;
         covered.extend(presents.then(|| present::covers(rect)));
+        covered.extend(both.filter(|_| !presents).map(|_| pair::caption_covers(rect)));
         covered.extend(view_state.open.tour.as_ref().map(|_| Tour::covers(ui.ctx(), rect)));
         framing::keep_framed(rect, &covered, session, views, || motion(session), view_state);
         name(&response, "Scene: the machine, its reactionless workspace and its target");
         // The pointer acts on the machine as drawn, including the enlarged motion of the base.
-        let exaggeration = Exaggeration::Times(exaggeration);
         let shown = DrawnFrame::of(session.frame(), exaggeration);
         let spot = SceneViewport { rect, camera: *view_state.camera() };
         if matches!(view_state.tool, Tool::Draw(_)) && view_state.view.shows_machine() {
             draw(ui, &response, &spot, views, view_state, commands);
         } else {
-            let demonstrates = intro.is_some_and(Intro::demonstrates);
+            let demonstrates = pair.as_ref().is_some_and(|pair| pair.demonstrates);
             let hand = ScenePointer::over(
                 ui,
                 &response,
@@ -95,6 +103,7 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
             refused: view_state.status.refused.as_ref().and_then(|r| r.curve.clone()),
             show_hints: session.can_be_dragged(),
             compares: both.is_none(),
+            exaggeration,
             ..options(content, view_state)
         };
         let scene = Arc::new(views.scene(view_state.view, session.frame(), &options, view_state.camera()));
@@ -112,15 +121,28 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
         if presents {
             present::show(ui, rect, session, view_state, commands);
         }
-        if let Some(intro) = both {
-            intro.caption(ui, rect, session.frame(), view_state);
+        if let Some((pair, _)) = both.filter(|_| !presents) {
+            pair::own_caption(ui, rect, session, pair, view_state);
         }
-        if let Some(tour) = &view_state.open.tour {
-            tour.show(ui.ctx(), rect, session, view_state, commands);
+        let tour = view_state.open.tour.as_ref();
+        let things = tour.map(Tour::points_at).or(intro.map(Intro::points_at)).unwrap_or_default();
+        let in_scene = |thing: Pointed| {
+            let shows = view_state.view.shows_machine();
+            thing.in_scene(&spot, views.stage(), &shown).filter(|place| shows && rect.contains(place.center()))
+        };
+        let mentioned: Vec<Rect> = things.iter().copied().filter_map(in_scene).collect();
+        // A card leaves free what can be dragged, too.
+        let free = [Pointed::Target, Pointed::Ring].into_iter().filter_map(in_scene);
+        let left_free: Vec<Rect> = mentioned.iter().copied().chain(free).collect();
+        let widgets = pointing::widgets(ui.ctx(), things);
+        if view_state.gesture.grabbed.is_none() {
+            pointing::outline(ui.ctx(), &view_state.palette(), &[mentioned.as_slice(), &widgets].concat());
+        }
+        if let Some(tour) = tour {
+            tour.show(ui.ctx(), rect, &left_free, session, view_state, commands);
         }
         if let Some(intro) = intro {
-            let spoken_of = spoken_of(&spot, views.stage(), &shown);
-            intro.show_hint(ui.ctx(), rect, &spoken_of, session, view_state, commands);
+            intro.show_hint(ui.ctx(), rect, &left_free, session, view_state, commands);
         }
         rect
     });
@@ -162,19 +184,6 @@ fn options(content: SceneContent<'_>, view_state: &ViewState) -> ViewOptions {
         notation: view_state.arrangement.notation,
         ..ViewOptions::default()
     }
-}
-
-/// Returns the screen rectangles of the objects that hints mention: the target, and the ring of b with its label.
-fn spoken_of(spot: &SceneViewport, stage: &Stage, shown: &DrawnFrame<'_>) -> Vec<Rect> {
-    let ring = stage.handle(Handle::Ring, shown).and_then(|knob| {
-        let middle = spot.screen([shown.base.at.re, shown.base.at.im, knob[2]])?;
-        // The factor makes room for the label, which lies outside the ring.
-        let radius = 1.4 * (spot.screen(knob)? - middle).length();
-        Some(Rect::from_center_size(middle, Vec2::splat(2.0 * radius)))
-    });
-    let target = stage.handle(Handle::Target, shown).and_then(|at| spot.screen(at));
-    let target = target.map(|at| Rect::from_center_size(at, Vec2::splat(36.0)));
-    ring.into_iter().chain(target).collect()
 }
 
 /// Delay before the card of an object is shown, s.

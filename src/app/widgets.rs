@@ -7,7 +7,7 @@ use egui::response::Flags;
 use egui::{Align, DragValue, Key, Layout, Response, RichText, Slider, SliderClamping, Ui};
 
 use super::theme::{bold, colour, plain};
-use super::{Command, SessionCommand, notation};
+use super::{Command, SessionCommand, notation, pointing};
 use stillbase_picture::notation::ShownUnit;
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::Palette;
@@ -22,6 +22,7 @@ pub(super) const CLICK_PAYLOAD: f64 = 0.3;
 
 /// Sets the name of a widget for screen readers.
 pub fn name(response: &Response, label: &str) {
+    pointing::drawn(response, label);
     let label = label.to_owned();
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(label));
 }

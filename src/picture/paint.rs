@@ -29,12 +29,19 @@ pub fn plain(size: f32) -> FontId {
     FontId::new(size, FontFamily::Proportional)
 }
 
-/// Installs the font Inter, with digits of equal width; glyphs that it lacks come from DejaVu Sans.
+/// Font of code, of letters with equal widths, of the given size, points.
+pub fn code(size: f32) -> FontId {
+    FontId::new(size, FontFamily::Name("code".into()))
+}
+
+/// Installs the font Inter, with digits of equal width; glyphs that it lacks come from DejaVu Sans. Code is set
+/// in DejaVu Sans Mono.
 pub fn install_fonts(ctx: &egui::Context) {
     let mut fonts = FontDefinitions::default();
-    let files: [(&str, &[u8]); 3] = [
+    let files: [(&str, &[u8]); 4] = [
         ("sans", include_bytes!("../../assets/fonts/Inter-Regular.ttf")),
         ("sans-bold", include_bytes!("../../assets/fonts/Inter-SemiBold.ttf")),
+        ("mono", include_bytes!("../../assets/fonts/DejaVuSansMono-text.ttf")),
         ("signs", include_bytes!("../../assets/fonts/DejaVuSans-signs.ttf")),
     ];
     for (name, bytes) in files {
@@ -45,6 +52,8 @@ pub fn install_fonts(ctx: &egui::Context) {
         fonts.families.entry(family).or_default().splice(0..0, first("sans"));
     }
     fonts.families.insert(FontFamily::Name("bold".into()), first("sans-bold").to_vec());
+    let code = ["mono", "sans", "signs"].map(Into::into);
+    fonts.families.insert(FontFamily::Name("code".into()), code.to_vec());
     ctx.set_fonts(fonts);
 }
 

@@ -8,6 +8,7 @@ use stillbase::app::actions::{ACTIONS, FINE_ACTIONS};
 use stillbase::app::{SessionCommand, Switch, ViewChange};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
+use stillbase::session::Edit;
 
 use super::{Window, session, window};
 use crate::Test;
@@ -15,6 +16,8 @@ use crate::folder::Folder;
 
 pub const TESTS: &[Test] = tests![
     every_command_is_found_by_a_few_letters,
+    what_a_newcomer_types_is_among_the_first_three,
+    the_list_of_commands_closes,
     a_value_is_typed_where_its_setting_is_found,
     the_list_of_commands_is_led_by_keys_alone,
     the_list_of_commands_grows_again,
@@ -74,6 +77,110 @@ fn every_command_is_found_by_a_few_letters() {
     press(&mut h, Modifiers::COMMAND, Key::K);
     type_text(&mut h, "qqxz");
     assert!(h.query_by_label("no command answers this").is_some());
+}
+
+/// Words of somebody who does not know the names yet.
+fn what_a_newcomer_types_is_among_the_first_three() {
+    let folder = Folder::new("newcomer");
+    let mut h = window("case-3", Theme::Dark);
+    h.state_mut().app_state_mut().carry_out(SessionCommand::SaveFile(folder.path("mine.toml")));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::set("plant.payload.mass", 0.1)));
+    h.run_steps(2);
+    let mut wrong = Vec::new();
+    for (typed, expected) in [
+        ("import", "Open a session, scenario, machine, model or table"),
+        ("csv", "Values of the first plot as CSV"),
+        ("export", "Values of the first plot as CSV"),
+        ("excel", "Values of the first plot as CSV"),
+        ("picture", "Picture of the first plot as PNG"),
+        ("screenshot", "Picture of the first plot as PNG"),
+        ("gravity", "Setting: gravity"),
+        ("new", "New session: this machine and its task, nothing done yet"),
+        ("recent", "Recent: mine.toml"),
+        ("movie", "Record for the Rerun viewer"),
+        ("film", "Guide: Pictures and films, Recording"),
+        ("gif", "Guide: Pictures and films, Recording"),
+        ("undo", "Undo"),
+        ("revert", "Undo"),
+        ("shake", "Shake and still: two runs side by side"),
+        ("split", "Shake and still: two runs side by side"),
+        ("units", "Guide: First run"),
+        ("degrees", "Guide: First run"),
+        ("help", "Guide: what all this is and how it is used"),
+        ("manual", "Guide: what all this is and how it is used"),
+        ("tutorial", "Tour: what this is about, in seven steps"),
+        ("hints", "Hints: the first three things to do"),
+        ("shortcuts", "Keys and gestures"),
+        ("urdf", "Take the machine elsewhere: MJCF, URDF, DXF…"),
+        ("mujoco", "Take the machine elsewhere: MJCF, URDF, DXF…"),
+        ("slow motion", "Twice as slow"),
+        ("loop", "Play over and over, what plots show of it if a range was chosen"),
+        ("rewind", "To the start"),
+        ("fit", "Show everything"),
+        ("fullscreen", "Present: the scene alone, what counts in large type"),
+        ("dark mode", "Light or dark"),
+        ("monte carlo", "Tolerances: what the bases of many machines feel, and the spectrum"),
+        ("vibration", "Tolerances: what the bases of many machines feel, and the spectrum"),
+        ("balance", "Design: masses, centres of mass, lengths and counterweights"),
+        ("friction", "Setting: plant.friction"),
+        ("how do i save", "Save the session"),
+        ("compare", "Compare: scene, wide plots and the runs side by side"),
+        ("snapshots", "Snapshots along the motion"),
+        ("bearing forces", "Inside the machine: what the pins carry"),
+        ("equations", "Equations of the paper with today's numbers, beside the design view"),
+        ("spacecraft", "Scenario: Spacecraft"),
+        ("exit", "Quit; asks first if changes are in no file"),
+        ("payload", "Setting: payload"),
+        ("exit status", "Guide: Exit status, Command line"),
+    ] {
+        press(&mut h, Modifiers::COMMAND, Key::K);
+        type_text(&mut h, typed);
+        h.run_steps(2);
+        let fields = h.query_all_by_label("Find a command").map(|node| node.rect().bottom());
+        let top = fields.fold(f32::MAX, f32::min);
+        let row = h.query_all_by_label_contains(expected).map(|node| node.rect()).filter(|rect| rect.top() > top);
+        let row = row.map(|rect| (rect.top() - top) / 27.0).fold(f32::MAX, f32::min);
+        if row > 3.0 {
+            wrong.push(format!("{typed}: {expected} is in row {row}"));
+        }
+        press(&mut h, Modifiers::NONE, Key::Escape);
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// It closes with Esc, with a press elsewhere, after Enter, and when something else wants the keyboard.
+fn the_list_of_commands_closes() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let is_open = |h: &Window| h.state().app_state().view_state().open.finder.is_some();
+    let mut closes = |by: &str, how: &mut dyn FnMut(&mut Window)| {
+        press(&mut h, Modifiers::COMMAND, Key::K);
+        assert!(is_open(&h), "{by}");
+        type_text(&mut h, "snap");
+        how(&mut h);
+        h.run_steps(3);
+        assert!(!is_open(&h), "{by}");
+        h.state_mut().app_state_mut().carry_out(ViewChange::Dialog(None));
+        h.state_mut().app_state_mut().carry_out(ViewChange::Switch(Switch::Help, false));
+        h.run_steps(2);
+    };
+    closes("Esc", &mut |h| press(h, Modifiers::NONE, Key::Escape));
+    closes("Enter", &mut |h| press(h, Modifiers::NONE, Key::Enter));
+    closes("a press elsewhere", &mut |h| {
+        h.hover_at(egui::pos2(640.0, 780.0));
+        h.step();
+        h.drag_at(egui::pos2(640.0, 780.0));
+        h.step();
+        h.drop_at(egui::pos2(640.0, 780.0));
+    });
+    closes("a file dialog", &mut |h| press(h, Modifiers::COMMAND, Key::O));
+    closes("the card of keys", &mut |h| press(h, Modifiers::NONE, Key::F1));
+    closes("the guide", &mut |h| press(h, Modifiers::NONE, Key::F2));
+    // Where the window has lost the focus, the list stays.
+    press(&mut h, Modifiers::COMMAND, Key::K);
+    h.event(egui::Event::WindowFocused(false));
+    h.run_steps(3);
+    assert!(is_open(&h), "it stays while another window has the focus");
 }
 
 /// A setting and a value, typed and entered, set it; a signal opens its plot; what is out of range is refused in words.

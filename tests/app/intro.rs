@@ -267,10 +267,9 @@ fn numbers_of_the_first_screen_are_those_of_the_run() {
 /// speaks of, in small windows too.
 fn hints_speak_of_what_there_is_and_cover_none_of_it() {
     for (machine, words) in [("two-drive", Some("amber curve")), ("nine-link-bare", None)] {
-        let mut h = window("case-3", &Preferences::default());
+        let mut h = window(machine, &Preferences::default());
         h.run_steps(2);
-        let scenario = Scenario::builtin(machine).expect("built in");
-        h.state_mut().app_state_mut().carry_out(SessionCommand::Open(Box::new(scenario)));
+        h.state_mut().app_state_mut().carry_out(WindowCommand::Hints);
         h.run_steps(4);
         assert!(h.query_by_label_contains("amber area").is_none(), "{machine}");
         assert_eq!(h.query_by_label("Drag the white ring.").is_some(), words.is_some(), "{machine}");

@@ -5,11 +5,14 @@ mod files;
 mod finder;
 mod gallery;
 mod given;
+mod guide;
 mod hands;
 mod intro;
 mod jobs;
 mod layout;
+mod lessons;
 mod notation;
+mod pair;
 mod panel;
 mod plots;
 mod pointer;
@@ -33,18 +36,21 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 21] = [
+pub const TESTS: [&[Test]; 24] = [
     saving::TESTS,
     family::TESTS,
     files::TESTS,
     finder::TESTS,
     gallery::TESTS,
     given::TESTS,
+    guide::TESTS,
     hands::TESTS,
     intro::TESTS,
     jobs::TESTS,
     layout::TESTS,
     notation::TESTS,
+    lessons::TESTS,
+    pair::TESTS,
     panel::TESTS,
     plots::TESTS,
     pointer::TESTS,

@@ -5,7 +5,7 @@ use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 use crate::place;
 use crate::theme::{bold, colour, plain};
 use crate::widgets::{NumberRow, name, send, undoable_edit};
-use crate::{Command, SessionCommand};
+use crate::{Command, GuidePlace, SessionCommand, guide};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Edit;
 use stillbase_session::scenario::Value;
@@ -70,6 +70,7 @@ pub fn fold(
             open = !open;
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            guide::button(ui, p, title, GuidePlace::of_section(title), commands);
             let differs = back.is_some();
             if let Some(edit) = back
                 && undo(ui, p, &format!("{title} back to normal"), "Put everything here back to normal")

@@ -6,6 +6,7 @@ use super::AppState;
 use crate::background::{Background, Opening};
 use crate::change::SessionSource;
 use crate::{Activity, BottomPanel, ComparisonCommand};
+use stillbase_picture::scene::beside::{Beside, BesideQuery};
 use stillbase_picture::scene::stage::OutlineQuery;
 use stillbase_query::{ByIdentity, QueryResult, QueryStatus, Shared, Ticket};
 use stillbase_session::scenario::Scenario;
@@ -139,6 +140,29 @@ impl AppState {
         let wanted = stale || self.queries().progress::<AlternativeRuns>().is_some();
         if wanted && (first || self.view_state.gesture.grabbed.is_none()) {
             let _ = self.queries().ask_in_background::<AlternativeRuns>(&self.session.run().shared_scenario());
+        }
+    }
+
+    /// Requests the run beside that on display, if there is one; during a drag the last one stays.
+    pub(super) fn refresh_pair(&mut self) {
+        let Some(pair) = &self.view_state.pair else {
+            self.queries().forget::<BesideQuery>();
+            return;
+        };
+        if self.view_state.gesture.grabbed.is_none()
+            && let Some(scenario) = pair.with.scenario(&self.session)
+        {
+            let _ = self.queries().ask_in_background::<BesideQuery>(&Shared(Arc::new(scenario)));
+        }
+    }
+
+    /// Returns the run beside that on display, or the reason why there is none; `None` while it is being made.
+    pub(super) fn beside(&self) -> Option<Arc<Result<Beside, String>>> {
+        let QueryResult { last, state } = self.queries().newest::<BesideQuery>()?;
+        match state {
+            QueryStatus::Broken => Some(Arc::new(Err(fault("the run beside")))),
+            QueryStatus::Stopped if last.is_none() => Some(Arc::new(Err("it was stopped".into()))),
+            _ => last,
         }
     }
 

@@ -3,11 +3,17 @@
 use super::AppState;
 use crate::background::Opening;
 use crate::change::{SessionChange, SessionSource};
+use crate::given::TableView;
+use crate::guide::{GuidePlace, GuideStep};
 use crate::marks;
-use crate::tour::Tour;
+use crate::pair::Pair;
 use crate::{Command, FileDialog, FilePurpose, SessionCommand, Switch, ViewChange, WindowCommand};
+use stillbase_picture::scene::beside::BesideQuery;
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_session::session_command;
+
+/// Message at the end of the tour.
+const HANDED_BACK: &str = "the tour is over: your session is as it was";
 
 impl AppState {
     /// Carries out one command, after all earlier ones. A command that fails changes nothing, and a message says why.
@@ -15,7 +21,15 @@ impl AppState {
     pub fn carry_out(&mut self, command: impl Into<Command>) {
         self.collect();
         self.catch_up();
-        match command.into() {
+        let mut command = command.into();
+        if self.ends_lesson(&command) {
+            self.hand_back();
+            // The name that the dialog proposes is that of the person's own session.
+            if let Command::View(ViewChange::Dialog(Some(dialog))) = &mut command {
+                *dialog = FileDialog::suggest(&self.session, dialog.purpose.clone());
+            }
+        }
+        match command {
             Command::Session(command) if self.background.is_changing() => {
                 let edits = matches!(command, SessionCommand::Edit(_));
                 self.view_state.gesture.dragged |= self.view_state.gesture.grabbed.is_some() && edits;
@@ -48,7 +62,24 @@ impl AppState {
                 self.view_state.open.dialog = Some(FileDialog::suggest(&self.session, FilePurpose::Open));
                 Ok(None)
             }
+            Command::View(ViewChange::Switch(Switch::Guide, true)) => {
+                let found = self.assessed();
+                let answer = found.as_ref().map(|(answer, _)| &**answer);
+                let table = self.opened_table.as_ref();
+                let table = table.and_then(|table| TableView { table, answer, is_known: true }.content());
+                let place = GuidePlace::of_display(&self.view_state, table);
+                self.view_state.apply(ViewChange::Guide(GuideStep::Go(place)));
+                Ok(None)
+            }
+            Command::View(ViewChange::Switch(Switch::Pair, true)) => {
+                self.view_state.pair = Some(Pair::of(&self.session));
+                Ok(None)
+            }
             Command::View(change) => {
+                if matches!(change, ViewChange::Pair(_)) {
+                    // What is shown until the other run is made is no run of another title.
+                    self.queries().forget::<BesideQuery>();
+                }
                 let designs =
                     matches!(change, ViewChange::Kind(ViewKind::Design) | ViewChange::Switch(Switch::Equations, true));
                 self.view_state.apply(change);
@@ -164,27 +195,41 @@ impl AppState {
                 self.clipboard = Some(command);
                 return Ok(Some(said));
             }
+            WindowCommand::Copy(text) => {
+                let said = format!("copied: {}", stillbase_settings::text::shorten_message(&text));
+                self.clipboard = Some(text);
+                return Ok(Some(said));
+            }
             WindowCommand::Refuse(why) => return Err(why),
             WindowCommand::Cancel(activity) => return Ok(Some(self.cancel(activity))),
-            WindowCommand::AskToLeave(asks) => self.saving.asks = asks,
-            WindowCommand::Quit if !self.may_leave() => self.saving.asks = true,
+            WindowCommand::AskToLeave(asks) => self.ask_to_leave(asks),
+            WindowCommand::Quit if !self.may_leave() => self.ask_to_leave(true),
             WindowCommand::Quit | WindowCommand::Leave => (self.saving.asks, self.saving.leaves) = (false, true),
             WindowCommand::SkipHints => {
                 self.hints &= self.intro.is_none();
-                self.intro = None;
+                if self.intro.is_some() {
+                    self.hand_back();
+                }
             }
-            WindowCommand::Tour(begins) => {
-                // The tour replaces the hints. Hints that the user has not followed return at the next start.
-                self.intro = self.intro.take().filter(|_| !begins);
-                self.view_state.open.help &= !begins;
-                self.view_state.open.tour = begins.then(|| Tour::begin(&self.session));
-            }
+            WindowCommand::Hints => self.begin_hints()?,
+            // Hints that the user has not followed return at the next start.
+            WindowCommand::Tour(true) => self.begin_tour()?,
+            WindowCommand::Tour(false) => return Ok(self.hand_back().then(|| HANDED_BACK.into())),
             WindowCommand::TurnTour(forward) => {
                 let tour = self.view_state.open.tour.take();
-                self.view_state.open.tour = tour.and_then(|tour| tour.turned(forward, &self.session));
+                match tour.and_then(|tour| tour.turned(forward, &self.session)) {
+                    Some(tour) => self.show_tour(tour),
+                    None => return Ok(self.hand_back().then(|| HANDED_BACK.into())),
+                }
             }
         }
         Ok(None)
+    }
+
+    /// Opens or closes the question whether the window may close; it takes the place of the list of commands.
+    fn ask_to_leave(&mut self, asks: bool) {
+        self.saving.asks = asks;
+        self.view_state.open.finder = self.view_state.open.finder.take().filter(|_| !asks);
     }
 
     /// Opens the field for the name of the bookmark at `time`, s; creates the bookmark if there is none.

@@ -61,8 +61,15 @@ impl AppState {
     pub(crate) fn still_scene(&mut self, size: [f32; 2]) -> (Scene, Camera) {
         let (exaggeration, weights) = (self.base_exaggeration(), self.chosen_weights());
         let (session, views, comparison) = (&self.session, &*self.views, self.comparison.as_ref());
-        let content =
-            viewport::SceneContent { session, views, exaggeration, comparison, intro: None, weights: &weights };
+        let content = viewport::SceneContent {
+            session,
+            views,
+            exaggeration,
+            comparison,
+            intro: None,
+            other: None,
+            weights: &weights,
+        };
         viewport::still(content, size, &mut self.view_state)
     }
 

@@ -6,8 +6,8 @@ use crate::facts::ScenarioFacts;
 use crate::marks::Marks;
 use crate::{
     BottomPanel, Command, DrawingGuard, Intro, Layout, SessionCommand, StatusMessage, ViewChange, WindowCommand,
-    compare, finder, given, keys, notation, order, place, plots, rail, saving, side, status, studio, study, theme, top,
-    viewport, widgets,
+    compare, finder, given, guide, keys, notation, order, place, plots, rail, saving, side, status, studio, study,
+    theme, top, viewport, widgets,
 };
 use stillbase_picture::scene::views::ViewKind;
 
@@ -44,8 +44,9 @@ impl AppState {
         if let Some(tour) = &mut self.view_state.open.tour {
             tour.follow(&self.session);
         }
-        let beside = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
-        let beside = beside.and_then(Intro::straight_comparison).or(self.comparison.as_ref());
+        let other = self.view_state.pair.as_ref().and_then(|_| self.beside());
+        let table = other.as_deref().and_then(|other| other.as_ref().ok()).map(|other| &other.table);
+        let beside = table.or(self.comparison.as_ref());
         let queries = self.queries().clone();
         let marks = Marks::of(&queries, &self.session, beside);
         if !marks.is_whole {
@@ -80,7 +81,8 @@ impl AppState {
             let shown = given::TableView { table, answer: found.as_ref().map(|(answer, _)| &**answer), is_known };
             given::show(ui, shown, &self.view_state, &mut commands);
         }
-        let contrast = self.intro.as_ref().filter(|intro| intro.contrasts_in(ui.ctx().content_rect().width()));
+        let width = ui.ctx().content_rect().width();
+        let contrasts = self.view_state.pair.as_ref().is_some_and(|pair| pair.hides_settings(width));
         let designs = self.view_state.view == ViewKind::Design && !presents;
         let mut chosen = Vec::new();
         if designs {
@@ -91,7 +93,7 @@ impl AppState {
             studio::show(ui, &self.session, &found, &self.view_state, &mut commands);
             chosen = self.view_state.ghost.map_or_else(Vec::new, |i| found.weights(i));
         }
-        if contrast.is_none() && self.view_state.arrangement.now().side.shown && !designs {
+        if !contrasts && self.view_state.arrangement.now().side.shown && !designs {
             if let Some(thing) = self.view_state.revealed.take() {
                 place::open(ui.ctx(), thing, &self.session);
             }
@@ -104,7 +106,6 @@ impl AppState {
         self.view_state.pointed.panel_object = place::lit(ui.ctx());
         self.view_state.pointed.lit_links = place::lit_links(ui.ctx());
         if self.view_state.arrangement.now().plots.shown && !designs {
-            let beside = contrast.and_then(Intro::straight_comparison).or(self.comparison.as_ref());
             if std::mem::take(&mut self.focuses_search) {
                 plots::focus(ui.ctx());
             }
@@ -119,6 +120,7 @@ impl AppState {
             exaggeration: self.base_exaggeration(),
             comparison: self.comparison.as_ref(),
             intro: self.intro.as_ref().filter(|_| !presents),
+            other: other.as_deref(),
             weights: &chosen,
         };
         let scene = viewport::show(ui, content, &mut self.view_state, &mut commands);
@@ -128,6 +130,7 @@ impl AppState {
         let proposals = self.proposals();
         let proposals = proposals.as_ref().map_or(&[][..], |known| known);
         status::news(ui.ctx(), scene, &self.session, &self.view_state, proposals, &mut commands);
+        guide::show(ui.ctx(), &queries, &mut self.view_state, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);
         saving::show(ui.ctx(), &self.saving, &self.view_state, &mut commands);
         let recent = &self.saving.recent;
@@ -152,12 +155,17 @@ impl AppState {
             let seen = self.intro.is_some().then(|| command.clone());
             self.carry_out(command);
             let held = self.view_state.gesture.grabbed.is_some();
-            if let (Some(intro), Some(command)) = (&mut self.intro, seen) {
-                intro.observe(&command, &self.session, held);
+            if let (Some(intro), Some(command)) = (&mut self.intro, seen)
+                && intro.observe(&command, &self.session, held)
+            {
+                self.view_state.pair = self.view_state.pair.take().filter(|pair| !pair.demonstrates);
             }
         }
-        if self.intro.as_ref().is_some_and(Intro::is_over) {
-            (self.intro, self.hints) = (None, false);
+        if self.intro.as_ref().is_some_and(Intro::is_over) && self.view_state.gesture.grabbed.is_none() {
+            self.hints = false;
+            if self.hand_back() {
+                self.announce("the hints are over: your session is as it was");
+            }
         }
         if (self.session.is_moving() || self.loops()) && !self.background.is_changing() {
             ui.ctx().request_repaint();

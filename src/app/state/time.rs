@@ -53,12 +53,17 @@ impl AppState {
     /// loop it is the start of the run or of the range chosen in the plots. `wall` is the wall time that has passed,
     /// s.
     fn starts_over(&mut self, wall: f64) -> Option<f64> {
-        if self.intro.as_mut().is_some_and(|intro| intro.advance_rest(&self.session, wall)) {
+        if self.demonstrates() && self.intro.as_mut().is_some_and(|intro| intro.advance_rest(&self.session, wall)) {
             return Some(0.0);
         }
         let [from, to] = self.view_state.charts.range.unwrap_or([0.0, f64::INFINITY]);
         let now = self.session.frame().time;
         (self.loops() && now > from && (now >= to || !self.session.is_moving())).then_some(from)
+    }
+
+    /// Whether the demonstration of the first minute runs, because the machine has not been touched yet.
+    fn demonstrates(&self) -> bool {
+        self.view_state.pair.as_ref().is_some_and(|pair| pair.demonstrates)
     }
 
     pub(super) fn loops(&self) -> bool {

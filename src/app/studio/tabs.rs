@@ -4,7 +4,10 @@ use egui::{Button, RichText, Ui, vec2};
 
 use crate::theme::{bold, colour};
 use crate::widgets::name;
-use crate::{Command, Switch, ViewChange, ViewState};
+use crate::{Command, GuidePage, GuidePlace, Switch, ViewChange, ViewState, guide};
+
+/// Width of the button that opens the guide, points.
+const HELP_WIDTH_PT: f32 = 19.0;
 
 const TABS: [(bool, &str, &str); 2] = [
     (false, "Balance", "What is out of balance, and counterweights to take"),
@@ -16,7 +19,7 @@ pub fn show(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = &view_state.palette();
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
-        let width = 0.5 * (ui.available_width() - 3.0 - crate::side::SCROLL_BAR_WIDTH);
+        let width = 0.5 * (ui.available_width() - 3.0 - crate::side::SCROLL_BAR_WIDTH - HELP_WIDTH_PT);
         for (learns, words, tip) in TABS {
             let chosen = learns == view_state.arrangement.shows_equations;
             let text = RichText::new(words).font(bold(12.5)).color(colour(if chosen { p.ink } else { p.dim }));
@@ -28,6 +31,11 @@ pub fn show(ui: &mut Ui, view_state: &ViewState, commands: &mut Vec<Command>) {
                 commands.push(ViewChange::Switch(Switch::Equations, learns).into());
             }
         }
+        let place = match view_state.arrangement.shows_equations {
+            true => GuidePlace::under(GuidePage::Design, "Every equation of the paper"),
+            false => GuidePage::Design.into(),
+        };
+        guide::button(ui, p, "the design", place, commands);
     });
     ui.add_space(4.0);
 }

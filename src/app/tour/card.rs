@@ -1,8 +1,9 @@
-//! The card of a [`Tour`]'s step, over the lower left corner of the scene.
+//! The card of a [`Tour`]'s step, over the corner of the scene that leaves free what it mentions.
 
 use egui::{Align2, Area, Button, Id, RichText, Ui, vec2};
 
-use super::{STEPS, Step, StepButton, Tour};
+use super::{STEPS, StepButton, Tour, said};
+use crate::intro::Corner;
 use crate::theme::{bold, card, colour, plain};
 use crate::widgets::name;
 use crate::{Command, ViewChange, ViewState, WindowCommand};
@@ -11,18 +12,21 @@ use stillbase_picture::scene::views::ViewKind;
 use stillbase_session::Session;
 
 impl Tour {
-    /// Draws the card, over the lower left corner of the scene.
+    /// Draws the card, if possible where it covers none of the things that it mentions.
     pub fn show(
         &self,
         ctx: &egui::Context,
         rect: egui::Rect,
+        mentioned: &[egui::Rect],
         session: &Session,
         view_state: &ViewState,
         commands: &mut Vec<Command>,
     ) {
         let (p, step) = (view_state.palette(), &STEPS[self.step]);
         let width = 430.0_f32.min(rect.width() - 32.0);
-        let area = Area::new(id()).pivot(Align2::LEFT_BOTTOM).fixed_pos(rect.left_bottom() + vec2(16.0, -16.0));
+        let size = ctx.memory(|m| m.area_rect(id())).map_or(vec2(width, 190.0), |last| last.size());
+        let corner = Corner::kept(ctx, id(), view_state, rect, size, mentioned);
+        let area = Area::new(id()).pivot(Align2::LEFT_TOP).fixed_pos(corner.place(rect, size).min);
         area.show(ctx, |ui| {
             card(&p).show(ui, |ui| {
                 ui.set_width(width - 28.0);
@@ -33,18 +37,22 @@ impl Tour {
                         ui.label(RichText::new(count).font(plain(12.0)).color(colour(p.dim)));
                     });
                 });
-                ui.add(egui::Label::new(RichText::new(step.words).font(plain(12.5)).color(colour(p.ink))).wrap());
+                let words = said(step.words, session);
+                ui.add(egui::Label::new(RichText::new(words).font(plain(12.5)).color(colour(p.ink))).wrap());
+                if let Some(note) = &self.note {
+                    ui.add(egui::Label::new(RichText::new(note).font(plain(12.0)).color(colour(p.dim))).wrap());
+                }
                 ui.add_space(4.0);
-                self.exercise(ui, step, &p);
+                self.exercise(ui, &said(step.exercise, session), &p);
                 ui.add_space(4.0);
                 self.buttons(ui, (step.button)(session), view_state, &p, commands);
             });
         });
     }
 
-    fn exercise(&self, ui: &mut Ui, step: &Step, p: &Palette) {
+    fn exercise(&self, ui: &mut Ui, exercise: &str, p: &Palette) {
         let (words, tone) =
-            if self.done { (format!("Done: {}", step.exercise), p.zero) } else { (step.exercise.to_owned(), p.amber) };
+            if self.done { (format!("Done: {exercise}"), p.zero) } else { (exercise.to_owned(), p.amber) };
         ui.add(egui::Label::new(RichText::new(words).font(bold(12.5)).color(colour(tone))).wrap());
     }
 

@@ -98,7 +98,7 @@ impl Keeper {
         let (changes, left_off) = &now_is;
         // A change of the displayed time alone does not begin a journal, and is not written while the run plays.
         let time_changed =
-            self.journal.is_some() && !app_state.session().is_playing() && left_off.time != self.held.1.time;
+            self.journal.is_some() && !app_state.own_session().is_playing() && left_off.time != self.held.1.time;
         if *changes == self.held.0 && left_off.is_alike_at_another_time(&self.held.1) && !time_changed {
             self.going.take().iter().for_each(|file| journal::remove_journal(file));
             return;
@@ -117,7 +117,7 @@ impl Keeper {
         }
         self.next = now + JOURNAL_INTERVAL;
         let Some(file) = self.journal.as_ref().map(|journal| journal.file().to_owned()) else { return };
-        let (scenario, left_off) = (app_state.session().to_scenario(), left_off.clone());
+        let (scenario, left_off) = (app_state.own_session().to_scenario(), left_off.clone());
         self.next += (COPY_PAUSE_FACTOR * now.elapsed()).min(MAX_COPY_PAUSE);
         let wake = ctx.clone();
         let job = Job::start(
@@ -148,7 +148,7 @@ impl Keeper {
             self.journal = journal::folder().and_then(|folder| Journal::begin(&folder));
         }
         let file = self.journal.as_ref()?.file();
-        let session = app_state.session().to_scenario().to_toml();
+        let session = app_state.own_session().to_scenario().to_toml();
         journal::write(file, &app_state.left_off().before(&session)).ok()?;
         Some(file.to_owned())
     }

@@ -12,6 +12,7 @@
 pub mod arrow;
 #[doc(hidden)]
 pub mod axes;
+pub mod beside;
 pub mod camera;
 #[doc(hidden)]
 pub mod course;
