@@ -1,7 +1,6 @@
 //! The File menu: new, open, recent, save, export and quit, made from the table of actions.
 
 use std::path::PathBuf;
-use std::time::SystemTime;
 
 use egui::{Button, Label, RichText, Sense, Ui, vec2};
 
@@ -10,6 +9,7 @@ use super::gallery::portrait_of;
 use super::theme::{colour, plain};
 use super::widgets::name;
 use super::{Command, SessionCommand, ViewState};
+use stillbase_files::stamp::FileStamp;
 use stillbase_picture::paint::portrait::Portrait;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_query::{Queries, QuickQuery, QuickWork};
@@ -19,12 +19,12 @@ use stillbase_session::Session;
 const WIDTH_PT: f32 = 330.0;
 const PICTURE_PT: egui::Vec2 = vec2(64.0, 40.0);
 
-/// Query for the pictures of recent files, each with the time of its last change. `None` for a file that cannot be
+/// Query for the pictures of recent files, each with the stamp of its content. `None` for a file that cannot be
 /// opened.
 struct RecentPortraits;
 
 impl QuickQuery for RecentPortraits {
-    type Input = Vec<(PathBuf, Option<SystemTime>)>;
+    type Input = Vec<(PathBuf, Option<FileStamp>)>;
     type Answer = Vec<Option<Portrait>>;
 
     fn answer(files: &Self::Input) -> Self::Answer {
@@ -90,8 +90,7 @@ fn recent_files(ui: &mut Ui, p: &Palette, queries: &Queries, recent: &[PathBuf])
     if recent.is_empty() {
         ui.add(Label::new(RichText::new("no file was opened or saved yet").color(colour(p.dim))));
     }
-    let changed = |path: &PathBuf| std::fs::metadata(path).and_then(|file| file.modified()).ok();
-    let files: Vec<_> = recent.iter().map(|path| (path.clone(), changed(path))).collect();
+    let files: Vec<_> = recent.iter().map(|path| (path.clone(), FileStamp::of(path))).collect();
     let portraits = queries.ask_in_background::<QuickWork<RecentPortraits>>(&files).last;
     for (i, path) in recent.iter().enumerate() {
         let (rect, response) = ui.allocate_exact_size(vec2(WIDTH_PT, PICTURE_PT.y + 8.0), Sense::click());

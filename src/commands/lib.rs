@@ -1,6 +1,6 @@
 //! The command line, one file for each subcommand: each reads its input, calls the library and prints.
 //!
-//! This crate serves the Cargo workspace alone, and may change in any version.
+//! This crate serves the workspace alone, and may change in any version.
 //!
 //! Names and JSON keys are a contract that scripts depend on. Results go to standard output, messages and the progress
 //! bar to standard error. Exit status: 0 done, 1 the question has no answer, 2 wrong input.

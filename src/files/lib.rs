@@ -26,6 +26,8 @@ pub mod row_file;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod shards;
+#[doc(hidden)]
+pub mod stamp;
 #[cfg(feature = "tables")]
 pub mod table;
 pub mod text;

@@ -24,5 +24,3 @@ pub mod render;
 #[doc(hidden)]
 pub mod report;
 pub mod scene;
-#[doc(hidden)]
-pub mod thin;

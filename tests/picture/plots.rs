@@ -11,7 +11,7 @@ use stillbase::picture::charts::svg::svg;
 use stillbase::picture::notation::Notation;
 use stillbase::picture::numbers::{at_step, round_ticks, ticks};
 use stillbase::picture::scene::palette::{Theme, palette};
-use stillbase::picture::thin::simplify_line;
+use stillbase::picture::scene::thin::simplify_line;
 use stillbase::session::Session;
 use stillbase::session::scenario::Scenario;
 use stillbase::simulation::signals::{Signal, signals};

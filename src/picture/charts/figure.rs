@@ -7,7 +7,7 @@ use super::drawn::PlotLines;
 use crate::numbers::{at_step, round_ticks, ticks};
 use crate::scene::Rgba;
 use crate::scene::palette::{Palette, faded};
-use crate::thin::simplify_line;
+use crate::scene::thin::simplify_line;
 use stillbase_simulation::frame::{Frame, Peaks};
 
 /// A graphic item; coordinates and lengths in points.

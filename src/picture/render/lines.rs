@@ -5,7 +5,7 @@ use super::quality::Quality;
 use super::shader::{Shader, embedded, twin};
 use super::view::View;
 use crate::scene::{IN_PLACE, Polyline, Scene, place};
-use crate::thin::for_each_kept;
+use crate::scene::thin::for_each_kept;
 
 /// Distance of dropped vertices from a line in draft quality, physical pixels.
 const DRAFT_TOLERANCE_PX: f32 = 0.25;

@@ -18,7 +18,11 @@ const COARSE_SEGMENTS: usize = 20;
 
 /// Returns a mesh made with the usual number of chords, with its coarse counterpart.
 fn with_coarse(mesh: impl Fn(usize) -> Mesh) -> Mesh {
-    Mesh { coarse: Some(Box::new(mesh(COARSE_SEGMENTS))), ..mesh(SEGMENTS) }
+    let fine = mesh(SEGMENTS);
+    if fine.triangles.is_empty() {
+        return fine;
+    }
+    Mesh { coarse: Some(Box::new(mesh(COARSE_SEGMENTS))), ..fine }
 }
 
 /// A bar with round ends: the points within `radius` of the segment from `(length_from, 0)` to `(length_to, 0)`,

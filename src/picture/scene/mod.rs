@@ -43,6 +43,7 @@ pub mod reaction;
 #[doc(hidden)]
 pub mod stage;
 #[doc(hidden)]
+pub mod thin;
 pub mod tower;
 pub mod views;
 #[doc(hidden)]
