@@ -18,7 +18,7 @@ pub(super) struct Setting {
     pub key: &'static Key,
     /// Its value as the user would type it; empty if it is not set.
     pub typed: String,
-    /// Whether it has its default value.
+    /// Whether it has its default value, or none because it must be given.
     pub is_default: bool,
     /// If the setting has no effect now: the condition under which it has one.
     pub unmet_condition: Option<&'static str>,

@@ -149,7 +149,11 @@ fn typed<'a>(settings: &'a [Setting], sought: &str) -> Vec<Entry<'a>> {
             command: Box::new(move || Command::Session(SessionCommand::Edit(Edit::set(&path, value)))),
         }
     };
-    search::best_first(fit, score, MAX_TYPED_ENTRIES).into_iter().map(entry).collect()
+    let best = search::best_first(fit, score, MAX_TYPED_ENTRIES);
+    // After a space, a number may also be a name: in "mass of link 3" it is no value of the mass of link 1.
+    let is_stated = sought.contains('=');
+    let means_one = |one: &&Setting| is_stated || one.path == words || !one.key.path.contains('*');
+    best.into_iter().filter(means_one).map(entry).collect()
 }
 
 /// Returns the entries that match the search text, best first.
@@ -157,7 +161,8 @@ fn found<'a>(entries: Vec<Entry<'a>>, sought: &str) -> Vec<Entry<'a>> {
     let score = |entry: &Entry<'_>| {
         let place = || search::score(sought, &format!("{} {}", entry.place, entry.keys)).map(|s| s / 4);
         let score = match entry.tells {
-            true => search::score_of_prose(sought, entry.also, &entry.title)?,
+            // A page explains; what does something comes first.
+            true => search::score_of_prose(sought, entry.also, &entry.title)? / 2,
             false => search::score_with(sought, &entry.title, entry.also).or_else(place)?,
         };
         Some(score - if entry.place == SIGNALS_PLACE { SIGNALS_STEP_BACK } else { i32::from(entry.hides) })

@@ -26,7 +26,7 @@ const LAG_BELOW: f64 = 0.9;
 const LAG_ENDS_AT: f64 = 0.97;
 /// Wall time that the steps of one repaint may take, s.
 const STEP_BUDGET_S: f64 = 0.012;
-/// Maximum number of steps in a repaint, while the cost of a step is unknown, and in any case.
+/// Maximum number of steps in a repaint: the first while the cost of a step is unknown, the second always.
 const MAX_STEPS_UNMEASURED: f64 = 2000.0;
 const MAX_STEPS: f64 = 20_000.0;
 /// Upper bound of the measured wall time that the steps of a repaint take, s.
@@ -68,7 +68,7 @@ impl PlaybackRate {
         }
     }
 
-    /// Restarts the average, because the run is paused.
+    /// Restarts the average, because the run does not move or the session is being changed.
     pub fn restart(&mut self) {
         *self = Self { step_cost_s: self.step_cost_s, ..Self::default() };
     }

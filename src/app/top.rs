@@ -128,7 +128,7 @@ fn transport(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
         }
     };
     button(Icon::Start, "Start", "To the start (Home)", Command::Session(SessionCommand::Seek(0.0)));
-    match session.is_playing() {
+    match view_state.plays(session) {
         true => button(Icon::Pause, "Pause", "Pause (Space)", Command::Session(SessionCommand::TogglePlay)),
         false => button(Icon::Play, "Play", "Play (Space)", Command::Session(SessionCommand::TogglePlay)),
     }
@@ -191,6 +191,11 @@ pub fn dialog(ctx: &egui::Context, view_state: &mut ViewState, commands: &mut Ve
                 field.request_focus();
             }
             let enter = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+            let folder = stillbase_files::absolute_path(std::path::Path::new("."));
+            if let Some(folder) = folder {
+                let words = format!("in {}, unless the name says another folder", folder.display());
+                ui.add(egui::Label::new(RichText::new(words).font(plain(11.5)).weak()).truncate());
+            }
             ui.horizontal(|ui| {
                 let ready = !dialog.path.trim().is_empty();
                 if ui.add_enabled(ready, egui::Button::new(verb)).clicked() || (enter && ready) {

@@ -140,6 +140,13 @@ impl ViewState {
         palette(self.arrangement.theme)
     }
 
+    /// Whether a press of the play key pauses: the run moves, is led by hand, or starts over by itself. At the end of a
+    /// run the press plays the run again.
+    pub fn plays(&self, session: &Session) -> bool {
+        let starts_over = self.loops || self.pair.as_ref().is_some_and(|pair| pair.demonstrates);
+        session.is_playing() && (session.is_moving() || session.is_dragged() || starts_over)
+    }
+
     /// Returns the plots on display.
     pub fn plots<'a>(&self, scenario: &Scenario, signals: &'a [Signal]) -> Vec<Plot<'a>> {
         self.charts.plots(scenario, signals, self.pins, self.arrangement.notation)

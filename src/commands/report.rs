@@ -81,7 +81,7 @@ impl ReportArguments {
         require_audit(&name, fault)
     }
 
-    /// Returns the command as typed.
+    /// Returns the command that writes the same report, without `--force` and `--json`.
     fn command(&self) -> String {
         let output = self.output.display().to_string();
         let compare = if self.compare { " --compare" } else { "" };

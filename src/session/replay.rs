@@ -7,8 +7,8 @@ use stillbase_query::Queries;
 use stillbase_simulation::audit::AuditFigure;
 use stillbase_simulation::frame::Frame;
 
-/// Applies the edits at step 0 before the first drag. Returns the scenario without the other edits, and the number of
-/// the others.
+/// Applies the edits at step 0 that precede the first drag. Returns the scenario without the other edits, and their
+/// number.
 ///
 /// # Errors
 /// If an edit cannot apply.
@@ -66,7 +66,7 @@ fn whole(
 }
 
 /// Returns the dynamic f_Bx and f_By, N, and the net moment on the base, N m, at every step of a scenario. Also returns
-/// the first audit that failed, if any.
+/// the first figure of the final audit that exceeds its tolerance, if any.
 ///
 /// # Errors
 /// As [`replay`].

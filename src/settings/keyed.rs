@@ -107,7 +107,7 @@ pub const fn sentence(doc: &'static str) -> &'static str {
 /// * `instead`: what applies if the default is no value ([`Key::NONE`](super::key::Key::NONE));
 /// * `when`: the condition under which the key has an effect, in words, and a function that evaluates it if the part
 ///   alone suffices;
-/// * `usual`: the field's value if the part is given without the key, and the default of the key is no value;
+/// * `usual`: the value of a field that a file omits, if the default of its key is no value;
 /// * `reaching`: what a change of the key affects, if that is not the motion;
 /// * `saved: always` if a file states the key even at its default.
 ///

@@ -15,12 +15,12 @@ use crate::Test;
 
 pub const TESTS: &[Test] = super::tests![the_main_job_is_done_by_keyboard];
 
-fn focused(desk: &Desk) -> Option<String> {
+pub fn focused(desk: &Desk) -> Option<String> {
     desk.bus.tree()?.focused().map(|node| node.name.clone())
 }
 
 /// Goes on to the next thing; its name.
-fn next(desk: &Desk) -> Option<String> {
+pub fn next(desk: &Desk) -> Option<String> {
     let before = focused(desk);
     desk.display.tap(TAB);
     let other = || Some(focused(desk)).filter(|now| *now != before);
@@ -29,7 +29,7 @@ fn next(desk: &Desk) -> Option<String> {
 
 /// Goes on from thing to thing until the keys go to what has a name.
 #[track_caller]
-fn go_to(desk: &Desk, name: &str, most: usize) {
+pub fn go_to(desk: &Desk, name: &str, most: usize) {
     let mut seen = Vec::new();
     for _ in 0..most {
         seen.extend(next(desk));
@@ -41,7 +41,7 @@ fn go_to(desk: &Desk, name: &str, most: usize) {
 }
 
 /// Asks for a command by a few letters of its name.
-fn command(desk: &Desk, letters: &str) {
+pub fn command(desk: &Desk, letters: &str) {
     desk.display.keys(&[CTRL], u32::from('k'));
     desk.reads("Find a command");
     desk.display.type_in(letters);

@@ -8,6 +8,7 @@ mod portal;
 mod process;
 mod program;
 mod reader;
+mod tasks;
 mod wait;
 mod wander;
 
@@ -24,7 +25,7 @@ macro_rules! tests {
 
 use tests;
 
-pub const TESTS: [&[Test]; 4] = [hands::TESTS, keyboard::TESTS, loss::TESTS, portal::TESTS];
+pub const TESTS: [&[Test]; 5] = [hands::TESTS, keyboard::TESTS, loss::TESTS, portal::TESTS, tasks::TESTS];
 
 /// Those that are asked for only.
 pub const LONG: &[Test] = wander::TESTS;

@@ -109,7 +109,7 @@ impl AppState {
                 self.view_state.status.left_branch |= said.is_some();
                 return Ok(said);
             }
-            SessionCommand::TogglePlay if self.session.is_playing() => self.session.pause(),
+            SessionCommand::TogglePlay if self.view_state.plays(&self.session) => self.session.pause(),
             SessionCommand::TogglePlay => self.session.play(),
             SessionCommand::Seek(time) => self.change(SessionChange::Seek(time)),
             SessionCommand::Bookmark(time, name) => {

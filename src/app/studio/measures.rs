@@ -21,7 +21,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, p: &Palette) {
     let lambda: Vec<String> = facts.lambda().iter().map(|lambda| signed(*lambda, 3)).collect();
     let is_balanced = facts.terms.iter().all(|term| term.is_balanced);
     let notation = notation::of(ui.ctx());
-    let ratios = if is_balanced { "ratios of the inertias" } else { "ratios of the inertias without coupling" };
+    let ratios = if is_balanced { "inertia ratios" } else { "inertia ratios less coupling" };
     let mut rows = vec![
         ("mass of all".into(), format!("{} kg", signed(machine.mass(), 2))),
         (notation.name("effective inertia of all drives", "Σ D"), format!("{} kg m²", signed(facts.now()[1], 3))),

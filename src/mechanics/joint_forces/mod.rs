@@ -19,7 +19,7 @@
 //!
 //! # Method
 //! Cutting every closure leaves a tree, in which the root of each link carries the link and its descendants. A drive
-//! with links at B turns these; any other drive turns one link. On all other, undriven links, the only couple is the
+//! with links at B turns those links; any other turns one link. On all other, undriven links, the only couple is the
 //! friction of their pins, which is known. So the moments of the undriven links determine the closure forces: Σ_c w_jc
 //! e_j × λ_c = μ_j. The levers w are constants of the machine. In the nine-link machine six links and three closures
 //! give six equations in six unknowns, which fall into three pairs. Each parallelogram has two undriven links, which

@@ -180,16 +180,24 @@ pub fn body(plot: &Plot<'_>, drawn: &PlotLines, axes: &Axes, look: &PlotContext<
         let at = [if anchor == 1.0 { right + 2.0 } else { x }, bottom + 3.0];
         words.push(FigureItem::Text { at, anchor: [anchor, 0.0], words: small(text) });
     }
-    for (curve, limit) in &drawn.limits {
+    for (i, (curve, limit)) in drawn.limits.iter().enumerate() {
         let tone = faded(pen(plot, *curve, look).0, 0.7);
         for y in [-limit, *limit].map(|y| axes.place([axes.x[0], y])[1]) {
             items.push(line(vec![[left, y], [right, y]], 1.0, tone, Some([2.0, 3.0])));
         }
-        let symbol = &plot.curves[*curve].signal.symbol;
-        let text =
-            vec![FigureText { text: format!("limit of {symbol}"), size: TICK_SIZE_PT, bold: false, colour: tone }];
-        let at = [right - 4.0, axes.place([axes.x[0], *limit])[1] + 2.0];
-        words.push(FigureItem::Text { at, anchor: [1.0, 0.0], words: text });
+        // Equal limits share one label, beside the line of the first.
+        let is_equal = |other: &(usize, f64)| other.1 == *limit;
+        if drawn.limits[..i].iter().any(is_equal) {
+            continue;
+        }
+        let of = |(curve, _): &(usize, f64)| plot.curves[*curve].signal.symbol.as_str();
+        let symbols: Vec<&str> = drawn.limits.iter().filter(|other| is_equal(other)).map(of).collect();
+        let text = format!("limit of {}", symbols.join(", "));
+        let text = vec![FigureText { text, size: TICK_SIZE_PT, bold: false, colour: tone }];
+        // Labels of limits that lie close together stand at opposite ends.
+        let (x, anchor) = if i % 2 == 0 { (right - 4.0, 1.0) } else { (left + 4.0, 0.0) };
+        let at = [x, axes.place([axes.x[0], *limit])[1] + 2.0];
+        words.push(FigureItem::Text { at, anchor: [anchor, 0.0], words: text });
     }
     for run in &drawn.lines {
         let points: Vec<[f32; 2]> = run.points.iter().map(|point| axes.place(*point)).collect();

@@ -4,8 +4,8 @@ use super::kit::{List, Recipe, SharedBindings, Upload};
 use super::quality::Quality;
 use super::shader::{Shader, embedded, twin};
 use super::view::View;
-use crate::scene::{IN_PLACE, Polyline, Scene, place};
 use crate::scene::thin::for_each_kept;
+use crate::scene::{IN_PLACE, Polyline, Scene, place};
 
 /// Distance of dropped vertices from a line in draft quality, physical pixels.
 const DRAFT_TOLERANCE_PX: f32 = 0.25;

@@ -12,7 +12,7 @@
 //! Whittaker's graduation with third differences: min Σ w (y − f)² + Ω⁻⁶ Σ H (D f)². With c = H D f the minimum
 //! satisfies (H⁻¹ + Ω⁻⁶ D w⁻¹ Dᵀ) c = D y and f = y − Ω⁻⁶ w⁻¹ Dᵀ c. The matrix has seven diagonals. This form
 //! subtracts a small correction from y and so avoids cancellation of large numbers. With even spacing, the gain at the
-//! frequency f is 1/(1 + (sin(πfh)/sin(πf_c h))⁶): one half at f_c. No phase is shifted. Parabolas pass unchanged.
+//! frequency ν is 1/(1 + (sin(πνh)/sin(πf_c h))⁶): one half at f_c. No phase is shifted. Parabolas pass unchanged.
 
 /// Number of diagonals of the matrix on either side of the main one.
 const HALF_BANDWIDTH: usize = 3;

@@ -43,8 +43,8 @@ const MAX_NODES_PER_STATION: usize = 16;
 /// Maximum deviation from the curve, as a fraction of the arm length; beyond it the curve counts as not followed.
 const MAX_DEVIATION: f64 = 1e-6;
 
-/// Maximum number of solutions b(u) with one margin. After each, a station is added where b leaves the corridor. After
-/// the last, or if b stays within, the margin grows.
+/// Maximum number of solutions b(u) that the drives cannot follow, with one margin. After each, a station is added
+/// where b leaves the corridor. After the last, or if b stays within, the margin grows.
 const MAX_CORRIDOR_REFINEMENTS: usize = 4;
 
 /// The objective.
@@ -203,7 +203,7 @@ impl LeastReaction {
     }
 
     /// Compares the base moments of three ways to make the same motion of the end effector in `duration`, s. `tip` is
-    /// the `end_effector` of the planned model, `curve` the planned curve.
+    /// the `end_effector` of the planned machine, `curve` the planned curve.
     pub fn compare(&self, tip: &Chain, curve: impl Fn(f64) -> CurvePoint, duration: f64) -> Verdicts {
         let start = self.corridor.start();
         let fixed = match self.corridor.first_station_outside(start.b) {

@@ -103,7 +103,7 @@ impl PlaneMap {
     /// its first and last poses are equal; Fig. 3 shows q_1 over b. Empty if the point cannot be reached at any b.
     ///
     /// b is continuous along a branch and starts in [0, period). A branch has `samples` points, denser towards its
-    /// ends, plus each point where b turns back; a branch of zero length is one point.
+    /// ends, plus the points where its arcs meet, such as where b turns back; one of zero length is one point.
     pub fn self_motion(&self, p: Vector, samples: usize) -> Vec<Vec<PlanePoint>> {
         let samples = samples.max(2);
         match self.curve(p) {

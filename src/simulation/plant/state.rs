@@ -36,7 +36,7 @@ pub struct Slope {
     pub qdd: PerDrive,
     /// Motor torques, N m.
     pub torque: PerDrive,
-    /// Friction torques in the bearings, N m, positive against positive sliding rates.
+    /// Friction torques in the bearings, N m; positive if they oppose a positive sliding rate.
     pub friction: PerDrive,
     /// State of the wheel.
     pub spin: WheelState,

@@ -22,7 +22,7 @@ const LOG_ODDS_PER_MISTAKE: f64 = 2.3;
 const MAX_LOG_ODDS_BEHIND: f64 = 6.9;
 /// Maximum number of faults that are named.
 const MAX_NAMED: usize = 5;
-/// Maximum number of samples times the square of the number of unknowns.
+/// Maximum number of samples times the square of the number of unknowns, unless 1 000 samples already exceed it.
 const MAX_WORK: usize = 4_000_000;
 
 /// Tests a measurement for faults; `None` if it is plausible as given. Only parts of a long recording are tested.
@@ -170,7 +170,7 @@ impl DoubtSearch {
 }
 
 /// Returns the identifiable unknown with the largest relative deviation from the other fit, or from the file if there
-/// is no other fit. Only momenta are compared, and those first moments and couplings that are not zero in the file.
+/// is no other fit. Only momenta are compared, and first moments and couplings that are clearly not zero in the file.
 fn furthest(machine: &Machine, given: &FitTrial, other: Option<&FitTrial>) -> Option<usize> {
     let (fit, known) = (&given.fit, known_numbers(machine));
     let off = |i: &usize| {
@@ -228,7 +228,7 @@ fn shortened(machine: &Machine, recording: &MeasurementSet) -> MeasurementSet {
 }
 
 impl Regressor {
-    /// Transforms the measured force and moment. Their straight lines over time stay removed, because the
+    /// Transforms the measured force and moment. The straight line taken out of each motion stays out, because the
     /// transformation is linear.
     fn transform(&mut self, transformation: impl Fn(Vector, f64) -> (Vector, f64)) {
         let [fx, fy, n] = &mut self.channels;

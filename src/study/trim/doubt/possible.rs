@@ -4,7 +4,7 @@
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | a_j | (1, a_j1 … a_jn): mass m_j is at Σ_k a_jk e(q_k) | m |
-//! | Z | Σ_j m_j conj(a_j) a_jᵀ + diag(0, J_k), J_k the inertia of drive k's links: M, g_k, C_kl, and D_k without the rotors | |
+//! | Z | Σ_j m_j conj(a_j) a_jᵀ + diag(0, J_k), J_k of drive k's links; entries: M, g_k, C_kl, D_k less rotors | |
 //!
 //! If no mass or inertia is negative, Z has no negative eigenvalue. D_k < 0 is the simplest violation; |C_kl|² > D_k
 //! D_l and |g_k|² > M D_k are others.
