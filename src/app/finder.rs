@@ -1,4 +1,4 @@
-//! The list of commands: every action, scenario, machine, signal, setting and recent file, searched by a few letters. A
+//! The list of commands: every action, note, scenario, machine, signal, setting and recent file, searched by a few letters. A
 //! setting followed by a value, such as `payload 0.4`, is set from here.
 
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ use super::facts::{ScenarioFacts, Setting};
 use super::theme::{bold, colour, plain};
 use super::top::with_machine;
 use super::widgets::name;
-use super::{Command, SessionCommand, Switch, ViewChange, ViewState, search};
+use super::{Command, NoteDraft, SessionCommand, Switch, ViewChange, ViewState, search};
 use stillbase_mechanics::machine;
 use stillbase_picture::charts::choice::PlotChange;
 use stillbase_picture::scene::palette::Palette;
@@ -39,7 +39,7 @@ const MAX_ENTRIES: usize = 60;
 const VISIBLE_ROWS: f32 = 10.0;
 const ROW_HEIGHT_PT: f32 = 27.0;
 
-/// Returns the entries available now: actions, recent files, scenarios, machines, signals and settings.
+/// Returns the entries available now: actions, notes, recent files, scenarios, machines, signals and settings.
 fn entries<'a>(
     session: &'a Session,
     signals: &'a [Signal],
@@ -85,6 +85,14 @@ fn entries<'a>(
             Box::new(|| Command::Session(SessionCommand::OpenFile(file.clone()))),
         )
     });
+    // A note of an instant leads there; one of all times is opened.
+    let notes = session.notes().iter().enumerate().map(|(i, note)| {
+        let go = move || match note.time.start() {
+            Some(time) => Command::Session(SessionCommand::Seek(time)),
+            None => Command::View(ViewChange::WriteNote(NoteDraft::of(session, i, None))),
+        };
+        entry(format!("Note: {}", note.in_one_line()), "time line, scene", "comment text remark", Box::new(go))
+    });
     let signals = signals.iter().map(|signal| {
         let plot = || Command::View(ViewChange::Charts(PlotChange::Plot(signal.path.clone())));
         let title = format!("Plot: {} {}, {}", signal.label, signal.symbol, signal.unit);
@@ -95,7 +103,7 @@ fn entries<'a>(
         let look_up = || Command::View(ViewChange::LookUp(setting.path.clone()));
         Entry { hides: true, ..entry(title, "left panel, all settings", setting.key.meaning, Box::new(look_up)) }
     });
-    actions.chain(recent).chain(scenarios).chain(machines).chain(signals).chain(settings).collect()
+    actions.chain(notes).chain(recent).chain(scenarios).chain(machines).chain(signals).chain(settings).collect()
 }
 
 /// Maximum number of settings that are offered for one typed value.

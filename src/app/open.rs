@@ -1,6 +1,7 @@
 //! Dialogs, lists and cards that are open over the window.
 
 use super::FileDialog;
+use super::notes::NoteDraft;
 use super::tour::Tour;
 
 /// State of the list of commands.
@@ -29,4 +30,6 @@ pub struct OpenDialogs {
     pub dialog: Option<FileDialog>,
     /// The time of the bookmark that is being named, s.
     pub naming: Option<f64>,
+    /// The note that is being written.
+    pub note: Option<NoteDraft>,
 }

@@ -35,7 +35,7 @@ const fn tool(switch: Switch, icon: Icon, label: &'static str, effect: &'static 
 }
 
 /// Tools of the pointer.
-const POINTER_TOOLS: [Toggle; 3] = [
+const POINTER_TOOLS: [Toggle; 4] = [
     tool(
         Switch::Holding,
         Icon::Pointer,
@@ -48,6 +48,12 @@ const POINTER_TOOLS: [Toggle; 3] = [
         Icon::Push,
         "push",
         "Push the end effector with the pointer, 20 N for each metre; or hold Alt",
+    ),
+    tool(
+        Switch::Measuring,
+        Icon::Ruler,
+        "measure",
+        "Click two points for their distance, a third one for the angle at the second; both follow the motion",
     ),
 ];
 

@@ -30,8 +30,9 @@ impl Shot {
                 canvas.draw(|ui| app_state.ui(ui))
             }
             Self::View(view) => {
+                let notes = app_state.session().notes().to_vec();
                 let (options, camera) =
-                    (ViewOptions { theme, ..ViewOptions::default() }, app_state.views().camera(view));
+                    (ViewOptions { theme, notes, ..ViewOptions::default() }, app_state.views().camera(view));
                 let scene = Arc::new(app_state.views().scene(view, app_state.session().frame(), &options, &camera));
                 canvas.scene(&scene, &camera)
             }

@@ -5,8 +5,8 @@ use crate::facts::ScenarioFacts;
 use crate::marks::Marks;
 use crate::{
     BottomPanel, Command, DrawingGuard, Intro, Layout, SessionCommand, StatusMessage, ViewChange, WindowCommand,
-    compare, finder, given, keys, notation, order, place, plots, rail, saving, side, status, studio, study, theme, top, viewport,
-    widgets,
+    compare, finder, given, keys, notation, notes, order, place, plots, rail, saving, side, status, studio, study,
+    theme, top, viewport, widgets,
 };
 use stillbase_picture::scene::views::ViewKind;
 
@@ -128,6 +128,7 @@ impl AppState {
         saving::show(ui.ctx(), &self.saving, &self.view_state, &mut commands);
         let recent = &self.saving.recent;
         finder::show(ui.ctx(), &self.session, &self.signals(), &facts, recent, &mut self.view_state, &mut commands);
+        notes::show(ui.ctx(), &self.session, &self.views, &mut self.view_state, &mut commands);
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
         commands.extend(widgets::refused_entry(ui.ctx()).map(|it| Command::Window(WindowCommand::Refuse(it))));
         if widgets::drag_cancelled(ui.ctx()) {

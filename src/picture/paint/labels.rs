@@ -8,7 +8,7 @@ use super::{SceneViewport, colour, paint, plain};
 use crate::notation::Notation;
 use crate::scene::camera::Camera;
 use crate::scene::palette::faded;
-use crate::scene::{Anchor, Label, Scene};
+use crate::scene::{Anchor, Label, NOTES, Scene};
 
 /// Maximum vertical shift to avoid an overlap, points.
 const MAX_SHIFT_PT: f32 = 36.0;
@@ -64,12 +64,22 @@ pub fn paint_still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
     });
 }
 
-/// Paints the labels of the scene, in the user's units, outside the rectangles `taken`.
-pub fn draw_labels(ui: &Ui, spot: &SceneViewport, scene: &Scene, taken: &[Rect], notation: Notation) {
+/// Paints the labels of the scene, in the user's units, outside the rectangles `taken`. Returns those that have space,
+/// with their rectangles.
+pub fn draw_labels<'a>(
+    ui: &Ui,
+    spot: &SceneViewport,
+    scene: &'a Scene,
+    taken: &[Rect],
+    notation: Notation,
+) -> Vec<(&'a Label, Rect)> {
     let painter = ui.painter().with_clip_rect(spot.rect);
-    for (label, galley, place) in placed(&painter, spot, scene, taken, notation) {
+    let all = placed(&painter, spot, scene, taken, notation);
+    let draw = |(label, galley, place): (&'a Label, Arc<Galley>, Rect)| {
         write(&painter, scene, label, galley, place);
-    }
+        (label, place)
+    };
+    all.into_iter().map(draw).collect()
 }
 
 /// Returns the rectangles of those labels of the scene that have space outside the rectangles `taken`.
@@ -83,7 +93,12 @@ pub fn placed<'a>(
     let mut groups: Vec<(Pos2, Group<'_>)> = Vec::new();
     for label in &scene.labels {
         let Some(at) = spot.screen(label.at.map(f64::from)) else { continue };
-        let galley = painter.layout_no_wrap(notation.sentence(&label.text).into_owned(), plain(label.size), colour(label.colour));
+        // The words of a note are the user's own.
+        let text = match label.name.starts_with(NOTES) {
+            true => label.text.clone(),
+            false => notation.sentence(&label.text).into_owned(),
+        };
+        let galley = painter.layout_no_wrap(text, plain(label.size), colour(label.colour));
         let word = (label, galley, Rect::NOTHING);
         let of = |(l, ..): &(&Label, Arc<Galley>, Rect)| l.at == label.at && l.name == label.name;
         let same = groups.iter_mut().find(|(_, group)| group.words.first().is_some_and(of));

@@ -39,7 +39,8 @@ impl Stage {
             scene.markers.push(ring.edged(palette.amber, 1.6));
             if !free {
                 let text = snap.title();
-                let label = Label::new("measures/point", point(at, z), [12.0, 14.0], text, palette.amber, 11.5, Anchor::Left);
+                let label =
+                    Label::new("measures/point", point(at, z), [12.0, 14.0], text, palette.amber, 11.5, Anchor::Left);
                 scene.labels.push(label);
             }
         }

@@ -27,7 +27,9 @@ impl Stage {
         let (z, length) = (self.handle_height(), LEADER * self.linkage.reach());
         let mut before: Vec<&SnapPoint> = Vec::new();
         for (i, Note { text, point: stuck, .. }) in options.notes.iter().enumerate() {
-            let Some(stuck) = stuck.as_ref().filter(|_| options.notes[i].is_shown_at(shown.frame.time)) else { continue };
+            let Some(stuck) = stuck.as_ref().filter(|_| options.notes[i].is_shown_at(shown.frame.time)) else {
+                continue;
+            };
             let Some(at) = self.position(stuck, shown) else { continue };
             let turn = before.iter().filter(|other| **other == stuck).count();
             before.push(stuck);

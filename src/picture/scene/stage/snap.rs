@@ -15,7 +15,8 @@ impl Stage {
         let bars = self.linkage.bars();
         let pin = |links: &[usize]| SnapPoint::Pin(links.iter().map(|j| bars[*j].name.clone()).collect());
         let pins = self.linkage.pins().map(pin);
-        let waypoints = self.plan.iter().flat_map(|plan| plan.waypoints.iter().map(|(i, name, _)| path_point(*i, name)));
+        let waypoints =
+            self.plan.iter().flat_map(|plan| plan.waypoints.iter().map(|(i, name, _)| path_point(*i, name)));
         let first = [SnapPoint::EndEffector, SnapPoint::BasePin].into_iter();
         let last = [SnapPoint::CentreOfMass, SnapPoint::Target];
         first.chain(pins).chain(waypoints.map(SnapPoint::PathPoint)).chain(last).collect()
