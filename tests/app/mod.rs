@@ -10,6 +10,7 @@ mod intro;
 mod jobs;
 mod layout;
 mod notation;
+mod notes;
 mod panel;
 mod plots;
 mod pointer;
@@ -32,7 +33,7 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 20] = [
+pub const TESTS: [&[Test]; 21] = [
     saving::TESTS,
     family::TESTS,
     files::TESTS,
@@ -44,6 +45,7 @@ pub const TESTS: [&[Test]; 20] = [
     jobs::TESTS,
     layout::TESTS,
     notation::TESTS,
+    notes::TESTS,
     panel::TESTS,
     plots::TESTS,
     pointer::TESTS,

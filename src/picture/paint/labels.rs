@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{Align2, CentralPanel, Frame, Galley, Painter, Pos2, Rect, Ui, Vec2, vec2};
+use egui::{Align2, CentralPanel, Frame, Galley, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 
 use super::{SceneViewport, colour, paint, plain};
 use crate::notation::Notation;
@@ -75,6 +75,9 @@ pub fn draw_labels<'a>(
 ) -> Vec<(&'a Label, Rect)> {
     let painter = ui.painter().with_clip_rect(spot.rect);
     let all = placed(&painter, spot, scene, taken, notation);
+    for (label, _, place) in &all {
+        lead(&painter, spot, scene, (label, *place));
+    }
     let draw = |(label, galley, place): (&'a Label, Arc<Galley>, Rect)| {
         write(&painter, scene, label, galley, place);
         (label, place)
@@ -151,6 +154,15 @@ pub fn placed<'a>(
         }
     }
     all
+}
+
+/// Lengthens the line from a point to its note, if the note is shifted.
+fn lead(painter: &Painter, spot: &SceneViewport, scene: &Scene, (label, place): (&Label, Rect)) {
+    let is_own = |name: &str| name.strip_prefix(&*label.name) == Some("/leader");
+    let own = label.name.starts_with(NOTES).then(|| scene.lines.iter().find(|line| is_own(&line.name))).flatten();
+    let Some((line, end)) = own.and_then(|line| Some((line, spot.screen(label.at.map(f64::from))?))) else { return };
+    let near = end.clamp(place.min, place.max);
+    painter.line_segment([end, near], Stroke::new(line.width, colour(line.colour)));
 }
 
 fn write(painter: &Painter, scene: &Scene, label: &Label, galley: Arc<Galley>, place: Rect) {
