@@ -27,6 +27,8 @@ pub struct NoteDraft {
 /// Width of the card, and distance between it and the place that it belongs to, points.
 const WIDTH_PT: f32 = 300.0;
 const GAP_PT: f32 = 14.0;
+/// Maximum height of the list of points, points.
+const LIST_HEIGHT_PT: f32 = 380.0;
 /// Height of the top of a card that belongs to no place, points.
 const TOP_PT: f32 = 96.0;
 
@@ -141,7 +143,7 @@ fn point(ui: &mut Ui, note: &mut Note, views: &Views) {
     let place = note.point.clone().filter(|point| matches!(point, SnapPoint::Place(_)));
     let all = std::iter::once(None).chain(place.map(Some)).chain(views.stage().snap_points().into_iter().map(Some));
     let all: Vec<(String, Option<SnapPoint>)> = all.map(|point| (title(&point), point)).collect();
-    let list = ComboBox::from_id_salt("where").selected_text(title(&note.point)).width(WIDTH_PT - 60.0);
+    let list = ComboBox::from_id_salt("where").selected_text(title(&note.point)).width(WIDTH_PT - 60.0).height(LIST_HEIGHT_PT);
     let shown = list.show_ui(ui, |ui| {
         for (title, point) in all {
             ui.selectable_value(&mut note.point, point, title);

@@ -59,7 +59,7 @@ impl SnapPoint {
         let via = name.parse().ok().filter(|i| (1..=super::MAX_POINTS).contains(i));
         via.map(|i| Self::PathPoint(PathPoint::Via(i))).ok_or_else(|| {
             let known = NAMED.map(|(known, _)| known).join(", ");
-            format!("on is {}: want {known}, or the number of a point between A and B", quote_clipped(name))
+            format!("on is {:?}: want {known}, or the number of a point between A and B", quote_clipped(name))
         })
     }
 
@@ -103,7 +103,7 @@ impl SnapPoint {
                 unknown.map_or(Ok(()), |name| {
                     let known: Vec<&str> = machine.links().iter().map(|link| link.name.as_str()).collect();
                     let known = shortened(&known.join(", "), 80);
-                    Err(format!("pin names link {}: this machine has {known}", quote_clipped(name)))
+                    Err(format!("pin names link {:?}: this machine has {known}", quote_clipped(name)))
                 })
             }
             _ => Ok(()),
