@@ -9,6 +9,7 @@ use stillbase::picture::scene::Scene;
 use stillbase::picture::scene::measurement::Measurement;
 use stillbase::picture::scene::options::ViewOptions;
 use stillbase::picture::scene::palette::Theme;
+use stillbase::picture::scene::pointer::Pointer;
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::scenario::{Note, NoteTime, PathPoint, Scenario, SnapPoint};
 
@@ -97,7 +98,8 @@ fn a_note_is_written_where_the_pointer_is() {
     h.snapshot("note-card-dark");
     press(&mut h, PLAIN, Key::Enter);
     assert!(h.query_by_label("Text of the note").is_none());
-    let written = Note { text: "fast here, 0.25 m".into(), point: Some(SnapPoint::EndEffector), time: NoteTime::Always };
+    let written =
+        Note { text: "fast here, 0.25 m".into(), point: Some(SnapPoint::EndEffector), time: NoteTime::Always };
     assert_eq!(notes(&h), [written]);
     assert!(h.state().app_state().changes().0 > before, "the journal is told");
     let place = |h: &Window| scene(h).labels.iter().find(|label| label.name == "notes/1").expect("drawn").at;
@@ -161,10 +163,10 @@ fn a_note_is_written_on_the_time_line_by_keys() {
     assert!((time - 0.25).abs() < 0.03, "{time}");
     // What is undone while its card is open closes the card.
     // Its tip, if it is shown, says the same.
-    let is_mark = |node: &egui_kittest::Node<'_>| {
+    let mark = h.get_by(|node| {
         node.role() == Role::Button && node.label().is_some_and(|label| label.contains("note: a quarter"))
-    };
-    let mark = h.get_by(is_mark).rect().center();
+    });
+    let mark = mark.rect().center();
     click(&mut h, mark, PointerButton::Secondary);
     assert!(h.query_by_label("Text of the note").is_some());
     tell(&mut h, SessionCommand::Undo);
@@ -347,6 +349,18 @@ fn points_snap_on_every_machine() {
                 assert_eq!(point, SnapPoint::Target, "{}: {point:?}", scenario.name);
                 continue;
             };
+            let pointer = Pointer { camera: *app_state.view_state().camera(), size: [900.0, 700.0], at: [0.0; 2] };
+            let z = app_state.stage().handle_height();
+            let there = pointer.project([place.re, place.im, z]).expect("in front of the eye");
+            let pointer = Pointer { at: there, ..pointer };
+            let snapped = app_state.stage().snap(&shown, &pointer).expect("it is seen");
+            let found = app_state.stage().position(&snapped, &shown).expect("the machine has it");
+            let off = pointer.distance([found.re, found.im, z]).expect("in front of the eye");
+            assert!(
+                off < 1.0 && !matches!(snapped, SnapPoint::Place(_)),
+                "{}: {snapped:?} for {point:?}",
+                scenario.name
+            );
             let note = Note { text: "a".into(), point: Some(point), time: NoteTime::Always };
             assert!(place.re.is_finite() && place.im.is_finite(), "{note:?}");
             assert_eq!(note.check(&scenario.machine), Ok(()), "{}", scenario.name);

@@ -152,9 +152,15 @@ fn a_file_with_a_wrong_note_is_refused() {
     let good = "[[note]]\ntext = \"a\"\non = \"A\"\n";
     for (more, part) in [
         ("[[note]]\ntext = \"\"\non = \"A\"\n".to_owned(), "note 1: text has 0 characters"),
-        (format!("{good}[[note]]\ntext = \"a\\u0007\"\non = \"A\"\n"), "note 2: text holds the control character U+0007"),
+        (
+            format!("{good}[[note]]\ntext = \"a\\u0007\"\non = \"A\"\n"),
+            "note 2: text holds the control character U+0007",
+        ),
         (format!("{good}[[note]]\ntext = \"a\"\n"), "note 2: a note sticks to something"),
-        ("[[note]]\ntext = \"a\"\non = \"elbow\"\n".into(), "on is \"elbow\": want end effector, target, centre of mass"),
+        (
+            "[[note]]\ntext = \"a\"\non = \"elbow\"\n".into(),
+            "on is \"elbow\": want end effector, target, centre of mass",
+        ),
         ("[[note]]\ntext = \"a\"\non = \"0\"\n".into(), "on is \"0\""),
         ("[[note]]\ntext = \"a\"\non = \"A\"\nat = [0.0, 0.0]\n".into(), "want only one of on, pin and at"),
         ("[[note]]\ntext = \"a\"\npin = [\"1\", \"12\"]\n".into(), "pin names link \"12\": this machine has 1, 2, 3"),
