@@ -1,5 +1,5 @@
-//! The list of commands: every action, note, scenario, machine, signal, setting and recent file, searched by a few letters. A
-//! setting followed by a value, such as `payload 0.4`, is set from here.
+//! The list of commands: every action, note, scenario, machine, signal, setting and recent file, searched by a few
+//! letters. A setting followed by a value, such as `payload 0.4`, is set from here.
 
 use std::path::PathBuf;
 

@@ -143,7 +143,8 @@ fn point(ui: &mut Ui, note: &mut Note, views: &Views) {
     let place = note.point.clone().filter(|point| matches!(point, SnapPoint::Place(_)));
     let all = std::iter::once(None).chain(place.map(Some)).chain(views.stage().snap_points().into_iter().map(Some));
     let all: Vec<(String, Option<SnapPoint>)> = all.map(|point| (title(&point), point)).collect();
-    let list = ComboBox::from_id_salt("where").selected_text(title(&note.point)).width(WIDTH_PT - 60.0).height(LIST_HEIGHT_PT);
+    let list = ComboBox::from_id_salt("where").selected_text(title(&note.point));
+    let list = list.width(WIDTH_PT - 60.0).height(LIST_HEIGHT_PT);
     let shown = list.show_ui(ui, |ui| {
         for (title, point) in all {
             ui.selectable_value(&mut note.point, point, title);

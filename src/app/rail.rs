@@ -14,7 +14,7 @@ use stillbase_session::{Fork, Session};
 const WIDTH_PT: f32 = 50.0;
 /// Size of a button, and the minimum height to which it shrinks in a low window, points.
 const BUTTON_SIZE_PT: egui::Vec2 = vec2(42.0, 30.0);
-const MIN_BUTTON_HEIGHT_PT: f32 = 24.0;
+const MIN_BUTTON_HEIGHT_PT: f32 = 22.0;
 /// Height of the button of a view, points.
 const VIEW_BUTTON_HEIGHT_PT: f32 = 25.0;
 /// Gap between buttons, points.
