@@ -65,8 +65,8 @@
 //! # Ok::<(), stillbase::session::Refusal>(())
 //! ```
 //! A [`Session`](session::Session) is a run that a user changes while it is in progress. Every change is an
-//! [`Edit`](session::Edit), so a session can be saved, undone, and replayed to identical frames. Bookmarks and
-//! abandoned branches are stored with the edits; they are saved and undone together.
+//! [`Edit`](session::Edit), so a session can be saved, undone, and replayed to identical frames. Bookmarks,
+//! notes and abandoned branches are stored with the edits; they are saved and undone together.
 //!
 //! # From a program of your own
 //! [`files::machine`] reads a machine from a TOML file; `parse` reads one from text. An error names the line, the key

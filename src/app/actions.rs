@@ -7,14 +7,14 @@ use super::command::CameraMove;
 use super::export::Export;
 use super::theme::other;
 use super::{
-    BottomPanel, Command, FileDialog, FilePurpose, Layout, PlotFile, SessionCommand, Switch, ViewChange, ViewState,
-    WindowCommand, set_b,
+    BottomPanel, Command, FileDialog, FilePurpose, Layout, NoteDraft, PlotFile, SessionCommand, Switch, ViewChange,
+    ViewState, WindowCommand, set_b,
 };
 use stillbase_picture::charts::choice::PlotChange;
 use stillbase_picture::notation::{AngleUnit, LengthUnit, NameOrder, Notation};
 use stillbase_picture::scene::Measure;
 use stillbase_picture::scene::views::{ViewKind, Views};
-use stillbase_session::scenario::Scenario;
+use stillbase_session::scenario::{NoteTime, Scenario};
 use stillbase_session::{Edit, Session};
 use stillbase_simulation::signals::signals;
 
@@ -221,7 +221,10 @@ pub const ACTIONS: &[Action] = actions![
     Run, "Name the bookmark here" = "rename label", [on(SHIFT, Key::K)], "time line, right button", |s, v| {
         (v.arrangement.layout != Layout::Present).then(|| Command::Session(SessionCommand::NameBookmark(s.frame().time)))
     };
-    Run, "To the next mark: bookmark, event, branch" = "jump", [on(PLAIN, Key::N)], "time line", |_, _| {
+    Run, "Write a note at this instant" = "comment text annotate label remark", [on(SHIFT, Key::W)], "time line, right button", |s, _| {
+        Some(Command::View(ViewChange::WriteNote(Some(NoteDraft::new(None, NoteTime::At(s.frame().time), None)))))
+    };
+    Run, "To the next mark: bookmark, note, event, branch" = "jump", [on(PLAIN, Key::N)], "time line", |_, _| {
         Some(Command::Session(SessionCommand::ToMark(true)))
     };
     Run, "To the mark before" = "previous jump", [on(SHIFT, Key::N)], "time line", |_, _| Some(Command::Session(SessionCommand::ToMark(false)));
@@ -326,6 +329,10 @@ pub const ACTIONS: &[Action] = actions![
         "tool bar" turns Study;
     Analysis, "A table: a motion of your own, or a measured machine" = "import trim csv samples measurement", [on(PLAIN, Key::W)], "tool bar" turns Table;
     Analysis, "Inside the machine: what the pins carry" = "forces joints bearings loads stress strength bearing", [on(PLAIN, Key::I)], "tool bar" turns Pins;
+    Analysis, "Measure: distance and angle" = "ruler length dimension protractor caliper", [on(SHIFT, Key::M)], "tool bar" turns Measuring;
+    Analysis, "Remove all measures" = "clear ruler distance angle", [], "scene, Delete on each", |_, v| {
+        (!v.measurements.is_empty()).then_some(Command::View(ViewChange::DropMeasurement(None)))
+    };
     Analysis, "Plot any signal" = "chart graph curve add torque velocity acceleration momentum", [on(PLAIN, Key::A)], "below the plots", |_, _| Some(Command::Window(WindowCommand::LookFor));
     Analysis, "Statistics of the time that plots show" = "mean average maximum minimum rms", [], "menu of a plot", |_, v| {
         Some(Command::View(ViewChange::Charts(PlotChange::Statistics(!v.charts.statistics))))
@@ -379,7 +386,7 @@ pub const FINE_ACTIONS: &[Action] = actions![
 ];
 
 /// Gestures of the pointer, and their effects.
-pub const GESTURES: [(&str, &str); 22] = [
+pub const GESTURES: [(&str, &str); 24] = [
     ("drag the target", "the machine follows on its plane"),
     ("drag a link", "its drive turns, the others follow so that b stays"),
     ("drag a link of four drives or more", "it goes along, the tip and b stay"),
@@ -391,10 +398,18 @@ pub const GESTURES: [(&str, &str); 22] = [
     ("Alt drag", "push the end effector, 20 N for each metre"),
     ("Shift or Ctrl in a drag", "a tenth of the movement; round numbers"),
     ("click a thing", "its rows in the panel"),
-    ("right button", "what can be done with the thing or the place there"),
+    ("right button", "what can be done with the thing or the place there; write a note"),
+    ("click a note", "change or remove it"),
+    (
+        "measure: click two points",
+        "their distance; a third: the angle at the second; Enter, Esc; Delete over it removes it",
+    ),
     ("drag elsewhere", "pan in 2D, else orbit; Shift pans"),
     ("wheel", "zoom"),
-    ("click a mark of the time line", "show that instant; right button: a bookmark's name, the list of branches"),
+    (
+        "click a mark of the time line",
+        "show that instant; right button: a bookmark's name, a note, the list of branches",
+    ),
     ("click a plot", "show that instant"),
     ("Ctrl wheel, drag on a plot", "closer to a time, and along; a double click shows all"),
     ("drag the numbers of a plot", "along its values; there Ctrl wheel, or Alt wheel on the plot: closer"),

@@ -8,6 +8,7 @@ use super::file_dialog::{FileDialog, FilePurpose, PlotFile};
 use super::given::assess::{TableAction, TableOptions};
 use super::guide::GuideStep;
 use super::layout::Layout;
+use super::notes::NoteDraft;
 use super::pair::Pair;
 use stillbase_mechanics::counterweights::Objective;
 use stillbase_mechanics::machine::Machine;
@@ -18,7 +19,7 @@ use stillbase_picture::scene::options::Handle;
 use stillbase_picture::scene::palette::Theme;
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_session::Edit;
-use stillbase_session::scenario::Scenario;
+use stillbase_session::scenario::{Note, Scenario};
 use stillbase_study::front_point::FrontMeasure;
 
 /// A command of the user.
@@ -65,6 +66,10 @@ pub enum SessionCommand {
     Bookmark(f64, String),
     /// Open the field for the name of the bookmark at a time, s; creates the bookmark if there is none.
     NameBookmark(f64),
+    /// Write a note in place of the one with this index, or a new one.
+    Note(Option<usize>, Note),
+    /// Remove the note with this index.
+    DropNote(usize),
     /// Show the next mark of the time line (`true`), or the previous one.
     ToMark(bool),
     /// Show the branch of this index; the run on display becomes a branch.
@@ -173,6 +178,8 @@ pub enum Switch {
     Drawing,
     /// The pointer pushes the end effector when it drags it.
     Pushing,
+    /// The pointer measures distances and angles.
+    Measuring,
 }
 
 /// A change of a [`ViewState`].
@@ -222,6 +229,10 @@ pub enum ViewChange {
     Pair(Pair),
     /// End the search in the guide.
     LeaveGuideSearch,
+    /// Open or close the card in which a note is written.
+    WriteNote(Option<NoteDraft>),
+    /// Remove the measurement with this index, or all.
+    DropMeasurement(Option<usize>),
     /// Open or close the file dialog.
     Dialog(Option<FileDialog>),
     /// Open, change or close the card with the choices for a result that becomes a file.

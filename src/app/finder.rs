@@ -1,5 +1,5 @@
-//! The list of commands: every action, scenario, machine, signal, setting, recent file and heading of the guide, searched
-//! by a few letters. A setting followed by a value, such as `payload 0.4`, is set from here.
+//! The list of commands: every action, note, scenario, machine, signal, setting, recent file and heading of the guide,
+//! searched by a few letters. A setting followed by a value, such as `payload 0.4`, is set from here.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use super::guide::{self, GuideStep, Section};
 use super::theme::{bold, colour, plain};
 use super::top::with_machine;
 use super::widgets::name;
-use super::{Command, SessionCommand, Switch, ViewChange, ViewState, search};
+use super::{Command, NoteDraft, SessionCommand, Switch, ViewChange, ViewState, search};
 use stillbase_mechanics::machine;
 use stillbase_picture::charts::choice::PlotChange;
 use stillbase_picture::scene::palette::Palette;
@@ -101,6 +101,14 @@ fn entries<'a>(known: Known<'a>, view_state: &ViewState) -> Vec<Entry<'a>> {
             Box::new(|| Command::Session(SessionCommand::OpenFile(file.clone()))),
         )
     });
+    // A note of an instant leads there; one of all times is opened.
+    let notes = session.notes().iter().enumerate().map(|(i, note)| {
+        let go = move || match note.time.start() {
+            Some(time) => Command::Session(SessionCommand::Seek(time)),
+            None => Command::View(ViewChange::WriteNote(NoteDraft::of(session, i, None))),
+        };
+        entry(format!("Note: {}", note.in_one_line()), "time line, scene", "comment text remark", Box::new(go))
+    });
     let signals = signals.iter().map(|signal| {
         let plot = || Command::View(ViewChange::Charts(PlotChange::Plot(signal.path.clone())));
         let title = format!("Plot: {} {}, {}", signal.label, signal.symbol, signal.unit);
@@ -116,7 +124,15 @@ fn entries<'a>(known: Known<'a>, view_state: &ViewState) -> Vec<Entry<'a>> {
         let read = || Command::View(ViewChange::Guide(GuideStep::Go(place)));
         Entry { hides: true, tells: true, ..entry(title, "guide", also, Box::new(read)) }
     });
-    actions.chain(recent).chain(scenarios).chain(machines).chain(signals).chain(settings).chain(pages).collect()
+    actions
+        .chain(notes)
+        .chain(recent)
+        .chain(scenarios)
+        .chain(machines)
+        .chain(signals)
+        .chain(settings)
+        .chain(pages)
+        .collect()
 }
 
 /// Maximum number of settings that are offered for one typed value.

@@ -2,6 +2,7 @@
 
 use stillbase_picture::scene::options::Handle;
 use stillbase_picture::scene::pick::Pick;
+use stillbase_session::scenario::SnapPoint;
 
 /// Objects under the pointer or with the keyboard focus.
 #[derive(Clone, Debug, Default)]
@@ -14,6 +15,10 @@ pub struct HoverTarget {
     pub lit_links: Vec<usize>,
     /// b under the pointer in the chart *Which b?*, rad.
     pub preview: Option<f64>,
+    /// Point to which the pointer snaps while it measures.
+    pub snap: Option<SnapPoint>,
+    /// Index of the measurement under the pointer.
+    pub measurement: Option<usize>,
 }
 
 /// A drag, from the press of the button to its release.
@@ -48,4 +53,6 @@ pub enum Tool {
     Draw(Vec<[f64; 2]>),
     /// Pushes the end effector.
     Push,
+    /// Measures; contains the points chosen so far.
+    Measure(Vec<SnapPoint>),
 }

@@ -16,6 +16,8 @@ pub enum Icon {
     Curve,
     /// A force.
     Push,
+    /// A distance between two points.
+    Ruler,
     /// Dexterity by direction.
     Ellipse,
     /// Poses one after the other.
@@ -72,6 +74,12 @@ impl Icon {
             Self::Push => {
                 pen.ring([-5.5, 0.0], 2.5);
                 pen.arrow([-2.0, 0.0], [7.5, 0.0]);
+            }
+            Self::Ruler => {
+                pen.line(&[[-6.0, 4.5], [6.0, -4.5]]);
+                pen.line(&[[-7.8, 2.1], [-4.2, 6.9]]);
+                pen.line(&[[4.2, -6.9], [7.8, -2.1]]);
+                pen.line(&[[-1.2, -1.6], [1.2, 1.6]]);
             }
             Self::Ellipse => {
                 let (c, s) = (0.82, -0.57);

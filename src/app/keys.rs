@@ -22,6 +22,7 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
     let busy = view_state.gesture.grabbed.is_some()
         || view_state.open.history
         || view_state.open.naming.is_some()
+        || view_state.open.note.is_some()
         || ctx.input(|i| i.pointer.any_down())
         || (view_state.open.finder.is_none() && egui::Popup::is_any_open(ctx))
         || super::plots::is_looking(ctx);
@@ -75,6 +76,7 @@ fn escape(view_state: &ViewState) -> Command {
         OpenDialogs { guide: Some(_), .. } => ViewChange::Switch(Switch::Guide, false).into(),
         _ if matches!(tool, Tool::Draw(_)) => ViewChange::Switch(Switch::Drawing, false).into(),
         _ if view_state.mark.is_some() => ViewChange::Mark(None).into(),
+        _ if matches!(tool, Tool::Measure(_)) => ViewChange::Switch(Switch::Measuring, false).into(),
         _ if *tool == Tool::Push => ViewChange::Switch(Switch::Pushing, false).into(),
         _ if pair.as_ref().is_some_and(|pair| !pair.demonstrates) => ViewChange::Switch(Switch::Pair, false).into(),
         _ if arrangement.layout == Layout::Present => ViewChange::Layout(Layout::Explore).into(),

@@ -1,11 +1,11 @@
-//! [`Marks`]: marks on the time line: bookmarks, events, and the starts of branches. Marks closer than a minimum
+//! [`Marks`]: marks on the time line: bookmarks, notes, events, and the starts of branches. Marks closer than a minimum
 //! distance are drawn as one.
 
 use std::sync::Arc;
 
 use stillbase_query::{ByIdentity, IncrementalAnswer, Queries, QuickQuery, QuickWork, Shared};
 use stillbase_session::events::{Event, EventKind, Gestures};
-use stillbase_session::scenario::Bookmark;
+use stillbase_session::scenario::{Bookmark, Note};
 use stillbase_session::{Fork, Session};
 use stillbase_settings::number::significant;
 use stillbase_study::comparison::{ComparedRun, Comparison};
@@ -29,6 +29,8 @@ pub(super) enum Tone {
     Fork,
     /// The peak of the base reaction, or a failed audit.
     Peak,
+    /// A note.
+    Note,
     /// A bookmark.
     Bookmark,
 }
@@ -72,6 +74,7 @@ pub(super) struct MarksInput {
     events: Shared<Vec<Event>>,
     peak: Option<Event>,
     bookmarks: Shared<Vec<Bookmark>>,
+    notes: Shared<Vec<Note>>,
     forks: ByIdentity<Vec<Fork>>,
     /// Runs shown in comparison, with their titles.
     others: Vec<(String, ByIdentity<ComparedRun>)>,
@@ -89,6 +92,10 @@ impl QuickQuery for MarksByTime {
             TimelineMark { time: event.step as f64 * of.step, words: event.words.clone(), tone }
         };
         let own = |mark: &Bookmark| TimelineMark { time: mark.time, words: mark.name.clone(), tone: Tone::Bookmark };
+        let note = |note: &Note| {
+            let words = format!("note: {}", note.text);
+            Some(TimelineMark { time: note.time.start()?, words, tone: Tone::Note })
+        };
         let fork = |fork: &Fork| TimelineMark {
             time: fork.from,
             words: format!("a branch parts: {}", fork.title),
@@ -99,6 +106,7 @@ impl QuickQuery for MarksByTime {
             .map(event)
             .chain(worst)
             .chain(of.bookmarks.0.iter().map(own))
+            .chain(of.notes.0.iter().filter_map(note))
             .chain(of.forks.0.iter().map(fork))
             .collect();
         marks.sort_by(|a, b| a.time.total_cmp(&b.time).then(b.tone.cmp(&a.tone)));
@@ -122,7 +130,7 @@ impl QuickQuery for Grouping {
     }
 }
 
-/// Returns the marks on a time line of this length, s, without bookmarks beyond its end.
+/// Returns the marks on a time line of this length, s, without bookmarks and notes beyond its end.
 fn within(marks: &[TimelineMark], length: f64) -> &[TimelineMark] {
     &marks[..marks.partition_point(|mark| mark.time <= length + 1e-9)]
 }
@@ -146,6 +154,7 @@ impl Marks {
             events: watched.answer().map_or_else(|| Shared(Arc::default()), |watched| watched.shared_events()),
             peak: watched.answer().filter(|_| shakes).map(|watched| watched.peak()),
             bookmarks: session.shared_bookmarks(),
+            notes: session.shared_notes(),
             forks: ByIdentity(session.forks()),
             others: laid_over(beside).map(|(title, run)| (title.to_owned(), ByIdentity(run.clone()))).collect(),
         };

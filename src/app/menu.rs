@@ -1,41 +1,48 @@
 //! The context menu of the scene, for the object and the position under the pointer.
 
-use egui::{Id, PointerButton, Response, Ui};
+use egui::{Id, PointerButton, Pos2, Response, Ui};
 
 use super::notation;
 use super::widgets::CLICK_PAYLOAD;
-use super::{Command, GuidePage, GuidePlace, GuideStep, SessionCommand, ViewChange, place};
+use super::{Command, GuidePage, GuidePlace, GuideStep, NoteDraft, SessionCommand, ViewChange, place};
 use stillbase_mechanics::planar::Vector;
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::options::Handle;
+use stillbase_session::scenario::{NoteTime, SnapPoint};
 use stillbase_session::{Edit, Session};
 
 /// Object and position of the menu.
-#[derive(Clone, Copy)]
-struct About {
-    thing: Option<Handle>,
+#[derive(Clone, Default)]
+pub struct MenuSubject {
+    /// Object under the pointer.
+    pub thing: Option<Handle>,
     /// Position in the plane of motion, m.
-    at: Option<[f64; 2]>,
+    pub at: Option<[f64; 2]>,
+    /// Point to which a note would stick.
+    pub point: Option<SnapPoint>,
+    /// Index of the measurement under the pointer.
+    pub measurement: Option<usize>,
+    /// Position on the screen.
+    pub pos: Option<Pos2>,
 }
 
-/// Draws the menu while it is open. `hot` is the object under the pointer; `at` is the position of the pointer in the
-/// plane of motion, m.
+/// Draws the menu while it is open; `subject` returns what is under the pointer.
 pub fn show(
     response: &Response,
     session: &Session,
-    hot: Option<Handle>,
-    at: Option<[f64; 2]>,
+    subject: impl FnOnce() -> MenuSubject,
     commands: &mut Vec<Command>,
 ) {
     let id = Id::unique("menu of the scene");
     if response.clicked_by(PointerButton::Secondary) {
-        response.ctx.data_mut(|data| data.insert_temp(id, Some(About { thing: hot, at })));
+        response.ctx.data_mut(|data| data.insert_temp(id, Some(subject())));
     }
-    let Some(about) = response.ctx.data(|data| data.get_temp::<Option<About>>(id)).flatten() else { return };
+    let Some(about) = response.ctx.data(|data| data.get_temp::<Option<MenuSubject>>(id)).flatten() else { return };
     response.context_menu(|ui| entries(ui, session, about, commands));
 }
 
-fn entries(ui: &mut Ui, session: &Session, About { thing, at }: About, commands: &mut Vec<Command>) {
+fn entries(ui: &mut Ui, session: &Session, about: MenuSubject, commands: &mut Vec<Command>) {
+    let MenuSubject { thing, at, point, measurement, pos } = about;
     ui.set_min_width(200.0);
     let task = &session.scenario().task;
     let mut entry = |ui: &mut Ui, words: &str, new: Vec<Command>| {
@@ -78,6 +85,13 @@ fn entries(ui: &mut Ui, session: &Session, About { thing, at }: About, commands:
             ui.ctx().copy_text(format!("{x:.4}, {y:.4}"));
             ui.close();
         }
+    }
+    if let Some(point) = point {
+        let draft = NoteDraft::new(Some(point), NoteTime::Always, pos);
+        entry(ui, "Write a note here", vec![ViewChange::WriteNote(Some(draft)).into()]);
+    }
+    if measurement.is_some() {
+        entry(ui, "Remove this measure", vec![ViewChange::DropMeasurement(measurement).into()]);
     }
     ui.separator();
     entry(ui, "Show everything", vec![Command::View(ViewChange::Fit)]);

@@ -3,6 +3,7 @@
 use super::FileDialog;
 use super::export::Export;
 use super::guide::GuideView;
+use super::notes::NoteDraft;
 use super::tour::Tour;
 
 /// State of the list of commands.
@@ -35,4 +36,6 @@ pub struct OpenDialogs {
     pub export: Option<Export>,
     /// The time of the bookmark that is being named, s.
     pub naming: Option<f64>,
+    /// The note that is being written.
+    pub note: Option<NoteDraft>,
 }

@@ -14,7 +14,7 @@ use stillbase_session::{Fork, Session};
 const WIDTH_PT: f32 = 50.0;
 /// Size of a button, and the minimum height to which it shrinks in a low window, points.
 const BUTTON_SIZE_PT: egui::Vec2 = vec2(42.0, 30.0);
-const MIN_BUTTON_HEIGHT_PT: f32 = 24.0;
+const MIN_BUTTON_HEIGHT_PT: f32 = 22.0;
 /// Height of the button of a view, points.
 const VIEW_BUTTON_HEIGHT_PT: f32 = 25.0;
 /// Gap between buttons, points.
@@ -35,7 +35,7 @@ const fn tool(switch: Switch, icon: Icon, label: &'static str, effect: &'static 
 }
 
 /// Tools of the pointer.
-const POINTER_TOOLS: [Toggle; 3] = [
+const POINTER_TOOLS: [Toggle; 4] = [
     tool(
         Switch::Holding,
         Icon::Pointer,
@@ -48,6 +48,12 @@ const POINTER_TOOLS: [Toggle; 3] = [
         Icon::Push,
         "push",
         "Push the end effector with the pointer, 20 N for each metre; or hold Alt",
+    ),
+    tool(
+        Switch::Measuring,
+        Icon::Ruler,
+        "measure",
+        "Click two points for their distance, a third one for the angle at the second; both follow the motion",
     ),
 ];
 

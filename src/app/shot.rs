@@ -64,7 +64,8 @@ impl PictureOrder {
                 app_state.still_scene(self.size_px.map(|n| n as f32 / self.scale))
             }
             Shot::View(view) => {
-                let options = ViewOptions { theme: self.theme, show_hints: false, ..ViewOptions::default() };
+                let notes = app_state.session().notes().to_vec();
+                let options = ViewOptions { theme: self.theme, show_hints: false, notes, ..ViewOptions::default() };
                 let camera = app_state.views().camera(view);
                 (app_state.views().scene(view, app_state.session().frame(), &options, &camera), camera)
             }

@@ -213,6 +213,14 @@ pub fn show(
                     (None, _) if matches!(view_state.tool, Tool::Draw(_)) => {
                         ("draw with the pointer  ·  Esc stops drawing".into(), p.ink)
                     }
+                    (None, _) if let Tool::Measure(points) = &view_state.tool => {
+                        let words = match points.len() {
+                            0 => "click two points: their distance  ·  Esc stops measuring",
+                            1 => "click the second point  ·  Esc stops measuring",
+                            _ => "click a third point: the angle at the second  ·  Enter keeps the distance alone",
+                        };
+                        (words.into(), p.ink)
+                    }
                     (None, _) if view_state.tool == Tool::Push => {
                         ("drag the end effector to push it, 20 N for each metre  ·  U lets go".into(), p.ink)
                     }

@@ -1,4 +1,4 @@
-//! The time line: the clock, a slider over the run, and above it marks for bookmarks, events and branches.
+//! The time line: the clock, a slider over the run, and above it marks for bookmarks, notes, events and branches.
 
 use egui::{
     Key, Popup, PopupCloseBehavior, Rect, Response, RichText, Sense, Shape, Stroke, TextEdit, Tooltip, Ui, pos2, vec2,
@@ -8,9 +8,10 @@ use super::icon::{Icon, IconButton};
 use super::marks::{MarkGroup, Marks, Tone};
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
-use super::{Command, SessionCommand, Switch, ViewChange, ViewState};
-use stillbase_picture::scene::palette::Palette;
+use super::{Command, NoteDraft, SessionCommand, Switch, ViewChange, ViewState};
+use stillbase_picture::scene::palette::{Palette, faded};
 use stillbase_session::Session;
+use stillbase_session::scenario::NoteTime;
 
 /// Gap between a mark and its tooltip or card, points, so that these do not cover the bar.
 const POPUP_GAP_PT: f32 = 32.0;
@@ -41,21 +42,49 @@ pub fn show(
     }
     // The centre of the slider's handle stays one radius of the handle away from both ends of the slider.
     let line = response.rect.shrink2(vec2(response.rect.height() / 2.5, 0.0));
+    intervals(ui, &p, session, line, length);
+    let mut taken = false;
     let naming_time = view_state.open.naming.filter(|time| session.bookmark_at(*time).is_some());
     let mut named = false;
     for group in marks.on_line(length, f64::from(line.width())).iter() {
         let x = line.left() + line.width() * (group.time / length) as f32;
         let response = mark(ui, &p, group, [x, line.top()], commands);
+        taken |= response.secondary_clicked();
         let near = 0.5 * session.scenario().step;
         let within = |time: &f64| (group.span[0] - near..=group.span[1] + near).contains(time);
+        if group.tone == Tone::Note && response.secondary_clicked() {
+            let note = session.notes().iter().position(|note| note.time.start().is_some_and(|time| within(&time)));
+            let draft = note.and_then(|i| NoteDraft::of(session, i, Some(response.rect.left_bottom())));
+            commands.push(ViewChange::WriteNote(draft).into());
+        }
         if let Some(time) = naming_time.filter(within).filter(|_| !named) {
             naming(&response, &p, session, time, commands);
             named = true;
         }
     }
+    // Beside the marks, the right button writes a note of the instant there.
+    let pressed = ui.input(|i| i.pointer.secondary_clicked().then(|| i.pointer.interact_pos()).flatten());
+    if let Some(pos) = pressed.filter(|_| response.contains_pointer() && !taken) {
+        let share = f64::from(((pos.x - line.left()) / line.width().max(1.0)).clamp(0.0, 1.0));
+        let step = session.scenario().step;
+        let time = NoteTime::At((share * length / step).round() * step);
+        commands.push(ViewChange::WriteNote(Some(NoteDraft::new(None, time, Some(pos)))).into());
+    }
     // The field closes when its bookmark does not exist any more.
     if view_state.open.naming.is_some() && !named {
         commands.push(ViewChange::LeaveNaming.into());
+    }
+}
+
+/// Draws a bar for the interval of each note that has one.
+fn intervals(ui: &Ui, p: &Palette, session: &Session, line: Rect, length: f64) {
+    let x = |time: f64| line.left() + line.width() * (time / length).clamp(0.0, 1.0) as f32;
+    for note in session.notes() {
+        let NoteTime::Between([from, to]) = note.time else { continue };
+        if from <= length {
+            let bar = Rect::from_x_y_ranges(x(from)..=x(to), line.top() - 2.0..=line.top());
+            ui.painter().rect_filled(bar, 1.0, colour(faded(p.ink, 0.55)));
+        }
     }
 }
 
@@ -87,14 +116,14 @@ fn pace(rate: f64) -> String {
     }
 }
 
-/// Draws a mark: a triangle above the line. A click shows its instant; the right button edits a bookmark or lists the
-/// branches.
+/// Draws a mark: a triangle above the line, or a disc for a note. A click shows its instant; the right button edits a
+/// bookmark or lists the branches.
 fn mark(ui: &Ui, p: &Palette, group: &MarkGroup, [x, top]: [f32; 2], commands: &mut Vec<Command>) -> Response {
     let tone = match group.tone {
         Tone::Bookmark => p.amber,
         Tone::Peak => p.reaction,
         Tone::Event => p.dim,
-        Tone::Fork => p.ink,
+        Tone::Fork | Tone::Note => p.ink,
     };
     let rect = Rect::from_min_max(pos2(x - 6.0, top - 10.0), pos2(x + 6.0, top + 2.0));
     let response = ui.interact(rect, ui.scope_id().with(("mark", (group.time * 1e6) as i64)), Sense::click());
@@ -102,6 +131,7 @@ fn mark(ui: &Ui, p: &Palette, group: &MarkGroup, [x, top]: [f32; 2], commands: &
     let corners = vec![pos2(x - 4.0, low), pos2(x, high), pos2(x + 4.0, low)];
     ui.painter().add(match group.tone {
         Tone::Fork => Shape::closed_line(corners, Stroke::new(1.0, colour(tone))),
+        Tone::Note => Shape::circle_filled(pos2(x, 0.5 * (low + high)), 0.5 * (low - high), colour(tone)),
         _ => Shape::convex_polygon(corners, colour(tone), Stroke::NONE),
     });
     if response.has_focus() {

@@ -8,7 +8,16 @@ use stillbase_session::Session;
 impl Switch {
     /// Whether only views of the machine have this switch.
     pub fn is_of_machine(self) -> bool {
-        matches!(self, Self::Dexterity | Self::Snapshots | Self::Pair | Self::Holding | Self::Drawing | Self::Pushing)
+        matches!(
+            self,
+            Self::Dexterity
+                | Self::Snapshots
+                | Self::Pair
+                | Self::Holding
+                | Self::Drawing
+                | Self::Pushing
+                | Self::Measuring
+        )
     }
 }
 
@@ -43,6 +52,7 @@ impl ViewState {
             Switch::Holding => self.tool == Tool::Hold,
             Switch::Drawing => matches!(self.tool, Tool::Draw(_)),
             Switch::Pushing => self.tool == Tool::Push,
+            Switch::Measuring => matches!(self.tool, Tool::Measure(_)),
         }
     }
 
@@ -102,12 +112,20 @@ impl ViewState {
             Switch::Exaggeration => self.exaggerates_base = on,
             Switch::TurnTask => self.turn_task = on,
             Switch::Dexterity => self.dexterity = on.then_some(Measure::Det),
-            Switch::Holding => self.tool = Tool::Hold,
-            Switch::Drawing if on => self.tool = Tool::Draw(Vec::new()),
-            Switch::Pushing if on => self.tool = Tool::Push,
-            Switch::Drawing | Switch::Pushing if self.is_on(switch) => self.tool = Tool::Hold,
-            Switch::Drawing | Switch::Pushing => {}
+            Switch::Holding => self.take_tool(Tool::Hold),
+            Switch::Drawing if on => self.take_tool(Tool::Draw(Vec::new())),
+            Switch::Pushing if on => self.take_tool(Tool::Push),
+            Switch::Measuring if on => self.take_tool(Tool::Measure(Vec::new())),
+            Switch::Drawing | Switch::Pushing | Switch::Measuring if self.is_on(switch) => self.take_tool(Tool::Hold),
+            Switch::Drawing | Switch::Pushing | Switch::Measuring => {}
         }
+    }
+
+    /// Takes another tool; a measurement under way is kept.
+    fn take_tool(&mut self, tool: Tool) {
+        self.finish_measurement();
+        self.pointed.snap = None;
+        self.tool = tool;
     }
 
     /// Shows a panel below the scene in place of the present one, or closes the panel if it is on display.
@@ -175,6 +193,13 @@ impl ViewState {
                 self.open.dialog = dialog;
             }
             ViewChange::Export(export) => self.open.export = export,
+            ViewChange::WriteNote(draft) => self.open.note = draft,
+            ViewChange::DropMeasurement(Some(i)) if i < self.measurements.len() => {
+                self.measurements.remove(i);
+                self.pointed.measurement = None;
+            }
+            ViewChange::DropMeasurement(Some(_)) => {}
+            ViewChange::DropMeasurement(None) => self.measurements.clear(),
         }
     }
 }

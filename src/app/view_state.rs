@@ -13,6 +13,7 @@ use stillbase_picture::charts::choice::{Plot, PlotChoice};
 use stillbase_picture::scene::Measure;
 use stillbase_picture::scene::camera::Camera;
 use stillbase_picture::scene::framing::ViewContent;
+use stillbase_picture::scene::measurement::Measurement;
 use stillbase_picture::scene::options::Handle;
 use stillbase_picture::scene::palette::{Palette, Theme, palette};
 use stillbase_picture::scene::views::{ViewKind, Views};
@@ -60,6 +61,8 @@ pub struct ViewState {
     pub gesture: DragGesture,
     /// Tool of the pointer.
     pub tool: Tool,
+    /// Distances and angles that the scene shows.
+    pub measurements: Vec<Measurement>,
     /// The view on display.
     pub view: ViewKind,
     /// Camera of each view, in the order of [`ViewKind::ALL`].
@@ -112,6 +115,7 @@ impl ViewState {
             pointed: HoverTarget::default(),
             gesture: DragGesture::default(),
             tool: Tool::default(),
+            measurements: Vec::new(),
             view: ViewKind::default(),
             cameras: ViewKind::ALL.map(|kind| views.camera(kind)),
             framing: Default::default(),

@@ -2,17 +2,19 @@
 
 use std::sync::Arc;
 
-use egui::{CentralPanel, CursorIcon, Frame, PointerButton, PopupAnchor, Pos2, Rect, Sense, Tooltip, Ui, Vec2};
+use egui::{CentralPanel, CursorIcon, Frame, PointerButton, PopupAnchor, Rect, Sense, Tooltip, Ui, Vec2};
 
 use super::card::Card;
 use super::intro::Intro;
+use super::measuring::MeasuredScene;
+use super::menu::MenuSubject;
 use super::pointing::{self, Pointed};
 use super::scene_pointer::{PointedScene, ScenePointer};
 use super::tour::Tour;
 use super::widgets::name;
 use super::{
-    Command, Layout, SessionCommand, Switch, Tool, ViewChange, ViewState, coordinates, corner, framing, menu, pair,
-    present, status,
+    Command, Layout, SessionCommand, Switch, Tool, ViewChange, ViewState, coordinates, corner, framing, measuring,
+    menu, notes, pair, present, status,
 };
 use stillbase_mechanics::planar::{DriveAngles, Vector};
 use stillbase_picture::paint::labels::draw_labels;
@@ -80,6 +82,7 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
             draw(ui, &response, &spot, views, view_state, commands);
         } else {
             let demonstrates = pair.as_ref().is_some_and(|pair| pair.demonstrates);
+            let measured = MeasuredScene { spot: &spot, stage: views.stage(), shown: &shown };
             let hand = ScenePointer::over(
                 ui,
                 &response,
@@ -87,10 +90,15 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
                 PointedScene { session, shown: &shown, views, demonstrates },
                 view_state,
             );
-            hand.points(view_state, commands);
-            let place = |pos: Pos2| spot.pointer(pos).ray()?.at_height(views.stage().handle_height());
-            let at = response.interact_pointer_pos().filter(|_| view_state.view.shows_machine()).and_then(place);
-            menu::show(&response, session, view_state.pointed.object, at, commands);
+            if matches!(view_state.tool, Tool::Measure(_)) && view_state.view.shows_machine() {
+                measuring::choose(ui, &response, measured, view_state);
+            } else {
+                hand.points(view_state, commands);
+            }
+            if view_state.view.shows_machine() {
+                measuring::remove(ui, &response, measured, view_state, commands);
+            }
+            menu::show(&response, session, || menu_subject(&response, measured, view_state), commands);
             show_card(&response, session, views, view_state);
             // In the demonstration, a drag beside the machine does not move the view.
             if !(demonstrates && response.dragged_by(PointerButton::Primary)) {
@@ -101,7 +109,8 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
             drag_position: view_state.gesture.position,
             stroke: drawn(&view_state.tool),
             refused: view_state.status.refused.as_ref().and_then(|r| r.curve.clone()),
-            show_hints: session.can_be_dragged(),
+            show_hints: session.can_be_dragged() && !matches!(view_state.tool, Tool::Measure(_)),
+            snap: view_state.pointed.snap.clone(),
             compares: both.is_none(),
             exaggeration,
             ..options(content, view_state)
@@ -111,7 +120,8 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
         let spot = SceneViewport { rect, camera: *view_state.camera() };
         // The problem message covers the scene while it lasts.
         covered.extend(status::has_bad_news(session, view_state).then(|| status::news_rect(ui.ctx())).flatten());
-        draw_labels(ui, &spot, &scene, &covered);
+        let placed = draw_labels(ui, &spot, &scene, &covered);
+        notes::labels(ui, &placed, session, &view_state.tool, commands);
         corner::show(ui, rect, view_state, views, commands);
         coordinates::show(ui, rect, session, views, view_state, commands);
         let seen = |at: [f64; 3]| spot.screen(at).is_some_and(|at| rect.contains(at));
@@ -152,7 +162,7 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
 /// Returns the scene on display without hints at gestures, framed for a picture of a size in points.
 pub fn still(content: SceneContent<'_>, size: [f32; 2], view_state: &mut ViewState) -> (Scene, Camera) {
     let SceneContent { session, views, .. } = content;
-    let rect = Rect::from_min_size(Pos2::ZERO, size.into());
+    let rect = Rect::from_min_size(egui::Pos2::ZERO, size.into());
     framing::keep_framed(rect, &[], session, views, || motion(session), view_state);
     let options = ViewOptions { show_hints: false, ..options(content, view_state) };
     let camera = *view_state.camera();
@@ -182,6 +192,8 @@ fn options(content: SceneContent<'_>, view_state: &ViewState) -> ViewOptions {
         weights: weights.to_vec(),
         links: view_state.pointed.lit_links.clone(),
         notation: view_state.arrangement.notation,
+        notes: session.notes().to_vec(),
+        measurements: view_state.drawn_measurements(),
         ..ViewOptions::default()
     }
 }
@@ -253,11 +265,27 @@ fn show_card(response: &egui::Response, session: &Session, views: &Views, view_s
     }
 }
 
+/// Returns what is under the pointer, for the menu.
+fn menu_subject(response: &egui::Response, scene: MeasuredScene<'_>, view_state: &ViewState) -> MenuSubject {
+    let pos = response.interact_pointer_pos();
+    let thing = view_state.pointed.object;
+    let Some(pointer) = pos.filter(|_| view_state.view.shows_machine()).map(|pos| scene.spot.pointer(pos)) else {
+        return MenuSubject { thing, pos, ..MenuSubject::default() };
+    };
+    MenuSubject {
+        thing,
+        at: pointer.ray().and_then(|ray| ray.at_height(scene.stage.handle_height())),
+        point: scene.stage.snap(scene.shown, &pointer),
+        measurement: view_state.pointed.measurement,
+        pos,
+    }
+}
+
 /// Returns the path drawn so far, m.
 fn drawn(tool: &Tool) -> Vec<[f64; 2]> {
     match tool {
         Tool::Draw(stroke) => stroke.clone(),
-        Tool::Hold | Tool::Push => Vec::new(),
+        Tool::Hold | Tool::Push | Tool::Measure(_) => Vec::new(),
     }
 }
 

@@ -8,7 +8,7 @@ use super::style::{brief, colour, under};
 use stillbase_picture::scene::Rgba;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_query::IncrementalQuery;
-use stillbase_session::events::{Event, EventKind, EventLog, bookmarked, gestures};
+use stillbase_session::events::{Event, EventKind, EventLog, bookmarked, gestures, noted};
 use stillbase_session::scenario::{Scenario, Task};
 use stillbase_session::verdict::Verdict;
 use stillbase_simulation::frame::{Frame, Peaks, Phase};
@@ -76,7 +76,7 @@ impl Events {
         let (level, rgba) = match event.kind {
             EventKind::Edit => (TextLogLevel::INFO, self.palette.drive(0)),
             EventKind::Bookmark | EventKind::Within => (TextLogLevel::INFO, self.palette.amber),
-            EventKind::Note => (TextLogLevel::INFO, self.palette.ink),
+            EventKind::Note | EventKind::Written => (TextLogLevel::INFO, self.palette.ink),
             EventKind::Beyond => (TextLogLevel::WARN, self.palette.amber),
             EventKind::Warning | EventKind::Peak => (TextLogLevel::WARN, self.palette.reaction),
             EventKind::Fault => (TextLogLevel::ERROR, self.palette.reaction),
@@ -103,8 +103,9 @@ impl Events {
 
         let mut all = gestures(&scenario.edits, dt);
         all.extend_from_slice(self.watched.events());
-        // A bookmark may be beyond the end of the recording.
-        all.extend(bookmarked(&scenario.bookmarks, dt).into_iter().filter(|mark| mark.step <= end.step));
+        // Bookmarks and notes may be beyond the end of the recording.
+        let own = bookmarked(&scenario.bookmarks, dt).into_iter().chain(noted(&scenario.notes, dt));
+        all.extend(own.filter(|mark| mark.step <= end.step));
         all.extend((!verdict.reactionless).then(|| self.watched.peak()));
         all.iter().for_each(|event| self.add_event(event, dt));
         let torques: Vec<String> = peaks.torque.iter().map(|t| brief(*t)).collect();

@@ -135,7 +135,12 @@ impl<'a> Recorder<'a> {
             tower: forecast.tower.map(|eye| space("tower", eye)),
             trail: Thinned::new(1, MAX_TRAIL_POINTS),
             events: Events::new(prefix, palette),
-            options: ViewOptions { show_hints: false, scale: Some(*scale), ..ViewOptions::default() },
+            options: ViewOptions {
+                show_hints: false,
+                scale: Some(*scale),
+                notes: scenario.notes.clone(),
+                ..ViewOptions::default()
+            },
             store,
             pictures,
             scenario,

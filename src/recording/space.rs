@@ -176,7 +176,8 @@ impl RecordingSpace {
     }
 
     fn label(&mut self, label: &Label) {
-        let width = LETTER_WIDTH * label.size * label.text.chars().count() as f32;
+        let letters = label.text.lines().map(|line| line.chars().count()).max().unwrap_or_default();
+        let width = LETTER_WIDTH * label.size * letters as f32;
         let [right, down] = label.offset;
         let aside = match label.anchor {
             Anchor::Left => 0.5 * width,

@@ -8,7 +8,7 @@ use super::machines::Machines;
 use super::replay;
 use super::run::Run;
 use super::script::Script;
-use crate::scenario::{Bookmark, Scenario};
+use crate::scenario::{Bookmark, Note, Scenario};
 use stillbase_query::Sequence;
 use stillbase_simulation::frame::Frame;
 
@@ -23,14 +23,17 @@ pub(super) const REPORT_FRAMES: usize = 256;
 pub enum AnnotationKind {
     /// Named instants.
     Bookmarks,
+    /// Texts at points and instants.
+    Notes,
     /// Earlier courses of the run that other edits have replaced.
     Branches,
 }
 
-/// Everything that determines a run, with its bookmarks and branches. Undo restores a document; a saved session is one.
+/// Everything that determines a run, with its bookmarks, notes and branches. Undo restores a document; a saved session
+/// is one.
 #[derive(Clone, Debug)]
 pub(super) struct Document {
-    /// Scenario without its edits, bookmarks and branches; these are the fields below.
+    /// Scenario without its edits, bookmarks, notes and branches; these are the fields below.
     pub scenario: Arc<Scenario>,
     /// Edits in the order of steps, none after `end`.
     pub script: Script,
@@ -38,6 +41,8 @@ pub(super) struct Document {
     pub end: u64,
     /// Bookmarks in the order of time.
     pub bookmarks: Arc<Vec<Bookmark>>,
+    /// Notes in the order in which they were written.
+    pub notes: Arc<Vec<Note>>,
     /// Courses of the run that were replaced when the user went back in time and edited, the oldest first.
     pub branches: Arc<Vec<LeftBranch>>,
 }
@@ -62,15 +67,17 @@ pub(super) struct LeftBranch {
 }
 
 impl Document {
-    /// Returns a document without bookmarks and branches.
+    /// Returns a document without bookmarks, notes and branches.
     pub fn new(scenario: Scenario, script: Script, end: u64) -> Self {
-        Self { scenario: Arc::new(scenario), script, end, bookmarks: Arc::default(), branches: Arc::default() }
+        let scenario = Arc::new(scenario);
+        Self { scenario, script, end, bookmarks: Arc::default(), notes: Arc::default(), branches: Arc::default() }
     }
 
-    /// Copies the bookmarks or the branches of another document.
+    /// Copies the bookmarks, the notes or the branches of another document.
     pub fn keep_as(&mut self, other: &Self, kept: AnnotationKind) {
         match kept {
             AnnotationKind::Bookmarks => self.bookmarks.clone_from(&other.bookmarks),
+            AnnotationKind::Notes => self.notes.clone_from(&other.notes),
             AnnotationKind::Branches => self.branches.clone_from(&other.branches),
         }
     }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::edit::{Edit, TimedEdit};
 use super::machines::Machines;
 use super::verdict::LIMIT_TOLERANCE;
-use crate::scenario::Bookmark;
+use crate::scenario::{Bookmark, Note};
 use stillbase_mechanics::machine::Machine;
 use stillbase_query::{IncrementalQuery, Shared};
 use stillbase_settings::number::{ShortNumber, significant};
@@ -20,6 +20,8 @@ pub enum EventKind {
     Edit,
     /// The user has set a bookmark.
     Bookmark,
+    /// The user has written a note.
+    Written,
     /// A change of the motion or of the payload, or the end of a warning.
     Note,
     /// The target comes within reach.
@@ -182,6 +184,16 @@ pub fn bookmarked(bookmarks: &[Bookmark], step: f64) -> Vec<Event> {
         kind: EventKind::Bookmark,
     };
     bookmarks.iter().map(event).collect()
+}
+
+/// Returns notes as events; one for all times stands at the start. `step` is the step size, s.
+pub fn noted(notes: &[Note], step: f64) -> Vec<Event> {
+    let event = |note: &Note| Event {
+        step: (note.time.start().unwrap_or_default() / step).round() as u64,
+        words: format!("note: {}", note.in_one_line()),
+        kind: EventKind::Written,
+    };
+    notes.iter().map(event).collect()
 }
 
 /// Events found in frames, which are read in order, one for each step from the start on.

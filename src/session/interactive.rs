@@ -9,6 +9,7 @@ mod branches;
 mod change;
 mod editing;
 mod history;
+mod notes;
 mod opening;
 mod passing;
 
@@ -184,6 +185,7 @@ impl Session {
         let mut scenario = Scenario::clone(&self.document.scenario);
         scenario.edits = self.edits.to_vec();
         scenario.bookmarks.clone_from(&self.document.bookmarks);
+        scenario.notes.clone_from(&self.document.notes);
         scenario.branches = self.kept_branches();
         scenario.duration = match self.document.end {
             0 => self.scenario().duration,

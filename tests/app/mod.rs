@@ -12,6 +12,7 @@ mod jobs;
 mod layout;
 mod lessons;
 mod notation;
+mod notes;
 mod pair;
 mod panel;
 mod plots;
@@ -36,7 +37,7 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 24] = [
+pub const TESTS: [&[Test]; 25] = [
     saving::TESTS,
     family::TESTS,
     files::TESTS,
@@ -51,6 +52,7 @@ pub const TESTS: [&[Test]; 24] = [
     notation::TESTS,
     lessons::TESTS,
     pair::TESTS,
+    notes::TESTS,
     panel::TESTS,
     plots::TESTS,
     pointer::TESTS,

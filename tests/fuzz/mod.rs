@@ -110,6 +110,14 @@ change = { moment_limit = 0.01, "link.*.com" = { normal = 0.0005 } }
 [[bookmark]]
 time = 0.1
 name = "here"
+[[note]]
+text = "look"
+pin = ["1", "5"]
+time = 0.1
+until = 0.2
+[[note]]
+text = "there"
+on = "end effector"
 [[branch]]
 duration = 0.2
 [[branch.edit]]

@@ -10,11 +10,12 @@ use stillbase::picture::numbers::round_up;
 use stillbase::picture::scene::camera::{Camera, FlatCamera, Orbit};
 use stillbase::picture::scene::exaggeration::{DrawnFrame, Exaggeration, exaggeration};
 use stillbase::picture::scene::linkage::LinkageModel;
+use stillbase::picture::scene::measurement::Measurement;
 use stillbase::picture::scene::options::{Handle, OtherRun, ViewOptions};
 use stillbase::picture::scene::palette::{Theme, palette};
 use stillbase::picture::scene::stage::Stage;
 use stillbase::picture::scene::{Label, Polyline, Scene, Solid, place};
-use stillbase::session::scenario::Scenario;
+use stillbase::session::scenario::{Note, NoteTime, Scenario, SnapPoint};
 use stillbase::session::{Edit, Session};
 use stillbase::simulation::frame::Reach;
 use stillbase::simulation::plant::{Base, BaseKind, Load};
@@ -597,6 +598,54 @@ fn a_miss_is_shown_and_said() {
     assert!(still.lines.iter().all(|l| l.name != "target/miss"));
 }
 
+/// A distance and an angle.
+fn measured() -> Vec<Measurement> {
+    let pin = SnapPoint::Pin(vec!["1".into(), "5".into()]);
+    let points = vec![SnapPoint::EndEffector, pin, SnapPoint::BasePin];
+    vec![Measurement::of(vec![SnapPoint::Place([0.1, -0.3]), SnapPoint::CentreOfMass]), Measurement::of(points)]
+}
+
+/// Measures end where their points are drawn, and say what is true of them.
+#[test]
+fn a_measure_is_drawn_with_its_points_and_says_what_is_true() {
+    let session = floating();
+    let frame = session.frame();
+    let stage = Stage::of(session.run());
+    let point = SnapPoint::Pin(vec!["1".into(), "5".into()]);
+    let length = session.scenario().machine.resolved_links()[0].length;
+    let pin = frame.base.at + unit(frame.q[0]) * length;
+    let [u, v] = [frame.end_effector - pin, frame.base.at - pin];
+    let angle = (u.re * v.re + u.im * v.im) / (u.norm() * v.norm());
+    for exaggeration in [Exaggeration::default(), Exaggeration::Times(20.0), Exaggeration::Mount(0.03)] {
+        let shown = DrawnFrame::of(frame, exaggeration);
+        let drawn = shown.base.at + unit(shown.q[0]) * length;
+        assert!((stage.position(&point, &shown).expect("a pin") - drawn).norm() < 1e-12);
+        let options = ViewOptions { exaggeration, measurements: measured(), ..Default::default() };
+        let scene = stage.scene(frame, &options);
+        let line = scene.lines.iter().find(|line| line.name == "measures/2/line").expect("drawn");
+        for (end, want) in line.strips.iter().flatten().zip([shown.end_effector, drawn, drawn, shown.base.at]) {
+            assert!((Vector::new(f64::from(end[0]), f64::from(end[1])) - want).norm() < 1e-6, "{end:?} for {want}");
+        }
+        let said = |name: &str| scene.labels.iter().find(|label| label.name == name).expect("said").text.clone();
+        assert_eq!(said("measures/2/distance/1"), format!("{:.3} m", u.norm()));
+        assert_eq!(said("measures/2/distance/2"), format!("{length:.3} m"));
+        assert_eq!(said("measures/2/angle"), format!("{:.3} rad", angle.acos()));
+        assert_eq!(said("measures/1/distance/1"), format!("{:.3} m", (frame.com - Vector::new(0.1, -0.3)).norm()));
+    }
+    // What the machine does not have is not drawn.
+    let none = SnapPoint::Pin(vec!["1".into(), "99".into()]);
+    let options = ViewOptions {
+        measurements: vec![
+            Measurement::of(vec![none, SnapPoint::BasePin]),
+            Measurement::of(vec![SnapPoint::BasePin; 2]),
+        ],
+        ..Default::default()
+    };
+    let labels = stage.scene(frame, &options).labels;
+    let said: Vec<&str> = labels.iter().filter(|l| l.name.starts_with("measures")).map(|l| l.text.as_str()).collect();
+    assert_eq!(said, ["0.000 m"]);
+}
+
 /// What is exaggerated so that it can be seen enters no number: a scene says the same words however it is drawn, and
 /// what is pulled at as it is drawn asks for the same.
 #[test]
@@ -622,6 +671,12 @@ fn words_are_of_the_frame_however_it_is_drawn() {
                     limits: true,
                     external_force: Some([0.4, -0.2]),
                     others,
+                    measurements: measured(),
+                    notes: vec![Note {
+                        text: "a note".into(),
+                        point: Some(SnapPoint::CentreOfMass),
+                        time: NoteTime::Always,
+                    }],
                     ..Default::default()
                 };
                 let texts = |exaggeration| -> Vec<String> {

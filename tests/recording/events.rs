@@ -152,8 +152,8 @@ fn edits_on_the_way_are_recorded() {
 fn the_window_and_a_recording_tell_the_same() {
     use stillbase::query::{Queries, answer_sequence};
     use stillbase::session::Session;
-    use stillbase::session::events::{EventLog, Gestures, bookmarked, gestures};
-    use stillbase::session::scenario::Bookmark;
+    use stillbase::session::events::{EventLog, Gestures, bookmarked, gestures, noted};
+    use stillbase::session::scenario::{Bookmark, Note, NoteTime};
 
     let folder = Folder::new("same");
     let mut scenario = Scenario { duration: Some(0.6), ..Scenario::builtin("case-1").expect("built in") };
@@ -162,6 +162,7 @@ fn the_window_and_a_recording_tell_the_same() {
         TimedEdit { step: 120, edit: Edit::Push { x: 0.0, y: 0.0 } },
         TimedEdit { step: 300, edit: Edit::DragTarget { x: 3.0, y: 0.0 } },
     ];
+    scenario.notes = vec![Note { text: "it starts".into(), point: None, time: NoteTime::At(0.05) }];
     scenario.bookmarks = vec![Bookmark { time: 0.2, name: "look here".into() }];
     record_in(&folder, "one.rrd", std::slice::from_ref(&scenario)).expect("an edited case");
     let told = Contents::of(&folder.path("one.rrd")).texts("/case-1/events", "TextLog:text");
@@ -173,6 +174,7 @@ fn the_window_and_a_recording_tell_the_same() {
     assert!(grown.events().eq(all.iter().cloned()));
     all.extend_from_slice(watched.events());
     all.extend(bookmarked(session.bookmarks(), 0.001));
+    all.extend(noted(session.notes(), 0.001));
     all.push(watched.peak());
     all.sort_by_key(|event| event.step);
     let words: Vec<&str> = all.iter().map(|event| event.words.as_str()).collect();
@@ -184,6 +186,7 @@ fn the_window_and_a_recording_tell_the_same() {
         "push with 90.00, 0.00 N",
         "drive 2 comes to its torque limit, 5 N m",
         "bookmark: look here",
+        "note: it starts at 0.050 s",
         "the target is outside",
     ] {
         assert!(words.iter().any(|told| told.starts_with(part)), "{part} in {words:?}");
@@ -196,4 +199,50 @@ fn the_window_and_a_recording_tell_the_same() {
     assert!(portions.is_whole, "only the last is read again");
     let portions = portions.answer().expect("just asked");
     assert_eq!((portions.events(), portions.peak()), (watched.events(), watched.peak()));
+}
+
+/// Notes stand where they stick, at their time, and in the log; one beyond the end is left out.
+#[test]
+fn notes_are_recorded_where_they_stick() {
+    use stillbase::session::scenario::{Note, NoteTime, SnapPoint};
+
+    let folder = Folder::new("notes");
+    let mut scenario = short("case-3");
+    let note = |text: &str, point, time| Note { text: text.into(), point, time };
+    let end = scenario.duration.expect("short");
+    scenario.notes = vec![
+        note("on the tip", Some(SnapPoint::EndEffector), NoteTime::Always),
+        note("a while", Some(SnapPoint::Place([0.2, 0.3])), NoteTime::Between([0.02, 0.04])),
+        note("too late", Some(SnapPoint::BasePin), NoteTime::At(end + 1.0)),
+        note("an instant alone", None, NoteTime::At(0.01)),
+    ];
+    record_in(&folder, "notes.rrd", std::slice::from_ref(&scenario)).expect("it is recorded");
+    let contents = Contents::of(&folder.path("notes.rrd"));
+    let labels = |i: usize| contents.texts(&format!("/case-3/notes/{i}"), "Points3D:labels");
+    assert!(labels(1).len() > 3 && labels(1).iter().all(|text| text == "on the tip"), "{:?}", labels(1));
+    let (steps, tips) = contents.vectors("/case-3/notes/1/point", "Points3D:positions");
+    let mut ends = Vec::new();
+    stillbase::session::replay(&scenario, |_, frame| ends.push(frame.end_effector)).expect("it runs");
+    for (step, [x, y, _]) in steps.iter().zip(tips) {
+        let tip = ends[usize::try_from(*step).expect("from the start")];
+        assert!((tip.re - f64::from(x)).hypot(tip.im - f64::from(y)) < 1e-5, "{x}, {y} at {step}: {tip}");
+    }
+    let (steps, _) = contents.vectors("/case-3/notes/2/point", "Points3D:positions");
+    assert!(steps.first() == Some(&20) && labels(2).iter().all(|text| text == "a while"), "{steps:?}");
+    assert!(!contents.holds("/case-3/notes/3") && !contents.holds("/case-3/notes/4"));
+    let events = contents.texts("/case-3/events", "TextLog:text");
+    let told: Vec<&String> = events.iter().filter(|text| text.starts_with("note:")).collect();
+    assert_eq!(
+        told,
+        [
+            "note: on the tip, end effector",
+            "note: an instant alone at 0.010 s",
+            "note: a while, place 0.200, 0.300 m from 0.020 to 0.040 s"
+        ]
+    );
+    // The scenario in the recording has them all.
+    let path = "/__properties/case-3";
+    let saved = contents.texts(path, "scenario");
+    let read = Scenario::parse(&saved[0], "recorded", None).expect("what was recorded is read");
+    assert_eq!(read.notes, scenario.notes);
 }

@@ -10,6 +10,7 @@ mod design;
 mod events;
 mod hand;
 mod limits;
+mod notes;
 mod proposals;
 mod replay;
 mod settings;

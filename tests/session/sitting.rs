@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
 use proptest::test_runner::TestRunner;
 use stillbase::mechanics::planar::PerDrive;
-use stillbase::session::scenario::{Scenario, keys};
+use stillbase::session::scenario::{Note, NoteTime, Scenario, keys};
 use stillbase::session::{Edit, Session, TimedEdit};
 use stillbase::settings::key::Key;
 use stillbase::simulation::plant::{BaseKind, DriveValues, Friction, Wheel};
@@ -26,6 +26,8 @@ enum Act {
     Seek(f64),
     StepBy(i64),
     Bookmark(f64, bool),
+    Note(Option<usize>, f64),
+    DropNote(usize),
     Branch(usize),
     DropBranch(usize),
 }
@@ -216,6 +218,8 @@ fn any_act() -> impl Strategy<Value = Act> {
         1 => (0.0..0.5).prop_map(Act::Seek),
         1 => (-20i64..20).prop_map(Act::StepBy),
         1 => ((0..6u8), any::<bool>()).prop_map(|(tenths, on)| Act::Bookmark(0.1 * f64::from(tenths), on)),
+        1 => (prop::option::of(0usize..3), -0.1..0.5).prop_map(|(known, time)| Act::Note(known, time)),
+        1 => (0usize..3).prop_map(Act::DropNote),
         1 => (0usize..3).prop_map(Act::Branch),
         1 => (0usize..9).prop_map(Act::DropBranch),
     ]
@@ -258,6 +262,19 @@ impl Act {
                 let _ = session.bookmark(*time, if *on { "here" } else { "" });
                 Ok(())
             }
+            Self::Note(known, time) => {
+                // A time before the start is refused.
+                let note = Note { text: format!("at {time}"), point: None, time: NoteTime::At(*time) };
+                let before = session.notes().to_vec();
+                if session.write_note(*known, note).is_err() {
+                    assert_eq!(session.notes(), before);
+                }
+                Ok(())
+            }
+            Self::DropNote(index) => {
+                session.remove_note(*index);
+                Ok(())
+            }
             Self::Branch(branch) => session.switch_branch_while(*branch, &mut |_| true),
             Self::DropBranch(branch) => {
                 session.drop_branch(*branch);
@@ -282,6 +299,7 @@ fn sit(start: Scenario, acts: &[Act]) -> Result<(), TestCaseError> {
     one_path(&session);
     let again = open(session.to_scenario());
     prop_assert_eq!((again.forks(), again.bookmarks()), (session.forks(), session.bookmarks()));
+    prop_assert_eq!(again.notes(), session.notes());
     Ok(())
 }
 

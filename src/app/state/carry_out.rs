@@ -117,6 +117,16 @@ impl AppState {
                 self.saving.changes += u64::from(done.is_some());
                 return Ok(done);
             }
+            SessionCommand::Note(known, note) => {
+                let done = self.session.write_note(known, note)?;
+                self.saving.changes += u64::from(done.is_some());
+                return Ok(done);
+            }
+            SessionCommand::DropNote(index) => {
+                let done = self.session.remove_note(index);
+                self.saving.changes += u64::from(done.is_some());
+                return Ok(done);
+            }
             SessionCommand::NameBookmark(time) => self.name_bookmark(time)?,
             SessionCommand::ToMark(on) => {
                 if let Some(time) = marks::neighbour(self.queries(), &self.session, on) {

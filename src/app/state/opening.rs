@@ -70,6 +70,11 @@ impl AppState {
         }
         let old = self.session.clone();
         self.session.take_over(next);
+        self.view_state.open.note = None;
+        // Points of another machine may not exist.
+        if old.scenario().machine != self.session.scenario().machine {
+            self.view_state.measurements.clear();
+        }
         // The measurements of an open table now refer to the newly opened machine.
         if let Some(given) = &mut self.opened_table {
             given.measured = Shared(Arc::new(self.session.scenario().machine.clone()));

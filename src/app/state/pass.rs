@@ -6,8 +6,8 @@ use crate::facts::ScenarioFacts;
 use crate::marks::Marks;
 use crate::{
     BottomPanel, Command, DrawingGuard, Intro, Layout, SessionCommand, StatusMessage, ViewChange, WindowCommand,
-    compare, finder, given, guide, keys, notation, order, place, plots, rail, saving, side, status, studio, study,
-    theme, top, viewport, widgets,
+    compare, finder, given, guide, keys, notation, notes, order, place, plots, rail, saving, side, status, studio,
+    study, theme, top, viewport, widgets,
 };
 use stillbase_picture::scene::views::ViewKind;
 
@@ -135,6 +135,7 @@ impl AppState {
         saving::show(ui.ctx(), &self.saving, &self.view_state, &mut commands);
         let recent = &self.saving.recent;
         finder::show(ui.ctx(), &self.session, &self.signals(), &facts, recent, &mut self.view_state, &mut commands);
+        notes::show(ui.ctx(), &self.session, &self.views, &mut self.view_state, &mut commands);
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
         export::show(ui.ctx(), &self.session, &self.view_state, &mut commands);
         commands.extend(widgets::refused_entry(ui.ctx()).map(|it| Command::Window(WindowCommand::Refuse(it))));

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use egui::{Align2, CentralPanel, Frame, Galley, Painter, Pos2, Rect, Ui, Vec2, vec2};
+use egui::{Align2, CentralPanel, Frame, Galley, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 
 use super::{SceneViewport, colour, paint, plain};
 use crate::scene::camera::Camera;
 use crate::scene::palette::faded;
-use crate::scene::{Anchor, Label, Scene};
+use crate::scene::{Anchor, Label, NOTES, Scene};
 
 /// Maximum vertical shift to avoid an overlap, points.
 const MAX_SHIFT_PT: f32 = 36.0;
@@ -63,12 +63,19 @@ pub fn paint_still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
     });
 }
 
-/// Paints the labels of the scene, in its units, outside the rectangles `taken`.
-pub fn draw_labels(ui: &Ui, spot: &SceneViewport, scene: &Scene, taken: &[Rect]) {
+/// Paints the labels of the scene, in its units, outside the rectangles `taken`. Returns those that have space,
+/// with their rectangles.
+pub fn draw_labels<'a>(ui: &Ui, spot: &SceneViewport, scene: &'a Scene, taken: &[Rect]) -> Vec<(&'a Label, Rect)> {
     let painter = ui.painter().with_clip_rect(spot.rect);
-    for (label, galley, place) in placed(&painter, spot, scene, taken) {
-        write(&painter, scene, label, galley, place);
+    let all = placed(&painter, spot, scene, taken);
+    for (label, _, place) in &all {
+        lead(&painter, spot, scene, (label, *place));
     }
+    let draw = |(label, galley, place): (&'a Label, Arc<Galley>, Rect)| {
+        write(&painter, scene, label, galley, place);
+        (label, place)
+    };
+    all.into_iter().map(draw).collect()
 }
 
 /// Returns the rectangles of those labels of the scene that have space outside the rectangles `taken`.
@@ -81,11 +88,12 @@ pub fn placed<'a>(
     let mut groups: Vec<(Pos2, Group<'_>)> = Vec::new();
     for label in &scene.labels {
         let Some(at) = spot.screen(label.at.map(f64::from)) else { continue };
-        let galley = painter.layout_no_wrap(
-            scene.notation.sentence(&label.text).into_owned(),
-            plain(label.size),
-            colour(label.colour),
-        );
+        // The words of a note are the user's own.
+        let text = match label.name.starts_with(NOTES) {
+            true => label.text.clone(),
+            false => scene.notation.sentence(&label.text).into_owned(),
+        };
+        let galley = painter.layout_no_wrap(text, plain(label.size), colour(label.colour));
         let word = (label, galley, Rect::NOTHING);
         let of = |(l, ..): &(&Label, Arc<Galley>, Rect)| l.at == label.at && l.name == label.name;
         let same = groups.iter_mut().find(|(_, group)| group.words.first().is_some_and(of));
@@ -138,6 +146,15 @@ pub fn placed<'a>(
         }
     }
     all
+}
+
+/// Lengthens the line from a point to its note, if the note is shifted.
+fn lead(painter: &Painter, spot: &SceneViewport, scene: &Scene, (label, place): (&Label, Rect)) {
+    let is_own = |name: &str| name.strip_prefix(&*label.name) == Some("/leader");
+    let own = label.name.starts_with(NOTES).then(|| scene.lines.iter().find(|line| is_own(&line.name))).flatten();
+    let Some((line, end)) = own.and_then(|line| Some((line, spot.screen(label.at.map(f64::from))?))) else { return };
+    let near = end.clamp(place.min, place.max);
+    painter.line_segment([end, near], Stroke::new(line.width, colour(line.colour)));
 }
 
 fn write(painter: &Painter, scene: &Scene, label: &Label, galley: Arc<Galley>, place: Rect) {

@@ -247,6 +247,11 @@ impl LinkageModel {
         })
     }
 
+    /// Returns the indices of the links that each pin joins, in the order of [`joints`](Self::joints).
+    pub fn pins(&self) -> impl Iterator<Item = &[usize]> {
+        self.pins.iter().map(|pin| pin.links.as_slice())
+    }
+
     /// Returns the links seen from above for a fixed base, the lowest first.
     pub fn flat(&self, e: &UnitVectors) -> Vec<FlatLink> {
         let mut bars: Vec<&Bar> = self.bars.iter().collect();

@@ -31,6 +31,7 @@ pub mod grid;
 pub mod joints;
 #[doc(hidden)]
 pub mod linkage;
+pub mod measurement;
 #[doc(hidden)]
 pub mod mesh;
 pub mod options;
@@ -80,6 +81,9 @@ pub struct MeshSet {
     /// Meshes in their own frames; [`Solid::mesh`] is an index into this list.
     pub meshes: Vec<Mesh>,
 }
+
+/// Name above those of the notes of a user; their numbers follow.
+pub const NOTES: &str = "notes";
 
 /// Hierarchical name of an item of a scene and of its entity in a recording, like `machine/link/5`.
 pub type Name = Cow<'static, str>;

@@ -4,11 +4,13 @@ use std::sync::Arc;
 
 use super::Measure;
 use super::exaggeration::Exaggeration;
+use super::measurement::Measurement;
 use super::palette::Theme;
 use super::reaction::Scale;
 use crate::notation::Notation;
 use stillbase_mechanics::planar::{DriveAngles, Vector};
 use stillbase_session::Refusal;
+use stillbase_session::scenario::{Note, SnapPoint};
 use stillbase_simulation::frame::Frame;
 
 /// Options of the view.
@@ -54,6 +56,12 @@ pub struct ViewOptions {
     pub scale: Option<Scale>,
     /// Units and names.
     pub notation: Notation,
+    /// Notes; those of the instant are drawn.
+    pub notes: Vec<Note>,
+    /// Distances and angles.
+    pub measurements: Vec<Measurement>,
+    /// Point to which the pointer snaps while it measures.
+    pub snap: Option<SnapPoint>,
 }
 
 impl Default for ViewOptions {
@@ -79,6 +87,9 @@ impl Default for ViewOptions {
             links: Vec::new(),
             scale: None,
             notation: Notation::default(),
+            notes: Vec::new(),
+            measurements: Vec::new(),
+            snap: None,
         }
     }
 }

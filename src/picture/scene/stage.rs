@@ -2,10 +2,13 @@
 
 mod base;
 mod limits;
+mod measurements;
+mod notes;
 mod path;
 mod pins;
 mod reaction;
 mod ring;
+mod snap;
 mod snapshots;
 mod target;
 mod turning;
@@ -371,6 +374,8 @@ impl Stage {
         }
         target::draw(&mut scene, &palette, shown, options, z);
         self.base.load(&mut scene, linkage, &palette, shown, options);
+        self.draw_measurements(&mut scene, &palette, shown, options);
+        self.draw_notes(&mut scene, &palette, shown, options);
         scene
     }
 

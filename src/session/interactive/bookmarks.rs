@@ -64,7 +64,7 @@ impl Session {
         Ok(Some(title))
     }
 
-    /// Changes bookmarks or branches without changing the run.
+    /// Changes bookmarks, notes or branches without changing the run.
     pub(super) fn change_beside(
         &mut self,
         title: String,

@@ -9,7 +9,7 @@ use crate::Refusal;
 use crate::changes::in_order;
 use crate::document::{AnnotationKind, Document, LeftBranch, ProgressCallback};
 use crate::fork::{Fork, Forks};
-use crate::scenario::{Bookmark, Branch, MAX_BRANCHES, MAX_FRAMES, Scenario};
+use crate::scenario::{Bookmark, Branch, MAX_BRANCHES, MAX_FRAMES, Note, Scenario};
 use stillbase_query::{ByIdentity, QuickWork};
 
 impl Session {
@@ -104,8 +104,8 @@ impl Session {
         self.document.branches.iter().map(saved).collect()
     }
 
-    /// Adopts saved bookmarks and branches.
-    pub(super) fn keep_beside(&mut self, mut bookmarks: Vec<Bookmark>, branches: &[Branch]) {
+    /// Adopts saved bookmarks, notes and branches.
+    pub(super) fn keep_beside(&mut self, mut bookmarks: Vec<Bookmark>, notes: Vec<Note>, branches: &[Branch]) {
         bookmarks.sort_by(|a, b| a.time.total_cmp(&b.time));
         let left = |branch: &Branch| {
             let mut script = self.document.script.replaced(in_order(&branch.edits));
@@ -118,5 +118,6 @@ impl Session {
         };
         let branches = branches.iter().map(left).collect();
         (self.document.bookmarks, self.document.branches) = (Arc::new(bookmarks), Arc::new(branches));
+        self.document.notes = Arc::new(notes);
     }
 }

@@ -14,7 +14,7 @@ pub(super) struct HistoryStep {
     pub inverse: Option<Edit>,
     /// Description of the change.
     pub title: String,
-    /// Set if only bookmarks or only branches have changed.
+    /// Set if only bookmarks, only notes or only branches have changed.
     pub annotation: Option<AnnotationKind>,
 }
 

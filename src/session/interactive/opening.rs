@@ -42,9 +42,10 @@ impl Session {
     fn opened(mut scenario: Scenario, patient: bool, watch: ProgressCallback<'_>) -> Result<Self, Refusal> {
         let edits = std::mem::take(&mut scenario.edits);
         let (bookmarks, branches) = (std::mem::take(&mut scenario.bookmarks), std::mem::take(&mut scenario.branches));
+        let notes = std::mem::take(&mut scenario.notes);
         let opened = Self::replayed(scenario, in_order(&edits), patient, watch);
         let mut session = opened.map_err(|failed| failed.named(&edits))?;
-        session.keep_beside(bookmarks, &branches);
+        session.keep_beside(bookmarks, notes, &branches);
         Ok(session)
     }
 

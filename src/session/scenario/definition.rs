@@ -3,6 +3,7 @@
 use super::design::DesignBrief;
 use super::error::ScenarioError;
 use super::kept::{Bookmark, Branch};
+use super::note::Note;
 use super::task::Task;
 use super::tolerance::Tolerance;
 use crate::TimedEdit;
@@ -47,6 +48,8 @@ pub struct Scenario {
     pub edits: Vec<TimedEdit>,
     /// Bookmarks; no motion depends on them.
     pub bookmarks: Vec<Bookmark>,
+    /// Notes; no motion depends on them.
+    pub notes: Vec<Note>,
     /// Courses of the run that other edits have replaced.
     pub branches: Vec<Branch>,
 }
@@ -73,7 +76,7 @@ impl Scenario {
         if load.is_held(0.0, 0.5 * self.step) { load.held_by(&machine) } else { Ok(machine) }
     }
 
-    /// Returns the scenario without edits, bookmarks and branches.
+    /// Returns the scenario without edits, bookmarks, notes and branches.
     pub fn without_edits(&self) -> Self {
         let Self { name, title, summary, machine, plant, base, task, control, step, .. } = self;
         let Self { pose_acceleration, compare_b, duration, tolerance, design, .. } = self;
@@ -94,6 +97,7 @@ impl Scenario {
             design: design.clone(),
             edits: Vec::new(),
             bookmarks: Vec::new(),
+            notes: Vec::new(),
             branches: Vec::new(),
         }
     }

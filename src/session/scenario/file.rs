@@ -8,6 +8,7 @@ use super::definition::Scenario;
 use super::design::{DesignBrief, is_default};
 use super::error::ScenarioError;
 use super::kept::{Bookmark, StatedBranch, branches, check_bookmarks};
+use super::note::{StatedNote, notes};
 use super::own::ScenarioSettings;
 use super::task::Task;
 use super::tolerance::Tolerance;
@@ -53,6 +54,8 @@ struct File {
     edits: Vec<toml::Table>,
     #[serde(default, rename = "bookmark", skip_serializing_if = "Vec::is_empty")]
     bookmarks: Vec<Bookmark>,
+    #[serde(default, rename = "note", skip_serializing_if = "Vec::is_empty")]
+    notes: Vec<StatedNote>,
     #[serde(default, rename = "branch", skip_serializing_if = "Vec::is_empty")]
     branches: Vec<StatedBranch>,
 }
@@ -181,6 +184,7 @@ impl Scenario {
             design: file.design,
             edits,
             bookmarks: file.bookmarks,
+            notes: Vec::new(),
             branches: Vec::new(),
         };
         scenario.check(label).map_err(|error| scenario.with_line(error, text))?;
@@ -192,8 +196,9 @@ impl Scenario {
         };
         let sound = |edits: &[TimedEdit]| check_edits(&Self { edits: edits.to_vec(), ..scenario.without_edits() });
         check_bookmarks(&scenario.bookmarks).map_err(|wrong| wrong_entry("bookmark", wrong))?;
+        let notes = notes(file.notes, &scenario.machine).map_err(|wrong| wrong_entry("note", wrong))?;
         let branches = branches(file.branches, sound).map_err(|wrong| wrong_entry("branch", wrong))?;
-        scenario.branches = branches;
+        (scenario.notes, scenario.branches) = (notes, branches);
         Ok(scenario)
     }
 
@@ -252,6 +257,7 @@ impl Scenario {
             design,
             edits,
             bookmarks,
+            notes,
             branches,
         } = self.clone();
         let file = File {
@@ -272,6 +278,7 @@ impl Scenario {
             design,
             edits: edits.iter().map(TimedEdit::to_table).collect(),
             bookmarks,
+            notes: notes.into_iter().map(StatedNote::from).collect(),
             branches: branches.into_iter().map(StatedBranch::from).collect(),
         };
         toml::to_string(&file).expect("a scenario is plain data")

@@ -1,7 +1,7 @@
 //! Scenarios: a machine, its task, and the edits made while it runs; as TOML files.
 //!
-//! A saved session is a scenario with `[[edit]]` entries, each with the step at which it applies, with bookmarks and
-//! with branches.
+//! A saved session is a scenario with `[[edit]]` entries, each with the step at which it applies, with bookmarks,
+//! notes and branches.
 
 mod bounds;
 mod catalog;
@@ -12,9 +12,11 @@ mod error;
 mod file;
 mod kept;
 mod keys;
+mod note;
 mod own;
 mod points;
 mod settings;
+mod snap_point;
 mod task;
 mod tolerance;
 
@@ -28,6 +30,8 @@ pub use file::{FileContent, FindMachine, content};
 pub use kept::{Bookmark, Branch, MAX_BOOKMARKS, MAX_BRANCHES, MAX_NAME};
 pub use keys::{KEYS, key_of, keys, part_of};
 pub(crate) use keys::{effect_in, effect_of};
+pub use note::{MAX_NOTE, MAX_NOTES, Note, NoteTime};
 pub use settings::SettingError;
+pub use snap_point::{PathPoint, SnapPoint};
 pub use task::{MAX_POINTS, MOTION_TIME_RANGE, POINT_RANGE, POSE_CONSTANT_RANGE, Task, TaskChange, Value};
 pub use tolerance::{Amount, MAX_SAMPLES, Spread, Tolerance, default_spreads};
