@@ -164,7 +164,10 @@ impl Intro {
             card(&p).show(ui, |ui| {
                 ui.set_width(width - 28.0);
                 ui.horizontal(|ui| {
-                    ui.label(RichText::new(title).font(bold(14.0)).color(colour(p.ink)));
+                    ui.scope(|ui| {
+                        ui.set_max_width(width - 28.0 - DOTS_WIDTH_PT);
+                        ui.add(egui::Label::new(RichText::new(title).font(bold(14.0)).color(colour(p.ink))).wrap());
+                    });
                     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| dots(ui, &p, self.hint));
                 });
                 ui.add(egui::Label::new(RichText::new(why).font(plain(12.0)).color(colour(p.dim))).wrap());
@@ -232,6 +235,9 @@ impl Corner {
         Self::ALL.into_iter().min_by(|a, b| covered(a).total_cmp(&covered(b))).unwrap_or(Self::RightBottom)
     }
 }
+
+/// Space for the dots beside the title of a hint, points.
+const DOTS_WIDTH_PT: f32 = 64.0;
 
 fn dots(ui: &mut Ui, p: &Palette, present: usize) {
     for i in (0..HINT_COUNT).rev() {

@@ -3,6 +3,7 @@
 use egui::{Context, Grid, Key, KeyboardShortcut, Modifiers, RichText, ScrollArea, TextEdit, Ui};
 
 use super::actions::{ACTIONS, Action, ActionGroup, FINE_ACTIONS, GESTURES, shortcut_label};
+use super::guide::GuideStep;
 use super::notation;
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
@@ -28,6 +29,13 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
         || super::plots::is_looking(ctx);
     if !busy && pressed(&KeyboardShortcut::new(Modifiers::NONE, Key::Escape)) {
         commands.push(escape(view_state));
+    }
+    if view_state.open.guide.is_some() && !typing {
+        for (key, step) in [(Key::ArrowLeft, GuideStep::Back), (Key::ArrowRight, GuideStep::Forward)] {
+            if pressed(&KeyboardShortcut::new(Modifiers::ALT, key)) {
+                commands.push(ViewChange::Guide(step).into());
+            }
+        }
     }
     let allowed = |key: &KeyboardShortcut| !typing || works_while_typing(key);
     // Shortcuts with Shift or Alt come first, because a shortcut without them would match the same key.

@@ -315,5 +315,8 @@ fn caption(
     let unit = number.right_bottom() + vec2(8.0, -4.0);
     let name = notation::of(ui.ctx()).name("turning moment on the base", "n_B");
     let words = format!("N m   {name}; largest {} N m", signed(peak + 0.0, 2));
-    painter.text(unit, Align2::LEFT_BOTTOM, words, plain(12.0 * scale), colour(p.dim));
+    let room = rect.right() - unit.x - 8.0;
+    let words = painter.layout(words, plain(12.0 * scale), colour(p.dim), room.max(80.0));
+    let height = words.size().y;
+    painter.galley(unit - vec2(0.0, height), words, colour(p.dim));
 }

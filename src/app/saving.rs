@@ -25,17 +25,45 @@ pub(super) struct Saving {
     pub recovered: Option<PathBuf>,
     /// The file of the session: the one that this program wrote and from which the session was opened, or to which it
     /// was saved. A file written by hand is none, so that saving never drops its comments.
-    pub own: Option<PathBuf>,
+    pub own: Vec<OwnFile>,
     /// Recently opened and saved files, newest first.
     pub recent: Vec<PathBuf>,
     /// The file that the user has agreed to replace.
     pub replaces: Option<PathBuf>,
 }
 
+/// The file of a session, from an undo entry on: undoing the opening of a file leads back to the session before it, and
+/// to that session's file.
+#[derive(Clone, Debug)]
+pub(super) struct OwnFile {
+    /// Number of undo entries right after the session was opened.
+    since: usize,
+    file: Option<PathBuf>,
+}
+
 /// Maximum number of recent files.
 const MAX_RECENT_FILES: usize = 8;
 
 impl Saving {
+    /// Returns the file of the session that has this number of undo entries.
+    pub fn own_file(&self, undo_count: usize) -> Option<&PathBuf> {
+        self.own.iter().rev().find(|own| own.since <= undo_count)?.file.as_ref()
+    }
+
+    /// Begins a session that was opened with this file, or none, and has this number of undo entries.
+    pub fn begin_file(&mut self, undo_count: usize, file: Option<PathBuf>) {
+        self.own.retain(|own| own.since < undo_count);
+        self.own.push(OwnFile { since: undo_count, file });
+    }
+
+    /// Sets the file of the session that has this number of undo entries.
+    pub fn keep_file(&mut self, undo_count: usize, file: PathBuf) {
+        match self.own.iter_mut().rev().find(|own| own.since <= undo_count) {
+            Some(own) => own.file = Some(file),
+            None => self.own.push(OwnFile { since: 0, file: Some(file) }),
+        }
+    }
+
     /// Whether some changes are in no file of the user.
     pub fn is_unsaved(&self) -> bool {
         self.changes != self.saved
@@ -83,7 +111,12 @@ pub(super) fn keep_keys(ctx: &egui::Context) {
 
 /// Shows the question about a session left by an earlier program run, or about unsaved changes before the window
 /// closes.
-pub(super) fn show(ctx: &egui::Context, saving: &Saving, view_state: &ViewState, commands: &mut Vec<Command>) {
+pub(super) fn show(
+    ctx: &egui::Context,
+    (saving, undo_count): (&Saving, usize),
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) {
     if saving.asks {
         let changes = saving.changes - saving.saved;
         let words = match changes {
@@ -91,7 +124,7 @@ pub(super) fn show(ctx: &egui::Context, saving: &Saving, view_state: &ViewState,
             1 => "One change of this session is in no file.".to_owned(),
             n => format!("{n} changes of this session are in no file."),
         };
-        let (save, own) = (Command::Session(SessionCommand::Save), saving.own.is_some());
+        let (save, own) = (Command::Session(SessionCommand::Save), saving.own_file(undo_count).is_some());
         card(
             ctx,
             view_state,

@@ -65,6 +65,9 @@ pub fn news(
                 let said = notation::sentence(ui.ctx(), said);
                 ui.add(egui::Label::new(RichText::new(said).font(plain(12.0)).color(colour(p.dim))).wrap());
             }
+            if proposals.is_empty() {
+                return;
+            }
             ui.horizontal_wrapped(|ui| {
                 for proposal in proposals {
                     lamp::proposal(ui, proposal, view_state.status.refused.as_ref(), commands);

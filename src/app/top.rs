@@ -17,8 +17,8 @@ use super::{
 use stillbase_mechanics::machine::Machine;
 use stillbase_picture::scene::palette::Theme;
 use stillbase_query::Queries;
-use stillbase_session::Session;
 use stillbase_session::scenario::Scenario;
+use stillbase_session::{Session, for_machine};
 
 /// Draws this panel; `line` contains the marks of the time line, and the playback rate if it lags behind the
 /// requested one.
@@ -83,8 +83,7 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewStat
 /// Returns the scenario to open for a chosen machine: its built-in scenario, or else the present scenario with this
 /// machine and without edits.
 pub(super) fn with_machine(session: &Session, machine: &Machine) -> Scenario {
-    let alike = || Scenario { machine: machine.clone(), edits: Vec::new(), ..session.scenario().clone() };
-    Scenario::builtin(machine.name()).unwrap_or_else(alike)
+    for_machine(session.scenario(), machine)
 }
 
 fn scenarios(

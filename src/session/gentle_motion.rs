@@ -24,8 +24,7 @@ const DURATIONS_S: [f64; 4] = [2.0, 4.0, 8.0, 16.0];
 
 /// Returns a scenario with a small motion near the middle of the joint limits. The motion is reactionless if possible,
 /// otherwise along a straight line, or else prescribed as drive angles over time. If all trials fail, returns one of
-/// them; the
-/// planner or the run then reports the reason.
+/// them; the planner or the run then reports the reason.
 ///
 /// # Errors
 /// If no task can be stated for the machine.
@@ -60,6 +59,20 @@ pub fn gentle_motion(machine: &Machine) -> Result<Scenario, ScenarioError> {
         // The planner says what prevents the motion.
         Err(_) => Ok(refused.unwrap_or(swept)),
     }
+}
+
+/// Returns the scenario to open for another machine: its built-in one, else the present one if the machine can do its
+/// task, else the first built-in one of the same machine, else one made for it.
+pub fn for_machine(present: &Scenario, machine: &Machine) -> Scenario {
+    if let Some(own) = Scenario::builtin(machine.name()) {
+        return own;
+    }
+    let alike = Scenario { machine: machine.clone(), ..present.without_edits() };
+    if Run::new(&alike).is_ok() {
+        return alike;
+    }
+    let known = Scenario::builtins().find(|scenario| scenario.machine == *machine).cloned();
+    known.or_else(|| gentle_motion(machine).ok()).unwrap_or(alike)
 }
 
 /// Returns a motion of the drives over time, as TOML: it needs neither a pose for a point nor a path between points.

@@ -22,6 +22,7 @@ pub const TESTS: &[Test] = tests![
     the_file_menu_leads_to_every_file,
     a_session_keeps_its_file_and_what_the_window_showed,
     a_file_written_by_hand_is_not_written_over,
+    undone_opening_leads_back_to_the_file_before,
     what_is_no_scenario_is_refused_and_changes_nothing,
     a_file_that_is_dropped_is_opened,
     a_machine_that_is_dropped_gets_a_task,
@@ -177,6 +178,39 @@ fn a_session_keeps_its_file_and_what_the_window_showed() {
     other.run_steps(4);
     done(&other, "saved");
     assert!(fs::read_to_string(&file).expect("it is there").contains("time = 3.0"));
+}
+
+/// After the opening of another file is undone, Save writes the file of the session that is back, never the other one.
+fn undone_opening_leads_back_to_the_file_before() {
+    let folder = Folder::new("back");
+    let [mine, other] = ["mine.toml", "other.toml"].map(|name| folder.path(name));
+    let mut h = window("two-drive", Theme::Dark);
+    h.run_steps(2);
+    name_file(&mut h, Ask::Save, &other);
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    name_file(&mut h, Ask::Save, &mine);
+    let [text_of_mine, text_of_other] = [&mine, &other].map(|file| fs::read_to_string(file).expect("it is there"));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::set("task.time", 2.0)));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::EndGesture);
+    drop_on(&mut h, &other);
+    assert_eq!(session(&h).scenario().name, "two-drive");
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(4);
+    assert_eq!(session(&h).scenario().task.time, 2.0);
+    h.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    h.run_steps(4);
+    done(&h, "mine.toml");
+    assert_eq!(fs::read_to_string(&other).expect("it is there"), text_of_other);
+    assert_ne!(fs::read_to_string(&mine).expect("it is there"), text_of_mine);
+    // Forward again, it is the other file's session once more.
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Y);
+    h.run_steps(4);
+    let saved = fs::read_to_string(&mine).expect("it is there");
+    h.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    h.run_steps(4);
+    done(&h, "other.toml");
+    assert_eq!(fs::read_to_string(&mine).expect("it is there"), saved);
 }
 
 /// A scenario written by hand has comments that a saved session lacks: Save asks for a name.

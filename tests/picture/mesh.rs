@@ -180,3 +180,30 @@ fn the_workspace_of_four_drives_is_filled() {
     let fill = scene.solids.iter().find(|solid| solid.name == "workspace").expect("it is filled");
     assert!(scene.model.meshes[fill.mesh].triangles.len() > 100);
 }
+
+/// In draft quality a body has the same place and nearly the same volume: nothing that belongs to it is missing.
+#[test]
+fn coarse_bodies_are_those_of_the_machine() {
+    for machine in stillbase::mechanics::machine::builtins() {
+        let scenario = stillbase::session::for_machine(&Scenario::builtin("case-3").expect("built in"), machine);
+        let run = Run::new(&scenario).unwrap_or_else(|why| panic!("{}: {why}", machine.name()));
+        let scene = Stage::of(&run).scene(&run.frame(), &ViewOptions::default());
+        let mut count = 0;
+        for mesh in &scene.model.meshes {
+            let Some(coarse) = &mesh.coarse else { continue };
+            count += 1;
+            let (fine, rough) = (volume(mesh), volume(coarse));
+            assert!(rough > 0.95 * fine && rough <= fine * (1.0 + 1e-6), "{}: {rough} of {fine}", machine.name());
+            assert!(2 * coarse.triangles.len() < mesh.triangles.len());
+            for axis in 0..3 {
+                let ends = |mesh: &Mesh| {
+                    let all = mesh.positions.iter().map(|p| p[axis]);
+                    all.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+                };
+                let ([a, b], [c, d]) = (ends(mesh), ends(coarse));
+                assert!((a - c).abs().max((b - d).abs()) < 1e-6, "{}: axis {axis}", machine.name());
+            }
+        }
+        assert!(count >= machine.links().len(), "{}: {count} bodies", machine.name());
+    }
+}

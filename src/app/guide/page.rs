@@ -158,6 +158,9 @@ fn text(ui: &mut Ui, p: &Palette, spans: &[Span], size: f32, commands: &mut Vec<
     });
 }
 
+/// Width of the button that copies a block of code, points.
+const COPY_WIDTH_PT: f32 = 48.0;
+
 /// Draws a block of code with a button that copies it.
 fn block_of_code(ui: &mut Ui, p: &Palette, kind: &str, text: &str, (indent, i): (f32, usize)) -> egui::Response {
     let shown = ui.horizontal_top(|ui| {
@@ -166,11 +169,13 @@ fn block_of_code(ui: &mut Ui, p: &Palette, kind: &str, text: &str, (indent, i): 
         frame.inner_margin(8).show(ui, |ui| {
             ui.set_width(ui.available_width());
             let corner = ui.max_rect().right_top();
+            // The button covers no code.
+            ui.set_max_width(ui.available_width() - COPY_WIDTH_PT);
             ScrollArea::horizontal().id_salt(("code", i)).auto_shrink([false, true]).show(ui, |ui| {
                 let words = RichText::new(text.trim_end()).font(code(CODE_PT)).color(colour(p.ink));
                 ui.add(Label::new(words).extend());
             });
-            let at = egui::Rect::from_min_size(corner + vec2(-46.0, -2.0), vec2(48.0, 18.0));
+            let at = egui::Rect::from_min_size(corner + vec2(2.0 - COPY_WIDTH_PT, -2.0), vec2(COPY_WIDTH_PT, 18.0));
             let words = RichText::new("Copy").font(plain(11.0)).color(colour(p.dim));
             let words = egui::Button::new(words).wrap_mode(egui::TextWrapMode::Extend);
             let copy = ui.put(at, words.fill(colour(p.panel)).stroke((1.0, colour(p.line))));

@@ -30,6 +30,11 @@ pub fn show(ctx: &Context, queries: &Queries, view_state: &mut ViewState, comman
     let window = Window::new("Guide").open(&mut open).collapsible(false).default_size(SIZE_PT.min(room));
     let window = window.min_size(MIN_SIZE_PT.min(room)).max_size(room).pivot(egui::Align2::CENTER_CENTER);
     window.default_pos(ctx.content_rect().center()).show(ctx, |ui| {
+        // What does not fit is cut off: it must not make the window grow.
+        let rect = ui.available_rect_before_wrap();
+        ui.allocate_rect(rect, egui::Sense::hover());
+        let ui = &mut ui.new_child(egui::UiBuilder::new().max_rect(rect));
+        ui.set_clip_rect(rect.expand(2.0).intersect(ui.clip_rect()));
         bar(ui, &view, &p, commands).into_iter().for_each(|text| view.search_text = text);
         ui.add_space(4.0);
         let wide = ui.available_width() >= MIN_WIDTH_WITH_LIST_PT;

@@ -147,7 +147,7 @@ impl AppState {
             SessionCommand::Case(name) => self.open_case(name),
             SessionCommand::OpenFile(path) => self.open_file(path),
             SessionCommand::Recover(what) => self.recover(what),
-            SessionCommand::Save => match self.saving.own.clone() {
+            SessionCommand::Save => match self.saving.own_file(self.session.undo_count()).cloned() {
                 Some(file) => {
                     self.saving.replaces = Some(file.clone());
                     self.save(&file)?;

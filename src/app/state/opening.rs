@@ -34,7 +34,9 @@ impl AppState {
                     _ => None,
                 };
                 self.take_over(session, Opening { message, ..opening });
-                self.saving.own = own;
+                if own.is_some() {
+                    self.saving.begin_file(self.session.undo_count(), own);
+                }
                 if let Some(left_off) = left_off {
                     left_off.show(&mut self.view_state, self.session.run());
                 }
@@ -58,7 +60,6 @@ impl AppState {
 
     pub(super) fn take_over(&mut self, next: Session, Opening { plays, closes, message: news, file, .. }: Opening) {
         self.saving.opened();
-        self.saving.own = None;
         match file {
             Some(SessionFile::Own(file)) => self.saving.uses(&file),
             // A recovered session is in no file of the user yet.
@@ -70,6 +71,9 @@ impl AppState {
         }
         let old = self.session.clone();
         self.session.take_over(next);
+        if self.aside.is_none() {
+            self.saving.begin_file(self.session.undo_count(), None);
+        }
         self.view_state.open.note = None;
         // Points of another machine may not exist.
         if old.scenario().machine != self.session.scenario().machine {
@@ -117,7 +121,8 @@ impl AppState {
 
     /// Opens a file.
     pub(super) fn open_file(&mut self, path: PathBuf) {
-        let message = Some(format!("opened {}", path.display()));
+        let back = if self.saving.is_unsaved() { "; Ctrl Z leads back to unsaved changes" } else { "" };
+        let message = Some(format!("opened {}{back}", path.display()));
         let file = Some(SessionFile::Own(path.clone()));
         self.open(SessionSource::File(path), Opening { closes: true, message, file, ..Opening::default() });
     }

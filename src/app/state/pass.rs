@@ -132,7 +132,7 @@ impl AppState {
         status::news(ui.ctx(), scene, &self.session, &self.view_state, proposals, &mut commands);
         guide::show(ui.ctx(), &queries, &mut self.view_state, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);
-        saving::show(ui.ctx(), &self.saving, &self.view_state, &mut commands);
+        saving::show(ui.ctx(), (&self.saving, self.session.undo_count()), &self.view_state, &mut commands);
         let recent = &self.saving.recent;
         finder::show(ui.ctx(), &self.session, &self.signals(), &facts, recent, &mut self.view_state, &mut commands);
         notes::show(ui.ctx(), &self.session, &self.views, &mut self.view_state, &mut commands);

@@ -46,7 +46,7 @@ impl AppState {
             if let (Ok(_), Some((changes, file))) = (&said, of) {
                 app_state.saving.saved = changes;
                 app_state.saving.uses(&file);
-                app_state.saving.own = Some(file);
+                app_state.saving.keep_file(app_state.own_session().undo_count(), file);
             }
             app_state.show_outcome(said.map(Some));
         });

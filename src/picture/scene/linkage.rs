@@ -453,7 +453,11 @@ fn reach_of(machine: &Machine) -> f64 {
     machine.reach().max(1e-6)
 }
 
+/// Adds a shifted mesh to another one, and its coarse mesh to the coarse one.
 fn append(to: &mut Mesh, other: &Mesh, shift: [f64; 3]) {
+    if let Some(coarse) = &mut to.coarse {
+        append(coarse, other.coarse.as_deref().unwrap_or(other), shift);
+    }
     let first = to.positions.len() as u32;
     to.positions.extend(other.positions.iter().map(|p| [0, 1, 2].map(|i| p[i] + shift[i] as f32)));
     to.normals.extend(&other.normals);
