@@ -102,14 +102,15 @@ impl AppState {
         }
         self.view_state.pointed.panel_object = place::lit(ui.ctx());
         self.view_state.pointed.lit_links = place::lit_links(ui.ctx());
-        if self.view_state.arrangement.now().plots.shown && !designs {
+        if !designs && !presents {
+            let has_panel = self.view_state.arrangement.now().plots.shown;
             let beside = contrast.and_then(Intro::straight_comparison).or(self.comparison.as_ref());
             if std::mem::take(&mut self.focuses_search) {
                 plots::focus(ui.ctx());
             }
             let (session, signals, view_state) = (&self.session, &self.signals(), &self.view_state);
             let what = plots::DisplayContext { session, queries: &queries, signals, comparison: beside, view_state };
-            let width = plots::show(ui, &what, &mut commands);
+            let width = plots::show(ui, &what, has_panel, &mut commands);
             self.view_state.arrangement.now_mut().plots.width = width;
         }
         let content = viewport::SceneContent {
