@@ -287,6 +287,7 @@ pub const ACTIONS: &[Action] = actions![
     View, "Exaggerate the motion of the base, or show it as it is" = "enlarge magnify shake", [on(PLAIN, Key::X)], "left panel, base" turns Exaggeration;
     View, "Panel of settings, shown or hidden" = "left sidebar parameters", [on(PLAIN, Key::Num8)], "tool bar, layout" turns Side;
     View, "Panel of plots, shown or hidden" = "right sidebar charts graphs", [on(PLAIN, Key::Num9)], "tool bar, layout" turns Plots;
+    View, "All settings in a window of their own" = "every key parameter list", [], "left panel" turns Settings;
     View, "Nothing but the scene, or all panels" = "full screen hide", [on(PLAIN, Key::Num0)], "keyboard" turns Panels;
     View, "Settings and plots change sides", [on(PLAIN, Key::Num4)], "tool bar, layout" turns Swapped;
     View, "Explore: settings, scene and plots", [on(PLAIN, Key::Num5)], "tool bar, layout", |_, _| {

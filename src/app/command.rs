@@ -144,6 +144,8 @@ pub enum Switch {
     Snapshots,
     /// The card of keys.
     Help,
+    /// All settings in a window of their own.
+    Settings,
     /// The display of repaint times.
     Times,
     /// The list of commands.

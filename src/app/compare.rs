@@ -1,6 +1,6 @@
 //! The table of runs at the bottom: the same task done in several ways, and kept runs.
 
-use super::notation;
+use super::{fit, notation};
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, ComparisonCommand, SessionCommand, Switch, ViewChange, ViewState, WindowCommand};
@@ -27,7 +27,7 @@ pub fn show(ui: &mut Ui, comparison: &Comparison, view_state: &ViewState, comman
                 buttons(ui, comparison, commands);
                 // The explanation fills the space between title and buttons.
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    ui.add(Label::new(RichText::new(words).font(plain(11.5)).color(colour(p.dim))).truncate());
+                    fit::label(ui, words, plain(11.5), colour(p.dim));
                 });
             });
         });

@@ -68,6 +68,7 @@ fn escape(view_state: &ViewState) -> Command {
     match open {
         OpenDialogs { dialog: Some(_), .. } => ViewChange::Dialog(None).into(),
         OpenDialogs { finder: Some(_), .. } => ViewChange::Switch(Switch::Finder, false).into(),
+        OpenDialogs { settings: true, .. } => ViewChange::Switch(Switch::Settings, false).into(),
         OpenDialogs { help: true, .. } => ViewChange::Switch(Switch::Help, false).into(),
         _ if matches!(tool, Tool::Draw(_)) => ViewChange::Switch(Switch::Drawing, false).into(),
         _ if view_state.mark.is_some() => ViewChange::Mark(None).into(),

@@ -1,18 +1,19 @@
-//! The panel on the left: pose constant, limits, motion, plant, base, control, balance, and all settings by key.
+//! The panel on the left: pose constant, limits, motion, plant, base, control, balance, and all settings.
 
 mod all;
 mod base;
 mod control;
 mod fold;
 mod plant;
+mod setting;
 
-pub use all::look_up;
+pub use all::{look_up, window};
 
 use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
 use super::facts::ScenarioFacts;
 use super::theme::{bold, colour, plain};
-use super::notation;
+use super::{fit, notation};
 use super::widgets::{NumberRow, name, note, section, send, unit};
 use super::{Command, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, path, place, set_b};
 use stillbase_mechanics::machine::MAX_ANGLE;
@@ -64,7 +65,7 @@ pub fn show(
             base::show(ui, session, view_state, commands);
             control::show(ui, session, &p, commands);
             balance(ui, session, facts, &p);
-            all::show(ui, facts, &p, commands);
+            all::show(ui, facts, &p, view_state.open.settings, commands);
         });
     });
     view_state.arrangement.now().side.stored_width(shown.response.rect.width(), usual)
@@ -171,9 +172,9 @@ fn pose_constant(
         }
     }
     // Always one line, so that nothing below moves.
-    let words = RichText::new(format!("in motion it costs up to {:.2} N m", facts.price)).font(plain(11.0));
+    let words = format!("in motion it costs up to {:.2} N m", facts.price);
     let tip = "The moment of D₁ b̈ on a fixed base; one that moves gives way";
-    ui.add(egui::Label::new(words.color(colour(p.dim))).truncate()).on_hover_text(tip);
+    fit::label(ui, &words, plain(11.0), colour(p.dim)).on_hover_text(tip);
     let mut shown = scenario.compare_b.is_some();
     let mut other = scenario.compare_b.unwrap_or(b + 0.5 * period);
     ui.horizontal(|ui| {
@@ -334,7 +335,7 @@ fn fact(
         ui.label(RichText::new(value).color(colour(tone))).on_hover_text(tip);
         // The name gets the space that is left, and is shortened if it is too long.
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-            ui.add(egui::Label::new(RichText::new(label).font(plain(12.5))).truncate()).on_hover_text(tip);
+            fit::label(ui, label, plain(12.5), colour(p.ink)).on_hover_text(tip);
         });
     });
 }

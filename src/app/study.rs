@@ -4,6 +4,7 @@
 use egui::{Align, Color32, Frame, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui, vec2};
 use egui_plot::{Bar, BarChart, FilledArea, GridMark, Line, LineStyle, Plot, PlotPoints, VLine};
 
+use super::fit;
 use super::plots::{base_plot, small_axes};
 use super::theme::{bold, colour, plain};
 use super::widgets::{NumberRow, name, send};
@@ -41,7 +42,7 @@ pub fn show(
                     commands.push(ViewChange::Switch(Switch::Study, false).into());
                 }
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    ui.add(Label::new(RichText::new(words).font(plain(11.5)).color(colour(p.dim))).truncate());
+                    fit::label(ui, &words, plain(11.5), colour(p.dim));
                 });
             });
         });
@@ -102,7 +103,7 @@ fn title(ui: &mut Ui, p: &Palette, title: &str, rest: &str) {
     ui.horizontal(|ui| {
         ui.set_height(16.0);
         ui.label(RichText::new(title).font(bold(12.5)));
-        ui.add(Label::new(RichText::new(rest).font(plain(11.5)).color(colour(p.dim))).truncate());
+        fit::label(ui, rest, plain(11.5), colour(p.dim));
     });
 }
 

@@ -29,6 +29,7 @@ impl ViewState {
             Switch::Pins => self.pins,
             Switch::Snapshots => self.snapshots,
             Switch::Help => self.open.help,
+            Switch::Settings => self.open.settings,
             Switch::Times => self.open.times,
             Switch::Finder => self.open.finder.is_some(),
             Switch::Equations => {
@@ -74,6 +75,7 @@ impl ViewState {
             Switch::Pins => self.pins = on,
             Switch::Snapshots => self.snapshots = on,
             Switch::Help => self.open.help = on,
+            Switch::Settings => self.open.settings = on,
             Switch::Times => self.open.times = on,
             Switch::Finder => self.open.finder = on.then(Finder::default),
             Switch::Equations => {

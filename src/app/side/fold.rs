@@ -2,7 +2,7 @@
 
 use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
-use crate::place;
+use crate::{fit, place};
 use crate::theme::{bold, colour, plain};
 use crate::widgets::{NumberRow, name, send, undoable_edit};
 use crate::{Command, SessionCommand};
@@ -77,7 +77,7 @@ pub fn fold(
                 undoable_edit(commands, edit);
             }
             let ink = colour(if differs { p.amber } else { p.dim });
-            ui.add(egui::Label::new(RichText::new(summary).font(plain(11.0)).color(ink)).truncate());
+            fit::label(ui, summary, plain(11.0), ink);
         });
     });
     // A section that was open at first stays open when all its values are defaults again.

@@ -102,8 +102,8 @@ impl AppState {
         }
         self.view_state.pointed.panel_object = place::lit(ui.ctx());
         self.view_state.pointed.lit_links = place::lit_links(ui.ctx());
-        if !designs && !presents {
-            let has_panel = self.view_state.arrangement.now().plots.shown;
+        let has_panel = self.view_state.arrangement.now().plots.shown;
+        if !designs && (has_panel || !presents) {
             let beside = contrast.and_then(Intro::straight_comparison).or(self.comparison.as_ref());
             if std::mem::take(&mut self.focuses_search) {
                 plots::focus(ui.ctx());
@@ -125,6 +125,7 @@ impl AppState {
         let proposals = self.proposals();
         let proposals = proposals.as_ref().map_or(&[][..], |known| known);
         status::news(ui.ctx(), scene, &self.session, &self.view_state, proposals, &mut commands);
+        side::window(ui.ctx(), &facts, &self.view_state, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);
         saving::show(ui.ctx(), &self.saving, &self.view_state, &mut commands);
         let recent = &self.saving.recent;
