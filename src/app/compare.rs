@@ -147,7 +147,7 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &ComparisonEntry, columns: &[H
         let (rect, _) = ui.allocate_exact_size(egui::vec2(30.0, 12.0), Sense::hover());
         if shown {
             let (dash, strength) = dashes(i);
-            sample(ui, rect, dash, colour(faded(p.ink, strength)));
+            sample(ui, rect, dash, colour(faded(p.run(i), strength)));
         }
     });
     ui.horizontal(|ui| {
@@ -194,7 +194,7 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &ComparisonEntry, columns: &[H
 }
 
 /// Draws a short sample of a line in the style of the plots.
-fn sample(ui: &Ui, rect: egui::Rect, dash: Option<[f32; 2]>, tone: egui::Color32) {
+pub(super) fn sample(ui: &Ui, rect: egui::Rect, dash: Option<[f32; 2]>, tone: egui::Color32) {
     let ends = [rect.left_center(), rect.right_center()];
     let stroke = egui::Stroke::new(1.6, tone);
     let shapes = match dash {

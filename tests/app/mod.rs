@@ -11,12 +11,15 @@ mod jobs;
 mod layout;
 mod notation;
 mod panel;
+mod plot_places;
 mod plots;
 mod pointer;
 mod refusal;
+mod room;
 mod run;
 mod saving;
 mod screen;
+mod settings;
 mod sizes;
 mod studio;
 mod time;
@@ -32,7 +35,7 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 20] = [
+pub const TESTS: [&[Test]; 23] = [
     saving::TESTS,
     family::TESTS,
     files::TESTS,
@@ -45,10 +48,13 @@ pub const TESTS: [&[Test]; 20] = [
     layout::TESTS,
     notation::TESTS,
     panel::TESTS,
+    plot_places::TESTS,
     plots::TESTS,
     pointer::TESTS,
     refusal::TESTS,
+    room::TESTS,
     run::TESTS,
+    settings::TESTS,
     sizes::TESTS,
     studio::TESTS,
     time::TESTS,

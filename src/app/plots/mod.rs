@@ -5,6 +5,7 @@ mod cell;
 mod curve;
 mod header;
 mod hover;
+mod legend;
 mod menu;
 mod place;
 mod prepared;
@@ -91,6 +92,7 @@ pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, has_panel: bool, commands: &
     let made = panel.frame(frame).show(ui, |ui| {
         search::show(ui, what, &plots, SCROLL_BAR_WIDTH_PT as i8, commands);
         let room = ui.available_width() - SCROLL_BAR_WIDTH_PT;
+        legend::show(ui, what, room);
         let columns = columns_in(room);
         let width = (room - (columns - 1) as f32 * COLUMN_GAP_PT) / columns as f32;
         let lines = prepared::of_width(ui.ctx(), what, &plots, width);
