@@ -30,9 +30,16 @@ use stillbase_settings::number::{significant, subscript};
 const WIDTH_FRACTION: f32 = 0.17;
 const MIN_WIDTH_PT: f32 = 262.0;
 const MAX_WIDTH_PT: f32 = 320.0;
+/// The same in a window that is narrow, so that the scene keeps room.
+const NARROW_WIDTH_PT: f32 = 244.0;
 
 /// Space for the scroll bar, which grows when the pointer is near, points.
 pub(super) const SCROLL_BAR_WIDTH: f32 = 14.0;
+
+/// Whether the window is so narrow that both panels are narrower than usual.
+pub(super) fn is_narrow(ui: &Ui) -> bool {
+    ui.ctx().content_rect().width() < 1100.0
+}
 
 /// Draws this panel; returns the width set by the user, points, if any.
 pub fn show(
@@ -44,7 +51,8 @@ pub fn show(
 ) -> Option<f32> {
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 16, right: 2, top: 12, bottom: 8 });
-    let usual = (WIDTH_FRACTION * ui.ctx().content_rect().width()).clamp(MIN_WIDTH_PT, MAX_WIDTH_PT).round();
+    let least = if is_narrow(ui) { NARROW_WIDTH_PT } else { MIN_WIDTH_PT };
+    let usual = (WIDTH_FRACTION * ui.ctx().content_rect().width()).clamp(least, MAX_WIDTH_PT).round();
     let salt = ("side", usual as u32, view_state.arrangement.swapped);
     let panel = if view_state.arrangement.swapped { Panel::right(salt) } else { Panel::left(salt) };
     let panel = panel

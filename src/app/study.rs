@@ -5,7 +5,7 @@ use egui::{Align, Color32, Frame, Label, Layout, Margin, Panel, RichText, Scroll
 use egui_plot::{Bar, BarChart, FilledArea, GridMark, Line, LineStyle, Plot, PlotPoints, VLine};
 
 use super::fit;
-use super::plots::{base_plot, small_axes};
+use super::plots::{base_plot, marks, small_axes, spaced};
 use super::theme::{bold, colour, plain};
 use super::widgets::{NumberRow, name, send};
 use super::{Command, Switch, ViewChange, ViewState};
@@ -190,12 +190,13 @@ pub(super) fn bare<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
 /// Plots the deviation of n_B from that of the nominal machine, N m, over time, s. It shows percentiles 5 to 95 and
 /// 25 to 75 over the machines, mean, and first-order standard deviation.
 fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
-    title(ui, p, "Moment off nominal, n_B", "5–95, 25–75 %; dashed σ");
+    title(ui, p, "Moment off nominal", "5–95, 25–75 %; dashed σ");
     let (x, band) = (&study.bands.time, &study.bands.moment);
     let tone = colour(p.reaction);
     let end = x.last().copied().unwrap_or(1.0) + x.first().copied().unwrap_or(0.0);
     small_axes(ui);
     let axes = bare("bands", p, ui.available_height()).show_axes([true, true]);
+    let axes = axes.x_grid_spacer(|g| marks(&spaced(g.bounds.0, g.bounds.1), 1.0));
     let response = axes.x_axis_label("time, s").y_axis_label("n_B, N m").show(ui, |plot| {
         plot.set_plot_bounds_x(0.0..=end);
         for (i, strength) in [(0, 0.16), (1, 0.28)] {
@@ -223,7 +224,7 @@ fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
 /// Plots the histogram of peak |n_B|, N m, over the machines.
 fn peaks(ui: &mut Ui, p: &Palette, study: &Study) {
     let [_, half, most, nearly] = study.moment.values[..] else { return };
-    title(ui, p, "Peak moment, |n_B|", &format!("95 % below {most:.4} N m"));
+    title(ui, p, "Peak moment", &format!("95 % below {most:.4} N m"));
     let histogram = &study.moment_histogram;
     let within = |x: f64| study.tolerance.moment_limit.is_none_or(|limit| x <= limit);
     let bars = histogram.counts.iter().zip(histogram.edges.windows(2)).map(|(count, w)| {
@@ -234,6 +235,7 @@ fn peaks(ui: &mut Ui, p: &Palette, study: &Study) {
     let bars: Vec<Bar> = bars.collect();
     small_axes(ui);
     let axes = bare("peaks", p, ui.available_height()).show_axes([true, true]).include_x(0.0).include_y(0.0);
+    let axes = axes.x_grid_spacer(|g| marks(&spaced(g.bounds.0, g.bounds.1), 1.0));
     let response = axes.x_axis_label("peak of |n_B|, N m").y_axis_label("machines").show(
         ui,
         |plot| {
@@ -282,7 +284,7 @@ fn contributions(ui: &mut Ui, p: &Palette, study: &Study) {
 /// Plots the amplitude spectral densities of base force, N/√Hz, and base moment, N m/√Hz, over frequency, Hz; both
 /// axes are logarithmic.
 fn spectrum(ui: &mut Ui, p: &Palette, study: &Study) {
-    title(ui, p, "Spectrum", "moment red; forces grey, f_y dashed");
+    title(ui, p, "Spectrum", "moment red, forces grey");
     let Some([fx, fy, n]) = &study.spectra else {
         ui.label(RichText::new("this run is too short for it").color(colour(p.dim)));
         return;

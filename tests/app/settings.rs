@@ -7,7 +7,7 @@ use stillbase::app::{Switch, ViewChange};
 use stillbase::picture::notation::{AngleUnit, LengthUnit, Notation};
 use stillbase::picture::scene::palette::Theme;
 
-use super::{Window, session, type_into, window};
+use super::{Window, session, window};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![all_settings_have_a_window, settings_are_in_the_users_units];
@@ -34,16 +34,26 @@ fn seek(h: &mut Window, text: &str) {
     h.run_steps(3);
 }
 
+fn write(h: &mut Window, key: &str, text: &str) {
+    h.get_by_role_and_label(Role::TextInput, key).focus();
+    h.run_steps(2);
+    h.key_press_modifiers(egui::Modifiers::COMMAND, Key::A);
+    h.event(egui::Event::Text(text.into()));
+    h.run_steps(2);
+    h.key_press(Key::Enter);
+    h.run_steps(6);
+}
+
 fn all_settings_have_a_window() {
     let mut h = opened(vec2(1920.0, 1080.0));
     let place = |h: &Window, key: &str| h.get_by_role_and_label(Role::TextInput, key).rect();
     // In columns: the first settings of a part stand beside one another.
     let [first, law] = ["task.kind", "task.law"].map(|key| place(&h, key));
     assert!(law.left() > first.right() + 200.0, "{first} and {law}");
-    assert!(h.query_by_label("duration from A to B").is_some() && h.query_by_label("task.time").is_some());
+    assert!(h.query_by_label("duration from A to B").is_some() && h.query_all_by_label("task.time").count() == 2);
     seek(&mut h, "mass of link 9");
     assert_eq!(h.query_all_by_label("mass of link 9").count(), 3, "of the machine, its true one, and its bounds");
-    type_into(&mut h, "link.9.mass", "0.5");
+    write(&mut h, "link.9.mass", "0.5");
     let mass = session(&h).scenario().value("link.9.mass").and_then(|value| value.as_float());
     assert_eq!(mass, Some(0.5));
     seek(&mut h, "cheese");
@@ -78,13 +88,7 @@ fn settings_are_in_the_users_units() {
     assert_eq!(session(&h).scenario().task.b, before);
     seek(&mut h, "task.to");
     assert_eq!(value(&h, "task.to"), "550,900");
-    h.get_by_role_and_label(Role::TextInput, "task.to").focus();
-    h.run_steps(2);
-    h.key_press_modifiers(egui::Modifiers::COMMAND, Key::A);
-    h.event(egui::Event::Text("540, 0.9 m".into()));
-    h.run_steps(2);
-    h.key_press(Key::Enter);
-    h.run_steps(6);
+    write(&mut h, "task.to", "540, 0.9 m");
     let points = session(&h).scenario().task.points();
     let last = points.last().expect("B");
     assert!((last.re - 0.54).abs() < 1e-12 && (last.im - 0.9).abs() < 1e-12, "{last}");

@@ -3,6 +3,7 @@
 use egui::Ui;
 
 use super::shown::{self, DisplayContext};
+use super::header::STATISTICS_HEIGHT;
 use super::{curve, header, hover};
 use crate::Command;
 use stillbase_picture::charts::choice::Plot;
@@ -10,6 +11,9 @@ use stillbase_picture::charts::drawn::PlotLines;
 use stillbase_picture::charts::figure::PlotContext;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_simulation::frame::Frame;
+
+/// Minimum height of a plot, points.
+const MIN_HEIGHT_PT: f32 = 60.0;
 
 /// The frames that all plots show.
 pub struct Frames<'a> {
@@ -37,21 +41,24 @@ impl<'a> Frames<'a> {
     }
 }
 
-/// Draws a plot; `has_heading` says whether its title is not on display elsewhere. Returns the time under the pointer,
-/// s, if the pointer is over the plot.
+/// Draws a plot in the panel, of a height, points, or else with its title on display elsewhere, in all the height that
+/// there is. Returns the time under the pointer, s, if the pointer is over the plot.
 pub fn show(
     ui: &mut Ui,
     what: &DisplayContext<'_>,
     plot: &Plot<'_>,
     drawn: &PlotLines,
     look: &PlotContext<'_>,
-    height: f32,
-    has_heading: bool,
+    height: Option<f32>,
     commands: &mut Vec<Command>,
 ) -> Option<f64> {
-    header::show(ui, plot, drawn, look, has_heading, commands);
+    header::show(ui, plot, drawn, look, height.is_some(), commands);
+    let has_statistics = what.view_state.charts.statistics;
+    let rows = if has_statistics { plot.shown().count() } else { 0 };
+    let below = (STATISTICS_HEIGHT + ui.spacing().item_spacing.y) * rows as f32;
+    let height = height.unwrap_or_else(|| (ui.available_height() - below).max(MIN_HEIGHT_PT));
     let over = curve::show(ui, what, plot, drawn, look, height, commands);
-    if what.view_state.charts.statistics {
+    if has_statistics {
         header::statistics(ui, plot, drawn, look);
     }
     over

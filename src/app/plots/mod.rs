@@ -20,6 +20,7 @@ mod written;
 use egui::{Frame, Margin, Panel, Rect, Ui, vec2};
 
 use self::header::{HEADER_HEIGHT, STATISTICS_HEIGHT};
+use super::side::is_narrow;
 use super::{Command, Layout};
 use stillbase_picture::charts::choice::Plot;
 use stillbase_picture::charts::drawn::PlotLines;
@@ -36,6 +37,8 @@ pub use written::written;
 const WIDTH_FRACTION: f32 = 0.233;
 const MIN_WIDTH_PT: f32 = 272.0;
 const MAX_WIDTH_PT: f32 = 640.0;
+/// Default width in a window that is narrow, points.
+const NARROW_WIDTH_PT: f32 = 240.0;
 
 /// Fraction and upper bound, points, in the layout that compares runs.
 const COMPARE_WIDTH_FRACTION: f32 = 0.45;
@@ -48,6 +51,9 @@ const MAX_COLUMNS: f32 = 4.0;
 const ITEM_GAP_PT: f32 = 8.0;
 const COLUMN_GAP_PT: f32 = 12.0;
 
+/// Minimum width that the user can give the panel, points.
+const MIN_PANEL_PT: f32 = 232.0;
+
 /// Space for the scroll bar, which grows when the pointer is near, points.
 const SCROLL_BAR_WIDTH_PT: f32 = 12.0;
 
@@ -58,7 +64,8 @@ fn usual(ui: &Ui, layout: Layout) -> f32 {
     } else {
         (WIDTH_FRACTION, MAX_WIDTH_PT)
     };
-    (share * ui.ctx().content_rect().width()).clamp(MIN_WIDTH_PT, widest).round()
+    let least = if is_narrow(ui) { NARROW_WIDTH_PT } else { MIN_WIDTH_PT };
+    (share * ui.ctx().content_rect().width()).clamp(least, widest).round()
 }
 
 /// Returns the number of columns in which plots fill a width, points.
@@ -87,7 +94,7 @@ pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, has_panel: bool, commands: &
     // remembers no longer applies.
     let salt = ("plots", usual as u32, arrangement.swapped);
     let panel = if arrangement.swapped { Panel::left(salt) } else { Panel::right(salt) };
-    let panel = panel.default_size(stored.unwrap_or(usual).min(most)).size_range(260.0..=most).resizable(true);
+    let panel = panel.default_size(stored.unwrap_or(usual).min(most)).size_range(MIN_PANEL_PT..=most).resizable(true);
     let frame = Frame::new().inner_margin(Margin { left: 14, right: 2, top: 10, bottom: 8 });
     let made = panel.frame(frame).show(ui, |ui| {
         search::show(ui, what, &plots, SCROLL_BAR_WIDTH_PT as i8, commands);
@@ -135,7 +142,7 @@ fn panel_plots(
             let ui = &mut uis[i % columns];
             ui.spacing_mut().item_spacing.x = ITEM_GAP_PT;
             let look = frames.look(&p);
-            let shown = ui.scope(|ui| cell::show(ui, what, plot, drawn, &look, height + BOTTOM_MARGIN, true, commands));
+            let shown = ui.scope(|ui| cell::show(ui, what, plot, drawn, &look, Some(height + BOTTOM_MARGIN), commands));
             over = shown.inner.or(over);
             places.push((plot.name.clone(), shown.response.rect));
             ui.add_space(4.0);

@@ -3,15 +3,14 @@
 use egui::{Context, Id, Rect, RichText, Window, pos2, vec2};
 
 use super::cell;
-use super::header::{HEADER_HEIGHT, STATISTICS_HEIGHT};
 use super::shown::DisplayContext;
 use crate::theme::bold;
 use crate::{Command, ViewChange};
 use stillbase_picture::charts::choice::{Plot, PlotChange};
 use stillbase_picture::charts::drawn::PlotLines;
 
-/// Minimum width and height of the content of a window, points.
-const MIN_SIZE_PT: [f32; 2] = [240.0, 120.0];
+/// Minimum width and height of a window, points.
+const MIN_SIZE_PT: [f32; 2] = [260.0, 160.0];
 /// Least move of a window that is saved, points.
 const MIN_MOVE_PT: f32 = 0.5;
 
@@ -55,22 +54,21 @@ fn one(
         known = KnownWindow { saved: window, opened: known.opened + 1 };
     }
     let [left, top, width, height] = window;
-    let (mut open, mut over, mut size) = (true, None, vec2(width, height));
+    let (mut open, mut over) = (true, None);
+    let frame = egui::Frame::window(&ctx.global_style()).inner_margin(8);
     let made = Window::new(RichText::new(plot.heading()).font(bold(12.5)))
         .id(id.with(known.opened))
         .open(&mut open)
         .collapsible(false)
-        .default_rect(Rect::from_min_size(pos2(left, top), size))
+        .frame(frame)
+        .title_frame(frame)
+        .default_rect(Rect::from_min_size(pos2(left, top), vec2(width, height)))
         .min_size(MIN_SIZE_PT)
         .show(ctx, |ui| {
-            size = ui.available_size();
             let frames = cell::Frames::of(ui, what);
             let palette = what.view_state.palette();
-            let rows = if what.view_state.charts.statistics { plot.shown().count() } else { 0 };
-            let taken = HEADER_HEIGHT + 8.0 + (STATISTICS_HEIGHT + 3.0) * rows as f32;
-            let height = (size.y - taken).max(60.0);
             ui.spacing_mut().item_spacing.y = 3.0;
-            over = cell::show(ui, what, plot, drawn, &frames.look(&palette), height, false, commands);
+            over = cell::show(ui, what, plot, drawn, &frames.look(&palette), None, commands);
         });
     let mut change = |window| commands.push(ViewChange::Charts(PlotChange::Window(plot.name.clone(), window)).into());
     if !open {
@@ -78,8 +76,8 @@ fn one(
     } else if let Some(made) = made
         && !ctx.input(|i| i.pointer.any_down())
     {
-        let at = made.response.rect.min;
-        let now = [at.x, at.y, size.x, size.y];
+        let rect = made.response.rect;
+        let now = [rect.left(), rect.top(), rect.width(), rect.height()];
         if differs(known.saved, now) {
             known.saved = now;
             change(Some(now));

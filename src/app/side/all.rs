@@ -89,13 +89,14 @@ pub fn window(
     }
     let p = view_state.palette();
     let mut open = true;
-    let size = ctx.content_rect().size() - vec2(80.0, 130.0);
+    // Right of the tool bar, between the bars at the top and at the bottom.
+    let size = ctx.content_rect().size() - vec2(96.0, 104.0);
     egui::Window::new(TITLE)
         .id(egui::Id::unique("window of all settings"))
         .open(&mut open)
         .collapsible(false)
         .default_size(size.max(vec2(320.0, 240.0)))
-        .default_pos([40.0, 60.0])
+        .default_pos([72.0, 56.0])
         .min_size([320.0, 240.0])
         .show(ctx, |ui| {
             let (_, word) = search(ui);

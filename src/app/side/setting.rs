@@ -17,6 +17,8 @@ use stillbase_settings::key::{Key, KeyType};
 use stillbase_settings::quantity::{self, QuantityError};
 use stillbase_settings::range::shortened;
 
+/// Least width of the text in a field, points.
+const MIN_FIELD_PT: f32 = 72.0;
 /// Number of significant digits of a value in another unit than that of its key.
 const DIGITS: i32 = 9;
 
@@ -96,7 +98,10 @@ pub fn row(ui: &mut Ui, p: &Palette, setting: &Setting, commands: &mut Vec<Comma
             let id = ui.scope_id().with(path);
             let kept = ui.data(|d| d.get_temp::<String>(id));
             let mut text = kept.clone().unwrap_or_else(|| shown.clone());
-            let field = TextEdit::singleline(&mut text).id(id.with("field")).hint_text(&default).desired_width(72.0);
+            // A long word gets more room, as long as the name keeps half of the row.
+            let most = (0.5 * ui.available_width()).max(MIN_FIELD_PT);
+            let width = (fit::width_of(ui, &text, &plain(11.5)) + 4.0).clamp(MIN_FIELD_PT, most);
+            let field = TextEdit::singleline(&mut text).id(id.with("field")).hint_text(&default).desired_width(width);
             let response = ui.add(field.font(plain(11.5))).on_hover_text(&tip);
             name(&response, path);
             if response.has_focus() {
