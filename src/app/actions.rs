@@ -361,7 +361,7 @@ pub const FINE_ACTIONS: &[Action] = actions![
 ];
 
 /// Gestures of the pointer, and their effects.
-pub const GESTURES: [(&str, &str); 22] = [
+pub const GESTURES: [(&str, &str); 23] = [
     ("drag the target", "the machine follows on its plane"),
     ("drag a link", "its drive turns, the others follow so that b stays"),
     ("drag a link of four drives or more", "it goes along, the tip and b stay"),
@@ -381,6 +381,7 @@ pub const GESTURES: [(&str, &str); 22] = [
     ("Ctrl wheel, drag on a plot", "closer to a time, and along; a double click shows all"),
     ("drag the numbers of a plot", "along its values; there Ctrl wheel, or Alt wheel on the plot: closer"),
     ("Shift drag on a plot", "plots show this time"),
+    ("drag a plot's heading", "another place; out of the panel: a window of its own"),
     ("right button on a plot", "its menu: curves, statistics, CSV, SVG, PNG"),
     ("Shift click a plot", "a second cursor: plots show differences; Esc takes it away"),
     ("Esc", "close what is open, cancel a drag"),

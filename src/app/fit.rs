@@ -2,9 +2,9 @@
 
 use std::borrow::Cow;
 
-use egui::{Color32, FontId, Label, Response, RichText, TextWrapMode, Ui};
+use egui::accesskit::Role;
+use egui::{Color32, FontId, Label, Response, RichText, TextWrapMode, Ui, WidgetInfo};
 
-use super::widgets::name;
 use stillbase_settings::text::{cut_at_word, cut_path};
 
 /// Returns the width of a line of text, points.
@@ -36,6 +36,11 @@ pub fn label_within(ui: &mut Ui, text: &str, font: FontId, tone: Color32, room: 
     if is_whole {
         return response;
     }
-    name(&response, text);
+    say(&response, text);
     response.on_hover_text(text)
+}
+
+/// Tells screen readers a text in place of the one that a label shows.
+pub fn say(label: &Response, text: &str) {
+    label.widget_info(|| WidgetInfo::labeled(Role::Label, true, text));
 }

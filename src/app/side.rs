@@ -31,7 +31,7 @@ const WIDTH_FRACTION: f32 = 0.17;
 const MIN_WIDTH_PT: f32 = 262.0;
 const MAX_WIDTH_PT: f32 = 320.0;
 /// The same in a window that is narrow, so that the scene keeps room.
-const NARROW_WIDTH_PT: f32 = 244.0;
+const NARROW_WIDTH_PT: f32 = 252.0;
 
 /// Space for the scroll bar, which grows when the pointer is near, points.
 pub(super) const SCROLL_BAR_WIDTH: f32 = 14.0;

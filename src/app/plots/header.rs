@@ -5,9 +5,8 @@ use egui::accesskit::Role;
 use egui::{Align, Button, CursorIcon, Label, Layout, RichText, Sense, TextWrapMode, Ui, WidgetInfo};
 
 use super::place;
-use crate::fit::{fitted, width_of};
+use crate::fit::{fitted, say, width_of};
 use crate::theme::{bold, colour, plain};
-use crate::widgets::name;
 use crate::{Command, ViewChange};
 use stillbase_picture::charts::choice::{Plot, PlotChange, PlotCurve};
 use stillbase_picture::charts::drawn::PlotLines;
@@ -24,7 +23,7 @@ pub const STATISTICS_HEIGHT: f32 = 14.0;
 const SYMBOL_WIDTH_PT: f32 = 28.0;
 
 /// Width that a long title keeps beside the symbols, points.
-const MIN_HEADING_PT: f32 = 90.0;
+const MIN_HEADING_PT: f32 = 100.0;
 
 /// Number of digits omitted where space is short: from none to the number at which only symbols remain.
 const ALL_DIGITS: usize = 0;
@@ -54,7 +53,10 @@ pub fn show(
         let unit_wide = wide(ui, &unit, plain(11.5));
         let fits = |fewer: &usize| values(ui, *fewer) + unit_wide <= room;
         let fewer = (ALL_DIGITS..SYMBOLS_ONLY).find(fits);
-        let fewer = fewer.or((values(ui, 2) <= room).then_some(2)).unwrap_or(SYMBOLS_ONLY);
+        let fewer = fewer.or((values(ui, 2) <= room).then_some(2));
+        // Values are worth more than a whole title.
+        let beside = |fewer: &usize| values(ui, *fewer) + MIN_HEADING_PT <= ui.available_width();
+        let fewer = fewer.or((ALL_DIGITS + 1..SYMBOLS_ONLY).find(beside)).unwrap_or(SYMBOLS_ONLY);
         // Where not even the symbols fit beside the title, the title is shortened, and the last symbols give way.
         let least = if has_heading { wide(ui, &heading, bold(12.5)).min(MIN_HEADING_PT) } else { 0.0 };
         let mut seen = plot.curves.len();
@@ -84,7 +86,7 @@ fn title(ui: &mut Ui, plot: &Plot<'_>, heading: &str, room: f32, look: &PlotCont
     let shown = fitted(ui, heading, &bold(12.5), room);
     let label = Label::new(RichText::new(&*shown).font(bold(12.5)).color(colour(look.palette.ink)));
     let label = ui.add(label.wrap_mode(TextWrapMode::Extend).sense(Sense::drag()));
-    name(&label, heading);
+    say(&label, heading);
     place::handle_drag(&label, plot);
     if !label.dragged() {
         label.on_hover_text(format!("{heading}\nDrag: to another place, or out of the panel into a window of its own"));
@@ -148,8 +150,7 @@ pub fn statistics(ui: &mut Ui, plot: &Plot<'_>, drawn: &PlotLines, look: &PlotCo
     let p = look.palette;
     let wide = (ui.available_width() - SYMBOL_WIDTH_PT) / 4.0;
     let cell = |ui: &mut Ui, wide: f32, text: String, tone| {
-        let text = fitted(ui, &text, &plain(10.0), wide).into_owned();
-        let label = Label::new(RichText::new(text).font(plain(10.0)).color(colour(tone)));
+        let label = Label::new(RichText::new(text).font(plain(10.0)).color(colour(tone))).truncate();
         ui.add_sized([wide, STATISTICS_HEIGHT], label.halign(Align::LEFT));
     };
     for (i, curve) in plot.curves.iter().enumerate().filter(|(_, curve)| curve.on) {
@@ -159,7 +160,10 @@ pub fn statistics(ui: &mut Ui, plot: &Plot<'_>, drawn: &PlotLines, look: &PlotCo
             ui.spacing_mut().item_spacing.x = 0.0;
             cell(ui, SYMBOL_WIDTH_PT, curve.signal.symbol.clone(), pen(plot, i, look).0);
             for (word, value) in [("min", s.least), ("max", s.greatest), ("mean", s.mean), ("rms", s.rms)] {
-                cell(ui, wide, format!("{word} {}", at_step(value, 5.0 * drawn.finest())), p.dim);
+                // Where space is short, digits are omitted.
+                let written = |fewer: i32| format!("{word} {}", at_step(value, 5.0 * drawn.finest() * 10f64.powi(fewer)));
+                let text = (0..4).map(written).find(|text| width_of(ui, text, &plain(10.0)) <= wide - 2.0);
+                cell(ui, wide, text.unwrap_or_else(|| written(4)), p.dim);
             }
         });
     }

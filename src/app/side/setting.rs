@@ -94,7 +94,7 @@ pub fn row(ui: &mut Ui, p: &Palette, setting: &Setting, commands: &mut Vec<Comma
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let words = fit::fitted(ui, in_words, &plain(10.5), 40.0);
             let words = RichText::new(words).font(plain(10.5)).color(colour(p.dim));
-            ui.add_sized([40.0, 18.0], Label::new(words).halign(Align::LEFT)).on_hover_text(in_words);
+            ui.add_sized([40.0, 18.0], Label::new(words).halign(Align::LEFT).truncate()).on_hover_text(in_words);
             let id = ui.scope_id().with(path);
             let kept = ui.data(|d| d.get_temp::<String>(id));
             let mut text = kept.clone().unwrap_or_else(|| shown.clone());
@@ -128,7 +128,9 @@ pub fn row(ui: &mut Ui, p: &Palette, setting: &Setting, commands: &mut Vec<Comma
                 ui.spacing_mut().item_spacing.y = 0.0;
                 let ink = colour(if wants.is_empty() { p.ink } else { p.dim });
                 label(ui, &called, plain(12.0), ink).on_hover_text(&tip);
-                label(ui, path, plain(9.5), colour(p.dim)).on_hover_text(&tip);
+                let small = label(ui, path, plain(9.5), colour(p.dim));
+                fit::say(&small, &format!("key {path}"));
+                small.on_hover_text(&tip);
             });
         });
     });
