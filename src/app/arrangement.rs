@@ -58,8 +58,18 @@ pub fn show(ui: &mut Ui, view_state: &ViewState, size: Vec2, commands: &mut Vec<
         let length = if millimetres { LengthUnit::Metres } else { LengthUnit::Millimetres };
         let names = if symbols { NameOrder::Terms } else { NameOrder::Symbols };
         for (text, tip, on, new) in [
-            ("Angles in degrees", "Else in radians; files and settings stay in radians", degrees, Notation { angle, ..now }),
-            ("Lengths in millimetres", "Else in metres; files and settings stay in metres", millimetres, Notation { length, ..now }),
+            (
+                "Angles in degrees",
+                "Else in radians; files and settings stay in radians",
+                degrees,
+                Notation { angle, ..now },
+            ),
+            (
+                "Lengths in millimetres",
+                "Else in metres; files and settings stay in metres",
+                millimetres,
+                Notation { length, ..now },
+            ),
             ("Symbols first", "n_B before \"moment on the base\", as in the paper", symbols, Notation { names, ..now }),
         ] {
             line(ui, (text, None, tip), on, ViewChange::Notation(new).into());

@@ -1,9 +1,9 @@
 //! The table of runs at the bottom: the same task done in several ways, and kept runs.
 
-use super::{fit, notation};
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, ComparisonCommand, SessionCommand, Switch, ViewChange, ViewState, WindowCommand};
+use super::{fit, notation};
 use egui::{Align, Button, CursorIcon, Frame, Grid, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui};
 use stillbase_picture::charts::figure::dashes;
 use stillbase_picture::notation::{NameOrder, Notation};

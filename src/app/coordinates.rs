@@ -46,7 +46,11 @@ pub fn show(
                 ui.label(RichText::new("axes").font(plain(11.5)).color(colour(p.dim)));
                 for (k, symbol) in SYMBOLS.iter().enumerate().take(frame.q.len()) {
                     let on = shown.contains(&k);
-                    let words = if on { (*symbol).to_owned() } else { format!("{symbol} = {}", view_state.arrangement.notation.write(frame.relative(k), 3, "rad")) };
+                    let words = if on {
+                        (*symbol).to_owned()
+                    } else {
+                        format!("{symbol} = {}", view_state.arrangement.notation.write(frame.relative(k), 3, "rad"))
+                    };
                     let ink = if on { p.drive(k) } else { p.dim };
                     let words = RichText::new(words).font(bold(12.0)).color(colour(ink));
                     let button = egui::Button::new(words).selected(false).frame(on);

@@ -58,7 +58,10 @@ impl QuickQuery for ScenarioPortraits {
 
 /// Returns the picture of a scenario: with its path, or of its machine alone if there is no path.
 pub fn portrait_of(scenario: &Scenario) -> Portrait {
-    Run::new(scenario).map_or_else(|_| Portrait::of(&scenario.machine), |run| Portrait::of_path(&scenario.machine, &run.plan().motion))
+    Run::new(scenario).map_or_else(
+        |_| Portrait::of(&scenario.machine),
+        |run| Portrait::of_path(&scenario.machine, &run.plan().motion),
+    )
 }
 
 /// Draws the built-in scenarios; returns the one that the user has chosen.

@@ -3,8 +3,8 @@
 use egui::{Popup, PopupCloseBehavior, RectAlign, RichText, ScrollArea, Ui, Vec2, vec2};
 
 use super::actions::key_of_switch;
-use super::icon::{Icon, IconButton, dot};
 use super::fit;
+use super::icon::{Icon, IconButton, dot};
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, SessionCommand, Switch, ViewChange, ViewState};

@@ -113,7 +113,14 @@ impl WindowArrangement {
     /// Returns the default arrangement.
     pub fn with_theme(theme: Theme) -> Self {
         let panels = Layout::ALL.map(Panels::default_of);
-        Self { theme, notation: Notation::default(), layout: Layout::Explore, swapped: false, shows_equations: false, panels }
+        Self {
+            theme,
+            notation: Notation::default(),
+            layout: Layout::Explore,
+            swapped: false,
+            shows_equations: false,
+            panels,
+        }
     }
 
     /// The panels on display.

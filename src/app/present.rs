@@ -35,7 +35,12 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &Session, view_state: &ViewState, 
     let tone = if moment.abs() < ZERO_BELOW_N_M { p.zero } else { p.reaction };
     let number = format!("{} N m", signed(if moment.abs() < ZERO_BELOW_N_M { 0.0 } else { moment }, 2));
     line(&mut corner, RichText::new(number).font(bold(large)).color(colour(tone)));
-    line(&mut corner, RichText::new(notation.name("turning moment on the base", "n_B")).font(plain(0.32 * large)).color(colour(p.dim)));
+    line(
+        &mut corner,
+        RichText::new(notation.name("turning moment on the base", "n_B"))
+            .font(plain(0.32 * large))
+            .color(colour(p.dim)),
+    );
     for named in lamp::statements(session).named() {
         lamp::show(&mut corner, named, 0.32 * large, &p);
     }

@@ -83,12 +83,7 @@ pub(super) fn keep_keys(ctx: &egui::Context) {
 
 /// Shows the question about a session left by an earlier program run, or about unsaved changes before the window
 /// closes.
-pub(super) fn show(
-    ctx: &egui::Context,
-    saving: &Saving,
-    view_state: &ViewState,
-    commands: &mut Vec<Command>,
-) {
+pub(super) fn show(ctx: &egui::Context, saving: &Saving, view_state: &ViewState, commands: &mut Vec<Command>) {
     if saving.asks {
         let changes = saving.changes - saving.saved;
         let words = match changes {

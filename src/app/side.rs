@@ -13,9 +13,9 @@ use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
 use super::facts::ScenarioFacts;
 use super::theme::{bold, colour, plain};
-use super::{fit, notation};
 use super::widgets::{NumberRow, name, note, section, send, unit};
 use super::{Command, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, path, place, set_b};
+use super::{fit, notation};
 use stillbase_mechanics::machine::MAX_ANGLE;
 use stillbase_picture::scene::course::target_handle;
 use stillbase_picture::scene::options::Handle;

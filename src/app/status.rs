@@ -5,11 +5,11 @@ use std::sync::Arc;
 use egui::{Align, Layout, Margin, Panel, RichText, Sense, Ui, vec2};
 
 use super::facts::ScenarioFacts;
-use super::{fit, lamp};
 use super::notation;
 use super::theme::{colour, plain};
 use super::widgets::name;
 use super::{Activity, Command, Message, SessionCommand, Tool, ViewState, WindowCommand};
+use super::{fit, lamp};
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::{Palette, faded};
 use stillbase_planning::pose_space::NoPoseSpace;

@@ -236,16 +236,13 @@ fn peaks(ui: &mut Ui, p: &Palette, study: &Study) {
     small_axes(ui);
     let axes = bare("peaks", p, ui.available_height()).show_axes([true, true]).include_x(0.0).include_y(0.0);
     let axes = axes.x_grid_spacer(|g| marks(&spaced(g.bounds.0, g.bounds.1), 1.0));
-    let response = axes.x_axis_label("peak of |n_B|, N m").y_axis_label("machines").show(
-        ui,
-        |plot| {
-            plot.bar_chart(BarChart::new("machines", bars).allow_hover(false));
-            plot.vline(VLine::new("half", half).color(colour(p.ink)).width(1.0).allow_hover(false));
-            if let Some(limit) = study.tolerance.moment_limit {
-                plot.vline(VLine::new("limit", limit).color(colour(p.amber)).width(1.4).allow_hover(false));
-            }
-        },
-    );
+    let response = axes.x_axis_label("peak of |n_B|, N m").y_axis_label("machines").show(ui, |plot| {
+        plot.bar_chart(BarChart::new("machines", bars).allow_hover(false));
+        plot.vline(VLine::new("half", half).color(colour(p.ink)).width(1.0).allow_hover(false));
+        if let Some(limit) = study.tolerance.moment_limit {
+            plot.vline(VLine::new("limit", limit).color(colour(p.amber)).width(1.4).allow_hover(false));
+        }
+    });
     let words = format!("half below {half:.5}, 95 % below {most:.5}, 99 % below {nearly:.5} N m");
     name(&response.response, "Histogram of peaks of the turning moment on the base over machines, N m");
     response.response.on_hover_text(words);

@@ -11,7 +11,9 @@ use super::facts::ScenarioFacts;
 use super::icon::{Icon, IconButton};
 use super::marks::Marks;
 use super::theme::{bold, colour, plain};
-use super::{Command, FileDialog, FilePurpose, SessionCommand, Switch, ViewChange, ViewState, file_menu, fit, gallery, timeline};
+use super::{
+    Command, FileDialog, FilePurpose, SessionCommand, Switch, ViewChange, ViewState, file_menu, fit, gallery, timeline,
+};
 use stillbase_mechanics::machine::Machine;
 use stillbase_picture::scene::palette::Theme;
 use stillbase_query::Queries;

@@ -181,8 +181,14 @@ impl PlanArguments {
                     return Err(Failure::wrong_input("a machine alone is no task: want points X,Y, or a scenario"));
                 }
                 let own = overlay_unchecked(DEFAULT_SCENARIO, &Settings::default())?;
-                let with =
-                    Scenario { machine, name: DEFAULT_NAME.into(), title: String::new(), summary: String::new(), compare_b: None, ..own };
+                let with = Scenario {
+                    machine,
+                    name: DEFAULT_NAME.into(),
+                    title: String::new(),
+                    summary: String::new(),
+                    compare_b: None,
+                    ..own
+                };
                 overlay_settings(with, &self.settings)?
             }
             // An invalid file of a machine gives the error of a machine; any other name, that of a scenario.

@@ -73,8 +73,13 @@ const MOMENT: Chart = Chart {
 };
 /// The moment that the machine transmits, and the moment on the base after compensation by its reaction wheel.
 const MOMENT_PAST_WHEEL: Chart = Chart { signals: &["moment/total", "moment/felt"], ..MOMENT };
-const FORCE: Chart =
-    Chart { title: "Force on the base", unit: "N, from motion", signals: &["force/dynamic"], min_range: 0.5, ..EMPTY_CHART };
+const FORCE: Chart = Chart {
+    title: "Force on the base",
+    unit: "N, from motion",
+    signals: &["force/dynamic"],
+    min_range: 0.5,
+    ..EMPTY_CHART
+};
 const BASE: Chart = Chart {
     title: "Motion of the base",
     unit: "mm, mrad",

@@ -196,7 +196,8 @@ fn next_number(text: &str, from: usize) -> Option<Number> {
         // A sign within a word, such as that of an exponent, begins no number.
         in_word = follows_word || in_word && before.is_some_and(|b| matches!(b, '-' | '−' | '+'));
         let is_free = !in_word;
-        if is_free && (c.is_ascii_digit() || signed)
+        if is_free
+            && (c.is_ascii_digit() || signed)
             && let Some(number) = Number::read(text, i)
         {
             return Some(number);

@@ -61,8 +61,10 @@ pub fn shorten_message(text: &str) -> Cow<'_, str> {
 }
 
 /// Words that do not end a shortened text.
-const JOINING_WORDS: [&str; 18] =
-    ["and", "the", "of", "on", "in", "to", "for", "with", "at", "is", "by", "or", "as", "an", "that", "its", "from", "off"];
+const JOINING_WORDS: [&str; 20] = [
+    "and", "the", "of", "on", "in", "to", "for", "with", "at", "is", "by", "or", "as", "an", "that", "its", "from",
+    "off", "it", "be",
+];
 /// Least number of characters of a shortened text, without the ellipsis.
 const MIN_CHARS: usize = 3;
 
@@ -86,7 +88,8 @@ pub fn cut_at_word<'a>(text: &'a str, fits: impl Fn(&str) -> bool) -> Cow<'a, st
 fn without_loose_end(text: &str) -> &str {
     let mut kept = text;
     loop {
-        let trimmed = kept.trim_end().trim_end_matches([',', ';', ':', '·', '–', '—', '-', '(', '|', '=', '+', '<', '>']);
+        let trimmed =
+            kept.trim_end().trim_end_matches([',', ';', ':', '·', '–', '—', '-', '(', '|', '=', '+', '<', '>']);
         let last = trimmed.rsplit(char::is_whitespace).next().unwrap_or_default();
         let is_loose = last.chars().count() == 1 || JOINING_WORDS.contains(&last.to_lowercase().as_str());
         let shorter = if is_loose { &trimmed[..trimmed.len() - last.len()] } else { trimmed };

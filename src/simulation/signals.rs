@@ -117,16 +117,24 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
         ("pose/b_reference", "b ref", "pose constant aimed at", "rad", |f| f.b_reference),
         ("moment/total", "n_B", "turning moment on the base", "N m", |f| f.base_moment()),
         ("moment/dynamic", "n_B dyn", "turning moment on the base, from motion", "N m", |f| f.wrench.dynamic.moment),
-        ("moment/felt", "n felt", "turning moment that the base feels: n_B less a wheel's", "N m", |f| f.net_base_moment()),
+        ("moment/felt", "n felt", "turning moment that the base feels: n_B less a wheel's", "N m", |f| {
+            f.net_base_moment()
+        }),
         ("moment/wheel", "τ_w", "torque of the reaction wheel", "N m", |f| f.wheel.torque),
         ("moment/rms", "n rms", "root mean square of the moment so far", "N m", |f| f.totals.moment_rms()),
-        ("moment/static", "n_B stat", "turning moment on the base, from weight", "N m", |f| f.wrench.static_part.moment),
+        ("moment/static", "n_B stat", "turning moment on the base, from weight", "N m", |f| {
+            f.wrench.static_part.moment
+        }),
         ("force/dynamic", "|f_B|", "force on the base, from motion", "N", |f| f.wrench.dynamic.force.norm()),
         ("force/rms", "f rms", "root mean square of |f_B| so far", "N", |f| f.totals.force_rms()),
         ("force/dynamic_x", "f_Bx", "force on the base along x, from motion", "N", |f| f.wrench.dynamic.force.re),
         ("force/dynamic_y", "f_By", "force on the base along y, from motion", "N", |f| f.wrench.dynamic.force.im),
-        ("force/static_x", "f_Bx stat", "force on the base along x, from weight", "N", |f| f.wrench.static_part.force.re),
-        ("force/static_y", "f_By stat", "force on the base along y, from weight", "N", |f| f.wrench.static_part.force.im),
+        ("force/static_x", "f_Bx stat", "force on the base along x, from weight", "N", |f| {
+            f.wrench.static_part.force.re
+        }),
+        ("force/static_y", "f_By stat", "force on the base along y, from weight", "N", |f| {
+            f.wrench.static_part.force.im
+        }),
         ("momentum/x", "p_x", "linear momentum along x", "kg m/s", |f| f.momentum.re),
         ("momentum/y", "p_y", "linear momentum along y", "kg m/s", |f| f.momentum.im),
         ("angular_momentum/about_b", "h_B", "angular momentum about the origin", "kg m²/s", |f| f.angular_momentum),

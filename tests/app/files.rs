@@ -128,7 +128,9 @@ fn the_file_menu_leads_to_every_file() {
     assert!(left(&h, "File") < left(&h, "Machine") && left(&h, "Machine") < left(&h, "Scenario"));
     h.get_by_label("File").click();
     h.run_steps(3);
-    for entry in ["New session", "Open", "Open recent", "Save", "Save as", "Record for the Rerun viewer", "Export", "Quit"] {
+    for entry in
+        ["New session", "Open", "Open recent", "Save", "Save as", "Record for the Rerun viewer", "Export", "Quit"]
+    {
         assert!(h.query_all_by_label_contains(entry).next().is_some(), "{entry}");
     }
     h.get_by_label_contains("Open recent").click();

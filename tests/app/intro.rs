@@ -11,7 +11,7 @@ use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 
 use super::screen::{Screen, whole};
-use super::{painted, Window, drag, on_screen, session};
+use super::{Window, drag, on_screen, painted, session};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![

@@ -8,14 +8,11 @@ use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 
-use super::{Window, painted, type_into, session, window, window_of};
+use super::{Window, painted, session, type_into, window, window_of};
 use crate::Test;
 
-pub const TESTS: &[Test] = tests![
-    every_text_is_in_the_chosen_units,
-    numbers_are_typed_in_the_chosen_unit,
-    symbols_come_first_if_chosen,
-];
+pub const TESTS: &[Test] =
+    tests![every_text_is_in_the_chosen_units, numbers_are_typed_in_the_chosen_unit, symbols_come_first_if_chosen,];
 
 const OTHER: Notation =
     Notation { angle: AngleUnit::Degrees, length: LengthUnit::Millimetres, names: NameOrder::Terms };
@@ -27,10 +24,12 @@ fn choose(h: &mut Window, notation: Notation) {
 
 /// Whether a text contains one of these units as a word of its own, not as a factor of another unit.
 fn names_unit(text: &str, units: &[&str]) -> bool {
-    let words: Vec<&str> = text.split([' ', ',', ';', ':', '(', ')', '·', '\n', '…']).filter(|w| !w.is_empty()).collect();
+    let words: Vec<&str> =
+        text.split([' ', ',', ';', ':', '(', ')', '·', '\n', '…']).filter(|w| !w.is_empty()).collect();
     words.iter().enumerate().any(|(i, word)| {
         let number = |w: &str| w.trim_start_matches(['−', '-', '+']).starts_with(|c: char| c.is_ascii_digit());
-        let alone = i == 0 || number(words[i - 1]) || words[i - 1].chars().count() <= 2 && !["N", "kg"].contains(&words[i - 1]);
+        let alone =
+            i == 0 || number(words[i - 1]) || words[i - 1].chars().count() <= 2 && !["N", "kg"].contains(&words[i - 1]);
         units.contains(word) && (*word != "m" || alone)
     })
 }
@@ -60,7 +59,11 @@ fn every_text_is_in_the_chosen_units() {
         for view in ViewKind::ALL {
             state(&mut h, ViewChange::Kind(view));
             choose(&mut h, OTHER);
-            wrong.extend(offenders(&h, &["rad", "mrad", "rad/s", "m", "m/s"]).into_iter().map(|text| (format!("{name} {view:?}"), text)));
+            wrong.extend(
+                offenders(&h, &["rad", "mrad", "rad/s", "m", "m/s"])
+                    .into_iter()
+                    .map(|text| (format!("{name} {view:?}"), text)),
+            );
             choose(&mut h, Notation::default());
             let degrees: Vec<String> = painted(&h).into_iter().filter(|text| text.contains('°')).collect();
             // The key of the arc of the moment is a picture of an angle.
@@ -71,11 +74,19 @@ fn every_text_is_in_the_chosen_units() {
         choose(&mut h, OTHER);
         for layout in [Layout::Compare, Layout::Present, Layout::Explore] {
             state(&mut h, ViewChange::Layout(layout));
-            wrong.extend(offenders(&h, &["rad", "mrad", "rad/s", "m", "m/s"]).into_iter().map(|text| (format!("{name} {layout:?}"), text)));
+            wrong.extend(
+                offenders(&h, &["rad", "mrad", "rad/s", "m", "m/s"])
+                    .into_iter()
+                    .map(|text| (format!("{name} {layout:?}"), text)),
+            );
         }
         for switch in [Switch::Study, Switch::Pins, Switch::History, Switch::Help] {
             state(&mut h, ViewChange::Switch(switch, true));
-            wrong.extend(offenders(&h, &["rad", "mrad", "rad/s", "m", "m/s"]).into_iter().map(|text| (format!("{name} {switch:?}"), text)));
+            wrong.extend(
+                offenders(&h, &["rad", "mrad", "rad/s", "m", "m/s"])
+                    .into_iter()
+                    .map(|text| (format!("{name} {switch:?}"), text)),
+            );
         }
         // A refusal of the core is a sentence like any other.
         h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::set("task.end", vec![5.0, 5.0])));

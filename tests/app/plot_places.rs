@@ -124,7 +124,10 @@ fn a_plot_has_a_window_of_its_own_and_goes_back() {
     drag(&mut h, title, title + vec2(30.0, 40.0));
     h.run_steps(3);
     let moved = at(&h).expect("still out");
-    assert!((moved[0] - left - 30.0).abs() < 6.0 && (moved[1] - top - 40.0).abs() < 6.0, "{moved:?} from {left}, {top}");
+    assert!(
+        (moved[0] - left - 30.0).abs() < 6.0 && (moved[1] - top - 40.0).abs() < 6.0,
+        "{moved:?} from {left}, {top}"
+    );
     assert_eq!(moved[2..], [width, height], "its size stays");
     let change = PlotChange::Window("Turning moment on the base".into(), Some([330.0, 100.0, 300.0, 200.0]));
     h.state_mut().app_state_mut().carry_out(ViewChange::Charts(change));

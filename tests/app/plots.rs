@@ -136,7 +136,9 @@ fn hands_move_the_values_that_a_plot_shows() {
     let mut h = after_case("case-1", Theme::Dark, 600.0);
     let name = "Turning moment on the base";
     let values = |h: &Window| h.state().app_state().view_state().charts.changes.get(name).and_then(|c| c.values);
-    let numbers = |h: &Window| h.get_by_label_contains("Turning moment on the base over time").rect().left_center() + vec2(12.0, -8.0);
+    let numbers = |h: &Window| {
+        h.get_by_label_contains("Turning moment on the base over time").rect().left_center() + vec2(12.0, -8.0)
+    };
     let (at, time) = (numbers(&h), session(&h).frame().time);
     h.hover_at(at);
     h.run_steps(40);
@@ -148,7 +150,10 @@ fn hands_move_the_values_that_a_plot_shows() {
     wheel(&mut h, inside, 120.0, Modifiers::ALT);
     let [from, to] = values(&h).expect("closer still");
     assert!(to - from < 0.8 * (high - low) && range(&h).is_none(), "{from} to {to}");
-    assert_eq!(h.get_by_label_contains("Turning moment on the base over time").rect().left_center() + vec2(12.0, -8.0), at);
+    assert_eq!(
+        h.get_by_label_contains("Turning moment on the base over time").rect().left_center() + vec2(12.0, -8.0),
+        at
+    );
     drag(&mut h, at, at + vec2(0.0, 20.0));
     let [moved, end] = values(&h).expect("moved along");
     assert!(moved > from + 0.05 * (to - from) && (end - moved - (to - from)).abs() < 1e-9, "{moved} to {end}");

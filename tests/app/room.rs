@@ -13,8 +13,7 @@ use super::screen::{Screen, whole};
 use super::{Window, on_screen, session};
 use crate::Test;
 
-pub const TESTS: &[Test] =
-    tests![no_text_ends_in_the_middle_of_a_word, a_narrow_window_shows_ring_base_and_card];
+pub const TESTS: &[Test] = tests![no_text_ends_in_the_middle_of_a_word, a_narrow_window_shows_ring_base_and_card];
 
 const THEMES: [Theme; 2] = [Theme::Dark, Theme::Light];
 
@@ -93,7 +92,9 @@ fn no_text_ends_in_the_middle_of_a_word() {
         }
     }
     // Panels below the scene and views with panels of their own.
-    for (key, name) in [(Key::C, "runs"), (Key::T, "tolerances"), (Key::W, "table"), (Key::D, "design"), (Key::E, "equations")] {
+    for (key, name) in
+        [(Key::C, "runs"), (Key::T, "tolerances"), (Key::W, "table"), (Key::D, "design"), (Key::E, "equations")]
+    {
         h.key_press(key);
         for size in sizes {
             h.set_size(size);
@@ -116,12 +117,14 @@ fn a_narrow_window_shows_ring_base_and_card() {
             let scene = h.get_by_label_contains("Scene:").rect();
             assert!(scene.width() > 0.42 * 960.0, "{}: {scene}", scenario.name);
             let frame = *session(&h).frame();
-            let around = |x: f64, y: f64, radius: f32| Rect::from_center_size(on_screen(&h, x, y), Vec2::splat(2.0 * radius));
+            let around =
+                |x: f64, y: f64, radius: f32| Rect::from_center_size(on_screen(&h, x, y), Vec2::splat(2.0 * radius));
             let ring = around(frame.target.at.re, frame.target.at.im, 12.0);
             let base = around(frame.base.at.re, frame.base.at.im, 10.0);
             let name = &scenario.name;
             let area = egui::Id::unique("hint");
-            let card = h.ctx.memory(|memory| memory.area_rect(area)).filter(|_| h.query_by_label("No more hints").is_some());
+            let card =
+                h.ctx.memory(|memory| memory.area_rect(area)).filter(|_| h.query_by_label("No more hints").is_some());
             for (what, rect) in [("ring", ring), ("base", base)] {
                 assert!(scene.contains_rect(rect), "{name}, {theme:?}: {what} {rect} in {scene}");
                 if let Some(card) = card {

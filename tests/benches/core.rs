@@ -432,9 +432,9 @@ fn million() -> stillbase::study::samples::SignalSamples {
 #[divan::bench]
 fn plot_of_three_million_samples(bencher: Bencher) {
     use stillbase::picture::charts::choice::PlotChoice;
-    use stillbase::picture::notation::Notation;
     use stillbase::picture::charts::drawn::PlotLines;
     use stillbase::picture::charts::figure::{Figure, PlotContext};
+    use stillbase::picture::notation::Notation;
     use stillbase::picture::scene::palette::{Theme, palette};
     let (samples, p) = (million(), palette(Theme::Dark));
     let session = Session::open(Scenario::builtin("case-3").expect("built in")).expect("it can start");

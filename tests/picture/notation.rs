@@ -2,8 +2,7 @@
 
 use stillbase::picture::notation::{AngleUnit, LengthUnit, NameOrder, Notation};
 
-const DEGREES: Notation =
-    Notation { angle: AngleUnit::Degrees, length: LengthUnit::Metres, names: NameOrder::Terms };
+const DEGREES: Notation = Notation { angle: AngleUnit::Degrees, length: LengthUnit::Metres, names: NameOrder::Terms };
 const MILLIMETRES: Notation =
     Notation { angle: AngleUnit::Radians, length: LengthUnit::Millimetres, names: NameOrder::Symbols };
 

@@ -3,13 +3,13 @@
 use proptest::prelude::*;
 use stillbase::mechanics::machine::builtin;
 use stillbase::picture::charts::choice::{PlotChange, PlotChoice};
-use stillbase::picture::notation::Notation;
 use stillbase::picture::charts::drawn::PlotLines;
 use stillbase::picture::charts::figure::{Figure, FigureItem, PlotContext};
 use stillbase::picture::charts::range::TimeExtent;
 use stillbase::picture::charts::search::search;
 use stillbase::picture::charts::svg::svg;
 use stillbase::picture::charts::thin::simplify_line;
+use stillbase::picture::notation::Notation;
 use stillbase::picture::numbers::{at_step, round_ticks, ticks};
 use stillbase::picture::scene::palette::{Theme, palette};
 use stillbase::session::Session;
@@ -96,7 +96,10 @@ fn plots_are_what_was_chosen_and_remembered() {
     let names = |choice: &PlotChoice| -> Vec<String> {
         choice.plots(&scenario, &table, false, Notation::default()).into_iter().map(|plot| plot.name).collect()
     };
-    assert_eq!(names(&choice), ["Torque", "Turning moment on the base", "Force on the base", "Drive angles", "Pose constant"]);
+    assert_eq!(
+        names(&choice),
+        ["Torque", "Turning moment on the base", "Force on the base", "Drive angles", "Pose constant"]
+    );
     let plot = |name: &str| name.to_owned();
     choice.change(PlotChange::Show(plot("Torque"), plot("torque/2"), false));
     choice.change(PlotChange::Plot(plot("tip/y")));

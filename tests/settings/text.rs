@@ -11,7 +11,9 @@ fn cut(text: &str, most: usize) -> String {
 fn a_text_ends_with_a_word_that_can_stand_there() {
     let title = "Turning moment on the base";
     assert_eq!(cut(title, 26), title);
-    for (most, shown) in [(25, "Turning moment…"), (15, "Turning moment…"), (14, "Turning…"), (6, "Turni…"), (4, "Tur…")] {
+    for (most, shown) in
+        [(25, "Turning moment…"), (15, "Turning moment…"), (14, "Turning…"), (6, "Turni…"), (4, "Tur…")]
+    {
         assert_eq!(cut(title, most), shown);
     }
     // Three letters at least, or nothing.

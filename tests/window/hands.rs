@@ -102,7 +102,9 @@ fn the_main_job_is_done_by_hand() {
     });
 
     // The paper's cases: what reacts says so, what does not stays silent.
-    for (key, title, silent) in [('1', "Straight line", false), ('2', "Off the plane", false), ('3', "Reactionless", true)] {
+    for (key, title, silent) in
+        [('1', "Straight line", false), ('2', "Off the plane", false), ('3', "Reactionless", true)]
+    {
         desk.display.tap(u32::from(key));
         desk.titled(title);
         let said = desk.bus.wait_for("the end of the run", 60, |tree| {

@@ -2,8 +2,8 @@
 
 use egui::Ui;
 
-use super::shown::{self, DisplayContext};
 use super::header::STATISTICS_HEIGHT;
+use super::shown::{self, DisplayContext};
 use super::{curve, header, hover};
 use crate::Command;
 use stillbase_picture::charts::choice::Plot;

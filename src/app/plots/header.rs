@@ -161,7 +161,8 @@ pub fn statistics(ui: &mut Ui, plot: &Plot<'_>, drawn: &PlotLines, look: &PlotCo
             cell(ui, SYMBOL_WIDTH_PT, curve.signal.symbol.clone(), pen(plot, i, look).0);
             for (word, value) in [("min", s.least), ("max", s.greatest), ("mean", s.mean), ("rms", s.rms)] {
                 // Where space is short, digits are omitted.
-                let written = |fewer: i32| format!("{word} {}", at_step(value, 5.0 * drawn.finest() * 10f64.powi(fewer)));
+                let written =
+                    |fewer: i32| format!("{word} {}", at_step(value, 5.0 * drawn.finest() * 10f64.powi(fewer)));
                 let text = (0..4).map(written).find(|text| width_of(ui, text, &plain(10.0)) <= wide - 2.0);
                 cell(ui, wide, text.unwrap_or_else(|| written(4)), p.dim);
             }

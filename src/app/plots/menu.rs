@@ -4,9 +4,9 @@ use egui::accesskit::Role;
 use egui::{Align2, Button, Popup, Rect, Response, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use super::prepared::extent;
-use super::{place, search};
 use super::shown::DisplayContext;
 use super::written::columns;
+use super::{place, search};
 use crate::theme::{bold, colour};
 use crate::{Command, FileDialog, FilePurpose, PlotFile, ViewChange};
 use stillbase_picture::charts::choice::{Plot, PlotChange};

@@ -31,7 +31,8 @@ pub fn handle_drop(
     panel: Rect,
     commands: &mut Vec<Command>,
 ) {
-    let (Some(dragged), Some(pos)) = (DragAndDrop::payload::<DraggedPlot>(ui.ctx()), ui.input(|i| i.pointer.hover_pos()))
+    let (Some(dragged), Some(pos)) =
+        (DragAndDrop::payload::<DraggedPlot>(ui.ctx()), ui.input(|i| i.pointer.hover_pos()))
     else {
         return;
     };

@@ -3,8 +3,8 @@
 use egui::{RichText, TextStyle, Ui};
 use egui_plot::{GridMark, Plot};
 
-use crate::{fit, notation};
 use crate::theme::{bold, colour, plain};
+use crate::{fit, notation};
 use stillbase_picture::numbers::{round_up, signed};
 use stillbase_picture::scene::palette::{Palette, faded};
 

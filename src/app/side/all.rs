@@ -45,13 +45,7 @@ pub fn look_up(ctx: &egui::Context, path: &str) {
 }
 
 /// Draws the list in the panel.
-pub fn show(
-    ui: &mut Ui,
-    facts: &ScenarioFacts<'_>,
-    p: &Palette,
-    in_window: bool,
-    commands: &mut Vec<Command>,
-) {
+pub fn show(ui: &mut Ui, facts: &ScenarioFacts<'_>, p: &Palette, in_window: bool, commands: &mut Vec<Command>) {
     fold(ui, p, TITLE, "by name", None, commands, |ui, commands| {
         let (response, word) = search(ui);
         let wanted = ui.data_mut(|d| d.remove_temp::<bool>(wanted_id())).is_some();
@@ -78,12 +72,7 @@ pub fn show(
 }
 
 /// Draws the window with all settings, while it is open.
-pub fn window(
-    ctx: &egui::Context,
-    facts: &ScenarioFacts<'_>,
-    view_state: &ViewState,
-    commands: &mut Vec<Command>,
-) {
+pub fn window(ctx: &egui::Context, facts: &ScenarioFacts<'_>, view_state: &ViewState, commands: &mut Vec<Command>) {
     if !view_state.open.settings {
         return;
     }

@@ -2,10 +2,10 @@
 
 use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
-use crate::{fit, place};
 use crate::theme::{bold, colour, plain};
 use crate::widgets::{NumberRow, name, send, undoable_edit};
 use crate::{Command, SessionCommand};
+use crate::{fit, place};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Edit;
 use stillbase_session::scenario::Value;

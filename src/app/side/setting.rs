@@ -67,7 +67,8 @@ fn typed(text: &str, key: &Key, unit: Option<ShownUnit>) -> Result<Value, Quanti
         return Ok(value);
     }
     let (name, factor) = unit.map_or((key.unit(), 1.0), |unit| (unit.name, unit.factor));
-    let read = |part: &str| quantity::read(part, name).map(|number| if factor == 1.0 { number } else { number / factor });
+    let read =
+        |part: &str| quantity::read(part, name).map(|number| if factor == 1.0 { number } else { number / factor });
     let all: Vec<f64> = text.split(',').map(read).collect::<Result<_, _>>()?;
     Ok(match (key.value_type, all.as_slice()) {
         (KeyType::Whole(_), [one]) if one.fract() == 0.0 && one.abs() < 1e15 => Value::Integer(*one as i64),

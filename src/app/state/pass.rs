@@ -5,8 +5,8 @@ use crate::facts::ScenarioFacts;
 use crate::marks::Marks;
 use crate::{
     BottomPanel, Command, DrawingGuard, Intro, Layout, SessionCommand, StatusMessage, ViewChange, WindowCommand,
-    compare, finder, given, keys, notation, order, place, plots, rail, saving, side, status, studio, study, theme, top, viewport,
-    widgets,
+    compare, finder, given, keys, notation, order, place, plots, rail, saving, side, status, studio, study, theme, top,
+    viewport, widgets,
 };
 use stillbase_picture::scene::views::ViewKind;
 

@@ -37,7 +37,10 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, p: &Palette) {
         let of = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), |x| signed(x, 3));
         rows.push(("mass–inertia factor, 2 is bare".into(), of(measures.mass_inertia_factor)));
         if let Some(beta) = &measures.beta {
-            rows.push(("β of force · moment · torque".into(), [beta.force, beta.moment, beta.torque].map(of).join(" · ")));
+            rows.push((
+                "β of force · moment · torque".into(),
+                [beta.force, beta.moment, beta.torque].map(of).join(" · "),
+            ));
         }
     }
     let forecast = &run.plan().forecast;

@@ -83,7 +83,11 @@ pub fn placed<'a>(
     let mut groups: Vec<(Pos2, Group<'_>)> = Vec::new();
     for label in &scene.labels {
         let Some(at) = spot.screen(label.at.map(f64::from)) else { continue };
-        let galley = painter.layout_no_wrap(notation.sentence(&label.text).into_owned(), plain(label.size), colour(label.colour));
+        let galley = painter.layout_no_wrap(
+            notation.sentence(&label.text).into_owned(),
+            plain(label.size),
+            colour(label.colour),
+        );
         let word = (label, galley, Rect::NOTHING);
         let of = |(l, ..): &(&Label, Arc<Galley>, Rect)| l.at == label.at && l.name == label.name;
         let same = groups.iter_mut().find(|(_, group)| group.words.first().is_some_and(of));

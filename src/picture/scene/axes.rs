@@ -193,7 +193,14 @@ fn mark(scene: &mut Scene, ticks: &mut Vec<Vec<[f32; 3]>>, palette: &Palette, si
     if let Some((now, colour)) = axis.now {
         scene.lines.push(Polyline::new(NOW[k], [tick(now, 0.022)], 2.0, colour));
         let offset = if upright { [9.0, 0.0] } else { beside(19.0) };
-        scene.labels.push(label("axes/now/words", place(now, 0.022), offset, signed(now, axis.now_decimals), colour, 12.5));
+        scene.labels.push(label(
+            "axes/now/words",
+            place(now, 0.022),
+            offset,
+            signed(now, axis.now_decimals),
+            colour,
+            12.5,
+        ));
     }
     // The title is above the vertical axis, and beyond the rear ends of the others.
     let (at, offset) = match upright {

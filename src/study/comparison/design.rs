@@ -41,18 +41,36 @@ pub struct DesignMeasures {
 pub const DESIGN_COLUMNS: [SummaryColumn<DesignMeasures>; 10] = [
     column("mass", "mass", "mass", "mass of the machine", "kg", 3, |d| Some(d.mass)),
     column("inertia", "effective inertia", "Σ D", "inertia of all drives, Σ D", "kg m²", 4, |d| Some(d.inertia)),
-    column("force_left", "worst imbalance", "worst (7)", "largest |g|, what is left of force balance (7)", "kg m", 5, |d| {
-        Some(d.residuals[0])
-    }),
-    column("coupling_left", "worst coupling", "worst (8)", "largest |C|, what is left of invariance (8)", "kg m²", 5, |d| {
-        Some(d.residuals[1])
-    }),
+    column(
+        "force_left",
+        "worst imbalance",
+        "worst (7)",
+        "largest |g|, what is left of force balance (7)",
+        "kg m",
+        5,
+        |d| Some(d.residuals[0]),
+    ),
+    column(
+        "coupling_left",
+        "worst coupling",
+        "worst (8)",
+        "largest |C|, what is left of invariance (8)",
+        "kg m²",
+        5,
+        |d| Some(d.residuals[1]),
+    ),
     column("added_mass", "added mass", "added", "mass less that of the first run's machine", "kg", 3, |d| {
         Some(d.comparison?.added_mass)
     }),
-    column("added_inertia", "added inertia", "added Σ D", "Σ D less that of the first run's machine", "kg m²", 4, |d| {
-        Some(d.comparison?.added_inertia)
-    }),
+    column(
+        "added_inertia",
+        "added inertia",
+        "added Σ D",
+        "Σ D less that of the first run's machine",
+        "kg m²",
+        4,
+        |d| Some(d.comparison?.added_inertia),
+    ),
     column(
         "mass_inertia_factor",
         "mass–inertia factor",
@@ -80,9 +98,15 @@ pub const DESIGN_COLUMNS: [SummaryColumn<DesignMeasures>; 10] = [
         4,
         |d| d.beta()?.moment,
     ),
-    column("beta_torque", "share of torque", "β torque", "torques in the first run's motion, of what the first takes", "1", 4, |d| {
-        d.beta()?.torque
-    }),
+    column(
+        "beta_torque",
+        "share of torque",
+        "β torque",
+        "torques in the first run's motion, of what the first takes",
+        "1",
+        4,
+        |d| d.beta()?.torque,
+    ),
 ];
 
 impl DesignCandidate {

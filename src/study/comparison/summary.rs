@@ -71,10 +71,14 @@ pub struct SummaryColumn<T = Summary> {
 /// Columns of the table, in order.
 pub const SUMMARY_COLUMNS: [SummaryColumn; 15] = [
     column("time", "time", "T", "time of the motion", "s", 3, |s| Some(s.time)),
-    column("peak_moment", "peak moment", "peak n", "largest moment that the base feels", "N m", 4, |s| Some(s.peak_moment)),
+    column("peak_moment", "peak moment", "peak n", "largest moment that the base feels", "N m", 4, |s| {
+        Some(s.peak_moment)
+    }),
     column("rms_moment", "RMS moment", "rms n", "its root mean square", "N m", 4, |s| Some(s.rms_moment)),
     column("moment_impulse", "moment impulse", "∫|n|dt", "its impulse", "N m s", 4, |s| Some(s.moment_impulse)),
-    column("peak_force", "peak force", "peak f", "largest force on the base, from motion", "N", 4, |s| Some(s.peak_force)),
+    column("peak_force", "peak force", "peak f", "largest force on the base, from motion", "N", 4, |s| {
+        Some(s.peak_force)
+    }),
     column("rms_force", "RMS force", "rms f", "its root mean square", "N", 4, |s| Some(s.rms_force)),
     column("force_impulse", "force impulse", "∫|f|dt", "its impulse", "N s", 4, |s| Some(s.force_impulse)),
     column("base_shift", "base shift", "shift", "largest displacement of the base", "m", 5, |s| Some(s.base_shift)),
@@ -83,10 +87,18 @@ pub const SUMMARY_COLUMNS: [SummaryColumn; 15] = [
     column("peak_torque", "peak torque", "peak τ", "largest torque of any drive", "N m", 4, |s| Some(s.peak_torque)),
     column("energy", "energy", "energy", "energy that motors took, none given back", "J", 4, |s| Some(s.energy)),
     column("wheel_rate", "wheel rate", "wheel", "largest rate of the reaction wheel", "rad/s", 1, |s| s.wheel_rate),
-    column("saturated_at", "saturates at", "saturates", "when the wheel could give no more", "s", 3, |s| s.saturated_at),
-    column("peak_arm_moment", "peak arm moment", "peak n_B", "largest moment of the arm, before the wheel", "N m", 4, |s| {
-        s.peak_arm_moment
+    column("saturated_at", "saturates at", "saturates", "when the wheel could give no more", "s", 3, |s| {
+        s.saturated_at
     }),
+    column(
+        "peak_arm_moment",
+        "peak arm moment",
+        "peak n_B",
+        "largest moment of the arm, before the wheel",
+        "N m",
+        4,
+        |s| s.peak_arm_moment,
+    ),
 ];
 
 impl SummaryColumn {
