@@ -5,10 +5,10 @@ use super::widgets::name;
 use super::{Command, ComparisonCommand, SessionCommand, Switch, ViewChange, ViewState, WindowCommand};
 use super::{fit, notation};
 use egui::{Align, Button, CursorIcon, Frame, Grid, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui};
-use stillbase_picture::charts::figure::dashes;
+use stillbase_picture::charts::figure::{dashes, run_colour};
 use stillbase_picture::notation::{NameOrder, Notation};
 use stillbase_picture::numbers::signed;
-use stillbase_picture::scene::palette::{Palette, faded};
+use stillbase_picture::scene::palette::Palette;
 use stillbase_session::scenario::Scenario;
 use stillbase_study::comparison::{Comparison, ComparisonEntry, DESIGN_COLUMNS, SUMMARY_COLUMNS, SummaryColumn};
 
@@ -146,8 +146,7 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &ComparisonEntry, columns: &[H
         }
         let (rect, _) = ui.allocate_exact_size(egui::vec2(30.0, 12.0), Sense::hover());
         if shown {
-            let (dash, strength) = dashes(i);
-            sample(ui, rect, dash, colour(faded(p.run(i), strength)));
+            sample(ui, rect, dashes(i).0, colour(run_colour(i, p)));
         }
     });
     ui.horizontal(|ui| {

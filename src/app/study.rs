@@ -187,16 +187,24 @@ pub(super) fn bare<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
     base_plot(id, p, height).sense(Sense::hover()).set_margin_fraction(vec2(0.0, 0.05))
 }
 
+/// Returns marks at round values of an axis.
+fn round_marks(grid: egui_plot::GridInput) -> Vec<GridMark> {
+    let values = spaced(grid.bounds.0, grid.bounds.1);
+    // The step decides how many decimals the axis writes.
+    let step = values.windows(2).map(|pair| pair[1] - pair[0]).next().unwrap_or(1.0);
+    marks(&values, step)
+}
+
 /// Plots the deviation of n_B from that of the nominal machine, N m, over time, s. It shows percentiles 5 to 95 and
 /// 25 to 75 over the machines, mean, and first-order standard deviation.
 fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
-    title(ui, p, "Moment off nominal", "5–95, 25–75 %; dashed σ");
+    title(ui, p, "Moment off nominal", "5–95, 25–75 %");
     let (x, band) = (&study.bands.time, &study.bands.moment);
     let tone = colour(p.reaction);
     let end = x.last().copied().unwrap_or(1.0) + x.first().copied().unwrap_or(0.0);
     small_axes(ui);
     let axes = bare("bands", p, ui.available_height()).show_axes([true, true]);
-    let axes = axes.x_grid_spacer(|g| marks(&spaced(g.bounds.0, g.bounds.1), 1.0));
+    let axes = axes.x_grid_spacer(round_marks);
     let response = axes.x_axis_label("time, s").y_axis_label("n_B, N m").show(ui, |plot| {
         plot.set_plot_bounds_x(0.0..=end);
         for (i, strength) in [(0, 0.16), (1, 0.28)] {
@@ -219,6 +227,10 @@ fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
         plot.vline(VLine::new("now", time).color(colour(p.amber)).width(1.0).allow_hover(false));
     });
     name(&response.response, "Band of the turning moment on the base over time, N m");
+    response.response.on_hover_text(
+        "The moment less that of the machine as drawn.\nPale: 5 to 95 % of the machines; full: 25 to 75 %; line: mean; \
+         dashed: σ to first order",
+    );
 }
 
 /// Plots the histogram of peak |n_B|, N m, over the machines.
@@ -235,7 +247,7 @@ fn peaks(ui: &mut Ui, p: &Palette, study: &Study) {
     let bars: Vec<Bar> = bars.collect();
     small_axes(ui);
     let axes = bare("peaks", p, ui.available_height()).show_axes([true, true]).include_x(0.0).include_y(0.0);
-    let axes = axes.x_grid_spacer(|g| marks(&spaced(g.bounds.0, g.bounds.1), 1.0));
+    let axes = axes.x_grid_spacer(round_marks);
     let response = axes.x_axis_label("peak of |n_B|, N m").y_axis_label("machines").show(ui, |plot| {
         plot.bar_chart(BarChart::new("machines", bars).allow_hover(false));
         plot.vline(VLine::new("half", half).color(colour(p.ink)).width(1.0).allow_hover(false));
@@ -319,4 +331,5 @@ fn spectrum(ui: &mut Ui, p: &Palette, study: &Study) {
             }
         });
     name(&response.response, "Amplitude spectral density of base force and moment");
+    response.response.on_hover_text("Red: turning moment, N m/√Hz; grey: force along x, dashed along y, N/√Hz");
 }

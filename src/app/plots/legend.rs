@@ -6,8 +6,7 @@ use super::shown::DisplayContext;
 use crate::compare::sample;
 use crate::fit;
 use crate::theme::{bold, colour, plain};
-use stillbase_picture::charts::figure::dashes;
-use stillbase_picture::scene::palette::faded;
+use stillbase_picture::charts::figure::{dashes, run_colour};
 
 /// Width of a sample of a line, and least width of a run's name, points.
 const SAMPLE_WIDTH_PT: f32 = 24.0;
@@ -32,13 +31,12 @@ pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, width: f32) {
     let room = (share - taken).max(MIN_NAME_PT);
     ui.scope(|ui| {
         ui.set_max_width(width);
+        ui.spacing_mut().interact_size.y = 14.0;
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(4.0, 2.0);
-            ui.spacing_mut().interact_size.y = 14.0;
             for place in shown {
                 let (rect, _) = ui.allocate_exact_size(vec2(SAMPLE_WIDTH_PT, 14.0), Sense::hover());
-                let (dash, strength) = dashes(place);
-                sample(ui, rect, dash, colour(faded(p.run(place), strength)));
+                sample(ui, rect, dashes(place).0, colour(run_colour(place, &p)));
                 ui.label(egui::RichText::new(format!("{}", place + 1)).font(bold(10.5)).color(colour(p.run(place))));
                 fit::label_within(ui, &title(place), plain(11.0), colour(p.dim), room);
                 ui.add_space(4.0);

@@ -201,10 +201,7 @@ pub fn body(plot: &Plot<'_>, drawn: &PlotLines, axes: &Axes, look: &PlotContext<
         let (tone, dash) = pen(plot, run.curve, look);
         items.push(match run.run {
             None => line(points, 1.8, tone, dash),
-            Some(i) => {
-                let (dash, strength) = dashes(i);
-                line(points, 1.4, faded(run_colour(plot, run.curve, i, p), strength), dash)
-            }
+            Some(i) => line(points, 1.4, colour_in_run(plot, run.curve, i, p), dashes(i).0),
         });
     }
     words.extend(run_numbers(plot, drawn, axes, p));
@@ -213,9 +210,14 @@ pub fn body(plot: &Plot<'_>, drawn: &PlotLines, axes: &Axes, look: &PlotContext<
     items
 }
 
+/// Returns the colour of an overlaid run where colours do not distinguish drives.
+pub fn run_colour(run: usize, p: &Palette) -> Rgba {
+    faded(p.run(run), (dashes(run).1 / dashes(0).1).min(1.0))
+}
+
 /// Returns the colour of a curve of an overlaid run. Where colours distinguish drives, they do so in all runs.
-fn run_colour(plot: &Plot<'_>, curve: usize, run: usize, p: &Palette) -> Rgba {
-    plot.curves[curve].signal.drive.map_or_else(|| p.run(run), |k| p.drive(k))
+fn colour_in_run(plot: &Plot<'_>, curve: usize, run: usize, p: &Palette) -> Rgba {
+    plot.curves[curve].signal.drive.map_or_else(|| run_colour(run, p), |k| faded(p.drive(k), dashes(run).1))
 }
 
 /// Least distance between the numbers of runs, points.
@@ -227,7 +229,7 @@ fn run_numbers(plot: &Plot<'_>, drawn: &PlotLines, axes: &Axes, p: &Palette) -> 
     let end = |line: &super::drawn::PlotLine| {
         let (run, last) = (line.run?, line.points.last()?);
         let y = axes.place(*last)[1].clamp(top, bottom);
-        Some((y, run, run_colour(plot, line.curve, run, p)))
+        Some((y, run, colour_in_run(plot, line.curve, run, p)))
     };
     let mut ends: Vec<(f32, usize, Rgba)> = drawn.lines.iter().filter_map(end).collect();
     ends.sort_by(|a, b| a.0.total_cmp(&b.0));
