@@ -9,7 +9,7 @@ use super::plots::{base_plot, marks, small_axes, spaced};
 use super::theme::{bold, colour, plain};
 use super::widgets::{NumberRow, name, send};
 use super::{Command, Switch, ViewChange, ViewState};
-use stillbase_picture::numbers::signed;
+use stillbase_picture::numbers::{at_step, round_up, signed};
 use stillbase_picture::scene::palette::{Palette, faded};
 use stillbase_session::Edit;
 use stillbase_session::scenario::{Amount, Spread, TaskChange, Value, name_of};
@@ -189,10 +189,14 @@ pub(super) fn bare<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
 
 /// Returns marks at round values of an axis.
 fn round_marks(grid: egui_plot::GridInput) -> Vec<GridMark> {
-    let values = spaced(grid.bounds.0, grid.bounds.1);
-    // The step decides how many decimals the axis writes.
-    let step = values.windows(2).map(|pair| pair[1] - pair[0]).next().unwrap_or(1.0);
-    marks(&values, step)
+    let [low, high] = [grid.bounds.0, grid.bounds.1];
+    // The whole range as their step, so that all of them are named.
+    marks(&spaced(low, high), high - low)
+}
+
+/// Writes the value of a mark, with as many decimals as the axis needs.
+fn round_number(mark: GridMark, range: &std::ops::RangeInclusive<f64>) -> String {
+    at_step(mark.value, round_up((range.end() - range.start()) / 5.0))
 }
 
 /// Plots the deviation of n_B from that of the nominal machine, N m, over time, s. It shows percentiles 5 to 95 and
@@ -204,7 +208,7 @@ fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
     let end = x.last().copied().unwrap_or(1.0) + x.first().copied().unwrap_or(0.0);
     small_axes(ui);
     let axes = bare("bands", p, ui.available_height()).show_axes([true, true]);
-    let axes = axes.x_grid_spacer(round_marks);
+    let axes = axes.x_grid_spacer(round_marks).x_axis_formatter(round_number);
     let response = axes.x_axis_label("time, s").y_axis_label("n_B, N m").show(ui, |plot| {
         plot.set_plot_bounds_x(0.0..=end);
         for (i, strength) in [(0, 0.16), (1, 0.28)] {
@@ -247,7 +251,7 @@ fn peaks(ui: &mut Ui, p: &Palette, study: &Study) {
     let bars: Vec<Bar> = bars.collect();
     small_axes(ui);
     let axes = bare("peaks", p, ui.available_height()).show_axes([true, true]).include_x(0.0).include_y(0.0);
-    let axes = axes.x_grid_spacer(round_marks);
+    let axes = axes.x_grid_spacer(round_marks).x_axis_formatter(round_number);
     let response = axes.x_axis_label("peak of |n_B|, N m").y_axis_label("machines").show(ui, |plot| {
         plot.bar_chart(BarChart::new("machines", bars).allow_hover(false));
         plot.vline(VLine::new("half", half).color(colour(p.ink)).width(1.0).allow_hover(false));
