@@ -296,6 +296,7 @@ pub const ACTIONS: &[Action] = actions![
     View, "Exaggerate the motion of the base, or show it as it is" = "enlarge magnify shake", [on(PLAIN, Key::X)], "left panel, base" turns Exaggeration;
     View, "Panel of settings, shown or hidden" = "left sidebar parameters options preferences properties", [on(PLAIN, Key::Num8)], "tool bar, layout" turns Side;
     View, "Panel of plots, shown or hidden" = "right sidebar charts graphs", [on(PLAIN, Key::Num9)], "tool bar, layout" turns Plots;
+    View, "All settings in a window of their own" = "every key parameter list", [], "left panel" turns Settings;
     View, "Nothing but the scene, or all panels" = "full screen hide", [on(PLAIN, Key::Num0)], "keyboard" turns Panels;
     View, "Settings and plots change sides" = "swap left right", [on(PLAIN, Key::Num4)], "tool bar, layout" turns Swapped;
     View, "Explore: settings, scene and plots" = "layout default normal", [on(PLAIN, Key::Num5)], "tool bar, layout", |_, _| {
@@ -386,7 +387,7 @@ pub const FINE_ACTIONS: &[Action] = actions![
 ];
 
 /// Gestures of the pointer, and their effects.
-pub const GESTURES: [(&str, &str); 24] = [
+pub const GESTURES: [(&str, &str); 25] = [
     ("drag the target", "the machine follows on its plane"),
     ("drag a link", "its drive turns, the others follow so that b stays"),
     ("drag a link of four drives or more", "it goes along, the tip and b stay"),
@@ -414,6 +415,7 @@ pub const GESTURES: [(&str, &str); 24] = [
     ("Ctrl wheel, drag on a plot", "closer to a time, and along; a double click shows all"),
     ("drag the numbers of a plot", "along its values; there Ctrl wheel, or Alt wheel on the plot: closer"),
     ("Shift drag on a plot", "plots show this time"),
+    ("drag a plot's heading", "another place; out of the panel: a window of its own"),
     ("right button on a plot", "its menu: curves, statistics, CSV, SVG, PNG"),
     ("Shift click a plot", "a second cursor: plots show differences; Esc takes it away"),
     ("Esc", "close what is open, cancel a drag"),

@@ -44,6 +44,7 @@ pub fn show(ui: &mut Ui, view_state: &ViewState, size: Vec2, commands: &mut Vec<
         for (text, switch, tip) in [
             ("Settings", Switch::Side, "b, limits, path, plant, base, control"),
             ("Plots", Switch::Plots, "Signals over time, and which b serves"),
+            ("All settings", Switch::Settings, "Every setting in a window of its own"),
             ("Settings on the right", Switch::Swapped, "Settings and plots change sides"),
         ] {
             line(ui, (text, key_of_switch(switch), tip), view_state.is_on(switch), view_state.other(switch));

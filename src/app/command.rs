@@ -158,6 +158,8 @@ pub enum Switch {
     Help,
     /// The guide.
     Guide,
+    /// All settings in a window of their own.
+    Settings,
     /// The display of repaint times.
     Times,
     /// The list of commands.

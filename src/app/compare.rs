@@ -1,17 +1,16 @@
 //! The table of runs at the bottom: the same task done in several ways, and kept runs.
 
-use super::notation;
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{
     Command, ComparisonCommand, GuidePage, GuidePlace, SessionCommand, Switch, ViewChange, ViewState, WindowCommand,
-    guide,
+    fit, guide, notation,
 };
 use egui::{Align, Button, CursorIcon, Frame, Grid, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui};
-use stillbase_picture::charts::figure::dashes;
+use stillbase_picture::charts::figure::{dashes, run_colour};
 use stillbase_picture::notation::{NameOrder, Notation};
 use stillbase_picture::numbers::signed;
-use stillbase_picture::scene::palette::{Palette, faded};
+use stillbase_picture::scene::palette::Palette;
 use stillbase_session::scenario::Scenario;
 use stillbase_study::comparison::{Comparison, ComparisonEntry, DESIGN_COLUMNS, SUMMARY_COLUMNS, SummaryColumn};
 
@@ -32,7 +31,7 @@ pub fn show(ui: &mut Ui, comparison: &Comparison, view_state: &ViewState, comman
                 buttons(ui, comparison, commands);
                 // The explanation fills the space between title and buttons.
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    ui.add(Label::new(RichText::new(words).font(plain(11.5)).color(colour(p.dim))).truncate());
+                    fit::label(ui, words, plain(11.5), colour(p.dim));
                 });
             });
         });
@@ -151,8 +150,7 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &ComparisonEntry, columns: &[H
         }
         let (rect, _) = ui.allocate_exact_size(egui::vec2(30.0, 12.0), Sense::hover());
         if shown {
-            let (dash, strength) = dashes(i);
-            sample(ui, rect, dash, colour(faded(p.ink, strength)));
+            sample(ui, rect, dashes(i).0, colour(run_colour(i, p)));
         }
     });
     ui.horizontal(|ui| {
@@ -199,7 +197,7 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &ComparisonEntry, columns: &[H
 }
 
 /// Draws a short sample of a line in the style of the plots.
-fn sample(ui: &Ui, rect: egui::Rect, dash: Option<[f32; 2]>, tone: egui::Color32) {
+pub(super) fn sample(ui: &Ui, rect: egui::Rect, dash: Option<[f32; 2]>, tone: egui::Color32) {
     let ends = [rect.left_center(), rect.right_center()];
     let stroke = egui::Stroke::new(1.6, tone);
     let shapes = match dash {

@@ -5,7 +5,7 @@ use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Align2, Button, Rect, RichText, Ui, pos2, vec2};
 
 use super::theme::{colour, plain};
-use super::{Command, ViewChange, ViewState};
+use super::{Command, ViewChange, ViewState, fit};
 use stillbase_picture::scene::joints::JointSpace;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_picture::scene::views::{ViewKind, Views};
@@ -27,7 +27,7 @@ pub fn show(ui: &mut Ui, rect: Rect, view_state: &ViewState, views: &Views, comm
         plain(11.5),
         colour(p.dim),
     );
-    // Long text is truncated so that it does not overlap the text of the grid width.
+    // Long text is shortened so that it does not overlap the text of the grid width.
     let left = pos2(rect.left() + 16.0, low);
     let room = Rect::from_min_max(left - vec2(0.0, 12.0), pos2(grid.left() - 12.0, low + 12.0));
     let layout = egui::Layout::left_to_right(egui::Align::Center);
@@ -37,8 +37,7 @@ pub fn show(ui: &mut Ui, rect: Rect, view_state: &ViewState, views: &Views, comm
         None => {
             let joints = views.joints().filter(|_| view_state.view == ViewKind::Joints);
             let words = joints.map_or(view_state.view.invitation(), JointSpace::invitation);
-            let words = RichText::new(words).font(plain(11.5)).color(colour(p.dim));
-            corner.add(egui::Label::new(words).truncate());
+            fit::label(&mut corner, words, plain(11.5), colour(p.dim));
         }
     }
 }

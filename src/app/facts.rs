@@ -8,7 +8,7 @@ use stillbase_mechanics::planar::Vector;
 use stillbase_planning::pose_space::Planes;
 use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork, Shared};
 use stillbase_session::Session;
-use stillbase_session::scenario::{Scenario, Value};
+use stillbase_session::scenario::{Scenario, Value, name_of};
 use stillbase_settings::change::{self, DEFAULT_WORD};
 use stillbase_settings::key::{Key, KeyType};
 
@@ -22,7 +22,7 @@ pub(super) struct Setting {
     pub is_default: bool,
     /// If the setting has no effect now: the condition under which it has one.
     pub unmet_condition: Option<&'static str>,
-    /// Path and explanation in lower case, to be searched.
+    /// Path, name and explanation in lower case, to be searched.
     pub text: String,
 }
 
@@ -102,7 +102,7 @@ impl QuickQuery for Settings {
             Setting {
                 is_default: typed.is_empty() || key.default.is_empty() || is_default(),
                 unmet_condition: scenario.condition_for_effect(&path),
-                text: format!("{path}\n{}", key.meaning).to_lowercase(),
+                text: format!("{path}\n{}\n{}", name_of(&path), key.meaning).to_lowercase(),
                 typed,
                 key,
                 path,

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use egui::{Button, Label, RichText, Sense, Ui, vec2};
 
 use super::actions::{ACTIONS, Action, ActionGroup, shortcut_label};
+use super::fit::{fitted, fitted_path};
 use super::gallery::portrait_of;
 use super::theme::{colour, plain};
 use super::widgets::name;
@@ -101,16 +102,14 @@ fn recent_files(ui: &mut Ui, p: &Palette, queries: &Queries, recent: &[PathBuf])
         if let Some(portrait) = portraits.as_ref().and_then(|all| all.get(i)?.as_ref()) {
             portrait.paint(ui.painter(), picture, p);
         }
-        let text = |ui: &Ui, y: f32, words: String, font, ink| {
-            let room = rect.right() - picture.right() - 18.0;
-            let words = egui::WidgetText::from(RichText::new(words).font(font));
-            let words = words.into_galley(ui, Some(egui::TextWrapMode::Truncate), room, egui::TextStyle::Body);
-            ui.painter().galley(egui::pos2(picture.right() + 10.0, y), words, ink);
+        let room = rect.right() - picture.right() - 18.0;
+        let text = |ui: &Ui, y: f32, words: &str, font, ink| {
+            ui.painter().text(egui::pos2(picture.right() + 10.0, y), egui::Align2::LEFT_TOP, words, font, ink);
         };
         let file = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         let folder = path.parent().map_or_else(String::new, |folder| folder.display().to_string());
-        text(ui, rect.top() + 6.0, file.clone(), plain(13.0), colour(p.ink));
-        text(ui, rect.top() + 26.0, folder, plain(11.0), colour(p.dim));
+        text(ui, rect.top() + 6.0, &fitted(ui, &file, &plain(13.0), room), plain(13.0), colour(p.ink));
+        text(ui, rect.top() + 26.0, &fitted_path(ui, &folder, &plain(11.0), room), plain(11.0), colour(p.dim));
         name(&response, &format!("Open {file}"));
         if response.on_hover_text(path.display().to_string()).clicked() {
             opened = Some(path.clone());

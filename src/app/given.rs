@@ -8,6 +8,7 @@ mod parts;
 
 use egui::{Align, ComboBox, Frame, Label, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
+use super::fit;
 use super::theme::{bold, colour, plain};
 use super::widgets::{NumberRow, name, note, unit};
 use super::{Command, FileDialog, GuidePage, Switch, ViewChange, ViewState, guide};
@@ -65,8 +66,7 @@ pub(super) fn show(ui: &mut Ui, shown: TableView<'_>, view_state: &ViewState, co
                         commands.push(ViewChange::Dialog(Some(FileDialog::opening())).into());
                     }
                     ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                        let words = RichText::new(summary(&shown)).font(plain(11.5)).color(colour(p.dim));
-                        ui.add(Label::new(words).truncate());
+                        fit::label(ui, &summary(&shown), plain(11.5), colour(p.dim));
                     });
                 });
             });

@@ -3,6 +3,7 @@
 use egui::{Popup, PopupCloseBehavior, RectAlign, RichText, ScrollArea, Ui, Vec2, vec2};
 
 use super::actions::key_of_switch;
+use super::fit;
 use super::icon::{Icon, IconButton, dot};
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
@@ -59,8 +60,10 @@ fn list(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
     let titles = std::iter::once("as it was opened").chain(session.history());
     for (i, title) in titles.enumerate() {
         let tone = if i > present { p.dim } else { p.ink };
-        let words = RichText::new(format!("     {title}")).font(plain(12.5)).color(colour(tone));
-        let line = egui::Button::new(words).frame_when_inactive(false).truncate().min_size(egui::vec2(254.0, 22.0));
+        let words = format!("     {title}");
+        let room = ui.available_width().max(254.0) - 2.0 * ui.spacing().button_padding.x;
+        let words = RichText::new(fit::fitted(ui, &words, &plain(12.5), room)).font(plain(12.5)).color(colour(tone));
+        let line = egui::Button::new(words).frame_when_inactive(false).min_size(egui::vec2(254.0, 22.0));
         let line = ui.add(line.right_text(""));
         if i == present {
             dot(ui, p, &line);

@@ -80,6 +80,7 @@ fn escape(view_state: &ViewState) -> Command {
         OpenDialogs { dialog: Some(_), .. } => ViewChange::Dialog(None).into(),
         OpenDialogs { export: Some(_), .. } => ViewChange::Export(None).into(),
         OpenDialogs { finder: Some(_), .. } => ViewChange::Switch(Switch::Finder, false).into(),
+        OpenDialogs { settings: true, .. } => ViewChange::Switch(Switch::Settings, false).into(),
         OpenDialogs { help: true, .. } => ViewChange::Switch(Switch::Help, false).into(),
         OpenDialogs { guide: Some(_), .. } => ViewChange::Switch(Switch::Guide, false).into(),
         _ if matches!(tool, Tool::Draw(_)) => ViewChange::Switch(Switch::Drawing, false).into(),

@@ -20,6 +20,7 @@ mod facts;
 mod file_dialog;
 mod file_menu;
 mod finder;
+mod fit;
 mod framing;
 mod gallery;
 mod gesture;

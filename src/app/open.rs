@@ -22,6 +22,8 @@ pub struct OpenDialogs {
     pub help: bool,
     /// The list of changes.
     pub history: bool,
+    /// All settings in a window of their own.
+    pub settings: bool,
     /// The display of repaint times.
     pub times: bool,
     /// The tour while it runs.

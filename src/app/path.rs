@@ -6,7 +6,7 @@ use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
 use super::theme::{colour, plain};
 use super::widgets::{NumberRow, name, note, send, unit};
-use super::{Command, GuidePage, SessionCommand, guide, place};
+use super::{Command, GuidePage, SessionCommand, fit, guide, place};
 use stillbase_mechanics::planar::Vector;
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::options::Handle;
@@ -379,7 +379,6 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
             },
         ),
     ] {
-        let words = RichText::new(words).font(plain(11.0)).color(colour(ink));
-        ui.add(egui::Label::new(words).truncate()).on_hover_text(tip);
+        fit::label(ui, &words, plain(11.0), colour(ink)).on_hover_text(tip);
     }
 }

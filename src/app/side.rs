@@ -1,12 +1,13 @@
-//! The panel on the left: pose constant, limits, motion, plant, base, control, balance, and all settings by key.
+//! The panel on the left: pose constant, limits, motion, plant, base, control, balance, and all settings.
 
 mod all;
 mod base;
 mod control;
 mod fold;
 mod plant;
+mod setting;
 
-pub use all::look_up;
+pub use all::{look_up, window};
 
 use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
@@ -15,7 +16,7 @@ use super::notation;
 use super::theme::{bold, colour, plain};
 use super::widgets::{NumberRow, name, note, section, send, unit};
 use super::{
-    Command, GuidePage, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, guide, path, place, set_b,
+    Command, GuidePage, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, fit, guide, path, place, set_b,
 };
 use stillbase_mechanics::machine::MAX_ANGLE;
 use stillbase_picture::scene::course::target_handle;
@@ -31,9 +32,16 @@ use stillbase_settings::number::{significant, subscript};
 const WIDTH_FRACTION: f32 = 0.17;
 const MIN_WIDTH_PT: f32 = 262.0;
 const MAX_WIDTH_PT: f32 = 320.0;
+/// The same in a window that is narrow, so that the scene keeps room.
+const NARROW_WIDTH_PT: f32 = 252.0;
 
 /// Space for the scroll bar, which grows when the pointer is near, points.
 pub(super) const SCROLL_BAR_WIDTH: f32 = 14.0;
+
+/// Whether the window is so narrow that both panels are narrower than usual.
+pub(super) fn is_narrow(ui: &Ui) -> bool {
+    ui.ctx().content_rect().width() < 1100.0
+}
 
 /// Draws this panel; returns the width set by the user, points, if any.
 pub fn show(
@@ -45,7 +53,8 @@ pub fn show(
 ) -> Option<f32> {
     let p = view_state.palette();
     let frame = Frame::new().inner_margin(Margin { left: 16, right: 2, top: 12, bottom: 8 });
-    let usual = (WIDTH_FRACTION * ui.ctx().content_rect().width()).clamp(MIN_WIDTH_PT, MAX_WIDTH_PT).round();
+    let least = if is_narrow(ui) { NARROW_WIDTH_PT } else { MIN_WIDTH_PT };
+    let usual = (WIDTH_FRACTION * ui.ctx().content_rect().width()).clamp(least, MAX_WIDTH_PT).round();
     let salt = ("side", usual as u32, view_state.arrangement.swapped);
     let panel = if view_state.arrangement.swapped { Panel::right(salt) } else { Panel::left(salt) };
     let panel = panel
@@ -66,7 +75,7 @@ pub fn show(
             base::show(ui, session, view_state, commands);
             control::show(ui, session, &p, commands);
             balance(ui, session, facts, &p, commands);
-            all::show(ui, facts, &p, commands);
+            all::show(ui, facts, &p, view_state.open.settings, commands);
         });
     });
     view_state.arrangement.now().side.stored_width(shown.response.rect.width(), usual)
@@ -173,9 +182,9 @@ fn pose_constant(
         }
     }
     // Always one line, so that nothing below moves.
-    let words = RichText::new(format!("in motion it costs up to {:.2} N m", facts.price)).font(plain(11.0));
+    let words = format!("in motion it costs up to {:.2} N m", facts.price);
     let tip = "The moment of D₁ b̈ on a fixed base; one that moves gives way";
-    ui.add(egui::Label::new(words.color(colour(p.dim))).truncate()).on_hover_text(tip);
+    fit::label(ui, &words, plain(11.0), colour(p.dim)).on_hover_text(tip);
     let mut shown = scenario.compare_b.is_some();
     let mut other = scenario.compare_b.unwrap_or(b + 0.5 * period);
     ui.horizontal(|ui| {
@@ -336,7 +345,7 @@ fn fact(
         ui.label(RichText::new(value).color(colour(tone))).on_hover_text(tip);
         // The name gets the space that is left, and is shortened if it is too long.
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-            ui.add(egui::Label::new(RichText::new(label).font(plain(12.5))).truncate()).on_hover_text(tip);
+            fit::label(ui, label, plain(12.5), colour(p.ink)).on_hover_text(tip);
         });
     });
 }

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use egui::{Align, Layout, Margin, Panel, RichText, Sense, Ui, vec2};
 
 use super::facts::ScenarioFacts;
-use super::lamp;
 use super::notation;
 use super::theme::{colour, plain};
 use super::widgets::name;
 use super::{Activity, Command, Message, SessionCommand, Tool, ViewState, WindowCommand};
+use super::{fit, lamp};
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::{Palette, faded};
 use stillbase_planning::pose_space::NoPoseSpace;
@@ -177,7 +177,7 @@ pub fn show(
                         }
                     }
                     let text = format!("{}, {:.0} %", activity.words(), 100.0 * done);
-                    ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(p.dim))).truncate());
+                    fit::label(ui, &text, plain(12.0), colour(p.dim));
                     return;
                 }
                 let (text, tone) = match (&view_state.status.message, f.target.reach) {
@@ -242,7 +242,7 @@ pub fn show(
                     (None, _) => ("Space plays  ·  F1 keys".into(), p.dim),
                 };
                 let text = notation::sentence(ui.ctx(), &text);
-                ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(tone))).truncate());
+                fit::label(ui, &text, plain(12.0), colour(tone));
             });
         });
     });

@@ -4,18 +4,23 @@
 use egui::{Align, Color32, Frame, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui, vec2};
 use egui_plot::{Bar, BarChart, FilledArea, GridMark, Line, LineStyle, Plot, PlotPoints, VLine};
 
-use super::plots::{base_plot, small_axes};
+use super::fit;
+use super::plots::{base_plot, marks, small_axes, spaced};
 use super::theme::{bold, colour, plain};
 use super::widgets::{NumberRow, name, send};
 use super::{Command, GuidePage, Switch, ViewChange, ViewState, guide};
-use stillbase_picture::numbers::signed;
+use stillbase_picture::numbers::{at_step, round_up, signed};
 use stillbase_picture::scene::palette::{Palette, faded};
 use stillbase_session::Edit;
-use stillbase_session::scenario::{Amount, Spread, TaskChange, Value};
+use stillbase_session::scenario::{Amount, Spread, TaskChange, Value, name_of};
 use stillbase_settings::number::counted;
 use stillbase_study::tolerance::Study;
 
-const HEIGHT_PT: f32 = 268.0;
+const HEIGHT_PT: f32 = 288.0;
+/// Widths of the columns of tolerances and of their shares, and of a number with its sign and unit, points.
+const SPREADS_WIDTH_PT: f32 = 312.0;
+const SHARES_WIDTH_PT: f32 = 244.0;
+const NUMBER_WIDTH_PT: f32 = 136.0;
 
 /// Draws this panel.
 pub fn show(
@@ -42,7 +47,7 @@ pub fn show(
                     commands.push(ViewChange::Switch(Switch::Study, false).into());
                 }
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    ui.add(Label::new(RichText::new(words).font(plain(11.5)).color(colour(p.dim))).truncate());
+                    fit::label(ui, &words, plain(11.5), colour(p.dim));
                 });
             });
         });
@@ -91,11 +96,11 @@ fn columns(ui: &mut Ui, p: &Palette, study: &Study, time: f64, commands: &mut Ve
         });
         ui.add_space(10.0);
     };
-    let rest = ((ui.available_width() - 236.0 - 220.0 - 50.0) / 3.0).max(220.0);
-    column(ui, 236.0, &mut |ui| spreads(ui, p, study, commands));
+    let rest = ((ui.available_width() - SPREADS_WIDTH_PT - SHARES_WIDTH_PT - 90.0) / 3.0).max(220.0);
+    column(ui, SPREADS_WIDTH_PT, &mut |ui| spreads(ui, p, study, commands));
     column(ui, rest, &mut |ui| band(ui, p, study, time));
     column(ui, rest, &mut |ui| peaks(ui, p, study));
-    column(ui, 220.0, &mut |ui| contributions(ui, p, study));
+    column(ui, SHARES_WIDTH_PT, &mut |ui| contributions(ui, p, study));
     column(ui, rest, &mut |ui| spectrum(ui, p, study));
 }
 
@@ -103,32 +108,18 @@ fn title(ui: &mut Ui, p: &Palette, title: &str, rest: &str) {
     ui.horizontal(|ui| {
         ui.set_height(16.0);
         ui.label(RichText::new(title).font(bold(12.5)));
-        ui.add(Label::new(RichText::new(rest).font(plain(11.5)).color(colour(p.dim))).truncate());
+        fit::label(ui, rest, plain(11.5), colour(p.dim));
     });
 }
 
-/// Returns name and unit of a tolerance, and the factor from its value to this unit.
-fn words(key: &str, amount: Amount) -> (String, &'static str, f64) {
-    let (of, what) = match key.rsplit_once('.') {
-        Some((of, "com")) => (of, "CM along"),
-        Some((of, "com_normal")) => (of, "CM across"),
-        Some((of, what)) if of.starts_with("link") || of == "payload" => (of, what),
-        _ => ("", key),
-    };
-    let who = match of.strip_prefix("link.") {
-        Some("*") | None => String::new(),
-        Some(name) => format!(" of {name}"),
-    };
-    let what = match key {
-        "length.*" => "lengths".into(),
-        _ => format!("{what}{who}"),
-    };
+/// Returns the unit of a tolerance, and the factor from its value to this unit.
+fn unit_of(key: &str, amount: Amount) -> (&'static str, f64) {
     let metres = key.starts_with("length") || key.contains(".com");
     match amount {
-        Amount::Percent(_) => (what, "%", 1.0),
-        Amount::Absolute(_) if metres => (what, "mm", 1e3),
-        Amount::Absolute(_) if key.ends_with("mass") => (what, "g", 1e3),
-        Amount::Absolute(_) => (what, "kg m²", 1.0),
+        Amount::Percent(_) => ("%", 1.0),
+        Amount::Absolute(_) if metres => ("mm", 1e3),
+        Amount::Absolute(_) if key.ends_with("mass") => ("g", 1e3),
+        Amount::Absolute(_) => ("kg m²", 1.0),
     }
 }
 
@@ -139,11 +130,11 @@ fn spreads(ui: &mut Ui, p: &Palette, study: &Study, commands: &mut Vec<Command>)
     ScrollArea::vertical().id_salt("spreads").auto_shrink([false, false]).show(ui, |ui| {
         for (key, spread) in spreads {
             let amount = spread.amount();
-            let (label, unit, times) = words(key, amount);
+            let (unit, times) = unit_of(key, amount);
             let (Amount::Absolute(size) | Amount::Percent(size)) = amount;
             let mut value = size * times;
             let sign = if matches!(spread, Spread::Normal(_)) { "σ" } else { "±" };
-            let response = row(ui, p, &format!("{label}  {sign}"), unit, key, &mut value);
+            let response = row(ui, p, (&name_of(key), sign), unit, key, &mut value);
             send(commands, &[response], || {
                 let amount = match amount {
                     Amount::Percent(_) => Amount::Percent(value / times),
@@ -157,7 +148,8 @@ fn spreads(ui: &mut Ui, p: &Palette, study: &Study, commands: &mut Vec<Command>)
             });
         }
         let mut limit = study.tolerance.moment_limit.unwrap_or(0.0);
-        let response = row(ui, p, "limit on |n_B|", "N m", "moment_limit: zero for none", &mut limit);
+        let label = ("limit of the moment, |n_B|", "");
+        let response = row(ui, p, label, "N m", "moment_limit: zero for none", &mut limit);
         send(commands, &[response], || {
             let value = if limit > 0.0 { Value::from(limit) } else { Value::from("default") };
             Edit::set("tolerance.moment_limit", value)
@@ -165,16 +157,26 @@ fn spreads(ui: &mut Ui, p: &Palette, study: &Study, commands: &mut Vec<Command>)
     });
 }
 
-fn row(ui: &mut Ui, p: &Palette, label: &str, unit: &str, tip: &str, value: &mut f64) -> egui::Response {
+fn row(
+    ui: &mut Ui,
+    p: &Palette,
+    (label, sign): (&str, &str),
+    unit: &str,
+    tip: &str,
+    value: &mut f64,
+) -> egui::Response {
     ui.horizontal(|ui| {
-        ui.label(RichText::new(label).font(plain(12.5)));
+        let room = ui.available_width() - NUMBER_WIDTH_PT;
+        fit::label_within(ui, label, plain(11.5), colour(p.ink), room).on_hover_text(tip);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let text = RichText::new(unit).font(plain(11.5)).color(colour(p.dim));
             ui.add_sized([42.0, 18.0], Label::new(text).halign(Align::LEFT));
             let called = format!("Spread of {label}");
             let row =
                 NumberRow { label: &called, unit, tip, decimals: 3, speed: 0.01, range: 0.0..=1e3, slide: 0.0..=1e3 };
-            row.number(ui, value)
+            let number = row.number(ui, value);
+            ui.label(RichText::new(sign).font(plain(11.5)).color(colour(p.dim)));
+            number
         })
         .inner
     })
@@ -186,15 +188,29 @@ pub(super) fn bare<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
     base_plot(id, p, height).sense(Sense::hover()).set_margin_fraction(vec2(0.0, 0.05))
 }
 
+/// Returns marks at round values of an axis.
+fn round_marks(grid: egui_plot::GridInput) -> Vec<GridMark> {
+    let [low, high] = [grid.bounds.0, grid.bounds.1];
+    // The whole range as their step, so that all of them are named.
+    marks(&spaced(low, high), high - low)
+}
+
+/// Writes the value of a mark, with as many decimals as the axis needs.
+fn round_number(mark: GridMark, range: &std::ops::RangeInclusive<f64>) -> String {
+    at_step(mark.value, round_up((range.end() - range.start()) / 5.0))
+}
+
 /// Plots the deviation of n_B from that of the nominal machine, N m, over time, s. It shows percentiles 5 to 95 and
 /// 25 to 75 over the machines, mean, and first-order standard deviation.
 fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
-    title(ui, p, "n_B off nominal", "N m; 5–95, 25–75 %; dashed σ");
+    title(ui, p, "Moment off nominal", "5–95, 25–75 %");
     let (x, band) = (&study.bands.time, &study.bands.moment);
     let tone = colour(p.reaction);
     let end = x.last().copied().unwrap_or(1.0) + x.first().copied().unwrap_or(0.0);
     small_axes(ui);
-    let response = bare("bands", p, ui.available_height()).show_axes([true, true]).show(ui, |plot| {
+    let axes = bare("bands", p, ui.available_height()).show_axes([true, true]);
+    let axes = axes.x_grid_spacer(round_marks).x_axis_formatter(round_number);
+    let response = axes.x_axis_label("time, s").y_axis_label("n_B, N m").show(ui, |plot| {
         plot.set_plot_bounds_x(0.0..=end);
         for (i, strength) in [(0, 0.16), (1, 0.28)] {
             let [low, high] = [i, 4 - i].map(|i| {
@@ -216,12 +232,16 @@ fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
         plot.vline(VLine::new("now", time).color(colour(p.amber)).width(1.0).allow_hover(false));
     });
     name(&response.response, "Band of the turning moment on the base over time, N m");
+    response.response.on_hover_text(
+        "The moment less that of the machine as drawn.\nPale: 5 to 95 % of the machines; full: 25 to 75 %; line: mean; \
+         dashed: σ to first order",
+    );
 }
 
 /// Plots the histogram of peak |n_B|, N m, over the machines.
 fn peaks(ui: &mut Ui, p: &Palette, study: &Study) {
     let [_, half, most, nearly] = study.moment.values[..] else { return };
-    title(ui, p, "Peak |n_B|", &format!("N m; 95 % below {most:.4}"));
+    title(ui, p, "Peak moment", &format!("95 % below {most:.4} N m"));
     let histogram = &study.moment_histogram;
     let within = |x: f64| study.tolerance.moment_limit.is_none_or(|limit| x <= limit);
     let bars = histogram.counts.iter().zip(histogram.edges.windows(2)).map(|(count, w)| {
@@ -231,16 +251,15 @@ fn peaks(ui: &mut Ui, p: &Palette, study: &Study) {
     });
     let bars: Vec<Bar> = bars.collect();
     small_axes(ui);
-    let response = bare("peaks", p, ui.available_height()).show_axes([true, false]).include_x(0.0).include_y(0.0).show(
-        ui,
-        |plot| {
-            plot.bar_chart(BarChart::new("machines", bars).allow_hover(false));
-            plot.vline(VLine::new("half", half).color(colour(p.ink)).width(1.0).allow_hover(false));
-            if let Some(limit) = study.tolerance.moment_limit {
-                plot.vline(VLine::new("limit", limit).color(colour(p.amber)).width(1.4).allow_hover(false));
-            }
-        },
-    );
+    let axes = bare("peaks", p, ui.available_height()).show_axes([true, true]).include_x(0.0).include_y(0.0);
+    let axes = axes.x_grid_spacer(round_marks).x_axis_formatter(round_number);
+    let response = axes.x_axis_label("peak of |n_B|, N m").y_axis_label("machines").show(ui, |plot| {
+        plot.bar_chart(BarChart::new("machines", bars).allow_hover(false));
+        plot.vline(VLine::new("half", half).color(colour(p.ink)).width(1.0).allow_hover(false));
+        if let Some(limit) = study.tolerance.moment_limit {
+            plot.vline(VLine::new("limit", limit).color(colour(p.amber)).width(1.4).allow_hover(false));
+        }
+    });
     let words = format!("half below {half:.5}, 95 % below {most:.5}, 99 % below {nearly:.5} N m");
     name(&response.response, "Histogram of peaks of the turning moment on the base over machines, N m");
     response.response.on_hover_text(words);
@@ -248,7 +267,7 @@ fn peaks(ui: &mut Ui, p: &Palette, study: &Study) {
 
 /// Draws the contributions of the tolerances: fractions of the first-order variance of n_B, summed over the motion.
 fn contributions(ui: &mut Ui, p: &Palette, study: &Study) {
-    title(ui, p, "To blame", "share of variance of n_B");
+    title(ui, p, "To blame", "share of the variance of n_B");
     let width = ui.available_width();
     ScrollArea::vertical().id_salt("blame").auto_shrink([false, false]).show(ui, |ui| {
         for share in study.shares.iter().take(20).filter(|s| s.moment_share > 5e-4) {
@@ -258,13 +277,20 @@ fn contributions(ui: &mut Ui, p: &Palette, study: &Study) {
             ui.painter().rect_filled(bar, 3.0, colour(faded(p.amber, 0.35)));
             let (left, right) = (egui::Align2::LEFT_CENTER, egui::Align2::RIGHT_CENTER);
             let (font, ink) = (plain(11.5), colour(p.ink));
-            ui.painter().text(rect.left_center() + vec2(4.0, 0.0), left, &share.key, font.clone(), ink);
             let percent = format!("{:.1} %", 100.0 * share.moment_share);
+            let called = name_of(&share.key);
+            let room = rect.width() - fit::width_of(ui, &percent, &font) - 14.0;
+            let words = fit::fitted(ui, &called, &font, room);
+            ui.painter().text(rect.left_center() + vec2(4.0, 0.0), left, words, font.clone(), ink);
             ui.painter().text(rect.right_center() - vec2(4.0, 0.0), right, percent, font, colour(p.dim));
             let slope = signed(share.moment_slope, 4);
             let unit = share.unit;
-            name(&response, &format!("{} {:.1} %", share.key, 100.0 * share.moment_share));
-            response.on_hover_text(format!("σ = {:.3e} {unit}; RMS of ∂n_B: {slope} N m/{unit}", share.deviation));
+            name(&response, &format!("{called} {:.1} %", 100.0 * share.moment_share));
+            let deviation = share.deviation;
+            response.on_hover_text(format!(
+                "{called}, {}\nσ = {deviation:.3e} {unit}; RMS of ∂n_B: {slope} N m/{unit}",
+                share.key
+            ));
         }
     });
 }
@@ -272,7 +298,7 @@ fn contributions(ui: &mut Ui, p: &Palette, study: &Study) {
 /// Plots the amplitude spectral densities of base force, N/√Hz, and base moment, N m/√Hz, over frequency, Hz; both
 /// axes are logarithmic.
 fn spectrum(ui: &mut Ui, p: &Palette, study: &Study) {
-    title(ui, p, "Spectrum", "N m/√Hz, grey N/√Hz; Hz");
+    title(ui, p, "Spectrum", "moment red, forces grey");
     let Some([fx, fy, n]) = &study.spectra else {
         ui.label(RichText::new("this run is too short for it").color(colour(p.dim)));
         return;
@@ -295,6 +321,8 @@ fn spectrum(ui: &mut Ui, p: &Palette, study: &Study) {
         .show_axes([true, true])
         .x_grid_spacer(move |g| whole(g.bounds.0, g.bounds.1, 1))
         .y_grid_spacer(move |g| whole(g.bounds.0, g.bounds.1, 2))
+        .x_axis_label("frequency, Hz")
+        .y_axis_label("N m/√Hz, N/√Hz")
         .x_axis_formatter(hertz)
         .y_axis_formatter(decade)
         .include_y(0.0)
@@ -308,4 +336,5 @@ fn spectrum(ui: &mut Ui, p: &Palette, study: &Study) {
             }
         });
     name(&response.response, "Amplitude spectral density of base force and moment");
+    response.response.on_hover_text("Red: turning moment, N m/√Hz; grey: force along x, dashed along y, N/√Hz");
 }

@@ -12,7 +12,7 @@ use super::icon::{Icon, IconButton};
 use super::marks::Marks;
 use super::theme::{bold, colour, plain};
 use super::{
-    Command, FileDialog, FilePurpose, SessionCommand, Switch, ViewChange, ViewState, file_menu, gallery, timeline,
+    Command, FileDialog, FilePurpose, SessionCommand, Switch, ViewChange, ViewState, file_menu, fit, gallery, timeline,
 };
 use stillbase_mechanics::machine::Machine;
 use stillbase_picture::scene::palette::Theme;
@@ -67,17 +67,24 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewStat
     } else {
         "The machine; another one of these brings a task that shows what it is for"
     };
+    let width = if is_narrow(ui) { 104.0 } else { 136.0 };
     let combo = ComboBox::from_id_salt("machine")
-        .selected_text(&current)
-        .width(if is_narrow(ui) { 104.0 } else { 136.0 })
-        .height(gallery::room(ui))
-        .truncate();
+        .selected_text(chosen_text(ui, &current, width))
+        .width(width)
+        .height(gallery::room(ui));
     let response = combo.show_ui(ui, |ui| {
         if let Some(machine) = gallery::machines(ui, present, &view_state.palette()) {
             commands.push(SessionCommand::Open(Box::new(with_machine(session, machine))).into());
         }
     });
-    name(&response.response.on_hover_text(tip), "Machine");
+    name(&response.response.on_hover_text(format!("{current}\n{tip}")), "Machine");
+}
+
+/// Returns the text of a list that is this wide, points, arrow and margins included.
+fn chosen_text(ui: &Ui, text: &str, width: f32) -> String {
+    let spacing = ui.spacing();
+    let taken = 2.0 * spacing.button_padding.x + spacing.icon_width + spacing.icon_spacing;
+    fit::fitted(ui, text, &egui::TextStyle::Button.resolve(ui.style()), width - taken).into_owned()
 }
 
 /// Returns the scenario to open for a chosen machine: its built-in scenario, or else the present scenario with this
@@ -97,11 +104,11 @@ fn scenarios(
     let current = session.scenario();
     let shown = if current.title.is_empty() { &current.name } else { &current.title };
     let shown = if changed { format!("{shown} *") } else { shown.clone() };
+    let width = if is_narrow(ui) { 150.0 } else { 196.0 };
     let combo = ComboBox::from_id_salt("scenario")
-        .selected_text(shown)
-        .width(if is_narrow(ui) { 150.0 } else { 196.0 })
-        .height(gallery::room(ui))
-        .truncate();
+        .selected_text(chosen_text(ui, &shown, width))
+        .width(width)
+        .height(gallery::room(ui));
     let response = combo.show_ui(ui, |ui| {
         let Some(chosen) = gallery::scenarios(ui, current, queries, &view_state.palette()) else { return };
         commands.push(match Scenario::cases().find(|name| *name == chosen.name) {
@@ -116,7 +123,7 @@ fn scenarios(
         }
         false => "What the machine does: keys 1, 2, 3",
     };
-    name(&response.response.on_hover_text(tip), "Scenario");
+    name(&response.response.on_hover_text(format!("{shown}\n{tip}")), "Scenario");
 }
 
 fn transport(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {

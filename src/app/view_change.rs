@@ -40,6 +40,7 @@ impl ViewState {
             Switch::Snapshots => self.snapshots,
             Switch::Help => self.open.help,
             Switch::Guide => self.open.guide.is_some(),
+            Switch::Settings => self.open.settings,
             Switch::Times => self.open.times,
             Switch::Finder => self.open.finder.is_some(),
             Switch::Equations => {
@@ -93,6 +94,7 @@ impl ViewState {
             }
             // The caller opens it at the page that belongs to what is on display.
             Switch::Guide => self.open.guide = self.open.guide.take().filter(|_| on),
+            Switch::Settings => self.open.settings = on,
             Switch::Times => self.open.times = on,
             // A file dialog that is open keeps the keyboard.
             Switch::Finder => {

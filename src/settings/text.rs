@@ -59,3 +59,53 @@ pub fn shorten_message(text: &str) -> Cow<'_, str> {
     let end: String = text.chars().skip(count - MESSAGE_END_CHARS).collect();
     format!("{begin} … ({} characters left out) … {end}", count - MAX_MESSAGE_CHARS).into()
 }
+
+/// Words that do not end a shortened text.
+const JOINING_WORDS: [&str; 20] = [
+    "and", "the", "of", "on", "in", "to", "for", "with", "at", "is", "by", "or", "as", "an", "that", "its", "from",
+    "off", "it", "be",
+];
+/// Least number of characters of a shortened text, without the ellipsis.
+const MIN_CHARS: usize = 3;
+
+/// Returns the longest beginning of a text that fits, with an ellipsis in place of the rest. It ends with a word that can
+/// stand there; a single word is cut after three characters or more. Empty if not even those fit.
+pub fn cut_at_word<'a>(text: &'a str, fits: impl Fn(&str) -> bool) -> Cow<'a, str> {
+    if fits(text) {
+        return text.into();
+    }
+    let gaps: Vec<usize> = text.char_indices().filter(|(_, c)| c.is_whitespace()).map(|(i, _)| i).collect();
+    let cut = |kept: &str| Some(format!("{kept}…")).filter(|cut| kept.chars().count() >= MIN_CHARS && fits(cut));
+    if let Some(words) = gaps.iter().rev().find_map(|end| cut(without_loose_end(&text[..*end]))) {
+        return words.into();
+    }
+    let word = text.split_whitespace().next().unwrap_or_default();
+    let ends: Vec<usize> = word.char_indices().map(|(i, _)| i).skip(MIN_CHARS).collect();
+    ends.into_iter().rev().find_map(|end| cut(&word[..end])).unwrap_or_default().into()
+}
+
+/// Returns a text without signs, joining words and single letters at its end.
+fn without_loose_end(text: &str) -> &str {
+    let mut kept = text;
+    loop {
+        let trimmed =
+            kept.trim_end().trim_end_matches([',', ';', ':', '·', '–', '—', '-', '(', '|', '=', '+', '<', '>']);
+        let last = trimmed.rsplit(char::is_whitespace).next().unwrap_or_default();
+        let is_loose = last.chars().count() == 1 || JOINING_WORDS.contains(&last.to_lowercase().as_str());
+        let shorter = if is_loose { &trimmed[..trimmed.len() - last.len()] } else { trimmed };
+        if shorter.len() == kept.len() {
+            return kept;
+        }
+        kept = shorter;
+    }
+}
+
+/// Returns a path that fits: its last folders, with an ellipsis in place of the first ones.
+pub fn cut_path<'a>(path: &'a str, fits: impl Fn(&str) -> bool) -> Cow<'a, str> {
+    if fits(path) {
+        return path.into();
+    }
+    let ends = path.match_indices(['/', '\\']).map(|(i, _)| format!("…{}", &path[i..]));
+    let folders = ends.skip(1).find(|end| fits(end));
+    folders.map_or_else(|| cut_at_word(path.rsplit(['/', '\\']).next().unwrap_or_default(), &fits), Cow::from)
+}

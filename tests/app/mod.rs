@@ -15,13 +15,16 @@ mod notation;
 mod notes;
 mod pair;
 mod panel;
+mod plot_places;
 mod plots;
 mod pointer;
 mod refusal;
 mod results;
+mod room;
 mod run;
 mod saving;
 mod screen;
+mod settings;
 mod sizes;
 mod studio;
 mod time;
@@ -37,7 +40,7 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 25] = [
+pub const TESTS: [&[Test]; 28] = [
     saving::TESTS,
     family::TESTS,
     files::TESTS,
@@ -54,11 +57,14 @@ pub const TESTS: [&[Test]; 25] = [
     pair::TESTS,
     notes::TESTS,
     panel::TESTS,
+    plot_places::TESTS,
     plots::TESTS,
     pointer::TESTS,
     refusal::TESTS,
     results::TESTS,
+    room::TESTS,
     run::TESTS,
+    settings::TESTS,
     sizes::TESTS,
     studio::TESTS,
     time::TESTS,

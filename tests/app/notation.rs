@@ -91,7 +91,7 @@ fn every_text_is_in_the_chosen_units() {
         // A refusal of the core is a sentence like any other.
         h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::set("task.end", vec![5.0, 5.0])));
         h.run_steps(3);
-        wrong.extend(offenders(&h, &["rad", "m"]).into_iter().map(|text| (format!("{name}"), text)));
+        wrong.extend(offenders(&h, &["rad", "m"]).into_iter().map(|text| (name.to_string(), text)));
         assert_ne!(h.state().app_state().view_state().below, Some(BottomPanel::Table));
     }
     assert!(wrong.is_empty(), "{wrong:#?}");

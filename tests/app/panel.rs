@@ -252,11 +252,11 @@ fn tolerances_are_shown_and_set() {
     h.run_steps(2);
     assert!(h.query_by_label("Histogram of peaks of the turning moment on the base over machines, N m").is_some());
     assert!(h.query_by_label_contains("20000 machines, varied in 41 numbers each").is_some());
-    h.get_by_label("Spread of limit on |n_B| N m").set_value_accesskit(0.01);
+    h.get_by_label("Spread of limit of the moment, |n_B| N m").set_value_accesskit(0.01);
     h.run_steps(3);
     assert_eq!(session(&h).scenario().tolerance.moment_limit, Some(0.01));
     assert!(h.query_by_label_contains("keep within limits").is_some());
-    type_into(&mut h, "Spread of limit on |n_B| N m", "5 N cm");
+    type_into(&mut h, "Spread of limit of the moment, |n_B| N m", "5 N cm");
     assert_eq!(session(&h).scenario().tolerance.moment_limit, Some(0.05));
     h.key_press(Key::C);
     h.run_steps(2);

@@ -40,6 +40,23 @@ fn apart(a: Rgba, b: Rgba, eye: [[f64; 3]; 3]) -> f64 {
 }
 
 #[test]
+fn every_eye_tells_runs_apart_from_each_other_and_from_reactions() {
+    for theme in [Theme::Dark, Theme::Light] {
+        let p = palette(theme);
+        for i in 0..5 {
+            assert!(contrast(p.run(i), p.panel) >= 3.0, "{theme:?}: run {i} is too pale");
+            for eye in EYES {
+                for other in (0..i).map(|k| p.run(k)).chain([p.zero]) {
+                    let apart = apart(p.run(i), other, eye);
+                    assert!(apart > 10.0, "{theme:?}: run {i} is {apart:.1} from another meaning");
+                }
+            }
+            assert!([p.reaction, p.amber, p.ink].iter().all(|other| apart(p.run(i), *other, EYES[0]) > 15.0));
+        }
+    }
+}
+
+#[test]
 fn every_eye_tells_the_drives_apart_and_reads_their_names() {
     for theme in [Theme::Dark, Theme::Light] {
         let Palette { panel, drives, amber, reaction, ink, .. } = palette(theme);

@@ -54,6 +54,41 @@ fn signals_are_found_by_name_symbol_path_and_unit() {
     }
 }
 
+/// Plots that are not on display keep their places; unknown names and windows that cannot be are ignored.
+#[test]
+fn plots_stand_in_the_users_order() {
+    let (scenario, table) = (Scenario::builtin("case-3").expect("built in"), table());
+    let names = |choice: &PlotChoice, pins: bool| -> Vec<String> {
+        choice.plots(&scenario, &table, pins, Notation::default()).into_iter().map(|plot| plot.name).collect()
+    };
+    let mut choice = PlotChoice::default();
+    let mut order = names(&choice, true);
+    order.swap(0, 3);
+    choice.change(PlotChange::Order(order.clone()));
+    assert_eq!(order[0], "Pin forces");
+    assert_eq!(names(&choice, true), order);
+    // Without pin forces, in another order; with them again, they follow what they followed.
+    let mut shown = names(&choice, false);
+    assert_eq!(shown, order[1..]);
+    shown.reverse();
+    choice.change(PlotChange::Order(shown.clone()));
+    assert_eq!(names(&choice, false), shown);
+    assert_eq!(names(&choice, true).len(), order.len());
+    choice.change(PlotChange::Plot("tip/y".into()));
+    assert_eq!(names(&choice, true).last().map(String::as_str), Some("plot 1"), "a new one comes last");
+    // What a file holds does not have to make sense.
+    choice.order.insert(0, "cheese".into());
+    choice.order.push(shown[0].clone());
+    choice.change(PlotChange::Window("cheese".into(), Some([0.0, 0.0, 300.0, 200.0])));
+    choice.changes.entry("Torque".into()).or_default().window = Some([f32::INFINITY, 0.0, -1.0, 2.0]);
+    assert_eq!(names(&choice, false)[..shown.len()], shown);
+    let plots = choice.plots(&scenario, &table, false, Notation::default());
+    assert!(plots.iter().all(|plot| plot.window.is_none()));
+    choice.change(PlotChange::Window("Torque".into(), Some([10.0, 20.0, 300.0, 200.0])));
+    let written = toml::to_string(&choice).expect("plain data");
+    assert_eq!(toml::from_str::<PlotChoice>(&written).expect("as written"), choice);
+}
+
 #[test]
 fn plots_are_what_was_chosen_and_remembered() {
     let (scenario, table) = (Scenario::builtin("case-3").expect("built in"), table());

@@ -1,7 +1,7 @@
 //! Keys in words, and machines by their keys: each key is one row.
 
 use stillbase::mechanics::machine::{KEYS, MachineError, builtin};
-use stillbase::session::scenario::Scenario;
+use stillbase::session::scenario::{Scenario, keys, name_of, part_of};
 use stillbase::settings::change::{DEFAULT_WORD, typed};
 use stillbase::settings::key::{Key, KeyType, in_words};
 
@@ -13,6 +13,24 @@ fn keys_of_one_thing_stand_together() {
     assert_eq!(in_words(["length.*", "limits.*"]), ["length.NAME", "limits.ANGLE"]);
     assert_eq!(in_words(["counterweight.*.at", "counterweight.*.mass"]), ["counterweight.NUMBER.(at|mass)"]);
     assert!(in_words([]).is_empty());
+}
+
+/// Every key has a plain name, which no other key of its part has.
+#[test]
+fn keys_have_plain_names() {
+    assert_eq!(name_of("link.3.mass"), "mass of link 3");
+    assert_eq!(name_of("tolerance.link.3.com_normal"), "centre of mass off link 3");
+    assert_eq!(name_of("link.*.mass"), "mass of every link");
+    assert_eq!(name_of("length.*"), "every length");
+    assert_eq!(name_of("drive.2.rotor.ratio"), "gear ratio of drive 2");
+    assert_eq!(name_of("task.keep_off_change_points"), "keep off change points");
+    let mut known: Vec<(&str, String)> = Vec::new();
+    for key in keys() {
+        let called = (part_of(key), name_of(&key.path.replace('*', "5")));
+        assert!(!called.1.contains(['_', '.', '*']) && !called.1.is_empty(), "{}: {}", key.path, called.1);
+        assert!(!known.contains(&called), "{}: {} is the name of two", key.path, called.1);
+        known.push(called);
+    }
 }
 
 /// What every key of a machine holds can be set again, and what none is called is refused with all that there are.

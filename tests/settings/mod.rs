@@ -2,4 +2,5 @@
 
 mod keys;
 mod quantity;
+mod text;
 mod words;

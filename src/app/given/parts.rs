@@ -1,10 +1,10 @@
 //! Parts of the panel of a table: its content, its columns, and the buttons that apply results.
 
-use egui::{Align, Button, Label, Layout, RichText, ScrollArea, Ui, vec2};
+use egui::{Align, Button, Layout, RichText, ScrollArea, Ui, vec2};
 
 use super::assess::{OpenedTable, TableAction, TableAssessment, TableContent, TableOptions};
 use crate::theme::{bold, colour, plain};
-use crate::{Command, SessionCommand, WindowCommand};
+use crate::{Command, SessionCommand, WindowCommand, fit};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_planning::curves::Coordinates;
 use stillbase_study::advice::{Advice, Remedy};
@@ -74,7 +74,7 @@ pub(super) fn title(ui: &mut Ui, p: &Palette, title: &str, rest: &str) {
     ui.horizontal(|ui| {
         ui.set_height(18.0);
         ui.label(RichText::new(title).font(bold(12.5)));
-        ui.add(Label::new(RichText::new(rest).font(plain(11.5)).color(colour(p.dim))).truncate());
+        fit::label(ui, rest, plain(11.5), colour(p.dim));
     });
 }
 

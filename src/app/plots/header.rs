@@ -2,8 +2,10 @@
 //! hides its curve.
 
 use egui::accesskit::Role;
-use egui::{Align, Button, Color32, CursorIcon, Label, Layout, RichText, Ui, WidgetInfo};
+use egui::{Align, Button, CursorIcon, Label, Layout, RichText, Sense, TextWrapMode, Ui, WidgetInfo};
 
+use super::place;
+use crate::fit::{fitted, say, width_of};
 use crate::theme::{bold, colour, plain};
 use crate::{Command, ViewChange};
 use stillbase_picture::charts::choice::{Plot, PlotChange, PlotCurve};
@@ -20,38 +22,75 @@ pub const STATISTICS_HEIGHT: f32 = 14.0;
 /// Width of a symbol in a row of statistics, points.
 const SYMBOL_WIDTH_PT: f32 = 28.0;
 
+/// Width that a long title keeps beside the symbols, points.
+const MIN_HEADING_PT: f32 = 100.0;
+
 /// Number of digits omitted where space is short: from none to the number at which only symbols remain.
 const ALL_DIGITS: usize = 0;
 const SYMBOLS_ONLY: usize = 3;
 
-/// Draws the line above a plot.
-pub fn show(ui: &mut Ui, plot: &Plot<'_>, drawn: &PlotLines, look: &PlotContext<'_>, commands: &mut Vec<Command>) {
+/// Draws the line above a plot; `has_heading` says whether it has the title, by which the plot is dragged.
+pub fn show(
+    ui: &mut Ui,
+    plot: &Plot<'_>,
+    drawn: &PlotLines,
+    look: &PlotContext<'_>,
+    has_heading: bool,
+    commands: &mut Vec<Command>,
+) {
     let p = look.palette;
     ui.horizontal(|ui| {
         ui.set_height(HEADER_HEIGHT);
         let gap = ui.spacing().item_spacing.x;
-        let wide =
-            |ui: &Ui, text: &str, font| gap + ui.painter().layout_no_wrap(text.into(), font, Color32::WHITE).size().x;
+        let wide = |ui: &Ui, text: &str, font| gap + width_of(ui, text, &font);
         let values = |ui: &Ui, fewer: usize| -> f32 {
             plot.curves.iter().map(|curve| wide(ui, &words(plot, curve, drawn, look, fewer), plain(11.5))).sum()
         };
         // Where space is short, digits are omitted first, then the unit, which the tooltips of the values still show.
-        let (heading, unit) = (plot.heading(), plot.unit());
-        let room = ui.available_width() - wide(ui, &heading, bold(12.5));
+        let heading = if has_heading { plot.heading() } else { String::new() };
+        let unit = plot.unit();
+        let room = ui.available_width() - if has_heading { wide(ui, &heading, bold(12.5)) } else { 0.0 };
         let unit_wide = wide(ui, &unit, plain(11.5));
         let fits = |fewer: &usize| values(ui, *fewer) + unit_wide <= room;
         let fewer = (ALL_DIGITS..SYMBOLS_ONLY).find(fits);
-        let fewer = fewer.or((values(ui, 2) <= room).then_some(2)).unwrap_or(SYMBOLS_ONLY);
-        ui.add(Label::new(RichText::new(heading).font(bold(12.5))).truncate());
-        if values(ui, fewer) + unit_wide <= room {
+        let fewer = fewer.or((values(ui, 2) <= room).then_some(2));
+        // Values are worth more than a whole title.
+        let beside = |fewer: &usize| values(ui, *fewer) + MIN_HEADING_PT <= ui.available_width();
+        let fewer = fewer.or((ALL_DIGITS + 1..SYMBOLS_ONLY).find(beside)).unwrap_or(SYMBOLS_ONLY);
+        // Where not even the symbols fit beside the title, the title is shortened, and the last symbols give way.
+        let least = if has_heading { wide(ui, &heading, bold(12.5)).min(MIN_HEADING_PT) } else { 0.0 };
+        let mut seen = plot.curves.len();
+        let symbols = |ui: &Ui, seen: usize| -> f32 {
+            plot.curves[..seen].iter().map(|curve| wide(ui, &words(plot, curve, drawn, look, fewer), plain(11.5))).sum()
+        };
+        while seen > 0 && symbols(ui, seen) + least > ui.available_width() {
+            seen -= 1;
+        }
+        let taken = symbols(ui, seen);
+        if has_heading {
+            title(ui, plot, &heading, ui.available_width() - taken, look);
+        }
+        if taken + unit_wide <= room {
             ui.label(RichText::new(unit).font(plain(11.5)).color(colour(p.dim)));
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            for (i, curve) in plot.curves.iter().enumerate().rev() {
+            for (i, curve) in plot.curves.iter().enumerate().take(seen).rev() {
                 switch(ui, plot, i, curve, words(plot, curve, drawn, look, fewer), look, commands);
             }
         });
     });
+}
+
+/// Draws the title in a room of this width, points. A drag of it moves the plot.
+fn title(ui: &mut Ui, plot: &Plot<'_>, heading: &str, room: f32, look: &PlotContext<'_>) {
+    let shown = fitted(ui, heading, &bold(12.5), room);
+    let label = Label::new(RichText::new(&*shown).font(bold(12.5)).color(colour(look.palette.ink)));
+    let label = ui.add(label.wrap_mode(TextWrapMode::Extend).sense(Sense::drag()));
+    say(&label, heading);
+    place::handle_drag(&label, plot);
+    if !label.dragged() {
+        label.on_hover_text(format!("{heading}\nDrag: to another place, or out of the panel into a window of its own"));
+    }
 }
 
 /// Returns a curve's symbol with its value at the cursor, or with the difference from the second cursor; `fewer`
@@ -88,9 +127,9 @@ fn switch(
     let label = RichText::new(&text).font(plain(11.5)).color(colour(tone));
     let label = if curve.on { label } else { label.strikethrough() };
     ui.spacing_mut().button_padding = egui::Vec2::ZERO;
-    let button = ui.add(Button::new(label).frame(false).truncate());
-    let name = format!("{text}: {} in {}", signal.label, plot.title);
-    button.widget_info(|| WidgetInfo::selected(Role::Switch, true, curve.on, &name));
+    let button = ui.add(Button::new(label).frame(false).wrap_mode(TextWrapMode::Extend));
+    let called = format!("{text}: {} in {}", signal.label, plot.title);
+    button.widget_info(|| WidgetInfo::selected(Role::Switch, true, curve.on, &called));
     let at = |value: f64| signed(curve.scale * value, 4);
     let differs = look.mark.map_or_else(String::new, |marked| {
         let d = SignalDifference::of(signal, marked, look.now);
@@ -121,7 +160,11 @@ pub fn statistics(ui: &mut Ui, plot: &Plot<'_>, drawn: &PlotLines, look: &PlotCo
             ui.spacing_mut().item_spacing.x = 0.0;
             cell(ui, SYMBOL_WIDTH_PT, curve.signal.symbol.clone(), pen(plot, i, look).0);
             for (word, value) in [("min", s.least), ("max", s.greatest), ("mean", s.mean), ("rms", s.rms)] {
-                cell(ui, wide, format!("{word} {}", at_step(value, 5.0 * drawn.finest())), p.dim);
+                // Where space is short, digits are omitted.
+                let written =
+                    |fewer: i32| format!("{word} {}", at_step(value, 5.0 * drawn.finest() * 10f64.powi(fewer)));
+                let text = (0..4).map(written).find(|text| width_of(ui, text, &plain(10.0)) <= wide - 2.0);
+                cell(ui, wide, text.unwrap_or_else(|| written(4)), p.dim);
             }
         });
     }

@@ -4,9 +4,9 @@ use egui::accesskit::Role;
 use egui::{Align2, Button, Popup, Rect, Response, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use super::prepared::extent;
-use super::search;
 use super::shown::DisplayContext;
 use super::written::columns;
+use super::{place, search};
 use crate::theme::{bold, colour};
 use crate::{Command, FileDialog, FilePurpose, PlotFile, ViewChange};
 use stillbase_picture::charts::choice::{Plot, PlotChange};
@@ -33,11 +33,28 @@ pub fn show(
         ui.painter().rect_filled(rect, 4.0, colour(if lit { p.line } else { p.panel }));
         ui.painter().text(rect.center(), Align2::CENTER_CENTER, "⋯", bold(13.0), colour(p.ink));
     }
-    response.context_menu(|ui| entries(ui, shown, plot, commands));
-    Popup::menu(&button).show(|ui| entries(ui, shown, plot, commands));
+    response.context_menu(|ui| entries(ui, shown, plot, response.rect, commands));
+    Popup::menu(&button).show(|ui| entries(ui, shown, plot, response.rect, commands));
 }
 
-fn entries(ui: &mut Ui, shown: &DisplayContext<'_>, plot: &Plot<'_>, commands: &mut Vec<Command>) {
+/// Draws the entries that give the plot another place.
+fn places(ui: &mut Ui, shown: &DisplayContext<'_>, plot: &Plot<'_>, rect: Rect, commands: &mut Vec<Command>) {
+    let mut entry = |ui: &mut Ui, words: &str, change: Option<PlotChange>| {
+        if ui.add_enabled(change.is_some(), Button::new(words)).clicked() {
+            commands.extend(change.map(|change| Command::View(ViewChange::Charts(change))));
+            ui.close();
+        }
+    };
+    if plot.window.is_some() {
+        return entry(ui, "Put back among the plots", Some(PlotChange::Window(plot.name.clone(), None)));
+    }
+    let all = shown.view_state.plots(shown.session.scenario(), shown.signals);
+    entry(ui, "Move up", place::moved(&all, &plot.name, false));
+    entry(ui, "Move down", place::moved(&all, &plot.name, true));
+    entry(ui, "Into a window of its own", Some(place::pulled_out(&plot.name, rect)));
+}
+
+fn entries(ui: &mut Ui, shown: &DisplayContext<'_>, plot: &Plot<'_>, rect: Rect, commands: &mut Vec<Command>) {
     let chosen = &shown.view_state.charts;
     let extent = extent(shown.session);
     let range = extent.shown(chosen.range);
@@ -87,6 +104,8 @@ fn entries(ui: &mut Ui, shown: &DisplayContext<'_>, plot: &Plot<'_>, commands: &
         commands.push(ViewChange::Charts(PlotChange::Values(plot.name.clone(), None)).into());
         ui.close();
     }
+    ui.separator();
+    places(ui, shown, plot, rect, commands);
     if ui.button("Put this plot away").clicked() {
         commands.push(ViewChange::Charts(PlotChange::Close(plot.name.clone())).into());
         ui.close();

@@ -2,9 +2,12 @@
 
 use std::sync::Arc;
 
+use egui::Context;
+
 use super::shown::DisplayContext;
 use stillbase_picture::charts::choice::{Plot, PlotChoice};
 use stillbase_picture::charts::drawn::PlotLines;
+use stillbase_picture::charts::figure::LEFT_MARGIN;
 use stillbase_picture::charts::range::TimeExtent;
 use stillbase_picture::notation::Notation;
 use stillbase_query::{ByIdentity, IncrementalAnswer, QuickQuery, QuickWork, Sequence, Shared};
@@ -64,8 +67,20 @@ pub fn extent(session: &Session) -> TimeExtent {
     }
 }
 
+/// Returns the drawn lines of plots: those of the panel for a width, points, unless a window of a plot is wider.
+pub fn of_width(ctx: &Context, what: &DisplayContext<'_>, plots: &[Plot<'_>], width: f32) -> Arc<Vec<PlotLines>> {
+    let windows = plots.iter().filter_map(|plot| plot.window);
+    let widest = windows.fold(width, |widest, [_, _, width, _]| widest.max(width));
+    let columns = ((widest - LEFT_MARGIN) * ctx.pixels_per_point()).clamp(16.0, 8192.0) as usize;
+    let (lines, is_whole) = drawn(what, plots, columns);
+    if !is_whole {
+        ctx.request_repaint();
+    }
+    lines
+}
+
 /// Returns the drawn lines of the plots for a number of pixel columns, and whether they contain all frames.
-pub fn drawn(what: &DisplayContext<'_>, plots: &[Plot<'_>], columns: usize) -> (Arc<Vec<PlotLines>>, bool) {
+fn drawn(what: &DisplayContext<'_>, plots: &[Plot<'_>], columns: usize) -> (Arc<Vec<PlotLines>>, bool) {
     let DisplayContext { session, queries, view_state, .. } = *what;
     let wanted = wanted(plots);
     let others = laid_over(what.comparison);

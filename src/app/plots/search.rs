@@ -6,6 +6,7 @@ use egui::{
 
 use super::prepared::extent;
 use super::shown::DisplayContext;
+use crate::fit::fitted;
 use crate::theme::{bold, colour, plain};
 use crate::widgets::name;
 use crate::{Command, ViewChange};
@@ -120,6 +121,8 @@ fn field(ui: &mut Ui, shown: &DisplayContext<'_>, plots: &[Plot<'_>], commands: 
     let focused = ui.memory(|memory| memory.has_focus(id()));
     let pressed = |key| focused && ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, key));
     let (up, down, enter) = (pressed(Key::ArrowUp), pressed(Key::ArrowDown), pressed(Key::Enter));
+    let room = ui.available_width() - 2.0 * ui.spacing().button_padding.x;
+    let hint = fitted(ui, &hint, &plain(11.5), room).into_owned();
     let edit = TextEdit::singleline(&mut typed.text).id(id()).hint_text(RichText::new(hint).font(plain(11.5)));
     let response = ui.add(edit.font(plain(11.5)).desired_width(ui.available_width()));
     name(&response, "Plot a signal");

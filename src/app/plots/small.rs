@@ -3,8 +3,8 @@
 use egui::{RichText, TextStyle, Ui};
 use egui_plot::{GridMark, Plot};
 
-use crate::notation;
 use crate::theme::{bold, colour, plain};
+use crate::{fit, notation};
 use stillbase_picture::numbers::{round_up, signed};
 use stillbase_picture::scene::palette::{Palette, faded};
 
@@ -16,7 +16,7 @@ pub fn which_b_title(ui: &mut Ui, p: &Palette, words: &str) {
     ui.horizontal(|ui| {
         ui.set_height(16.0);
         ui.label(RichText::new("Which b?").font(bold(12.5)));
-        ui.add(egui::Label::new(RichText::new(words).font(plain(11.5)).color(colour(p.dim))).truncate());
+        fit::label(ui, words, plain(11.5), colour(p.dim));
     });
 }
 

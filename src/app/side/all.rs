@@ -1,29 +1,30 @@
-//! All settings by key, to search, read and edit.
+//! All settings, to search, read and edit: in the panel, and in a window of their own.
 
-use egui::{Align, Label, Layout, RichText, TextEdit, Ui};
+use egui::{Align, RichText, ScrollArea, TextEdit, Ui, vec2};
 
-use super::fold::{fold, undo};
+use super::SCROLL_BAR_WIDTH;
+use super::fold::fold;
+use super::setting;
 use crate::facts::{ScenarioFacts, Setting};
 use crate::place::fold_id;
-use crate::theme::{colour, plain};
-use crate::widgets::{name, note, undoable_edit};
-use crate::{Command, WindowCommand};
+use crate::theme::{bold, colour};
+use crate::widgets::{name, note};
+use crate::{Command, Switch, ViewChange, ViewState};
 use stillbase_picture::scene::palette::Palette;
-use stillbase_session::Edit;
-use stillbase_session::scenario::{Value, part_of};
-use stillbase_settings::change::{self, DEFAULT_WORD};
-use stillbase_settings::key::{Key, KeyType};
-use stillbase_settings::quantity::{self, QuantityError};
-use stillbase_settings::range::shortened;
+use stillbase_session::scenario::part_of;
 
 /// Title of the list.
 const TITLE: &str = "All settings";
 
-/// Prefixes that are omitted from the names of settings, because a title above their rows contains them.
-const PREFIXES_IN_TITLES: [&str; 7] = ["task.", "control.", "plant.", "base.wheel.", "base.", "tolerance.", "design."];
-
-/// Maximum number of rows.
+/// Maximum number of rows in the panel.
 const MAX_ROWS: usize = 24;
+
+/// Minimum width of a column, and space between columns, points.
+const MIN_COLUMN_PT: f32 = 216.0;
+const COLUMN_GAP_PT: f32 = 20.0;
+/// Minimum width of a column of the window, points, and maximum number of its columns.
+const MIN_WINDOW_COLUMN_PT: f32 = 300.0;
+const MAX_COLUMNS: f32 = 5.0;
 
 fn sought_id() -> egui::Id {
     egui::Id::unique("settings sought")
@@ -43,111 +44,94 @@ pub fn look_up(ctx: &egui::Context, path: &str) {
     });
 }
 
-/// Draws the list.
-pub fn show(ui: &mut Ui, facts: &ScenarioFacts<'_>, p: &Palette, commands: &mut Vec<Command>) {
-    fold(ui, p, TITLE, "by key", None, commands, |ui, commands| {
-        let id = sought_id();
-        let mut sought = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_default();
-        let field = TextEdit::singleline(&mut sought).hint_text("search: friction, limit, link.5 …");
-        let response = ui.add(field.desired_width(f32::INFINITY));
-        name(&response, "Search the settings");
+/// Draws the list in the panel.
+pub fn show(ui: &mut Ui, facts: &ScenarioFacts<'_>, p: &Palette, in_window: bool, commands: &mut Vec<Command>) {
+    fold(ui, p, TITLE, "by name", None, commands, |ui, commands| {
+        let (response, word) = search(ui);
         let wanted = ui.data_mut(|d| d.remove_temp::<bool>(wanted_id())).is_some();
-        ui.data_mut(|d| d.insert_temp(id, sought.clone()));
-        let word = sought.trim().to_lowercase();
-        let (mut count, mut part) = (0, "");
-        for setting in facts.settings().iter().filter(|setting| setting.text.contains(&word)) {
-            count += 1;
-            if count > MAX_ROWS {
-                continue;
-            }
-            let of = part_of(setting.key);
-            if of != std::mem::replace(&mut part, of) {
-                ui.add_space(2.0);
-                note(ui, p, of);
-            }
-            row(ui, p, setting, commands);
+        let words = if in_window { "Close the window" } else { "In a window, all at once" };
+        let button = ui.small_button(words).on_hover_text("Every setting in as many columns as fit");
+        name(&button, "All settings in a window");
+        if button.clicked() {
+            commands.push(ViewChange::Switch(Switch::Settings, !in_window).into());
         }
+        let settings = facts.settings();
+        let found: Vec<&Setting> = settings.iter().filter(|setting| setting.text.contains(&word)).collect();
+        let shown = &found[..found.len().min(MAX_ROWS)];
+        grouped(ui, p, shown, MIN_COLUMN_PT, commands);
         if wanted {
             let shown = response.rect.with_max_y(ui.min_rect().bottom());
             ui.scroll_to_rect(shown, Some(Align::Center));
         }
-        match count {
-            0 => note(ui, p, "no key contains this"),
+        match found.len() {
+            0 => note(ui, p, "no setting contains this"),
             n if n > MAX_ROWS => note(ui, p, &format!("and {} more: search for them", n - MAX_ROWS)),
             _ => {}
         }
     });
 }
 
-/// Parses the text typed for a key. Numbers may have units and arithmetic, and are converted to the unit of the key.
-/// Anything else is read as in a file.
-fn typed(text: &str, key: &Key) -> Result<Value, QuantityError> {
-    if text.trim().is_empty() {
-        return Ok(DEFAULT_WORD.into());
+/// Draws the window with all settings, while it is open.
+pub fn window(ctx: &egui::Context, facts: &ScenarioFacts<'_>, view_state: &ViewState, commands: &mut Vec<Command>) {
+    if !view_state.open.settings {
+        return;
     }
-    let value = change::value(text);
-    let numbers = matches!(
-        key.value_type,
-        KeyType::Number(_) | KeyType::Whole(_) | KeyType::PerDrive(_) | KeyType::List(..) | KeyType::Bounds(_)
-    );
-    // Words such as *none* are returned unchanged; the edit checks them.
-    if !numbers || key.value_type.accepts(&value) || !text.contains(|c: char| c.is_ascii_digit() || c == 'π') {
-        return Ok(value);
-    }
-    let all: Vec<f64> = text.split(',').map(|part| quantity::read(part, key.unit())).collect::<Result<_, _>>()?;
-    Ok(match (key.value_type, all.as_slice()) {
-        (KeyType::Whole(_), [one]) if one.fract() == 0.0 && one.abs() < 1e15 => Value::Integer(*one as i64),
-        (_, [one]) => Value::Float(*one),
-        (_, several) => several.to_vec().into(),
-    })
-}
-
-fn row(ui: &mut Ui, p: &Palette, setting: &Setting, commands: &mut Vec<Command>) {
-    let Setting { path, key, typed: shown, is_default, unmet_condition: wants, .. } = setting;
-    let wants = wants.map_or_else(String::new, |wants| format!("\nNo effect as things are: that takes {wants}."));
-    let instead = match key.instead {
-        "" => String::new(),
-        instead => format!("\nWithout it: {instead}."),
-    };
-    let tip = format!("{path}\n{}\n{}.{instead}{wants}", key.meaning, key.value_type);
-    ui.horizontal(|ui| {
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let unit = RichText::new(key.unit()).font(plain(10.5)).color(colour(p.dim));
-            ui.add_sized([40.0, 18.0], Label::new(unit).halign(Align::LEFT).truncate());
-            let id = ui.scope_id().with(path);
-            let kept = ui.data(|d| d.get_temp::<String>(id));
-            let mut text = kept.clone().unwrap_or_else(|| shown.clone());
-            let hint = if key.default.is_empty() { "" } else { key.default };
-            let field = TextEdit::singleline(&mut text).id(id.with("field")).hint_text(hint).desired_width(72.0);
-            let response = ui.add(field.font(plain(11.5))).on_hover_text(&tip);
-            name(&response, path);
-            if response.has_focus() {
-                ui.data_mut(|d| d.insert_temp(id, text.clone()));
-            } else if kept.is_some() {
-                ui.data_mut(|d| d.remove_temp::<String>(id));
-                let cancelled = ui.input(|i| i.key_pressed(egui::Key::Escape));
-                if text.trim() != shown.as_str() && !cancelled {
-                    match typed(&text, key) {
-                        Ok(value) => undoable_edit(commands, Edit::set(path, value)),
-                        Err(why) => {
-                            let text = shortened(text.trim(), 24);
-                            commands.push(
-                                WindowCommand::Refuse(format!("{path}: \"{text}\" changes nothing: {why}")).into(),
-                            );
-                        }
-                    }
+    let p = view_state.palette();
+    let mut open = true;
+    // Right of the tool bar, between the bars at the top and at the bottom.
+    let size = ctx.content_rect().size() - vec2(96.0, 104.0);
+    egui::Window::new(TITLE)
+        .id(egui::Id::unique("window of all settings"))
+        .open(&mut open)
+        .collapsible(false)
+        .default_size(size.max(vec2(320.0, 240.0)))
+        .default_pos([72.0, 56.0])
+        .min_size([320.0, 240.0])
+        .show(ctx, |ui| {
+            let (_, word) = search(ui);
+            let settings = facts.settings();
+            let found: Vec<&Setting> = settings.iter().filter(|setting| setting.text.contains(&word)).collect();
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                ui.set_width(ui.available_width() - SCROLL_BAR_WIDTH);
+                grouped(ui, &p, &found, MIN_WINDOW_COLUMN_PT, commands);
+                if found.is_empty() {
+                    note(ui, &p, "no setting contains this");
                 }
-            }
-            if !is_default
-                && undo(ui, p, &format!("{path} back to normal"), &format!("Back to normal: {}", key.default))
-            {
-                undoable_edit(commands, Edit::set(path, DEFAULT_WORD));
-            }
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                let ink = colour(if wants.is_empty() { p.ink } else { p.dim });
-                let name = PREFIXES_IN_TITLES.iter().find_map(|part| path.strip_prefix(part)).unwrap_or(path.as_str());
-                ui.add(Label::new(RichText::new(name).font(plain(11.0)).color(ink)).truncate()).on_hover_text(tip);
             });
         });
-    });
+    if !open {
+        commands.push(ViewChange::Switch(Switch::Settings, false).into());
+    }
+}
+
+/// Draws the search field; returns it with the word that is sought.
+fn search(ui: &mut Ui) -> (egui::Response, String) {
+    let mut sought = ui.data(|d| d.get_temp::<String>(sought_id())).unwrap_or_default();
+    let field = TextEdit::singleline(&mut sought).hint_text("search: friction, limit, link 5 …");
+    let response = ui.add(field.desired_width(f32::INFINITY));
+    name(&response, "Search the settings");
+    let word = sought.trim().to_lowercase();
+    ui.data_mut(|d| d.insert_temp(sought_id(), sought));
+    (response, word)
+}
+
+/// Draws settings below the titles of their parts, in as many columns of a minimum width, points, as fit.
+fn grouped(ui: &mut Ui, p: &Palette, settings: &[&Setting], min_width: f32, commands: &mut Vec<Command>) {
+    let columns = ((ui.available_width() + COLUMN_GAP_PT) / (min_width + COLUMN_GAP_PT)).floor();
+    let columns = columns.clamp(1.0, MAX_COLUMNS) as usize;
+    for part in settings.chunk_by(|a, b| part_of(a.key) == part_of(b.key)) {
+        ui.add_space(4.0);
+        ui.label(RichText::new(part_of(part[0].key)).font(bold(11.5)).color(colour(p.dim)));
+        let rows = part.len().div_ceil(columns);
+        ui.scope(|ui| {
+            ui.spacing_mut().item_spacing.x = if columns > 1 { COLUMN_GAP_PT } else { 8.0 };
+            ui.columns(columns, |uis| {
+                // Each column is read from top to bottom.
+                for (ui, part) in uis.iter_mut().zip(part.chunks(rows)) {
+                    ui.spacing_mut().item_spacing.x = 8.0;
+                    part.iter().for_each(|setting| setting::row(ui, p, setting, commands));
+                }
+            });
+        });
+    }
 }

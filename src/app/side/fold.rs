@@ -2,10 +2,9 @@
 
 use egui::{Align, Button, ComboBox, Layout, RichText, Ui};
 
-use crate::place;
 use crate::theme::{bold, colour, plain};
 use crate::widgets::{NumberRow, name, send, undoable_edit};
-use crate::{Command, GuidePlace, SessionCommand, guide};
+use crate::{Command, GuidePlace, SessionCommand, fit, guide, place};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Edit;
 use stillbase_session::scenario::Value;
@@ -78,7 +77,7 @@ pub fn fold(
                 undoable_edit(commands, edit);
             }
             let ink = colour(if differs { p.amber } else { p.dim });
-            ui.add(egui::Label::new(RichText::new(summary).font(plain(11.0)).color(ink)).truncate());
+            fit::label(ui, summary, plain(11.0), ink);
         });
     });
     // A section that was open at first stays open when all its values are defaults again.

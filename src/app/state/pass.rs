@@ -105,13 +105,14 @@ impl AppState {
         }
         self.view_state.pointed.panel_object = place::lit(ui.ctx());
         self.view_state.pointed.lit_links = place::lit_links(ui.ctx());
-        if self.view_state.arrangement.now().plots.shown && !designs {
+        let has_panel = self.view_state.arrangement.now().plots.shown;
+        if !designs && (has_panel || !presents) {
             if std::mem::take(&mut self.focuses_search) {
                 plots::focus(ui.ctx());
             }
             let (session, signals, view_state) = (&self.session, &self.signals(), &self.view_state);
             let what = plots::DisplayContext { session, queries: &queries, signals, comparison: beside, view_state };
-            let width = plots::show(ui, &what, &mut commands);
+            let width = plots::show(ui, &what, has_panel, &mut commands);
             self.view_state.arrangement.now_mut().plots.width = width;
         }
         let content = viewport::SceneContent {
@@ -131,6 +132,7 @@ impl AppState {
         let proposals = proposals.as_ref().map_or(&[][..], |known| known);
         status::news(ui.ctx(), scene, &self.session, &self.view_state, proposals, &mut commands);
         guide::show(ui.ctx(), &queries, &mut self.view_state, &mut commands);
+        side::window(ui.ctx(), &facts, &self.view_state, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);
         saving::show(ui.ctx(), (&self.saving, self.session.undo_count()), &self.view_state, &mut commands);
         let recent = &self.saving.recent;

@@ -8,6 +8,7 @@ use super::lesson::MachineEquations;
 use super::terms::{self, TermPainter};
 use super::typeset::set;
 use crate::ViewState;
+use crate::fit;
 use crate::side::SCROLL_BAR_WIDTH;
 use crate::theme::{bold, colour, plain};
 use crate::widgets::{name, note};
@@ -153,11 +154,12 @@ fn block(ui: &mut Ui, equation: &Equation, pen: &TermPainter<'_>) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         ui.label(RichText::new(format!("({})", equation.number)).font(bold(13.0)).color(colour(p.amber)));
-        let state = RichText::new(verdict(equation)).font(plain(11.5)).color(colour(tone(equation, p)));
         let title = ui.label(RichText::new(equation.title).font(bold(13.0)).color(colour(p.ink)));
         let said = format!("({}) {}: {}", equation.number, equation.title, verdict(equation));
         title.widget_info(|| WidgetInfo::labeled(Role::Label, true, &said));
-        ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| ui.add(Label::new(state).truncate()));
+        ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
+            fit::label(ui, &verdict(equation), plain(11.5), colour(tone(equation, p)));
+        });
     });
     symbols(ui, equation.says, 11.0, colour(p.dim));
     if !equation.form.is_empty() {

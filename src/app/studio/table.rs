@@ -5,7 +5,7 @@ use egui::{Align, Layout, Response, RichText, Sense, Stroke, Ui, vec2};
 use crate::notation;
 use crate::theme::{bold, colour, plain};
 use crate::widgets::{NumberRow, heading, name, send, tip_of, undoable_edit};
-use crate::{Command, ViewState, place};
+use crate::{Command, ViewState, fit, place};
 use stillbase_mechanics::balance::ParameterBounds;
 use stillbase_picture::scene::options::Handle;
 use stillbase_picture::scene::palette::Palette;
@@ -41,7 +41,7 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
                 cell(ui, NAME_WIDTH_PT, Align::Min, |ui| {
                     let (dot, _) = ui.allocate_exact_size(vec2(10.0, ROW_HEIGHT_PT), Sense::hover());
                     ui.painter().circle_filled(dot.center(), 4.0, colour(p.drive(drive)));
-                    ui.add(egui::Label::new(RichText::new(&link.name).font(bold(12.5))).truncate());
+                    fit::label(ui, &link.name, bold(12.5), colour(p.ink));
                 });
                 let path = |key: &str| format!("link.{}.{key}", link.name);
                 number(

@@ -13,6 +13,10 @@ use stillbase_simulation::signals::Signal;
 
 /// Maximum number of plots that the user can add, and of curves added to one plot.
 const MAX_ADDED: usize = 24;
+/// Maximum number of names in the order of plots.
+const MAX_ORDERED: usize = 200;
+/// Smallest and largest side of the window of a plot, points.
+const WINDOW_SIDE_PT: [f32; 2] = [80.0, 8000.0];
 
 /// The user's choice of plots and curves.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -24,6 +28,8 @@ pub struct PlotChoice {
     pub statistics: bool,
     /// Names of the plots that the user added.
     pub own: Vec<String>,
+    /// Names of plots in the user's order. A plot that is not among them follows its predecessor of the usual order.
+    pub order: Vec<String>,
     /// Changes of plots, by name of the plot.
     pub changes: BTreeMap<String, PlotSettings>,
 }
@@ -42,6 +48,8 @@ pub struct PlotSettings {
     pub values: Option<[f64; 2]>,
     /// Whether the plot is closed.
     pub closed: bool,
+    /// Left, top, width and height of the plot's own window, points; `None` while it is among the others.
+    pub window: Option<[f32; 4]>,
 }
 
 /// A change of the choice.
@@ -63,6 +71,10 @@ pub enum PlotChange {
     Close(String),
     /// Reopens all closed plots.
     Reopen,
+    /// Puts the plots on display into this order, by name.
+    Order(Vec<String>),
+    /// Gives a plot a window of its own: left, top, width and height, points. `None` puts it back among the others.
+    Window(String, Option<[f32; 4]>),
     /// Sets the time interval, s; `None` follows the run.
     Range(Option<[f64; 2]>),
     /// Shows or hides the statistics of the curves.
@@ -111,12 +123,17 @@ impl PlotChoice {
                 match own {
                     Some(i) => {
                         self.own.remove(i);
+                        self.order.retain(|name| *name != plot);
                         self.changes.remove(&plot);
                     }
                     None => self.changes.entry(plot).or_default().closed = true,
                 }
             }
             PlotChange::Reopen => self.changes.values_mut().for_each(|changes| changes.closed = false),
+            PlotChange::Order(shown) => self.put_in_order(shown),
+            PlotChange::Window(plot, window) => {
+                self.changes.entry(plot).or_default().window = window.filter(is_window);
+            }
             PlotChange::Range(range) => {
                 self.range = range.filter(|[from, to]| from.is_finite() && to.is_finite() && from < to)
             }
@@ -124,6 +141,37 @@ impl PlotChoice {
         }
         // Entries without any change are dropped.
         self.changes.retain(|_, changes| *changes != PlotSettings::default());
+    }
+
+    /// Puts the plots on display into an order. Plots that are not on display stay behind their predecessors.
+    fn put_in_order(&mut self, shown: Vec<String>) {
+        let before = std::mem::replace(&mut self.order, shown);
+        let mut at = 0;
+        for name in before {
+            match self.order.iter().position(|known| *known == name) {
+                Some(i) => at = i + 1,
+                None => {
+                    self.order.insert(at, name);
+                    at += 1;
+                }
+            }
+        }
+        self.order.truncate(MAX_ORDERED);
+    }
+
+    /// Sorts plots by the user's order.
+    fn sort(&self, plots: &mut [Plot<'_>]) {
+        let mut last = 0;
+        let mut places: BTreeMap<String, usize> = BTreeMap::new();
+        for plot in &*plots {
+            // A plot that the user has just added comes last.
+            let follows = if plot.added_by_user { usize::MAX } else { last };
+            let place = self.order.iter().position(|name| *name == plot.name).unwrap_or(follows);
+            last = if plot.added_by_user { last } else { place };
+            places.insert(plot.name.clone(), place);
+        }
+        // Plots of equal place keep the usual order.
+        plots.sort_by_key(|plot| places[&plot.name]);
     }
 
     /// Returns the plots of a scenario in order of display, in the user's units; `pins` says whether pin forces are
@@ -145,7 +193,9 @@ impl PlotChoice {
             Plot::of(name, chart, true, of(name), (signals, notation))
         });
         // An added plot is omitted if the machine has none of its signals.
-        known.chain(own.filter(|plot| !plot.curves.is_empty())).collect()
+        let mut plots: Vec<Plot<'a>> = known.chain(own.filter(|plot| !plot.curves.is_empty())).collect();
+        self.sort(&mut plots);
+        plots
     }
 
     /// Shows all values of every plot.
@@ -179,6 +229,8 @@ pub struct Plot<'a> {
     pub against: Option<PlotCurve<'a>>,
     /// Bounds of the vertical axis; `None` shows all values.
     pub values: Option<[f64; 2]>,
+    /// Left, top, width and height of the plot's own window, points; `None` while it is among the others.
+    pub window: Option<[f32; 4]>,
 }
 
 /// A curve of a plot.
@@ -252,16 +304,8 @@ impl<'a> Plot<'a> {
             _ => chart,
         };
         let names = notation.names;
-        Self {
-            name: name.into(),
-            title,
-            chart: in_units,
-            names,
-            added_by_user,
-            curves,
-            against,
-            values: changes.values,
-        }
+        let (values, window) = (changes.values, changes.window.filter(is_window));
+        Self { name: name.into(), title, chart: in_units, names, added_by_user, curves, against, values, window }
     }
 
     /// Returns the title, with the symbol of the horizontal axis unless that is time. If symbols come first, that of the
@@ -303,6 +347,12 @@ impl<'a> Plot<'a> {
         }
         units.join(", ")
     }
+}
+
+/// Whether left, top, width and height, points, are those of a window.
+fn is_window([left, top, width, height]: &[f32; 4]) -> bool {
+    let [least, most] = WINDOW_SIDE_PT;
+    [left, top].iter().all(|x| x.abs() <= most) && [width, height].iter().all(|side| (least..=most).contains(*side))
 }
 
 fn capital(words: &str) -> String {

@@ -79,13 +79,18 @@ pub struct Axes {
 
 /// Width of the margin for the tick labels of the vertical axis, points.
 pub const LEFT_MARGIN: f32 = 42.0;
+/// Width of the margin for the numbers of overlaid runs, points.
+const RUN_MARGIN: f32 = 14.0;
 /// Height of the margin for the tick labels of the horizontal axis, points.
 pub const BOTTOM_MARGIN: f32 = 15.0;
 
 impl Axes {
-    /// Returns axes inside a rectangle (left, top, right, bottom) that also holds the tick labels.
+    /// Returns axes inside a rectangle (left, top, right, bottom) that also holds the tick labels, and the numbers of
+    /// overlaid runs.
     pub fn within([left, top, right, bottom]: [f32; 4], drawn: &PlotLines) -> Self {
-        Self { sides: [left + LEFT_MARGIN, top, right - 2.0, bottom - BOTTOM_MARGIN], x: drawn.x, y: drawn.y }
+        let has_runs = drawn.lines.iter().any(|line| line.run.is_some());
+        let right = right - if has_runs { RUN_MARGIN } else { 2.0 };
+        Self { sides: [left + LEFT_MARGIN, top, right, bottom - BOTTOM_MARGIN], x: drawn.x, y: drawn.y }
     }
 
     /// Maps a point (x, y) of values to the screen, points.
@@ -132,8 +137,7 @@ pub fn pen(plot: &Plot<'_>, curve: usize, look: &PlotContext<'_>) -> (Rgba, Opti
     (tone(curve), [None, Some([6.0, 3.0]), Some([1.5, 2.5]), Some([10.0, 3.0])][same % 4])
 }
 
-/// Returns the dash and the opacity of the lines of an overlaid run. Runs do not differ by colour, because colours
-/// distinguish signals.
+/// Returns the dash and the opacity of the lines of an overlaid run.
 pub fn dashes(run: usize) -> (Option<[f32; 2]>, f32) {
     let styles = [[7.0, 4.2], [1.2, 4.0], [3.5, 2.1], [14.0, 8.4], [1.2, 7.0]];
     (styles.get(run % 6).copied(), if run >= 6 { 0.45 } else { 0.7 })
@@ -205,16 +209,59 @@ pub fn body(plot: &Plot<'_>, drawn: &PlotLines, axes: &Axes, look: &PlotContext<
         let (tone, dash) = pen(plot, run.curve, look);
         items.push(match run.run {
             None => line(points, 1.8, tone, dash),
-            Some(i) => {
-                let tone = plot.curves[run.curve].signal.drive.map_or(p.ink, |k| p.drive(k));
-                let (dash, strength) = dashes(i);
-                line(points, 1.2, faded(tone, strength), dash)
-            }
+            Some(i) => line(points, 1.4, colour_in_run(plot, run.curve, i, p), dashes(i).0),
         });
     }
+    words.extend(run_numbers(plot, drawn, axes, p));
     items.extend(cursors(plot, axes, look));
     items.extend(words);
     items
+}
+
+/// Returns the colour of an overlaid run where colours do not distinguish drives.
+pub fn run_colour(run: usize, p: &Palette) -> Rgba {
+    faded(p.run(run), (dashes(run).1 / dashes(0).1).min(1.0))
+}
+
+/// Returns the colour of a curve of an overlaid run. Where colours distinguish drives, they do so in all runs.
+fn colour_in_run(plot: &Plot<'_>, curve: usize, run: usize, p: &Palette) -> Rgba {
+    plot.curves[curve].signal.drive.map_or_else(|| run_colour(run, p), |k| faded(p.drive(k), dashes(run).1))
+}
+
+/// Least distance between the numbers of runs, points.
+const NUMBER_DISTANCE_PT: f32 = 10.0;
+
+/// Returns the numbers of overlaid runs, counted from 1 as in the table of runs, beside the ends of their lines.
+fn run_numbers(plot: &Plot<'_>, drawn: &PlotLines, axes: &Axes, p: &Palette) -> Vec<FigureItem> {
+    let [_, top, right, bottom] = axes.sides;
+    let end = |line: &super::drawn::PlotLine| {
+        let (run, last) = (line.run?, line.points.last()?);
+        let y = axes.place(*last)[1].clamp(top, bottom);
+        Some((y, run, colour_in_run(plot, line.curve, run, p)))
+    };
+    let mut ends: Vec<(f32, usize, Rgba)> = drawn.lines.iter().filter_map(end).collect();
+    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // One number serves several curves of a run that end beside each other.
+    let mut kept: Vec<(f32, usize, Rgba)> = Vec::new();
+    for (y, run, tone) in ends {
+        if kept.iter().any(|(other, of, _)| *of == run && y - other < NUMBER_DISTANCE_PT) {
+            continue;
+        }
+        let y = kept.last().map_or(y, |(other, ..)| y.max(other + NUMBER_DISTANCE_PT));
+        kept.push((y, run, tone));
+    }
+    // What was pushed below the axes goes back up.
+    let mut lowest = bottom;
+    for (y, ..) in kept.iter_mut().rev() {
+        *y = y.min(lowest);
+        lowest = *y - NUMBER_DISTANCE_PT;
+    }
+    let number = |(y, run, colour): (f32, usize, Rgba)| FigureItem::Text {
+        at: [right + 3.0, y],
+        anchor: [0.0, 0.5],
+        words: vec![FigureText { text: (run + 1).to_string(), size: TICK_SIZE_PT, bold: true, colour }],
+    };
+    kept.into_iter().map(number).collect()
 }
 
 /// Returns the marks of the displayed instant, the second cursor and the pointer: vertical lines if the horizontal axis

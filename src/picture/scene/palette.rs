@@ -87,6 +87,13 @@ impl Palette {
     pub fn drive(&self, k: usize) -> Rgba {
         self.drives[k % self.drives.len()]
     }
+
+    /// Returns the colour of an overlaid run in plots of one curve: none of the first three drives' colours, of which one
+    /// is also that of reactions that are zero.
+    pub fn run(&self, i: usize) -> Rgba {
+        let [_, _, _, others @ ..] = &self.drives;
+        others[i % others.len()]
+    }
 }
 
 /// Returns a colour with its alpha multiplied by `alpha`, 0..1.

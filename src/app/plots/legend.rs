@@ -1,0 +1,47 @@
+//! The line above all plots that names the runs laid over, with the samples of their lines.
+
+use egui::{Sense, Ui, vec2};
+
+use super::shown::DisplayContext;
+use crate::compare::sample;
+use crate::fit;
+use crate::theme::{bold, colour, plain};
+use stillbase_picture::charts::figure::{dashes, run_colour};
+
+/// Width of a sample of a line, and least width of a run's name, points.
+const SAMPLE_WIDTH_PT: f32 = 24.0;
+const MIN_NAME_PT: f32 = 60.0;
+
+/// Draws the line in a width, points, if runs are laid over.
+pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, width: f32) {
+    let Some(comparison) = what.comparison else { return };
+    let shown: Vec<usize> = comparison.shown().map(|(place, _)| place).collect();
+    if shown.is_empty() {
+        return;
+    }
+    let p = what.view_state.palette();
+    let title = |place: usize| {
+        let entry = &comparison.entries()[place];
+        let scenario = entry.outcome.as_ref().map(|run| run.scenario.title.as_str()).unwrap_or_default();
+        if entry.added_by_user && !scenario.is_empty() { scenario.to_owned() } else { entry.title.clone() }
+    };
+    // Names share a line; where that leaves too little of them, they go on in the next one.
+    let share = width / shown.len() as f32;
+    let taken = SAMPLE_WIDTH_PT + 28.0;
+    let room = (share - taken).max(MIN_NAME_PT);
+    ui.scope(|ui| {
+        ui.set_max_width(width);
+        ui.spacing_mut().interact_size.y = 14.0;
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = vec2(4.0, 2.0);
+            for place in shown {
+                let (rect, _) = ui.allocate_exact_size(vec2(SAMPLE_WIDTH_PT, 14.0), Sense::hover());
+                sample(ui, rect, dashes(place).0, colour(run_colour(place, &p)));
+                ui.label(egui::RichText::new(format!("{}", place + 1)).font(bold(10.5)).color(colour(p.run(place))));
+                fit::label_within(ui, &title(place), plain(11.0), colour(p.dim), room);
+                ui.add_space(4.0);
+            }
+        });
+        ui.add_space(2.0);
+    });
+}

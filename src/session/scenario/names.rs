@@ -1,0 +1,114 @@
+//! Plain names of settings.
+
+use stillbase_settings::key::names;
+
+/// Keys with their names, in which `*` stands for the name of a link, a drive or a length. All other keys are called as
+/// the last word of their path.
+const NAMES: &[(&str, &str)] = &[
+    ("compare_b", "pose constant to compare with"),
+    ("pose_acceleration", "greatest acceleration of b"),
+    ("task.kind", "kind of motion"),
+    ("task.shape", "shape of the path"),
+    ("task.turn", "turn of the samples"),
+    ("task.from", "point A"),
+    ("task.via", "points between"),
+    ("task.to", "point B"),
+    ("task.closed", "back to A"),
+    ("task.blend", "distance of blends"),
+    ("task.b", "pose constant at A"),
+    ("task.b_to", "pose constant at B"),
+    ("task.moment_limit", "limit of the moment on the base"),
+    ("task.least", "what is least"),
+    ("task.first_drive_to", "final angle of drive 1"),
+    ("task.orientation", "angle of the last link"),
+    ("task.time", "duration from A to B"),
+    ("task.law", "time law"),
+    ("control.law", "control law"),
+    ("control.kp", "position gain"),
+    ("control.kd", "velocity gain"),
+    ("control.knows_base", "knows that the base moves"),
+    ("control.rate", "rate of control"),
+    ("control.encoder", "encoder counts"),
+    ("plant.torque_limits", "motors keep their limits"),
+    ("plant.force", "force at the end effector"),
+    ("plant.payload.from", "payload is picked up at"),
+    ("plant.payload.until", "payload is released at"),
+    ("plant.friction.viscous", "viscous friction of drives"),
+    ("plant.friction.coulomb", "Coulomb friction of drives"),
+    ("plant.friction.pin_viscous", "viscous friction of pins"),
+    ("plant.friction.pin_coulomb", "Coulomb friction of pins"),
+    ("base.kind", "how the base is held"),
+    ("base.mass", "mass of the base"),
+    ("base.inertia", "inertia of the base"),
+    ("base.com", "centre of mass of the base"),
+    ("base.wheel.inertia", "inertia of the wheel"),
+    ("base.wheel.torque_limit", "torque limit of the wheel"),
+    ("base.wheel.speed_limit", "rate limit of the wheel"),
+    ("link.*.com", "centre of mass along link *"),
+    ("link.*.com_normal", "centre of mass off link *"),
+    ("link.*.mass", "mass of link *"),
+    ("link.*.inertia", "inertia of link *"),
+    ("link.*.length", "length of link *"),
+    ("link.*.axial", "height of link *"),
+    ("counterweight.*.mass", "mass of counterweight *"),
+    ("counterweight.*.at", "place of counterweight *"),
+    ("counterweight.*.radius", "radius of counterweight *"),
+    ("counterweight.*.fixed", "counterweight * stays"),
+    ("length.*", "length *"),
+    ("payload.mass", "mass of the payload"),
+    ("payload.inertia", "inertia of the payload"),
+    ("payload.offset", "centre of mass of the payload"),
+    ("payload.axial", "height of the payload"),
+    ("limits.*", "limits of angle *"),
+    ("drive.*.rotor.inertia", "rotor inertia of drive *"),
+    ("drive.*.rotor.ratio", "gear ratio of drive *"),
+    ("drive.*.torque_limit", "torque limit of drive *"),
+    ("drive.*.speed_limit", "rate limit of drive *"),
+    ("drive.*.acceleration_limit", "acceleration limit of drive *"),
+    ("drive.*.jerk_limit", "jerk limit of drive *"),
+    ("tolerance.seed", "which random machines"),
+    ("tolerance.samples", "how many machines"),
+    ("tolerance.moment_limit", "moment on the base that will do"),
+    ("tolerance.force_limit", "force on the base that will do"),
+    ("design.density", "density of the plate"),
+    ("design.thickness", "thickness of the plate"),
+    ("design.behind_root", "greatest distance behind a root"),
+    ("design.heaviest", "heaviest counterweight"),
+    ("design.clearance", "distance of discs from pins"),
+    ("design.payload", "range of the payload"),
+    ("design.reach", "least reach"),
+    ("design.workspace", "least workspace"),
+    ("design.ratio.*", "gear ratio of drive *"),
+    ("design.fixed.*", "link * stays"),
+];
+
+/// Parts of a scenario whose keys are called as those of the machine.
+const PARTS_OF_MACHINES: [&str; 4] = ["design.hold.", "design.", "plant.", "tolerance."];
+
+/// Returns the plain name of a setting by its path, with what it belongs to: `mass of link 5`. The path may hold `*` for
+/// every link or length: `mass of every link`.
+pub fn name_of(path: &str) -> String {
+    let of_part = PARTS_OF_MACHINES.iter().find_map(|part| path.strip_prefix(part));
+    let found = [Some(path), of_part].into_iter().flatten().find_map(|path| {
+        let (pattern, name) = NAMES.iter().find(|(pattern, _)| names(pattern, path))?;
+        Some((pattern, name, path))
+    });
+    let Some((pattern, name, path)) = found else {
+        return path.rsplit('.').next().unwrap_or(path).replace('_', " ");
+    };
+    let place = pattern.split('.').position(|word| word == "*");
+    match place.and_then(|place| path.split('.').nth(place)) {
+        Some("*") => every(name),
+        Some(which) => name.replace('*', which),
+        None => (*name).to_owned(),
+    }
+}
+
+/// Returns the name of a setting of every link or length.
+fn every(name: &str) -> String {
+    let words: Vec<&str> = name.split(' ').collect();
+    let place = words.iter().position(|word| *word == "*").unwrap_or(words.len());
+    let (before, after) = words.split_at(place);
+    let Some((thing, before)) = before.split_last() else { return name.to_owned() };
+    [before, &["every", thing], after.get(1..).unwrap_or_default()].concat().join(" ")
+}
