@@ -114,7 +114,7 @@ impl QuickQuery for Settings {
 
 /// Values of a scenario and of the instant on display.
 pub(super) struct ScenarioFacts<'a> {
-    queries: &'a Queries,
+    pub queries: &'a Queries,
     scenario: Shared<Scenario>,
     /// Whether the machine differs from the built-in one of its name.
     pub machine_differs: bool,

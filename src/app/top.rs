@@ -26,7 +26,6 @@ pub fn show(
     ui: &mut Ui,
     session: &Session,
     facts: &ScenarioFacts<'_>,
-    queries: &Queries,
     recent: &[PathBuf],
     line: (&Marks, Option<f64>),
     view_state: &ViewState,
@@ -40,9 +39,9 @@ pub fn show(
                 ui.label(RichText::new("Stillbase").font(bold(17.0)));
                 ui.add_space(2.0);
             }
-            file_menu::show(ui, session, queries, recent, view_state, commands);
+            file_menu::show(ui, session, facts.queries, recent, view_state, commands);
             machines(ui, session, facts.machine_differs, view_state, commands);
-            scenarios(ui, session, queries, facts.work_differs, view_state, commands);
+            scenarios(ui, session, facts.queries, facts.work_differs, view_state, commands);
             ui.add_space(8.0);
             transport(ui, session, view_state, commands);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

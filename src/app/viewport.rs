@@ -141,8 +141,8 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
             thing.in_scene(&spot, views.stage(), &shown).filter(|place| shows && rect.contains(place.center()))
         };
         let mentioned: Vec<Rect> = things.iter().copied().filter_map(in_scene).collect();
-        // A card leaves free what can be dragged, too.
-        let free = [Pointed::Target, Pointed::Ring].into_iter().filter_map(in_scene);
+        // A card leaves free what can be dragged and the base, too.
+        let free = [Pointed::Target, Pointed::Ring, Pointed::Base].into_iter().filter_map(in_scene);
         let left_free: Vec<Rect> = mentioned.iter().copied().chain(free).collect();
         let widgets = pointing::widgets(ui.ctx(), things);
         if view_state.gesture.grabbed.is_none() {

@@ -63,7 +63,7 @@ impl AppState {
         let facts = ScenarioFacts::of(&queries, &self.session);
         if !presents {
             let line = (&marks, self.pace.lagging_rate());
-            top::show(ui, &self.session, &facts, &queries, &self.saving.recent, line, &self.view_state, &mut commands);
+            top::show(ui, &self.session, &facts, &self.saving.recent, line, &self.view_state, &mut commands);
             let under_way = self.background.under_way();
             let improvements = || self.improvements();
             status::show(ui, &self.session, &facts, &improvements, &self.view_state, under_way, &mut commands);
