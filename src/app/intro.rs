@@ -22,6 +22,10 @@ pub struct Intro {
     rounds: u32,
 }
 
+/// Width of a narrow view, points, and the length of an explanation that it shows in full, bytes.
+const NARROW_VIEW_PT: f32 = 460.0;
+const MAX_NARROW_WORDS: usize = 120;
+
 /// Number of hints.
 const HINT_COUNT: usize = 3;
 
@@ -170,7 +174,12 @@ impl Intro {
                     });
                     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| dots(ui, &p, self.hint));
                 });
-                ui.add(egui::Label::new(RichText::new(why).font(plain(12.0)).color(colour(p.dim))).wrap());
+                let words = egui::Label::new(RichText::new(&why).font(plain(12.0)).color(colour(p.dim)));
+                // A narrow view has no room for a long reason beside the machine.
+                match rect.width() < NARROW_VIEW_PT && why.len() > MAX_NARROW_WORDS {
+                    true => ui.add(words.truncate()).on_hover_text(&why),
+                    false => ui.add(words.wrap()),
+                };
                 let skip = egui::Button::new(RichText::new("Esc: never again").font(plain(11.0)).color(colour(p.dim)));
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     let skip = ui.add(skip.frame(false)).on_hover_text("No more hints, now and at the next start");
