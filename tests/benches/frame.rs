@@ -1,5 +1,5 @@
-//! What a whole frame costs on the adapter at hand: the three cases in motion, at rest with the pointer moving, and the
-//! tower, at 1440 × 900 and twice that.
+//! What a whole frame costs on the adapter at hand: the three cases in motion, two runs side by side, at rest with the
+//! pointer moving, and the tower, at 1440 × 900 and twice that.
 //!
 //! `cargo bench --bench frame` prints the median of each part: the interface (the steps of the simulation that are due,
 //! panels, plots and scene), its shapes, what is sent to the adapter, and what the adapter draws, waited for; then the
@@ -9,7 +9,7 @@
 use std::time::{Duration, Instant};
 
 use egui::epaint::Primitive;
-use stillbase::app::{AppState, SessionCommand, ViewChange};
+use stillbase::app::{AppState, SessionCommand, Switch, ViewChange};
 use stillbase::picture::gui::{GuiRenderer, RenderTarget};
 use stillbase::picture::paint::{enable_draft_quality, install_fonts};
 use stillbase::picture::render::offscreen::{Gpu, surface};
@@ -29,6 +29,8 @@ const FRAMES: usize = 60;
 enum Doing {
     /// The motion plays.
     Plays,
+    /// The motion plays beside another run.
+    PlaysBeside,
     /// Nothing but the pointer moves.
     Rests,
 }
@@ -47,6 +49,7 @@ fn main() {
         for case in ["case-1", "case-2", "case-3"] {
             measure(&gpu, case, ViewKind::Flat, Doing::Plays, size, scale);
         }
+        measure(&gpu, "case-3", ViewKind::Flat, Doing::PlaysBeside, size, scale);
         measure(&gpu, "case-3", ViewKind::Space, Doing::Plays, size, scale);
         measure(&gpu, "case-3", ViewKind::Space, Doing::Rests, size, scale);
         measure(&gpu, "case-3", ViewKind::Tower, Doing::Plays, size, scale);
@@ -57,11 +60,12 @@ fn measure(gpu: &Gpu, case: &str, view: ViewKind, doing: Doing, size: [u32; 2], 
     let scenario = Scenario::builtin(case).expect("built in");
     let mut app_state = AppState::new(scenario, Theme::Dark).expect("it starts");
     app_state.carry_out(ViewChange::Kind(view));
+    app_state.carry_out(ViewChange::Switch(Switch::Pair, doing == Doing::PlaysBeside));
     let mut screen = Screen::new(gpu, size, scale);
     for i in 0..10 {
         screen.frame(&mut app_state, i);
     }
-    if doing == Doing::Plays {
+    if doing != Doing::Rests {
         app_state.carry_out(SessionCommand::TogglePlay);
     }
     let mut all: [Vec<Duration>; 5] = Default::default();
