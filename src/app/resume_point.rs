@@ -1,6 +1,8 @@
 //! [`ResumePoint`]: the state of the display that no edit contains: the instant, the plots, the layout and the view. Saved
 //! sessions and journals contain this state in comments before the session.
 
+use std::path::PathBuf;
+
 use serde::{Deserialize, Serialize};
 
 use super::layout::{BottomPanel, Layout};
@@ -37,6 +39,8 @@ pub struct ResumePoint {
     pub snapshots: bool,
     /// Whether the points of the task turn with b.
     pub turn_task: bool,
+    /// The file of the session; only a journal names it.
+    pub file: Option<PathBuf>,
     /// The choice of plots.
     pub plots: PlotChoice,
 }
@@ -55,6 +59,7 @@ impl Default for ResumePoint {
             pins: false,
             snapshots: false,
             turn_task: false,
+            file: None,
             plots: PlotChoice::default(),
         }
     }
@@ -75,6 +80,7 @@ impl ResumePoint {
             pins: view_state.pins,
             snapshots: view_state.snapshots,
             turn_task: view_state.turn_task,
+            file: None,
             plots: view_state.charts.clone(),
         }
     }

@@ -216,7 +216,8 @@ impl AppState {
 
     /// Returns the state of the display that no edit contains: the instant and the plots.
     pub fn left_off(&self) -> ResumePoint {
-        ResumePoint::of_view(self.own_session(), self.own_view_state())
+        let file = self.own_saving().own_file(self.own_session().undo_count()).cloned();
+        ResumePoint { file, ..ResumePoint::of_view(self.own_session(), self.own_view_state()) }
     }
 
     /// Returns the window title: the scenario, with ` *` if there are unsaved changes.

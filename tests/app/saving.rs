@@ -27,6 +27,7 @@ pub const TESTS: &[Test] = tests![
     a_question_has_keys_and_pointer_for_itself,
     files_are_remembered_by_the_whole_of_their_names,
     own_plots_and_the_instant_are_recovered,
+    a_recovered_session_has_its_file,
 ];
 
 fn tell(h: &mut Window, command: Command) {
@@ -257,4 +258,28 @@ fn own_plots_and_the_instant_are_recovered() {
     for strange in ["#| time = nan\n", "#| time = -1.0\n", "#| plots = 3\n", "#| \u{0}\n"] {
         assert_eq!(ResumePoint::of(strange), None, "{strange}");
     }
+}
+
+/// After a power cut Save writes the file that the session had, and the saved file does not name itself.
+fn a_recovered_session_has_its_file() {
+    let folder = Folder::new("recovered-file");
+    let file = folder.path("mine.toml");
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    tell(&mut h, Command::Session(SessionCommand::SaveFile(file.clone())));
+    tell(&mut h, heavier());
+    let first = std::fs::read_to_string(&file).expect("saved");
+    assert!(!first.contains("mine.toml") && !first.contains("0.3"), "{first}");
+    let left_off = h.state().app_state().left_off();
+    assert_eq!(left_off.file.as_deref(), Some(file.as_path()));
+    let journal = folder.file("session-0.toml", left_off.before(&session(&h).to_scenario().to_toml()));
+    let mut h = found(&journal);
+    h.run_steps(2);
+    h.get_by_label("Open that session").click();
+    h.run_steps(4);
+    assert!(h.state().app_state().changes().1, "the change is in no file of the person");
+    h.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    h.run_steps(4);
+    assert!(h.query_by_label("File name").is_none(), "the file is known");
+    assert!(std::fs::read_to_string(&file).expect("saved").contains("mass = 0.3"));
 }

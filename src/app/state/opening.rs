@@ -31,6 +31,8 @@ impl AppState {
                 // Only a file that the window wrote says where the session was left.
                 let own = match &opening.file {
                     Some(SessionFile::Own(file)) if left_off.is_some() => Some(file.clone()),
+                    // A journal names the file of its session.
+                    Some(SessionFile::LeftBehind(_)) => left_off.as_ref().and_then(|left_off| left_off.file.clone()),
                     _ => None,
                 };
                 self.take_over(session, Opening { message, ..opening });

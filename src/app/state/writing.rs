@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::AppState;
 use super::background::fault;
-use crate::{Activity, PlotFile, plots};
+use crate::{Activity, PlotFile, ResumePoint, plots};
 use stillbase_exchange::cut::Cut;
 use stillbase_exchange::form::Form;
 use stillbase_query::Ticket;
@@ -80,6 +80,7 @@ impl AppState {
         let of = Some((self.saving.changes, path.to_owned()));
         self.write_content(path, "one session is being saved: want that to end first", of, |app_state| {
             let (scenario, left_off) = (app_state.session.to_scenario(), app_state.left_off());
+            let left_off = ResumePoint { file: None, ..left_off };
             Ok(Box::new(move || Ok(left_off.before(&scenario.to_toml()).into_bytes())))
         })
     }
