@@ -8,16 +8,17 @@ use egui::{Align2, Area, Frame, Id, Key, Modifiers, Order, RichText, ScrollArea,
 use super::actions::{ACTIONS, shortcut_label};
 use super::facts::{ScenarioFacts, Setting};
 use super::guide::{self, GuideStep, Section};
+use super::side::setting;
 use super::theme::{bold, colour, plain};
 use super::top::with_machine;
 use super::widgets::name;
 use super::{Command, NoteDraft, SessionCommand, Switch, ViewChange, ViewState, search};
 use stillbase_mechanics::machine;
 use stillbase_picture::charts::choice::PlotChange;
+use stillbase_picture::notation::Notation;
 use stillbase_picture::scene::palette::Palette;
-use stillbase_session::scenario::Scenario;
+use stillbase_session::scenario::{Scenario, Value};
 use stillbase_session::{Edit, Session};
-use stillbase_settings::change;
 use stillbase_simulation::signals::Signal;
 
 /// A line of the list.
@@ -138,25 +139,49 @@ fn entries<'a>(known: Known<'a>, view_state: &ViewState) -> Vec<Entry<'a>> {
 /// Maximum number of settings that are offered for one typed value.
 const MAX_TYPED_ENTRIES: usize = 3;
 
-/// Returns entries that set what is typed: a setting by a few letters, and its value after a space or `=`.
-fn typed<'a>(settings: &'a [Setting], sought: &str) -> Vec<Entry<'a>> {
-    let Some((words, text)) = sought.trim().rsplit_once(['=', ' ']) else { return Vec::new() };
-    let words = words.trim_end_matches([' ', '=']).trim().to_owned();
-    let text = text.trim().to_owned();
-    let value = change::value(&text);
+/// Splits a search text into the words for a setting and its value: at `=`, else before the first number, else at the
+/// last space.
+fn split_value(sought: &str) -> Option<(&str, &str)> {
+    if let Some(parts) = sought.split_once('=') {
+        return Some(parts);
+    }
+    let begins = |text: &str| text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '−' | '.' | '['));
+    let number = sought.match_indices(' ').find(|(i, _)| begins(&sought[i + 1..]));
+    number.map(|(i, _)| sought.split_at(i)).or_else(|| sought.rsplit_once(' '))
+}
+
+/// Returns entries that set what is typed: a setting by a few letters, and its value after a space or `=`, in the user's
+/// unit or with a unit of its own.
+fn typed<'a>(settings: &'a [Setting], sought: &str, notation: Notation) -> Vec<Entry<'a>> {
+    let Some((words, text)) = split_value(sought.trim()) else { return Vec::new() };
+    let (words, text) = (words.trim().to_owned(), text.trim().to_owned());
+    if words.is_empty() || text.is_empty() {
+        return Vec::new();
+    }
     // A path that is typed in full comes first.
-    let score = |setting: &&Setting| match setting.path == words {
+    let score = |(setting, _): &(&Setting, Value)| match setting.path == words {
         true => Some(i32::MAX),
         false => search::score_with(&words, &setting.path, setting.key.meaning),
     };
-    let fit = settings.iter().filter(|setting| !words.is_empty() && setting.key.value_type.accepts(&value));
-    let entry = |setting: &'a Setting| {
-        let (path, value) = (setting.path.clone(), value.clone());
+    let fit = settings.iter().filter_map(|setting| {
+        let value = setting::typed(&text, setting.key, setting::shown_unit(setting.key, notation)).ok()?;
+        setting.key.value_type.accepts(&value).then_some((setting, value))
+    });
+    let entry = |(setting, value): (&'a Setting, Value)| {
+        let unit = setting::shown_unit(setting.key, notation);
+        let name = unit.map_or(setting.key.unit(), |unit| unit.name);
+        let with_unit = |number: &str| match name {
+            "" | "1" => number.to_owned(),
+            _ if number.ends_with(|c: char| !c.is_ascii_digit()) => number.to_owned(),
+            _ => format!("{number} {name}"),
+        };
+        let path = setting.path.clone();
+        let now = match setting.typed.as_str() {
+            "" => "none".to_owned(),
+            typed => with_unit(&setting::in_unit(typed, unit)),
+        };
         Entry {
-            title: format!(
-                "Set {path} = {text}, now {}",
-                if setting.typed.is_empty() { "none" } else { &setting.typed }
-            ),
+            title: format!("Set {path} = {}, now {now}", with_unit(&text)),
             place: "left panel, all settings",
             also: "",
             hides: false,
@@ -168,7 +193,7 @@ fn typed<'a>(settings: &'a [Setting], sought: &str) -> Vec<Entry<'a>> {
     let best = search::best_first(fit, score, MAX_TYPED_ENTRIES);
     // After a space, a number may also be a name: in "mass of link 3" it is no value of the mass of link 1.
     let is_stated = sought.contains('=');
-    let means_one = |one: &&Setting| is_stated || one.path == words || !one.key.path.contains('*');
+    let means_one = |one: &(&Setting, Value)| is_stated || one.0.path == words || !one.0.key.path.contains('*');
     best.into_iter().filter(means_one).map(entry).collect()
 }
 
@@ -203,7 +228,8 @@ pub fn show(
     let sections = facts.guide();
     let known = Known { session, signals, settings: &settings, recent, sections: &sections };
     let found = found(entries(known, view_state), &finder.search_text);
-    let list: Vec<Entry<'_>> = typed(&settings, &finder.search_text).into_iter().chain(found).collect();
+    let list: Vec<Entry<'_>> =
+        typed(&settings, &finder.search_text, view_state.arrangement.notation).into_iter().chain(found).collect();
     finder.chosen = finder.chosen.min(list.len().saturating_sub(1));
     let pressed = |key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
     let (up, down, enter) = (pressed(Key::ArrowUp), pressed(Key::ArrowDown), pressed(Key::Enter));

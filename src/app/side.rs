@@ -5,7 +5,7 @@ mod base;
 mod control;
 mod fold;
 mod plant;
-mod setting;
+pub mod setting;
 
 pub use all::{look_up, window};
 

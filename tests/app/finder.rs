@@ -6,6 +6,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use stillbase::app::actions::{ACTIONS, FINE_ACTIONS};
 use stillbase::app::{SessionCommand, Switch, ViewChange};
+use stillbase::picture::notation::{AngleUnit, Notation};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::Edit;
@@ -16,6 +17,8 @@ use crate::folder::Folder;
 
 pub const TESTS: &[Test] = tests![
     every_command_is_found_by_a_few_letters,
+    a_number_in_a_name_is_no_value,
+    a_value_is_in_the_unit_on_display,
     what_a_newcomer_types_is_among_the_first_three,
     the_list_of_commands_closes,
     a_value_is_typed_where_its_setting_is_found,
@@ -62,8 +65,9 @@ fn every_command_is_found_by_a_few_letters() {
         ("recent", "Recent: mine.toml"),
         ("new", "New session: this machine and its task, nothing done yet"),
         ("torque of drive 2", "Plot: torque of drive 2 τ₂, N m"),
-        ("payload mass 0.4", "Set plant.payload.mass = 0.4, now 0"),
-        ("task.time=3", "Set task.time = 3, now 1.0"),
+        ("payload mass 0.4", "Set plant.payload.mass = 0.4 kg, now 0 kg"),
+        ("payload mass 0.4 kg", "Set plant.payload.mass = 0.4 kg, now 0 kg"),
+        ("task.time=3", "Set task.time = 3 s, now 1.0 s"),
         ("task kind least-reaction", "Set task.kind = least-reaction, now reactionless"),
     ] {
         press(&mut h, Modifiers::COMMAND, Key::K);
@@ -375,5 +379,36 @@ fn the_view_is_turned_by_keys() {
         assert!(before != turned && turned != nearer);
         press(&mut h, Modifiers::NONE, Key::F);
         assert_eq!(*h.state().app_state().view_state().camera(), before);
+    }
+}
+
+fn a_number_in_a_name_is_no_value() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    for text in ["mass of link 3", "link 3", "drive 2"] {
+        press(&mut h, Modifiers::COMMAND, Key::K);
+        type_text(&mut h, text);
+        assert!(h.query_all_by_label_contains("Set link.").next().is_none(), "{text}");
+        assert!(h.query_all_by_label_contains("Set drive.").next().is_none(), "{text}");
+        press(&mut h, Modifiers::NONE, Key::Escape);
+    }
+    // With the sign, any setting is meant.
+    press(&mut h, Modifiers::COMMAND, Key::K);
+    type_text(&mut h, "link.3.mass=2.5");
+    press(&mut h, Modifiers::NONE, Key::Enter);
+    assert_eq!(session(&h).scenario().machine.links()[2].mass, 2.5);
+}
+
+fn a_value_is_in_the_unit_on_display() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let notation = Notation { angle: AngleUnit::Degrees, ..Notation::default() };
+    h.state_mut().app_state_mut().carry_out(ViewChange::Notation(notation));
+    for (text, b) in [("task.b 140", 140_f64.to_radians()), ("task.b=2.5 rad", 2.5)] {
+        press(&mut h, Modifiers::COMMAND, Key::K);
+        type_text(&mut h, text);
+        press(&mut h, Modifiers::NONE, Key::Enter);
+        let now = session(&h).scenario().task.b;
+        assert!((now - b).abs() < 1e-9, "{text}: {now}");
     }
 }

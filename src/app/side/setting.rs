@@ -23,7 +23,7 @@ const MIN_FIELD_PT: f32 = 72.0;
 const DIGITS: i32 = 9;
 
 /// Returns the user's unit of a key's numbers, if it differs from the key's own.
-fn shown_unit(key: &Key, notation: Notation) -> Option<ShownUnit> {
+pub fn shown_unit(key: &Key, notation: Notation) -> Option<ShownUnit> {
     // A spread is a word with a number in the unit of the key.
     holds_numbers(key).then(|| notation.shown_unit(key.unit()))?
 }
@@ -34,7 +34,7 @@ fn holds_numbers(key: &Key) -> bool {
 }
 
 /// Returns a value as it is typed, with its numbers in another unit. Words stay.
-fn in_unit(text: &str, unit: Option<ShownUnit>) -> String {
+pub fn in_unit(text: &str, unit: Option<ShownUnit>) -> String {
     let Some(unit) = unit else { return text.to_owned() };
     let part = |part: &str| match part.trim().parse::<f64>() {
         Ok(number) => rounded(unit.factor * number).to_string(),
@@ -56,7 +56,7 @@ fn rounded(number: f64) -> f64 {
 
 /// Reads the text typed for a key. Numbers may have units and arithmetic; without a unit they are in the user's unit.
 /// They are converted to the unit of the key. Anything else is read as in a file.
-fn typed(text: &str, key: &Key, unit: Option<ShownUnit>) -> Result<Value, QuantityError> {
+pub fn typed(text: &str, key: &Key, unit: Option<ShownUnit>) -> Result<Value, QuantityError> {
     if text.trim().is_empty() {
         return Ok(DEFAULT_WORD.into());
     }
