@@ -11,7 +11,7 @@ use super::{
     ViewState, WindowCommand, set_b,
 };
 use stillbase_picture::charts::choice::PlotChange;
-use stillbase_picture::notation::{AngleUnit, LengthUnit, NameOrder, Notation};
+use stillbase_picture::notation::Notation;
 use stillbase_picture::scene::Measure;
 use stillbase_picture::scene::views::{ViewKind, Views};
 use stillbase_session::scenario::{NoteTime, Scenario};
@@ -312,13 +312,13 @@ pub const ACTIONS: &[Action] = actions![
     View, "Light or dark" = "theme night mode colours color white black background appearance", [on(PLAIN, Key::L)], "top bar", |_, v| Some(Command::View(ViewChange::Theme(other(v.arrangement.theme))));
 
     View, "Angles in degrees or radians" = "unit units deg rad angle", [], "tool bar, layout", |_, v| notation(v, |shown| {
-        shown.angle = if shown.angle == AngleUnit::Radians { AngleUnit::Degrees } else { AngleUnit::Radians };
+        shown.angle = shown.angle.other();
     });
     View, "Lengths in millimetres or metres" = "unit units mm length size", [], "tool bar, layout", |_, v| notation(v, |shown| {
-        shown.length = if shown.length == LengthUnit::Metres { LengthUnit::Millimetres } else { LengthUnit::Metres };
+        shown.length = shown.length.other();
     });
     View, "Plain terms first, or the paper's symbols" = "names notation greek words", [], "tool bar, layout", |_, v| notation(v, |shown| {
-        shown.names = if shown.names == NameOrder::Terms { NameOrder::Symbols } else { NameOrder::Terms };
+        shown.names = shown.names.other();
     });
 
     Analysis, "The same task done in other ways, side by side" = "compare alternatives table difference versus runs", [on(PLAIN, Key::C)], "tool bar" turns Compare;

@@ -54,9 +54,7 @@ pub fn show(ui: &mut Ui, view_state: &ViewState, size: Vec2, commands: &mut Vec<
         let now = view_state.arrangement.notation;
         let (degrees, millimetres) = (now.angle == AngleUnit::Degrees, now.length == LengthUnit::Millimetres);
         let symbols = now.names == NameOrder::Symbols;
-        let angle = if degrees { AngleUnit::Radians } else { AngleUnit::Degrees };
-        let length = if millimetres { LengthUnit::Metres } else { LengthUnit::Millimetres };
-        let names = if symbols { NameOrder::Terms } else { NameOrder::Symbols };
+        let (angle, length, names) = (now.angle.other(), now.length.other(), now.names.other());
         for (text, tip, on, new) in [
             (
                 "Angles in degrees",

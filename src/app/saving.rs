@@ -23,8 +23,9 @@ pub(super) struct Saving {
     pub left_session: Option<(PathBuf, String)>,
     /// The file of a recovered or discarded session; it is removed once a journal contains the present session.
     pub recovered: Option<PathBuf>,
-    /// The file of the session: the one that this program wrote and from which the session was opened, or to which it
-    /// was saved. A file written by hand is none, so that saving never drops its comments.
+    /// The files of the session and of those before it in its history: each is one that this program wrote and from
+    /// which the session was opened, or to which it was saved. A file written by hand is none, so that saving never drops
+    /// its comments.
     pub own: Vec<OwnFile>,
     /// Recently opened and saved files, newest first.
     pub recent: Vec<PathBuf>,
@@ -50,10 +51,10 @@ impl Saving {
         self.own.iter().rev().find(|own| own.since <= undo_count)?.file.as_ref()
     }
 
-    /// Begins a session that was opened with this file, or none, and has this number of undo entries.
-    pub fn begin_file(&mut self, undo_count: usize, file: Option<PathBuf>) {
+    /// Begins a session without a file that has this number of undo entries.
+    pub fn begin_file(&mut self, undo_count: usize) {
         self.own.retain(|own| own.since < undo_count);
-        self.own.push(OwnFile { since: undo_count, file });
+        self.own.push(OwnFile { since: undo_count, file: None });
     }
 
     /// Sets the file of the session that has this number of undo entries.

@@ -63,6 +63,30 @@ pub struct ShownUnit {
     pub decimals: i32,
 }
 
+impl AngleUnit {
+    /// Returns the other unit.
+    #[must_use]
+    pub fn other(self) -> Self {
+        if self == Self::Radians { Self::Degrees } else { Self::Radians }
+    }
+}
+
+impl LengthUnit {
+    /// Returns the other unit.
+    #[must_use]
+    pub fn other(self) -> Self {
+        if self == Self::Metres { Self::Millimetres } else { Self::Metres }
+    }
+}
+
+impl NameOrder {
+    /// Returns the other order.
+    #[must_use]
+    pub fn other(self) -> Self {
+        if self == Self::Terms { Self::Symbols } else { Self::Terms }
+    }
+}
+
 impl ShownUnit {
     const fn of(name: &'static str, factor: f64, decimals: i32) -> Self {
         Self { name, factor, decimals }

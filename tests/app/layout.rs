@@ -1,17 +1,12 @@
 //! How the window is laid out: everything in view, clear of what lies over the scene, in any size.
 
 use egui::{Key, Rect, vec2};
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::window::{App, Clock};
-use stillbase::app::{AppState, Command, Preferences, SessionCommand};
-use stillbase::picture::scene::palette::Theme;
+use stillbase::app::{Command, Preferences, SessionCommand};
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::Edit;
-use stillbase::session::scenario::Scenario;
 
-use super::screen::{Screen, whole};
-use super::{Window, drag, seen, session};
+use super::{Window, drag, seen, session, window_liked};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![
@@ -21,16 +16,6 @@ pub const TESTS: &[Test] = tests![
     panels_change_sides,
     history_is_a_list_to_jump_in,
 ];
-
-fn window(size: [f32; 2], liked: &Preferences) -> Window {
-    let scenario = Scenario::builtin("case-3").expect("built in");
-    let app_state = AppState::new(scenario, Theme::Dark).expect("it starts").with_preferences(liked);
-    Harness::builder()
-        .with_size(size)
-        .with_step_dt(0.02)
-        .renderer(Screen::new())
-        .build_ui_state(whole, App::new(app_state, Clock::Fixed(0.02)))
-}
 
 fn scene(h: &Window) -> Rect {
     h.get_by_label_contains("Scene:").rect()
@@ -47,7 +32,7 @@ fn bounds(h: &Window) -> Rect {
 /// is under the hint.
 fn everything_is_seen_beside_what_lies_over_it() {
     for size in [[960.0, 600.0], [1440.0, 900.0], [2560.0, 1440.0]] {
-        let mut h = window(size, &Preferences::default());
+        let mut h = window_liked(size, &Preferences::default());
         h.run_steps(4);
         let hint = h.get_by_label("Drag the white ring.").rect();
         let (all, scene_rect) = (bounds(&h), scene(&h));
@@ -76,7 +61,7 @@ fn everything_is_seen_beside_what_lies_over_it() {
 
 /// What a hand has moved stays as it is when the window changes; what was not moved shows everything again.
 fn the_hand_keeps_its_view() {
-    let mut h = window([1440.0, 900.0], &Preferences { hints: false, ..Preferences::default() });
+    let mut h = window_liked([1440.0, 900.0], &Preferences { hints: false, ..Preferences::default() });
     h.run_steps(3);
     let camera = |h: &Window| *h.state().app_state().view_state().camera();
     let before = camera(&h);
@@ -97,7 +82,7 @@ fn the_hand_keeps_its_view() {
 /// Layouts by key: each has its panels, keeps what a hand changes of them, and is there again at the next start.
 fn layouts_have_their_panels() {
     let size = [1440.0, 900.0];
-    let mut h = window(size, &Preferences { hints: false, ..Preferences::default() });
+    let mut h = window_liked(size, &Preferences { hints: false, ..Preferences::default() });
     h.run_steps(3);
     let settings = |h: &Window| h.query_by_label("POSE CONSTANT").is_some();
     let compares = |h: &Window| h.state().app_state().comparison().is_some();
@@ -119,7 +104,7 @@ fn layouts_have_their_panels() {
     assert!(settings(&h) && compares(&h), "as it was left");
     press(&mut h, Key::Num6);
     assert!(!settings(&h) && compares(&h), "again: as it is at first");
-    let mut again = window(size, &liked);
+    let mut again = window_liked(size, &liked);
     again.run_steps(4);
     assert!(settings(&again) && compares(&again) && plots(&again) > 1.4 * explored, "at the next start");
     // The scene alone; what counts is beside the machine.
@@ -135,7 +120,7 @@ fn layouts_have_their_panels() {
 /// Settings and plots change sides by key and from the menu, and that is remembered.
 fn panels_change_sides() {
     let size = [1440.0, 900.0];
-    let mut h = window(size, &Preferences { hints: false, ..Preferences::default() });
+    let mut h = window_liked(size, &Preferences { hints: false, ..Preferences::default() });
     h.run_steps(3);
     h.key_press(Key::Num4);
     h.run_steps(4);
@@ -145,7 +130,7 @@ fn panels_change_sides() {
         (settings.left() > scene(h).right() && plots.right() < scene(h).left(), plots.left() > scene(h).right())
     };
     assert_eq!(swapped(&h), (true, false));
-    let mut again = window(size, &h.state().app_state().preferences(size));
+    let mut again = window_liked(size, &h.state().app_state().preferences(size));
     again.run_steps(3);
     assert_eq!(swapped(&again), (true, false), "at the next start");
     again.get_by_label("layout").click();
@@ -162,7 +147,7 @@ fn panels_change_sides() {
 
 /// What was done stands in a list: a click goes back to it or on to it, and what was undone stays in the list.
 fn history_is_a_list_to_jump_in() {
-    let mut h = window([1440.0, 900.0], &Preferences { hints: false, ..Preferences::default() });
+    let mut h = window_liked([1440.0, 900.0], &Preferences { hints: false, ..Preferences::default() });
     h.run_steps(3);
     for b in [2.3, 2.5, 2.6] {
         for command in

@@ -33,8 +33,8 @@ mod view;
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::AppState;
 use stillbase::app::window::{App, Clock};
+use stillbase::app::{AppState, Preferences};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::scenario::Scenario;
 
@@ -85,6 +85,17 @@ fn window_of(scenario: Scenario, theme: Theme, height: f32) -> Window {
     let app_state = AppState::new(scenario, theme).expect("it starts");
     Harness::builder()
         .with_size([1280.0, height])
+        .with_step_dt(0.02)
+        .renderer(Screen::new())
+        .build_ui_state(whole, App::new(app_state, Clock::Fixed(0.02)))
+}
+
+/// A window of a size with a person's preferences.
+fn window_liked(size: impl Into<egui::Vec2>, liked: &Preferences) -> Window {
+    let scenario = Scenario::builtin("case-3").expect("built in");
+    let app_state = AppState::new(scenario, Theme::Dark).expect("it starts").with_preferences(liked);
+    Harness::builder()
+        .with_size(size)
         .with_step_dt(0.02)
         .renderer(Screen::new())
         .build_ui_state(whole, App::new(app_state, Clock::Fixed(0.02)))

@@ -7,7 +7,7 @@ use stillbase::picture::scene::palette::Theme;
 use stillbase::session::Edit;
 use stillbase::study::comparison::Alternative;
 
-use super::{Window, session, window};
+use super::{Window, painted, session, window};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![
@@ -28,20 +28,6 @@ fn beside(h: &mut Window, with: PairWith) {
 
 fn scene(h: &Window) -> egui::Rect {
     h.get_by_label_contains("Scene:").rect()
-}
-
-/// All texts on the screen.
-fn painted(h: &Window) -> Vec<String> {
-    fn texts(shape: &egui::Shape, all: &mut Vec<String>) {
-        match shape {
-            egui::Shape::Text(text) => all.push(text.galley.text().to_owned()),
-            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| texts(shape, all)),
-            _ => {}
-        }
-    }
-    let mut all = Vec::new();
-    h.output().shapes.iter().for_each(|clipped| texts(&clipped.shape, &mut all));
-    all
 }
 
 fn two_runs_are_brought_back_at_any_time() {

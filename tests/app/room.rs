@@ -1,31 +1,18 @@
 //! Room: text that does not fit ends at a word, and a narrow window still shows what it is about.
 
 use egui::{Key, Rect, Vec2, vec2};
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::window::{App, Clock};
-use stillbase::app::{AppState, Preferences, SessionCommand, ViewChange};
+use stillbase::app::{Preferences, SessionCommand, ViewChange};
 use stillbase::mechanics::machine;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::scenario::Scenario;
 
-use super::screen::{Screen, whole};
-use super::{Window, on_screen, session};
+use super::{Window, on_screen, session, window_liked};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![no_text_ends_in_the_middle_of_a_word, a_narrow_window_shows_ring_base_and_card];
 
 const THEMES: [Theme; 2] = [Theme::Dark, Theme::Light];
-
-fn window(size: Vec2, liked: &Preferences) -> Window {
-    let scenario = Scenario::builtin("case-3").expect("built in");
-    let app_state = AppState::new(scenario, Theme::Dark).expect("it starts").with_preferences(liked);
-    Harness::builder()
-        .with_size(size)
-        .with_step_dt(0.02)
-        .renderer(Screen::new())
-        .build_ui_state(whole, App::new(app_state, Clock::Fixed(0.02)))
-}
 
 /// The built-in scenarios, and each machine that none of them has.
 fn gallery() -> Vec<Scenario> {
@@ -71,7 +58,7 @@ fn ends_badly(line: &str) -> bool {
 fn no_text_ends_in_the_middle_of_a_word() {
     assert!(ends_badly("Turning moment on u…") && !ends_badly("Turning moment…") && !ends_badly("− …"));
     let sizes = [vec2(960.0, 600.0), vec2(1280.0, 800.0), vec2(1440.0, 900.0), vec2(1920.0, 1080.0)];
-    let mut h = window(sizes[0], &Preferences { hints: false, ..Preferences::default() });
+    let mut h = window_liked(sizes[0], &Preferences { hints: false, ..Preferences::default() });
     h.run_steps(2);
     let look = |h: &Window, name: &str, size: Vec2, seen: &mut usize| {
         let lines = lines(h);
@@ -110,7 +97,7 @@ fn a_narrow_window_shows_ring_base_and_card() {
     let mut hints = 0;
     for theme in THEMES {
         for scenario in gallery() {
-            let mut h = window(vec2(960.0, 600.0), &Preferences::default());
+            let mut h = window_liked(vec2(960.0, 600.0), &Preferences::default());
             h.state_mut().app_state_mut().carry_out(ViewChange::Theme(theme));
             open(&mut h, &scenario);
             h.run_steps(4);

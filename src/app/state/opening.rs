@@ -36,8 +36,8 @@ impl AppState {
                     _ => None,
                 };
                 self.take_over(session, Opening { message, ..opening });
-                if own.is_some() {
-                    self.saving.begin_file(self.session.undo_count(), own);
+                if let Some(file) = own {
+                    self.saving.keep_file(self.session.undo_count(), file);
                 }
                 if let Some(left_off) = left_off {
                     left_off.show(&mut self.view_state, self.session.run());
@@ -73,9 +73,7 @@ impl AppState {
         }
         let old = self.session.clone();
         self.session.take_over(next);
-        if self.aside.is_none() {
-            self.saving.begin_file(self.session.undo_count(), None);
-        }
+        self.saving.begin_file(self.session.undo_count());
         self.view_state.open.note = None;
         // Points of another machine may not exist.
         if old.scenario().machine != self.session.scenario().machine {
