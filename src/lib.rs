@@ -295,8 +295,8 @@
 //!   runs. `../.ci/run` runs those long tests that end within seconds each; `STILLBASE_LONG=1 ../.ci/run` runs all, and
 //!   `cargo test --test suite -- --ignored NAME` runs one.
 //! * **A comparison with another program**: a script in `../tests/outside/`, and a row of `../tests/outside.rs` for the
-//!   test that calls it. `STILLBASE_OUTSIDE_SEED`, `_WEIGHTS`, `_DRAGS` and `_POSTURES` select other cases, and more of
-//!   them.
+//!   test that calls it. `STILLBASE_OUTSIDE_SEED`, `_MODELS`, `_WEIGHTS`, `_DRAGS` and `_POSTURES` select other
+//!   cases, and more of them.
 //! * **A page of the guide**: a file in `guide/`, its name in `guide/mod.rs`, and a line of `guide/README.md`. Its
 //!   commands are run as tests.
 #[cfg(feature = "ui")]

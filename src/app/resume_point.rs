@@ -1,15 +1,16 @@
-//! [`ResumePoint`]: the state of the display that no edit contains: the instant, the plots, the layout and the view. Saved
-//! sessions and journals contain this state in comments before the session.
+//! [`ResumePoint`]: the state of the display that no edit contains: the instant, the plots, the layout, the view and its
+//! camera. Saved sessions and journals contain this state in comments before the session.
 
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
 use super::layout::{BottomPanel, Layout};
-use super::view_state::ViewState;
+use super::view_state::{Framing, ViewState};
 use stillbase_files::heading;
 use stillbase_picture::charts::choice::PlotChoice;
 use stillbase_picture::scene::Measure;
+use stillbase_picture::scene::camera::Camera;
 use stillbase_picture::scene::views::{ViewKind, Views};
 use stillbase_session::{Run, Session};
 
@@ -43,6 +44,17 @@ pub struct ResumePoint {
     pub file: Option<PathBuf>,
     /// The choice of plots.
     pub plots: PlotChoice,
+    /// Cameras that the user has moved; a view without one shows everything.
+    pub cameras: Vec<ViewCamera>,
+}
+
+/// The camera of a view.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ViewCamera {
+    /// The view.
+    pub view: ViewKind,
+    /// Its camera.
+    pub camera: Camera,
 }
 
 impl Default for ResumePoint {
@@ -61,6 +73,7 @@ impl Default for ResumePoint {
             turn_task: false,
             file: None,
             plots: PlotChoice::default(),
+            cameras: Vec::new(),
         }
     }
 }
@@ -68,6 +81,8 @@ impl Default for ResumePoint {
 impl ResumePoint {
     /// Returns what a window shows. The panel of an open table is left out, because the table is a file of its own.
     pub(super) fn of_view(session: &Session, view_state: &ViewState) -> Self {
+        let moved = |view: &ViewKind| matches!(view_state.framing[*view as usize], Framing::Manual);
+        let camera = |view: ViewKind| ViewCamera { view, camera: view_state.cameras[view as usize] };
         Self {
             time: session.frame().time,
             layout: view_state.arrangement.layout,
@@ -82,6 +97,7 @@ impl ResumePoint {
             turn_task: view_state.turn_task,
             file: None,
             plots: view_state.charts.clone(),
+            cameras: ViewKind::ALL.iter().copied().filter(moved).map(camera).collect(),
         }
     }
 
@@ -100,6 +116,13 @@ impl ResumePoint {
         view_state.snapshots = self.snapshots;
         view_state.turn_task = self.turn_task;
         view_state.charts = self.plots;
+        view_state.framing = Default::default();
+        for ViewCamera { view, camera } in self.cameras {
+            let i = view as usize;
+            if view_state.cameras[i].is_flat() == camera.is_flat() {
+                (view_state.cameras[i], view_state.framing[i]) = (camera, Framing::Manual);
+            }
+        }
     }
 
     /// Whether another state differs from this one in the instant at most.
@@ -116,7 +139,10 @@ impl ResumePoint {
     pub fn of(text: &str) -> Option<Self> {
         let is_time = |time: f64| time.is_finite() && time >= 0.0;
         heading::of(text).filter(|left: &Self| {
-            is_time(left.time) && left.mark.is_none_or(is_time) && (MIN_SPEED..=MAX_SPEED).contains(&left.speed)
+            is_time(left.time)
+                && left.mark.is_none_or(is_time)
+                && (MIN_SPEED..=MAX_SPEED).contains(&left.speed)
+                && left.cameras.iter().all(|kept| kept.camera.is_valid())
         })
     }
 }

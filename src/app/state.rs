@@ -220,12 +220,17 @@ impl AppState {
         ResumePoint { file, ..ResumePoint::of_view(self.own_session(), self.own_view_state()) }
     }
 
-    /// Returns the window title: the scenario, with ` *` if there are unsaved changes.
+    /// Returns the window title: the file, if there is one, and the scenario, with ` *` if there are unsaved changes.
     pub fn title(&self) -> String {
         let scenario = self.own_session().scenario();
         let name = if scenario.title.is_empty() { &scenario.name } else { &scenario.title };
         let mark = if self.own_saving().is_unsaved() { " *" } else { "" };
-        format!("{}{mark} – Stillbase", stillbase_settings::text::shorten_message(name))
+        let file = self.own_saving().own_file(self.own_session().undo_count()).and_then(|file| file.file_name());
+        let name = match file {
+            Some(file) => format!("{}{mark} – {name}", file.display()),
+            None => format!("{name}{mark}"),
+        };
+        format!("{} – Stillbase", stillbase_settings::text::shorten_message(&name))
     }
 
     /// Returns the number of changes of the person's own session so far, and whether some of them are not saved in a file of the user.

@@ -60,7 +60,7 @@ fn is_narrow(ui: &Ui) -> bool {
 
 fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewState, commands: &mut Vec<Command>) {
     let present = &session.scenario().machine;
-    let current = if changed { format!("{} *", present.name()) } else { present.name().to_owned() };
+    let current = edited(present.name(), changed);
     let tip = if changed {
         "The machine; it differs from the built-in one of this name"
     } else {
@@ -68,7 +68,7 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewStat
     };
     let width = if is_narrow(ui) { 104.0 } else { 136.0 };
     let combo = ComboBox::from_id_salt("machine")
-        .selected_text(chosen_text(ui, &current, width))
+        .selected_text(chosen_text(ui, present.name(), changed, width))
         .width(width)
         .height(gallery::room(ui));
     let response = combo.show_ui(ui, |ui| {
@@ -79,11 +79,18 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewStat
     name(&response.response.on_hover_text(format!("{current}\n{tip}")), "Machine");
 }
 
+/// Returns the name of something, which may differ from what is built in by this name.
+fn edited(name: &str, is_edited: bool) -> String {
+    if is_edited { format!("{name} (edited)") } else { name.to_owned() }
+}
+
 /// Returns the text of a list that is this wide, points, arrow and margins included.
-fn chosen_text(ui: &Ui, text: &str, width: f32) -> String {
+fn chosen_text(ui: &Ui, name: &str, is_edited: bool, width: f32) -> String {
     let spacing = ui.spacing();
     let taken = 2.0 * spacing.button_padding.x + spacing.icon_width + spacing.icon_spacing;
-    fit::fitted(ui, text, &egui::TextStyle::Button.resolve(ui.style()), width - taken).into_owned()
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    let added = fit::width_of(ui, &edited("", is_edited), &font);
+    edited(&fit::fitted(ui, name, &font, width - taken - added), is_edited)
 }
 
 /// Returns the scenario to open for a chosen machine: its built-in scenario, or else the present scenario with this
@@ -102,10 +109,10 @@ fn scenarios(
 ) {
     let current = session.scenario();
     let shown = if current.title.is_empty() { &current.name } else { &current.title };
-    let shown = if changed { format!("{shown} *") } else { shown.clone() };
+    let current_text = edited(shown, changed);
     let width = if is_narrow(ui) { 150.0 } else { 196.0 };
     let combo = ComboBox::from_id_salt("scenario")
-        .selected_text(chosen_text(ui, &shown, width))
+        .selected_text(chosen_text(ui, shown, changed, width))
         .width(width)
         .height(gallery::room(ui));
     let response = combo.show_ui(ui, |ui| {
@@ -122,7 +129,7 @@ fn scenarios(
         }
         false => "What the machine does: keys 1, 2, 3",
     };
-    name(&response.response.on_hover_text(format!("{shown}\n{tip}")), "Scenario");
+    name(&response.response.on_hover_text(format!("{current_text}\n{tip}")), "Scenario");
 }
 
 fn transport(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {

@@ -1,5 +1,5 @@
 //! [`TemporaryFile`]: a temporary file in the folder of the file that it will become. It is removed if the program ends
-//! before.
+//! before that.
 //!
 //! The crate `tempfile` makes temporary files too, but does not do three things that this module does. Temporary files
 //! of killed programs are found by their names and released locks, and removed. A signal handler can remove all

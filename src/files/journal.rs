@@ -53,7 +53,7 @@ impl Journal {
         (0..MAX_JOURNALS).find_map(|number| {
             let [file, name] = names(folder, number);
             let lock = locked(&name)?;
-            // Checked while the lock is held, because another program may have begun this journal in between.
+            // Checked while the lock is held: before that, another program could begin this journal after the check.
             file.symlink_metadata().is_err().then_some(Self { file, lock: (name, lock) })
         })
     }

@@ -391,8 +391,8 @@ pub fn is_same_place(a: &Path, b: &Path) -> bool {
     a == b || place(a).is_some_and(|a| place(b) == Some(a))
 }
 
-/// Returns the first of `name.ending`, `name-1.ending` and so on that is free in the current folder. Without an ending,
-/// there is no point.
+/// Returns the first of `name.ending`, `name-1.ending` and so on that is free in the current folder. If `ending` is
+/// empty, the name has no dot.
 pub fn free_name(name: &str, ending: &str) -> PathBuf {
     // `name` is free text; the file must stay in this folder.
     let plain = |c: char| if c.is_alphanumeric() || matches!(c, '-' | '_' | ' ') { c } else { '-' };

@@ -59,7 +59,7 @@ impl<W: Write + Send> ParquetRows<W> {
         Ok(Self { writer, counts, columns: vec![Vec::new(); head.columns.len()], waiting: 0 })
     }
 
-    /// Adds a row; `count` is left out if there is no column for it.
+    /// Adds a row; `count` is ignored if there is no column for it.
     ///
     /// # Errors
     /// If a row group cannot be written.

@@ -6,7 +6,7 @@
 //! | Z_kl | C_kl e^{i (q_l − q_k)} | kg m² |
 //! | H_kl | mass matrix, Re Z_kl + δ_kl J_k, and J r_k r_l of every rotor | kg m² |
 //! | V_k | velocity terms, −Σ_l Im Z_kl q̇_l² | N m |
-//! | τ | H q̈ + V − γᵀ g − Jᵀ F; motors in joints give A⁻ᵀ τ ([`Motors`](crate::machine::Motors)) | N m |
+//! | τ | H q̈ + V − γᵀ g − (∂p/∂q)ᵀ F; motors in joints give A⁻ᵀ τ ([`Motors`](crate::machine::Motors)) | N m |
 //! | D_k | Σ_l H_lk, and J r_k (1 − Σ_l r_l) of every rotor; angular momentum about B is D q̇ | kg m² |
 //! | f_B | force on the base: dynamic −Σ g_k (i q̈_k − q̇_k²) e_k, static M g + F | N |
 //! | n_B | moment on the base about B: dynamic −d/dt(D q̇), static r_CM × M g + p × F, end effector p | N m |
@@ -189,7 +189,7 @@ pub fn assemble<const N: usize>(inertia: &Inertia, e: &[Vector; N], qd: &[f64; N
     (h, v)
 }
 
-/// Returns the torque that holds the machine at rest, −γᵀ g − Jᵀ F, N m.
+/// Returns the torque that holds the machine at rest, −γᵀ g − (∂p/∂q)ᵀ F, N m.
 #[inline]
 pub fn holding_torque(inertia: &Inertia, e: &UnitVectors, around: &ExternalLoads) -> PerDrive {
     by_drives!(inertia.drives, holding_torque_of(inertia, e, around))

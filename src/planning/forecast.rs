@@ -26,7 +26,7 @@ pub struct Forecast {
     pub force: f64,
     /// Root mean square of the dynamic |f_B|, N.
     pub force_rms: f64,
-    /// The drive limit that is exceeded by the largest factor, and that factor; `None` if all are kept.
+    /// The drive limit, other than jerk, exceeded by the largest factor, and that factor; `None` if all are kept.
     pub exceeded_limit: Option<(DriveLimit, f64)>,
     /// Least and greatest b during the motion, rad.
     pub b: [f64; 2],

@@ -1,5 +1,5 @@
-//! A [`Query`] derives an answer from an input. [`Queries`] computes the answer when the input changes, and caches it
-//! until then. This is the only cache of the program.
+//! A [`Query`] derives an answer from an input. [`Queries`] computes and caches the answer until the input changes.
+//! This is the only cache of the program.
 //!
 //! Others reach this crate as `stillbase::query`; `stillbase` alone follows semantic versioning.
 //!

@@ -187,7 +187,7 @@ impl<Q: Query> Slot<Q> {
             By::Job(job) => match job.poll() {
                 Poll::Working => By::Job(job),
                 Poll::Done(Some(answer)) => By::Done(answer),
-                // Work is stopped only together with dropping its handle, so a job without an answer is a fault.
+                // Stopped work leaves the slot at once, so a job that is still here without an answer is a fault.
                 Poll::Done(None) | Poll::Broken => {
                     self.given_up = Some((of, QueryStatus::Broken));
                     return;

@@ -100,7 +100,7 @@ pub const fn sentence(doc: &'static str) -> &'static str {
 ///
 /// ```text
 /// /// What the key means, in a sentence.
-/// field: Type = "default as it is typed", range: …, instead: "…", when: "…" => |part| …, usual: …, saved: always;
+/// field: Type = "as typed", range: …, instead: "…", when: "…" => |part| …, usual: …, reaching: …, saved: always;
 /// ```
 ///
 /// * `range` for a type that holds numbers;
@@ -205,7 +205,7 @@ macro_rules! keyed {
                 $(.when($where))?,
             )+)?];
 
-            /// Returns whether a key of this part has an effect in the present state, as far as the part alone
+            /// Returns whether a key, given without the path of the part, has an effect now, as far as the part alone
             /// determines it.
             #[allow(dead_code, reason = "many parts have no key that waits for another")]
             pub fn uses(&self, key: &str) -> bool {

@@ -86,7 +86,7 @@ pub fn read(text: &str, unit: &str) -> Result<f64, QuantityError> {
         return Ok(typed.value);
     }
     // If several units are listed, `m, rad`, any of them is accepted. For a unit that is only a word, such as counts,
-    // plain numbers are accepted.
+    // only dimensionless values are accepted, such as 50 %.
     let mut wanted: Vec<Quantity> = unit.split(',').filter_map(|unit| parse(unit).ok()).collect();
     if wanted.is_empty() {
         wanted.push(Quantity::plain(1.0));

@@ -68,8 +68,8 @@ const JOINING_WORDS: [&str; 20] = [
 /// Least number of characters of a shortened text, without the ellipsis.
 const MIN_CHARS: usize = 3;
 
-/// Returns the longest beginning of a text that fits, with an ellipsis in place of the rest. It ends with a word that can
-/// stand there; a single word is cut after three characters or more. Empty if not even those fit.
+/// Returns the longest beginning of a text that fits, with an ellipsis in place of the rest. Words like `and` do not
+/// end it; a single word is cut after three characters or more. Empty if not even those fit.
 pub fn cut_at_word<'a>(text: &'a str, fits: impl Fn(&str) -> bool) -> Cow<'a, str> {
     if fits(text) {
         return text.into();

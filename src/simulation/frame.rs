@@ -30,7 +30,7 @@ pub struct Frame {
     pub qdd: PerDrive,
     /// Motor torques τ, N m.
     pub torque: PerDrive,
-    /// Friction torques in the bearings, N m, positive against positive rates: n_B = −Σ (τ_k − friction_k).
+    /// Friction torques in the bearings, N m, positive if they oppose a positive rate: n_B = −Σ (τ_k − friction_k).
     pub friction: PerDrive,
     /// Reference of the drive angles relative to the base, rad.
     pub q_reference: DriveAngles,

@@ -12,7 +12,7 @@ pub enum Remedy {
     Gaps,
     /// Smooth the samples.
     Smoothing,
-    /// Smooth the samples, named by the cut-off frequency, Hz.
+    /// Smooth the samples; the name may include a placeholder for the cut-off frequency, Hz.
     CutOff,
     /// Another pose constant.
     PoseConstant,

@@ -29,7 +29,7 @@ pub struct FreeLength {
 /// Request for a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LengthSearch {
-    /// Lengths to optimise. Links keep their mass per metre; centre of mass and inertia scale with the length.
+    /// Lengths to optimise. Links keep their mass per metre; com scales with the length, inertia with its cube.
     pub lengths: Vec<FreeLength>,
     /// Sites of the counterweights, and the objective.
     pub spec: CounterweightSpec,

@@ -59,7 +59,7 @@ pub struct PlanCost {
     pub moment_impulse: f64,
     /// Largest dynamic |f_B|, N.
     pub peak_base_force: f64,
-    /// For the fastest motion: the limit that is active for the greatest share of its first part.
+    /// For the fastest motion: the limit that is active longest in the first part of the path with any active limit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limiting: Option<String>,
     /// For the fastest smooth motion: T/T* − 1, where T* is the least time without limits on jerk.

@@ -121,7 +121,7 @@ impl Spectrum {
         let mut weighted: Vec<f64> = samples.iter().zip(&weights).map(|(x, w)| x * w).collect();
         let transform = RealFftPlanner::new().plan_fft_forward(count);
         let mut lines = transform.make_output_vec();
-        // Unreachable: both arrays have the length of the transform.
+        // Unreachable: both arrays have the lengths that the transform needs.
         if transform.process(&mut weighted, &mut lines).is_err() {
             return Err(SpectrumError::TooFew { count, least: MIN_SPECTRUM_SAMPLES });
         }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use egui::{Key, Modifiers};
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::app::{GuidePage, GuidePlace, GuideStep, Switch, ViewChange};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
@@ -16,6 +16,8 @@ pub const TESTS: &[Test] = tests![
     every_page_is_drawn_in_both_themes,
     links_lead_on_and_buttons_back,
     what_is_sought_is_found,
+    enter_opens_the_first_place_found,
+    pages_show_their_pictures,
     a_heading_comes_to_the_top,
     a_block_is_copied,
     keys_scroll_the_page,
@@ -180,4 +182,64 @@ fn keys_scroll_the_page() {
     h.key_press(Key::PageUp);
     h.run_steps(30);
     assert!((heading(&h).expect("back again") - before).abs() < 2.0);
+}
+
+/// Enter in the search opens what stands first and ends the search.
+fn enter_opens_the_first_place_found() {
+    let mut h = window("case-3", Theme::Dark);
+    open(&mut h, GuidePage::Index);
+    h.get_by_label("Search the guide").focus();
+    h.get_by_label("Search the guide").type_text("finite differences nowhere");
+    h.run_steps(2);
+    h.key_press(Key::Enter);
+    h.run_steps(3);
+    assert_eq!(place(&h), Some(GuidePage::Index.into()), "nothing was found");
+    let guide = h.state_mut().app_state_mut();
+    guide.carry_out(ViewChange::LeaveGuideSearch);
+    h.run_steps(2);
+    h.get_by_label("Search the guide").focus();
+    h.get_by_label("Search the guide").type_text("corner blend");
+    h.run_steps(2);
+    h.key_press(Key::Enter);
+    h.run_steps(3);
+    assert_eq!(place(&h).map(|place| place.page), Some(GuidePage::Planning));
+}
+
+/// Each picture of a page is there in both themes, as wide as the page and in the shape of its file.
+fn pages_show_their_pictures() {
+    let mut shown = 0;
+    for theme in [Theme::Dark, Theme::Light] {
+        let mut h = window("case-3", theme);
+        for page in GuidePage::ALL {
+            for line in text_of(*page).lines().filter(|line| line.starts_with("![")) {
+                open(&mut h, *page);
+                let words: String = line.trim_start_matches("![").chars().take_while(|c| *c != ']').collect();
+                let picture = h
+                    .query_all_by_role(egui::accesskit::Role::Image)
+                    .find(|node| node.accesskit_node().label().is_some_and(|label| label.starts_with(words.as_str())));
+                let rect = picture.unwrap_or_else(|| panic!("no picture: {line}")).rect();
+                let file = line.rsplit('[').next().and_then(|end| end.strip_suffix(']')).map(str::to_owned);
+                let file = file.or_else(|| label_after(&text_of(*page), line)).expect("the picture has a label");
+                let shape = aspect_ratio(&file);
+                assert!(rect.width() > 400.0 && (rect.aspect_ratio() - shape).abs() < 0.01, "{rect:?}, {file}");
+                shown += 1;
+            }
+        }
+    }
+    assert!(shown >= 14, "{shown}");
+}
+
+/// The label of a picture whose words go on in the next line.
+fn label_after(text: &str, line: &str) -> Option<String> {
+    let after = text.split_once(line)?.1.split_once("][")?.1;
+    Some(after.split_once(']')?.0.to_owned())
+}
+
+/// Width of a picture's file by its height.
+fn aspect_ratio(label: &str) -> f32 {
+    let file = format!("{}/assets/pictures/{label}.png", env!("CARGO_MANIFEST_DIR"));
+    let bytes = std::fs::read(&file).unwrap_or_else(|why| panic!("{file}: {why}"));
+    // The header of a PNG file has both at its bytes 16 and 20.
+    let [width, height] = [16, 20].map(|at| u32::from_be_bytes(bytes[at..at + 4].try_into().expect("four bytes")));
+    width as f32 / height as f32
 }

@@ -6,10 +6,13 @@ use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use stillbase::app::window::{App, Clock};
-use stillbase::app::{AppState, Command, Preferences, ResumePoint, SessionCommand, ViewChange, WindowCommand};
+use stillbase::app::{
+    AppState, CameraMove, Command, Preferences, ResumePoint, SessionCommand, ViewChange, WindowCommand,
+};
 use stillbase::files::journal::{self, Journal};
 use stillbase::picture::charts::choice::PlotChange;
 use stillbase::picture::scene::palette::Theme;
+use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 
@@ -233,8 +236,11 @@ fn own_plots_and_the_instant_are_recovered() {
     ] {
         tell(&mut h, Command::View(ViewChange::Charts(change)));
     }
+    tell(&mut h, Command::View(ViewChange::Kind(ViewKind::Space)));
+    tell(&mut h, Command::View(ViewChange::Look(CameraMove::Turn([0.3, -0.2]))));
     tell(&mut h, Command::Session(SessionCommand::Seek(0.412)));
     let left_off = h.state().app_state().left_off();
+    assert_eq!(left_off.cameras.iter().map(|kept| kept.view).collect::<Vec<_>>(), [ViewKind::Space]);
     assert_eq!(left_off.time, session(&h).frame().time);
     let kept = session(&h).to_scenario();
     let text = left_off.before(&kept.to_toml());
@@ -255,6 +261,12 @@ fn own_plots_and_the_instant_are_recovered() {
     h.run_steps(4);
     assert!((session(&h).frame().time - 1.0).abs() < 1e-9 && session(&h).frames().len() <= 1001);
     // What no program wrote does no harm.
+    let [flat, still] =
+        ["flat = { centre = [0.0, inf], half_height = 1.0 }", "flat = { centre = [0.0, 0.0], half_height = 0.0 }"];
+    for camera in [flat, still] {
+        let text = format!("#| [[cameras]]\n#| view = \"flat\"\n#| camera = {{ {camera} }}\n");
+        assert_eq!(ResumePoint::of(&text), None, "{text}");
+    }
     for strange in ["#| time = nan\n", "#| time = -1.0\n", "#| plots = 3\n", "#| \u{0}\n"] {
         assert_eq!(ResumePoint::of(strange), None, "{strange}");
     }
@@ -268,6 +280,8 @@ fn a_recovered_session_has_its_file() {
     h.run_steps(2);
     tell(&mut h, Command::Session(SessionCommand::SaveFile(file.clone())));
     tell(&mut h, heavier());
+    let title = h.state().app_state().title();
+    assert!(title.starts_with("mine.toml * – ") && title.ends_with(" – Stillbase"), "{title}");
     let first = std::fs::read_to_string(&file).expect("saved");
     assert!(!first.contains("mine.toml") && !first.contains("0.3"), "{first}");
     let left_off = h.state().app_state().left_off();

@@ -37,8 +37,8 @@ pub enum Content {
     Code(String, String),
     /// The rows of a table, the heads first.
     Table(Vec<Vec<Vec<Span>>>),
-    /// What a picture shows.
-    Picture(Vec<Span>),
+    /// A picture: the name of its file without theme and extension, and what it shows.
+    Picture(String, Vec<Span>),
 }
 
 /// A piece of text in one style.
@@ -144,7 +144,7 @@ impl Content {
     /// Returns the text without its style.
     fn plain_text(&self) -> String {
         let mut text = match self {
-            Self::Heading(_, _, spans) | Self::Text(spans) | Self::Picture(spans) => plain_text(spans),
+            Self::Heading(_, _, spans) | Self::Text(spans) | Self::Picture(_, spans) => plain_text(spans),
             Self::Code(_, text) => text.clone(),
             Self::Table(rows) => rows.iter().flatten().map(|cell| plain_text(cell)).collect::<Vec<_>>().join(" "),
         };
@@ -182,6 +182,8 @@ struct Reader {
     /// Next number of each list around, if it is numbered.
     lists: Vec<Option<u64>>,
     marker: Option<String>,
+    /// Name of the picture under way.
+    picture: String,
     /// Kind and text of the block of code under way.
     code: Option<(String, String)>,
     /// Rows of the table under way.
@@ -197,6 +199,7 @@ impl Default for Reader {
             style: Span::default(),
             lists: Vec::new(),
             marker: None,
+            picture: String::new(),
             code: None,
             table: None,
         }
@@ -224,7 +227,11 @@ impl Reader {
             Tag::Strong => self.style.strong = true,
             Tag::Emphasis => self.style.emphasised = true,
             Tag::Link { dest_url, .. } => self.style.link = Target::of(&dest_url, self.page),
-            Tag::Image { .. } | Tag::Paragraph | Tag::Heading { .. } => self.end_text(),
+            Tag::Image { dest_url, .. } => {
+                self.end_text();
+                self.picture = super::picture::name_of(&dest_url).to_owned();
+            }
+            Tag::Paragraph | Tag::Heading { .. } => self.end_text(),
             Tag::List(first) => {
                 self.end_text();
                 self.lists.push(first);
@@ -264,7 +271,8 @@ impl Reader {
             }
             TagEnd::Image => {
                 let spans = std::mem::take(&mut self.spans);
-                self.push(Content::Picture(spans));
+                let name = std::mem::take(&mut self.picture);
+                self.push(Content::Picture(name, spans));
             }
             TagEnd::Paragraph | TagEnd::Item => self.end_text(),
             TagEnd::List(_) => {

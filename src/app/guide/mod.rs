@@ -4,6 +4,7 @@ mod document;
 mod page;
 mod pages;
 mod panel;
+mod picture;
 
 use document::plain_text as plain_words;
 pub use document::{Section, Sections};

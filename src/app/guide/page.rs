@@ -4,7 +4,7 @@ use egui::text::LayoutJob;
 use egui::{Color32, FontId, Frame, Key, Label, Link, Modifiers, RichText, ScrollArea, Stroke, TextFormat, Ui, vec2};
 
 use super::document::{Block, Content, Document, Span, Target};
-use super::{GuideStep, Scroll, plain_words};
+use super::{GuideStep, Scroll, picture, plain_words};
 use crate::theme::{bold, code, colour, plain};
 use crate::widgets::name;
 use crate::{Command, ViewChange, WindowCommand};
@@ -87,10 +87,11 @@ fn draw(ui: &mut Ui, p: &Palette, block: &Block, i: usize, commands: &mut Vec<Co
         }
         Content::Code(kind, text) => block_of_code(ui, p, kind, text, (indent, i)),
         Content::Table(rows) => ui.push_id(i, |ui| table(ui, p, rows, commands)).response,
-        Content::Picture(spans) => {
-            let words = format!("Picture on the pages of the source: {}", plain_words(spans));
-            let frame = Frame::new().stroke((1.0, colour(p.line))).corner_radius(6).inner_margin(8);
-            frame.show(ui, |ui| ui.add(Label::new(RichText::new(words).italics().color(colour(p.dim))).wrap())).response
+        Content::Picture(picture, spans) => {
+            let shown = picture::show(ui, picture, spans);
+            let caption = RichText::new(plain_words(spans)).font(plain(TEXT_PT - 1.5)).color(colour(p.dim));
+            let caption = ui.add(Label::new(caption).wrap());
+            shown.map_or(caption.clone(), |shown| shown.union(caption))
         }
     };
     let is_item = block.depth > 0;

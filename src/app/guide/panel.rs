@@ -1,6 +1,8 @@
 //! The window of the guide: search, list of pages, the way back, and the page.
 
-use egui::{Button, Context, Label, Layout, RichText, ScrollArea, TextEdit, Ui, Window, vec2};
+use std::sync::Arc;
+
+use egui::{Button, Context, Key, Label, Layout, RichText, ScrollArea, TextEdit, Ui, Window, vec2};
 
 use super::document::{ReadPage, Section, Sections};
 use super::{GuidePlace, GuideStep, GuideView, Page, page};
@@ -35,7 +37,11 @@ pub fn show(ctx: &Context, queries: &Queries, view_state: &mut ViewState, comman
         ui.allocate_rect(rect, egui::Sense::hover());
         let ui = &mut ui.new_child(egui::UiBuilder::new().max_rect(rect));
         ui.set_clip_rect(rect.expand(2.0).intersect(ui.clip_rect()));
-        bar(ui, &view, &p, commands).into_iter().for_each(|text| view.search_text = text);
+        let (text, enters) = bar(ui, &view, &p, commands);
+        text.into_iter().for_each(|text| view.search_text = text);
+        if enters {
+            open_first_found(queries, &view, commands);
+        }
         ui.add_space(4.0);
         let wide = ui.available_width() >= MIN_WIDTH_WITH_LIST_PT;
         let seeks = !view.search_text.trim().is_empty();
@@ -79,10 +85,11 @@ pub fn show(ctx: &Context, queries: &Queries, view_state: &mut ViewState, comman
     }
 }
 
-/// Draws the buttons of the way back and the field of the search; returns the search text if it has changed.
-fn bar(ui: &mut Ui, view: &GuideView, p: &Palette, commands: &mut Vec<Command>) -> Option<String> {
+/// Draws the buttons of the way back and the field of the search; returns the search text if it has changed, and whether
+/// Enter was pressed in it.
+fn bar(ui: &mut Ui, view: &GuideView, p: &Palette, commands: &mut Vec<Command>) -> (Option<String>, bool) {
     let mut text = view.search_text.clone();
-    ui.horizontal(|ui| {
+    let enters = ui.horizontal(|ui| {
         for (sign, label, step) in [
             ("←", "Back: guide", GuideStep::Back),
             ("→", "Forward: guide", GuideStep::Forward),
@@ -97,16 +104,31 @@ fn bar(ui: &mut Ui, view: &GuideView, p: &Palette, commands: &mut Vec<Command>) 
         let field = TextEdit::singleline(&mut text).hint_text("search the guide").desired_width(f32::INFINITY);
         let field = ui.add(field.text_color(colour(p.ink)));
         name(&field, "Search the guide");
+        field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter))
     });
-    (text != view.search_text).then_some(text)
+    ((text != view.search_text).then_some(text), enters.inner)
+}
+
+/// Returns the places found for the search text, best first; `None` without a search.
+fn found(queries: &Queries, sections: &Arc<Vec<Section>>, view: &GuideView) -> Option<Arc<Vec<(usize, String)>>> {
+    let sought = view.search_text.trim();
+    let seeks = !sought.is_empty();
+    seeks.then(|| queries.ask::<QuickWork<Found>>(&(ByIdentity(sections.clone()), sought.to_owned())))
+}
+
+/// Opens the best place found and ends the search.
+fn open_first_found(queries: &Queries, view: &GuideView, commands: &mut Vec<Command>) {
+    let sections = queries.ask::<QuickWork<Sections>>(&());
+    let Some((i, _)) = found(queries, &sections, view).and_then(|found| found.first().cloned()) else { return };
+    commands.push(ViewChange::Guide(GuideStep::Go(sections[i].place.clone())).into());
+    commands.push(ViewChange::LeaveGuideSearch.into());
 }
 
 /// Draws the list of pages, or of the places found.
 fn list(ui: &mut Ui, queries: &Queries, view: &GuideView, p: &Palette, commands: &mut Vec<Command>) {
     let sections = queries.ask::<QuickWork<Sections>>(&());
-    let seeks = !view.search_text.trim().is_empty();
-    let found = seeks
-        .then(|| queries.ask::<QuickWork<Found>>(&(ByIdentity(sections.clone()), view.search_text.trim().to_owned())));
+    let found = found(queries, &sections, view);
+    let seeks = found.is_some();
     let shown: Vec<(&Section, Option<&str>)> = match &found {
         Some(found) => found.iter().map(|(i, words)| (&sections[*i], Some(words.as_str()))).collect(),
         None => sections.iter().filter(|s| s.place.anchor.is_empty()).map(|s| (s, None)).collect(),

@@ -25,7 +25,7 @@ pub enum ChecksumPlace {
     Tail,
 }
 
-/// The checksum is within this number of bytes of its end of the file.
+/// The checksum is within this number of bytes from the start (head) or the end (tail) of the file.
 const SEARCHED_BYTES: u64 = 1 << 16;
 
 /// Finds the checksum among the bytes at an end, and returns the offset of its digits and its value. Names of columns

@@ -46,7 +46,7 @@ impl AngleBreak {
 /// the time, s.
 ///
 /// # Errors
-/// If the angles are not in rad, or if they jump.
+/// If a column without unit exceeds two turns, so that it is probably in degrees, or if the angles jump.
 pub(super) fn continuous_angle(
     rows: &mut [Vec<f64>],
     k: usize,

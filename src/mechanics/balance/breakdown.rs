@@ -69,7 +69,7 @@ impl Breakdown {
         Self { terms: terms.collect(), sources: masses.iter().map(|(source, ..)| *source).collect() }
     }
 
-    /// Returns the contribution to a term of a link together with all bodies on it, kg m or kg m².
+    /// Returns what a link and all bodies on it contribute to a term, kg m or kg m².
     pub fn of_link(&self, term: &BalanceTerm, link: usize) -> Vector {
         let both = self.sources.iter().zip(&term.parts);
         both.filter(|(source, _)| source.link == link).map(|(_, part)| *part).sum()

@@ -1,6 +1,6 @@
 //! Balance as a linear problem for the positions of the links' centres of mass, (7)–(10).
 //!
-//! The conditions are linear in the l_cj, so for any machine they are A l_c = k with n + n(n−1)/2 rows. [`design`]
+//! The conditions are linear in the l_cj, so for n drives they are A l_c = k with n + n(n−1)/2 rows. [`design`]
 //! finds the solution that minimises Σ (p_j l_cj)².
 //!
 //! # Symbols

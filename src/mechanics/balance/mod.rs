@@ -1,7 +1,7 @@
 //! Balance of a machine: residuals of the conditions, and masses and centres of mass that satisfy them, (7)–(10).
 //!
-//! Force balance g_k = 0 and invariance C_kl = 0 (k < l) are n + n(n−1)/2 conditions. Each is a sum over the bodies of
-//! the machine; [`Breakdown`] lists the contributions. The conditions are linear in the mass m of a body and its first
+//! Force balance g_k = 0 and invariance C_kl = 0 (k < l) are n + n(n−1)/2 complex conditions. Each is a sum over
+//! all bodies; [`Breakdown`] lists the contributions. The conditions are linear in the mass m of a body and its first
 //! moment m l_c. So [`design`](design()) solves them in one step for all positions of centres of mass.
 //! [`rebalance`](rebalance()) solves them with the least change of chosen parameters within bounds.
 

@@ -58,7 +58,7 @@ pub fn place_weights(
 }
 
 /// As [`place_weights`], but each condition has a known additional residual in `beyond`, kg m or kg m², in the order of
-/// (7) and (8). The sums of computed and additional residuals must vanish. `beyond` excludes the present
+/// (7) and (8). The sums of computed and additional residuals must vanish. `beyond` has no share of the present
 /// counterweights.
 ///
 /// # Errors
@@ -94,8 +94,8 @@ pub fn unreachable_by_weights(
 }
 
 impl CounterweightTask<'_> {
-    /// Finds the counterweights. If there are none, returns the multipliers of the bounds in the certificate of
-    /// infeasibility of the problem without clearance. These are empty if only the clearance makes it infeasible.
+    /// Finds the counterweights. If there are none, returns the multipliers of the bounds that prove the problem
+    /// without clearance infeasible. The list is empty if only the clearance makes the problem infeasible.
     fn found(&self) -> Result<Result<PlacedCounterweights, Vec<f64>>, CounterweightError> {
         if self.balance() == BalanceGoal::Nearest {
             return self.nearest();

@@ -14,7 +14,7 @@ pub(super) struct ConditionResidual {
     pub residual: Vector,
     /// Residual along the axes with the smallest and with the largest payload.
     pub ends: [f64; 2],
-    /// Derivatives of the residual by w and s of each site.
+    /// Derivatives of the residual with respect to the mass w, kg, and s = w x, kg m, of each site's counterweight.
     pub changes: Vec<[f64; 2]>,
 }
 

@@ -12,7 +12,7 @@ pub(super) enum BalanceGoal {
     Exact,
     /// The largest residual over a range of payloads is the objective.
     Nearest,
-    /// The largest residual over a range of payloads is at most this, kg m.
+    /// The largest residual over a range of payloads is at most this, kg m; (8) counts divided by the reach.
     Within(f64),
 }
 
@@ -30,7 +30,7 @@ pub(super) struct SearchNode {
     pub least: Option<BoundKind>,
     /// Ranges of mass and position of each counterweight; they apply only if the objective contains |D_k|.
     pub cells: Vec<SearchCell>,
-    /// Masses, kg, and positions, m, about which inertias are linearised where they raise a negative D_k. The
+    /// Masses, kg, and positions, m, at which H_kk is linearised in −D_k ≤ |D_k|, so that this bound is convex. The
     /// linearised inertia is a lower bound, so |D_k| is not underestimated.
     pub tangents: Option<Vec<[f64; 2]>>,
 }

@@ -5,7 +5,7 @@ use thiserror::Error;
 use super::pins::MAX_PINS;
 use stillbase_settings::number::counted;
 
-/// Reason why statics does not determine the forces in a machine.
+/// Reason why the forces of a machine's pins cannot be computed.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum JointsError {
     /// More than [`MAX_PINS`] pins.

@@ -50,15 +50,15 @@ impl PinForces {
     }
 
     /// Returns the torques of the motors without the friction in the drives' bearings, N m, from the moments that the
-    /// driven links need. `None` at a change point; if pins have no friction, [`inverse`](crate::dynamics::inverse)
-    /// returns these torques even there.
+    /// driven links need. `None` at a change point. Without friction, and with all motors on the base,
+    /// [`inverse`](crate::dynamics::inverse) returns these torques even there.
     pub fn torque(&self) -> Option<PerDrive> {
         (self.undefined == 0).then_some(self.torque)
     }
 }
 
 impl Joints {
-    /// Returns the force of every pin and the torques of the drives for a motion, with frictionless pins. On a moving
+    /// Returns the force of every pin and the torques of the motors for a motion, with frictionless pins. On a moving
     /// base, gravity is g − p̈_B.
     pub fn forces(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, around: &ExternalLoads) -> PinForces {
         self.forces_with(e, qd, qdd, around, |_, _| 0.0)

@@ -26,8 +26,8 @@ impl Joints {
     /// Reads the structure of a machine.
     ///
     /// # Errors
-    /// If statics does not determine the forces: too many or too few closures, or a drive that could turn any of
-    /// several links.
+    /// If there are more than [`MAX_PINS`] pins, if a motor joins two loops, or if statics does not determine the
+    /// forces: too many or too few closures, or a drive that could turn any of several links.
     pub fn of(machine: &Machine) -> Result<Self, JointsError> {
         let pins = pins(machine);
         if pins.len() > MAX_PINS {

@@ -12,7 +12,7 @@ pub fn links(machine: &Machine) -> Result<Vec<TreeLink>, JointsError> {
     let driven = driven(machine)?;
     let mut order: Vec<usize> = Vec::with_capacity(driven.len());
     while order.len() < driven.len() {
-        // Machines have no cycles, so each round finds at least one link.
+        // No link is its own ancestor, so each round finds at least one link.
         let ready = |j: usize| machine.resolved_links()[j].parent.is_none_or(|p| order.contains(&p));
         let next: Vec<usize> = (0..driven.len()).filter(|j| !order.contains(j) && ready(*j)).collect();
         order.extend(next);

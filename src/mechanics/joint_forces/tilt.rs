@@ -111,7 +111,7 @@ impl AxialMoments {
         Vector::new(0.0, 1.0) * self.pull(&self.couple, e, qd, qdd)
     }
 
-    /// Returns −Σ_k s_k ä_k, N m.
+    /// Returns −Σ_k s_k (i q̈_k − q̇_k²) e_k, N m.
     #[inline]
     fn pull(&self, s: &[Vector; MAX_DRIVES], e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive) -> Vector {
         let mut sum = Vector::default();

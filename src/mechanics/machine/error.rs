@@ -31,7 +31,7 @@ impl KeyPath {
     }
 
     /// Makes a place from a key in the syntax of `--set`: parts joined by dots, positions in brackets, such as
-    /// `task.via[3]`.
+    /// `task.via[3]`. Positions in brackets count from 1.
     pub fn of_key(key: &str) -> Self {
         let steps = key.split('.').flat_map(|part| {
             let (name, position) = part.split_once('[').unwrap_or((part, ""));

@@ -5,7 +5,7 @@ use stillbase_settings::range::{Range, Requirement};
 
 /// Largest magnitude of a number of a machine, in SI units: products of larger numbers could overflow.
 const MAX_NUMBER: f64 = 1e6;
-/// Smallest value of a number that must be positive: quotients of smaller numbers could overflow.
+/// Smallest limit of a drive and smallest |gear ratio|, in SI units: quotients of smaller numbers could overflow.
 pub(super) const MIN_POSITIVE: f64 = 1e-9;
 
 pub(super) const GRAVITY: Range = Range::either_way(MAX_NUMBER, "m/s²");

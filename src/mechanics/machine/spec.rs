@@ -98,13 +98,13 @@ pub struct Drive {
     /// Limit of |torque|, N m; `None` if unlimited.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub torque_limit: Option<f64>,
-    /// Limit of |q̇|, rad/s; `None` if unlimited.
+    /// Limit of the speed relative to the stator, |q̇| on the base, rad/s; `None` if unlimited.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_limit: Option<f64>,
-    /// Limit of the planned |q̈|, rad/s²; `None` if unlimited.
+    /// Limit of the planned acceleration relative to the stator, rad/s²; `None` if unlimited.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub acceleration_limit: Option<f64>,
-    /// Limit of the planned |q⃛|, rad/s³, for time laws that bound jerk; `None` if unlimited.
+    /// Limit of the planned jerk relative to the stator, rad/s³, for time laws that bound jerk; `None` if unlimited.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub jerk_limit: Option<f64>,
 }

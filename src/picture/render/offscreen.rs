@@ -73,6 +73,28 @@ impl Picture {
         Ok(bytes)
     }
 
+    /// Decodes a PNG file of 8-bit RGBA; `None` for any other file.
+    pub fn from_png(file: &[u8]) -> Option<Self> {
+        let mut reader = png::Decoder::new(io::Cursor::new(file)).read_info().ok()?;
+        let mut rgba = vec![0; reader.output_buffer_size()?];
+        let info = reader.next_frame(&mut rgba).ok()?;
+        let is_rgba = (info.color_type, info.bit_depth) == (png::ColorType::Rgba, png::BitDepth::Eight);
+        is_rgba.then_some(Self { width: info.width, height: info.height, rgba })
+    }
+
+    /// Returns the picture at half the size: each pixel is the mean of four. An odd row or column at the end is left out.
+    pub fn halved(&self) -> Self {
+        let [width, height] = [self.width / 2, self.height / 2];
+        let row = 4 * self.width as usize;
+        let mean = |i: usize| {
+            let (y, x) = (i / (4 * width as usize), i % (4 * width as usize));
+            let at = 2 * y * row + 8 * (x / 4) + x % 4;
+            let sum: u16 = [at, at + 4, at + row, at + row + 4].iter().map(|i| u16::from(self.rgba[*i])).sum();
+            ((sum + 2) / 4) as u8
+        };
+        Self { width, height, rgba: (0..4 * width as usize * height as usize).map(mean).collect() }
+    }
+
     fn encode(&self, to: &mut Vec<u8>) -> Result<(), png::EncodingError> {
         let mut writer = png_encoder(to, [self.width, self.height]).write_header()?;
         writer.write_image_data(&self.rgba)?;

@@ -2,9 +2,11 @@
 //! any window.
 
 use nalgebra::{Matrix4, Point3, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// An orthographic or a perspective camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Camera {
     /// Orthographic, straight down on the plane of motion.
     Flat(FlatCamera),
@@ -13,7 +15,7 @@ pub enum Camera {
 }
 
 /// Orthographic camera that looks straight down on the plane of motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FlatCamera {
     /// Point at the centre of the picture, m.
     pub centre: [f64; 2],
@@ -22,7 +24,7 @@ pub struct FlatCamera {
 }
 
 /// Perspective camera that orbits a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Orbit {
     /// Point at the centre of the picture, m.
     pub centre: [f64; 3],
@@ -36,6 +38,10 @@ pub struct Orbit {
 
 /// Field of view over the shorter side of the picture, rad.
 const FIELD_OF_VIEW_RAD: f64 = 0.6;
+
+/// Limits of the size of a picture and of the distance of its centre from the base, m.
+const MIN_SIZE_M: f64 = 1e-6;
+const MAX_SIZE_M: f64 = 1e6;
 
 /// A line of sight: a point and a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,6 +74,16 @@ impl Camera {
     /// Whether the camera is orthographic from above.
     pub fn is_flat(&self) -> bool {
         matches!(self, Self::Flat(_))
+    }
+
+    /// Whether all values are finite and the picture has a size: a camera from a file may have neither.
+    pub fn is_valid(&self) -> bool {
+        let sizes = MIN_SIZE_M..=MAX_SIZE_M;
+        let near = |x: &f64| x.abs() <= MAX_SIZE_M;
+        match self {
+            Self::Flat(f) => f.centre.iter().all(near) && sizes.contains(&f.half_height),
+            Self::Orbit(o) => o.centre.iter().chain([&o.yaw, &o.pitch]).all(near) && sizes.contains(&o.distance),
+        }
     }
 
     fn view(&self) -> Matrix4<f64> {

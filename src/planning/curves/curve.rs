@@ -13,11 +13,11 @@ use stillbase_settings::number::counted;
 /// A point of a curve with its first two derivatives with respect to s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurvePoint {
-    /// p, m.
+    /// p, m; rad for a curve of (a_1, a_2).
     pub p: Vector,
-    /// dp/ds, m.
+    /// dp/ds, m or rad.
     pub first: Vector,
-    /// d²p/ds², m.
+    /// d²p/ds², m or rad.
     pub second: Vector,
 }
 

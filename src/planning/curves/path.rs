@@ -259,7 +259,7 @@ pub fn minimum_norm_path(
 }
 
 /// Follows a curve with minimum-norm rates piece by piece. Each piece has its own intervals, because integration
-/// across a joint would lose accuracy.
+/// across a join of two pieces would lose accuracy.
 ///
 /// # Errors
 /// If the Jacobian loses rank on the way.

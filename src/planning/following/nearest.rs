@@ -4,7 +4,7 @@
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | q(t) | the given motion, b(t) = Σ λ_k q_k(t) | rad |
-//! | D_k | constant inertia of drive k, (11) | kg m² |
+//! | D_k | H_kk of drive k; without rotors the constant inertia of (11) | kg m² |
 //! | ‖Δq‖² | ∫ Σ D_k Δq_k² dt / T ΣD: mean square deviation of the joints in the metric of kinetic energy | rad² |
 //! | b̄ | mean of b(t) over time | rad |
 //!

@@ -5,7 +5,7 @@
 //! |---|---|---|
 //! | u | t/T, 0 to 1 | 1 |
 //! | b, b′, b″ | pose constant and derivatives by u | rad |
-//! | n_B | −D_1 b″/T², (11)–(13) | N m |
+//! | n_B | base moment −D_1 b″/T², (11)–(13), with D_1 in kg m² | N m |
 
 /// b over u = t/T: cubic pieces, b″ continuous.
 #[derive(Clone, Debug, PartialEq)]

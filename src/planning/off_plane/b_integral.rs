@@ -5,7 +5,7 @@
 //! |---|---|---|
 //! | δ | q_2 − q_1 | rad |
 //! | D_1, D_2 | H_11 + Re Z_12 and H_22 + Re Z_12, where Z_12 = C_12 e^{iδ} = R e^{i(δ + φ)} | kg m² |
-//! | S | H_11 + H_22, where H_kk includes the momentum of rotors; above 2R without rotors | kg m² |
+//! | S | H_11 + H_22; here H_kk is D_k at C_12 = 0, not the entry of the mass matrix; without rotors S > 2R | kg m² |
 //!
 //! # Source
 //! D q̇ = (D_1 + D_2) (q̇_1 + D_2/(D_1 + D_2) δ̇), and D_2/(D_1 + D_2) = ½ + ½ (H_22 − H_11)/(S + 2R cos(δ + φ))

@@ -28,7 +28,7 @@ const MAX_TIGHTENINGS: usize = 4;
 /// Fraction of the least peak by which the smoothest course may exceed it.
 const SMOOTHING_COST: f64 = 1e-7;
 
-/// Lower and upper bound of b − b_0 at each station, rad: evenly spaced stations first, then the additional ones.
+/// Lower and upper bound of b − b_0 at each station, rad, with b_0 at the start. Additional stations come last.
 type Bounds = Vec<[f64; 2]>;
 
 /// Finds the course of least ∫ b″² du, or of least peak |b″| if `peak`. It stays within the corridor at every station
@@ -233,8 +233,8 @@ fn program(
     program
 }
 
-/// Returns the bounds of b − b_0, rad: the corridor reduced by a fraction of the margin and by the bulge of its
-/// bounds between stations. If the start or a given end of the course lies within the margin, the margin is reduced
+/// Returns the bounds of b − b_0, rad: the corridor reduced by `share` of the margin, by `extra`, rad, and by its
+/// bulge between stations. If the start or a given end of the course lies within the margin, the margin is reduced
 /// there.
 fn bounds(corridor: &Corridor, end: Option<f64>, share: f64, extra: f64) -> Bounds {
     let stations = corridor.stations();

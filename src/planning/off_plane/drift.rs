@@ -1,7 +1,7 @@
 //! Joint drift on a closed path of the end effector that is followed repeatedly at zero angular momentum.
 //!
 //! D(q) q̇ = 0 is nonholonomic if D depends on the pose: the end effector returns, the joints do not. On an invariant
-//! machine the joints return too, up to rounding. For this reason the paper requires invariance, (8).
+//! machine of three drives the joints return too, up to rounding. For this reason the paper requires invariance, (8).
 
 use thiserror::Error;
 
@@ -20,7 +20,7 @@ use stillbase_settings::number::counted;
 /// Why no motion of zero momentum follows a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum DriftError {
-    /// The machine has fewer than three drives.
+    /// The machine has fewer than three drives, or the start pose has a different number of angles.
     #[error("{}: a curve in the plane at zero momentum takes three or more", counted(drives, "drive"))]
     Drives {
         /// Drives of the machine.

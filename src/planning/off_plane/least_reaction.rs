@@ -9,7 +9,7 @@
 //! |---|---|---|
 //! | u | t/T, 0 to 1 | 1 |
 //! | b, b′, b″ | pose constant and derivatives by u | rad |
-//! | n_B | −D_1 b″/T² | N m |
+//! | n_B | base moment −D_1 b″/T², with D_1, kg m², from [`Price::inertia`] | N m |
 //!
 //! b′ = 0 at both ends. In between, n_B is continuous, and linear between equally spaced nodes.
 
@@ -43,8 +43,8 @@ const MAX_NODES_PER_STATION: usize = 16;
 /// Maximum deviation from the curve, as a fraction of the arm length; beyond it the curve counts as not followed.
 const MAX_DEVIATION: f64 = 1e-6;
 
-/// Maximum number of solutions b(u) that the drives cannot follow, with one margin. After each, a station is added
-/// where b leaves the corridor. After the last, or if b stays within, the margin grows.
+/// Maximum number of solutions b(u) with one margin. If the drives cannot follow one, a station is added to the
+/// corridor where b leaves it. After the last solution, or if b does not leave the corridor, the margin grows.
 const MAX_CORRIDOR_REFINEMENTS: usize = 4;
 
 /// The objective.

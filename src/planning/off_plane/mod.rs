@@ -1,4 +1,4 @@
-//! Off the planes: the price of b, the least reaction, zero momentum with its drift, and machines of two drives.
+//! Motions off the planes: the moment that a change of b costs, least reactions, drift at zero momentum, two drives.
 
 pub mod b_course;
 #[doc(hidden)]

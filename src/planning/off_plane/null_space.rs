@@ -1,13 +1,13 @@
 //! Why invariance matters: motions of zero angular momentum on machines whose mass matrix depends on the pose.
 //!
 //! At each pose the rates with D(q) · q̇ = 0 transmit no moment; they span n − 1 directions. If D is constant, they
-//! span the planes b = const, and a closed path of the end effector brings the joints back. If D is not constant, with
-//! three drives or more these directions are not integrable to a surface: the joints drift with every cycle.
+//! span the planes b = const. With three drives, a closed path of the end effector then brings the joints back. If D
+//! is not constant, three drives or more have no surface with these tangents: the joints drift with every cycle.
 //!
 //! # Symbols
 //! | letter | meaning | shape, unit |
 //! |---|---|---|
-//! | H, D_k | mass matrix, Σ_l H_lk; angular momentum about B is D q̇, (6), (A3) | n, kg m² |
+//! | H, D_k, J_k | mass matrix; angular momentum about B is D q̇, (6), (A3); spin, as in [`Inertia`] | n, kg m² |
 //! | Z_kl | C_kl e^{i (q_l − q_k)} | complex, kg m² |
 //! | J | ∂p/∂q in absolute drive angles | 2×n, m |
 //! | dD | ∂D_k/∂q_m − ∂D_m/∂q_k = −2 Im Z_km | n×n, kg m² |
@@ -235,8 +235,8 @@ pub fn integrability_violation(model: &Inertia, q: &DriveAngles) -> f64 {
 
 /// Returns whether the machine has a pose constant: a b(q) that is constant along every motion of zero momentum.
 ///
-/// One or two drives always have one. Three and more have one if H_jj C_kl = C_kj C_jl for every three of them. If no
-/// H_jj is zero, this means an invariant mass matrix, constant D and b = Σ λ_k q_k.
+/// One or two drives always have one. Three and more have one if H_jj C_kl = C_kj C_jl for every three of them. If H
+/// is positive definite, this means an invariant mass matrix, constant D and b = Σ λ_k q_k.
 pub fn is_integrable(model: &Inertia) -> bool {
     let n = model.drives();
     let whole: f64 = (0..n).map(|k| model.diagonal(k)).sum();

@@ -40,7 +40,7 @@ impl BCoverage {
         BSet::union(parts, period)
     }
 
-    /// Extends feasible gaps across critical values at which no component ends.
+    /// Extends feasible gaps across critical values at which no connected component of poses ends.
     pub fn spread(&mut self) {
         let n = self.ends.len();
         for _ in 0..2 {
@@ -62,8 +62,8 @@ impl BCoverage {
     }
 
     /// Finds the gap between the same two critical values as gap `i` of another distance. With `all`, the next values
-    /// on either side must agree as well, and none may have passed the gap. Two values that pass each other keep
-    /// their cyclic order; with fewer than three values the index must therefore agree too.
+    /// on either side must agree too, and none may have passed the gap. Two values alone that pass each other keep
+    /// their cyclic order; so with fewer than three values the index must agree too.
     pub fn gap(&self, of: &Self, i: usize, all: bool) -> Option<usize> {
         let (n, around) = (self.ends.len(), of.around(i));
         let same = |j: &usize| {
@@ -106,8 +106,8 @@ impl BCoverage {
         [self.ends[i].b, if i + 1 < n { self.ends[i + 1].b } else { self.ends[0].b + self.period }]
     }
 
-    /// Returns the distances, rad, from gap i down and up to the nearest gaps known to be empty. Poses in gap i
-    /// cannot come from beyond those.
+    /// Returns the distances, rad, from gap i down and up to the nearest gaps known to be empty. A component of poses
+    /// in gap i cannot extend beyond these gaps.
     pub fn free(&self, i: usize, empty: &[bool]) -> [f64; 2] {
         let n = self.ends.len();
         let [from, to] = self.edges(i);

@@ -212,7 +212,7 @@ impl PoseSpace {
         climbs
     }
 
-    /// Follows a climb to a pose at p, m, on the x axis. It accepts the critical pose itself if that fits up to
+    /// Follows a climb to a pose at p, m; p lies on the x axis. Accepts the critical pose itself if that fits up to
     /// rounding.
     pub(super) fn climbed(&self, p: Vector, climb: &Climb<'_>, effort: ContinuationLimits) -> Option<PerDrive> {
         let Climb { from, rise } = climb;
@@ -260,7 +260,7 @@ impl PoseSpace {
         None
     }
 
-    /// Returns the ways in which b can change from a critical pose in the direction of a sign.
+    /// Returns the ways in which b can leave its value at a critical pose: rising for sign 1, falling for sign −1.
     fn leaving(&self, a: &PerDrive, b: f64, sign: f64) -> Leaving {
         let none = Leaving { gains: false, along: None };
         let n = self.joints.len();

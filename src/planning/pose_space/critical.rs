@@ -12,7 +12,7 @@ use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive, Vector, dot, unit};
 /// A pose at which b is stationary, and whether b can rise or fall from there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CriticalPose {
-    /// b for the point on the x axis, rad.
+    /// b if the end effector is on the positive x axis, rad.
     pub b: f64,
     /// Whether b can rise from here while the end effector stays.
     pub up: bool,
@@ -40,12 +40,12 @@ impl CriticalPose {
         self.sure && self.down
     }
 
-    /// Whether a component that comes from below certainly does not end here.
+    /// Whether a connected set of poses that comes from lower b certainly does not end here.
     pub fn passes_up(&self) -> bool {
         self.sure && !self.down
     }
 
-    /// Whether a component that comes from above certainly does not end here.
+    /// Whether a connected set of poses that comes from higher b certainly does not end here.
     pub fn passes_down(&self) -> bool {
         self.sure && !self.up
     }
@@ -89,7 +89,7 @@ pub(super) struct CriticalPoint {
     pub t: f64,
 }
 
-/// A curve of critical poses, parametrised over the distance from B.
+/// A curve of critical poses over varying distance from B. Its parameter is [`CriticalPoint::t`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub(super) struct CriticalCurve {
     pattern: u32,
@@ -114,15 +114,15 @@ impl CriticalCurve {
 /// Tolerance of the joint limits for rounding of the inverse kinematics, rad.
 const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
 
-/// Tolerance of the distance of a corner of the limits, as a fraction of the reach: twice the effect of the tolerance
-/// of the limits. A corner is checked only if its angle is within [`CORNER_ANGLE_RAD`] of a limit.
+/// Tolerance of the distance from B of a corner (all joints at limits), as a fraction of the reach: twice the
+/// effect of [`LIMIT_TOLERANCE_RAD`]. Only poses within [`CORNER_ANGLE_RAD`] of a corner are checked.
 const CORNER_TOLERANCE: f64 = 2e-9;
 const CORNER_ANGLE_RAD: f64 = 1e-3;
 
 /// The gain in b of leaving a limit is treated as zero below this fraction of the largest λ.
 const GAIN_TOLERANCE: f64 = 1e-12;
 
-/// Poses with equal b are one pose if no angle differs by more than this, rad: b is stationary there.
+/// Poses with equal b are one pose if no angle differs by more than this, rad: a stationary b fixes angles poorly.
 const SAME_POSE_RAD: f64 = 0.1;
 
 /// Poses are equal within the tolerance of the limits if no angle differs by more than this, rad.
@@ -190,7 +190,7 @@ impl PoseSpace {
     }
 
     /// Visits the critical poses of two compounds: the point leaves no freedom, and each pose has a single b. Returns
-    /// false if a pose is in a corner of the limits.
+    /// false if a pose is in a corner of the limits, or if [`poses_of`](Self::poses_of) does.
     fn triangle(
         &self,
         c: &Pattern,
@@ -218,7 +218,7 @@ impl PoseSpace {
                 found(critical);
             };
             let decided = self.poses_of(c, name, spot, turn, &mut noted, || {
-                // μ such that Λ = Re(μ̄ i L e^{iψ}) for both.
+                // μ such that Λ = Re(μ̄ i L e^{iψ}) for both compounds.
                 let first = Vector::new(first.re, sign * first.im);
                 let [j, k] = [first, r - first].map(|arm| Vector::new(-arm.im, arm.re));
                 let det = j.re * k.im - j.im * k.re;
@@ -253,7 +253,7 @@ impl PoseSpace {
     }
 
     /// Visits the critical poses of three compounds and more: one equation in ν for each choice of signs. Returns
-    /// false if a solution lies at ν = 0 within rounding, with all arms on one line.
+    /// false if all arms are on one line, ν = 0 within rounding, or if [`poses_of`](Self::poses_of) does.
     fn stationary(
         &self,
         c: &Pattern,
@@ -397,8 +397,8 @@ fn ways(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES]) ->
     signature(n, nu, c, lambda).unwrap_or_else(|| by_basis(n, nu, c, lambda))
 }
 
-/// As [`ways`], by Haynsworth's inertia theorem. Positive and negative signs are counted in the form and in the Schur
-/// complement of the two conditions; the subspace has two of each less. `None` if a pivot is zero within rounding.
+/// As [`ways`], by Haynsworth's inertia theorem. Counts the positive and negative eigenvalues of the form and of the
+/// Schur complement of the conditions. On the subspace there are two fewer of each. `None` if a pivot is nearly zero.
 fn signature(n: usize, nu: f64, c: &[f64; MAX_DRIVES], lambda: &[f64; MAX_DRIVES]) -> Option<[bool; 2]> {
     let size = c[..n].iter().fold(0.0_f64, |most, c| most.max(c.abs()));
     let (mut positive, mut negative) = (0, 0);

@@ -41,7 +41,7 @@ const KKT: usize = 2 * MAX_DRIVES;
 
 impl PoseSpace {
     /// Returns relative angles at b that put the end effector on p, m, or as near as possible, by iteration from
-    /// `from`. Also returns its distance from p, m.
+    /// `from`. Also returns the end effector's distance from p, m.
     pub fn drag_to(&self, p: Vector, b: f64, from: &[f64]) -> (PerDrive, f64) {
         let gone = self.approach(p, b, from, None);
         if gone.1 <= RESIDUAL_TOLERANCE * self.farthest() { gone } else { self.minimise_distance(p, b, gone) }

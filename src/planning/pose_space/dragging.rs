@@ -113,8 +113,8 @@ fn pose_for(space: &PoseSpace, p: Vector, b: f64, from: &PerDrive) -> (PerDrive,
     (a, Reach::Outside { nearest, feasible_b, displayed_b, other_sheet: false })
 }
 
-/// Returns the point of the curve of two drives that is nearest to p, and its distance, m. A joint that turns freely is
-/// searched within half a turn of `turn`, rad.
+/// Returns the relative angle of two drives, rad, with the end effector nearest to p, and its distance, m. A free
+/// joint is searched within half a turn of `turn`, rad.
 fn along_curve(space: &PoseSpace, p: Vector, b: f64, turn: f64) -> (PerDrive, f64) {
     // The curve of a free joint is periodic.
     let is_free = space.joints()[0].bounds()[0].is_infinite();

@@ -25,7 +25,7 @@ const GAP_DEPTH: f64 = 0.3;
 const MAX_GAP_DEPTH: f64 = 0.02;
 /// Maximum number of sweeps over all joints in a search for a pose at a distance.
 const MAX_SWEEPS: usize = 200;
-/// Sweeps that reduce the error of the distance by less than this fraction of the reach end the search.
+/// The search ends after a sweep that reduces the error of the distance by less than this fraction of the reach.
 const MIN_SWEEP_GAIN: f64 = 1e-12;
 /// Number of samples over all joint ranges from which poses at a distance are sought: in a quick and in a careful
 /// search.
@@ -305,7 +305,7 @@ impl PoseSpace {
         };
         let limit = |i: usize| AngleLimit { min: self.joints[i].limits[0], max: self.joints[i].limits[1] };
         let map = PlaneMap::new(arm.map(|l| l.norm()), lambda, [angle(0), angle(1)], [limit(0), limit(1)]).ok()?;
-        // b = Σ Λ (Q' − lean) + Σ λ δ.
+        // b = Σ Λ_i (Q'_i − lean_i) + Σ λ_k δ_k, with the drive angles Q' and the weights Λ = `lambda` of the map.
         let shift =
             (0..n).map(|k| self.lambda[k] * delta[k]).sum::<f64>() - (0..3).map(|i| lambda[i] * lean[i]).sum::<f64>();
         Some((map, shift))

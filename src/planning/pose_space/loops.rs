@@ -10,8 +10,8 @@ use std::f64::consts::TAU;
 use super::rings::{BoundaryStep, Ring, Rings};
 use stillbase_mechanics::planar::{Vector, unit};
 
-/// Points within this fraction of the reach are equal. Loops of at most ten times this fraction of the squared reach
-/// are dropped.
+/// Points within this fraction of the reach are equal. Loops with an area of at most ten times this fraction of the
+/// squared reach are dropped.
 const SAME_POINT: f64 = 1e-10;
 /// A circle about B with a radius below this fraction of the reach is treated as B.
 const BASE_RADIUS: f64 = 1e-6;

@@ -19,11 +19,11 @@ const MAX_ITERATIONS: usize = 100;
 const MAX_STEP_RAD: f64 = 0.5;
 /// The iteration ends at steps below this, rad.
 const STEP_TOLERANCE_RAD: f64 = 1e-11;
-/// Maximum number of halvings of a step.
+/// Number of lengths of a step that are tried: the full step first, then each half of the one before.
 const MAX_HALVINGS: usize = 12;
 /// Added to each weight in steps without second derivatives, so that angles of weight 0 stay bounded.
 const WEIGHT_OFFSET: f64 = 1e-3;
-/// An angle with half a range below this is held at its midpoint while a pose is centred, rad.
+/// If half the range of an angle is below this, the angle is held at its midpoint while a pose is centred, rad.
 const NARROW_HALF_RANGE_RAD: f64 = 1e-3;
 /// Tolerance of active limits, rad.
 const ACTIVE_TOLERANCE_RAD: f64 = 1e-12;
@@ -49,7 +49,7 @@ struct KktPoint<'a> {
     nu: Vector,
     /// Columns ∂p/∂a_i, m/rad.
     columns: &'a [Vector; MAX_DRIVES],
-    /// The point to reach less that of the pose, m.
+    /// The point to reach minus the end effector's position in the pose, m.
     residual: Vector,
 }
 

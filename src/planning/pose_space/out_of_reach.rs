@@ -4,8 +4,8 @@
 //! The distance from the point has many local minima. Turning one relative angle at constant b moves the end effector
 //! along a known curve, and two angles span a grid of known points. From samples of all joint ranges, each angle in turn
 //! is set to the best of a grid over its whole range. From this pose and from the sample, Newton's iteration
-//! converges to local minima. From the best
-//! of these minima, grids over all pairs of angles lead to other ones, until none is nearer.
+//! converges to local minima. Beside the nearest minimum not yet tried, grids over pairs of angles give new starts.
+//! This is repeated until all minima that are kept have been tried, at most `MAX_JUMPS` times.
 
 use std::array::from_fn;
 
@@ -29,7 +29,7 @@ const MAX_JUMPS: usize = 6;
 const SAME_POSE_RAD: f64 = 0.05;
 /// Another pose is preferred if it is nearer by at least this fraction of the reach.
 const MIN_IMPROVEMENT: f64 = 1e-4;
-/// Arms c_k e^{iq_k} with one angle at each place of its grid, relative to those of a pose.
+/// Factors by which the arms c_k e^{iq_k} of a pose are multiplied if one angle moves to each place of its grid.
 type Turns<const COUNT: usize> = [[Vector; MAX_DRIVES]; COUNT];
 
 /// Different poses and their distances from a point, m; the nearest ones first.
@@ -89,7 +89,7 @@ impl PoseSpace {
         if best.1 < off - MIN_IMPROVEMENT * reach { best } else { (a, off) }
     }
 
-    /// Sets each angle in turn to the nearest of its grid.
+    /// Sets each angle in turn to the place of its grid that brings the end effector nearest to p, if that is nearer.
     fn swept(&self, p: Vector, b: f64, mut a: PerDrive) -> PerDrive {
         let mut off = (self.end_effector(&self.lift(&a, b)) - p).norm();
         for _ in 0..MAX_SWEEPS {

@@ -9,7 +9,7 @@ use super::space::PoseSpace;
 use crate::reactionless::BoundingBox;
 use stillbase_mechanics::planar::{Vector, dot, unit};
 
-/// The workspace of a b: a region, or a curve for two drives.
+/// The workspace of a b: a region, a curve for two drives, or a point for one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outline {
     /// Area, m²; 0 for two drives.
@@ -20,7 +20,7 @@ pub struct Outline {
     pub extent: [f64; 4],
     /// Boundary, m: closed loops, the outer ones counter-clockwise.
     pub loops: Vec<Vec<[f64; 2]>>,
-    /// The curve of two drives, m.
+    /// The curve of two drives, or the point of one, m.
     pub curve: Vec<[f64; 2]>,
 }
 

@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 use super::joint::RelativeJoint;
 use stillbase_mechanics::planar::{MAX_DRIVES, Vector, unit};
 
-/// Number of cells in which a sign change is sought.
+/// Number of cells: equal intervals of t, in each of which a sign change of |p|² less its wanted value is sought.
 pub(super) const SIGN_INTERVALS: usize = 24;
 
 /// Returns t at a cell boundary, from 0 to π/2; ν = ν_max sin t.

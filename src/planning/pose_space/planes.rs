@@ -83,7 +83,7 @@ impl Planes {
         self.is_reactionless
     }
 
-    /// Returns the same planes with paths that avoid change points, or may cross them.
+    /// Returns the same planes. Paths avoid change points if `keep_off_change_points`, else they may cross them.
     #[must_use]
     pub(super) fn keeping_off_change_points(self, keep_off_change_points: bool) -> Self {
         Self { keep_off_change_points, ..self }

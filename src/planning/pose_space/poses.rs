@@ -5,8 +5,8 @@ use super::nearest::PreferredAngles;
 use super::space::PoseSpace;
 use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, unit};
 
-/// Tolerance of b of two drives, as a fraction of Σλ; b printed with nine digits is within it. It is also the tolerance
-/// of position, as a fraction of the reach.
+/// Tolerance of position with two drives, as a fraction of the reach. It admits errors of b by this fraction of Σλ,
+/// such as those of a b printed with nine digits.
 const B_TOLERANCE: f64 = 1e-6;
 /// With four and more drives: number of samples over all joint ranges, and of starts from which the nearest pose is
 /// sought.
@@ -34,8 +34,8 @@ impl PoseSpace {
     }
 
     /// Returns relative angles of poses at `p`, m, and `b`, rad: of all poses with up to three drives. With more, of
-    /// poses found by climbs from critical poses and from samples, in no particular order. The number of climbs is
-    /// bounded by `MAX_CLIMBS`, so a connected component may be missed.
+    /// poses found by climbs from critical poses and from samples, in no particular order. As soon as one is found,
+    /// climbs beyond the first `MAX_CLIMBS` are skipped, so a connected component may be missed.
     pub fn representative_poses(&self, p: Vector, b: f64) -> Vec<PerDrive> {
         if let Some(map) = self.map() {
             return map.poses(p, b).iter().map(|pose| PerDrive::from(pose.a)).collect();

@@ -145,8 +145,8 @@ impl PoseSpace {
         }
         let n = merged.len();
         if n == 0 {
-            // Without critical values, all b are feasible or none: near B, for instance, the machine can turn as a
-            // whole.
+            // Without critical values, all b are feasible or none. Near B, for instance, turning the whole machine
+            // changes b and hardly moves the end effector.
             let known = agreed(neighbours.iter().map(|seen| seen.whole())).filter(|_| neighbours.len() > 1);
             let whole = self.drives() > 2 && known.unwrap_or_else(|| self.any_pose(distance, &work.looks));
             return BCoverage { ends: Vec::new(), gaps: vec![whole], period };

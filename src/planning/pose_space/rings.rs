@@ -115,8 +115,8 @@ pub(super) struct Rings {
 }
 
 impl PoseSpace {
-    /// Returns circles through the workspace of b, with chords that deviate by at most `chord`, m, from its boundary.
-    /// Progress from 0 to 1 is reported to `goes_on`; if that returns false, the result is `None`.
+    /// Returns circles through the workspace of b. Chords deviate from its boundary by at most `chord`, m; above a
+    /// reach of [`LARGE_REACH_M`] by more, in proportion. Progress, 0 to 1, goes to `goes_on`; `None` if it is false.
     pub(super) fn rings(&self, b: f64, chord: f64, goes_on: &mut dyn FnMut(f64) -> bool) -> Option<Rings> {
         let carried = self.rings_of(b, chord, [self.drives() > 3, false], goes_on)?;
         if carried.jumps == 0.0 || self.drives() == 3 {

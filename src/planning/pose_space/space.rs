@@ -51,7 +51,7 @@ pub enum GuidanceMode {
 }
 
 impl PoseSpace {
-    /// Returns the pose space of a machine whose inertia matrix D is constant, or nearly so.
+    /// Returns the pose space of a machine whose D is constant, or nearly so; its angular momentum is D q̇.
     ///
     /// # Errors
     /// If the machine has no b: the reason.
@@ -126,7 +126,7 @@ impl PoseSpace {
         Self { guidance, ..self }
     }
 
-    /// Returns the same space with paths that avoid change points, or may cross them. Without planes it has no effect.
+    /// Returns the same space. Paths avoid change points only if `keep_off`. Without planes it has no effect.
     #[must_use]
     pub fn keeping_off_change_points(self, keep_off: bool) -> Self {
         let kept = |planes: Arc<Planes>| match planes.keep_off_change_points() == keep_off {

@@ -4,7 +4,7 @@
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | q′ | dq/ds, s the fraction of the whole path length | rad |
-//! | T | A⁻ᵀ H; the motor torques from rest are T q̈ | kg m² |
+//! | T | A⁻ᵀ H, A of [`Motors`](stillbase_mechanics::machine::Motors); T q̈ is the torque for q̇ = 0, g = 0 | kg m² |
 //! | x_i | relative angle a_i scaled to −1 and 1 at its limits; 0 if it has none | 1 |
 //!
 //! # Method
@@ -39,7 +39,7 @@ words! {
         /// Least ∫ |q′|² ds.
         LeastRates = "least-rates", "Drives turn least", "The drives turn as little as they can";
         Orientation = "orientation", "Keep the hand's orientation", "The last link does not turn";
-        /// Least ∫ τ² dt.
+        /// Least ∫ |T q̈|² dt.
         LeastTorque = "least-torque", "Least motor torque", "What the motors need to set the motion up is least";
         /// Least ∫ ½ Σ x_i² ds.
         MidRange = "mid-range", "Far from limits", "Joints stay as near to the middle of their ranges as can be";

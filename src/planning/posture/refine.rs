@@ -243,7 +243,7 @@ impl RefinementProblem<'_> {
         if self.done > 1e-8 { ROUGH_GAIN } else { FINE_GAIN }
     }
 
-    /// Returns the first column of each row of the matrix.
+    /// Returns the first column of each row that the matrix stores.
     fn profile(&self, d: usize, count: usize) -> Vec<usize> {
         let rows = self.places(d, count);
         let mut first = vec![0; rows.1];

@@ -161,7 +161,7 @@ impl ConstraintJacobian {
 pub(super) fn null_directions(across: &[PerDrive], n: usize) -> Vec<PerDrive> {
     let mut all: Vec<PerDrive> = Vec::with_capacity(n);
     all.extend_from_slice(across);
-    // Squared length of each axis outside the span so far.
+    // Squared length of the part of each axis that is outside the span so far.
     let mut outside = PerDrive::from_fn(n, |k| 1.0 - across.iter().map(|u| u[k] * u[k]).sum::<f64>());
     while all.len() < n {
         // The axis with the longest part outside the span.

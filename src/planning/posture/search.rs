@@ -155,7 +155,7 @@ impl PostureRequest<'_> {
     /// Finds the path with the least objective of a posture.
     ///
     /// # Errors
-    /// Why no path was found, and up to which fraction of the path poses reach.
+    /// Why no path was found; if the poses end early, also the fraction of the path that they cover.
     pub fn path(&self, posture: Posture) -> Result<PosturePaths, NoPosturePath> {
         self.searched(&RESOLUTIONS, posture, |ways, oriented| match posture {
             Posture::Orientation => Some(self.finest(oriented, posture)?.1),

@@ -63,7 +63,7 @@ pub(super) struct Stations {
 
 impl Stations {
     /// Puts stations on curves with about `spaces` intervals in total. Each curve is passed from rest to rest by `law`,
-    /// or at constant rate ṡ if there is none.
+    /// by the quintic if `law` is a fastest one, or at constant rate ṡ if there is none.
     pub fn of(curves: &[Curve], law: Option<TimeLaw>, spaces: usize) -> Self {
         let shares = shares(curves);
         let grid = |(curve, share): (&Curve, &f64)| {

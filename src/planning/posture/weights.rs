@@ -14,7 +14,7 @@ const MIN_DRIVE_WEIGHT: f64 = 1e-9;
 #[derive(Clone, Debug)]
 pub struct PostureWeights<'a> {
     space: &'a PoseSpace,
-    /// TᵀT divided by its trace.
+    /// TᵀT divided by its trace, plus `MIN_DRIVE_WEIGHT` on the diagonal.
     pub(super) torque: WeightMatrix,
     /// ∂x_i/∂q_k.
     shares: Vec<PerDrive>,
@@ -40,7 +40,7 @@ impl<'a> PostureWeights<'a> {
         Self { space, torque, shares }
     }
 
-    /// Returns the inverse of TᵀT divided by its trace; `None` if it is singular.
+    /// Returns the inverse of the matrix `torque`; `None` if that is singular.
     pub fn least_torque(&self) -> Option<[[f64; MAX_DRIVES]; MAX_DRIVES]> {
         let n = self.space.drives();
         let weigh = |k: usize, l: usize| if k < n && l < n { self.torque[k][l] } else { f64::from(u8::from(k == l)) };

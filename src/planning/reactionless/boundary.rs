@@ -70,7 +70,7 @@ pub struct BoundingBox {
 /// The boundary point at which the end effector stays for a target outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
-    /// The boundary point, turned by b, m.
+    /// The boundary point, turned by b*, m.
     pub at: Vector,
     /// Its plane coordinates, rad.
     pub a: [f64; 2],
@@ -157,7 +157,7 @@ impl Boundary {
         self.interior_singularity
     }
 
-    /// Returns the vertices of all loops, turned by b, m.
+    /// Returns the vertices of all loops, turned by b*, m.
     pub fn turned(&self, b: f64) -> Vec<Vec<[f64; 2]>> {
         let turn = unit(self.on.map.turn(b));
         let point = |v: &BoundaryVertex| {
@@ -167,7 +167,7 @@ impl Boundary {
         self.loops.iter().map(|l| l.vertices().iter().map(point).collect()).collect()
     }
 
-    /// Returns the bounds in x and y of the workspace turned by b, m.
+    /// Returns the bounds in x and y of the workspace turned by b*, m.
     pub fn extent(&self, b: f64) -> BoundingBox {
         let turn = unit(self.on.map.turn(b));
         // A direction in the turned workspace, turned back, is the same direction in the unturned one.

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 use super::plane::{AngleLimit, PlaneMap};
 
-/// The pairs (k, l) of drives, counted from 0, in the order of sides and sines.
+/// The pairs (k, l) of drives, counted from 0, in the order of [`PlaneMap::sides`] and [`PlaneMap::sines`].
 pub const DRIVE_PAIRS: [[usize; 2]; 3] = [[0, 1], [1, 2], [0, 2]];
 
 /// Poses at most this far from a change point are treated as on it, rad.

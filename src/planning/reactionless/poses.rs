@@ -13,7 +13,7 @@ use stillbase_mechanics::planar::{Vector, cross, unit};
 /// Number of poses stored without heap memory: many more than exist within one turn of each angle.
 const INLINE: usize = 64;
 
-/// Tolerance of b at a fold, rad; also that of the position of a flat pose, as a fraction of the reach.
+/// Tolerance of b at a fold, rad. Also, as a fraction of the reach, of the position of a pose with all arms in line.
 const FOLD_TOLERANCE: f64 = 1e-12;
 
 /// Tolerance of the position of poses clamped to the limits, as a fraction of the reach.

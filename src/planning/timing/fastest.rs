@@ -22,7 +22,7 @@ use stillbase_mechanics::planar::PerDrive;
 pub const GRID_INTERVALS: usize = 600;
 
 /// Finds the fastest motion on a path within a machine's limits, including those on jerk if `smooth`. On a curve the
-/// grid begins with [`stations`] of [`GRID_INTERVALS`] and the path's own places. It is refined where limited
+/// grid begins with [`stations`] of [`GRID_INTERVALS`] and the path's own samples of s. It is refined where limited
 /// quantities change much. Finally the motion is slowed down until it keeps the limits between stations too.
 ///
 /// # Errors
@@ -183,7 +183,7 @@ const S_TOLERANCE: f64 = 1e-9;
 /// Maximum number of refinements of the grid where limits are exceeded between stations.
 const MAX_REFINEMENTS: usize = 6;
 
-/// Returns [`stations`] merged with the places of a path, which replace stations close by.
+/// Returns [`stations`] merged with the samples of s of a path, which replace stations close to them.
 fn dense(path: &Path) -> Vec<f64> {
     let (own, even) = (path.sample_parameters(), stations(GRID_INTERVALS));
     let mut all = Vec::with_capacity(own.len() + even.len());
@@ -256,7 +256,7 @@ fn curved(
 ) -> Result<Timed, TimeError> {
     let stations = &grid.s;
     if grid.rows.iter().all(|r| r.a == 0.0 && r.c == 0.0) {
-        // No drive moves, or no drive that moves has a limit.
+        // No drive moves, or no drive that moves has a limit on torque or acceleration.
         let moves = stations.iter().any(|s| path.at(*s).first.max_abs() > 0.0);
         return match (moves, grid.cap.iter().any(|x| x.is_finite() && *x < UNLIMITED)) {
             (false, _) => Ok(Timed { profile: Profile::none(), x: Vec::new() }),

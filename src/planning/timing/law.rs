@@ -29,7 +29,7 @@ struct Law {
     is_fastest: bool,
     /// Maximum |s̈| times T².
     peak: f64,
-    /// Fractions of T at which s̈ or its slope jumps.
+    /// Fractions of T: the start, the end, and those between at which s̈ or its slope jumps.
     kinks: &'static [f64],
     /// Returns s and its first three derivatives with respect to u = t/T, for u from 0 to 1.
     at: fn(f64) -> [f64; 4],
@@ -123,7 +123,7 @@ impl TimeLaw {
         self.data().peak
     }
 
-    /// Returns the fractions of T at which s̈ or its slope jumps.
+    /// Returns fractions of T: the start, the end, and those between at which s̈ or its slope jumps.
     pub fn kinks(self) -> &'static [f64] {
         self.data().kinks
     }

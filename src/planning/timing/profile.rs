@@ -119,7 +119,7 @@ impl Profile {
         Self::from_starts(vec![(0.0, PathProgress { rate: 1.0 / duration, ..PathProgress::at_rest(0.0) })], duration)
     }
 
-    /// Returns s = t/T including both ends, for paths that contain their own timing and need not be at rest at their
+    /// Returns s = t/T with ṡ = 1/T even at t = 0 and T, for paths with their own timing that need not rest at their
     /// ends. After T the motion is at rest.
     pub fn running(duration: f64) -> Self {
         Self { duration, shape: Shape::Running }

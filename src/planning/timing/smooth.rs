@@ -34,13 +34,13 @@ const END_DISTANCE: f64 = 0.003;
 const MIN_INTERVALS_PER_PIECE: usize = 12;
 /// Maximum number of refinements where a limit is exceeded between the points at which it is imposed.
 const MAX_REFINEMENTS: usize = 3;
-/// Relative excess of the factor on time from which an interval is refined.
+/// An interval is refined if the factor by which it must be slowed down exceeds 1 by more than this.
 const REFINED_ABOVE: f64 = 2e-3;
 /// Relative excess from which an interval is divided more finely.
 const REFINED_MORE_ABOVE: f64 = 0.03;
 /// Maximum number of nodes at which the grid is still refined.
 const MAX_NODES: usize = 4000;
-/// Number of parts of a phase of a law that are checked.
+/// Number of parts into which each phase of a law is divided to check its limits.
 const CHECKED_PARTS: usize = 500;
 /// Relative margin against rounding.
 const ROUNDING: f64 = 1e-9;

@@ -68,7 +68,7 @@ pub struct Contacts {
 pub struct FrictionTorques<'a> {
     /// Generalised forces, to which friction torques are added.
     pub force: &'a mut [f64],
-    /// Friction torques of the bearings, indexed by drive, to which those of their contacts are added.
+    /// Friction torque in the bearing of each drive, to which the torque of its contact is added.
     pub bearing: &'a mut [f64],
     /// Torques of stuck contacts: the first guess, then the result.
     pub stuck_torque: &'a mut [f64; MAX_CONTACTS],

@@ -4,7 +4,7 @@
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | n, N | numbers of drives and of rotational coordinates: N = n on a fixed base, n + 1 on a moving one, θ last | |
-//! | M_t | mass of all moving parts, m_b + M | kg |
+//! | M_t | m_b + M: base (centre of mass ρ from B in its axes, inertia I_b about that point) and manipulator | kg |
 //! | R, P | centre of mass of all moving parts, and their momentum M_t Ṙ | m, kg m/s |
 //! | p_B | position of B, R − Σ g_k e_k / M_t | m |
 //! | C'_kl | couplings about R: C_kl − ḡ_k g_l / M_t | kg m² |
@@ -178,7 +178,7 @@ impl MovingBody {
         self.rotating.drives
     }
 
-    /// Returns the state for given angles and rates of the drives, and pose and rates of the base.
+    /// Returns the state for given absolute angles and rates of the drives, and pose and rates of the base.
     pub fn state(&self, q: &DriveAngles, qd: &PerDrive, base: Pose2, velocity: Vector, turning: f64) -> State {
         let n = q.len();
         let turns = |drives: &[f64], last: f64| {

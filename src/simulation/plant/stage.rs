@@ -1,5 +1,5 @@
 //! [`RungeKuttaStage`]: evaluation of the equations of motion at a state, with arrays of compile-time size. Integration
-//! steps consist of stages: padding to [`MAX_DRIVES`] and copying would cost more than the arithmetic.
+//! steps have several stages; in each, padding to [`MAX_DRIVES`] and copying would cost more than the arithmetic.
 //!
 //! Unit vectors and mass matrix are computed once and used for rates, torques, accelerations and base wrench. A
 //! compile-time parameter says whether the base moves.
@@ -33,7 +33,7 @@ pub(crate) struct StateRates<const N: usize> {
     pub work: f64,
     /// Power lost in friction and dampers, W.
     pub lost: f64,
-    /// Dynamic f_B, N, and its moment about the origin, N m.
+    /// Dynamic f_B, N, and the dynamic moment about the origin, N m.
     pub impulse: (Vector, f64),
 }
 

@@ -11,7 +11,7 @@
 //!
 //! # At the maximum rate
 //! Ω never exceeds its limit Ω_top, not even within a step. In a step of h seconds, the torque is at most J (Ω_top −
-//! Ω)/h. With this torque, the wheel reaches the limit at the end of the step. The other direction has the
+//! Ω)/h, J the rotor's inertia. With it, the wheel reaches its limit at the step's end. The other direction has the
 //! corresponding limit. So the impulse is exact even in the step in which Ω reaches its limit. In later steps no
 //! torque drives Ω beyond the limit.
 

@@ -7,7 +7,7 @@
 //! | q̇_k − θ̇ | from the last two readings of the encoders; until there are two, the rate of the reference |
 //! | p_B, θ and their rates | by other instruments (gyroscopes, a star tracker), exactly, at the same instants |
 //!
-//! Control uses only these measurements, and evaluates its model at the measured e(q) and q̇.
+//! Sampled control with encoders uses only these, for its model too. Without encoders, q and q̇ are exact.
 //!
 //! # Before the first torque
 //! A torque takes effect one `delay` after the reading from which it is computed. Until the first torque takes effect,

@@ -164,7 +164,7 @@ impl Simulation {
         false
     }
 
-    /// Integrates a segment within the tolerance. Returns the number of substeps of a step for the next segment.
+    /// Integrates a segment within the tolerance. Returns the number of substeps for the next step.
     fn integrate_segment(
         &mut self,
         from: &StepState,

@@ -88,7 +88,7 @@ impl Alternative {
             Self::AsGiven => {}
             Self::Reactionless => {
                 set("kind", word("reactionless"));
-                // Otherwise, keep the shape that the scenario states.
+                // Only a straight line that the scenario does not state becomes a joint line.
                 if matches!(scenario.task.shape(), PathShape::Line) && scenario.task.shape.is_none() {
                     set("shape", word("joint-line"));
                 }

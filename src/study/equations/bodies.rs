@@ -48,7 +48,7 @@ pub(super) struct BodyMass {
     pub a: [Vector; MAX_DRIVES],
 }
 
-/// A rotor: its drive, J in kg m², and its rate per rate of each drive.
+/// A rotor: its drive, its inertia J, kg m², and the derivatives of its rate with respect to the rates of all drives.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BodyRotor {
     pub drive: usize,

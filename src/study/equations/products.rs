@@ -36,7 +36,7 @@ pub(super) fn coupling(bodies: &Bodies, k: usize, l: usize) -> Vec<Term> {
     grouped(couplings(bodies, k, l))
 }
 
-/// Returns the terms of g_k or C_kl that do not depend on the centres of mass of the links.
+/// Returns the terms of g_k or C_kl that do not depend on the centres of mass of links with their counterweights.
 pub(super) fn fixed_products(bodies: &Bodies, condition: Condition) -> Vec<Term> {
     let stays = |product: &Product| !product.is_own || matches!(product.part.0, Origin::Body(Body::Payload, _));
     match condition {

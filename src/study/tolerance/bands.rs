@@ -1,6 +1,6 @@
 //! Spread of n_B(t) and |f_B|(t) over the random machines: exact where possible, to first order, and sampled.
 //!
-//! The mean and the variance of n_B and of the components of f_B are exact, from the moments of the constants. The mean
+//! Mean and variance of n_B and of f_B's components are exact: from mean and covariance of the constants. The mean
 //! and the standard deviation of |f_B| have no such closed form. A norm is not linear, and it has no first-order
 //! expansion where the nominal f_B is zero. So these two and all percentiles are sampled. [`Agreement`] compares
 //! first-order with other results.

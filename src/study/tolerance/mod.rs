@@ -6,8 +6,8 @@
 //!
 //! # Limits of linearity
 //! With perfect tracking, the wrench is linear in g, C and the diagonal H_kk of the mass matrix. [`Ensemble`] is
-//! exact for large deviations too. The wrench is *not* linear in masses and lengths (m a_k a_l). Nor is the norm of
-//! f_B, or a peak over time. Tracking is not perfect with finite feedback gains if the model differs from the
+//! exact for large deviations too. The wrench is *not* linear in masses and lengths (m a_k a_l). Norms of f_B and
+//! peaks are not linear even in g, C, H_kk. Tracking is not perfect with finite gains if the model differs from the
 //! machine. Nor is it with torque limits, unequal gains, uncompensated friction, or a moving base. All these effects
 //! alter the motion itself, so [`simulate()`] then simulates each machine.
 //!

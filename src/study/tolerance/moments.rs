@@ -1,4 +1,4 @@
-//! Exact mean and covariance of the constants θ, and their exact derivatives.
+//! Exact mean and covariance of the constants θ, and the exact derivatives ∂θ/∂δ.
 //!
 //! θ is a polynomial in the parameters' deviations δ, of degree three at most: m a_k a_l. The parameters are
 //! independent, so the expectation of a monomial is a product of moments E[δᵏ].

@@ -23,7 +23,7 @@ pub struct Fit {
     pub critical: f64,
     /// Whether each unknown is identifiable from the data.
     pub identifiable: Vec<bool>,
-    /// Groups of unknowns that are only identifiable in combination; a single unknown in a group is not identifiable at
+    /// Groups of unknowns that are only identifiable in combination; a group of one is not identifiable at
     /// all.
     pub confounded: Vec<Vec<usize>>,
     /// Standard deviation σ of the residuals of force, N, and of moment, N m.

@@ -146,8 +146,8 @@ pub fn identified_machine(
     Ok((machine, misses.iter().map(|miss| -miss).collect()))
 }
 
-/// Returns the machine as built with the correction of the nominal one applied: its counterweights, and the changes of
-/// its links.
+/// Applies the correction of the nominal machine to the machine as built. Its counterweights become those of the
+/// corrected nominal machine, and its links get the same changes.
 ///
 /// # Errors
 /// Fails if there is no such machine.

@@ -19,7 +19,7 @@
 //! # Method
 //! If rates and accelerations are given, each sample is a row. Otherwise windows φ avoid a second differentiation of
 //! the data: ∫ φ f = ∫ φ̇ p + const and ∫ φ n = ∫ φ̇ h + ∫ φ (Σ g e × gravity) + const. Both sides are averaged with
-//! the same window, so a wide window loses information but causes no bias. p and h need q̇, from five neighbouring
+//! the same window, so a wide window loses information but causes no bias. q̇ is measured, or from five neighbouring
 //! samples (error of fourth order in their spacing). Noise in the angles biases the least-squares estimate towards 0;
 //! the bias is removed to first
 //! order.

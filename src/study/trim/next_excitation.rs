@@ -16,9 +16,9 @@ pub struct Excitation {
     /// Indices of the drives that move, and their senses, ±1.
     #[serde(skip)]
     pub drives: Vec<(usize, f64)>,
-    /// Amplitude of each drive, rad.
+    /// Amplitude of each drive in `drives`, rad, in the same order.
     pub amplitude: Vec<f64>,
-    /// Frequency of each drive, Hz; drives that move in step or against each other share a frequency.
+    /// Frequency of each drive in `drives`, Hz; drives that move in step or against each other share a frequency.
     pub frequency: Vec<f64>,
     /// Predicted half width of the interval of the least known unknown; infinite if it is still not identifiable.
     #[serde(skip_serializing_if = "is_infinite")]

@@ -103,7 +103,7 @@ impl Unknowns {
         (0..self.count()).map(of).collect()
     }
 
-    /// Computes the dynamic force (x, y) and the moment, weight included, per unit of each unknown at a state.
+    /// Computes dynamic force (x, y) and moment on the base, that of the weight included, per unit of each unknown.
     pub fn reaction(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, gravity: Vector, out: [&mut [f64]; 3]) {
         let [fx, fy, n] = out;
         self.weight_moment(e, gravity, n);

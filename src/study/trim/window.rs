@@ -3,7 +3,7 @@
 //! # Symbols
 //! | letter | meaning |
 //! |---|---|
-//! | u | (t − centre)/w, from −1 to 1 |
+//! | u | (t − `centre`)/`half`, from −1 to 1 |
 //! | φ | (1 − u²)⁴ |
 //! | a_j | weights of the average: Σ a_j y_j ≈ ∫ φ y / ∫ φ |
 //! | d_j | weights with Σ d_j y_j = −Σ a_j ẏ_j for cubics, ≈ ∫ φ̇ y / ∫ φ |

@@ -20,7 +20,7 @@ pub struct RebalancedMachine {
     pub machine: Machine,
     /// Value of each parameter, kg or m, in the order of the request.
     pub values: Vec<f64>,
-    /// Minimum of the objective: Σ (p Δ)² of the parameters that are not fixed.
+    /// Value of the objective: Σ (p Δ)² over the parameters that are not fixed; p is the penalty, Δ the change.
     pub cost: f64,
     /// Whether the cost is certified as the global minimum within the limits. If a body may change both its mass and a
     /// position, the answer is only the best of several searches.

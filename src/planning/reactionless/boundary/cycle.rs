@@ -1,4 +1,4 @@
-//! The weighted cycle of all spans, whose winding number about a point is its number of poses.
+//! The weighted cycle of all spans. Its winding number about a point is the number of poses at that point.
 
 use super::span::{BoundarySpan, Surface};
 use stillbase_mechanics::planar::Vector;

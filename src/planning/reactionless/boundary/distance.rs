@@ -10,7 +10,7 @@ const DISTANCE_TOLERANCE: f64 = 2e-10;
 const MAX_DEPTH: usize = 14;
 
 impl Boundary {
-    /// Returns the distance of p, m, from the boundary of the workspace of b, m: positive inside, negative outside, 0
+    /// Returns the distance, m, of p from the boundary of the workspace of b, rad: above 0 inside, below outside, 0
     /// on it. It refers to the exact curves, with an error below 1e-9 of the reach. Returns −∞ if p or b is not finite.
     pub fn distance(&self, p: Vector, b: f64) -> f64 {
         if !(p.re.is_finite() && p.im.is_finite() && b.is_finite()) {

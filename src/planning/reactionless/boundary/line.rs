@@ -37,7 +37,7 @@ pub struct BoundaryLoop {
     area: f64,
 }
 
-/// A curve of the workspace, with chords that deviate by at most 1e-5 m. A fold or a limit has more poses on its left.
+/// A curve of the workspace; chords as in [`BoundaryLoop::vertices`]. A fold or limit has more poses on its left.
 #[derive(Clone, Debug)]
 pub struct BoundaryLine {
     vertices: Vec<BoundaryVertex>,

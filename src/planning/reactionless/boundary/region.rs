@@ -122,7 +122,7 @@ impl Region {
         self
     }
 
-    /// Whether the region is a line, a point, or empty.
+    /// Whether the region is narrower than `thin`, rad: a line, a point, or empty.
     pub fn is_thin(&self, thin: f64) -> bool {
         self.edges.len() < 3 || self.edges.iter().any(|e| self.width(e) < thin)
     }

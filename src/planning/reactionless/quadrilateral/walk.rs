@@ -67,7 +67,7 @@ impl Quadrilateral {
         if first.1.abs() < second.1.abs() { first.2 } else { second.2 }
     }
 
-    /// Visits the whole curve within the limits, arc by arc. Consecutive arcs share an end.
+    /// Visits the whole curve within the limits, arc by arc. Neighbouring arcs of one graph share an end.
     pub fn arcs(&self, mut visit: impl FnMut(&MonotoneArc)) {
         if self.is_rhombus() {
             return self.lines(visit);

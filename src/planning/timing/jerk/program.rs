@@ -66,11 +66,11 @@ pub struct JerkProgram {
     pub(super) sides: Vec<TwoSidedLimit>,
     /// Number of two-sided limits at each point.
     pub(super) each: usize,
-    /// Number of those on torque and acceleration, which come first, followed by one on speed and those on jerk.
+    /// Number of limits on torque and acceleration at each point. They come first, then one on speed, then jerk.
     pub(super) linear: usize,
     /// Multipliers of the constraints c_i ≥ 0, whose slacks are the coefficients.
     pub(super) multiplier: Vec<f64>,
-    /// Second-order corrections of these constraints.
+    /// Second-order corrections of the constraints c_i ≥ 0.
     pub(super) correction: Vec<f64>,
 }
 

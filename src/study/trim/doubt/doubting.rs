@@ -178,7 +178,7 @@ fn furthest(machine: &Machine, given: &FitTrial, other: Option<&FitTrial>) -> Op
         (fit.measured[*i] - better).abs() / fit.nominal[*i].abs().max(f64::MIN_POSITIVE)
     };
     let candidates = (0..fit.unknowns.count()).filter(|i| fit.identifiable[*i] && known[*i]);
-    // Values as in the file are no evidence.
+    // Values that agree with the other fit, or else with the file, are no evidence.
     let candidates = candidates.filter(|i| off(i) > EQUAL_BELOW);
     candidates.max_by(|a, b| off(a).total_cmp(&off(b)))
 }

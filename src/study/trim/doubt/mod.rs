@@ -8,10 +8,10 @@
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | σ | root mean square residual of force and of moment, as a fraction of the measured value | |
-//! | N | half the degrees of freedom: effective rows, the smaller number of both fits, less the fitted parameters | |
+//! | N | half the degrees of freedom: the smaller effective number of rows of the two fits less fitted parameters | |
 //! | d_D², d² | squared distance from the file, of the momenta and of all unknowns, in units of `Tolerances` | |
 //! | c² | the larger squared distance of first moments and couplings in both fits, plus the number p of unknowns | |
-//! | Λ | likelihood ratio of a hypothesis to the measurement as given | |
+//! | Λ | likelihood ratio of a hypothesis to the measurement as given, whose values have the index 0 | |
 //!
 //! ln Λ = Σ N ln(σ₀/σ) + p/2 ln((d_D0² + c²)/(d_D² + c²)) ± ln 10⁶ if one hypothesis keeps the joint limits and the
 //! other violates them. The first term is the F-test of the residuals. The second compares the momenta with the file,
