@@ -5,6 +5,7 @@ use egui::{Popup, PopupCloseBehavior, RectAlign, RichText, ScrollArea, Ui, Vec2,
 use super::actions::key_of_switch;
 use super::fit;
 use super::icon::{Icon, IconButton, dot};
+use super::notation;
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, SessionCommand, Switch, ViewChange, ViewState};
@@ -60,6 +61,7 @@ fn list(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
     let titles = std::iter::once("as it was opened").chain(session.history());
     for (i, title) in titles.enumerate() {
         let tone = if i > present { p.dim } else { p.ink };
+        let title = notation::sentence(ui.ctx(), title);
         let words = format!("     {title}");
         let room = ui.available_width().max(254.0) - 2.0 * ui.spacing().button_padding.x;
         let words = RichText::new(fit::fitted(ui, &words, &plain(12.5), room)).font(plain(12.5)).color(colour(tone));
@@ -96,15 +98,14 @@ fn list_branches(ui: &mut Ui, branches: &[Fork], p: &Palette, commands: &mut Vec
             let dim = colour(p.dim);
             let line = egui::Button::new("").frame_when_inactive(false).min_size(vec2(196.0, BRANCH_HEIGHT_PT - 2.0));
             let line = ui.add(line);
+            let (title, when) = (notation::sentence(ui.ctx(), &branch.title), notation::sentence(ui.ctx(), &when));
             let corner = line.rect.left_top() + vec2(8.0, 4.0);
-            for (words, font, tone, y) in
-                [(&branch.title, plain(12.5), colour(p.ink), 0.0), (&when, plain(11.0), dim, 16.0)]
-            {
-                let words = egui::WidgetText::from(RichText::new(words).color(tone));
+            for (words, font, tone, y) in [(&title, plain(12.5), colour(p.ink), 0.0), (&when, plain(11.0), dim, 16.0)] {
+                let words = egui::WidgetText::from(RichText::new(words.as_ref()).color(tone));
                 let words = words.into_galley(ui, Some(egui::TextWrapMode::Truncate), 182.0, font);
                 ui.painter().galley(corner + vec2(0.0, y), words, tone);
             }
-            name(&line, &format!("Branch {}: {}, {when}", i + 1, branch.title));
+            name(&line, &format!("Branch {}: {title}, {when}", i + 1));
             if line.on_hover_text("Shows it; what is shown now becomes a branch").clicked() {
                 commands.push(SessionCommand::Branch(i).into());
             }

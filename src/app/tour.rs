@@ -118,7 +118,7 @@ const LOAD_KG: f64 = 0.3;
 /// complete an exercise.
 const MIN_DRAG_M: f64 = 0.02;
 const MIN_B_CHANGE_PAUSED_RAD: f64 = 0.2;
-const MIN_B_CHANGE_RUNNING_RAD: f64 = 0.05;
+const MIN_B_CHANGE_RUNNING_RAD: f64 = 0.02;
 
 fn payload(mass: f64) -> Vec<Command> {
     vec![
@@ -268,7 +268,7 @@ const STEPS: [Step; 7] = [
         title: "What it costs to change planes",
         words: "To go from one plane to another the arm must turn as a whole, and the base feels it: the faster, the more. \
                 n_B = −D₁ b̈.",
-        exercise: "Turn b while time runs.",
+        exercise: "Let the run end. Time goes on: now turn b, with three presses of ] or at the ring.",
         scene: ("case-3", 0.0),
         points_at: &[Pointed::Ring, Pointed::Widget("b slider")],
         button: |session| Some(("Start time", case(session, "case-3"))),

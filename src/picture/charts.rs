@@ -100,6 +100,7 @@ const PINS: Chart = Chart {
 };
 const ANGLES: Chart =
     Chart { title: "Drive angles", unit: "rad", signals: &["angle"], min_range: 0.5, centred: false, ..EMPTY_CHART };
+const INERTIAL_ANGLES: Chart = Chart { title: "Drive angles, inertial", ..ANGLES };
 const POSE: Chart = Chart {
     title: "Pose constant",
     unit: "rad",
@@ -123,7 +124,8 @@ pub fn charts(scenario: &Scenario) -> Vec<Chart> {
     let mut list = vec![TORQUE, if wheel { MOMENT_PAST_WHEEL } else { MOMENT }, FORCE];
     list.extend(Some(BASE).filter(|_| scenario.base.moves()));
     list.extend(Some(FRICTION).filter(|_| has_friction));
-    list.extend([PINS, ANGLES]);
+    // The angles of the drives are those of their links in space; on a fixed base both are the same.
+    list.extend([PINS, if scenario.base.moves() { INERTIAL_ANGLES } else { ANGLES }]);
     // There is no pose constant b if no drive exerts a moment on the base, or if λ depends strongly on the pose.
     list.extend(Some(POSE).filter(|_| constant_inertia(&scenario.machine).is_ok()));
     list.extend([EACH_PIN, TILT, TRANSMISSION, CHANGE_POINT]);

@@ -70,7 +70,7 @@ impl fmt::Display for PoseConstant {
             Self::Nearly { residual } => write!(
                 f,
                 "b = Σ λ_k q_k, but only nearly: couplings of up to {residual:.1e} kg m² remain, so holding b is not \
-                 exactly reactionless; `stillbase design` removes them"
+                 exactly reactionless; design removes them"
             ),
             Self::Unneeded => f.write_str("none is needed: every motion is reactionless, as no drive turns the base"),
             Self::None(why) => write!(f, "none: {why}"),

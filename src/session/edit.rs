@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::older;
-use crate::scenario::{MAX_STEPS, POINT_RANGE, POSE_CONSTANT_RANGE, effect_in, effect_of};
+use crate::scenario::{MAX_STEPS, POINT_RANGE, POSE_CONSTANT_RANGE, effect_in, effect_of, key_of, name_of};
 use stillbase_mechanics::machine::{ANGLE, MACHINE_TABLES, is_of_machine};
 use stillbase_settings::change;
-use stillbase_settings::key::Effect;
+use stillbase_settings::key::{Effect, Key};
 use stillbase_settings::range::{RangeCheck, shortened};
 
 /// One change. It can be saved, replayed and undone.
@@ -311,24 +311,21 @@ fn title_of(change: &Table) -> String {
         None => {}
     }
     let one = |(path, value): (String, &Value)| {
-        let number = change::number(value);
-        let back = value.as_str() == Some(change::DEFAULT_WORD);
-        match (path.as_str(), number) {
-            ("task.time", Some(time)) => format!("motion time to {time:.3} s"),
-            // Most edits change the task, so its name is omitted.
-            (path, number) => {
-                let words = match is_of_machine(path) {
-                    true => path.to_owned(),
-                    false => path.strip_prefix("task.").unwrap_or(path).replace(['_', '.'], " "),
-                };
-                match number {
-                    _ if path == "counterweight" => counterweights(value),
-                    _ if back => format!("{words} back to normal"),
-                    Some(x) => format!("{words} to {}", (x * 1e6).round() / 1e6),
-                    None => format!("{words} to {}", shortened(&change::typed(value), 60)),
-                }
-            }
+        if path == "counterweight" {
+            return counterweights(value);
         }
+        let words = name_of(&path);
+        if value.as_str() == Some(change::DEFAULT_WORD) {
+            return format!("{words} back to normal");
+        }
+        let typed = match change::number(value) {
+            Some(x) => ((x * 1e6).round() / 1e6).to_string(),
+            None => shortened(&change::typed(value), 60),
+        };
+        let has_numbers = typed.starts_with(|c: char| c.is_ascii_digit() || c == '-');
+        let unit = key_of(&path).map(Key::unit).filter(|unit| !unit.is_empty() && has_numbers);
+        let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
+        format!("{words} to {typed}{unit}")
     };
     format!("set {}", change::leaves(change).into_iter().map(one).collect::<Vec<_>>().join(", "))
 }

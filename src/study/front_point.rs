@@ -50,7 +50,7 @@ impl FrontMeasure {
         match self {
             Self::Torque => ["greatest torque", "N m"],
             Self::Workspace => ["workspace", "m²"],
-            Self::OffBy => ["left if 1 % and 0.5 mm off", "kg m"],
+            Self::OffBy => ["greatest |g_k| if 1 % and 0.5 mm off", "kg m"],
         }
     }
 

@@ -97,7 +97,7 @@ pub enum NoLengths {
     #[error("{0}")]
     Nothing(&'static str),
     /// No machine evaluated was feasible.
-    #[error("none of {machines} machines with such lengths does: {why}")]
+    #[error("none of {machines} machines with lengths in these intervals is feasible: {why}")]
     None {
         /// Number of machines evaluated.
         machines: usize,

@@ -329,7 +329,7 @@ fn a_change_that_takes_long_is_made_beside_the_window() {
     workers.work();
     h.run_steps(2);
     assert_eq!(time(&h), was);
-    assert_eq!(session(&h).redo_title(), Some("set motion time to 1.700 s"));
+    assert_eq!(session(&h).redo_title(), Some("set duration from A to B to 1.7 s"));
     // Cancelled, nothing has changed, and what waited for it goes too.
     tell(&mut h, Command::Session(SessionCommand::Edit(Edit::set("task.time", 1.8))));
     tell(&mut h, Command::Session(SessionCommand::Edit(Edit::set("task.b", 2.45))));

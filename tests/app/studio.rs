@@ -419,7 +419,7 @@ fn fronts_are_kept_and_stand_beside_each_other() {
 
 fn colours_tell_the_machines_of_the_front_apart() {
     let mut h = bare();
-    for words in ["greatest torque", "workspace", "left if 1 % and 0.5 mm off"] {
+    for words in ["greatest torque", "workspace", "greatest |g_k| if 1 % and 0.5 mm off"] {
         h.get_by_label("what the colours of the front tell").click();
         h.run_steps(3);
         h.get_by_label(words).click();

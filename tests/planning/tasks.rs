@@ -156,7 +156,7 @@ fn planning_is_done_by_edits() {
     session.end_gesture();
     assert_eq!(session.frames().len(), before.len(), "the display stays where it was");
     assert_ne!(session.frame().q, before[300].q);
-    assert!(session.undo_title().expect("an edit").contains("shape to line"));
+    assert!(session.undo_title().expect("an edit").contains("shape of the path to line"));
 
     let task = session.scenario().task.clone();
     let outside = task.moving(1, Vector::new(1.1, 0.3)).expect("a point");

@@ -519,7 +519,7 @@ fn a_forged_part_is_bounded() {
         (last, "inf", "want a finite number"),
         (0, "6", "sample 6 where 5 should follow"),
         (0, "-5", "a.csv:7: want the number of a sample"),
-        (0, "61", "sample 61 of a study of 60"),
+        (0, "61", "sample 61: want sample numbers below 60"),
         (3, "x", "a.csv:7: want the number of a sample"),
         (3, "1,1", "a.csv:7: want the number of a sample"),
         (3, &long, "a.csv:7: want the number of a sample"),

@@ -170,7 +170,7 @@ fn a_machine_of_two_drives_has_a_curve_once_it_is_balanced() {
     assert_eq!(numbers(&designed["com"]).len(), 2);
     fails(&["design", &file, "--preset", "table-1"], 2, &["9 penalties for 2 links"]);
     fails(&["design", &file, "--penalty", "1,-1"], 2, &["'-1'", "1e-6 to 1e6"]);
-    let why = ["no pose constant b", "drives 1 and 2", "0.0600 kg m²", "link forearm", "stillbase design"];
+    let why = ["no pose constant b", "drives 1 and 2", "0.0600 kg m²", "link forearm", "design finds"];
     fails(&["reach", &file, "0.5,0.5"], 1, &why);
     fails(&["pose", &file, "0.5,0.5", "--b", "1"], 1, &why);
     fails(&["workspace", &file, "--b", "1"], 1, &why);

@@ -138,7 +138,7 @@ fn a_reversed_sensor_is_refused_and_what_it_asks_for_works() {
     fs::write(folder.join("bad.csv"), head.join(",") + "\n" + &bad).expect("written");
     let said = said_in(&folder, &["trim", "bad.csv", "nine-link"], 1);
     assert!(said.contains("nz has the wrong sign: want nz times −1"), "{said}");
-    assert!(said.contains("which no masses above zero make") && said.contains("--as-given"), "{said}");
+    assert!(said.contains("which no positive masses can give") && said.contains("--as-given"), "{said}");
     assert!(said_in(&folder, &["trim", "bad.csv", "nine-link", "--as-given"], 0).contains("note: nz"), "insisted");
     said_in(&folder, &["trim", "good.csv", "nine-link"], 0);
 }

@@ -122,10 +122,15 @@ fn every_state_of_a_session_is_a_row() {
     let said = states(&contents, &format!("{root}/state"), "TextDocument:text", text);
     let steps: Vec<(i64, i64)> = said.iter().map(|(edit, step, _)| (*edit, *step)).collect();
     assert_eq!(steps, [(0, 0), (1, 0), (2, 0), (3, 0), (4, 0), (5, 60)], "the drag is one change");
-    for (i, words) in
-        ["Before 5 changes", "link.5.com", "link.1.mass", "8.30 kg on 2 links", "counterweight.1.mass to 5"]
-            .into_iter()
-            .enumerate()
+    for (i, words) in [
+        "Before 5 changes",
+        "centre of mass along link 5",
+        "mass of link 1",
+        "8.30 kg on 2 links",
+        "mass of counterweight 1 to 5 kg",
+    ]
+    .into_iter()
+    .enumerate()
     {
         assert!(said[i].2.contains(words), "{words:?} in {:?}", said[i].2);
     }

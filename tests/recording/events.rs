@@ -115,7 +115,12 @@ fn edits_on_the_way_are_recorded() {
     record_in(&folder, "edited.rrd", &[scenario]).expect("an edited case");
     let contents = Contents::of(&folder.path("edited.rrd"));
     let events = contents.texts("/case-3/events", "TextLog:text");
-    for part in ["drag target to 3.000", "compare with b = 1.000 rad", "set limits.a1", "the target is outside"] {
+    for part in [
+        "drag target to 3.000",
+        "compare with b = 1.000 rad",
+        "set limits of angle a1 to 0.4,2.7 rad",
+        "the target is outside",
+    ] {
         assert!(events.iter().any(|e| e.starts_with(part)), "{part} in {events:?}");
     }
     let steps = |path: &str, component: &'static str| -> Vec<i64> {

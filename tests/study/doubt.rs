@@ -113,7 +113,7 @@ const FAULTS: &[(&str, Spoil)] = &[
     ("fx has the wrong sign", |m| each_force(m, |f| -f.conj())),
     ("fy has the wrong sign", |m| each_force(m, |f| f.conj())),
     ("fx and fy are exchanged", |m| each_force(m, |f| Vector::new(f.im, f.re))),
-    ("a sensor that reads what holds the machine", |m| {
+    ("a sensor that reads the force of the base on the machine", |m| {
         each_force(m, |f| -f);
         each_moment(m, -1.0);
     }),

@@ -71,7 +71,7 @@ fn difference(a: &ShardHeader, b: &ShardHeader) -> String {
         return format!("seeds {} and {}", one.seed, two.seed);
     }
     match a.columns == b.columns {
-        true => "the scenario, a spread, the instants or the program's version".into(),
+        true => "the scenario, a spread, the instants, the mode or the program's version differ".into(),
         false => "other numbers vary".into(),
     }
 }

@@ -483,7 +483,7 @@ fn rows_of(group: &RowGroupMetaData) -> Option<usize> {
 /// Checks that a row is possible for a machine of the study.
 fn plausible(study: &StudyId, names: &[String], sample: u64, row: &[f64]) -> Result<(), String> {
     if sample >= study.samples {
-        return Err(format!("sample {sample} of a study of {}: want numbers below it", study.samples));
+        return Err(format!("sample {sample}: want sample numbers below {}", study.samples));
     }
     let first_outcome = row.len().saturating_sub(OUTCOME_COUNT);
     let wrong = |(i, x): (usize, &f64)| !x.is_finite() || (i >= first_outcome && *x < 0.0);

@@ -78,7 +78,7 @@ pub enum DesignError {
     /// The conditions contradict each other, or an unsatisfied condition does not depend on any l_c.
     #[error(
         "no centres of mass along the links balance this machine: {residual} remain at best in {condition}; \
-             counterweights need a link that follows that drive and hangs on the base"
+             counterweights need a link that follows a drive of this condition and is attached to the base"
     )]
     Inconsistent {
         /// The condition with the largest residual.

@@ -210,7 +210,7 @@ pub enum MachineError {
         chain: String,
     },
     /// More than one end effector.
-    #[error("{count} end effectors: want one, [end_effector]; machines with several hands are not there yet")]
+    #[error("{count} end effectors: want one, [end_effector]; several are not supported")]
     SeveralEndEffectors {
         /// Their number.
         count: usize,

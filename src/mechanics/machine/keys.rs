@@ -91,7 +91,7 @@ pub(super) const MACHINE_KEYS: [KeyRow; 23] = [
             "counterweight.*.mass",
             MASS,
             Key::REQUIRED,
-            "Mass of a counterweight: 1 is the first that the machine has.",
+            "Mass of a counterweight; counterweights are numbered from 1, in the order of the machine.",
         ),
         at!(Number, |spec, i| spec.counterweights[i].mass),
     ),

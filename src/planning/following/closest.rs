@@ -37,7 +37,7 @@ const LIMIT_TOLERANCE_RAD: f64 = 1e-9;
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoClosestMotion {
     /// Newton's method found no pose.
-    #[error("at {time:.3} s no pose at b = {b:.4} rad beside the given one has the end effector at ({:.3}, {:.3}) m", at.re, at.im)]
+    #[error("at {time:.3} s no pose at b = {b:.4} rad near the given pose has the end effector at ({:.3}, {:.3}) m", at.re, at.im)]
     Pose {
         /// Time of the sample, s.
         time: f64,

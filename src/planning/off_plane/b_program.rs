@@ -77,7 +77,7 @@ fn kept_within(
         }
         rounds += 1;
         if rounds > MAX_TIGHTENINGS {
-            return Err(format!("{past:.1e} rad past its end between nodes"));
+            return Err(format!("{past:.1e} rad outside its bounds"));
         }
         extra += 2.0 * past;
     }

@@ -39,7 +39,7 @@ pub enum DriftError {
         gap: f64,
     },
     /// [J; D] is singular.
-    #[error("at s = {s:.3} of the curve, time {cycle} round, no rates of zero momentum follow it")]
+    #[error("at s = {s:.3} of the curve, in cycle {cycle}, no rates of zero momentum follow it")]
     Singular {
         /// s of the curve, 0 to 1.
         s: f64,

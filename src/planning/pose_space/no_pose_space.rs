@@ -12,7 +12,7 @@ pub enum NoPoseSpace {
     /// The inertia matrix D depends on the pose.
     #[error(
         "this machine has no pose constant b: its angular momentum depends on the pose, because drives {} and {} are \
-         coupled by {} kg m², most of it through link {link}; `stillbase design` finds centres of mass that undo it{}",
+         coupled by {} kg m², most of it through link {link}; design finds centres of mass that undo it{}",
         .pair[0], .pair[1], significant(*residual), if *.only { ONLY_TWO } else { "" }
     )]
     Varies {
@@ -64,7 +64,7 @@ pub enum NoPoseSpace {
 
 /// Why the end effector cannot follow prescribed curves while b is held, in words.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[error("while b is held the end effector of a machine with {} has its own way", counted(*.drives, "drive"))]
+#[error("while b is held, the end effector of a machine with {} moves on one curve at most", counted(*.drives, "drive"))]
 pub struct NotFollowable {
     /// Number of drives of the machine.
     pub drives: usize,

@@ -56,7 +56,7 @@ pub enum PlaneError {
     #[error(transparent)]
     Map(#[from] NotAPlaneMap),
     /// The general method was requested.
-    #[error("these poses are told apart by b alone, without planes")]
+    #[error("planes were not requested: the poses are computed by the general method")]
     NotRequested,
 }
 

@@ -16,7 +16,7 @@ keyed! {
     /// A payload that the model does not contain, and the time interval in which it is held.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Load at "plant.payload" {
-        /// Mass of a payload that control does not know of; it adds to the machine's own and unbalances it.
+        /// Mass of a payload that only the law payload-compensation knows of; it adds to the machine's own payload.
         mass: f64 = "0", range: Range::new(0.0, MAX_PAYLOAD, "kg"), saved: always;
         /// Inertia of the payload about its own centre of mass.
         inertia: f64 = "0", range: Range::new(0.0, MAX_PAYLOAD, "kg m²");

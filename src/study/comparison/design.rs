@@ -45,7 +45,7 @@ pub const DESIGN_COLUMNS: [SummaryColumn<DesignMeasures>; 10] = [
         "force_left",
         "worst imbalance",
         "worst (7)",
-        "largest |g|, what is left of force balance (7)",
+        "largest |g|, the residual of force balance (7)",
         "kg m",
         5,
         |d| Some(d.residuals[0]),
@@ -54,7 +54,7 @@ pub const DESIGN_COLUMNS: [SummaryColumn<DesignMeasures>; 10] = [
         "coupling_left",
         "worst coupling",
         "worst (8)",
-        "largest |C|, what is left of invariance (8)",
+        "largest |C|, the residual of invariance (8)",
         "kg m²",
         5,
         |d| Some(d.residuals[1]),
@@ -84,7 +84,7 @@ pub const DESIGN_COLUMNS: [SummaryColumn<DesignMeasures>; 10] = [
         "beta_force",
         "share of force",
         "β force",
-        "force on the base in the first run's motion, of what the first does",
+        "force on the base in the first run's motion, as a fraction of that of the first machine",
         "1",
         4,
         |d| d.beta()?.force,
@@ -93,7 +93,7 @@ pub const DESIGN_COLUMNS: [SummaryColumn<DesignMeasures>; 10] = [
         "beta_moment",
         "share of moment",
         "β moment",
-        "moment on the base in the first run's motion, of what the first does",
+        "moment on the base in the first run's motion, as a fraction of that of the first machine",
         "1",
         4,
         |d| d.beta()?.moment,
@@ -102,7 +102,7 @@ pub const DESIGN_COLUMNS: [SummaryColumn<DesignMeasures>; 10] = [
         "beta_torque",
         "share of torque",
         "β torque",
-        "torques in the first run's motion, of what the first takes",
+        "torques in the first run's motion, as a fraction of those of the first machine",
         "1",
         4,
         |d| d.beta()?.torque,
@@ -129,7 +129,7 @@ impl DesignCandidate {
         let [own, other] = [self, first].map(|one| one.machine.drives());
         if own != other {
             let [own, other] = [own, other].map(|count| counted(count, "drive"));
-            design.why_not = Some(format!("it has {own} and the first {other}: it is not set beside that"));
+            design.why_not = Some(format!("it has {own} and the first {other}: the two are not compared"));
             return design;
         }
         let motion = match (self.is_alike(first), self.differs(first)) {

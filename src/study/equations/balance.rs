@@ -14,7 +14,7 @@ use stillbase_mechanics::planar::Vector;
 use stillbase_settings::number::subscript;
 
 /// Note for machines with masses off the axes of their links.
-const OFF_AXIS: &str = "Some masses lie off the axes of their links; the terms are what they do along them.";
+const OFF_AXIS: &str = "Some masses lie off the axes of their links; the terms count positions along the axes only.";
 
 /// The data of a machine that its balance depends on.
 pub(super) struct BalanceEquations<'a> {
@@ -254,7 +254,7 @@ impl BalanceEquations<'_> {
         Equation {
             number: "A3",
             title: "The columns of D",
-            says: "What drive k brings to the angular momentum; only the brackets of (8) depend on the pose.",
+            says: "What drive k adds to the angular momentum; only the terms with cos depend on the pose.",
             form: "d_{k} = I_{k} + m l² + C_{kl} cos(q_{k} − q_{l})",
             notes: self.notes(),
             lines: Ok((0..n).map(line).collect()),

@@ -73,6 +73,6 @@ const COUPLING_TOLERANCE: f64 = 1e-3;
 fn not_constant(inertia: &Inertia) -> Option<String> {
     (inertia.pose_dependence() > COUPLING_TOLERANCE).then(|| {
         let left = ShortNumber((inertia.invariance_residual() * 1e4).round() * 1e-4);
-        format!("the mass matrix of this machine changes with its pose: (8) leaves up to {left} kg m²")
+        format!("the mass matrix of this machine changes with its pose: (8) has a residual of up to {left} kg m²")
     })
 }

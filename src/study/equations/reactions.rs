@@ -95,7 +95,7 @@ impl<'a> Reactions<'a> {
         Equation {
             number: "2",
             title: "Centre of mass",
-            says: "The centre of mass of all is where the links' own are on average, each by its mass.",
+            says: "The centre of mass of the machine is the average of the links' centres of mass, weighted by their masses.",
             form: "r_{CM} = (1/M) Σ m_{j} r_{cj}",
             notes: vec!["Here times the mass M of all.".into()],
             lines: Ok(AXES.into_iter().map(line).collect()),
@@ -167,7 +167,7 @@ impl<'a> Reactions<'a> {
         Equation {
             number: "4",
             title: "Torques",
-            says: "Drives turn what is inert (H), what rates bend off (V), and hold what gravity pulls at.",
+            says: "The torques accelerate the inertia (H), balance the velocity terms (V), and hold the weight.",
             form: "τ = H(q) q\u{308} + V(q, q\u{307}) − γ\u{1d40} g",
             notes,
             lines: Ok((0..n).map(line).collect()),
@@ -239,7 +239,7 @@ impl<'a> Reactions<'a> {
         Equation {
             number: "6",
             title: "Angular momentum",
-            says: "What all bodies have of it about B is D times the rates of the drives.",
+            says: "The angular momentum of all bodies about B is D times the rates of the drives.",
             form: "Σ (I_{j} ω_{j} + m_{j} r_{cj} × ṙ_{cj}) = D(q) q\u{307}",
             notes: Vec::new(),
             lines: Ok(vec![Equality::new("", "kg m²/s", left, right.collect(), scale)]),

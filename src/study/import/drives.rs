@@ -45,7 +45,7 @@ pub(super) fn of_drives(
         path_refusal = if let Err(NotFollowable { drives }) = space.follows_curves() {
             Some(format!("{} held to a b move the end effector along one curve of their own", counted(drives, "drive")))
         } else if let Some((b, _)) = request.b.is_none().then(near).flatten() {
-            let why = "of all b that reach every point of its path, the one that moves the drives least";
+            let why = "of all b that reach every point of the tip's path, the one that moves the drives least";
             // Between the samples that determined b, the path may leave the workspace slightly.
             let stop = match add(b, why.into()) {
                 Some(stop) => stop.nearest_b().map_or(Some(stop), |other| add(other, why.into())),
@@ -53,7 +53,7 @@ pub(super) fn of_drives(
             };
             stop.map(|stop| stop.to_string())
         } else {
-            add(wanted, format!("{which} reaches every point of its path")).map(|stop| stop.to_string())
+            add(wanted, format!("{which} reaches every point of the tip's path")).map(|stop| stop.to_string())
         };
     }
     if request.keep == Some(PreservedPath::Tip) {

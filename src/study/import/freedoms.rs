@@ -50,10 +50,13 @@ pub(super) fn held_b_motion(
                 let why = match range {
                     None => "b is the one asked for".to_owned(),
                     Some([low, high]) if b == tried[0] => {
-                        format!("b is the middle of what reaches all of the path, {} rad", describe_interval(low, high))
+                        format!(
+                            "b is the middle of the interval of b that reach the whole path, {} rad",
+                            describe_interval(low, high)
+                        )
                     }
                     Some([low, high]) => format!(
-                        "b = {} rad is one at which all of it can be followed, of {} rad that reach it",
+                        "the whole path can be followed at b = {} rad; it can be reached at b in {} rad",
                         fixed(b, 4),
                         describe_interval(low, high)
                     ),
@@ -77,7 +80,7 @@ fn widest(space: &PoseSpace, points: &[Vector]) -> Result<[f64; 2], String> {
     }
     let common = BSet::overlap(&sets).intervals;
     common.into_iter().max_by(|x, y| (x[1] - x[0]).total_cmp(&(y[1] - y[0]))).ok_or_else(|| {
-        "some b reaches every point of the path, but none all of them: want a shorter path, or minimum-norm rates"
+        "every point of the path is reached at some b, but no b reaches all points: want a shorter path, or minimum-norm rates"
             .into()
     })
 }

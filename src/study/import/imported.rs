@@ -132,7 +132,7 @@ impl ImportedMotion {
         if let Some((limit, factor)) = &proposal.account.over {
             let times = fixed(*factor, 2);
             let note =
-                Advice::from(format!("the proposal asks for {times} times the {limit}; slower samples, or another "));
+                Advice::from(format!("the proposal needs {times} × the {limit}: want slower samples or another "));
             self.notes.push(note.name(Remedy::PoseConstant));
         }
         self.feasible = true;

@@ -35,13 +35,19 @@ pub(super) fn held_plane_motion(
             let what = if all.is_some() { "all of the path" } else { "its first point" };
             let range = all.or(first).unwrap_or([0.0; 2]);
             let b = 0.5 * (range[0] + range[1]);
-            (b, format!("b is the middle of what reaches {what}, {} rad", describe_interval(range[0], range[1])))
+            (
+                b,
+                format!(
+                    "b is the middle of the interval of b that reach {what}, {} rad",
+                    describe_interval(range[0], range[1])
+                ),
+            )
         }
     };
     let follow = |b: f64| trace::follow(map, curves, b, None, Rule::default()).map(|_| b);
     let followed = follow(b).map(|b| (b, why)).or_else(|stop| match (stop.nearest_b.zip(stop.displayed_b), fixed_b) {
         (Some((b, shown)), None) => {
-            follow(b).map(|b| (b, format!("b = {shown} rad is one at which all of it can be followed")))
+            follow(b).map(|b| (b, format!("the whole path can be followed at b = {shown} rad")))
         }
         _ => Err(stop),
     });

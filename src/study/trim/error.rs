@@ -55,7 +55,7 @@ pub enum TrimError {
     Still,
     /// The residuals are so strongly correlated that no interval can be stated.
     #[error(
-        "what the machine does not explain is as slow as the motions themselves: it counts as {} independent rows for {} \
+        "the residuals vary as slowly as the motions themselves: they count as {} independent rows for {} \
          that have to be found; want more or longer motions", fixed(*effective, 1), counted(unknowns, "number")
     )]
     Correlated {

@@ -114,7 +114,7 @@ impl Suggestion {
         };
         let then = match best.candidate.half_width {
             half if half.is_finite() => format!("would make that ± {} {}", fixed_or_scientific(half, 6), self.unit),
-            _ => "would not tell it either".into(),
+            _ => "would not identify it either".into(),
         };
         Some(format!("{now}; {} s of {} {then}.", fixed(self.duration, 2), best.motion))
     }
@@ -142,9 +142,9 @@ impl TrimReport {
         match self.worth.filter(|_| off) {
             Some(gain) => {
                 let worth = gain.worth.words();
-                format!("No change is shown to help. What is off could be mended so over these motions: {worth}.")
+                format!("No change is shown to help. Over these motions the correction found would lower {worth}.")
             }
-            None => "Nothing to change: no line of (7) and (8) is shown to be off that a change could mend.".into(),
+            None => "Nothing to change: no line of (7) and (8) that can be corrected is significantly off.".into(),
         }
     }
 

@@ -306,7 +306,7 @@ impl<'a> Problem<'a> {
         };
         match conditions.into_iter().all(balanced) {
             true => Ok(RebalancedMachine { machine, values, cost, certified: self.is_convex() }),
-            false => Err(RebalanceError::Failed("what it found is not balanced to rounding".into())),
+            false => Err(RebalanceError::Failed("its result is not balanced within rounding".into())),
         }
     }
 

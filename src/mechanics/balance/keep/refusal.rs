@@ -105,7 +105,7 @@ pub enum RebalanceError {
     Twice(String),
     /// No values of the listed parameters balance the machine.
     #[error(
-        "nothing that may change balances this machine: {residual} remain at best in {condition}; want more parameters free"
+        "no change of these parameters balances this machine: {residual} remain at best in {condition}; want more parameters free"
     )]
     Inconsistent {
         /// The condition with the largest residual.
@@ -114,7 +114,7 @@ pub enum RebalanceError {
         residual: String,
     },
     /// Balance would need a mass of zero or less.
-    #[error("only a mass of nothing or less would balance this machine: want more parameters free")]
+    #[error("only a mass of zero or less would balance this machine: want more parameters free")]
     NoMass,
     /// These limits contradict each other: a minimal set.
     #[error("no balance within these limits: {}{}", listed(.limits, "; "), sufficient_relief(.relief))]
@@ -129,6 +129,6 @@ pub enum RebalanceError {
     #[error("the solver found no answer: {0}")]
     Failed(String),
     /// The result is not a valid machine.
-    #[error("the machine with it: {0}")]
+    #[error("the rebalanced machine is not valid: {0}")]
     Machine(String),
 }

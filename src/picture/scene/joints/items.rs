@@ -5,10 +5,18 @@ use crate::numbers::round_up;
 use crate::scene::axes::Axis;
 use crate::scene::palette::{Palette, faded};
 use crate::scene::{Anchor, Label, Marker, Scene};
+use stillbase_session::Run;
 use stillbase_simulation::frame::Frame;
 
 /// Symbols of the drive angles.
 pub const SYMBOLS: [&str; 8] = ["q₁", "q₂", "q₃", "q₄", "q₅", "q₆", "q₇", "q₈"];
+/// Symbols of the drive angles relative to a base that moves: θ is its angle.
+const SYMBOLS_ON_BASE: [&str; 8] = ["q₁ − θ", "q₂ − θ", "q₃ − θ", "q₄ − θ", "q₅ − θ", "q₆ − θ", "q₇ − θ", "q₈ − θ"];
+
+/// Returns the symbols of the angles along the axes in a run.
+pub(super) fn symbols(run: &Run) -> &'static [&'static str; 8] {
+    if run.scenario().base.moves() { &SYMBOLS_ON_BASE } else { &SYMBOLS }
+}
 
 /// Maximum number of ticks on the longest axis.
 const MAX_TICKS: f64 = 10.0;
@@ -18,7 +26,7 @@ const MAX_TICKS: f64 = 10.0;
 pub(super) fn axes(
     palette: &Palette,
     frame: &Frame,
-    drives: [usize; 3],
+    (drives, symbols): ([usize; 3], &[&'static str; 8]),
     bounds: [[f64; 2]; 3],
     origin: &[f64],
     notation: Notation,
@@ -27,7 +35,7 @@ pub(super) fn axes(
     [0, 1, 2].map(|i| {
         let (k, [from, to]) = (drives[i], bounds[i]);
         Axis {
-            symbol: SYMBOLS[k],
+            symbol: symbols[k],
             unit: "rad",
             colour: palette.drive(k),
             ends: [from, to],

@@ -47,6 +47,8 @@ pub(super) struct Prism {
     corners: [[f64; 2]; 4],
     /// The planned motion along the axes of the scene, with origin q = 0; empty without a plan.
     course: Strips,
+    /// Symbols of the angles.
+    symbols: &'static [&'static str; 8],
     /// Interval of b that is shown.
     range: ShownRange,
     /// Whether b changes so much that the camera looks across the prism.
@@ -77,6 +79,7 @@ impl Prism {
             drives,
             corners,
             course,
+            symbols: items::symbols(run),
             planes,
             range,
         };
@@ -242,7 +245,14 @@ impl Prism {
             solid("plane", 0, plane, faded(palette.amber, if hot { 0.42 } else { 0.34 }), ItemChanges::Pose),
         ];
         let eye = camera.eye_direction().map(f64::from);
-        let axes = items::axes(&palette, frame, self.drives, self.bounds(b), &self.origin(b), options.notation);
+        let axes = items::axes(
+            &palette,
+            frame,
+            (self.drives, self.symbols),
+            self.bounds(b),
+            &self.origin(b),
+            options.notation,
+        );
         axes::draw(&mut scene, &palette, &axes, eye, self.range.changes());
         self.prism(&mut scene, &palette, b);
         self.neighbours(&mut scene, &palette, b);

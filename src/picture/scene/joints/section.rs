@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use super::items::{self, SYMBOLS};
+use super::items;
 use super::range::ShownRange;
 use crate::notation::Notation;
 use crate::numbers::{degrees, round_up, signed};
@@ -38,6 +38,8 @@ pub(super) struct JointSection {
     course: Vec<DriveAngles>,
     /// Bounds of the box along the axes of the scene.
     bounds: [[f64; 2]; 3],
+    /// Symbols of the angles.
+    symbols: &'static [&'static str; 8],
     /// Interval of b that is shown.
     range: ShownRange,
 }
@@ -51,7 +53,8 @@ impl JointSection {
         let course = run.motion().map(|motion| stations(motion).map(|s| motion.path.at(s).q).collect());
         let shown = (0..n.min(3)).collect();
         let (space, course, bounds) = (space.clone(), course.unwrap_or_default(), [[0.0; 2]; 3]);
-        (n > 1).then(|| Self { space, shown, course, bounds, range }.bounded())
+        let symbols = items::symbols(run);
+        (n > 1).then(|| Self { space, shown, course, bounds, symbols, range }.bounded())
     }
 
     /// Sets the drives along the axes, indices from 0; has no effect if the machine lacks one of them.
@@ -269,7 +272,8 @@ impl JointSection {
             scene.solids.push(Solid { name, mesh: 0, world_from_item: IN_PLACE, colour, changes });
             let eye = camera.eye_direction().map(f64::from);
             let drives = [0, 1, 2].map(|i| self.shown[i]);
-            let axes = items::axes(&palette, frame, drives, self.bounds, &self.origin(b), options.notation);
+            let axes =
+                items::axes(&palette, frame, (drives, self.symbols), self.bounds, &self.origin(b), options.notation);
             axes::draw(&mut scene, &palette, &axes, eye, self.range.changes());
         }
         self.neighbours(&mut scene, &palette, frame);
@@ -331,7 +335,7 @@ impl JointSection {
             let end = flat(at(i, to, low));
             let offset = if i == 0 { [12.0, 13.0] } else { [-8.0, -14.0] };
             let anchor = if i == 0 { Anchor::Left } else { Anchor::Right };
-            let title = format!("{}, {}", SYMBOLS[k], notation.unit_name("rad"));
+            let title = format!("{}, {}", self.symbols[k], notation.unit_name("rad"));
             scene.labels.push(Label::new("axes/titles", end, offset, title, tone, 12.5, anchor));
         }
         scene.lines.insert(0, Polyline::new("axes/grid", lines, 1.0, faded(palette.line, 0.7)));

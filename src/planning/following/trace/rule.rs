@@ -91,7 +91,7 @@ impl Blocked {
         let remedy = match (self.displayed_b, self.some_b_reaches_all) {
             (Some(b), _) => format!("b = {b} rad would do"),
             (None, false) => "no b reaches all of it".into(),
-            (None, true) => "some b reaches every point of it, but with no b can it be followed".into(),
+            (None, true) => "at some b every point of it can be reached, but at no b can it be followed".into(),
         };
         let part = match self.longest {
             Some([from, to]) if to - from > 1e-3 => {

@@ -107,7 +107,7 @@ fn frames() -> Vec<Fault> {
         channels("fy has the wrong sign", "fy times −1", 1, (one, true), 1.0),
         channels("fx and fy are exchanged", swap, 1, (i, true), 1.0),
         channels(
-            "fx, fy and nz have the wrong sign, as of a sensor that reads what holds the machine",
+            "fx, fy and nz have the wrong sign, as of a sensor that reads the force of the base on the machine",
             "fx, fy and nz times −1",
             1,
             (-one, false),
@@ -249,10 +249,10 @@ fn degrees(n: usize, scale: f64, are_degrees: bool) -> Fault {
 fn relative(n: usize) -> Fault {
     let names: Vec<String> = (1..n).map(|k| format!("q{}", k + 1)).collect();
     let what = format!("{} are relative angles, each seen from the drive before", list(&names));
-    let want = "absolute ones: to q2 the q1 of its row added, to q3 the new q2, and so on";
+    let want = "absolute ones: add q1 to q2, then the new q2 to q3, and so on, row by row";
     of_angles(
         if n == 2 { "q2 is a relative angle, seen from drive 1".into() } else { what },
-        if n == 2 { "an absolute one: to q2 the q1 of its row added".into() } else { want.into() },
+        if n == 2 { "an absolute one: q1 + q2 in each row".into() } else { want.into() },
         Angles::linear(n, |k, l| if l <= k { 1.0 } else { 0.0 }),
     )
 }

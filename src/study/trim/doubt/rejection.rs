@@ -60,9 +60,10 @@ impl fmt::Display for Doubt {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let number = |x: f64| fixed_or_scientific(x, 4);
         match self.causes.as_slice() {
-            [] => {
-                write!(f, "this measurement is of no machine: want the columns, their signs and their units checked")?
-            }
+            [] => write!(
+                f,
+                "no machine can give this measurement: want the columns, their signs and their units checked"
+            )?,
             [first, rest @ ..] => {
                 write!(f, "{}: want {}", first.what, first.want)?;
                 for cause in rest {
@@ -75,7 +76,7 @@ impl fmt::Display for Doubt {
         let then = self.causes.first();
         for MeasuredValue { name, unit, value, half_width, file } in &self.impossible {
             write!(f, "\n  As given, {name} = {} ± {} {unit}", number(*value), number(*half_width))?;
-            write!(f, " (file: {}), which no masses above zero make.", number(*file))?;
+            write!(f, " (file: {}), which no positive masses can give.", number(*file))?;
         }
         if let Some(MeasuredValue { name, unit, value, half_width, file }) = &self.furthest {
             if !self.impossible.iter().any(|said| said.name == *name) {
