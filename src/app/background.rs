@@ -25,6 +25,7 @@ trait Pending<A> {
     fn has_ended(&mut self) -> bool;
 
     /// Waits until the work has ended.
+    #[cfg(feature = "window")]
     fn wait(&mut self);
 
     /// Runs the follow-up with the result.
@@ -53,6 +54,7 @@ impl<A, T: Send + 'static, F: FnOnce(&mut A, Option<T>)> Pending<A> for Running<
         true
     }
 
+    #[cfg(feature = "window")]
     fn wait(&mut self) {
         self.result = self.job.take().and_then(Job::wait);
     }
@@ -229,6 +231,7 @@ impl<A> Background<A> {
     }
 
     /// Waits for the end of the work of this activity, without its follow-up.
+    #[cfg(feature = "window")]
     pub fn wait_for(&mut self, activity: Activity) {
         if let Some(waiting) = &self.waiting {
             waiting.open();

@@ -223,6 +223,7 @@ impl AppState {
     }
 
     /// Ends the background work: waits until a file that is being saved has been written, and stops everything else.
+    #[cfg(feature = "window")]
     pub(crate) fn close(&mut self) {
         self.background.wait_for(Activity::Saving);
         self.background = Background::default();
