@@ -8,7 +8,7 @@ use stillbase_mechanics::planar::Vector;
 use stillbase_planning::pose_space::Planes;
 use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork, Shared};
 use stillbase_session::Session;
-use stillbase_session::scenario::{Scenario, Value, name_of};
+use stillbase_session::scenario::{Scenario, Value, name_of, search_words};
 use stillbase_settings::change::{self, DEFAULT_WORD};
 use stillbase_settings::key::{Key, KeyType};
 
@@ -22,8 +22,24 @@ pub(super) struct Setting {
     pub is_default: bool,
     /// If the setting has no effect now: the condition under which it has one.
     pub unmet_condition: Option<&'static str>,
-    /// Path, name and explanation in lower case, to be searched.
-    pub text: String,
+    /// Its plain name.
+    pub name: String,
+    /// Explanation, and further words by which it is looked for.
+    pub also: String,
+    /// Path, name, explanation and further words in lower case, to be searched.
+    text: String,
+}
+
+impl Setting {
+    /// Whether path, name, explanation or further words contain every word of a search text in lower case.
+    pub fn contains(&self, sought: &str) -> bool {
+        sought.split_whitespace().all(|word| self.text.contains(word))
+    }
+
+    /// Returns plain name and path; only the name if both are the same.
+    pub fn name_and_path(&self) -> String {
+        if self.name == self.path { self.name.clone() } else { format!("{} ({})", self.name, self.path) }
+    }
 }
 
 /// Residuals of the balance of a machine.
@@ -98,11 +114,14 @@ impl QuickQuery for Settings {
         let shown = scenario.settings().into_iter().filter(|(_, key, _)| key.value_type != KeyType::Rows);
         let setting = |(path, key, value): (String, &'static Key, Value)| {
             let typed = Some(change::typed(&value)).filter(|typed| typed != DEFAULT_WORD).unwrap_or_default();
+            let (name, also) = (name_of(&path), format!("{} {}", key.meaning, search_words(&path)));
             let is_default = || change::same_value(&change::value(key.default), &value);
             Setting {
                 is_default: typed.is_empty() || key.default.is_empty() || is_default(),
                 unmet_condition: scenario.condition_for_effect(&path),
-                text: format!("{path}\n{}\n{}", name_of(&path), key.meaning).to_lowercase(),
+                text: format!("{path}\n{name}\n{also}").to_lowercase(),
+                name,
+                also,
                 typed,
                 key,
                 path,

@@ -116,9 +116,9 @@ fn entries<'a>(known: Known<'a>, view_state: &ViewState) -> Vec<Entry<'a>> {
         Entry { hides: true, ..entry(title, SIGNALS_PLACE, "signal curve graph csv column", Box::new(plot)) }
     });
     let settings = settings.iter().map(|setting| {
-        let title = format!("Setting: {}", setting.path);
+        let title = format!("Setting: {}", setting.name_and_path());
         let look_up = || Command::View(ViewChange::LookUp(setting.path.clone()));
-        Entry { hides: true, ..entry(title, "left panel, all settings", setting.key.meaning, Box::new(look_up)) }
+        Entry { hides: true, ..entry(title, "left panel, all settings", setting.also.as_str(), Box::new(look_up)) }
     });
     let pages = guide::entries(sections).map(|(title, place)| {
         let also = guide::search_words(&place);
@@ -139,32 +139,50 @@ fn entries<'a>(known: Known<'a>, view_state: &ViewState) -> Vec<Entry<'a>> {
 /// Maximum number of settings that are offered for one typed value.
 const MAX_TYPED_ENTRIES: usize = 3;
 
-/// Splits a search text into the words for a setting and its value: at `=`, else before the first number, else at the
-/// last space.
-fn split_value(sought: &str) -> Option<(&str, &str)> {
+/// Returns the ways to split a search text into the words for a setting and its value, the likeliest first: at `=`, else
+/// before each number, else at the last space.
+fn splits(sought: &str) -> Vec<(&str, &str)> {
     if let Some(parts) = sought.split_once('=') {
-        return Some(parts);
+        return vec![parts];
     }
     let begins = |text: &str| text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '−' | '.' | '['));
-    let number = sought.match_indices(' ').find(|(i, _)| begins(&sought[i + 1..]));
-    number.map(|(i, _)| sought.split_at(i)).or_else(|| sought.rsplit_once(' '))
+    let numbers = sought.match_indices(' ').filter(|(i, _)| begins(&sought[i + 1..]));
+    let mut splits: Vec<(&str, &str)> = numbers.map(|(i, _)| sought.split_at(i)).collect();
+    if splits.is_empty() {
+        splits.extend(sought.rsplit_once(' '));
+    }
+    splits
 }
 
 /// Returns entries that set what is typed: a setting by a few letters, and its value after a space or `=`, in the user's
 /// unit or with a unit of its own.
 fn typed<'a>(settings: &'a [Setting], sought: &str, notation: Notation) -> Vec<Entry<'a>> {
-    let Some((words, text)) = split_value(sought.trim()) else { return Vec::new() };
-    let (words, text) = (words.trim().to_owned(), text.trim().to_owned());
-    if words.is_empty() || text.is_empty() {
-        return Vec::new();
-    }
+    let is_stated = sought.contains('=');
+    let splits = splits(sought.trim()).into_iter().map(|(words, text)| (words.trim(), text.trim()));
+    let mut found = splits.filter(|(words, text)| !words.is_empty() && !text.is_empty());
+    let found =
+        found.find_map(|split| Some(typed_as(settings, split, is_stated, notation)).filter(|found| !found.is_empty()));
+    found.unwrap_or_default()
+}
+
+/// Returns entries for words and a value; `is_stated` says that the value stands behind `=`.
+fn typed_as<'a>(
+    settings: &'a [Setting],
+    (words, text): (&str, &str),
+    is_stated: bool,
+    notation: Notation,
+) -> Vec<Entry<'a>> {
     // A path that is typed in full comes first.
     let score = |(setting, _): &(&Setting, Value)| match setting.path == words {
         true => Some(i32::MAX),
-        false => search::score_with(&words, &setting.path, setting.key.meaning),
+        // Of several settings with one name, that of the machine comes first: its path is the shortest.
+        false => {
+            let steps = setting.path.split('.').count() as i32;
+            search::score_with(words, &setting.name_and_path(), &setting.also).map(|score| score - steps)
+        }
     };
     let fit = settings.iter().filter_map(|setting| {
-        let value = setting::typed(&text, setting.key, setting::shown_unit(setting.key, notation)).ok()?;
+        let value = setting::typed(text, setting.key, setting::shown_unit(setting.key, notation)).ok()?;
         setting.key.value_type.accepts(&value).then_some((setting, value))
     });
     let entry = |(setting, value): (&'a Setting, Value)| {
@@ -181,7 +199,7 @@ fn typed<'a>(settings: &'a [Setting], sought: &str, notation: Notation) -> Vec<E
             typed => with_unit(&setting::in_unit(typed, unit)),
         };
         Entry {
-            title: format!("Set {path} = {}, now {now}", with_unit(&text)),
+            title: format!("Set {} to {}, now {now}", setting.name_and_path(), with_unit(text)),
             place: "left panel, all settings",
             also: "",
             hides: false,
@@ -192,8 +210,12 @@ fn typed<'a>(settings: &'a [Setting], sought: &str, notation: Notation) -> Vec<E
     };
     let best = search::best_first(fit, score, MAX_TYPED_ENTRIES);
     // After a space, a number may also be a name: in "mass of link 3" it is no value of the mass of link 1.
-    let is_stated = sought.contains('=');
-    let means_one = |one: &(&Setting, Value)| is_stated || one.0.path == words || !one.0.key.path.contains('*');
+    let names = |setting: &Setting| {
+        let parts = setting.key.path.split('.').zip(setting.path.split('.'));
+        let mut own = parts.filter(|(pattern, _)| *pattern == "*").map(|(_, own)| own);
+        own.all(|own| words.split([' ', '.']).any(|word| word == own))
+    };
+    let means_one = |one: &(&Setting, Value)| is_stated || one.0.path == words || names(one.0);
     best.into_iter().filter(means_one).map(entry).collect()
 }
 

@@ -66,7 +66,7 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewStat
     } else {
         "The machine; another one of these brings a task that shows what it is for"
     };
-    let width = if is_narrow(ui) { 104.0 } else { 136.0 };
+    let width = list_width(ui, &current, if is_narrow(ui) { [104.0, 150.0] } else { [136.0, 190.0] });
     let combo = ComboBox::from_id_salt("machine")
         .selected_text(chosen_text(ui, present.name(), changed, width))
         .width(width)
@@ -84,10 +84,21 @@ fn edited(name: &str, is_edited: bool) -> String {
     if is_edited { format!("{name} (edited)") } else { name.to_owned() }
 }
 
+/// Returns the width of a list that shows a text whole, points, within limits.
+fn list_width(ui: &Ui, text: &str, [least, most]: [f32; 2]) -> f32 {
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    (fit::width_of(ui, text, &font) + taken_width(ui)).clamp(least, most)
+}
+
+/// Returns the width that margins and arrow of a list take, points.
+fn taken_width(ui: &Ui) -> f32 {
+    let spacing = ui.spacing();
+    (2.0 * spacing.button_padding.x + spacing.icon_width + spacing.icon_spacing).ceil()
+}
+
 /// Returns the text of a list that is this wide, points, arrow and margins included.
 fn chosen_text(ui: &Ui, name: &str, is_edited: bool, width: f32) -> String {
-    let spacing = ui.spacing();
-    let taken = 2.0 * spacing.button_padding.x + spacing.icon_width + spacing.icon_spacing;
+    let taken = taken_width(ui);
     let font = egui::TextStyle::Button.resolve(ui.style());
     let added = fit::width_of(ui, &edited("", is_edited), &font);
     edited(&fit::fitted(ui, name, &font, width - taken - added), is_edited)
@@ -110,7 +121,7 @@ fn scenarios(
     let current = session.scenario();
     let shown = if current.title.is_empty() { &current.name } else { &current.title };
     let current_text = edited(shown, changed);
-    let width = if is_narrow(ui) { 150.0 } else { 196.0 };
+    let width = list_width(ui, &current_text, if is_narrow(ui) { [150.0, 150.0] } else { [196.0, 250.0] });
     let combo = ComboBox::from_id_salt("scenario")
         .selected_text(chosen_text(ui, shown, changed, width))
         .width(width)

@@ -56,7 +56,7 @@ pub fn show(ui: &mut Ui, facts: &ScenarioFacts<'_>, p: &Palette, in_window: bool
             commands.push(ViewChange::Switch(Switch::Settings, !in_window).into());
         }
         let settings = facts.settings();
-        let found: Vec<&Setting> = settings.iter().filter(|setting| setting.text.contains(&word)).collect();
+        let found: Vec<&Setting> = settings.iter().filter(|setting| setting.contains(&word)).collect();
         let shown = &found[..found.len().min(MAX_ROWS)];
         grouped(ui, p, shown, MIN_COLUMN_PT, commands);
         if wanted {
@@ -90,7 +90,7 @@ pub fn window(ctx: &egui::Context, facts: &ScenarioFacts<'_>, view_state: &ViewS
         .show(ctx, |ui| {
             let (_, word) = search(ui);
             let settings = facts.settings();
-            let found: Vec<&Setting> = settings.iter().filter(|setting| setting.text.contains(&word)).collect();
+            let found: Vec<&Setting> = settings.iter().filter(|setting| setting.contains(&word)).collect();
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 ui.set_width(ui.available_width() - SCROLL_BAR_WIDTH);
                 grouped(ui, &p, &found, MIN_WINDOW_COLUMN_PT, commands);

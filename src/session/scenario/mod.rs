@@ -31,7 +31,7 @@ pub use file::{FileContent, FindMachine, content};
 pub use kept::{Bookmark, Branch, MAX_BOOKMARKS, MAX_BRANCHES, MAX_NAME};
 pub use keys::{KEYS, key_of, keys, part_of};
 pub(crate) use keys::{effect_in, effect_of};
-pub use names::name_of;
+pub use names::{name_of, search_words};
 pub use note::{MAX_NOTE, MAX_NOTES, Note, NoteTime};
 pub use settings::SettingError;
 pub use snap_point::{PathPoint, SnapPoint};

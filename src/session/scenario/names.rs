@@ -82,6 +82,38 @@ const NAMES: &[(&str, &str)] = &[
     ("design.fixed.*", "link * stays"),
 ];
 
+/// Further words by which people look for a setting, by the beginning of its path.
+const SEARCH_WORDS: &[(&str, &str)] = &[
+    ("compare_b", "second workspace dashed"),
+    ("task.kind", "mode motion reactionless minimum norm"),
+    ("task.shape", "curve line arc spline circle straight"),
+    ("task.from", "start begin"),
+    ("task.via", "waypoint corner"),
+    ("task.to", "end goal finish"),
+    ("task.time", "motion time T length how long seconds slow fast quick"),
+    ("task.law", "profile quintic trapezoidal velocity timing"),
+    ("task.moment_limit", "maximum allowed torque base"),
+    ("control.law", "controller feedback computed torque PD"),
+    ("control.kp", "proportional stiffness"),
+    ("control.kd", "derivative damping"),
+    ("control.rate", "sampling frequency Hz"),
+    ("control.encoder", "resolution quantisation sensor"),
+    ("plant.torque_limits", "motor saturation"),
+    ("plant.friction", "damping drag loss"),
+    ("plant.payload", "load weight hang carry tool gripper"),
+    ("base.kind", "fixed free floating compliant spacecraft satellite vehicle mount"),
+    ("base.mass", "spacecraft satellite weight"),
+    ("base.wheel", "reaction wheel momentum"),
+    ("payload", "load weight tool gripper"),
+    ("limits", "joint range stop minimum maximum"),
+    ("drive", "motor actuator"),
+    ("gravity", "weight g acceleration earth"),
+    ("tolerance", "monte carlo manufacturing spread"),
+    ("design.density", "material steel lead tungsten aluminium"),
+    ("design", "counterweight balance"),
+    ("counterweight", "balance disc"),
+];
+
 /// Parts of a scenario whose keys are called as those of the machine.
 const PARTS_OF_MACHINES: [&str; 4] = ["design.hold.", "design.", "plant.", "tolerance."];
 
@@ -102,6 +134,12 @@ pub fn name_of(path: &str) -> String {
         Some(which) => name.replace('*', which),
         None => (*name).to_owned(),
     }
+}
+
+/// Returns further words by which people look for a setting.
+pub fn search_words(path: &str) -> &'static str {
+    let found = SEARCH_WORDS.iter().find(|(beginning, _)| path.starts_with(beginning));
+    found.map_or("", |(_, words)| words)
 }
 
 /// Returns the name of a setting of every link or length.
