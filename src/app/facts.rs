@@ -7,7 +7,7 @@ use stillbase_mechanics::machine::{Inertia, Machine, builtins};
 use stillbase_mechanics::planar::Vector;
 use stillbase_planning::pose_space::Planes;
 use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork, Shared};
-use stillbase_session::Session;
+use stillbase_session::{Proposal, Session, TargetProposals};
 use stillbase_session::scenario::{Scenario, Value, name_of};
 use stillbase_settings::change::{self, DEFAULT_WORD};
 use stillbase_settings::key::{Key, KeyType};
@@ -126,6 +126,8 @@ pub(super) struct ScenarioFacts<'a> {
     /// Number of poses that put the end effector at its present point, and the point's distance from the workspace
     /// boundary, m, positive inside. `None` for a machine without planes.
     pub standing: Option<(usize, f64)>,
+    /// Ways out of a target that is out of reach; none while it is being dragged.
+    pub target_proposals: Arc<Vec<Proposal>>,
 }
 
 impl<'a> ScenarioFacts<'a> {
@@ -144,6 +146,10 @@ impl<'a> ScenarioFacts<'a> {
             price: balance.pose_inertia * scenario.0.pose_acceleration,
             balance,
             standing: run.planes().map(stands),
+            target_proposals: session
+                .missed_target()
+                .filter(|_| !session.is_in_gesture())
+                .map_or_else(Arc::default, |missed| queries.ask::<QuickWork<TargetProposals>>(&missed)),
             queries,
             scenario,
         }

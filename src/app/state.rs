@@ -267,6 +267,10 @@ impl AppState {
 
     /// Shows the outcome of a command as the message.
     pub(super) fn show_outcome(&mut self, said: Result<Option<String>, String>) {
+        if !matches!(said, Ok(None)) {
+            self.view_state.status.proposals.clear();
+            self.view_state.status.entry = None;
+        }
         match said {
             Ok(None) => {}
             Ok(Some(text)) => self.view_state.status.message = Some(Message { text, is_problem: false }),

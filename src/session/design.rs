@@ -239,7 +239,7 @@ pub fn relaxations(why: &CounterweightError) -> Vec<Proposal> {
         let keys = together.iter().map(of_key).collect::<Option<Vec<_>>>()?;
         let text: Vec<String> = keys.iter().map(|(_, value, unit)| format!("{value} {unit}")).collect();
         let change = keys.iter().fold(Table::new(), |all, (key, x, _)| join(all, &single_change(key, x.value())));
-        Some(Proposal { text: format!("use {}", text.join(" and ")), change })
+        Some(Proposal::new(format!("use {}", text.join(" and ")), change))
     };
     reliefs.iter().filter_map(proposal).collect()
 }

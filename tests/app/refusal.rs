@@ -103,11 +103,9 @@ fn a_scenario_that_cannot_be_planned_is_explained() {
     let Message { text: words, is_problem: bad } = app_state.view_state().status.message.clone().expect("a reason");
     assert!(bad && words.contains("the path stops at"), "{words}");
     let refused = app_state.view_state().status.refused.as_ref().expect("refused");
-    let (scenario, why) = refused.refused.clone().expect("a change of settings");
-    let proposals = stillbase::session::proposals(&scenario.0, &why);
+    let proposals = refused.refused.as_ref().expect("a change of settings").proposals();
     assert!(proposals[0].text.starts_with("take b = "), "{proposals:?}");
-    let edit = refused.edit_with(&proposals[0]);
-    app_state.carry_out(SessionCommand::Edit(edit));
+    app_state.carry_out(refused.command_with(&proposals[0]).expect("an edit"));
     let done = &app_state.session().scenario().task;
     assert_eq!((done.points(), done.shape()), (task.points(), task.shape()));
 }
@@ -189,7 +187,7 @@ fn a_run_that_waits_says_so_and_keeps_its_way_out() {
     h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::DragTarget { x: 0.5, y: 0.6 }));
     h.run_steps(3);
     assert!(has_way_out(&h), "the same reason is said once");
-    h.state_mut().app_state_mut().carry_out(WindowCommand::Refuse("no such number".into()));
+    h.state_mut().app_state_mut().carry_out(WindowCommand::Refuse("no such number".into(), Vec::new()));
     h.run_steps(3);
     assert!(has_way_out(&h) && h.query_by_label("no such number").is_some());
     h.snapshot("waits-refused-dark");
