@@ -1,6 +1,7 @@
 //! Input that commands share: machines, scenarios, settings, points.
 
 use std::ffi::OsString;
+use std::fmt;
 use std::path::Path;
 
 use clap::Args;
@@ -293,14 +294,21 @@ fn padded(word: OsString) -> OsString {
 }
 
 /// A word of the command line that is no number in its range.
-#[derive(Debug, thiserror::Error)]
-#[error("{want}")]
+#[derive(Debug)]
 pub struct WrongNumber {
     /// What is expected.
     want: String,
     /// The nearest word that is allowed, if the given one is a number.
     pub nearest: Option<String>,
 }
+
+impl fmt::Display for WrongNumber {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.want)
+    }
+}
+
+impl std::error::Error for WrongNumber {}
 
 /// Parses a point X,Y, m.
 pub fn point(text: &str) -> Result<Vector, WrongNumber> {

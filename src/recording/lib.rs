@@ -19,6 +19,7 @@
 //! | `design/bars`, `design/front` | bar charts of (7) and (8); Pareto front of added mass and inertia |
 //! | `reaction/force`, `reaction/moment` | the reaction on the base, with a label of the scale |
 //! | `signals/<topic>` | every row of the table of [`signals`](stillbase_simulation::signals), at every step, as a series |
+//! | `signals/<topic>/limits` | limits of torques and rates near enough to be drawn, at plus and minus, as series |
 //! | `events`, `phase` | events and phases of the run |
 //! | `view` | offscreen pictures |
 //!

@@ -17,6 +17,7 @@ mod results;
 mod simulate;
 mod study;
 mod trim;
+mod ways;
 
 use std::fs;
 use std::path::{Path, PathBuf};

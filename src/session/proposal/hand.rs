@@ -4,7 +4,7 @@
 use toml::Value;
 
 use super::Proposal;
-use super::value::taking;
+use super::value::{shown, taking};
 use crate::edit::Edit;
 use crate::interactive::Session;
 use crate::scenario::POSE_CONSTANT_RANGE;
@@ -14,7 +14,6 @@ use stillbase_planning::common::nearest_place;
 use stillbase_planning::pose_space::{PoseSpace, Reach};
 use stillbase_planning::reactionless::Decimal;
 use stillbase_query::{ByIdentity, QuickQuery};
-use stillbase_settings::change::typed;
 
 /// Number of decimals of a limit that is proposed, rad.
 const LIMIT_DECIMALS: usize = 3;
@@ -111,7 +110,7 @@ impl Session {
         };
         let before = self.limits_before(&angle.name).filter(|before| *before != pair([low, high]));
         let back = before.map(|before| {
-            let words = typed(&before);
+            let words = shown(&before);
             Proposal { text: format!("put {key} back to {words}"), ..taking(&key, before) }
         });
         let why = format!("{} is at {now:.3} rad, outside its limits of {low:.3} to {high:.3} rad", angle.name);

@@ -147,18 +147,28 @@ fn settings_while(scenario: &Scenario, wanted: &Table, goes_on: ProgressCallback
         changed.check("").ok().map(|()| changed)
     };
     let present = |path: &str| bare.value(path);
-    let nearest = nearest_values(wanted, &present, &|change| with(change).is_some());
-    let nearest = nearest.or_else(|| taking_back(wanted, &present)).and_then(|change| {
-        let changed = with(&change.change()?.clone())?;
-        Some((change, changed))
-    });
-    let Some((nearest, changed)) = nearest else { return Some(Vec::new()) };
-    let Err(why) = Run::new(&changed) else { return Some(vec![nearest]) };
-    // The values are allowed, but the task cannot be planned with them: what helps then is proposed with them.
-    let further = proposals_while(&changed, &why, goes_on)?;
-    let both = further.into_iter().filter_map(|further| {
-        let change = join(nearest.change()?.clone(), further.change()?);
-        Some(Proposal::new(format!("{}, and {}", nearest.text, further.text), change))
-    });
-    Some(both.collect())
+    let allowed = |found: Proposal| {
+        let changed = with(found.change()?)?;
+        Some((found, changed))
+    };
+    let nearest = nearest_values(wanted, &present, &|change| with(change).is_some()).and_then(allowed);
+    let mut found: Vec<Proposal> = Vec::new();
+    if let Some((nearest, changed)) = nearest {
+        match Run::new(&changed) {
+            Ok(_) => found.push(nearest),
+            // The values are allowed, but the task cannot be planned with them: what helps then is proposed with them.
+            Err(why) => {
+                let further = proposals_while(&changed, &why, goes_on)?;
+                found.extend(further.into_iter().filter_map(|further| {
+                    let change = join(nearest.change()?.clone(), further.change()?);
+                    Some(Proposal::new(format!("{}, and {}", nearest.text, further.text), change))
+                }));
+            }
+        }
+    }
+    if found.is_empty() {
+        let kept = taking_back(wanted, &present).and_then(allowed);
+        found.extend(kept.filter(|(_, changed)| Run::new(changed).is_ok()).map(|(kept, _)| kept));
+    }
+    Some(found)
 }

@@ -101,7 +101,12 @@ fn moved_point(scenario: &Scenario, name: &str) -> Vec<Proposal> {
     let Some(i) = (0..points.len()).find(|i| task.name_of(*i) == name) else { return Vec::new() };
     let Ok(space) = PoseSpace::of(&scenario.machine) else { return Vec::new() };
     let moved = |[x, y]: [Decimal; 2], b: Option<Decimal>| {
-        let mut change = task.moving(i, Vector::new(x.value(), y.value()))?;
+        let to = Vector::new(x.value(), y.value());
+        if to == points[i] {
+            // Another b alone is proposed elsewhere.
+            return None;
+        }
+        let mut change = task.moving(i, to)?;
         let at = b.map_or_else(String::new, |b| format!(", at b = {b} rad"));
         change.extend(b.map(|b| ("b".to_owned(), b.value().into())));
         Some(Proposal::of_task(format!("move {name} to ({x}, {y}) m{at}"), change))

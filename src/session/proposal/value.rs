@@ -17,7 +17,14 @@ const ROUNDING: f64 = 2e-3;
 /// Returns the proposal to give a key a value.
 pub(super) fn taking(path: &str, value: impl Into<Value>) -> Proposal {
     let value = value.into();
-    Proposal::new(format!("take {path} = {}", typed(&value)), single_change(path, value))
+    Proposal::new(format!("take {path} = {}", shown(&value)), single_change(path, value))
+}
+
+/// Returns a value as it is typed, whole numbers without decimals.
+pub(super) fn shown(value: &Value) -> String {
+    let typed = typed(value);
+    let parts: Vec<&str> = typed.split(',').map(|part| part.strip_suffix(".0").unwrap_or(part)).collect();
+    if value.is_str() { typed } else { parts.join(",") }
 }
 
 /// Returns proposals for settings that are refused, to be made after them: the nearest allowed values or, without any,
@@ -41,7 +48,7 @@ pub(super) fn nearest_values(
 ) -> Option<Proposal> {
     let all: Vec<(String, &Value)> = leaves(wanted);
     let of = |changed: &[(String, Value)]| {
-        let text: Vec<String> = changed.iter().map(|(path, value)| format!("{path} = {}", typed(value))).collect();
+        let text: Vec<String> = changed.iter().map(|(path, value)| format!("{path} = {}", shown(value))).collect();
         let change = changed.iter().fold(Table::new(), |all, (path, value)| join(all, &single_change(path, value.clone())));
         (!change.is_empty()).then(|| Proposal::new(format!("take {}", text.join(", ")), change))
     };
@@ -75,7 +82,7 @@ pub(super) fn nearest_values(
 pub(super) fn taking_back(wanted: &Table, present: &dyn Fn(&str) -> Option<Value>) -> Option<Proposal> {
     let kept: Vec<(String, Value)> =
         leaves(wanted).into_iter().filter_map(|(path, _)| Some((path.clone(), present(&path)?))).collect();
-    let text: Vec<String> = kept.iter().map(|(path, value)| format!("{path} = {}", typed(value))).collect();
+    let text: Vec<String> = kept.iter().map(|(path, value)| format!("{path} = {}", shown(value))).collect();
     let change = kept.iter().fold(Table::new(), |all, (path, value)| join(all, &single_change(path, value.clone())));
     (!change.is_empty()).then(|| Proposal::new(format!("keep {}", text.join(", ")), change))
 }
