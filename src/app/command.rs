@@ -19,8 +19,8 @@ use stillbase_picture::scene::Measure;
 use stillbase_picture::scene::options::Handle;
 use stillbase_picture::scene::palette::Theme;
 use stillbase_picture::scene::views::ViewKind;
-use stillbase_session::{Edit, Proposal};
 use stillbase_session::scenario::{Note, Scenario};
+use stillbase_session::{Edit, Proposal};
 use stillbase_study::front_point::FrontMeasure;
 
 /// A command of the user.

@@ -199,17 +199,28 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &ComparisonEntry, columns: &[H
                 let from = ui.cursor().left();
                 let why = notation::sentence(ui.ctx(), &refused.why).into_owned();
                 let shown = ui.clip_rect().right();
-                let mut area = ui.new_child(egui::UiBuilder::new().max_rect(egui::Rect::from_min_max(
-                    ui.cursor().min,
-                    egui::pos2(shown.max(from), ui.cursor().min.y + ROW_HEIGHT_PT),
-                )).layout(Layout::left_to_right(Align::Center)));
+                let mut area = ui.new_child(
+                    egui::UiBuilder::new()
+                        .max_rect(egui::Rect::from_min_max(
+                            ui.cursor().min,
+                            egui::pos2(shown.max(from), ui.cursor().min.y + ROW_HEIGHT_PT),
+                        ))
+                        .layout(Layout::left_to_right(Align::Center)),
+                );
                 if let Some(scenario) = least.and_then(|way| refused.with(way)) {
                     let text = least.map_or_else(String::new, |way| way.text.clone());
                     let text = notation::sentence(ui.ctx(), &text).into_owned();
                     let button = area.add(Button::new(RichText::new(text).font(plain(11.5))).small());
                     name(&button, &format!("{}: {}", entry.title, least.map_or("", |way| &way.text)));
-                    let all: Vec<String> = refused.proposals.iter().map(|way| format!("{}: {}", way.text, way.how().replace('\n', ", "))).collect();
-                    if button.on_hover_text(format!("Runs it so, and keeps the run as a row\n{}", all.join("\n"))).clicked() {
+                    let all: Vec<String> = refused
+                        .proposals
+                        .iter()
+                        .map(|way| format!("{}: {}", way.text, way.how().replace('\n', ", ")))
+                        .collect();
+                    if button
+                        .on_hover_text(format!("Runs it so, and keeps the run as a row\n{}", all.join("\n")))
+                        .clicked()
+                    {
                         commands.push(WindowCommand::Comparison(ComparisonCommand::Add(Box::new(scenario))).into());
                     }
                 }

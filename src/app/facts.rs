@@ -7,8 +7,8 @@ use stillbase_mechanics::machine::{Inertia, Machine, builtins};
 use stillbase_mechanics::planar::Vector;
 use stillbase_planning::pose_space::Planes;
 use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork, Shared};
-use stillbase_session::{Proposal, Session, TargetProposals};
 use stillbase_session::scenario::{Scenario, Value, name_of};
+use stillbase_session::{Proposal, Session, TargetProposals};
 use stillbase_settings::change::{self, DEFAULT_WORD};
 use stillbase_settings::key::{Key, KeyType};
 

@@ -146,9 +146,8 @@ impl NumberRow<'_> {
             let nearest = out_of_range.get().filter(|x| !x.is_nan());
             let nearest = nearest.map(|x| (response.id, x.clamp(*self.range.start(), *self.range.end())));
             let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
-            let way_out = nearest.map_or_else(String::new, |(_, x)| {
-                format!("take {} = {}{unit}", self.label, signed(x, self.decimals))
-            });
+            let way_out = nearest
+                .map_or_else(String::new, |(_, x)| format!("take {} = {}{unit}", self.label, signed(x, self.decimals)));
             ui.data_mut(|data| data.insert_temp(refused_id(), RefusedEntry { why, nearest, way_out }));
         }
         if let Some(taken) = ui.data_mut(|data| data.remove_temp::<f64>(taken_id(response.id))) {

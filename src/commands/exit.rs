@@ -94,7 +94,9 @@ fn nearest_words(error: &clap::Error, words: &[OsString]) -> Option<Vec<OsString
         ErrorKind::ValueValidation => (said(ContextKind::InvalidValue)?, number?.nearest.clone()?),
         ErrorKind::InvalidValue => (said(ContextKind::InvalidValue)?, said(ContextKind::SuggestedValue)?),
         ErrorKind::UnknownArgument => (said(ContextKind::InvalidArg)?, said(ContextKind::SuggestedArg)?),
-        ErrorKind::InvalidSubcommand => (said(ContextKind::InvalidSubcommand)?, said(ContextKind::SuggestedSubcommand)?),
+        ErrorKind::InvalidSubcommand => {
+            (said(ContextKind::InvalidSubcommand)?, said(ContextKind::SuggestedSubcommand)?)
+        }
         _ => return None,
     };
     let wrong = wrong.trim();

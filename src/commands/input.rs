@@ -269,8 +269,8 @@ pub fn change_task(scenario: &mut Scenario, change: &TaskChange) -> Result<(), F
 /// # Errors
 /// If the machine has none.
 pub fn pose_space(machine: &Machine) -> Result<PoseSpace, Failure> {
-    let space = PoseSpace::of(machine)
-        .map_err(|why| Failure::from(why).with_proposals(proposals_for_machine(machine)))?;
+    let space =
+        PoseSpace::of(machine).map_err(|why| Failure::from(why).with_proposals(proposals_for_machine(machine)))?;
     if let nearly @ PoseConstant::Nearly { .. } = PoseConstant::of(machine) {
         print_message(format!("note: {}: {nearly}", machine.name()));
     }

@@ -8,6 +8,7 @@ use stillbase_planning::pose_constant::Unreachable;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::reactionless::{BSet, Decimal, NoReach};
 use stillbase_session::Proposal;
+use stillbase_session::scenario::POSE_CONSTANT_RANGE;
 use stillbase_study::pose_measures::PoseMeasures;
 
 use super::failure::Failure;
@@ -74,8 +75,13 @@ impl PoseArguments {
         let command = |at: String, b: String| format!("stillbase pose {machine} {at} --b {b}{json}");
         let of = |p: Vector| {
             let set = space.reach(p).ok()?;
-            let inner = [0.0, 1e-9, 1e-6, 1e-3, 0.5].map(|share| set.nearest(self.b).map(|b| set.moved_inside(b, share)));
-            inner.into_iter().flatten().find_map(|b| Decimal::shortest_passing(b, 4, |b| space.reaches(p, b)))
+            let inner =
+                [0.0, 1e-9, 1e-6, 1e-3, 0.5].map(|share| set.nearest(self.b).map(|b| set.moved_inside(b, share)));
+            // At the ends of the range of b, the nearest one may lie a period inside.
+            let turns = [0.0, -space.period(), space.period()];
+            let all = turns.into_iter().flat_map(|turn| inner.into_iter().flatten().map(move |b| b + turn));
+            let serves = |b: f64| POSE_CONSTANT_RANGE.contains(b) && space.reaches(p, b);
+            all.into_iter().find_map(|b| Decimal::shortest_passing(b, 4, serves))
         };
         let at = |[x, y]: &[Decimal; 2]| (format!("{x},{y}"), Vector::new(x.value(), y.value()));
         let another_b = of(p).map(|b| {

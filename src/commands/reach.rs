@@ -62,7 +62,9 @@ impl ReachArguments {
         for (i, p) in self.points.iter().enumerate() {
             let none = |reason| {
                 let failure = Failure::from(Unreachable::Anywhere { x: p.re, y: p.im, reason });
-                failure.with_proposals(self.reached(&space).map(|points| self.with_points(i, &points)).into_iter().collect())
+                failure.with_proposals(
+                    self.reached(&space).map(|points| self.with_points(i, &points)).into_iter().collect(),
+                )
             };
             sets.push(space.reach(*p).map_err(none)?);
         }

@@ -234,11 +234,7 @@ fn made_robust(space: &PoseSpace, points: &[Vector], others: &BSet, mend: PointC
 
 /// Returns the first answer of a test of rounded places near the end of a move, with few decimals and a short move
 /// first. The test gets the place and the length of the move to it, m.
-fn first_decimals<T>(
-    from: Vector,
-    mend: &PointCorrection,
-    test: impl Fn([Decimal; 2], f64) -> Option<T>,
-) -> Option<T> {
+fn first_decimals<T>(from: Vector, mend: &PointCorrection, test: impl Fn([Decimal; 2], f64) -> Option<T>) -> Option<T> {
     // If no decimal near the shortest move is feasible, a longer move may be.
     let all = [1.02, 1.1].into_iter().flat_map(|longest| (3..=12).map(move |decimals| (longest, decimals)));
     all.into_iter().find_map(|(longest, decimals)| {
@@ -272,8 +268,12 @@ pub fn nearest_place(space: &PoseSpace, p: Vector, b: Option<f64>) -> Option<[De
 /// Returns the shortest move of point `i`, m, after which it shares a b with all other points; `None` if none was
 /// found, or if the others share none.
 pub fn nearest_common_place(space: &PoseSpace, points: &[Vector], i: usize) -> Option<PointCorrection> {
-    let rest: Vec<BSet> =
-        points.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, p)| set_of(space, *p).ok()).collect::<Option<_>>()?;
+    let rest: Vec<BSet> = points
+        .iter()
+        .enumerate()
+        .filter(|(j, _)| *j != i)
+        .map(|(_, p)| set_of(space, *p).ok())
+        .collect::<Option<_>>()?;
     let others = BSet::overlap(&rest);
     let mend = least_move(space, *points.get(i)?, i, &others)?;
     made_robust(space, points, &others, mend)

@@ -86,7 +86,8 @@ impl Preview {
                 }
             }
         }
-        for (i, limit) in topics.iter().flat_map(|topic| topic.limits.iter().map(move |(i, l)| (&topic.signals[*i], l))) {
+        for (i, limit) in topics.iter().flat_map(|topic| topic.limits.iter().map(move |(i, l)| (&topic.signals[*i], l)))
+        {
             if let Some((_, range)) = charts.iter_mut().find(|(chart, _)| chart.contains(i)) {
                 wider(range, *limit);
                 wider(range, -limit);

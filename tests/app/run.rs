@@ -169,9 +169,12 @@ fn b_leaves_the_task_as_it_is() {
         assert!((task.b - stops).abs() < 1e-5, "{} for {asked}: it stops at {stops}", task.b);
         assert_eq!(task.points(), points);
     }
-    for (text, words) in
-        [("abc", "\"abc\" changes nothing"), ("-3", "A and B"), ("9e9", "from −1000.000 to 1000.000"), ("3.6", "A and B")]
-    {
+    for (text, words) in [
+        ("abc", "\"abc\" changes nothing"),
+        ("-3", "A and B"),
+        ("9e9", "from −1000.000 to 1000.000"),
+        ("3.6", "A and B"),
+    ] {
         let before = session(&h).to_scenario();
         type_into(&mut h, "b rad", text);
         let Message { text: said, is_problem: bad } =

@@ -59,7 +59,8 @@ fn works(args: &[String]) -> usize {
         let words: Vec<&str> = way.iter().map(String::as_str).collect();
         let out = stillbase(&words);
         // A word that is only read now may still have no answer; then its own ways out have.
-        let is_read = text(&stillbase(&args.iter().map(String::as_str).collect::<Vec<_>>()).stderr).contains("; see --help");
+        let is_read =
+            text(&stillbase(&args.iter().map(String::as_str).collect::<Vec<_>>()).stderr).contains("; see --help");
         match out.status.code() {
             Some(0) => {}
             Some(1) if is_read => assert!(works(way) > 0, "{way:?}"),

@@ -109,7 +109,8 @@ fn a_target_out_of_reach_has_ways_out() {
                 session.end_gesture();
                 session.tick(6000);
                 let target = session.frame().target;
-                let is_off = matches!(target.reach, Reach::Outside { nearest, .. } if (nearest - target.at).norm() > 1e-3);
+                let is_off =
+                    matches!(target.reach, Reach::Outside { nearest, .. } if (nearest - target.at).norm() > 1e-3);
                 assert!(!is_off, "{}: ({x}, {y}): {proposal:?}: {:?}", machine.name(), target);
             }
         }

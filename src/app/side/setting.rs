@@ -116,11 +116,8 @@ pub fn row(ui: &mut Ui, p: &Palette, setting: &Setting, commands: &mut Vec<Comma
                         Err(why) => {
                             let text = shortened(text.trim(), 24);
                             commands.push(
-                                WindowCommand::Refuse(
-                                    format!("{path}: \"{text}\" changes nothing: {why}"),
-                                    Vec::new(),
-                                )
-                                .into(),
+                                WindowCommand::Refuse(format!("{path}: \"{text}\" changes nothing: {why}"), Vec::new())
+                                    .into(),
                             );
                         }
                     }

@@ -38,9 +38,8 @@ impl QuickQuery for TargetProposals {
 
     fn answer(missed: &Self::Input) -> Self::Answer {
         let Reach::Outside { nearest, feasible_b, displayed_b, .. } = missed.reach else { return Vec::new() };
-        let slide = |(b, shown): (f64, Decimal)| {
-            Proposal::of_edit(format!("go to b = {shown} rad"), Edit::SlideB { b })
-        };
+        let slide =
+            |(b, shown): (f64, Decimal)| Proposal::of_edit(format!("go to b = {shown} rad"), Edit::SlideB { b });
         // The machine waits on the boundary of what it reaches, so the place proposed is a little inside.
         let space = &*missed.space.0;
         let waits = |to: &[Decimal; 2]| {
@@ -70,8 +69,12 @@ impl Session {
     pub fn missed_target(&self) -> Option<MissedTarget> {
         let target = &self.frame().target;
         let space = ByIdentity(self.run().pose_space().ok()?.clone());
-        matches!(target.reach, Reach::Outside { .. })
-            .then(|| MissedTarget { space, at: target.at, b: self.b_aim(), reach: target.reach })
+        matches!(target.reach, Reach::Outside { .. }).then(|| MissedTarget {
+            space,
+            at: target.at,
+            b: self.b_aim(),
+            reach: target.reach,
+        })
     }
 
     /// Returns what leads out of a b, rad, that does not serve all points of the task: the nearest b that does, and the
@@ -103,11 +106,8 @@ impl Session {
         let pair = |[low, high]: [f64; 2]| Value::Array(vec![low.into(), high.into()]);
         // Rounded outwards, so that the limits contain the pose.
         let scale = 10f64.powi(LIMIT_DECIMALS as i32);
-        let tightest = if now < low {
-            [(now * scale).floor() / scale, high]
-        } else {
-            [low, (now * scale).ceil() / scale]
-        };
+        let tightest =
+            if now < low { [(now * scale).floor() / scale, high] } else { [low, (now * scale).ceil() / scale] };
         let before = self.limits_before(&angle.name).filter(|before| *before != pair([low, high]));
         let back = before.map(|before| {
             let words = shown(&before);

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use toml::Table;
 
-use super::improve::improvements_while;
-use super::task::{candidates, made_task, would_plan};
-use super::value::{nearest_values, taking_back};
 use super::Proposal;
+use super::improve::improvements_while;
+use super::task::{candidates, made_task, shows_only_in_motion, would_plan};
+use super::value::{nearest_values, taking_back};
 use crate::changes::after_start_edit;
 use crate::edit::Edit;
 use crate::refusal::Refusal;
@@ -109,16 +109,18 @@ fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: ProgressCall
     let count = candidates.len() + 1;
     // Making a task for the machine takes a search, so this is done only if the loop below gets to it.
     let made = std::iter::once_with(|| would_plan(refusal).then(|| made_task(&bare)).flatten()).flatten();
-    // A refused edit is refused at its step, so what leads out of it is replayed up to its end.
-    let is_of_edit = matches!(refusal, Refusal::Edit { .. });
+    let in_motion = shows_only_in_motion(refusal);
     let mut proposals: Vec<Proposal> = Vec::new();
     for (i, candidate) in candidates.into_iter().chain(made).enumerate() {
         if !goes_on(i as f64 / count as f64) {
             return None;
         }
         let candidate = candidate.reduced(&bare);
-        let works = |candidate: &Proposal| match is_of_edit {
-            true => candidate.applied(scenario).is_some_and(|changed| replay(&changed, |_, _| {}).is_ok()),
+        let works = |candidate: &Proposal| match in_motion {
+            true => candidate
+                .applied(scenario)
+                .and_then(|changed| replay(&changed, |_, _| {}).ok())
+                .is_some_and(|run| run.frame().first_violation().is_none()),
             false => candidate.tried(&bare).is_some(),
         };
         if candidate.change().is_some_and(|change| !change.is_empty())

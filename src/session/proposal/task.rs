@@ -12,11 +12,13 @@ use stillbase_planning::common::{nearest_common_place, nearest_place};
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::reactionless::Decimal;
 use stillbase_planning::timing::TimeLaw;
-use stillbase_settings::change::single_change;
+use stillbase_settings::change::{DEFAULT_WORD, single_change};
 use stillbase_settings::number::significant;
 use stillbase_settings::range::Requirement;
 use stillbase_settings::word::Choice;
 
+/// Factors by which a step is made finer, in the order of the trials.
+const FINER_STEPS: [f64; 2] = [4.0, 20.0];
 /// Numbers of decimals of turned points, m, in the order of the trials.
 const TURNED_DECIMALS: [usize; 3] = [3, 5, 9];
 
@@ -44,6 +46,10 @@ pub(super) fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal
             found.push(taking(what, value.clamp(range.low(), range.high())));
         }
         Refusal::Unreachable { point, .. } => found.extend(moved_point(scenario, point)),
+        Refusal::Diverged { .. } | Refusal::Untrusted { .. } => {
+            found.extend(FINER_STEPS.map(|factor| taking("step", round_up(scenario.step / factor))));
+            found.push(Proposal::new("take the usual gains", single_change("control", DEFAULT_WORD)));
+        }
         Refusal::TooManySteps { time, .. } => {
             let step = round_up(time / MAX_STEPS as f64);
             found.push(Proposal::new(format!("take a step of {step} s"), single_change("step", step)));
@@ -77,8 +83,12 @@ pub(super) fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal
     found
 }
 
-/// Returns whether another plan may lead out of a refusal. It cannot if the task could be planned already. A
-/// finer step may help then, but only a simulation shows whether it does.
+/// Returns whether only a simulation shows whether a change leads out of a refusal: the task could be planned already.
+pub(super) fn shows_only_in_motion(refusal: &Refusal) -> bool {
+    matches!(refusal, Refusal::Edit { .. } | Refusal::Diverged { .. } | Refusal::Untrusted { .. })
+}
+
+/// Returns whether another plan may lead out of a refusal. It cannot if the task could be planned already.
 pub(super) fn would_plan(refusal: &Refusal) -> bool {
     match refusal {
         Refusal::Edit { refusal, .. } => would_plan(refusal),

@@ -7,6 +7,7 @@ use crate::scenario::key_of;
 use stillbase_planning::reactionless::Decimal;
 use stillbase_settings::change::{DEFAULT_WORD, join, leaves, number, single_change, typed};
 use stillbase_settings::key::KeyType;
+use stillbase_settings::number::ShortNumber;
 use stillbase_settings::range::Range;
 
 /// Number of bisections between the present value and the wanted one.
@@ -20,11 +21,14 @@ pub(super) fn taking(path: &str, value: impl Into<Value>) -> Proposal {
     Proposal::new(format!("take {path} = {}", shown(&value)), single_change(path, value))
 }
 
-/// Returns a value as it is typed, whole numbers without decimals.
+/// Returns a value as it may be typed, in few digits.
 pub(super) fn shown(value: &Value) -> String {
-    let typed = typed(value);
-    let parts: Vec<&str> = typed.split(',').map(|part| part.strip_suffix(".0").unwrap_or(part)).collect();
-    if value.is_str() { typed } else { parts.join(",") }
+    match (value, numbers(value)) {
+        (Value::Float(_) | Value::Array(_), Some(all)) => {
+            all.into_iter().map(|x| ShortNumber(x).to_string()).collect::<Vec<_>>().join(",")
+        }
+        _ => typed(value),
+    }
 }
 
 /// Returns proposals for settings that are refused, to be made after them: the nearest allowed values or, without any,
@@ -49,7 +53,8 @@ pub(super) fn nearest_values(
     let all: Vec<(String, &Value)> = leaves(wanted);
     let of = |changed: &[(String, Value)]| {
         let text: Vec<String> = changed.iter().map(|(path, value)| format!("{path} = {}", shown(value))).collect();
-        let change = changed.iter().fold(Table::new(), |all, (path, value)| join(all, &single_change(path, value.clone())));
+        let change =
+            changed.iter().fold(Table::new(), |all, (path, value)| join(all, &single_change(path, value.clone())));
         (!change.is_empty()).then(|| Proposal::new(format!("take {}", text.join(", ")), change))
     };
     // First every value is brought into the range of its key.
@@ -93,7 +98,8 @@ fn within_key(of: &KeyType, value: &Value) -> Option<Value> {
         Value::Integer(x) if range.contains(*x as f64) => Some(Value::Integer(*x)),
         value => number(value).filter(|x| !x.is_nan()).map(|x| Value::Float(x.clamp(range.low(), range.high()))),
     };
-    let list = |range: &Range, all: &Vec<Value>| -> Option<Vec<Value>> { all.iter().map(|x| clamped(range, x)).collect() };
+    let list =
+        |range: &Range, all: &Vec<Value>| -> Option<Vec<Value>> { all.iter().map(|x| clamped(range, x)).collect() };
     match (of, value) {
         (KeyType::Whole(range), value) => {
             let x = number(value)?.clamp(range.low(), range.high()).round();

@@ -19,8 +19,8 @@ use crate::Run;
 use stillbase_mechanics::machine::Inertia;
 use stillbase_settings::number::significant;
 use stillbase_simulation::Guide;
-use stillbase_simulation::plant::PlantDifferences;
 use stillbase_simulation::frame::Frame;
+use stillbase_simulation::plant::PlantDifferences;
 
 /// b is held if it varies by no more than this, rad.
 const B_TOLERANCE: f64 = 1e-6;
@@ -171,7 +171,8 @@ impl Statement {
                     match off.abs() > MIN_SHOWN_OFF_RAD {
                         true => {
                             let off = significant(off);
-                            let why = format!("{why}; the run is {off} rad off it now, as its machine is not the model");
+                            let why =
+                                format!("{why}; the run is {off} rad off it now, as its machine is not the model");
                             (StatusLight::Good, format!("holds b, the run is off by {off} rad"), why)
                         }
                         false => (StatusLight::Good, "holds b".to_owned(), why),

@@ -7,8 +7,8 @@ use super::{
     Alternative, BaselineMachines, ComparedRun, DESIGN_COLUMNS, DesignMeasures, SUMMARY_COLUMNS, alternatives,
 };
 use stillbase_query::{Portion, ProgressCallback, Query, Shared};
-use stillbase_session::{Proposal, Refusal, proposals};
 use stillbase_session::scenario::Scenario;
+use stillbase_session::{Proposal, Refusal, proposals};
 use stillbase_settings::number::nine_digits;
 
 /// One row of the comparison.
@@ -103,9 +103,9 @@ impl Query for AlternativeRuns {
         let share = |done: f64| (known as f64 + done) / count;
         let outcome = match ComparedRun::of_while(scenario.clone(), &mut |done| goes_on(share(done))) {
             Err(Refusal::Stopped) => return Portion::Stopped,
-            outcome => outcome
-                .map(Arc::new)
-                .map_err(|refusal| Arc::new(RefusedRun::of(way.title(), scenario, &refusal))),
+            outcome => {
+                outcome.map(Arc::new).map_err(|refusal| Arc::new(RefusedRun::of(way.title(), scenario, &refusal)))
+            }
         };
         self.done.push((way.title().to_owned(), outcome));
         Portion::More(share(1.0))
