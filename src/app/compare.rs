@@ -207,6 +207,7 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &ComparisonEntry, columns: &[H
                         ))
                         .layout(Layout::left_to_right(Align::Center)),
                 );
+                area.spacing_mut().button_padding = egui::vec2(6.0, 1.0);
                 if let Some(scenario) = least.and_then(|way| refused.with(way)) {
                     let text = least.map_or_else(String::new, |way| way.text.clone());
                     let text = notation::sentence(ui.ctx(), &text).into_owned();

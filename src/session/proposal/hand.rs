@@ -4,7 +4,7 @@
 use toml::Value;
 
 use super::Proposal;
-use super::value::{shown, taking};
+use super::value::{numbers, taking};
 use crate::edit::Edit;
 use crate::interactive::Session;
 use crate::scenario::POSE_CONSTANT_RANGE;
@@ -110,8 +110,10 @@ impl Session {
             if now < low { [(now * scale).floor() / scale, high] } else { [low, (now * scale).ceil() / scale] };
         let before = self.limits_before(&angle.name).filter(|before| *before != pair([low, high]));
         let back = before.map(|before| {
-            let words = shown(&before);
-            Proposal { text: format!("put {key} back to {words}"), ..taking(&key, before) }
+            let bounds = numbers(&before).unwrap_or_default();
+            let words: Vec<String> = bounds.iter().map(|x| format!("{x:.3}")).collect();
+            let text = format!("put {key} back to {} rad", words.join(" to "));
+            Proposal { text, ..taking(&key, before) }
         });
         let why = format!("{} is at {now:.3} rad, outside its limits of {low:.3} to {high:.3} rad", angle.name);
         Some(OutsideLimits { why, proposals: back.into_iter().chain([taking(&key, pair(tightest))]).collect() })

@@ -22,7 +22,7 @@ pub(super) fn taking(path: &str, value: impl Into<Value>) -> Proposal {
 }
 
 /// Returns a value as it may be typed, in few digits.
-pub(super) fn shown(value: &Value) -> String {
+fn shown(value: &Value) -> String {
     match (value, numbers(value)) {
         (Value::Float(_) | Value::Array(_), Some(all)) => {
             all.into_iter().map(|x| ShortNumber(x).to_string()).collect::<Vec<_>>().join(",")
@@ -126,7 +126,7 @@ fn within_key(of: &KeyType, value: &Value) -> Option<Value> {
 }
 
 /// Returns the number or the list of numbers of a value.
-fn numbers(value: &Value) -> Option<Vec<f64>> {
+pub(super) fn numbers(value: &Value) -> Option<Vec<f64>> {
     let all: Vec<f64> = match value {
         Value::Array(all) => all.iter().map(number).collect::<Option<_>>()?,
         value => vec![number(value)?],
