@@ -50,11 +50,15 @@ fn main() -> ExitCode {
     if let Ok(wanted) = std::env::var("STILLBASE_FAULT") {
         stillbase::files::fault::arm_fault(&wanted);
     }
-    let matches = Arguments::command().try_get_matches_from(commands::words(std::env::args_os()));
+    let words: Vec<_> = commands::words(std::env::args_os()).collect();
+    let matches = Arguments::command().try_get_matches_from(&words);
     let parsed = matches.and_then(|matches| Ok((Arguments::from_arg_matches(&matches)?, asks_for_json(&matches))));
     let (arguments, as_json) = match parsed {
         Ok(parsed) => parsed,
-        Err(error) => return commands::usage(&error),
+        Err(error) => {
+            let parses = |words: &[_]| Arguments::command().try_get_matches_from(words).is_ok();
+            return commands::usage(&error, &words, parses);
+        }
     };
     let done = arguments.command.map_or_else(|| arguments.open.run(), |command| command.run());
     commands::exit_code(done, as_json)

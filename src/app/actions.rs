@@ -145,7 +145,7 @@ fn dialog(session: &Session, purpose: FilePurpose) -> Option<Command> {
     Some(Command::View(ViewChange::Dialog(Some(FileDialog::suggest(session, purpose)))))
 }
 
-/// Opens the card with the choices for a result that becomes a file.
+/// Opens the card of options for an export to a file.
 fn export(wanted: Export) -> Option<Command> {
     Some(Command::View(ViewChange::Export(Some(wanted))))
 }

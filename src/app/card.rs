@@ -88,7 +88,7 @@ impl Card {
             }
             Handle::Boundary => {
                 let planes = session.run().planes()?;
-                let b = frame.b_reference.rem_euclid(planes.map().period());
+                let b = frame.b_reference;
                 let rows =
                     vec![format!("encloses {} m² at b = {} rad", signed(planes.boundary().area(), 3), signed(b, 3))];
                 Self::new("boundary of the reactionless workspace", rows, "click: b in the panel")

@@ -129,19 +129,16 @@ impl SessionSource {
                 text.map_err(|why| NotOpened { why: shorten_message(&why.to_string()).into_owned(), refused: None })?;
             return Ok(Opened::Table(path.clone(), TableText { name: path.display().to_string(), text }));
         }
-        let (FoundScenario { scenario, note }, from_file, left_off) = match self {
-            Self::Scenario(scenario) => (FoundScenario { scenario: *scenario, note: None }, false, None),
+        let (FoundScenario { scenario, note }, left_off) = match self {
+            Self::Scenario(scenario) => (FoundScenario { scenario: *scenario, note: None }, None),
             Self::File(path) | Self::Journal(path) => {
                 let text = stillbase_files::text::read(&path).unwrap_or_default();
-                (read(&path)?, true, ResumePoint::of(&text))
+                (read(&path)?, ResumePoint::of(&text))
             }
         };
         let mut session = Session::open_while(scenario.clone(), watch).map_err(|refusal| NotOpened {
             why: refusal.to_string(),
-            refused: from_file.then(|| {
-                let change = scenario.task.whole();
-                RefusedEdit::of(&scenario, &Edit::of("task", change), &refusal)
-            }),
+            refused: Some(RefusedEdit::of_opening(&scenario, &refusal)),
         })?;
         if let Some(ResumePoint { time, .. }) = &left_off {
             // The file may name any time: the run is not extended beyond its length.

@@ -10,6 +10,7 @@ use super::guide::GuideStep;
 use super::layout::Layout;
 use super::notes::NoteDraft;
 use super::pair::Pair;
+use super::widgets::RefusedEntry;
 use stillbase_mechanics::counterweights::Objective;
 use stillbase_mechanics::machine::Machine;
 use stillbase_picture::charts::choice::PlotChange;
@@ -18,8 +19,8 @@ use stillbase_picture::scene::Measure;
 use stillbase_picture::scene::options::Handle;
 use stillbase_picture::scene::palette::Theme;
 use stillbase_picture::scene::views::ViewKind;
-use stillbase_session::Edit;
 use stillbase_session::scenario::{Note, Scenario};
+use stillbase_session::{Edit, Proposal};
 use stillbase_study::front_point::FrontMeasure;
 
 /// A command of the user.
@@ -178,7 +179,7 @@ pub enum Switch {
     Holding,
     /// The pointer draws a path.
     Drawing,
-    /// The pointer pushes the end effector when it drags it.
+    /// Dragging the end effector with the pointer pushes it.
     Pushing,
     /// The pointer measures distances and angles.
     Measuring,
@@ -237,7 +238,7 @@ pub enum ViewChange {
     DropMeasurement(Option<usize>),
     /// Open or close the file dialog.
     Dialog(Option<FileDialog>),
-    /// Open, change or close the card with the choices for a result that becomes a file.
+    /// Open, change or close the card of options for an export to a file.
     Export(Option<Export>),
 }
 
@@ -258,8 +259,10 @@ pub enum WindowCommand {
     CopyCommand,
     /// Copy a text, and say so.
     Copy(String),
-    /// Show why a typed number is refused.
-    Refuse(String),
+    /// Show why what was typed is refused, with ways out that are known.
+    Refuse(String, Vec<Proposal>),
+    /// Show why a number is refused that was typed out of its range.
+    RefuseEntry(RefusedEntry),
     /// Stop an activity in the background.
     Cancel(Activity),
     /// Open or close the question whether the window may close with unsaved changes.

@@ -65,6 +65,9 @@ fn buttons(ui: &mut Ui, comparison: &Comparison, commands: &mut Vec<Command>) {
     name(&add.response.on_hover_text("Another scenario to compare with"), "Add a run");
 }
 
+/// Height of a row, points.
+const ROW_HEIGHT_PT: f32 = 20.0;
+
 /// Head of a column.
 struct Head {
     /// Its index among all columns.
@@ -189,9 +192,42 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &ComparisonEntry, columns: &[H
                 });
             }
         }
-        Err(why) => {
-            let why = notation::sentence(ui.ctx(), why);
-            ui.add(Label::new(RichText::new(why).font(plain(11.5)).color(colour(p.dim))).extend());
+        Err(refused) => {
+            // The reason runs across the columns without widening them; the button before it is never cut.
+            let least = refused.proposals.first();
+            ui.horizontal(|ui| {
+                let from = ui.cursor().left();
+                let why = notation::sentence(ui.ctx(), &refused.why).into_owned();
+                let shown = ui.clip_rect().right();
+                let mut area = ui.new_child(
+                    egui::UiBuilder::new()
+                        .max_rect(egui::Rect::from_min_max(
+                            ui.cursor().min,
+                            egui::pos2(shown.max(from), ui.cursor().min.y + ROW_HEIGHT_PT),
+                        ))
+                        .layout(Layout::left_to_right(Align::Center)),
+                );
+                area.spacing_mut().button_padding = egui::vec2(6.0, 1.0);
+                if let Some(scenario) = least.and_then(|way| refused.with(way)) {
+                    let text = least.map_or_else(String::new, |way| way.text.clone());
+                    let text = notation::sentence(ui.ctx(), &text).into_owned();
+                    let button = area.add(Button::new(RichText::new(text).font(plain(11.5))).small());
+                    name(&button, &format!("{}: {}", entry.title, least.map_or("", |way| &way.text)));
+                    let all: Vec<String> = refused
+                        .proposals
+                        .iter()
+                        .map(|way| format!("{}: {}", way.text, way.how().replace('\n', ", ")))
+                        .collect();
+                    if button
+                        .on_hover_text(format!("Runs it so, and keeps the run as a row\n{}", all.join("\n")))
+                        .clicked()
+                    {
+                        commands.push(WindowCommand::Comparison(ComparisonCommand::Add(Box::new(scenario))).into());
+                    }
+                }
+                let label = Label::new(RichText::new(&why).font(plain(11.5)).color(colour(p.dim)));
+                area.add(label.truncate()).on_hover_text(&why);
+            });
         }
     }
 }

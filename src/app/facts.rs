@@ -7,8 +7,8 @@ use stillbase_mechanics::machine::{Inertia, Machine, builtins};
 use stillbase_mechanics::planar::Vector;
 use stillbase_planning::pose_space::Planes;
 use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork, Shared};
-use stillbase_session::Session;
 use stillbase_session::scenario::{Scenario, Value, name_of, search_words};
+use stillbase_session::{Proposal, Session, TargetProposals};
 use stillbase_settings::change::{self, DEFAULT_WORD};
 use stillbase_settings::key::{Key, KeyType};
 
@@ -18,7 +18,7 @@ pub(super) struct Setting {
     pub key: &'static Key,
     /// Its value as the user would type it; empty if it is not set.
     pub typed: String,
-    /// Whether it has its default value, or none because it must be given.
+    /// Whether its value is the default. Also true if it is not set, or if the key has no default.
     pub is_default: bool,
     /// If the setting has no effect now: the condition under which it has one.
     pub unmet_condition: Option<&'static str>,
@@ -145,6 +145,8 @@ pub(super) struct ScenarioFacts<'a> {
     /// Number of poses that put the end effector at its present point, and the point's distance from the workspace
     /// boundary, m, positive inside. `None` for a machine without planes.
     pub standing: Option<(usize, f64)>,
+    /// Ways out of a target that is out of reach; none while it is being dragged.
+    pub target_proposals: Arc<Vec<Proposal>>,
 }
 
 impl<'a> ScenarioFacts<'a> {
@@ -163,6 +165,10 @@ impl<'a> ScenarioFacts<'a> {
             price: balance.pose_inertia * scenario.0.pose_acceleration,
             balance,
             standing: run.planes().map(stands),
+            target_proposals: session
+                .missed_target()
+                .filter(|_| !session.is_in_gesture())
+                .map_or_else(Arc::default, |missed| queries.ask::<QuickWork<TargetProposals>>(&missed)),
             queries,
             scenario,
         }

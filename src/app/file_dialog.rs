@@ -70,7 +70,7 @@ impl FilePurpose {
         }
     }
 
-    /// Returns the title of the dialog; that for a machine lists the file extensions to choose from.
+    /// Returns the title of the dialog. For a machine or an export it lists the file extensions to choose from.
     pub(super) fn title(&self) -> String {
         let [title, ..] = self.words();
         match self {

@@ -20,7 +20,7 @@ use stillbase_session::Session;
 const WIDTH_PT: f32 = 330.0;
 const PICTURE_PT: egui::Vec2 = vec2(64.0, 40.0);
 
-/// Query for the pictures of recent files, each with the stamp of its content. `None` for a file that cannot be
+/// Query for the pictures of recent files, each file with its time of change and size. `None` for one that cannot be
 /// opened.
 struct RecentPortraits;
 

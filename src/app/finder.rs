@@ -29,14 +29,14 @@ struct Entry<'a> {
     also: &'a str,
     /// Shown only if there is a search text.
     hides: bool,
-    /// A heading of the guide: its words count half, so that what does a thing comes before what tells of it.
+    /// Whether it is a heading of the guide. Its score is halved, so that commands come before explanations.
     tells: bool,
     keys: String,
     /// Makes the command; called only for the line that the user picks.
     command: Box<dyn FnOnce() -> Command + 'a>,
 }
 
-/// Place of the signals. There are many of one name, one for each drive, so that they step back by this score.
+/// Place of the signals, and the reduction of their scores: many have the same name, one for each drive.
 const SIGNALS_PLACE: &str = "plots";
 const SIGNALS_STEP_BACK: i32 = 12;
 
@@ -57,8 +57,8 @@ struct Known<'a> {
     sections: &'a [Section],
 }
 
-/// Returns the entries available now: actions, recent files, scenarios, machines, signals, settings, and the headings
-/// of the guide.
+/// Returns the entries available now: actions, notes, recent files, scenarios, machines, signals, settings, and
+/// headings of the guide.
 fn entries<'a>(known: Known<'a>, view_state: &ViewState) -> Vec<Entry<'a>> {
     let Known { session, signals, settings, recent, sections } = known;
     let actions = ACTIONS.iter().filter_map(|action| {
@@ -102,7 +102,7 @@ fn entries<'a>(known: Known<'a>, view_state: &ViewState) -> Vec<Entry<'a>> {
             Box::new(|| Command::Session(SessionCommand::OpenFile(file.clone()))),
         )
     });
-    // A note of an instant leads there; one of all times is opened.
+    // A note with a start time leads to that time; a note for all times is opened.
     let notes = session.notes().iter().enumerate().map(|(i, note)| {
         let go = move || match note.time.start() {
             Some(time) => Command::Session(SessionCommand::Seek(time)),
@@ -209,7 +209,7 @@ fn typed_as<'a>(
         }
     };
     let best = search::best_first(fit, score, MAX_TYPED_ENTRIES);
-    // After a space, a number may also be a name: in "mass of link 3" it is no value of the mass of link 1.
+    // After a space, a number may also be a name: "mass of link 3" does not set the mass of link 1 to 3.
     let names = |setting: &Setting| {
         let parts = setting.key.path.split('.').zip(setting.path.split('.'));
         let mut own = parts.filter(|(pattern, _)| *pattern == "*").map(|(_, own)| own);
@@ -224,7 +224,7 @@ fn found<'a>(entries: Vec<Entry<'a>>, sought: &str) -> Vec<Entry<'a>> {
     let score = |entry: &Entry<'_>| {
         let place = || search::score(sought, &format!("{} {}", entry.place, entry.keys)).map(|s| s / 4);
         let score = match entry.tells {
-            // A page explains; what does something comes first.
+            // Headings of the guide explain; commands come first.
             true => search::score_of_prose(sought, entry.also, &entry.title)? / 2,
             false => search::score_with(sought, &entry.title, entry.also).or_else(place)?,
         };

@@ -43,8 +43,8 @@ pub fn machines(ui: &mut Ui, present: &Machine, p: &Palette) -> Option<&'static 
     show(ui, &choices, p).map(|i| &machine::builtins()[i]).filter(|machine| *machine != present)
 }
 
-/// Query for the pictures of scenarios: the machine at the start of its path, and the path. `None` for a scenario that
-/// cannot be planned.
+/// Query for pictures of the built-in scenarios: the machine at the start of its path, and the path. A scenario that
+/// cannot be planned is shown by its machine alone.
 pub struct ScenarioPortraits;
 
 impl QuickQuery for ScenarioPortraits {

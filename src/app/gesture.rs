@@ -9,7 +9,7 @@ use stillbase_session::scenario::SnapPoint;
 pub struct HoverTarget {
     /// Object of the scene under the pointer.
     pub object: Option<Handle>,
-    /// Object whose rows in the panel are under the pointer.
+    /// Object whose rows in the panel are under the pointer or have the keyboard focus, or that a panel mentions.
     pub panel_object: Option<Handle>,
     /// Indices of the links that contribute to the term under the pointer.
     pub lit_links: Vec<usize>,

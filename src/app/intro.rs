@@ -205,7 +205,7 @@ pub(super) enum Corner {
 impl Corner {
     const ALL: [Self; 4] = [Self::RightBottom, Self::LeftBottom, Self::RightTop, Self::LeftTop];
 
-    /// Returns the freest corner for the card of this name; during a drag the card stays in its corner.
+    /// Returns the freest corner for the card with this id; during a drag the card stays in its corner.
     pub fn kept(
         ctx: &egui::Context,
         id: Id,

@@ -70,10 +70,11 @@ fn place(about: &str) -> (&'static str, ViewChange) {
 /// Draws the button of a proposal. The edit also makes the settings that were refused, if there are any.
 pub fn proposal(ui: &mut Ui, proposal: &Proposal, refused: Option<&RefusedEdit>, commands: &mut Vec<Command>) {
     let text = notation::sentence(ui.ctx(), &proposal.text);
-    let response = ui.button(text).on_hover_text(proposal.settings().join("\n"));
+    let response = ui.button(text).on_hover_text(proposal.how());
     if response.clicked() {
-        let edit = refused.map_or_else(|| proposal.edit(), |refused| refused.edit_with(proposal));
-        commands.extend([Command::Session(SessionCommand::Edit(edit)), Command::Session(SessionCommand::EndGesture)]);
+        let own = || proposal.edit().map(SessionCommand::Edit);
+        let command = refused.map_or_else(own, |refused| refused.command_with(proposal));
+        commands.extend(command.into_iter().chain([SessionCommand::EndGesture]).map(Command::Session));
     }
 }
 

@@ -29,7 +29,7 @@ const WIDTH_PT: f32 = 300.0;
 const GAP_PT: f32 = 14.0;
 /// Maximum height of the list of points, points.
 const LIST_HEIGHT_PT: f32 = 380.0;
-/// Height of the top of a card that belongs to no place, points.
+/// Distance of a card that belongs to no place from the upper edge of the window, points.
 const TOP_PT: f32 = 96.0;
 
 impl NoteDraft {

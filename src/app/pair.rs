@@ -32,7 +32,7 @@ pub struct Pair {
     pub with: PairWith,
     /// Whether the runs stand one above the other; `None`: as the shape of the view wants it.
     pub above: Option<bool>,
-    /// Whether it is the demonstration of the first minute, which ends when the machine is touched.
+    /// Whether it is the demonstration before the hints, which ends when the machine is touched.
     pub demonstrates: bool,
 }
 
@@ -57,7 +57,7 @@ impl PairWith {
         }
     }
 
-    /// Returns the scenario beside a session; `None` for a machine that does not come along.
+    /// Returns the scenario beside a session; `None` for a machine that is not built in.
     pub fn scenario(&self, session: &Session) -> Option<Scenario> {
         let own = session.scenario();
         match self {
@@ -103,14 +103,14 @@ const CAPTION_HEIGHT_PT: f32 = 116.0;
 const ZERO_BELOW_N_M: f64 = 0.005;
 
 impl Pair {
-    /// Returns the pair that shows most: beside a straight line the reactionless run, else the straight line.
+    /// Returns the pair that differs most: the reactionless run beside a straight line, else the straight line.
     pub fn of(session: &Session) -> Self {
         let shakes = session.scenario().task.kind == TaskKind::MinimumNorm;
         let way = if shakes { Alternative::Reactionless } else { Alternative::StraightLine };
         Self { with: PairWith::Way(way), above: None, demonstrates: false }
     }
 
-    /// Returns the demonstration of the first minute.
+    /// Returns the demonstration before the hints.
     pub fn demonstration() -> Self {
         Self { with: PairWith::Way(Alternative::StraightLine), above: None, demonstrates: true }
     }
@@ -120,7 +120,7 @@ impl Pair {
         self.demonstrates && width >= MIN_WIDTH_OF_BOTH_PT + PANELS_WIDTH_PT
     }
 
-    /// Divides a view into that of the other run and that of the session; `None` if there is no room for both.
+    /// Divides a view into that of the other run and that of the session; `None` for a demonstration without room.
     pub fn divide(&self, view: Rect) -> Option<[Rect; 2]> {
         let (wide, high) = (view.width() >= MIN_WIDTH_OF_BOTH_PT, view.height() >= MIN_HEIGHT_OF_BOTH_PT);
         if self.demonstrates && !wide {

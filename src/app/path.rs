@@ -361,7 +361,11 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
     let [time, torque, moment] = [forecast.time, torque, forecast.moment].map(|x| signed(x, 3));
     let figures = match waits {
         true => "change limits, points or b".into(),
-        false => format!("{time} s  ·  τ {torque}  ·  n_B {moment} N m"),
+        false => {
+            // A limit that is named in place of the first line leaves no other word that these are planned.
+            let planned = if forecast.exceeded_limit.is_some() { "planned: " } else { "" };
+            format!("{planned}{time} s  ·  τ {torque}  ·  n_B {moment} N m")
+        }
     };
     let (first, ink) = match forecast.exceeded_limit {
         Some((limit, factor)) => (format!("{limit} passes its limit, {} times", signed(factor, 2)), p.reaction),
@@ -375,7 +379,7 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
             if waits {
                 "It goes on once the limits, the points or b let it"
             } else {
-                "Its duration, its largest |τ| and its largest |n_B|"
+                "What the plan foresees: its duration, its largest |τ| and its largest |n_B|; the report has those of the run"
             },
         ),
     ] {

@@ -49,7 +49,7 @@ impl Pointed {
     }
 }
 
-/// Widgets that are pointed at in this pass, with their rectangles in the last one.
+/// Widgets that are sought, with their rectangles as soon as they have been drawn.
 type Widgets = Vec<(&'static str, Option<Rect>)>;
 
 fn id() -> Id {

@@ -44,7 +44,7 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &Session, view_state: &ViewState, 
     for named in lamp::statements(session).named() {
         lamp::show(&mut corner, named, 0.32 * large, &p);
     }
-    let b = session.run().pose_space().ok().map(|map| f.b.rem_euclid(map.period()));
+    let b = session.run().pose_space().ok().map(|_| f.b);
     let b = b.map_or_else(String::new, |b| format!("b = {}   ·   ", notation.write(b, 3, "rad")));
     let now = format!("{b}{:.2} s of {:.2} s", f.time, session.length());
     line(&mut corner, RichText::new(now).font(plain(0.32 * large)).color(colour(p.dim)));

@@ -23,9 +23,9 @@ pub(super) struct Saving {
     pub left_session: Option<(PathBuf, String)>,
     /// The file of a recovered or discarded session; it is removed once a journal contains the present session.
     pub recovered: Option<PathBuf>,
-    /// The files of the session and of those before it in its history: each is one that this program wrote and from
-    /// which the session was opened, or to which it was saved. A file written by hand is none, so that saving never drops
-    /// its comments.
+    /// The files of this session and of the earlier sessions in its undo history. Each was written by this program,
+    /// and the session was opened from it or saved to it. Files written by hand are not listed, so that saving never
+    /// drops their comments.
     pub own: Vec<OwnFile>,
     /// Recently opened and saved files, newest first.
     pub recent: Vec<PathBuf>,
@@ -33,8 +33,8 @@ pub(super) struct Saving {
     pub replaces: Option<PathBuf>,
 }
 
-/// The file of a session, from an undo entry on: undoing the opening of a file leads back to the session before it, and
-/// to that session's file.
+/// The file of a session, valid from a number of undo entries on. Undoing the opening of a file leads back to the
+/// previous session, and to the file of that session.
 #[derive(Clone, Debug)]
 pub(super) struct OwnFile {
     /// Number of undo entries right after the session was opened.
@@ -51,7 +51,7 @@ impl Saving {
         self.own.iter().rev().find(|own| own.since <= undo_count)?.file.as_ref()
     }
 
-    /// Begins a session without a file that has this number of undo entries.
+    /// Begins a session that has this number of undo entries, and no file yet.
     pub fn begin_file(&mut self, undo_count: usize) {
         self.own.retain(|own| own.since < undo_count);
         self.own.push(OwnFile { since: undo_count, file: None });

@@ -14,7 +14,7 @@ pub fn score_with(sought: &str, name: &str, also: &str) -> Option<i32> {
     of_all(sought, |word| anyhow(word, &name).max(whole(word, &also).map(|score| score / 2)))
 }
 
-/// Like [`score_with`], but words count only where they are contiguous: for prose, where any letters are found.
+/// Like [`score_with`], but each word must be contiguous: a long text contains almost any scattered letters.
 pub fn score_of_prose(sought: &str, heading: &str, text: &str) -> Option<i32> {
     let [heading, text] = [heading, text].map(letters);
     of_all(sought, |word| whole(word, &heading).max(whole(word, &text).map(|score| score / 2)))
@@ -28,7 +28,7 @@ fn letters(text: &str) -> Vec<char> {
 const FILLERS: [&str; 14] = ["a", "an", "the", "to", "of", "do", "i", "how", "is", "in", "on", "with", "my", "can"];
 
 /// Returns the sum of the scores of all words of a search text; `None` if a word has none. Fillers do not count beside
-/// other words, and a plural is found by its singular.
+/// other words. A word that is not found is sought again without its final s.
 fn of_all(sought: &str, score: impl Fn(&[char]) -> Option<i32>) -> Option<i32> {
     let words: Vec<String> = sought.split_whitespace().map(str::to_lowercase).collect();
     let says = |word: &String| !FILLERS.contains(&word.as_str());

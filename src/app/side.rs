@@ -23,7 +23,7 @@ use stillbase_picture::scene::course::target_handle;
 use stillbase_picture::scene::options::Handle;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_planning::pose_space::NoPoseSpace;
-use stillbase_session::scenario::{POINT_RANGE, Value};
+use stillbase_session::scenario::{POINT_RANGE, POSE_CONSTANT_RANGE, Value};
 use stillbase_session::{Edit, Session};
 use stillbase_settings::change::DEFAULT_WORD;
 use stillbase_settings::number::{significant, subscript};
@@ -32,7 +32,7 @@ use stillbase_settings::number::{significant, subscript};
 const WIDTH_FRACTION: f32 = 0.17;
 const MIN_WIDTH_PT: f32 = 262.0;
 const MAX_WIDTH_PT: f32 = 320.0;
-/// The same in a window that is narrow, so that the scene keeps room.
+/// Minimum of the default width in a window that is narrow, points, so that the scene keeps room.
 const NARROW_WIDTH_PT: f32 = 252.0;
 
 /// Space for the scroll bar, which grows when the pointer is near, points.
@@ -104,13 +104,13 @@ fn pose_constant(
         note(ui, p, "its drives are coupled, so that holding b does not quite keep the moment from the base");
     }
     let period = map.period();
-    // The row shows b within one period; an edit keeps the number of whole periods.
+    // b is the same number everywhere, never wrapped; the slider covers the period that contains it.
     let b = session.b_aim();
-    let turns = (b / period).floor() * period;
-    let mut shown = b - turns;
+    let mut shown = b;
+    let turns = kept_while_pressed(ui, (b / period).floor() * period);
     let tip = format!(
-        "b = Σ λ q, Eq. (13), give or take whole periods of {period:.3} rad; {b:.3} rad as it is. Changing it turns what \
-         can be reached without a reaction."
+        "b = Σ λ q, Eq. (13). Changing it turns what can be reached without a reaction; every {period:.3} rad, a whole \
+         turn of all drives, it is the same."
     );
     let row = NumberRow {
         label: "b",
@@ -118,19 +118,19 @@ fn pose_constant(
         tip: &tip,
         decimals: 3,
         speed: 0.005,
-        range: 0.0..=period,
-        slide: 0.0..=period,
+        range: POSE_CONSTANT_RANGE.low()..=POSE_CONSTANT_RANGE.high(),
+        slide: turns..=turns + period,
     };
     // The slider stops at the nearest feasible b of the period, so that it does not jump to the other end of its
     // range.
-    let allowed = |asked: f64| match set_b(session, view_state, turns + asked) {
-        Edit::PoseB { b } if b != turns + asked => {
-            session.nearest_feasible_b_within(turns + asked, [turns, turns + period]).unwrap_or(b) - turns
+    let allowed = |asked: f64| match set_b(session, view_state, asked) {
+        Edit::PoseB { b } if b != asked => {
+            session.nearest_feasible_b_within(asked, [turns, turns + period]).unwrap_or(b)
         }
         _ => asked,
     };
     let responses = row.with_stopped_slider(ui, p, &mut shown, allowed);
-    let asked = turns + shown;
+    let asked = shown;
     let edit = set_b(session, view_state, asked);
     let typed = responses[0].changed() && !responses[0].dragged();
     let stops = matches!(edit, Edit::PoseB { b } if b != asked);
@@ -138,12 +138,8 @@ fn pose_constant(
     if typed && stops {
         let band = feasible.map_or_else(String::new, |common| common.shifted_near(shown).in_words());
         let who = all_points(session);
-        commands.push(
-            WindowCommand::Refuse(format!(
-                "b = {shown:.3} rad does not serve {who}, so nothing has changed: want {band}, or \"turn the task too\""
-            ))
-            .into(),
-        );
+        let why = format!("b = {shown:.3} rad does not serve {who}, so nothing has changed: want {band}");
+        commands.push(WindowCommand::Refuse(why, session.proposals_for_b(asked)).into());
     } else {
         send(commands, &responses, || edit);
     }
@@ -205,6 +201,16 @@ fn pose_constant(
             }
         });
     });
+}
+
+/// Returns the start of the period that the slider covers, which stays while the pointer is pressed: a slider at its end
+/// would otherwise run through period after period.
+fn kept_while_pressed(ui: &Ui, turns: f64) -> f64 {
+    let id = egui::Id::unique("period of b");
+    let known = ui.data(|data| data.get_temp::<f64>(id)).filter(|_| ui.input(|i| i.pointer.any_down()));
+    let kept = known.unwrap_or(turns);
+    ui.data_mut(|data| data.insert_temp(id, kept));
+    kept
 }
 
 /// Draws the target of the end effector: two numbers to type or drag.

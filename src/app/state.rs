@@ -214,7 +214,7 @@ impl AppState {
         &self.saving.recent
     }
 
-    /// Returns the state of the display that no edit contains: the instant and the plots.
+    /// Returns the file of the session, and the state of the display that no edit contains, such as the instant.
     pub fn left_off(&self) -> ResumePoint {
         let file = self.own_saving().own_file(self.own_session().undo_count()).cloned();
         ResumePoint { file, ..ResumePoint::of_view(self.own_session(), self.own_view_state()) }
@@ -255,7 +255,7 @@ impl AppState {
         self.saving.leaves
     }
 
-    /// Removes and returns the file of a recovered session, once it is not needed any more.
+    /// Takes the path of the recovered or discarded session out of this state; the caller deletes the file later.
     pub fn take_recovered(&mut self) -> Option<PathBuf> {
         self.saving.recovered.take()
     }
@@ -272,6 +272,10 @@ impl AppState {
 
     /// Shows the outcome of a command as the message.
     pub(super) fn show_outcome(&mut self, said: Result<Option<String>, String>) {
+        if !matches!(said, Ok(None)) {
+            self.view_state.status.proposals.clear();
+            self.view_state.status.entry = None;
+        }
         match said {
             Ok(None) => {}
             Ok(Some(text)) => self.view_state.status.message = Some(Message { text, is_problem: false }),

@@ -14,12 +14,13 @@ use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::{Palette, faded};
 use stillbase_planning::pose_space::NoPoseSpace;
 use stillbase_session::verdict::Verdict;
-use stillbase_session::{Edit, Proposal, Session};
+use stillbase_session::{Proposal, Session};
 use stillbase_simulation::frame::{Frame, Reach};
 
 /// Whether a problem message must be shown.
 pub fn has_bad_news(session: &Session, view_state: &ViewState) -> bool {
     let bad = view_state.status.problem().is_some() || session.run().waiting().is_some();
+    let bad = bad || session.outside_limits().is_some();
     (bad || fault(session.frame()).is_some()) && view_state.open.dialog.is_none()
 }
 
@@ -40,9 +41,16 @@ pub fn news(
     let fault = fault(session.frame());
     let waits = session.run().waiting();
     let waiting = waits.map(|waiting| format!("The run waits: {}", waiting.why));
-    let text = match (view_state.status.problem(), &fault, &waiting, &view_state.open.dialog) {
-        (Some(text), _, _, None) | (_, Some(text), _, None) | (_, _, Some(text), None) => text,
-        _ => return,
+    let outside = session.outside_limits();
+    let reasons = [view_state.status.problem(), fault.as_ref(), waiting.as_ref(), outside.as_ref().map(|it| &it.why)];
+    let Some(text) = reasons.into_iter().flatten().next().filter(|_| view_state.open.dialog.is_none()) else { return };
+    // Ways out of what is said, not of what stands behind it.
+    let of_limits = outside.as_ref().filter(|outside| *text == outside.why);
+    let status = &view_state.status;
+    let proposals = match (of_limits, &status.proposals[..]) {
+        (Some(outside), _) => &outside.proposals,
+        (None, known @ [_, ..]) => known,
+        (None, []) => proposals,
     };
     // While the run waits, a refused edit hides neither the reason for the wait nor the remedy.
     let also = waits.zip(waiting.as_ref()).filter(|(waits, said)| text != *said && *text != waits.why.to_string());
@@ -65,12 +73,15 @@ pub fn news(
                 let said = notation::sentence(ui.ctx(), said);
                 ui.add(egui::Label::new(RichText::new(said).font(plain(12.0)).color(colour(p.dim))).wrap());
             }
-            if proposals.is_empty() {
+            if proposals.is_empty() && status.entry.is_none() {
                 return;
             }
             ui.horizontal_wrapped(|ui| {
+                if let Some(entry) = &status.entry {
+                    entry.button(ui);
+                }
                 for proposal in proposals {
-                    lamp::proposal(ui, proposal, view_state.status.refused.as_ref(), commands);
+                    lamp::proposal(ui, proposal, status.refused.as_ref().filter(|_| of_limits.is_none()), commands);
                 }
             });
         });
@@ -148,8 +159,8 @@ pub fn show(
             let mut facts: Vec<String> = Vec::new();
             let remarks = Verdict::of(session.scenario(), f).so_far();
             facts.extend(remarks.iter().filter(|_| ui.available_width() > 460.0).map(|remark| remark.short.clone()));
-            if let Ok(map) = session.run().pose_space() {
-                facts.push(format!("b {:.3} rad", f.b.rem_euclid(map.period())));
+            if session.run().pose_space().is_ok() {
+                facts.push(format!("b {:.3} rad", f.b));
             }
             let bad_news = view_state.status.problem().is_some();
             if let Some((poses, distance)) = found.standing.filter(|_| !bad_news && ui.available_width() > 460.0) {
@@ -196,23 +207,17 @@ pub fn show(
                     (None, _) if session.is_full() => {
                         ("this session is full: save or record it, then start over".into(), p.reaction)
                     }
-                    (None, Reach::Outside { feasible_b: Some(b), displayed_b: Some(shown), .. }) => {
-                        let way_out = ui.button(notation::sentence(ui.ctx(), &format!("go to b = {shown} rad")));
-                        if way_out
-                            .on_hover_text(
-                                "On that plane the target can be reached; to go there exerts a moment on the base",
-                            )
-                            .clicked()
-                        {
-                            commands.push(SessionCommand::Edit(Edit::SlideB { b }).into());
-                            commands.push(SessionCommand::EndGesture.into());
+                    (None, Reach::Outside { feasible_b, other_sheet, .. }) => {
+                        for way_out in found.target_proposals.iter().rev() {
+                            lamp::proposal(ui, way_out, None, commands);
                         }
-                        ("the target is outside".into(), p.ink)
+                        let why = match (feasible_b, other_sheet) {
+                            (Some(_), _) => "the target is outside",
+                            (None, true) => "the target is beyond a fold or a change point",
+                            (None, false) => "no b reaches the target",
+                        };
+                        (why.into(), p.ink)
                     }
-                    (None, Reach::Outside { other_sheet: true, .. }) => {
-                        ("the target is beyond a fold or a change point".into(), p.ink)
-                    }
-                    (None, Reach::Outside { .. }) => ("no b reaches the target".into(), p.ink),
                     (None, _) if matches!(view_state.tool, Tool::Draw(_)) => {
                         ("draw with the pointer  ·  Esc stops drawing".into(), p.ink)
                     }

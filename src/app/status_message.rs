@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
+use super::SessionCommand;
+use super::widgets::RefusedEntry;
 use stillbase_picture::scene::options::RefusedCurve;
 use stillbase_query::Shared;
 use stillbase_session::scenario::Scenario;
-use stillbase_session::{Edit, Proposal, Refusal};
+use stillbase_session::{Edit, Proposal, Refusal, RefusedChange};
 
 /// Messages shown until the next command.
 #[derive(Clone, Debug, Default)]
@@ -16,6 +18,10 @@ pub struct StatusMessage {
     pub left_branch: bool,
     /// The last refused edit.
     pub refused: Option<RefusedEdit>,
+    /// Ways out of the last message that are known at once.
+    pub(super) proposals: Vec<Proposal>,
+    /// The number of the last message that was typed out of its range.
+    pub(super) entry: Option<RefusedEntry>,
 }
 
 impl StatusMessage {
@@ -39,26 +45,46 @@ pub struct Message {
 pub struct RefusedEdit {
     /// The requested curve, and the point from which it cannot be followed.
     pub curve: Option<Arc<RefusedCurve>>,
-    /// The scenario with the edit, and the reason why it is refused; `None` if the edit is no change of settings.
-    pub refused: Option<(Shared<Scenario>, Refusal)>,
-    /// The edit.
-    edit: Edit,
+    /// What is refused, as the search for proposals takes it; `None` if the edit is a drag or a push.
+    pub refused: Option<RefusedChange>,
+    /// What was to be done.
+    attempt: Attempt,
+}
+
+/// What was to be done.
+#[derive(Clone, Debug)]
+enum Attempt {
+    /// An edit of the session.
+    Edit(Edit),
+    /// Opening a scenario.
+    Open(Box<Scenario>),
 }
 
 impl RefusedEdit {
     /// Returns the refusal of an edit of a scenario.
     pub(super) fn of(scenario: &Scenario, edit: &Edit, refusal: &Refusal) -> Self {
         let curve = RefusedCurve::of(refusal).map(Arc::new);
-        let changed = match edit {
-            Edit::Set { change } => scenario.without_edits().with_settings(change).ok(),
-            _ => None,
-        };
-        let refused = changed.map(|changed| (Shared(Arc::new(changed)), refusal.clone()));
-        Self { curve, refused, edit: edit.clone() }
+        Self { curve, refused: RefusedChange::of_edit(scenario, edit, refusal), attempt: Attempt::Edit(edit.clone()) }
     }
 
-    /// Returns the edit with a proposal that makes it feasible.
-    pub fn edit_with(&self, proposal: &Proposal) -> Edit {
-        proposal.edit_after(&self.edit)
+    /// Returns the refusal to open a scenario.
+    pub(super) fn of_opening(scenario: &Scenario, refusal: &Refusal) -> Self {
+        Self {
+            curve: None,
+            refused: Some(RefusedChange::of(Shared(Arc::new(scenario.clone())), refusal.clone())),
+            attempt: Attempt::Open(Box::new(scenario.clone())),
+        }
+    }
+
+    /// Returns the command that does what was refused, with a proposal that makes it feasible; `None` if the proposal
+    /// cannot be combined with it.
+    pub fn command_with(&self, proposal: &Proposal) -> Option<SessionCommand> {
+        match &self.attempt {
+            Attempt::Edit(edit) => proposal.edit_after(edit).map(SessionCommand::Edit),
+            Attempt::Open(scenario) => {
+                let changed = scenario.with_settings(proposal.change()?).ok()?;
+                Some(SessionCommand::Open(Box::new(changed)))
+            }
+        }
     }
 }

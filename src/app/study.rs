@@ -191,7 +191,7 @@ pub(super) fn bare<'a>(id: &str, p: &Palette, height: f32) -> Plot<'a> {
 /// Returns marks at round values of an axis.
 fn round_marks(grid: egui_plot::GridInput) -> Vec<GridMark> {
     let [low, high] = [grid.bounds.0, grid.bounds.1];
-    // The whole range as their step, so that all of them are named.
+    // Each mark gets the whole range as its step size, so that egui labels all marks.
     marks(&spaced(low, high), high - low)
 }
 

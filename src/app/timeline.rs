@@ -62,7 +62,7 @@ pub fn show(
             named = true;
         }
     }
-    // Beside the marks, the right button writes a note of the instant there.
+    // Beside the marks, the right button writes a note for the time under the pointer.
     let pressed = ui.input(|i| i.pointer.secondary_clicked().then(|| i.pointer.interact_pos()).flatten());
     if let Some(pos) = pressed.filter(|_| response.contains_pointer() && !taken) {
         let share = f64::from(((pos.x - line.left()) / line.width().max(1.0)).clamp(0.0, 1.0));

@@ -79,7 +79,7 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewStat
     name(&response.response.on_hover_text(format!("{current}\n{tip}")), "Machine");
 }
 
-/// Returns the name of something, which may differ from what is built in by this name.
+/// Returns a name, marked as edited if the thing differs from the built-in one of this name.
 fn edited(name: &str, is_edited: bool) -> String {
     if is_edited { format!("{name} (edited)") } else { name.to_owned() }
 }
@@ -96,7 +96,7 @@ fn taken_width(ui: &Ui) -> f32 {
     (2.0 * spacing.button_padding.x + spacing.icon_width + spacing.icon_spacing).ceil()
 }
 
-/// Returns the text of a list that is this wide, points, arrow and margins included.
+/// Returns the text shown in a closed list of this width, points, which includes arrow and margins.
 fn chosen_text(ui: &Ui, name: &str, is_edited: bool, width: f32) -> String {
     let taken = taken_width(ui);
     let font = egui::TextStyle::Button.resolve(ui.style());

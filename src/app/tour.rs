@@ -142,7 +142,7 @@ fn with_machine(session: &Session, case: Scenario) -> Scenario {
     }
 }
 
-/// Returns a text with what stands in braces said of the machine: `{area}`, `{inside}`, `{constant}` and `{moment}`.
+/// Returns a text in which names in braces, such as `{area}` and `{moment}`, are replaced by words for the machine.
 fn said(text: &str, session: &Session) -> String {
     let n = session.scenario().machine.drives();
     let is_area = session.run().pose_space().is_ok_and(|map| map.reaches_area());
@@ -299,8 +299,8 @@ impl Tour {
         (step < STEPS.len()).then(|| Self { note: self.note, ..Self::at(step, session) })
     }
 
-    /// Returns the scene of the step with the machine of the person's own session; besides, the scene to be shown in
-    /// its place if that machine cannot do the task, and the message about it.
+    /// Returns the scene of the step, with the person's own machine unless `note` is set. Also returns the
+    /// scene to be shown in its place if that machine cannot do the task, and the message about it.
     pub fn scene(&self, own: &Session) -> (Scenario, Option<Box<(Scenario, String)>>) {
         let (name, load) = STEPS[self.step].scene;
         let case = Scenario::builtin(name).unwrap_or_else(|| own.scenario().without_edits());

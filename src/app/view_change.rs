@@ -156,7 +156,7 @@ impl ViewState {
             ViewChange::Layout(layout) => self.lay_out(layout),
             ViewChange::Theme(theme) => self.arrangement.theme = theme,
             ViewChange::Notation(notation) => {
-                // Bounds of value axes are numbers in the units before.
+                // Stored bounds of value axes are numbers in the old units.
                 if notation != self.arrangement.notation {
                     self.charts.forget_values();
                 }

@@ -41,7 +41,7 @@ pub struct SceneContent<'a> {
     pub intro: Option<&'a Intro>,
     /// The run beside that on display, or why there is none; `None` while it is being made.
     pub other: Option<&'a Result<Beside, String>>,
-    /// Counterweights of the point of a Pareto front that the user has chosen.
+    /// Counterweights of the point of the Pareto front that is under the pointer.
     pub weights: &'a [WeightOption],
 }
 
@@ -169,7 +169,7 @@ pub fn still(content: SceneContent<'_>, size: [f32; 2], view_state: &mut ViewSta
     (views.scene(view_state.view, session.frame(), &options, &camera), camera)
 }
 
-/// Returns the options of the scene on display that do not come from a gesture.
+/// Returns the options that the scene in the window and a still picture of it have in common.
 fn options(content: SceneContent<'_>, view_state: &ViewState) -> ViewOptions {
     let SceneContent { session, exaggeration, comparison, weights, .. } = content;
     ViewOptions {

@@ -122,11 +122,13 @@ impl NumberRow<'_> {
         let shown = ui.style().number_formatter.format(*value, self.decimals..=self.decimals);
         let before = *value;
         let refused = Cell::new(None);
+        let out_of_range = Cell::new(None);
         let read = |text: &str| {
             // If the text is unchanged, the value keeps the digits that the text does not show.
             if text == shown {
                 return None;
             }
+            out_of_range.set(quantity::read(text, self.unit).ok());
             self.read(text).map_err(|why| refused.set(Some(self.why_not(text, &why)))).ok()
         };
         let drag = DragValue::new(value)
@@ -141,7 +143,17 @@ impl NumberRow<'_> {
         // The factor is 1, because egui itself slows the drag with Shift.
         restrict(&mut response, value, before, &self.range, 1.0, self.round());
         if let Some(why) = refused.take() {
-            ui.data_mut(|data| data.insert_temp(refused_id(), why));
+            let nearest = out_of_range.get().filter(|x| !x.is_nan());
+            let nearest = nearest.map(|x| (response.id, x.clamp(*self.range.start(), *self.range.end())));
+            let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
+            let way_out = nearest
+                .map_or_else(String::new, |(_, x)| format!("take {} = {}{unit}", self.label, signed(x, self.decimals)));
+            ui.data_mut(|data| data.insert_temp(refused_id(), RefusedEntry { why, nearest, way_out }));
+        }
+        if let Some(taken) = ui.data_mut(|data| data.remove_temp::<f64>(taken_id(response.id))) {
+            *value = taken;
+            // As if the number had been typed: the edit is an undo entry of its own.
+            response.flags.insert(Flags::CHANGED | Flags::DRAG_STOPPED);
         }
         name(&response, &format!("{} {}", self.label, self.unit));
         response
@@ -296,8 +308,36 @@ fn refused_id() -> egui::Id {
     egui::Id::unique("refused entry")
 }
 
-/// Takes the reason why an entry of this pass was refused.
-pub(super) fn refused_entry(ctx: &egui::Context) -> Option<String> {
+/// A number that was typed out of its range, or no number.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RefusedEntry {
+    /// Reason of the refusal.
+    pub why: String,
+    /// The widget, and the nearest number in its range, in its unit.
+    nearest: Option<(egui::Id, f64)>,
+    /// Label of the button that takes the nearest number.
+    way_out: String,
+}
+
+impl RefusedEntry {
+    /// Draws the button that takes the nearest number in range, if there is one.
+    pub(super) fn button(&self, ui: &mut Ui) {
+        let Some((id, nearest)) = self.nearest else { return };
+        let text = notation::sentence(ui.ctx(), &self.way_out);
+        if ui.button(text).on_hover_text("The nearest number that is allowed").clicked() {
+            ui.data_mut(|data| data.insert_temp(taken_id(id), nearest));
+            ui.ctx().request_repaint();
+        }
+    }
+}
+
+/// Key of a number that the widget `id` is to take.
+fn taken_id(id: egui::Id) -> egui::Id {
+    id.with("taken")
+}
+
+/// Takes the number that was refused in this pass.
+pub(super) fn refused_entry(ctx: &egui::Context) -> Option<RefusedEntry> {
     ctx.data_mut(|data| data.remove_temp(refused_id()))
 }
 

@@ -1,14 +1,18 @@
 //! Messages on standard error, and the exit status.
 
+use std::error::Error;
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use serde::Serialize;
-use stillbase_session::Proposal;
+use stillbase_session::{Proposal, WayOut};
 use stillbase_settings::text::{plain, shell_word, shorten_message};
 
 use super::failure::{Failure, RefusedScenario};
+use super::input::WrongNumber;
 use super::output::Format;
 
 /// Prints a message on standard error, in one line.
@@ -44,26 +48,79 @@ pub fn exit_code(done: Result<(), Failure>, as_json: bool) -> ExitCode {
         Failure::ReaderGone | Failure::Refused(_) => return ExitCode::SUCCESS,
     };
     if as_json && !is_printed {
-        // Where standard output cannot be written either, standard error holds the reason.
+        // If this fails because standard output cannot be written, standard error still gives the reason.
         let report = FailureReport { reason: &why, proposals: &proposals };
         let _ = Format { json: true }.print(&report, |_| String::new());
     }
     print_message(why);
     for proposal in proposals {
-        let settings: Vec<String> =
-            proposal.settings().iter().map(|set| format!("--set {}", shell_word(set))).collect();
-        print_message(format!("{}: {}", proposal.text, settings.join(" ")));
+        let typed = match &proposal.way {
+            WayOut::Set(_) => {
+                let settings = proposal.settings();
+                settings.iter().map(|set| format!("--set {}", shell_word(set))).collect::<Vec<_>>().join(" ")
+            }
+            WayOut::Command(command) => command.clone(),
+            // No command takes an edit.
+            WayOut::Edit(_) => continue,
+        };
+        print_message(format!("{}: {typed}", proposal.text));
     }
     ExitCode::from(status)
 }
 
-/// Prints help, or the error of a command line that cannot be parsed; returns the exit status.
-pub fn usage(error: &clap::Error) -> ExitCode {
+/// Prints help, or the error of a command line that cannot be parsed, with the nearest one that can; returns the exit
+/// status. `words` is the command line, and `parses` returns whether another one can be parsed.
+pub fn usage(error: &clap::Error, words: &[OsString], parses: impl Fn(&[OsString]) -> bool) -> ExitCode {
     if !error.use_stderr() {
         let printed = error.print().and_then(|()| io::stdout().flush());
         return exit_code(printed.map_err(|e| Failure::standard_output(&e)), false);
     }
-    exit_code(Err(Failure::WrongInput(in_one_line(&error.render().to_string()))), false)
+    let failure = Failure::WrongInput(in_one_line(&error.render().to_string()));
+    let nearest = nearest_words(error, words).filter(|words| parses(words)).and_then(|words| as_typed(&words));
+    let nearest = nearest.map(|line| Proposal::of_command("take the nearest that is allowed", line));
+    let as_json = words.iter().any(|word| word == "--json");
+    exit_code(Err(failure.with_proposals(nearest.into_iter().collect())), as_json)
+}
+
+/// Returns the command line with the wrong word replaced by the nearest one that is allowed, if one is known.
+fn nearest_words(error: &clap::Error, words: &[OsString]) -> Option<Vec<OsString>> {
+    let said = |kind: ContextKind| match error.get(kind)? {
+        ContextValue::String(word) => Some(word.clone()),
+        ContextValue::Strings(words) => words.first().cloned(),
+        _ => None,
+    };
+    let number = error.source().and_then(|source| source.downcast_ref::<WrongNumber>());
+    let (wrong, right) = match error.kind() {
+        ErrorKind::ValueValidation => (said(ContextKind::InvalidValue)?, number?.nearest.clone()?),
+        ErrorKind::InvalidValue => (said(ContextKind::InvalidValue)?, said(ContextKind::SuggestedValue)?),
+        ErrorKind::UnknownArgument => (said(ContextKind::InvalidArg)?, said(ContextKind::SuggestedArg)?),
+        ErrorKind::InvalidSubcommand => {
+            (said(ContextKind::InvalidSubcommand)?, said(ContextKind::SuggestedSubcommand)?)
+        }
+        _ => return None,
+    };
+    let wrong = wrong.trim();
+    // An option may be joined to its value: --b=1e9.
+    let replaced = |word: &OsString| {
+        let word = word.to_str()?;
+        let (option, value) = word.split_once('=').map_or((None, word), |(option, value)| (Some(option), value));
+        match (option, word.trim() == wrong, value == wrong) {
+            (_, true, _) => Some(OsString::from(&right)),
+            (Some(option), _, true) => Some(OsString::from(format!("{option}={right}"))),
+            (Some(option), ..) if option == wrong => Some(OsString::from(format!("{right}={value}"))),
+            _ => None,
+        }
+    };
+    let place = words.iter().skip(1).position(|word| replaced(word).is_some())? + 1;
+    let mut words = words.to_vec();
+    words[place] = replaced(&words[place])?;
+    Some(words)
+}
+
+/// Returns a command line as a shell takes it; `None` if a word is no text.
+fn as_typed(words: &[OsString]) -> Option<String> {
+    let rest = words.iter().skip(1).map(|word| Some(shell_word(word.to_str()?.trim()).to_string()));
+    Some(std::iter::once(Some("stillbase".to_owned())).chain(rest).collect::<Option<Vec<_>>>()?.join(" "))
 }
 
 /// Returns the error and its tips in one line, without the usage that follows.
@@ -77,6 +134,6 @@ fn in_one_line(rendered: &str) -> String {
         }
         line.push_str(&words.join(" "));
     }
-    // Negative numbers have been padded with a space, see `words`.
+    // Negative numbers were padded with a space by `words` in input.rs.
     format!("{}; see --help", line.strip_prefix("error: ").unwrap_or(&line).replace("' -", "'-"))
 }

@@ -30,16 +30,16 @@ pub enum Failure {
     NoAnswer(String),
     /// The input is wrong: the place of the error, and the expected input.
     WrongInput(String),
-    /// A scenario was refused.
+    /// A scenario or a question was refused, with ways out.
     Refused(Box<RefusedScenario>),
 }
 
-/// Why a scenario was refused, and settings that lead out of it.
+/// Why a scenario or a question was refused, and what leads out of it.
 #[derive(Debug)]
 pub struct RefusedScenario {
     /// The reason.
     pub failure: Failure,
-    /// Changes after which the scenario runs.
+    /// Changes after which the scenario runs, or the question has an answer.
     pub proposals: Vec<Proposal>,
     /// Whether the answer on standard output already holds both.
     pub is_printed: bool,
@@ -74,6 +74,23 @@ impl Failure {
         let proposals = proposals(scenario, &refusal);
         let failure = Self::from(refusal).with_context(&scenario.name);
         Self::Refused(Box::new(RefusedScenario { failure, proposals, is_printed: false }))
+    }
+
+    /// Returns the failure with ways out of it.
+    #[must_use]
+    pub fn with_proposals(self, proposals: Vec<Proposal>) -> Self {
+        match self {
+            Self::NoAnswer(_) | Self::WrongInput(_) => {
+                Self::Refused(Box::new(RefusedScenario { failure: self, proposals, is_printed: false }))
+            }
+            other => other,
+        }
+    }
+
+    /// Returns the failure with ways out of it that the answer on standard output already holds.
+    #[must_use]
+    pub fn with_printed_proposals(self, proposals: Vec<Proposal>) -> Self {
+        Self::Refused(Box::new(RefusedScenario { failure: self, proposals, is_printed: true }))
     }
 
     /// Returns the failure with `what` before its reason.

@@ -1,6 +1,7 @@
 //! Input that commands share: machines, scenarios, settings, points.
 
 use std::ffi::OsString;
+use std::fmt;
 use std::path::Path;
 
 use clap::Args;
@@ -10,6 +11,7 @@ use stillbase_mechanics::planar::Vector;
 use stillbase_planning::pose_constant::PoseConstant;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_session::scenario::{POINT_RANGE, POSE_CONSTANT_RANGE, Scenario, TaskChange, key_of};
+use stillbase_session::{proposals_for_machine, proposals_for_settings, proposals_for_values};
 use stillbase_settings::change;
 use stillbase_settings::key::Key;
 use stillbase_settings::range::Range;
@@ -60,8 +62,14 @@ impl Settings {
         if self.pairs.is_empty() {
             return Ok(machine);
         }
+        let own = machine.clone();
         let machine = machine.set_all(self.pairs.iter().map(|(k, v)| (k.as_str(), v.as_str())));
-        let machine = machine.map_err(|e| Failure::wrong_input(e).with_context("--set"))?;
+        let machine = machine.map_err(|e| {
+            let wanted = self.change();
+            let accepts = |change: &TaskChange| own.with_settings(&change::join(wanted.clone(), change)).is_ok();
+            let proposals = proposals_for_values(&wanted, &|path| own.value(path), &accepts);
+            Failure::wrong_input(e).with_context("--set").with_proposals(proposals)
+        })?;
         match self.pairs.iter().find(|(key, value)| value != change::DEFAULT_WORD && !machine.uses(key, false)) {
             Some((key, _)) => Err(no_use(key, key_of(key).map_or("", |key| key.when)).with_context("--set")),
             None => Ok(machine),
@@ -113,6 +121,11 @@ impl MachineArgument {
     /// If there is no such machine, or it is not valid.
     pub fn load(&self) -> Result<Machine, Failure> {
         self.settings.apply(stillbase_files::machine(&self.name, None)?)
+    }
+
+    /// Returns the argument as a shell takes it, with its settings.
+    pub fn as_typed(&self) -> String {
+        format!("{}{}", shell_word(&self.name), self.settings.as_typed())
     }
 
     /// Returns the machine and others, each with the same settings changed and with a distinct name.
@@ -208,10 +221,15 @@ pub fn overlay_used(scenario: Scenario, settings: &Settings) -> Result<Scenario,
 /// # Errors
 /// If there is no such setting, or the result is not valid.
 pub fn overlay_settings(scenario: Scenario, settings: &Settings) -> Result<Scenario, Failure> {
-    let scenario =
-        scenario.with_settings(&settings.change()).map_err(|why| Failure::wrong_input(why).with_context("--set"))?;
-    scenario.check("--set")?;
-    Ok(scenario)
+    let wanted = settings.change();
+    let refused = |failure: Failure| match wanted.is_empty() {
+        true => failure,
+        false => failure.with_proposals(proposals_for_settings(&scenario, &wanted)),
+    };
+    let changed =
+        scenario.with_settings(&wanted).map_err(|why| refused(Failure::wrong_input(why).with_context("--set")))?;
+    changed.check("--set").map_err(|why| refused(why.into()))?;
+    Ok(changed)
 }
 
 /// Refuses settings that have no effect on the scenario.
@@ -251,7 +269,8 @@ pub fn change_task(scenario: &mut Scenario, change: &TaskChange) -> Result<(), F
 /// # Errors
 /// If the machine has none.
 pub fn pose_space(machine: &Machine) -> Result<PoseSpace, Failure> {
-    let space = PoseSpace::of(machine)?;
+    let space =
+        PoseSpace::of(machine).map_err(|why| Failure::from(why).with_proposals(proposals_for_machine(machine)))?;
     if let nearly @ PoseConstant::Nearly { .. } = PoseConstant::of(machine) {
         print_message(format!("note: {}: {nearly}", machine.name()));
     }
@@ -274,20 +293,53 @@ fn padded(word: OsString) -> OsString {
     padded
 }
 
+/// A word of the command line that is no number in its range.
+#[derive(Debug)]
+pub struct WrongNumber {
+    /// What is expected.
+    want: String,
+    /// The nearest word that is allowed, if the given one is a number.
+    pub nearest: Option<String>,
+}
+
+impl fmt::Display for WrongNumber {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.want)
+    }
+}
+
+impl std::error::Error for WrongNumber {}
+
 /// Parses a point X,Y, m.
-pub fn point(text: &str) -> Result<Vector, String> {
-    let both =
-        text.split_once(',').and_then(|(x, y)| Some(Vector::new(number(x, POINT_RANGE)?, number(y, POINT_RANGE)?)));
-    both.ok_or_else(|| format!("want X,Y in m, such as 0.5,-0.25, each {POINT_RANGE}"))
+pub fn point(text: &str) -> Result<Vector, WrongNumber> {
+    let numbers = || text.split_once(',').and_then(|(x, y)| Some([number(x)?, number(y)?]));
+    match numbers() {
+        Some([x, y]) if POINT_RANGE.contains(x) && POINT_RANGE.contains(y) => Ok(Vector::new(x, y)),
+        numbers => Err(WrongNumber {
+            want: format!("want X,Y in m, such as 0.5,-0.25, each {POINT_RANGE}"),
+            nearest: numbers.map(|both| both.map(|x| within(x, POINT_RANGE).to_string()).join(",")),
+        }),
+    }
 }
 
 /// Parses a pose constant, rad.
-pub fn pose_constant(text: &str) -> Result<f64, String> {
-    number(text, POSE_CONSTANT_RANGE).ok_or_else(|| format!("want a number in rad, such as 2.4, {POSE_CONSTANT_RANGE}"))
+pub fn pose_constant(text: &str) -> Result<f64, WrongNumber> {
+    match number(text) {
+        Some(b) if POSE_CONSTANT_RANGE.contains(b) => Ok(b),
+        b => Err(WrongNumber {
+            want: format!("want a number in rad, such as 2.4, {POSE_CONSTANT_RANGE}"),
+            nearest: b.map(|b| within(b, POSE_CONSTANT_RANGE).to_string()),
+        }),
+    }
 }
 
-fn number(text: &str, range: Range) -> Option<f64> {
-    text.trim().parse().ok().filter(|x| range.contains(*x))
+/// Parses a number other than NaN.
+fn number(text: &str) -> Option<f64> {
+    text.trim().parse().ok().filter(|x: &f64| !x.is_nan())
+}
+
+fn within(x: f64, range: Range) -> f64 {
+    x.clamp(range.low(), range.high())
 }
 
 /// Parses a number above 0.

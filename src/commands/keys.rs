@@ -41,10 +41,10 @@ struct Row {
     holds: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     unit: Option<&'static str>,
-    /// Default; `None` for a key that has to be given, or without a default.
+    /// Default; `None` for a key that has to be given.
     #[serde(skip_serializing_if = "Option::is_none")]
     default: Option<&'static str>,
-    /// Meaning of a missing key without a default.
+    /// What applies if the key has no value.
     #[serde(skip_serializing_if = "Option::is_none")]
     instead: Option<&'static str>,
     words: &'static str,

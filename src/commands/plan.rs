@@ -238,6 +238,10 @@ impl PlanArguments {
             change.insert("closed".into(), true.into());
         }
         change_task(&mut scenario, &change)?;
+        // A setting wins over the option for the same key, so that a proposed setting works behind any command line.
+        if !change.is_empty() {
+            scenario = overlay_settings(scenario, &self.settings)?;
+        }
         let points = scenario.task.points();
         let chosen = self.kind.is_some() || self.settings.sets("task.kind") || known;
         // A machine without a pose constant moves with minimum-norm rates.

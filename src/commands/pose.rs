@@ -3,8 +3,12 @@
 use clap::Args;
 use serde::Serialize;
 use stillbase_mechanics::planar::Vector;
+use stillbase_planning::common::nearest_place;
 use stillbase_planning::pose_constant::Unreachable;
-use stillbase_planning::reactionless::{BSet, NoReach};
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_planning::reactionless::{BSet, Decimal, NoReach};
+use stillbase_session::Proposal;
+use stillbase_session::scenario::POSE_CONSTANT_RANGE;
 use stillbase_study::pose_measures::PoseMeasures;
 
 use super::failure::Failure;
@@ -49,7 +53,8 @@ impl PoseArguments {
         let space = pose_space(&machine)?;
         let poses = PoseMeasures::all(&machine, &space, self.point, self.b);
         if poses.is_empty() {
-            return Err(self.no_pose(space.reach(self.point)).into());
+            let failure = Failure::from(self.no_pose(space.reach(self.point)));
+            return Err(failure.with_proposals(self.ways_out(&space)));
         }
         self.format.print(&Answer { poses }, |answer| {
             let drives = (1..=space.drives()).map(|k| format!("q_{k} rad"));
@@ -61,6 +66,40 @@ impl PoseArguments {
             }
             table.to_string()
         })
+    }
+
+    /// Returns command lines that have an answer: at the nearest b, and for the nearest point.
+    fn ways_out(&self, space: &PoseSpace) -> Vec<Proposal> {
+        let (p, machine) = (self.point, self.machine.as_typed());
+        let json = if self.format.json { " --json" } else { "" };
+        let command = |at: String, b: String| format!("stillbase pose {machine} {at} --b {b}{json}");
+        let of = |p: Vector| {
+            let set = space.reach(p).ok()?;
+            let inner =
+                [0.0, 1e-9, 1e-6, 1e-3, 0.5].map(|share| set.nearest(self.b).map(|b| set.moved_inside(b, share)));
+            // At the ends of the range of b, the nearest one may lie a period inside.
+            let turns = [0.0, -space.period(), space.period()];
+            let all = turns.into_iter().flat_map(|turn| inner.into_iter().flatten().map(move |b| b + turn));
+            let serves = |b: f64| POSE_CONSTANT_RANGE.contains(b) && space.reaches(p, b);
+            all.into_iter().find_map(|b| Decimal::shortest_passing(b, 4, serves))
+        };
+        let at = |[x, y]: &[Decimal; 2]| (format!("{x},{y}"), Vector::new(x.value(), y.value()));
+        let another_b = of(p).map(|b| {
+            Proposal::of_command(format!("take b = {b} rad"), command(format!("{},{}", p.re, p.im), b.to_string()))
+        });
+        let at_b = nearest_place(space, p, Some(self.b)).map(|to| {
+            let text = format!("take the nearest point of b = {} rad, ({}, {}) m", self.b, to[0], to[1]);
+            Proposal::of_command(text, command(at(&to).0, self.b.to_string()))
+        });
+        let anywhere = || {
+            let to = nearest_place(space, p, None)?;
+            let (typed, place) = at(&to);
+            let b = of(place)?;
+            let text = format!("take the nearest point of all, ({}, {}) m, at b = {b} rad", to[0], to[1]);
+            Some(Proposal::of_command(text, command(typed, b.to_string())))
+        };
+        let nearer = if another_b.is_some() { None } else { anywhere() };
+        another_b.into_iter().chain(nearer).chain(at_b).collect()
     }
 
     fn no_pose(&self, set: Result<BSet, NoReach>) -> Unreachable {

@@ -3,9 +3,11 @@
 use clap::Args;
 use serde::Serialize;
 use stillbase_mechanics::planar::Vector;
-use stillbase_planning::common::{common_b_set, no_common};
-use stillbase_planning::pose_constant::{PointCorrection, Unreachable};
+use stillbase_planning::common::{common_b_set, nearest_place, no_common};
+use stillbase_planning::pose_constant::{NoCommonB, PointCorrection, Unreachable};
+use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::reactionless::BSet;
+use stillbase_session::Proposal;
 
 use super::failure::Failure;
 use super::input::{MachineArgument, point, pose_space};
@@ -40,6 +42,9 @@ struct Answer {
     /// The smallest move of one point that gives all points a common b, if they have none.
     #[serde(skip_serializing_if = "Option::is_none")]
     mend: Option<PointCorrection>,
+    /// Command lines whose points have a common b, if these have none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    proposals: Vec<Proposal>,
 }
 
 #[derive(Serialize)]
@@ -54,8 +59,13 @@ impl ReachArguments {
         let machine = self.machine.load()?;
         let space = pose_space(&machine)?;
         let mut sets = Vec::with_capacity(self.points.len());
-        for p in &self.points {
-            let none = |reason| Unreachable::Anywhere { x: p.re, y: p.im, reason };
+        for (i, p) in self.points.iter().enumerate() {
+            let none = |reason| {
+                let failure = Failure::from(Unreachable::Anywhere { x: p.re, y: p.im, reason });
+                failure.with_proposals(
+                    self.reached(&space).map(|points| self.with_points(i, &points)).into_iter().collect(),
+                )
+            };
             sets.push(space.reach(*p).map_err(none)?);
         }
         let overlap = common_b_set(&space, &self.points).map_or_else(Vec::new, |set| set.intervals);
@@ -67,10 +77,47 @@ impl ReachArguments {
             overlap,
             period: space.period(),
             mend: why.and_then(|why| why.correction),
+            proposals: why.and_then(|why| self.mended(&why)).into_iter().collect(),
         };
         self.format.print(&answer, table)?;
         let said = || why.map_or("no b serves all points".into(), |w| w.in_words(&|i| format!("point {}", i + 1)));
-        if apart { Err(Failure::no_answer(said())) } else { Ok(()) }
+        match apart {
+            true => Err(Failure::no_answer(said()).with_printed_proposals(answer.proposals)),
+            false => Ok(()),
+        }
+    }
+
+    /// Returns the points as typed, each that cannot be reached at any b moved to the nearest place that can; `None` if
+    /// there is no such place.
+    fn reached(&self, space: &PoseSpace) -> Option<Vec<String>> {
+        let place = |p: &Vector| match space.reach(*p) {
+            Ok(_) => Some(format!("{},{}", p.re, p.im)),
+            Err(_) => nearest_place(space, *p, None).map(|[x, y]| format!("{x},{y}")),
+        };
+        self.points.iter().map(place).collect()
+    }
+
+    fn with_points(&self, moved: usize, points: &[String]) -> Proposal {
+        let text = format!("take the nearest point for point {}, ({}) m", moved + 1, points[moved].replace(',', ", "));
+        Proposal::of_command(text, self.command(points))
+    }
+
+    fn command(&self, points: &[String]) -> String {
+        let json = if self.format.json { " --json" } else { "" };
+        format!("stillbase reach {} {}{json}", self.machine.as_typed(), points.join(" "))
+    }
+
+    /// Returns the command line with the point moved that keeps all points from a common b.
+    fn mended(&self, why: &NoCommonB) -> Option<Proposal> {
+        let mend = why.correction?;
+        let [x, y] = mend.shown?.to;
+        let typed = |(i, p): (usize, &Vector)| match i == mend.point {
+            true => format!("{x},{y}"),
+            false => format!("{},{}", p.re, p.im),
+        };
+        let points: Vec<String> = self.points.iter().enumerate().map(typed).collect();
+        let text = format!("move point {} to ({x}, {y}) m", mend.point + 1);
+        Some(Proposal::of_command(text, self.command(&points)))
     }
 }
 

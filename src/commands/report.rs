@@ -33,7 +33,7 @@ pub struct ReportArguments {
     /// The page to write
     #[arg(short, long, value_name = "FILE.html")]
     output: PathBuf,
-    /// Compare with the same task done in other ways: a table, which takes a run of each
+    /// Add a table that compares the same task done in other ways, each of which is simulated
     #[arg(long)]
     compare: bool,
     /// Replace the file if it exists

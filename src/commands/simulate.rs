@@ -79,7 +79,7 @@ struct Outcome {
     peak_base_moment: f64,
     rms_base_force: f64,
     rms_base_moment: f64,
-    /// Largest moment past the reaction wheel, N m, if there is a wheel.
+    /// Largest moment on the base beyond what the reaction wheel takes up, N m, if there is a wheel.
     #[serde(skip_serializing_if = "Option::is_none")]
     peak_moment_past_wheel: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -166,7 +166,7 @@ impl<T: Serialize> Serialize for Columns<T> {
 }
 
 impl SimulateArguments {
-    /// Simulates the scenario, and writes its signals as CSV or prints the verdict.
+    /// Simulates the scenario. Writes its signals as CSV or Parquet, or prints them as JSON, or prints a summary.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = scenario(&self.scenario, &self.settings)?;
         let table = self.table(&scenario.machine)?;

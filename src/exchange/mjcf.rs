@@ -69,7 +69,7 @@ pub fn mjcf(machine: &Machine, q: &[f64]) -> Result<String, MjcfError> {
 /// Returns the angles of all hinges of the model in a pose, rad, in the order of `qpos`: links and rotors, depth first.
 ///
 /// # Errors
-/// As [`mjcf`].
+/// If the pose does not have one angle for each drive, or if no link follows a drive.
 pub fn hinges(machine: &Machine, q: &[f64]) -> Result<Vec<f64>, MjcfError> {
     Ok(Model::of(machine, q)?.pose(q))
 }

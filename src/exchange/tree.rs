@@ -3,7 +3,7 @@
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | θ_k | angle of motor k: q_k − q_on, or q_k for a motor on the base | rad |
+//! | θ_k | angle of motor k: q_k − q_l if drive l carries the motor, q_k if the base carries it | rad |
 //!
 //! A pin between links of two drives turns by a sum of motor angles, but a joint of URDF can mimic only one other
 //! joint. So a sum becomes several joints in series, with auxiliary parts of negligible mass between them. Programs

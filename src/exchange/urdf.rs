@@ -8,8 +8,8 @@
 //! | N | gear ratio of a rotor: it turns by N θ_k in its stator | |
 //!
 //! The joints `drive_k` are the only independent ones. The frame of a link has its origin at the link's root and x
-//! along e(q_k). A link that runs against its drive lies along −x. Projected on the drives, mass matrix and gravity
-//! are those of the machine.
+//! along e(q_k). A link that runs against its drive lies along −x. With the mimic joints eliminated, mass matrix and
+//! gravity torques are those of the machine.
 //!
 //! # What URDF cannot express
 //! URDF has no elements for gravity, for pins that close loops, and for limits of acceleration and jerk. It has none

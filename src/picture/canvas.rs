@@ -69,7 +69,7 @@ impl Canvas {
         self.gpu.readback(&self.texture)
     }
 
-    /// Draws one pass over a colour; without one, over that of panels.
+    /// Draws one pass over the colour `behind`; if it is `None`, over the colour of panels.
     fn pass(&mut self, behind: Option<egui::Color32>, draw: impl FnMut(&mut egui::Ui)) {
         let scale = self.pixels_per_point;
         let [width, height] = self.size_px.map(|n| n as f32 / scale);

@@ -67,7 +67,7 @@ impl<W: Write> Film<W> {
                 let side = |side: u32| u16::try_from(side).map_err(io::Error::other);
                 let (width, height, mut rgba) = (side(picture.width)?, side(picture.height)?, picture.rgba);
                 let mut frame = Frame::from_rgba_speed(width, height, &mut rgba, QUANTISATION_SPEED);
-                // Rounded sums, not the rounded delay, so that a film of up to 655 s is as long as the run.
+                // Differences of rounded sums, so that rounding errors do not add up in films of up to 655 s.
                 let until = |count: u32| (f64::from(count) * GIF_DELAYS_PER_SECOND / self.fps).round() as u16;
                 frame.delay = until(self.count + 1) - until(self.count);
                 encoder.write_frame(&frame).map_err(io::Error::other)?;

@@ -142,7 +142,7 @@ impl Notation {
     }
 
     /// Returns a sentence with its angles and lengths in the user's units. A unit applies to the number before it, and
-    /// to numbers with as many decimals that are joined to that one: `1.20 to 1.35 rad`, `0.550, 0.900 m`.
+    /// to numbers joined to that one, with equally many decimals, not 0: `1.20 to 1.35 rad`, `0.550, 0.900 m`.
     pub fn sentence(self, text: &str) -> Cow<'_, str> {
         let mut written: Option<String> = None;
         let mut copied = 0;
@@ -181,7 +181,7 @@ struct Number {
 }
 
 impl Number {
-    /// Reads a number that starts at a byte: sign, digits, decimals. Numbers with an exponent are none.
+    /// Reads a number that starts at a byte: sign, digits, decimals. Returns `None` if an exponent follows.
     fn read(text: &str, start: usize) -> Option<Self> {
         let rest = &text[start..];
         let unsigned = rest.trim_start_matches(['-', '−', '+']);
@@ -260,7 +260,7 @@ impl<'a> Chain<'a> {
     }
 }
 
-/// Returns the number joined to another one, with as many decimals.
+/// Returns the number joined to `last`, if both have the same number of decimals, not 0.
 fn joined(text: &str, last: &Number) -> Option<Number> {
     let after = &text[last.end..];
     let joint = JOINTS.into_iter().find(|joint| after.starts_with(joint))?;

@@ -213,27 +213,15 @@ fn made_robust(space: &PoseSpace, points: &[Vector], others: &BSet, mend: PointC
         let [low, high] = shared(to)?;
         [mend.b, 0.5 * (low + high)].into_iter().find(|b| serves(to, *b)).map(|b| (to, b))
     });
-    // If no decimal near the shortest move is feasible, a longer move may be.
-    let all = [1.02, 1.1].into_iter().flat_map(|longest| (3..=12).map(move |decimals| (longest, decimals)));
-    let shown = all.into_iter().find_map(|(longest, decimals)| {
-        // All decimals near the end of the move, the shortest move first.
-        let [x, y] = [mend.to.re, mend.to.im].map(|x| Decimal::nearest(x, decimals));
-        let mut around: Vec<([Decimal; 2], f64)> = (-2..=2)
-            .flat_map(|i| (-2..=2).map(move |j| [x.stepped(i), y.stepped(j)]))
-            .map(|to| (to, (Vector::new(to[0].value(), to[1].value()) - from).norm()))
-            .collect();
-        around.retain(|(_, far)| *far <= longest * mend.distance || decimals > 8);
-        around.sort_by(|a, b| a.1.total_cmp(&b.1));
-        around.into_iter().find_map(|(to, length)| {
-            let at = Vector::new(to[0].value(), to[1].value());
-            let [low, high] = shared(at)?;
-            let b = mend.b.clamp(low, high);
-            let inside = |x: f64| low <= x && x <= high && serves(at, x);
-            // If the common interval of b is short, its midpoint allows fewer decimals than its bounds.
-            let b = [b, 0.5 * (low + high)].into_iter().filter_map(|b| Decimal::shortest_passing(b, 4, inside));
-            let b = b.min_by_key(Decimal::decimals).filter(|b| b.decimals() <= decimals + 4)?;
-            Some(RoundedCorrection { to, b, length, path_feasible: true })
-        })
+    let shown = first_decimals(from, &mend, |to, length| {
+        let at = Vector::new(to[0].value(), to[1].value());
+        let [low, high] = shared(at)?;
+        let b = mend.b.clamp(low, high);
+        let inside = |x: f64| low <= x && x <= high && serves(at, x);
+        // If the common interval of b is short, its midpoint allows fewer decimals than its bounds.
+        let b = [b, 0.5 * (low + high)].into_iter().filter_map(|b| Decimal::shortest_passing(b, 4, inside));
+        let b = b.min_by_key(Decimal::decimals).filter(|b| b.decimals() <= to[0].decimals() + 4)?;
+        Some(RoundedCorrection { to, b, length, path_feasible: true })
     });
     match (exact, shown) {
         (Some((to, b)), shown) => Some(PointCorrection { to, distance: (to - from).norm(), b, shown, ..mend }),
@@ -242,4 +230,51 @@ fn made_robust(space: &PoseSpace, points: &[Vector], others: &BSet, mend: PointC
         }
         (None, None) => None,
     }
+}
+
+/// Returns the first answer of a test of rounded places near the end of a move, with few decimals and a short move
+/// first. The test gets the place and the length of the move to it, m.
+fn first_decimals<T>(from: Vector, mend: &PointCorrection, test: impl Fn([Decimal; 2], f64) -> Option<T>) -> Option<T> {
+    // If no decimal near the shortest move is feasible, a longer move may be.
+    let all = [1.02, 1.1].into_iter().flat_map(|longest| (3..=12).map(move |decimals| (longest, decimals)));
+    all.into_iter().find_map(|(longest, decimals)| {
+        // All decimals near the end of the move, the shortest move first.
+        let [x, y] = [mend.to.re, mend.to.im].map(|x| Decimal::nearest(x, decimals));
+        let mut around: Vec<([Decimal; 2], f64)> = (-2..=2)
+            .flat_map(|i| (-2..=2).map(move |j| [x.stepped(i), y.stepped(j)]))
+            .map(|to| (to, (Vector::new(to[0].value(), to[1].value()) - from).norm()))
+            .collect();
+        around.retain(|(_, far)| *far <= longest * mend.distance || decimals > 8);
+        around.sort_by(|a, b| a.1.total_cmp(&b.1));
+        around.into_iter().find_map(|(to, length)| test(to, length))
+    })
+}
+
+/// Returns the place nearest to a point, m, that can be reached: at b, rad, or at any b if none is given. The place is
+/// rounded so that it can be reached as printed. `None` if none was found.
+pub fn nearest_place(space: &PoseSpace, p: Vector, b: Option<f64>) -> Option<[Decimal; 2]> {
+    let serves = |to: Vector| match b {
+        Some(b) => space.reaches(to, b),
+        None => space.reach(to).is_ok(),
+    };
+    let wanted = match b {
+        Some(b) => BSet::union(vec![[b, b]], space.period()),
+        None => BSet { intervals: vec![[0.0, space.period()]], period: space.period() },
+    };
+    let mend = least_move(space, p, 0, &wanted)?;
+    first_decimals(p, &mend, |to, _| serves(Vector::new(to[0].value(), to[1].value())).then_some(to))
+}
+
+/// Returns the shortest move of point `i`, m, after which it shares a b with all other points; `None` if none was
+/// found, or if the others share none.
+pub fn nearest_common_place(space: &PoseSpace, points: &[Vector], i: usize) -> Option<PointCorrection> {
+    let rest: Vec<BSet> = points
+        .iter()
+        .enumerate()
+        .filter(|(j, _)| *j != i)
+        .map(|(_, p)| set_of(space, *p).ok())
+        .collect::<Option<_>>()?;
+    let others = BSet::overlap(&rest);
+    let mend = least_move(space, *points.get(i)?, i, &others)?;
+    made_robust(space, points, &others, mend)
 }

@@ -342,7 +342,10 @@ impl Layout<'_> {
     fn plot(&mut self, case: &Preview, chart: &Chart) -> Result<Part, StoreError> {
         let held = |topic: &&Topic| topic.signals.iter().any(|signal| chart.contains(signal));
         let topics: Vec<_> = case.topics.iter().filter(held).collect();
-        let contents: Vec<_> = topics.iter().map(|topic| format!("$origin/{}", topic.name)).collect();
+        let is_shown = |topic: &Topic, (i, _): &(usize, f64)| chart.contains(&topic.signals[*i]);
+        let limited = |topic: &&&Topic| topic.limits.iter().any(|limit| is_shown(topic, limit));
+        let limits = topics.iter().filter(limited).map(|topic| format!("$origin/{}/limits", topic.name));
+        let contents: Vec<_> = topics.iter().map(|topic| format!("$origin/{}", topic.name)).chain(limits).collect();
         let range = self.range_of(chart);
         let plot = self.time_series(&titled(chart, case), &under(&case.root, "signals"), &contents, range, false)?;
         for topic in topics {
@@ -350,6 +353,11 @@ impl Layout<'_> {
             if shown.contains(&false) {
                 let style = SeriesLines::update_fields().with_visible_series(shown);
                 self.draw_as(&plot, &topic.path(&case.root), 0, &style)?;
+            }
+            let shown: Vec<bool> = topic.limits.iter().flat_map(|limit| [is_shown(topic, limit); 2]).collect();
+            if shown.contains(&true) && shown.contains(&false) {
+                let style = SeriesLines::update_fields().with_visible_series(shown);
+                self.draw_as(&plot, &topic.limits_path(&case.root), 0, &style)?;
             }
         }
         Ok(plot)

@@ -19,7 +19,7 @@ const HALF_PIXELS: f64 = 240.0;
 pub struct Eye {
     /// Position, in coordinates whose third axis points up.
     pub orbit: Orbit,
-    /// Index of the axis of the recording for each of these axes.
+    /// For each axis of `orbit`: index of the axis of the recording onto which it falls.
     pub axes: [usize; 3],
     /// Scale factor of recorded heights.
     pub thickness: f32,

@@ -19,6 +19,7 @@
 //! | `design/bars`, `design/front` | bar charts of (7) and (8); Pareto front of added mass and inertia |
 //! | `reaction/force`, `reaction/moment` | the reaction on the base, with a label of the scale |
 //! | `signals/<topic>` | every row of the table of [`signals`](stillbase_simulation::signals), at every step, as a series |
+//! | `signals/<topic>/limits` | limits of torques and rates near enough to be drawn, at plus and minus, as series |
 //! | `events`, `phase` | events and phases of the run |
 //! | `view` | offscreen pictures |
 //!
@@ -31,7 +32,7 @@
 //! Each change of the machine in a session is a row of the design, at the step at which it was made. Such recordings
 //! have a further time line, `edit`.
 //!
-//! Constant parts of an item are written once. Moving parts have at most 200 rows a second, and signals have a row at
+//! Constant parts of an item are written once. Moving parts have up to about 200 rows a second, and signals a row at
 //! every step. Machine, scenario, version and verdict are properties of the recording. Equal scenarios give equal
 //! recordings, independent of the time and the computer.
 

@@ -7,6 +7,7 @@ use crate::rerun::EntityPathPart;
 use super::design::RecordedDesign;
 use super::eye::Eye;
 use super::topic::Topic;
+use stillbase_picture::charts::drawn::shows_limit;
 use stillbase_picture::charts::{Chart, charts};
 use stillbase_picture::scene::camera::Orbit;
 use stillbase_picture::scene::linkage::LinkageModel;
@@ -74,6 +75,24 @@ impl Preview {
             drawn.iter().for_each(|(i, signal)| wider(&mut charts[*i].1, signal.value(frame)));
             !frame.step.is_multiple_of(1024) || tick(frame.step)
         })?;
+        // A limit is drawn under the same condition as in the window.
+        let mut topics = topics;
+        for topic in &mut topics {
+            for (i, signal) in topic.signals.iter().enumerate() {
+                let chart = charts.iter_mut().find(|(chart, _)| chart.contains(signal));
+                let Some((limit, (_, range))) = signal.limit.zip(chart) else { continue };
+                if shows_limit(limit, range[0].abs().max(range[1].abs())) {
+                    topic.limits.push((i, limit));
+                }
+            }
+        }
+        for (i, limit) in topics.iter().flat_map(|topic| topic.limits.iter().map(move |(i, l)| (&topic.signals[*i], l)))
+        {
+            if let Some((_, range)) = charts.iter_mut().find(|(chart, _)| chart.contains(i)) {
+                wider(range, *limit);
+                wider(range, -limit);
+            }
+        }
         let last = run.frame();
         let reach = LinkageModel::of(&run.scenario().machine).reach();
         let views = Views::over(&run, b, run.queries());

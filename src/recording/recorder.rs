@@ -118,6 +118,7 @@ impl<'a> Recorder<'a> {
         forecast.design.write(store, root)?;
         for topic in &forecast.topics {
             topic.style(store, root, &palette, &forecast.peaks)?;
+            topic.style_limits(store, root, &palette, &forecast.peaks)?;
         }
         let changes = |edit: &Edit| match edit {
             Edit::PoseB { .. } => true,
@@ -247,6 +248,12 @@ impl<'a> Recorder<'a> {
     fn finish(mut self, run: &Run) -> Result<(Peaks, Verdict, Statements), CaseError> {
         let frame = &run.frame();
         self.flush()?;
+        let mut ends = RowTimes::default();
+        ends.push(Instant::at(0, 0.0));
+        ends.push(Instant::of(frame));
+        for topic in &self.topics {
+            topic.write_limits(self.store, self.root, &ends)?;
+        }
         let trail = lines([self.trail.take()], 1.8, mix(self.palette.ink, self.palette.dim, 0.5));
         self.store.fixed(&under(self.root, "end_effector/path"), &trail)?;
         let (verdict, statements) = (Verdict::of(run.scenario(), frame), Statements::of(run, frame));

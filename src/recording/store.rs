@@ -137,7 +137,7 @@ pub struct Store {
     writer: Option<JoinHandle<Result<NewFile, StoreError>>>,
     recording: StoreId,
     layout: StoreId,
-    /// Identifier of the next chunk.
+    /// Identifier given out last; the next one is larger by [`CHUNK_ID_STEP`].
     next: u128,
 }
 

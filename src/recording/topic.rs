@@ -6,7 +6,7 @@ use crate::rerun::{EntityPath, Scalars, SeriesLines};
 use super::store::{RowTimes, Store, StoreError};
 use super::style::{colour, series_name, under};
 use stillbase_picture::charts::{self, Chart};
-use stillbase_picture::scene::palette::Palette;
+use stillbase_picture::scene::palette::{Palette, faded};
 use stillbase_simulation::frame::{Frame, Peaks};
 use stillbase_simulation::signals::Signal;
 
@@ -36,6 +36,9 @@ const TOPICS: [(&str, &[&str]); 4] = [
     ("inside", &["pin", "transmission", "change_point", "dexterity", "torque_per_force", "energy", "audit"]),
 ];
 
+/// Width of the line of a limit, points.
+const LIMIT_WIDTH: f32 = 0.8;
+
 /// Signals of one entity, and their values at the steps that are not yet written.
 #[derive(Clone, Debug)]
 pub struct Topic {
@@ -43,6 +46,8 @@ pub struct Topic {
     pub name: String,
     /// Signals of the entity, in the order of the table of signals.
     pub signals: Vec<Signal>,
+    /// Limits that are recorded beside the signals: the index of the signal, and the largest permitted absolute value.
+    pub limits: Vec<(usize, f64)>,
     /// Buffered values, row by row.
     values: Vec<f64>,
 }
@@ -59,7 +64,7 @@ impl Topic {
             let name = if is_compared { &signal.path } else { of.map_or(group, |(name, _)| name) }.to_owned();
             match topics.iter_mut().find(|topic| topic.name == name) {
                 Some(topic) => topic.signals.push(signal),
-                None => topics.push(Self { name, signals: vec![signal], values: Vec::new() }),
+                None => topics.push(Self { name, signals: vec![signal], limits: Vec::new(), values: Vec::new() }),
             }
         }
         topics
@@ -87,6 +92,47 @@ impl Topic {
             .with_colors(self.signals.iter().map(|signal| colour(charts::colour(signal, palette, peaks))))
             .with_widths(self.signals.iter().map(width));
         store.fixed(&self.path(root), &style)
+    }
+
+    /// Returns the path of the entity of the limits in the recording.
+    pub fn limits_path(&self, root: &EntityPath) -> EntityPath {
+        under(&self.path(root), "limits")
+    }
+
+    /// Writes names, colours and widths of the limits, two series each: at plus and at minus the limit.
+    ///
+    /// # Errors
+    /// If they cannot be written.
+    pub fn style_limits(
+        &self,
+        store: &mut Store,
+        root: &EntityPath,
+        palette: &Palette,
+        peaks: &Peaks,
+    ) -> Result<(), StoreError> {
+        if self.limits.is_empty() {
+            return Ok(());
+        }
+        let twice = || self.limits.iter().flat_map(|(i, _)| [&self.signals[*i]; 2]);
+        let style = SeriesLines::new()
+            .with_names(twice().map(|signal| format!("limit of {}", series_name(signal))))
+            .with_colors(twice().map(|signal| colour(faded(charts::colour(signal, palette, peaks), 0.6))))
+            .with_widths(twice().map(|_| LIMIT_WIDTH));
+        store.fixed(&self.limits_path(root), &style)
+    }
+
+    /// Writes the limits at the instants of a clock: the first and the last of the run.
+    ///
+    /// # Errors
+    /// If they cannot be written.
+    pub fn write_limits(&self, store: &mut Store, root: &EntityPath, clock: &RowTimes) -> Result<(), StoreError> {
+        if self.limits.is_empty() {
+            return Ok(());
+        }
+        let row = || self.limits.iter().flat_map(|(_, limit)| [*limit, -limit]);
+        let rows = Scalars::new((0..clock.len()).flat_map(|_| row()));
+        let rows = rows.columns(std::iter::repeat_n(2 * self.limits.len(), clock.len()))?;
+        store.columns(&clock.columns(), &self.limits_path(root), rows)
     }
 
     /// Adds a row with the values of a frame.

@@ -130,8 +130,8 @@ impl DesignBrief {
         keep.measured_from(start)
     }
 
-    /// Returns the range of places of a counterweight, m: that of the Pareto front, widened to include its present
-    /// place and its place in `start`. If the counterweight is clear of pins now, it stays clear in this range.
+    /// Returns the range of places of a counterweight, m: from its bound behind the root to the length of the link,
+    /// widened to include its present place and that in `start`. If it is clear of pins now, it stays clear of them.
     fn along(&self, machine: &Machine, start: &Machine, i: usize) -> ParameterBounds {
         let weights = [machine, start].map(|machine| machine.spec().counterweights.get(i));
         let link = weights[0].and_then(|weight| machine.links().iter().position(|link| link.name == weight.link));
@@ -162,8 +162,8 @@ impl DesignBrief {
         front(machine, &self.lightest_problem(machine), count)
     }
 
-    /// Returns the counterweights and rotor ratios with the least Σ |D_k|, the momentum that the drives give to the
-    /// base.
+    /// Returns the counterweights and rotor ratios with the least Σ |D_k|. The angular momentum of the arm about B is
+    /// Σ D_k q̇_k, with D_k in kg m².
     ///
     /// # Errors
     /// If no counterweights and ratios within the bounds balance the machine.
@@ -239,7 +239,7 @@ pub fn relaxations(why: &CounterweightError) -> Vec<Proposal> {
         let keys = together.iter().map(of_key).collect::<Option<Vec<_>>>()?;
         let text: Vec<String> = keys.iter().map(|(_, value, unit)| format!("{value} {unit}")).collect();
         let change = keys.iter().fold(Table::new(), |all, (key, x, _)| join(all, &single_change(key, x.value())));
-        Some(Proposal { text: format!("use {}", text.join(" and ")), change })
+        Some(Proposal::new(format!("use {}", text.join(" and ")), change))
     };
     reliefs.iter().filter_map(proposal).collect()
 }
@@ -273,8 +273,8 @@ pub fn machine_edit(scenario: &Scenario, of: &Machine) -> Option<Edit> {
     (!change.is_empty()).then_some(Edit::Set { change })
 }
 
-/// Returns the edit that gives a machine the counterweights, the payload mass and the rotor ratios of another. Bounds
-/// on numbers of counterweights are removed if the counterweights are on other links.
+/// Returns the edit that gives a machine the counterweights, the payload mass and the rotor ratios of another. If
+/// the counterweights are on other links, the bounds of the brief on their masses and places are removed.
 pub fn counterweights_edit(scenario: &Scenario, of: &Machine) -> Edit {
     let machine = &scenario.machine;
     let weights = of.spec().counterweights.iter().filter_map(|weight| Value::try_from(weight).ok());

@@ -90,15 +90,47 @@ impl Document {
         patient: bool,
         watch: ProgressCallback<'_>,
     ) -> Result<DocumentRun, ScriptError> {
+        self.perform_to(known, patient, |_| self.end, watch)
+    }
+
+    /// Does the same as [`perform`](Self::perform) up to the step that `end` returns for the run at its start.
+    fn perform_to(
+        &self,
+        known: Option<&Run>,
+        patient: bool,
+        end: impl FnOnce(&Run) -> u64,
+        watch: ProgressCallback<'_>,
+    ) -> Result<DocumentRun, ScriptError> {
         let (mut frames, mut machines) = (Sequence::default(), Machines::default());
         let see = |run: &Run, frame: &Frame| {
             frames.push(*frame);
             machines.set_from(frame.step, &run.scenario().machine);
             !frames.len().is_multiple_of(REPORT_FRAMES) || watch(frames.len() as f64 / (self.end + 1) as f64)
         };
-        let end = |_: &Run, _: &[TimedEdit]| Ok(self.end);
+        let end = |run: &Run, _: &[TimedEdit]| Ok(end(run));
         let run = replay::perform(&self.scenario, &self.script.to_vec(), end, patient, known, see)?;
         Ok(DocumentRun { run, frames, machines })
+    }
+
+    /// Runs the document after an edit of its start. If the edit has made the planned motion shorter than that of the
+    /// `known` run, the run ends with it, or with the last edit: it does not keep the length of the earlier plan.
+    pub fn perform_amended(
+        &mut self,
+        known: &Run,
+        patient: bool,
+        watch: ProgressCallback<'_>,
+    ) -> Result<DocumentRun, ScriptError> {
+        let last_edit = self.script.last().map_or(0, |timed| timed.step);
+        let is_planned = !self.script.is_dragged() && known.waiting().is_none();
+        let end = |run: &Run| match is_planned && run.planned_time() < known.planned_time() {
+            true => self.end.min(last_edit.max(run.planned_steps() as u64)),
+            false => self.end,
+        };
+        let done = self.perform_to(Some(known), patient, end, watch)?;
+        if done.run.waiting().is_none() {
+            self.end = done.run.simulation().step_count();
+        }
+        Ok(done)
     }
 
     /// Compares scenario and script with those of another document. If they differ only in settings on which no frame

@@ -204,7 +204,7 @@ pub struct EventLog {
     machines: Machines,
     events: Arc<Vec<Event>>,
     now: Seen,
-    /// State before the newest frame, which an edit may change.
+    /// State before the newest frame; an edit may replace that frame.
     before: Seen,
 }
 

@@ -75,7 +75,7 @@ pub fn for_machine(present: &Scenario, machine: &Machine) -> Scenario {
     known.or_else(|| gentle_motion(machine).ok()).unwrap_or(alike)
 }
 
-/// Returns a motion of the drives over time, as TOML: it needs neither a pose for a point nor a path between points.
+/// Returns a motion of the drives over time, as TOML. It needs no inverse kinematics and no path between points.
 fn swept(machine: &Machine) -> String {
     let (middle, step) = (middle(machine), step(machine, &Inertia::of(machine).lambda(), SPAN_FRACTIONS[2]));
     let rows: Vec<String> = (0..=SWEEP_ROWS)

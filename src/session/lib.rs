@@ -38,9 +38,11 @@ pub use interactive::Session;
 #[doc(hidden)]
 pub use machines::Machines;
 pub use planner::{Plan, curves};
-pub use proposal::{Proposal, improvements, proposals};
 #[doc(hidden)]
-pub use proposal::{ProposalsQuery, is_improvable};
+pub use proposal::{OutsideLimits, ProposalsQuery, RefusedChange, TargetProposals, is_improvable};
+pub use proposal::{
+    Proposal, WayOut, improvements, proposals, proposals_for_machine, proposals_for_settings, proposals_for_values,
+};
 pub use refusal::Refusal;
 pub use replay::{base_loads, replay, replay_if, replay_while, with_start_edits};
 pub use run::{Run, WaitReason};

@@ -4,7 +4,7 @@ use toml::{Table, Value};
 
 use stillbase_settings::change;
 
-/// Extracts the settings of such an edit from its entry; returns `None` for any other edit.
+/// Extracts the settings from the entry of an edit of an earlier version; returns `None` for any other edit.
 pub fn settings(table: &mut Table) -> Result<Option<Table>, String> {
     let Some(word) = table.get("do").and_then(Value::as_str).map(str::to_owned) else { return Ok(None) };
     let mut take = |key: &str| table.remove(key);

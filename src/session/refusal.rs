@@ -193,7 +193,7 @@ impl Refusal {
         }
     }
 
-    /// Returns the same b rounded for display, in such a way that it is still feasible.
+    /// Returns the b of [`feasible_b`](Self::feasible_b), rounded for display so that it is still feasible.
     pub fn displayed_b(&self) -> Option<Decimal> {
         match self {
             Self::Edit { refusal, .. } => refusal.displayed_b(),

@@ -305,8 +305,8 @@ impl Run {
         Ok(())
     }
 
-    /// Returns whether the rest of the planned motion exceeds the new joint limits anywhere that it keeps the present
-    /// ones.
+    /// Returns whether any of 65 poses on the rest of the planned motion keeps the present joint limits but exceeds
+    /// the new ones.
     fn leaves_limits(&self, changed: &Scenario) -> bool {
         let Guide::Motion { motion, start } = self.simulation.guide() else { return false };
         let done = motion.profile.at(self.simulation.time() - start).s;

@@ -25,7 +25,7 @@ pub const TARGET_TOLERANCE: f64 = 1e-4;
 /// A joint counts as past its limit if it exceeds the limit by more than this, rad.
 pub const LIMIT_TOLERANCE: f64 = 1e-6;
 
-/// A drive is past its limit above this ratio of peak to limit. Feedback adds less than this to a motion that just
+/// A drive is past its limit above this ratio of peak to limit. Feedback adds less than 0.1 % to a motion that just
 /// keeps the limit.
 const MAX_LIMIT_RATIO: f64 = 1.0 + 1e-3;
 

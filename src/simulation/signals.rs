@@ -106,14 +106,19 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
     ];
     for (path, symbol, label, unit, value) in per_drive {
         for k in 0..n {
-            let name = &machine.spec().drives[k].name;
+            let drive = &machine.spec().drives[k];
+            let name = &drive.name;
             table.push(Signal {
                 path: format!("{path}/{name}"),
                 symbol: format!("{symbol}{}", subscript(k + 1)),
                 label: format!("{label} {name}"),
                 unit,
                 drive: Some(k),
-                limit: machine.spec().drives[k].torque_limit.filter(|_| path == "torque"),
+                limit: match path {
+                    "torque" => drive.torque_limit,
+                    "rate" => drive.speed_limit,
+                    _ => None,
+                },
                 quantity: Quantity::PerIndex(k, value),
             });
         }

@@ -20,7 +20,102 @@ pub const TESTS: &[Test] = tests![
     a_run_that_waits_says_so_and_keeps_its_way_out,
     statements_open_what_improves_them,
     a_limit_that_is_passed_proposes_more_time,
+    what_is_typed_out_of_range_proposes_the_nearest_number,
+    a_b_that_does_not_serve_proposes_one_that_does,
+    a_target_that_no_b_reaches_leads_to_the_nearest_point,
+    a_limit_that_leaves_out_the_pose_is_put_back,
+    a_run_that_cannot_be_planned_keeps_the_columns_and_has_a_button,
 ];
+
+/// A number past its range: a button takes the nearest one that is allowed.
+fn what_is_typed_out_of_range_proposes_the_nearest_number() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    type_into(&mut h, "time T s", "1e6");
+    assert!(session(&h).scenario().task.time == 1.0, "nothing has changed");
+    h.get_by_label_contains("take time T = ").click();
+    h.run_steps(4);
+    assert_eq!(session(&h).scenario().task.time, 3600.0);
+    assert!(h.query_by_label_contains("take time T = ").is_none(), "the message goes with its reason");
+}
+
+/// A b that A and B do not allow: one button takes the nearest that they do, one turns the points with it.
+fn a_b_that_does_not_serve_proposes_one_that_does() {
+    for (way_out, is_turned) in [("take b = 2.6610 rad", false), ("take b = 3.6000 rad, and turn", true)] {
+        let mut h = window("case-3", Theme::Dark);
+        h.run_steps(2);
+        let before = session(&h).scenario().task.points();
+        type_into(&mut h, "b rad", "3.6");
+        h.get_by_label_contains(way_out).click();
+        h.run_steps(4);
+        let task = &session(&h).scenario().task;
+        assert_eq!(task.points() != before, is_turned, "{task:?}");
+        assert!((task.b - if is_turned { 3.6 } else { 2.661 }).abs() < 1e-3, "{}", task.b);
+        assert!(session(&h).run().waiting().is_none() && h.query_by_label_contains("does not serve").is_none());
+    }
+}
+
+fn a_target_that_no_b_reaches_leads_to_the_nearest_point() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let command = |h: &mut Window, command: SessionCommand| h.state_mut().app_state_mut().carry_out(command);
+    command(&mut h, SessionCommand::Edit(Edit::DragTarget { x: 1.5, y: 1.5 }));
+    command(&mut h, SessionCommand::EndGesture);
+    h.run_steps(200);
+    assert!(h.query_by_label("no b reaches the target").is_some());
+    h.get_by_label_contains("go to the nearest point").click();
+    h.run_steps(100);
+    assert!(h.query_by_label("no b reaches the target").is_none());
+    let frame = session(&h).frame();
+    assert!((frame.end_effector - frame.target.at).norm() < 1e-2, "{:?}", frame.target);
+}
+
+/// Led by hand, a limit is tightened past the present pose: it is said, and put back or made as wide as it has to be.
+fn a_limit_that_leaves_out_the_pose_is_put_back() {
+    for way_out in ["put limits.a1 back", "take limits.a1"] {
+        let mut h = window("case-3", Theme::Dark);
+        h.run_steps(2);
+        let command = |h: &mut Window, command: SessionCommand| h.state_mut().app_state_mut().carry_out(command);
+        command(&mut h, SessionCommand::Edit(Edit::DragTarget { x: 0.52, y: 0.6 }));
+        command(&mut h, SessionCommand::EndGesture);
+        h.run_steps(100);
+        h.get_by_label("Pause").click();
+        h.run_steps(2);
+        let angle = &session(&h).scenario().machine.angles()[0];
+        let q = session(&h).frame().q;
+        let now = q[angle.to] - q[angle.from] + angle.offset;
+        type_into(&mut h, "a₁ greatest rad", &format!("{:.3}", now - 0.2));
+        assert!(h.query_by_label_contains("outside its limits").is_some(), "{now}");
+        h.get_by_label_contains(way_out).click();
+        h.run_steps(4);
+        assert!(h.query_by_label_contains("outside its limits").is_none(), "{way_out}");
+        assert!(session(&h).is_dragged());
+    }
+}
+
+/// With a payload that unbalances the machine, no reactionless run can be planned: its row has a button, and the
+/// columns keep their places.
+fn a_run_that_cannot_be_planned_keeps_the_columns_and_has_a_button() {
+    let place = |payload: &str| {
+        let scenario = Scenario::builtin("case-1").expect("built in");
+        let change = toml::from_str(&format!("payload.mass = {payload}")).expect("keys");
+        let mut h = window_of(scenario.with_settings(&change).expect("settings"), Theme::Dark, 900.0);
+        let open = stillbase::app::ViewChange::Switch(stillbase::app::Switch::Compare, true);
+        h.state_mut().app_state_mut().carry_out(open);
+        h.run_steps(60);
+        let heads = h.query_all_by_label_contains("Sort by").map(|head| head.rect().right());
+        let first = heads.fold(f32::INFINITY, f32::min);
+        (h, first)
+    };
+    let (_, free) = place("0.0");
+    let (mut h, loaded) = place("0.4");
+    assert!((free - loaded).abs() < 30.0, "the first column ends at {free} and {loaded}");
+    let rows = h.state().app_state().comparison().expect("a table").entries().len();
+    h.query_all_by_label_contains("Reactionless: ").next().expect("a way out").click();
+    h.run_steps(60);
+    let entries = h.state().app_state().comparison().expect("a table").entries();
+    assert!(entries.len() == rows + 1 && entries[rows].outcome.is_ok(), "{}", entries.len());
+}
 
 /// A plan that changes b says so; the statement opens a button that runs the task reactionless.
 fn statements_open_what_improves_them() {
@@ -103,11 +198,9 @@ fn a_scenario_that_cannot_be_planned_is_explained() {
     let Message { text: words, is_problem: bad } = app_state.view_state().status.message.clone().expect("a reason");
     assert!(bad && words.contains("the path stops at"), "{words}");
     let refused = app_state.view_state().status.refused.as_ref().expect("refused");
-    let (scenario, why) = refused.refused.clone().expect("a change of settings");
-    let proposals = stillbase::session::proposals(&scenario.0, &why);
+    let proposals = refused.refused.as_ref().expect("a change of settings").proposals();
     assert!(proposals[0].text.starts_with("take b = "), "{proposals:?}");
-    let edit = refused.edit_with(&proposals[0]);
-    app_state.carry_out(SessionCommand::Edit(edit));
+    app_state.carry_out(refused.command_with(&proposals[0]).expect("an edit"));
     let done = &app_state.session().scenario().task;
     assert_eq!((done.points(), done.shape()), (task.points(), task.shape()));
 }
@@ -189,7 +282,7 @@ fn a_run_that_waits_says_so_and_keeps_its_way_out() {
     h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::DragTarget { x: 0.5, y: 0.6 }));
     h.run_steps(3);
     assert!(has_way_out(&h), "the same reason is said once");
-    h.state_mut().app_state_mut().carry_out(WindowCommand::Refuse("no such number".into()));
+    h.state_mut().app_state_mut().carry_out(WindowCommand::Refuse("no such number".into(), Vec::new()));
     h.run_steps(3);
     assert!(has_way_out(&h) && h.query_by_label("no such number").is_some());
     h.snapshot("waits-refused-dark");

@@ -85,7 +85,7 @@ errors! {
 }
 
 /// Errors that never leave their crate or the workspace: no path of `stillbase` names them.
-const INNER: &[&str] = &["NoOptimum", "StoreError"];
+const INNER: &[&str] = &["NoOptimum", "StoreError", "WrongNumber"];
 
 /// An error as the sources declare it.
 struct Declared {

@@ -17,6 +17,7 @@ mod results;
 mod simulate;
 mod study;
 mod trim;
+mod ways;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -71,12 +72,13 @@ fn object(args: &[&str]) -> Value {
     value
 }
 
-/// A command that fails says why in one line, proposes settings in further lines, and prints no result.
+/// A command that fails says why in one line, proposes settings or command lines in further lines, and prints no result.
 fn fails(args: &[&str], status: i32, words: &[&str]) {
     let out = stillbase(args);
     let said = text(&out.stderr);
     assert_eq!(out.status.code(), Some(status), "{args:?}: {said}");
-    let proposes = |line: &str| line.starts_with("stillbase: ") && line.contains(": --set ");
+    let way_out = |line: &str| line.contains(": --set ") || line.contains(": stillbase ");
+    let proposes = |line: &str| line.starts_with("stillbase: ") && way_out(line);
     assert!(said.starts_with("stillbase: ") && said.trim_end().lines().skip(1).all(proposes), "{args:?}: {said}");
     for word in words {
         assert!(said.contains(word), "{args:?}: {said:?} lacks {word:?}");

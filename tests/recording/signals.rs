@@ -36,3 +36,29 @@ fn signals_are_the_frames_at_every_step() {
     assert!(heard.windows(2).all(|w| w[0].0 <= w[1].0), "progress only grows");
     assert_eq!(heard.last(), Some(&(6000, 6000, "case-3".to_owned())));
 }
+
+/// Limits stand beside the signals that come near them, from the first to the last instant, at plus and at minus.
+#[test]
+fn limits_stand_beside_their_signals() {
+    let folder = Folder::new("limits");
+    for (time, are_near) in [(0.35, true), (8.0, false)] {
+        let change = toml::from_str(&format!("task.time = {time}")).expect("a key");
+        let scenario = Scenario::builtin("case-1").expect("built in").with_settings(&change).expect("a time");
+        let file = folder.path(&format!("{time}.rrd"));
+        record(std::slice::from_ref(&scenario), &file, &Options::default(), &mut |_| true).expect("a case");
+        let contents = Contents::of(&file);
+        let torques = signals(&scenario.machine).into_iter().filter(|signal| signal.path.starts_with("torque/"));
+        for signal in torques {
+            let limit = signal.limit.expect("the paper's drives have limits");
+            let path = format!("{}/limits", contents.series(&scenario.name, &signal).0);
+            assert_eq!(contents.holds(&path), are_near, "{path} at {time} s");
+            if are_near {
+                let values = contents.numbers(&path, "Scalars:scalars");
+                let count = |x: f64| values.iter().filter(|value| **value == x).count();
+                assert!(count(limit) >= 2 && count(limit) == count(-limit), "{limit}: {values:?}");
+                let names = contents.texts(&path, "SeriesLines:names");
+                assert!(names.iter().any(|name| name.contains(&signal.symbol)), "{names:?}");
+            }
+        }
+    }
+}

@@ -18,6 +18,7 @@ mod sitting;
 mod smooth;
 mod undo;
 mod verdict;
+mod ways;
 
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session, TimedEdit, replay};

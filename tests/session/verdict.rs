@@ -215,10 +215,15 @@ fn machine_plan_and_run_are_told_apart() {
     assert_eq!((lamps(&before), lamps(&after)), ([Bad, Open, Open], [Bad, Open, Bad]));
     assert!(before.machine.words.starts_with("off balance by 0.") && before.machine.words.ends_with(" kg m"));
     assert!(after.run.why.contains("the machine does this"), "{}", after.run.why);
-    // Neither does it, but what the model does not know.
+    // The model is balanced, but not the machine with a payload that control does not know of.
     let [before, after] = statements(&case("case-3", &[], "[plant.payload]\nmass = 0.3"));
-    assert_eq!((lamps(&before), lamps(&after)), ([Good, Good, Open], [Good, Good, Bad]));
-    assert!(after.run.why.contains("payload") && after.run.words.contains("|f_B|"), "{:?}", after.run);
+    assert_eq!((lamps(&before), lamps(&after)), ([Bad, Good, Open], [Bad, Good, Bad]));
+    assert!(after.machine.words.ends_with("with its payload"), "{:?}", after.machine);
+    assert!(after.machine.why.contains("payload") && after.run.words.contains("|f_B|"), "{:?}", after.run);
+    // Neither does it, but what the model does not know.
+    let [_, after] = statements(&case("case-3", &[], "[plant.friction]\nviscous = 0.5"));
+    assert_eq!(lamps(&after), [Good, Good, Bad]);
+    assert!(after.run.why.contains("friction"), "{:?}", after.run);
     // A wheel takes the moment up; an arm that friction holds has shown nothing; a failed audit leaves no praise.
     let mut wheel = case("case-1", &[], "");
     wheel.base.wheel = Some(Wheel { inertia: 0.002, ..Wheel::default() });
@@ -255,9 +260,11 @@ fn plans_that_wait_and_hands_that_lead() {
     session.tick(20_000);
     assert_eq!(
         lamps(&of(&session)),
-        [StatusLight::Good, StatusLight::Good, StatusLight::Bad],
-        "it holds the new b, and has transmitted"
+        [StatusLight::Good, StatusLight::Bad, StatusLight::Bad],
+        "it holds the new b, but has been turned to it, and has transmitted"
     );
+    assert!(of(&session).plan.words.starts_with("b turned by 0.2"), "{:?}", of(&session).plan);
+    assert!(of(&session).run.why.contains("a hand does this"), "{:?}", of(&session).run);
 }
 
 proptest! {
@@ -282,7 +289,7 @@ proptest! {
         let most = |of: &dyn Fn(&Frame) -> f64| frames.iter().map(of).fold(0.0, f64::max);
         let [moment, force] = [most(&|f| f.base_moment().abs()), most(&|f| f.wrench.dynamic.force.norm())];
         let torque = most(&|f| f.torque.iter().map(|t| t.abs()).sum());
-        prop_assert_eq!(of.machine.outcome == StatusLight::Good, off == 0.0);
+        prop_assert_eq!(of.machine.outcome == StatusLight::Good, off == 0.0 && payload == 0.0);
         prop_assert_eq!(of.plan.outcome == StatusLight::Good, off == 0.0 && name == "case-3");
         prop_assert_eq!(of.run.outcome == StatusLight::Good, moment < 1e-5 * torque && force < 1e-6);
         prop_assert_eq!(of.run.outcome == StatusLight::Good, off == 0.0 && name == "case-3" && payload == 0.0);

@@ -20,7 +20,7 @@ pub enum ExportError {
     /// The film cannot be encoded by the system's encoder.
     #[error(transparent)]
     Video(#[from] VideoError),
-    /// Nothing can draw.
+    /// No GPU adapter can be used.
     #[error(transparent)]
     Adapter(#[from] NoAdapter),
     /// A picture cannot be read back.

@@ -24,7 +24,7 @@ pub struct FilmOrder {
     pub times: [f64; 2],
     /// Pictures per second.
     pub fps: f64,
-    /// How many times slower than the run it plays.
+    /// Factor by which the film plays slower than the run.
     pub slow: f64,
 }
 

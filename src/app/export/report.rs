@@ -35,7 +35,7 @@ pub struct ReportDone {
 }
 
 /// Simulates the run on display to its end and returns the report as a page. `command` repeats the run; without one,
-/// the settings of the session make one if they can.
+/// the command is made from the settings of the session, if they suffice.
 fn report(app_state: &mut AppState, command: Option<String>) -> (String, ReportDone) {
     let end = app_state.run_to_end();
     let pictures = pictures(app_state, [0.0, end]);
@@ -79,7 +79,7 @@ fn pictures(app_state: &mut AppState, times: [f64; 2]) -> Result<Vec<ReportPictu
 /// Writes the report to a file, unless `goes_on` stops it before.
 ///
 /// # Errors
-/// If the file cannot be written, or is stopped.
+/// If the file cannot be written, or `goes_on` returns false.
 pub fn write_report(
     app_state: &mut AppState,
     command: Option<String>,

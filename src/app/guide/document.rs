@@ -33,7 +33,7 @@ pub enum Content {
     Heading(usize, String, Vec<Span>),
     /// A paragraph.
     Text(Vec<Span>),
-    /// A block of code or of a console; its kind stands behind the fence.
+    /// A block of code or console text: its kind, which is the word after the opening fence, and its text.
     Code(String, String),
     /// The rows of a table, the heads first.
     Table(Vec<Vec<Vec<Span>>>),
@@ -159,7 +159,7 @@ pub fn plain_text(spans: &[Span]) -> String {
 }
 
 impl Document {
-    /// Reads Markdown; links lead from `page`.
+    /// Reads Markdown; links to an anchor alone refer to `page`.
     pub fn read(text: &str, page: Page) -> Self {
         let mut reader = Reader { page, ..Reader::default() };
         Parser::new_ext(text, Options::ENABLE_TABLES).for_each(|event| reader.take(event));

@@ -27,7 +27,7 @@ macro_rules! pictures {
     };
 }
 
-/// Largest width at which a picture of half the size is shown, pixels.
+/// Largest width on the display, pixels, at which the texture has half the resolution of the picture.
 const SMALL_WIDTH_PX: f32 = 800.0;
 
 pictures!["window", "tower", "joints", "design", "spacecraft", "compare", "tolerances"];
@@ -54,7 +54,7 @@ pub fn show(ui: &mut Ui, picture: &str, shows: &[Span]) -> Option<Response> {
 
 /// Returns the texture of a picture that is shown this wide, pixels; it is decoded once and kept while the window is open.
 fn texture(ui: &Ui, picture: &str, theme: Theme, width: f32) -> Option<TextureHandle> {
-    // The display shows one pixel of the texture for each of its own, or up to half as many again: letters stay smooth.
+    // The texture is shrunk to hardly less than half its width on the display, so that letters stay smooth.
     let is_small = width <= SMALL_WIDTH_PX;
     let id = egui::Id::unique(("picture of the guide", picture, theme == Theme::Dark, is_small));
     if let Some(texture) = ui.data(|d| d.get_temp::<TextureHandle>(id)) {

@@ -41,8 +41,8 @@ impl<'a> Frames<'a> {
     }
 }
 
-/// Draws a plot in the panel, of a height, points, or else with its title on display elsewhere, in all the height that
-/// there is. Returns the time under the pointer, s, if the pointer is over the plot.
+/// Draws a plot of a height, points. With `None`, for a plot in a window, it fills the window and shows no title.
+/// Returns the time under the pointer, s, if the pointer is over the plot.
 pub fn show(
     ui: &mut Ui,
     what: &DisplayContext<'_>,

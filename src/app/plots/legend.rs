@@ -1,4 +1,4 @@
-//! The line above all plots that names the runs laid over, with the samples of their lines.
+//! The row above all plots: the names of the overlaid runs, each with a sample of its line.
 
 use egui::{Sense, Ui, vec2};
 
@@ -12,7 +12,7 @@ use stillbase_picture::charts::figure::{dashes, run_colour};
 const SAMPLE_WIDTH_PT: f32 = 24.0;
 const MIN_NAME_PT: f32 = 60.0;
 
-/// Draws the line in a width, points, if runs are laid over.
+/// Draws this row within `width`, points, if there are overlaid runs.
 pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, width: f32) {
     let Some(comparison) = what.comparison else { return };
     let shown: Vec<usize> = comparison.shown().map(|(place, _)| place).collect();
@@ -25,7 +25,7 @@ pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, width: f32) {
         let scenario = entry.outcome.as_ref().map(|run| run.scenario.title.as_str()).unwrap_or_default();
         if entry.added_by_user && !scenario.is_empty() { scenario.to_owned() } else { entry.title.clone() }
     };
-    // Names share a line; where that leaves too little of them, they go on in the next one.
+    // The names share one row. If that would shorten them too much, the row wraps.
     let share = width / shown.len() as f32;
     let taken = SAMPLE_WIDTH_PT + 28.0;
     let room = (share - taken).max(MIN_NAME_PT);

@@ -37,7 +37,7 @@ pub use written::{figures, written};
 const WIDTH_FRACTION: f32 = 0.233;
 const MIN_WIDTH_PT: f32 = 272.0;
 const MAX_WIDTH_PT: f32 = 640.0;
-/// Default width in a window that is narrow, points.
+/// Minimum of the default width in a window that is narrow, points.
 const NARROW_WIDTH_PT: f32 = 240.0;
 
 /// Fraction and upper bound, points, in the layout that compares runs.

@@ -67,7 +67,7 @@ pub fn extent(session: &Session) -> TimeExtent {
     }
 }
 
-/// Returns the drawn lines of plots: those of the panel for a width, points, unless a window of a plot is wider.
+/// Returns the lines of plots for the width of the panel, points, or of the widest plot window if that is wider.
 pub fn of_width(ctx: &Context, what: &DisplayContext<'_>, plots: &[Plot<'_>], width: f32) -> Arc<Vec<PlotLines>> {
     let windows = plots.iter().filter_map(|plot| plot.window);
     let widest = windows.fold(width, |widest, [_, _, width, _]| widest.max(width));

@@ -19,7 +19,7 @@ const MIN_MOVE_PT: f32 = 0.5;
 struct KnownWindow {
     /// Its place that was saved last.
     saved: [f32; 4],
-    /// Number of times that another place was opened. egui then forgets where it had the window.
+    /// Number of times that the session set another place. As part of the id it makes egui forget the old place.
     opened: u32,
 }
 

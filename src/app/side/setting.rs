@@ -24,7 +24,7 @@ const DIGITS: i32 = 9;
 
 /// Returns the user's unit of a key's numbers, if it differs from the key's own.
 pub fn shown_unit(key: &Key, notation: Notation) -> Option<ShownUnit> {
-    // A spread is a word with a number in the unit of the key.
+    // The number in a spread, such as normal:0.0005, stays in the unit of the key.
     holds_numbers(key).then(|| notation.shown_unit(key.unit()))?
 }
 
@@ -116,7 +116,8 @@ pub fn row(ui: &mut Ui, p: &Palette, setting: &Setting, commands: &mut Vec<Comma
                         Err(why) => {
                             let text = shortened(text.trim(), 24);
                             commands.push(
-                                WindowCommand::Refuse(format!("{path}: \"{text}\" changes nothing: {why}")).into(),
+                                WindowCommand::Refuse(format!("{path}: \"{text}\" changes nothing: {why}"), Vec::new())
+                                    .into(),
                             );
                         }
                     }

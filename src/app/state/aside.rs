@@ -19,7 +19,7 @@ use stillbase_study::comparison::Comparison;
 use stillbase_study::fronts::FrontCase;
 use stillbase_study::lengths::LengthsQuery;
 
-/// A session with its display, as it was when a lesson began.
+/// A session with its display, as it was when a lesson (the tour or the hints) began.
 pub(super) struct SetAside {
     pub session: Session,
     pub view_state: ViewState,

@@ -10,7 +10,7 @@ use stillbase_picture::scene::beside::{Beside, BesideQuery};
 use stillbase_picture::scene::stage::OutlineQuery;
 use stillbase_query::{ByIdentity, QueryResult, QueryStatus, Shared, Ticket};
 use stillbase_session::scenario::Scenario;
-use stillbase_session::{Proposal, ProposalsQuery, Refusal, RunAhead, is_improvable};
+use stillbase_session::{Proposal, ProposalsQuery, RefusedChange, RunAhead, is_improvable};
 use stillbase_study::comparison::{AlternativeRuns, ComparedRun, Comparison};
 use stillbase_study::tolerance::{StudiedRun, Study, StudyQuery};
 
@@ -76,14 +76,14 @@ impl AppState {
     }
 
     /// Returns what is refused, with the reason: the last edit, or the task of a run that waits.
-    fn refused(&self) -> Option<(Shared<Scenario>, Option<Refusal>)> {
+    fn refused(&self) -> Option<RefusedChange> {
         let refused = self.view_state.status.refused.as_ref().and_then(|refused| refused.refused.clone());
         let run = self.session.run();
-        let waiting = || Some((run.shared_scenario(), run.waiting()?.why.clone()));
-        refused.or_else(waiting).map(|(scenario, why)| (scenario, Some(why)))
+        let waiting = || Some(RefusedChange::of(run.shared_scenario(), run.waiting()?.why.clone()));
+        refused.or_else(waiting)
     }
 
-    /// Requests proposals that lead out of what is refused; a newer request replaces an older one.
+    /// Requests proposals that make the refused edit or task possible; a newer request replaces an older one.
     pub(super) fn refresh_proposals(&mut self) {
         match self.refused() {
             None => self.queries().forget::<ProposalsQuery>(),
@@ -92,7 +92,7 @@ impl AppState {
         }
     }
 
-    /// Returns the proposals that lead out of what is refused, once they are known.
+    /// Returns the proposals that make the refused edit or task possible, once they are known.
     pub(super) fn proposals(&self) -> Option<Arc<Vec<Proposal>>> {
         self.queries().known::<ProposalsQuery>(&self.refused()?)
     }
@@ -102,7 +102,7 @@ impl AppState {
     pub(super) fn improvements(&self) -> Option<Arc<Vec<Proposal>>> {
         let run = self.session.run();
         let asks = self.refused().is_none() && is_improvable(run);
-        let input = asks.then(|| (run.shared_scenario(), None))?;
+        let input = asks.then(|| RefusedChange::to_improve(run.shared_scenario()))?;
         self.queries().ask_in_background::<ProposalsQuery>(&input).known().cloned()
     }
 
@@ -143,7 +143,7 @@ impl AppState {
         }
     }
 
-    /// Requests the run beside that on display, if there is one; during a drag the last one stays.
+    /// Requests the run to be shown beside that on display, if there is a pair; during a drag the last one stays.
     pub(super) fn refresh_pair(&mut self) {
         let Some(pair) = &self.view_state.pair else {
             self.queries().forget::<BesideQuery>();

@@ -77,7 +77,7 @@ impl AppState {
             }
             Command::View(change) => {
                 if matches!(change, ViewChange::Pair(_)) {
-                    // What is shown until the other run is made is no run of another title.
+                    // Until the new run is made, no earlier run may be shown under its title.
                     self.queries().forget::<BesideQuery>();
                 }
                 let designs =
@@ -210,7 +210,16 @@ impl AppState {
                 self.clipboard = Some(text);
                 return Ok(Some(said));
             }
-            WindowCommand::Refuse(why) => return Err(why),
+            WindowCommand::Refuse(why, proposals) => {
+                self.view_state.status.refused = None;
+                self.show_outcome(Err(why));
+                self.view_state.status.proposals = proposals;
+            }
+            WindowCommand::RefuseEntry(entry) => {
+                self.view_state.status.refused = None;
+                self.show_outcome(Err(entry.why.clone()));
+                self.view_state.status.entry = Some(entry);
+            }
             WindowCommand::Cancel(activity) => return Ok(Some(self.cancel(activity))),
             WindowCommand::AskToLeave(asks) => self.ask_to_leave(asks),
             WindowCommand::Quit if !self.may_leave() => self.ask_to_leave(true),

@@ -22,7 +22,7 @@ pub struct DisplayCopy {
 }
 
 impl DisplayCopy {
-    /// Simulates the run to its end, as long as `goes_on` says so; it gets the fraction done.
+    /// Simulates the run to its end while `goes_on` returns `true`; `goes_on` gets the fraction done.
     pub fn run_to_end(&mut self, goes_on: &mut dyn FnMut(f64) -> bool) {
         self.session.seek_while(self.session.length(), goes_on);
     }
@@ -51,7 +51,7 @@ impl AppState {
             tool: Tool::default(),
             ..self.view_state.clone()
         };
-        // A study is not made again for a picture.
+        // The panel of tolerances is left out, so that a picture does not compute the study again.
         view_state.below = view_state.below.filter(|below| *below != BottomPanel::Tolerances);
         let (comparison, fronts) = (self.comparison.clone(), self.fronts.clone());
         DisplayCopy { session, view_state, comparison, fronts, opened_table: self.opened_table.clone() }

@@ -25,7 +25,7 @@ impl AppState {
     /// Writes a result to a file.
     pub(super) fn export(&mut self, path: &Path, wanted: &Export) -> Result<(), String> {
         if let Export::Film(_) = wanted {
-            // What would fail fails before the film is drawn.
+            // The path is checked first, so that a wrong one is refused before the film is drawn.
             let replaces = self.saving.replaces.as_deref() == Some(path);
             export::check_film(path, replaces).map_err(|e| e.to_string())?;
         }

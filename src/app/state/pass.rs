@@ -140,7 +140,8 @@ impl AppState {
         notes::show(ui.ctx(), &self.session, &self.views, &mut self.view_state, &mut commands);
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
         export::show(ui.ctx(), &self.session, &self.view_state, &mut commands);
-        commands.extend(widgets::refused_entry(ui.ctx()).map(|it| Command::Window(WindowCommand::Refuse(it))));
+        commands
+            .extend(widgets::refused_entry(ui.ctx()).map(|entry| Command::Window(WindowCommand::RefuseEntry(entry))));
         if widgets::drag_cancelled(ui.ctx()) {
             // The cancelled drag is undone before its gesture ends.
             commands.insert(0, Command::Session(SessionCommand::GiveUp));

@@ -61,7 +61,7 @@ impl AppState {
         (self.loops() && now > from && (now >= to || !self.session.is_moving())).then_some(from)
     }
 
-    /// Whether the demonstration of the first minute runs, because the machine has not been touched yet.
+    /// Whether the demonstration before the hints runs: the machine has not been touched yet.
     fn demonstrates(&self) -> bool {
         self.view_state.pair.as_ref().is_some_and(|pair| pair.demonstrates)
     }

@@ -40,7 +40,7 @@ pub struct DesignFacts {
     front: Option<QueryResult<Points>>,
     /// The search for lengths of this machine, if there is one.
     pub(super) length_search: Option<LengthsResult>,
-    /// Pareto fronts of other machines; `None` while the equations are on display.
+    /// Pareto fronts of other machines; `None` without such machines, or while the equations are on display.
     other_fronts: Option<QueryResult<Vec<MachineFront>>>,
     /// The measure that colours the points of the front.
     pub(super) front_measure: Option<Arc<MeasureValues>>,
@@ -57,7 +57,7 @@ struct Sums {
     lambda: Vec<f64>,
     /// Total mass of the counterweights, kg, and Σ D_k, kg m².
     now: [f64; 2],
-    /// The machine without its counterweights.
+    /// The machine without its counterweights, except fixed ones; `None` if it would not be valid.
     bare: Option<Machine>,
 }
 

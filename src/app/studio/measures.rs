@@ -46,7 +46,10 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, p: &Palette) {
     let forecast = &run.plan().forecast;
     if run.waiting().is_none() {
         rows.extend([
-            (notation.name("the task: greatest torque", "τ"), format!("{} N m", signed(forecast.torque.max_abs(), 3))),
+            (
+                notation.name("the plan: greatest torque foreseen", "τ"),
+                format!("{} N m", signed(forecast.torque.max_abs(), 3)),
+            ),
             (notation.name("turning moment on the base", "n_B"), format!("{} N m", signed(forecast.moment, 3))),
             (notation.name("force on the base", "f_B"), format!("{} N", signed(forecast.force, 3))),
         ]);

@@ -70,7 +70,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, view_state: &Vi
     }
 }
 
-/// Draws the link that exports the machine.
+/// Draws the hyperlink that exports the machine.
 fn elsewhere(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     ui.add_space(8.0);

@@ -163,7 +163,7 @@ fn cell<R>(ui: &mut Ui, width: f32, align: Align, add: impl FnOnce(&mut Ui) -> R
     });
 }
 
-/// Draws a name, or a name and the SI unit behind it, in the user's unit.
+/// Draws a name, a unit, or a name followed by a unit; an SI unit is shown as the user's unit.
 fn head(ui: &mut Ui, p: &Palette, words: &str) {
     let (what, unit) = words.rsplit_once(' ').map_or(("", words), |(what, unit)| (what, unit));
     let unit = notation::of(ui.ctx()).unit_name(unit);

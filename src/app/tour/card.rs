@@ -1,4 +1,4 @@
-//! The card of a [`Tour`]'s step, over the corner of the scene that leaves free what it mentions.
+//! The card of a [`Tour`]'s step, in a corner of the scene where it does not cover what its text mentions.
 
 use egui::{Align2, Area, Button, Id, RichText, Ui, vec2};
 

@@ -51,8 +51,8 @@ pub struct WeightArguments {
     /// pins
     #[arg(long, value_parser = number, value_name = "C", requires = "counterweights")]
     clearance: Option<f64>,
-    /// Minimum and maximum payload, kg. First the largest residual of Eqs (7) and (8) over this interval is minimised,
-    /// |g_k|, or |C_kl| divided by the reach; then the objective
+    /// Minimum and maximum payload, kg. First the largest residual over this range is minimised, then the objective.
+    /// Residuals are |g_k| of Eq (7), and |C_kl| of Eq (8) divided by the reach
     #[arg(long, value_name = "LO,HI", requires = "counterweights", value_parser = payload)]
     payload: Option<[f64; 2]>,
     /// Optimise the inertia of a drive's rotor within these bounds, kg m²; its ratio stays unchanged
@@ -63,7 +63,7 @@ pub struct WeightArguments {
     #[arg(long, value_name = "DRIVE=LO,HI", requires = "counterweights", value_parser = range, allow_hyphen_values = true)]
     rotor_ratio: Vec<(String, [f64; 2])>,
     /// Objective to minimise: mass, inertia, momentum, torque, or a weighted sum as mass=1,inertia=5. The mass is the
-    /// added mass; the inertia is that seen by the drives, Σ D_k without gears. The momentum is that given to the base,
+    /// added mass; the inertia is Σ H_kk, without gears equal to Σ D_k. The momentum is that given to the base,
     /// Σ |D_k|; counter-rotating rotors reduce it. The torque is the maximum |τ| during --task, whereas the β of torque
     /// is a ratio of root mean squares
     #[arg(long, value_name = "mass|inertia|momentum|torque|WEIGHTS", requires = "counterweights", value_parser = objective)]

@@ -26,8 +26,8 @@ use stillbase_settings::number::counted;
 ///
 /// The spreads come from [tolerance] of the scenario and from --spread. By default all are normal. The standard
 /// deviations are 0.5 mm for both coordinates of a centre of mass and 0.05 mm for lengths. Masses have 0.5 % and
-/// inertias 2 %. Every machine tracks the planned motion perfectly, so its wrench is linear in g, C and H and fast to
-/// evaluate. With --simulate each machine is simulated, with control that knows only the nominal machine.
+/// inertias 2 %. Every machine tracks the planned motion perfectly. Its wrench is linear in g_k and C_kl, Eqs (7) and
+/// (8), and in H_kk. With --simulate each machine is simulated, with control that knows only the nominal machine.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:

@@ -7,8 +7,8 @@ use std::thread;
 use stillbase_session::Refusal;
 use stillbase_study::tolerance::{Batch, CHUNK, Ensemble, Mode, Sampler};
 
-/// Number of chunks per thread that are evaluated before their results are passed on; one if machines are simulated.
-/// Between two such waves, threads
+/// Number of chunks per thread in one wave; the results of a wave are passed on together. Simulations use one chunk.
+/// Between two waves, threads
 /// wait for the slowest; with many chunks, they wait for a small part of the time.
 const CHUNKS_PER_THREAD: usize = 32;
 

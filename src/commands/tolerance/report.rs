@@ -150,7 +150,7 @@ fn shares_table(report: &PartReport) -> TextTable {
     table
 }
 
-/// Formats the comparison of the first-order approximation with all samples.
+/// Formats the comparison of nominal and first-order results with exact or sampled ones.
 fn orders(report: &PartReport) -> String {
     let a = &report.agreement;
     let mut table =

@@ -88,7 +88,7 @@ impl<'a> Defaults<'a> {
     /// Reads the classes of a `<mujoco>`.
     ///
     /// # Errors
-    /// If a class has no name or the name of another, or if there are too many classes.
+    /// If a class has no name or the name of another, or if there are too many classes or attributes.
     pub fn of(model: Node<'a, 'a>) -> Result<Self, ImportError> {
         let mut main = Values::default();
         each(model, "default").try_for_each(|node| take(node, &mut main))?;

@@ -4,7 +4,7 @@
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | n | common direction of all hinge axes; x and y of the plane derive from the axes of the file's base | |
-//! | ψ_k | q_k of drive k in the reference pose: the direction of its first link with length | rad |
+//! | ψ_k | q_k of drive k in the reference pose, from the axis of its first link with length: see `direction` | rad |
 //! | s | position on a link's axis, from its root | m |
 
 use nalgebra::{Matrix3, Vector3};
@@ -24,8 +24,8 @@ pub const NEGLIGIBLE_MASS: f64 = 1e-9;
 const ZERO_LENGTH_FRACTION: f64 = 1e-9;
 /// Two directions are parallel up to this sine of the angle between them.
 const PARALLEL_UP_TO_SINE: f64 = 1e-9;
-/// Gear ratio of a rotor that replaces an armature: the largest allowed, because an armature adds nothing to the
-/// momentum.
+/// Gear ratio of a rotor that replaces an armature. An armature adds nothing to the momentum, but the rotor adds
+/// armature/ratio to D_k; the largest allowed ratio makes this smallest.
 const ARMATURE_RATIO: f64 = 1e4;
 /// Shortest length of a link without pins beyond its root, m.
 const MIN_LENGTH_M: f64 = 0.01;

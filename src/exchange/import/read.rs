@@ -114,7 +114,7 @@ pub fn mass<'a>(node: impl AttributeSource<'a>, name: &'static str) -> Result<f6
     }
 }
 
-/// Returns the inertia matrix, kg m², rotated by `axes`, from moments about x, y, z and products xy, xz, yz.
+/// Returns the inertia matrix, kg m², rotated by `axes`, from its diagonal xx, yy, zz and its entries xy, xz, yz.
 pub fn inertia([xx, yy, zz, xy, xz, yz]: [f64; 6], axes: &Rotation3<f64>) -> Matrix3<f64> {
     let own = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
     axes * own * axes.transpose()

@@ -3,7 +3,7 @@
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | r, h | radius and half of the length along z | m |
+//! | r, h | radius and half of the length along z (of a capsule: without its caps) | m |
 //! | a, b, c | halves of the lengths along x, y and z | m |
 //! | V | volume | m³ |
 //! | i | principal inertias about the centre, divided by the mass | m² |
@@ -54,8 +54,8 @@ fn of_point(at: Vector3<f64>) -> Matrix3<f64> {
     Matrix3::identity() * at.norm_squared() - at * at.transpose()
 }
 
-/// Returns the mass properties of a shape in the axes to which `frame` maps those of its body. `None` is for a shape
-/// without mass, or outside the groups whose shapes have mass.
+/// Returns the mass properties of a shape; `frame` maps coordinates of its body to those of the result. `None` is for
+/// a shape without mass, or outside the groups whose shapes have mass.
 ///
 /// # Errors
 /// If its mass or inertia cannot be computed.

@@ -299,7 +299,7 @@ impl<'a> Plot<'a> {
             title += " …";
         }
         let in_units = match (chart.scale == 1.0, notation.shown_unit(chart.unit)) {
-            // Of a plot with several units, each curve has its own.
+            // In a plot with several units, each curve has its own unit.
             (true, Some(shown)) => Chart { unit: shown.name, min_range: shown.factor * chart.min_range, ..chart },
             _ => chart,
         };
@@ -349,7 +349,7 @@ impl<'a> Plot<'a> {
     }
 }
 
-/// Whether left, top, width and height, points, are those of a window.
+/// Whether left, top, width and height (points) are within the bounds of a window.
 fn is_window([left, top, width, height]: &[f32; 4]) -> bool {
     let [least, most] = WINDOW_SIDE_PT;
     [left, top].iter().all(|x| x.abs() <= most) && [width, height].iter().all(|side| (least..=most).contains(*side))

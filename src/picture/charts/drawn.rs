@@ -89,7 +89,7 @@ impl PlotLines {
         let largest = drawn.y[0].abs().max(drawn.y[1].abs());
         for (i, curve) in plot.curves.iter().enumerate().filter(|(_, curve)| curve.on && plot.against.is_none()) {
             let limit = curve.signal.limit.map(|limit| curve.scale * limit);
-            if let Some(limit) = limit.filter(|limit| largest.is_finite() && *limit <= LIMIT_SHOWN_BELOW * largest) {
+            if let Some(limit) = limit.filter(|limit| shows_limit(*limit, largest)) {
                 widen(&mut drawn.y, [-limit, limit]);
                 drawn.limits.push((i, limit));
             }
@@ -110,6 +110,11 @@ impl PlotLines {
 
 /// A limit is drawn if it is at most this multiple of the largest value, so that curves do not become flat.
 const LIMIT_SHOWN_BELOW: f64 = 2.0;
+
+/// Returns whether a limit is drawn beside curves whose largest absolute value is `largest`.
+pub fn shows_limit(limit: f64, largest: f64) -> bool {
+    largest.is_finite() && limit <= LIMIT_SHOWN_BELOW * largest
+}
 
 /// Bounds of an empty set of values.
 const EMPTY: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];

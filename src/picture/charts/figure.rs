@@ -198,7 +198,7 @@ pub fn body(plot: &Plot<'_>, drawn: &PlotLines, axes: &Axes, look: &PlotContext<
         let symbols: Vec<&str> = drawn.limits.iter().filter(|other| is_equal(other)).map(of).collect();
         let text = format!("limit of {}", symbols.join(", "));
         let text = vec![FigureText { text, size: TICK_SIZE_PT, bold: false, colour: tone }];
-        // Labels of limits that lie close together stand at opposite ends.
+        // Labels alternate between right and left, so that those of two limits close together need not overlap.
         let (x, anchor) = if i % 2 == 0 { (right - 4.0, 1.0) } else { (left + 4.0, 0.0) };
         let at = [x, axes.place([axes.x[0], *limit])[1] + 2.0];
         words.push(FigureItem::Text { at, anchor: [anchor, 0.0], words: text });
@@ -250,7 +250,7 @@ fn run_numbers(plot: &Plot<'_>, drawn: &PlotLines, axes: &Axes, p: &Palette) -> 
         let y = kept.last().map_or(y, |(other, ..)| y.max(other + NUMBER_DISTANCE_PT));
         kept.push((y, run, tone));
     }
-    // What was pushed below the axes goes back up.
+    // Numbers that were pushed below the axes move back up.
     let mut lowest = bottom;
     for (y, ..) in kept.iter_mut().rev() {
         *y = y.min(lowest);

@@ -130,7 +130,7 @@ impl LineRenderer {
         }
     }
 
-    /// Drops vertices of the current line that no eye misses. A line that is partly behind the eye is kept whole.
+    /// Drops vertices of the current line whose loss is not seen. A line that is partly behind the eye is kept whole.
     fn simplify(&mut self, view: &View) {
         self.on_screen.clear();
         self.on_screen.extend(self.path.iter().map_while(|point| view.project(*point)));

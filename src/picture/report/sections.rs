@@ -50,7 +50,7 @@ impl Report<'_> {
         };
         row("duration".into(), self.frame.time, 3, "s");
         for (k, torque) in peaks.torque.iter().enumerate() {
-            row(format!("peak torque of drive {}, |τ_{}|", k + 1, k + 1), *torque, TORQUE_DECIMALS, "N m");
+            row(format!("peak torque of drive {} in the run, |τ_{}|", k + 1, k + 1), *torque, TORQUE_DECIMALS, "N m");
         }
         row("peak moment on the base, |n_B|".into(), verdict.arm_moment, REACTION_DECIMALS, "N m");
         row("root mean square of n_B".into(), totals.arm_moment_rms(), REACTION_DECIMALS, "N m");
@@ -67,7 +67,7 @@ impl Report<'_> {
         table.html()
     }
 
-    /// Returns the settings of the task.
+    /// Returns the settings of the task that differ from their defaults.
     pub(super) fn task(&self) -> String {
         self.changed(|key| key.part() == "task")
     }

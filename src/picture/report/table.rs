@@ -17,7 +17,7 @@ pub struct PageTable {
 }
 
 impl PageTable {
-    /// Returns a table with its heads, the first `names` of which stand over names.
+    /// Returns a table with these heads; the first `names` columns hold names.
     pub fn new<S: Into<String>>(names: usize, heads: impl IntoIterator<Item = S>) -> Self {
         Self { heads: heads.into_iter().map(Into::into).collect(), names, rows: Vec::new() }
     }
@@ -27,7 +27,7 @@ impl PageTable {
         self.rows.push(cells.into_iter().collect());
     }
 
-    /// Returns the element, or nothing if there is no row.
+    /// Returns the HTML element, or an empty string if there is no row.
     pub fn html(&self) -> String {
         if self.rows.is_empty() {
             return String::new();

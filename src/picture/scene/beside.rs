@@ -20,7 +20,7 @@ pub struct Beside {
     run: ComparedRun,
 }
 
-/// Rotation of a base on its drawn mount at the largest moment, rad, and its largest one.
+/// Drawn rotation of the base at the largest moment of its run, rad, and bound on that of the other base.
 const DRAWN_TURN: f64 = 0.035;
 const MAX_DRAWN_TURN: f64 = 0.08;
 /// A run with smaller moments leaves its base at rest, N m.
@@ -59,7 +59,7 @@ impl Beside {
     }
 
     /// Returns the compliance of the mount on which two bases are drawn, rad/(N m), so that this run's largest moment
-    /// is seen and the other's, N m, does not turn its base too far. In degrees it is 1, 2, 5, 10 …
+    /// is seen. It is a round number of degrees, unless `other_peak`, the other run's largest moment, N m, bounds it.
     pub fn compliance(&self, other_peak: f64) -> f64 {
         let peak = self.peak_moment();
         let wanted = if peak > AT_REST_N_M { DRAWN_TURN / peak } else { USUAL_COMPLIANCE };

@@ -61,7 +61,7 @@ impl Ray {
 }
 
 impl Camera {
-    /// Returns a flat view of an arm with the given reach, m; the centre is shifted from B towards the usual work area.
+    /// Returns a flat view of an arm with the given reach, m, shifted from the base towards the usual work area.
     pub fn flat(reach: f64) -> Self {
         Self::Flat(FlatCamera { centre: [0.12 * reach, 0.28 * reach], half_height: 0.82 * reach })
     }

@@ -19,7 +19,7 @@ const MAX_NAMED: usize = 24;
 pub fn waypoints(run: &Run) -> Vec<(usize, String, Vector)> {
     let task = &run.scenario().task;
     if task.samples.is_some() {
-        // The motion may have been rotated since the file was written.
+        // The samples may have been turned since the task was written, so both ends are taken from the motion.
         return [(0, 0.0), (1, 1.0)].map(|(i, share)| (i, task.name_of(i), run.end_effector_on_path(share))).to_vec();
     }
     let named = |(i, p)| (i, task.name_of(i), p);
@@ -37,8 +37,8 @@ pub fn stations(motion: &Motion) -> impl Iterator<Item = f64> {
     (0..=n).map(move |i| i as f64 / n as f64)
 }
 
-/// Returns the position of the target's handle, m: the target itself if out of reach, otherwise the end effector. It is
-/// given in the frame of the base at the start, as if the base had not moved.
+/// Returns the position of the target's handle, m: the target itself if out of reach, otherwise the end effector.
+/// The end effector has its present coordinates in the axes of the base, as if the base had not moved.
 pub fn target_handle(frame: &Frame) -> Vector {
     match frame.target.reach {
         Reach::Outside { .. } => frame.target.at,

@@ -197,7 +197,7 @@ impl DesignDrawing {
         self.handles().filter_map(near).min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick)
     }
 
-    /// Returns the change that dragging a handle to the pointer requests; the handle stays on the axis of its link.
+    /// Returns the change that dragging a handle to the pointer requests; the handle moves parallel to its link only.
     pub fn aim(&self, pick: &Pick, linkage: &LinkageModel, frame: &Frame, pointer: &Pointer) -> Option<DragAction> {
         let link = self.link_of(pick.handle)?;
         let [x, y] = pointer.ray()?.at_height(linkage.top())?;

@@ -453,7 +453,7 @@ fn reach_of(machine: &Machine) -> f64 {
     machine.reach().max(1e-6)
 }
 
-/// Adds a shifted mesh to another one, and its coarse mesh to the coarse one.
+/// Adds the mesh `other`, shifted by `shift`, m, to the mesh `to`. A coarse mesh of `to` receives that of `other`.
 fn append(to: &mut Mesh, other: &Mesh, shift: [f64; 3]) {
     if let Some(coarse) = &mut to.coarse {
         append(coarse, other.coarse.as_deref().unwrap_or(other), shift);

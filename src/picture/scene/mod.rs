@@ -82,7 +82,7 @@ pub struct MeshSet {
     pub meshes: Vec<Mesh>,
 }
 
-/// Name above those of the notes of a user; their numbers follow.
+/// First part of the names of user notes; the number of the note follows, from 1.
 pub const NOTES: &str = "notes";
 
 /// Hierarchical name of an item of a scene and of its entity in a recording, like `machine/link/5`.
@@ -383,7 +383,7 @@ pub struct Scene {
     pub labels: Vec<Label>,
     /// Centre lines of the bars of the machine, which labels avoid.
     pub bars: Vec<[[f32; 3]; 2]>,
-    /// Units in which labels are written; their texts are in SI units.
+    /// Notation of the user: quantities with SI units in label texts are converted to it when the labels are painted.
     pub notation: Notation,
 }
 

@@ -88,8 +88,8 @@ impl Palette {
         self.drives[k % self.drives.len()]
     }
 
-    /// Returns the colour of an overlaid run in plots of one curve: none of the first three drives' colours, of which one
-    /// is also that of reactions that are zero.
+    /// Returns the colour of an overlaid run in plots of one curve. Colours of drives 1 to 3 are left out, because
+    /// the third also marks reactions that are zero.
     pub fn run(&self, i: usize) -> Rgba {
         let [_, _, _, others @ ..] = &self.drives;
         others[i % others.len()]

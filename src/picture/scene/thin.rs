@@ -4,7 +4,7 @@
 /// kept.
 ///
 /// Each kept point has a wedge of directions whose rays pass all later points within the tolerance. The wedge narrows
-/// with every point. A point outside the wedge, or one that turns back, starts the next segment. Takes one pass.
+/// with every point. If a point is outside the wedge or turns back, the one before is kept. Takes one pass.
 pub fn simplify_line(points: &[[f32; 2]], tolerance: f32) -> Vec<[f32; 2]> {
     let mut kept = Vec::with_capacity(points.len().min(256));
     for_each_kept(points, tolerance, |i| kept.push(points[i]));

@@ -60,7 +60,7 @@ pub struct Tower {
     ends: Option<Vec<TowerPost>>,
     /// The planned motion: position, m, and b, rad.
     course: Vec<(Vector, f64)>,
-    /// Maximum distance of the workspace from B, m.
+    /// Maximum distance of the workspace from the axis of the base, x = y = 0, m.
     radius: f64,
     /// Length of the interval of b that is shown, rad.
     span: f64,

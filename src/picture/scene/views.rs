@@ -132,7 +132,7 @@ impl ViewSubject {
         Self { run: run.clone(), over, queries: queries.downgrade() }
     }
 
-    /// Whether the constant parts of another run are equal: machine, plan, and differences of the plant from the model.
+    /// Whether the constant parts of another run are equal, such as machine, task, and true links and lengths.
     #[doc(hidden)]
     pub fn is_of(&self, run: &Run) -> bool {
         let (one, other) = (self.run.scenario(), run.scenario());

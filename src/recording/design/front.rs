@@ -1,5 +1,5 @@
-//! [`RecordedFronts`]: the Pareto front of added mass and inertia, with the point of the present machine, as in the
-//! window's design view.
+//! [`RecordedFronts`]: the Pareto front of added mass and inertia, with the point of the present machine. Unlike the
+//! design view, it takes bounds from [`DesignBrief::of`] and also replaces fixed counterweights.
 
 use crate::rerun::{EntityPath, LineStrips2D, Points2D, Radius};
 
@@ -25,7 +25,7 @@ pub const FRONT_VIEW: [f64; 4] = [-0.3, -0.16, 2.36, 1.4];
 /// The Pareto fronts of the states of a design.
 #[derive(Debug)]
 pub struct RecordedFronts {
-    /// For each machine without counterweights: points of added mass, kg, and Σ D, kg m².
+    /// Each machine, its counterweights removed, and its points: added mass, kg, and Σ D_k, kg m².
     all: Vec<(Machine, Vec<[f64; 2]>)>,
     /// Intervals of the axes, kg and kg m².
     ranges: [[f64; 2]; 2],
@@ -33,7 +33,7 @@ pub struct RecordedFronts {
 
 impl RecordedFronts {
     /// Computes the Pareto fronts of those machines that have counterweights; `None` if no counterweights within the
-    /// usual bounds balance any of them.
+    /// bounds of [`DesignBrief::of`] balance any of them.
     pub fn of<'a>(machines: impl Iterator<Item = &'a Machine>) -> Option<Self> {
         let mut all: Vec<(Machine, Vec<[f64; 2]>)> = Vec::new();
         let mut seen: Vec<[f64; 2]> = Vec::new();

@@ -16,7 +16,7 @@ pub struct DesignState {
     pub of: DesignVersion,
     /// Contributions of the machine's parts to (7) and (8).
     pub breakdown: Breakdown,
-    /// Cost of balance relative to a reference machine, with the name of that machine.
+    /// Cost of balance relative to a reference machine, with words that say which machine it is.
     pub measures: Option<(&'static str, Measures)>,
 }
 
@@ -27,8 +27,8 @@ impl DesignState {
     }
 }
 
-/// Returns the cost of balance relative to the machine without its counterweights, as in the window. A machine without
-/// counterweights is compared with the machine at the start.
+/// Returns the cost of balance relative to the machine without any counterweights; the window keeps fixed ones. A
+/// machine without counterweights is compared with the machine at the start.
 fn measured(of: &DesignVersion, first: &Machine, motion: &Motion) -> Option<(&'static str, Measures)> {
     let motion = Some(motion);
     match bare(&of.machine) {

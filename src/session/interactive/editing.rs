@@ -129,7 +129,7 @@ impl Session {
             }
             edit => {
                 let patient = edit.sets_machine() || self.run.waiting().is_some();
-                self.restore(document, patient, watch)?;
+                self.restore_amended(document, patient, watch)?;
             }
         }
         self.branch_events = branch_events;
@@ -147,7 +147,7 @@ impl Session {
     /// Applies an edit while time passes, without an undo entry.
     pub(super) fn append(&mut self, edit: Edit, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
         if !self.concerns_now(&edit) {
-            return self.restore(self.document.amended(&TimedEdit { step: 0, edit }), false, watch);
+            return self.restore_amended(self.document.amended(&TimedEdit { step: 0, edit }), false, watch);
         }
         self.run.apply(&edit)?;
         let timed = TimedEdit { step: self.document.end, edit };
@@ -166,13 +166,29 @@ impl Session {
         patient: bool,
         watch: ProgressCallback<'_>,
     ) -> Result<(), Refusal> {
-        let DocumentRun { run, frames, machines } =
-            document.perform(Some(&self.run), patient, watch).map_err(ScriptError::refusal)?;
+        let done = document.perform(Some(&self.run), patient, watch).map_err(ScriptError::refusal)?;
+        self.show_remade(document, done);
+        Ok(())
+    }
+
+    /// Does the same as [`restore`](Self::restore) for a document whose start has been edited: a shorter plan ends the
+    /// run earlier.
+    fn restore_amended(
+        &mut self,
+        mut document: Document,
+        patient: bool,
+        watch: ProgressCallback<'_>,
+    ) -> Result<(), Refusal> {
+        let done = document.perform_amended(&self.run, patient, watch).map_err(ScriptError::refusal)?;
+        self.show_remade(document, done);
+        Ok(())
+    }
+
+    fn show_remade(&mut self, document: Document, DocumentRun { run, frames, machines }: DocumentRun) {
         self.playing &= run.waiting().is_none();
         self.edits = document.script.to_vec().into_iter().collect();
         (self.document, self.run, self.unedited) = (document, run, None);
         (self.frames, self.machines) = (frames, machines);
         self.cursor = self.cursor.min(self.frames.len() - 1);
-        Ok(())
     }
 }

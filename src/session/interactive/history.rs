@@ -188,3 +188,16 @@ impl Session {
         *self = next;
     }
 }
+
+impl Session {
+    /// Returns the limits of a relative angle before the last change of them, as a file states them; `None` if they
+    /// have not been changed.
+    pub(crate) fn limits_before(&self, angle: &str) -> Option<toml::Value> {
+        let of = |step: &Arc<HistoryStep>| {
+            let edit = &step.edit.as_ref()?.edit;
+            edit.part("limits")?.get(angle)?;
+            step.inverse.as_ref()?.part("limits")?.get(angle).cloned()
+        };
+        self.undo.iter().rev().find_map(of)
+    }
+}

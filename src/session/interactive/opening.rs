@@ -34,7 +34,7 @@ impl Session {
     /// says why.
     ///
     /// # Errors
-    /// If a value is out of range, the machine has no reactionless planes, or an edit cannot be applied.
+    /// If the simulation cannot be set up, or an edit cannot be applied.
     pub fn open_waiting(scenario: Scenario) -> Result<Self, Refusal> {
         Self::opened(scenario, true, &mut |_| true)
     }

@@ -84,7 +84,7 @@ pub(super) fn timed(
     Ok((motion, pace))
 }
 
-/// Stretches a motion in time until it keeps the limits of the drives. Fails if no speed does.
+/// Stretches a motion in time until it keeps the limits of the drives. Fails if it exceeds them however slow it is.
 pub(super) fn slow_to_limits(
     motion: Motion,
     model: &Inertia,

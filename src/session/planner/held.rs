@@ -82,7 +82,7 @@ pub(super) fn along_curves(
     by_least_rates(scenario, start, curves, Some(space))
 }
 
-/// Finds the path of a machine that turns its base in no motion, so that b need not be held.
+/// Finds the path of a machine no motion of which exerts a moment on its base, so that there is no b to hold.
 fn free(scenario: &Scenario, space: &PoseSpace, points: &[Vector]) -> Result<PathSegments, Refusal> {
     let task = &scenario.task;
     if task.shape() != PathShape::JointLine {

@@ -20,8 +20,8 @@ use stillbase_planning::{Forecast, Motion};
 use stillbase_settings::number::nine_digits;
 use stillbase_settings::word::Choice;
 
-/// Plans the motion with the least reaction. On machines with planes, b changes as little as its feasible corridor
-/// allows; on others b is held, if that is feasible.
+/// Plans the motion with the least reaction. On machines with planes, b moves in its feasible corridor with the least
+/// moment on the base; on others b is held, if feasible.
 pub(super) fn least_reaction(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
     if !scenario.machine.is_redundant() {
         let why = "along a path of the end effector one or two drives have no b to choose: want minimum-norm, which is the \
@@ -67,7 +67,7 @@ fn whole(curves: &[Curve], law: TimeLaw) -> impl Fn(f64) -> CurvePoint {
     }
 }
 
-/// Plans the motion along the curves of the end effector; b changes as little as its feasible corridor allows.
+/// Plans the motion along the curves of the end effector; b moves in its corridor with the least base moment.
 fn in_corridor(scenario: &Scenario, space: &PoseSpace, planes: &Planes, law: TimeLaw) -> Result<Plan, Refusal> {
     let (task, map) = (&scenario.task, planes.map());
     let curves = curves(task, &task.points())?;

@@ -75,7 +75,7 @@ enum MachineRef {
     Inline(Box<MachineSpec>),
 }
 
-/// Requirement on names and titles.
+/// Requirement on name, title and summary.
 const PRINTABLE: &str = "want printable characters";
 
 /// Maximum length of an error of the TOML reader, characters.
@@ -212,7 +212,7 @@ impl Scenario {
             }
             ScenarioError::Machine { file, error, .. } => {
                 let file = file.trim_end_matches(": plant").to_owned();
-                // Keys of the plant contain names of links and lengths instead of indices in the machine.
+                // The plant keys links by name, the machine by index. The table `lengths` is `length` in the plant.
                 let place = error.place().map_or_else(KeyPath::default, |place| match place.0.as_slice() {
                     [link, KeyStep::Named(_, name), rest @ ..] => {
                         let named = [link.clone(), KeyStep::Key(name.clone())];

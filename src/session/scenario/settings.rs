@@ -1,4 +1,4 @@
-//! The settings of a scenario as one tree: every key of a file except name, title and edits.
+//! The settings of a scenario as one tree: a file without name, title, summary, edits, bookmarks, notes and branches.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;

@@ -3,9 +3,12 @@
 //!
 //! | statement | good | bad | open |
 //! |---|---|---|---|
-//! | machine | every g_k and C_kl vanishes, (7) and (8) | one does not | |
+//! | machine | every g_k and C_kl vanishes, (7) and (8), with what it carries | one does not | |
 //! | plan | b stays constant, (13) | b changes, or a drive limit is exceeded | there is no plan, or no b |
 //! | run | f_B and n_B vanish, or a wheel took n_B up | they do not, or an audit failed | nothing has moved |
+//!
+//! The three agree: a machine is judged as it moves, with a payload that control does not know of; a hand that has
+//! turned b is named by the plan and by the run; and a run that transmits something names what does it.
 //!
 //! Window, reports of commands and recordings show these statements.
 
@@ -17,9 +20,13 @@ use stillbase_mechanics::machine::Inertia;
 use stillbase_settings::number::significant;
 use stillbase_simulation::Guide;
 use stillbase_simulation::frame::Frame;
+use stillbase_simulation::plant::PlantDifferences;
 
 /// b is held if it varies by no more than this, rad.
 const B_TOLERANCE: f64 = 1e-6;
+
+/// The distance of the run from the plane of its plan is stated from here on, rad: what three decimals show.
+const MIN_SHOWN_OFF_RAD: f64 = 5e-4;
 
 /// Outcome of a statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -86,8 +93,39 @@ impl Statement {
         }
     }
 
+    /// States whether the machine of a run is balanced as it moves at a frame: with differences from the model and with
+    /// a payload that is held.
+    fn of_moving_machine(run: &Run, frame: &Frame, model: &Inertia) -> Self {
+        let scenario = run.scenario();
+        let stated = Self::of_machine(model);
+        if scenario.plant == PlantDifferences::default() {
+            return stated;
+        }
+        let load = &scenario.plant.payload;
+        let holds = load.is_held(frame.time, 0.5 * scenario.step);
+        let built = scenario.plant.machine(&scenario.machine);
+        let moving = built.and_then(|built| if holds { load.held_by(&built) } else { Ok(built) });
+        // A plant that is no valid machine is refused before a run begins.
+        let Ok(moving) = moving else { return stated };
+        let own = Self::of_machine(&Inertia::of(&moving));
+        let what = if holds { "the payload that control does not know of" } else { "what differs from the model" };
+        match (stated.outcome, own.outcome) {
+            (StatusLight::Good, StatusLight::Bad) => Self::new(
+                StatusLight::Bad,
+                format!("{} {}", own.words, if holds { "with its payload" } else { "as built" }),
+                format!("the model is balanced, but not the machine with {what}: {}", own.why),
+            ),
+            (StatusLight::Bad, StatusLight::Good) => Self::new(
+                StatusLight::Good,
+                format!("balanced {}", if holds { "with its payload" } else { "as built" }),
+                format!("the model is not balanced, but the machine is with {what}: {}", own.why),
+            ),
+            _ => own,
+        }
+    }
+
     /// States whether the planned or dragged motion of a run holds b.
-    fn of_plan(run: &Run, inertia: &Inertia) -> Self {
+    fn of_plan(run: &Run, frame: &Frame, inertia: &Inertia) -> Self {
         if run.waiting().is_some() {
             return Self::new(StatusLight::Open, "none, the run waits", "the task does not fit the machine");
         }
@@ -108,17 +146,37 @@ impl Statement {
                 let why = format!("a hand turns b by {change} rad: the base feels −D₁ b̈");
                 Self::new(StatusLight::Bad, format!("turns b by {change} rad"), why)
             }
-            Guide::Follow(follower) => {
-                let why = format!("a hand leads the machine on the plane b = {:.3} rad", follower.b());
-                Self::new(StatusLight::Good, "led by hand, holds b", why)
-            }
+            Guide::Follow(follower) => match turned_by_hand(run, frame) {
+                Some(turned) => {
+                    let turned = significant(turned);
+                    let why = format!(
+                        "a hand has turned b by {turned} rad to {:.3} rad; the base has felt −D₁ b̈, now b is held",
+                        follower.b()
+                    );
+                    Self::new(StatusLight::Bad, format!("b turned by {turned} rad"), why)
+                }
+                None => {
+                    let why = format!("a hand leads the machine on the plane b = {:.3} rad", follower.b());
+                    Self::new(StatusLight::Good, "led by hand, holds b", why)
+                }
+            },
             Guide::Motion { .. } => {
                 let forecast = &run.plan().forecast;
                 let [least, greatest] = forecast.b;
                 let change = greatest - least;
                 let (outcome, words, why) = if change <= B_TOLERANCE {
                     let why = format!("the whole path lies on the plane b = {:.3} rad", forecast.b_start);
-                    (StatusLight::Good, "holds b".to_owned(), why)
+                    // The plan is of the model; what the run makes of it is said with it.
+                    let off = frame.b - frame.b_reference;
+                    match off.abs() > MIN_SHOWN_OFF_RAD {
+                        true => {
+                            let off = significant(off);
+                            let why =
+                                format!("{why}; the run is {off} rad off it now, as its machine is not the model");
+                            (StatusLight::Good, format!("holds b, the run is off by {off} rad"), why)
+                        }
+                        false => (StatusLight::Good, "holds b".to_owned(), why),
+                    }
                 } else {
                     let why = format!(
                         "b goes from {:.3} rad to {:.3} rad, within {least:.3} to {greatest:.3}; n_B = −D₁ b̈, up to {} N m \
@@ -173,7 +231,11 @@ impl Statement {
         ];
         let words = format!("peak {}", parts.into_iter().flatten().collect::<Vec<_>>().join(", "));
         let cause = match machine.outcome {
+            StatusLight::Bad if Inertia::of(&run.scenario().machine).is_balanced() => {
+                "what control does not know of does this: with it the machine is not balanced"
+            }
             StatusLight::Bad => "the machine does this: it is not balanced",
+            _ if turned_by_hand(run, frame).is_some() => "a hand does this, not the machine: it has turned b",
             _ if changes_b(run) => "the path does this, not the machine: b changes on it",
             _ => {
                 "neither machine nor path do this, but what the model leaves out: a payload, a push, friction, unequal \
@@ -182,6 +244,15 @@ impl Statement {
         };
         Self::new(StatusLight::Bad, words, format!("{figures}; {cause}"))
     }
+}
+
+/// Returns by how much a hand has turned b from those of the planned path, rad; `None` if b is as planned, no hand leads
+/// the machine, or the machine was put there without a motion.
+fn turned_by_hand(run: &Run, frame: &Frame) -> Option<f64> {
+    let Guide::Follow(follower) = run.simulation().guide() else { return None };
+    let [least, greatest] = run.plan().forecast.b;
+    let turned = follower.b_aim() - follower.b_aim().clamp(least.min(greatest), greatest.max(least));
+    (turned.abs() > B_TOLERANCE && frame.peaks.transmits_moment()).then_some(turned)
 }
 
 /// Returns whether the motion of a run, planned or dragged, changes b.
@@ -218,7 +289,8 @@ impl Statements {
     /// Makes the statements on a run up to a frame.
     pub fn of(run: &Run, frame: &Frame) -> Self {
         let inertia = Inertia::of(&run.scenario().machine);
-        let (machine, plan) = (Statement::of_machine(&inertia), Statement::of_plan(run, &inertia));
+        let machine = Statement::of_moving_machine(run, frame, &inertia);
+        let plan = Statement::of_plan(run, frame, &inertia);
         let run = Statement::of_run(run, frame, &machine);
         Self { machine, plan, run }
     }

@@ -1,13 +1,14 @@
 //! [`Comparison`]: a table of runs that the user extends, sorts, and overlays on the present run.
 
+use std::fmt;
 use std::sync::Arc;
 
 use super::{
     Alternative, BaselineMachines, ComparedRun, DESIGN_COLUMNS, DesignMeasures, SUMMARY_COLUMNS, alternatives,
 };
 use stillbase_query::{Portion, ProgressCallback, Query, Shared};
-use stillbase_session::Refusal;
 use stillbase_session::scenario::Scenario;
+use stillbase_session::{Proposal, Refusal, proposals};
 use stillbase_settings::number::nine_digits;
 
 /// One row of the comparison.
@@ -15,8 +16,8 @@ use stillbase_settings::number::nine_digits;
 pub struct ComparisonEntry {
     /// Title of the row.
     pub title: String,
-    /// The run, or why it failed.
-    pub outcome: Result<Arc<ComparedRun>, String>,
+    /// The run, or why there is none.
+    pub outcome: Result<Arc<ComparedRun>, Arc<RefusedRun>>,
     /// Whether the run is overlaid on plots and scene.
     pub shown: bool,
     /// Whether the user added the row, which then remains when the task changes.
@@ -46,8 +47,36 @@ pub struct Comparison {
     ways: Option<Arc<<AlternativeRuns as Query>::Answer>>,
 }
 
-/// Title of an alternative, and its run or why it failed.
-pub type ComparisonOutcome = (String, Result<Arc<ComparedRun>, String>);
+/// Title of an alternative, and its run or why there is none.
+pub type ComparisonOutcome = (String, Result<Arc<ComparedRun>, Arc<RefusedRun>>);
+
+/// A scenario that cannot be run, with ways out.
+#[derive(Clone, Debug)]
+pub struct RefusedRun {
+    scenario: Scenario,
+    /// Reason.
+    pub why: String,
+    /// Changes after which it runs.
+    pub proposals: Vec<Proposal>,
+}
+
+impl RefusedRun {
+    fn of(title: &str, scenario: &Scenario, refusal: &Refusal) -> Self {
+        let scenario = Scenario { name: title.into(), ..scenario.clone() };
+        Self { why: refusal.to_string(), proposals: proposals(&scenario, refusal), scenario }
+    }
+
+    /// Returns the scenario after a proposal.
+    pub fn with(&self, proposal: &Proposal) -> Option<Scenario> {
+        self.scenario.with_settings(proposal.change()?).ok()
+    }
+}
+
+impl fmt::Display for RefusedRun {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.why)
+    }
+}
 
 /// Query for the runs of all alternatives for a scenario's task, one in each portion.
 #[derive(Debug)]
@@ -74,7 +103,9 @@ impl Query for AlternativeRuns {
         let share = |done: f64| (known as f64 + done) / count;
         let outcome = match ComparedRun::of_while(scenario.clone(), &mut |done| goes_on(share(done))) {
             Err(Refusal::Stopped) => return Portion::Stopped,
-            outcome => outcome.map(Arc::new).map_err(|why| why.to_string()),
+            outcome => {
+                outcome.map(Arc::new).map_err(|refusal| Arc::new(RefusedRun::of(way.title(), scenario, &refusal)))
+            }
         };
         self.done.push((way.title().to_owned(), outcome));
         Portion::More(share(1.0))

@@ -10,7 +10,7 @@ mod summary;
 pub use alternative::{Alternative, SLOW_FACTOR};
 pub use design::{DESIGN_COLUMNS, DesignCandidate, DesignMeasures};
 pub use difference::SignalDifference;
-pub use entries::{AlternativeRuns, Comparison, ComparisonEntry, ComparisonOutcome};
+pub use entries::{AlternativeRuns, Comparison, ComparisonEntry, ComparisonOutcome, RefusedRun};
 pub use row::{BaselineMachines, ComparisonRow, ComparisonTable};
 pub use summary::{SUMMARY_COLUMNS, Summary, SummaryColumn};
 

@@ -151,7 +151,7 @@ impl<'a> CoupledBodies<'a> {
         }
     }
 
-    /// Returns the change of a sum of hinges from its value as drawn, rad.
+    /// Returns the change of a sum of hinges from the angles that the elements state to the pose of the file, rad.
     fn stretch(&self, sum: &[(usize, f64)]) -> f64 {
         sum.iter()
             .map(|(i, times)| times * self.signs[*i] * (self.bodies.angle(*i) - self.bodies.drawn_angle(*i)))

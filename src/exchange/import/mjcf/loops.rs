@@ -14,10 +14,10 @@ const CLOSURE_TOLERANCE: f64 = 1e-9;
 const MAX_SIDES: usize = 12;
 
 impl CoupledBodies<'_> {
-    /// Joins the sets that a loop keeps parallel: opposite sides of parallelograms.
+    /// Joins the sets of parts that a loop keeps parallel: each side of the loop with its equal and opposite side.
     ///
     /// # Errors
-    /// If the loop is not closed in the pose of the file, or if its sides do not form pairs.
+    /// If the loop has too many sides, is open in the pose of the file, or has sides that do not form pairs.
     pub(super) fn close(&mut self, node: Node<'_, '_>, ends: &[AttachmentPoint; 2]) -> Result<(), ImportError> {
         let sides = self.sides(ends);
         let largest = sides.iter().fold(0.0_f64, |most, (_, v)| most.max(v.norm()));

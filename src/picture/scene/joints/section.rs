@@ -1,6 +1,6 @@
 //! [`JointSection`]: joint space of a machine without closed-form [planes](PoseSpace::planes). With two drives it is a
-//! plane, in which b = const is a line. With more it is three-dimensional: a section at the present angles of the
-//! drives without an axis. In it, b = const is a plane.
+//! plane, in which b = const is a line. With more, three drives have axes, and the others are held at their present
+//! angles. In this section, b = const is a plane.
 //!
 //! The unit of the scene is the radian, and the chosen drives are along x, y and z. The origin moves with b, unless
 //! the shown interval of b is constant.
@@ -163,7 +163,7 @@ impl JointSection {
         }
         let bounds = self.bounds;
         let far = bounds.iter().map(|[from, to]| to - from).sum::<f64>();
-        // From the foot of the perpendicular from the origin, a segment or square that contains the whole box.
+        // Starts with a segment or square about the foot of the perpendicular from the origin, larger than the box.
         let off = (b - self.space.b(&self.angles([0.0; 3], frame))) / size;
         let foot = normal.map(|x| off * x);
         let mut part: Vec<[f64; 3]> = if self.is_flat() {

@@ -18,7 +18,7 @@ const ARC_RADIUS: f64 = 0.062;
 /// Radial distance between arcs at one pin, as a fraction of the reach.
 const ARC_SPACING: f64 = 0.016;
 
-/// Minimum distance between lower and upper limit, and of their span from a full turn, rad.
+/// Minimum span between lower and upper limit, and minimum difference of this span from a full turn, rad.
 const MIN_SPAN_RAD: f64 = PI / 180.0;
 
 /// A limit is marked if the present angle is nearer than this, rad.

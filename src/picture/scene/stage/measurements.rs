@@ -80,7 +80,7 @@ impl Stage {
         }
     }
 
-    /// Returns the positions of the points of a measurement, m; `None` if there are not two, or one does not exist.
+    /// Returns the positions of the points of a measurement, m; `None` for fewer than two, or if one does not exist.
     fn positions(&self, measurement: &Measurement, shown: &DrawnFrame<'_>) -> Option<Vec<Vector>> {
         let all: Option<Vec<Vector>> = measurement.points.iter().map(|point| self.position(point, shown)).collect();
         all.filter(|all| measurement.is_whole() && all.iter().all(|p| p.re.is_finite() && p.im.is_finite()))

@@ -22,7 +22,7 @@ impl Stage {
         first.chain(pins).chain(waypoints.map(SnapPoint::PathPoint)).chain(last).collect()
     }
 
-    /// Returns the position of a point, m; `None` if the machine or its task has no such point.
+    /// Returns the position of a point, m; `None` if there is no such point, or for a target that cannot be dragged.
     pub fn position(&self, point: &SnapPoint, shown: &DrawnFrame<'_>) -> Option<Vector> {
         match point {
             SnapPoint::EndEffector => Some(shown.end_effector),

@@ -17,7 +17,7 @@ use stillbase_planning::reactionless::{AngleLimit, BoundaryLine, PlaneMap};
 use stillbase_query::{Portion, ProgressCallback, Query, Shared};
 use stillbase_simulation::frame::Frame;
 
-/// Maximum distance of chords from the boundary, m for an arm of 1 m: less than a pixel.
+/// Maximum distance of chords from the boundary, m: less than a pixel for an arm of 1 m.
 const CHORD_TOLERANCE: f64 = 5e-4;
 
 /// Opacity of the fill.
@@ -279,7 +279,7 @@ impl Workspace {
         scene.lines.push(edge.moving(posed(base.at, unit(turn), z)));
         if let Some(middle) = self.middle {
             let at = point(base.at + middle * unit(turn), z);
-            let text = format!("b = {:.3} rad", b.rem_euclid(self.space.period()));
+            let text = format!("b = {b:.3} rad");
             let name = "workspace/compared/label";
             scene.labels.push(Label::new(name, at, [0.0, 0.0], text, palette.dim, 11.5, Anchor::Centre));
         }
@@ -344,10 +344,8 @@ impl Workspace {
             scene.labels.push(Label::new(name, there(*end), offset, words, palette.dim, 11.5, Anchor::Centre));
         }
         let Some(middle) = self.middle else { return };
-        // The workspace is periodic in b: a whole turn of the machine gives the same one.
-        let within = b.rem_euclid(self.space.period());
         let [what, size] = &self.words;
-        let rows = [(what.clone(), palette.amber, 12.5), (format!("b = {within:.3} rad · {size}"), palette.dim, 11.5)];
+        let rows = [(what.clone(), palette.amber, 12.5), (format!("b = {b:.3} rad · {size}"), palette.dim, 11.5)];
         let raised = LABEL_OFFSETS_PT[usize::from(self.sheets().is_none())];
         for (i, (text, colour, size)) in rows.into_iter().enumerate() {
             let offset = [0.0, raised + 17.0 * i as f32];

@@ -1,0 +1,121 @@
+//! Ways out for a machine that a hand leads: a target out of reach, a b that does not serve the points, and joint limits
+//! that leave out the present pose.
+
+use toml::Value;
+
+use super::Proposal;
+use super::value::{numbers, taking};
+use crate::edit::Edit;
+use crate::interactive::Session;
+use crate::scenario::POSE_CONSTANT_RANGE;
+use crate::verdict::LIMIT_TOLERANCE;
+use stillbase_mechanics::planar::Vector;
+use stillbase_planning::common::nearest_place;
+use stillbase_planning::pose_space::{PoseSpace, Reach};
+use stillbase_planning::reactionless::Decimal;
+use stillbase_query::{ByIdentity, QuickQuery};
+
+/// Number of decimals of a limit that is proposed, rad.
+const LIMIT_DECIMALS: usize = 3;
+
+/// Query for the ways out of a target that is out of reach at the present b.
+pub struct TargetProposals;
+
+/// A target that is out of reach.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MissedTarget {
+    space: ByIdentity<PoseSpace>,
+    /// The target, m.
+    at: Vector,
+    /// The present b, rad.
+    b: f64,
+    reach: Reach,
+}
+
+impl QuickQuery for TargetProposals {
+    type Input = MissedTarget;
+    type Answer = Vec<Proposal>;
+
+    fn answer(missed: &Self::Input) -> Self::Answer {
+        let Reach::Outside { nearest, feasible_b, displayed_b, .. } = missed.reach else { return Vec::new() };
+        let slide =
+            |(b, shown): (f64, Decimal)| Proposal::of_edit(format!("go to b = {shown} rad"), Edit::SlideB { b });
+        // The machine waits on the boundary of what it reaches, so the place proposed is a little inside.
+        let space = &*missed.space.0;
+        let waits = |to: &[Decimal; 2]| {
+            let off = (Vector::new(to[0].value(), to[1].value()) - nearest).norm();
+            off <= 1e-2 * space.farthest()
+        };
+        let rounded = nearest_place(space, missed.at, Some(missed.b)).filter(waits);
+        let [x, y] = rounded.map_or([nearest.re, nearest.im], |to| to.map(|x| x.value()));
+        let shown = rounded.unwrap_or_else(|| [x, y].map(|x| Decimal::nearest(x, 3)));
+        let text = format!("go to the nearest point, ({}, {}) m", shown[0], shown[1]);
+        let to_nearest = Proposal::of_edit(text, Edit::DragTarget { x, y });
+        feasible_b.zip(displayed_b).map(slide).into_iter().chain([to_nearest]).collect()
+    }
+}
+
+/// Joint limits that leave out the present pose of a machine that a hand leads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutsideLimits {
+    /// What is wrong, in a sentence.
+    pub why: String,
+    /// Ways out.
+    pub proposals: Vec<Proposal>,
+}
+
+impl Session {
+    /// Returns the target that is out of reach on display, for [`TargetProposals`]; `None` if it is reached.
+    pub fn missed_target(&self) -> Option<MissedTarget> {
+        let target = &self.frame().target;
+        let space = ByIdentity(self.run().pose_space().ok()?.clone());
+        matches!(target.reach, Reach::Outside { .. }).then(|| MissedTarget {
+            space,
+            at: target.at,
+            b: self.b_aim(),
+            reach: target.reach,
+        })
+    }
+
+    /// Returns what leads out of a b, rad, that does not serve all points of the task: the nearest b that does, and the
+    /// same b with the points turned.
+    pub fn proposals_for_b(&self, b: f64) -> Vec<Proposal> {
+        let asked = b.clamp(POSE_CONSTANT_RANGE.low(), POSE_CONSTANT_RANGE.high());
+        let pose = |text: String, b: f64| Proposal::of_edit(text, Edit::PoseB { b });
+        let nearest = self.nearest_feasible_b(asked).filter(|nearest| *nearest != asked);
+        let shown = nearest.and_then(|b| Some((b, self.run().feasible_b()?.decimal(b, 4)?)));
+        let nearest = shown.map(|(_, shown)| pose(format!("take b = {shown} rad"), shown.value()));
+        let turned = pose(format!("take b = {asked:.4} rad, and turn the points with it"), asked);
+        nearest.into_iter().chain([turned]).collect()
+    }
+
+    /// Returns the joint limits that leave out the present pose of a machine that a hand leads, with ways out: the
+    /// limits before the last change of them, and the tightest limits that contain the pose. `None` if there are none.
+    pub fn outside_limits(&self) -> Option<OutsideLimits> {
+        if !self.is_dragged() {
+            return None;
+        }
+        let q = &self.frame().q;
+        let past = self.scenario().machine.angles().iter().find_map(|angle| {
+            let now = q[angle.to] - q[angle.from] + angle.offset;
+            let (low, high) = (*angle.limits.start(), *angle.limits.end());
+            (now < low - LIMIT_TOLERANCE || now > high + LIMIT_TOLERANCE).then_some((angle, now, [low, high]))
+        });
+        let (angle, now, [low, high]) = past?;
+        let key = format!("limits.{}", angle.name);
+        let pair = |[low, high]: [f64; 2]| Value::Array(vec![low.into(), high.into()]);
+        // Rounded outwards, so that the limits contain the pose.
+        let scale = 10f64.powi(LIMIT_DECIMALS as i32);
+        let tightest =
+            if now < low { [(now * scale).floor() / scale, high] } else { [low, (now * scale).ceil() / scale] };
+        let before = self.limits_before(&angle.name).filter(|before| *before != pair([low, high]));
+        let back = before.map(|before| {
+            let bounds = numbers(&before).unwrap_or_default();
+            let words: Vec<String> = bounds.iter().map(|x| format!("{x:.3}")).collect();
+            let text = format!("put {key} back to {} rad", words.join(" to "));
+            Proposal { text, ..taking(&key, before) }
+        });
+        let why = format!("{} is at {now:.3} rad, outside its limits of {low:.3} to {high:.3} rad", angle.name);
+        Some(OutsideLimits { why, proposals: back.into_iter().chain([taking(&key, pair(tightest))]).collect() })
+    }
+}

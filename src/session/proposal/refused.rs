@@ -1,0 +1,176 @@
+//! Proposals that lead out of a refusal: of a scenario, or of settings that a scenario cannot have.
+
+use std::sync::Arc;
+
+use toml::Table;
+
+use super::Proposal;
+use super::improve::improvements_while;
+use super::task::{candidates, made_task, shows_only_in_motion, would_plan};
+use super::value::{nearest_values, taking_back};
+use crate::changes::after_start_edit;
+use crate::edit::Edit;
+use crate::refusal::Refusal;
+use crate::replay::replay;
+use crate::run::Run;
+use crate::scenario::Scenario;
+use stillbase_query::{Portion, ProgressCallback, Queries, Query, Shared};
+use stillbase_settings::change::join;
+
+/// Maximum number of proposals for one refusal.
+const MAX_PROPOSALS: usize = 4;
+
+/// What is refused, or to be improved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RefusedChange {
+    /// The scenario.
+    scenario: Shared<Scenario>,
+    /// Settings that the scenario was to have in addition, but cannot have.
+    wanted: Table,
+    /// Reason of the refusal; none if a plan is to be improved.
+    refusal: Option<Refusal>,
+}
+
+impl RefusedChange {
+    /// Returns the refusal of a scenario, with all of its settings.
+    pub fn of(scenario: Shared<Scenario>, refusal: Refusal) -> Self {
+        Self { scenario, wanted: Table::new(), refusal: Some(refusal) }
+    }
+
+    /// Returns the question what would improve the plan of a scenario.
+    pub fn to_improve(scenario: Shared<Scenario>) -> Self {
+        Self { scenario, wanted: Table::new(), refusal: None }
+    }
+
+    /// Returns the refusal of an edit of a scenario; `None` if the edit changes neither settings nor the start.
+    pub fn of_edit(scenario: &Scenario, edit: &Edit, refusal: &Refusal) -> Option<Self> {
+        let bare = scenario.without_edits();
+        let of = |scenario: Scenario, wanted: Table| Self {
+            scenario: Shared(Arc::new(scenario)),
+            wanted,
+            refusal: Some(refusal.clone()),
+        };
+        match edit {
+            Edit::Set { change } => {
+                let changed = bare.with_settings(change).ok().filter(|changed| changed.check("").is_ok());
+                Some(changed.map_or_else(|| of(bare, change.clone()), |changed| of(changed, Table::new())))
+            }
+            Edit::PoseB { .. } => {
+                let changed = after_start_edit(&bare, edit, &Queries::default()).ok()?;
+                Some(of(changed, Table::new()))
+            }
+            _ => None,
+        }
+    }
+}
+
+impl RefusedChange {
+    /// Returns the proposals that lead out of the refusal or, without one, that improve the plan.
+    pub fn proposals(&self) -> Vec<Proposal> {
+        self.proposals_while(&mut |_| true).unwrap_or_default()
+    }
+
+    fn proposals_while(&self, goes_on: ProgressCallback<'_>) -> Option<Vec<Proposal>> {
+        let Self { scenario, wanted, refusal } = self;
+        match refusal {
+            Some(_) if !wanted.is_empty() => settings_while(&scenario.0, wanted, goes_on),
+            Some(refusal) => proposals_while(&scenario.0, refusal, goes_on),
+            None => improvements_while(&scenario.0, goes_on),
+        }
+    }
+}
+
+/// Query for the proposals that lead out of a refusal or, without one, that improve a plan.
+#[derive(Debug)]
+pub struct ProposalsQuery(RefusedChange);
+
+impl Query for ProposalsQuery {
+    type Input = RefusedChange;
+    type Answer = Vec<Proposal>;
+
+    fn begin(refused: Self::Input) -> Self {
+        Self(refused)
+    }
+
+    fn go_on(&mut self, goes_on: ProgressCallback<'_>) -> Portion<Self::Answer> {
+        self.0.proposals_while(goes_on).map_or(Portion::Stopped, Portion::Done)
+    }
+}
+
+/// Returns proposals for a scenario that was refused, the least change first; each has been planned, and starts.
+pub fn proposals(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal> {
+    proposals_while(scenario, refusal, &mut |_| true).unwrap_or_default()
+}
+
+/// Does the same as [`proposals`], unless `goes_on` cancels it.
+fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: ProgressCallback<'_>) -> Option<Vec<Proposal>> {
+    let bare = scenario.without_edits();
+    let candidates = candidates(&bare, refusal);
+    let count = candidates.len() + 1;
+    // Making a task for the machine takes a search, so this is done only if the loop below gets to it.
+    let made = std::iter::once_with(|| would_plan(refusal).then(|| made_task(&bare)).flatten()).flatten();
+    let in_motion = shows_only_in_motion(refusal);
+    let mut proposals: Vec<Proposal> = Vec::new();
+    for (i, candidate) in candidates.into_iter().chain(made).enumerate() {
+        if !goes_on(i as f64 / count as f64) {
+            return None;
+        }
+        let candidate = candidate.reduced(&bare);
+        let works = |candidate: &Proposal| match in_motion {
+            true => candidate
+                .applied(scenario)
+                .and_then(|changed| replay(&changed, |_, _| {}).ok())
+                .is_some_and(|run| run.frame().first_violation().is_none()),
+            false => candidate.tried(&bare).is_some(),
+        };
+        if candidate.change().is_some_and(|change| !change.is_empty())
+            && proposals.iter().all(|known| known.text != candidate.text && known.way != candidate.way)
+            && works(&candidate)
+        {
+            proposals.push(candidate);
+            if proposals.len() == MAX_PROPOSALS {
+                break;
+            }
+        }
+    }
+    Some(proposals)
+}
+
+/// Returns proposals for settings that a scenario cannot have: the nearest allowed values. The scenario with the wanted
+/// settings, and then those of a proposal, starts.
+pub fn proposals_for_settings(scenario: &Scenario, wanted: &Table) -> Vec<Proposal> {
+    settings_while(scenario, wanted, &mut |_| true).unwrap_or_default()
+}
+
+fn settings_while(scenario: &Scenario, wanted: &Table, goes_on: ProgressCallback<'_>) -> Option<Vec<Proposal>> {
+    let bare = scenario.without_edits();
+    let with = |change: &Table| {
+        let changed = bare.with_settings(&join(wanted.clone(), change)).ok()?;
+        changed.check("").ok().map(|()| changed)
+    };
+    let present = |path: &str| bare.value(path);
+    let allowed = |found: Proposal| {
+        let changed = with(found.change()?)?;
+        Some((found, changed))
+    };
+    let nearest = nearest_values(wanted, &present, &|change| with(change).is_some()).and_then(allowed);
+    let mut found: Vec<Proposal> = Vec::new();
+    if let Some((nearest, changed)) = nearest {
+        match Run::new(&changed) {
+            Ok(_) => found.push(nearest),
+            // The values are allowed, but the task cannot be planned with them: what helps then is proposed with them.
+            Err(why) => {
+                let further = proposals_while(&changed, &why, goes_on)?;
+                found.extend(further.into_iter().filter_map(|further| {
+                    let change = join(nearest.change()?.clone(), further.change()?);
+                    Some(Proposal::new(format!("{}, and {}", nearest.text, further.text), change))
+                }));
+            }
+        }
+    }
+    if found.is_empty() {
+        let kept = taking_back(wanted, &present).and_then(allowed);
+        found.extend(kept.filter(|(_, changed)| Run::new(changed).is_ok()).map(|(kept, _)| kept));
+    }
+    Some(found)
+}

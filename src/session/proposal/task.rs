@@ -1,0 +1,153 @@
+//! Changes of a task that may lead out of a refusal. Whether one does, a trial shows.
+
+use super::value::taking;
+use super::{Proposal, round_up};
+use crate::design::balancing_change;
+use crate::gentle_motion;
+use crate::refusal::Refusal;
+use crate::scenario::{MAX_STEPS, PathShape, Scenario, Task, TaskKind};
+use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::planar::{Vector, unit};
+use stillbase_planning::common::{nearest_common_place, nearest_place};
+use stillbase_planning::pose_space::PoseSpace;
+use stillbase_planning::reactionless::Decimal;
+use stillbase_planning::timing::TimeLaw;
+use stillbase_settings::change::{DEFAULT_WORD, single_change};
+use stillbase_settings::number::significant;
+use stillbase_settings::range::Requirement;
+use stillbase_settings::word::Choice;
+
+/// Factors by which a step is made finer, in the order of the trials.
+const FINER_STEPS: [f64; 2] = [4.0, 20.0];
+/// Numbers of decimals of turned points, m, in the order of the trials.
+const TURNED_DECIMALS: [usize; 3] = [3, 5, 9];
+
+/// Returns changes that may lead out of a refusal, the least first.
+pub(super) fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal> {
+    let (task, machine) = (&scenario.task, &scenario.machine);
+    let kind = |kind: TaskKind, text: &str| Proposal::new(text, single_change("task.kind", kind.words().file));
+    let mut found = Vec::new();
+    if let Some(b) = refusal.displayed_b() {
+        found.push(Proposal::new(format!("take b = {b} rad"), single_change("task.b", b.value())));
+        found.extend(turned_task(scenario, b.value()));
+    }
+    match refusal {
+        Refusal::Edit { refusal, .. } => return candidates(scenario, refusal),
+        Refusal::NoCommonPlane { why, .. } => {
+            let shown = why.correction.and_then(|correction| Some((correction.point, correction.shown?)));
+            found.extend(shown.and_then(|(point, shown)| {
+                let mut change = task.moving(point, shown.point())?;
+                change.insert("b".into(), shown.b.value().into());
+                let [x, y] = shown.to;
+                Some(Proposal::of_task(format!("move {} to ({x}, {y}) m", task.name_of(point)), change))
+            }));
+        }
+        Refusal::OutOfRange { what, value, want: Requirement::Within(range) } => {
+            found.push(taking(what, value.clamp(range.low(), range.high())));
+        }
+        Refusal::Unreachable { point, .. } => found.extend(moved_point(scenario, point)),
+        Refusal::Diverged { .. } | Refusal::Untrusted { .. } => {
+            found.extend(FINER_STEPS.map(|factor| taking("step", round_up(scenario.step / factor))));
+            found.push(Proposal::new("take the usual gains", single_change("control", DEFAULT_WORD)));
+        }
+        Refusal::TooManySteps { time, .. } => {
+            let step = round_up(time / MAX_STEPS as f64);
+            found.push(Proposal::new(format!("take a step of {step} s"), single_change("step", step)));
+        }
+        _ => {}
+    }
+    if !would_plan(refusal) {
+        return found;
+    }
+    let is_of_path = matches!(
+        refusal,
+        Refusal::Blocked(_) | Refusal::Path(_) | Refusal::Curve(_) | Refusal::NoWay(_) | Refusal::Unreachable { .. }
+    );
+    if is_of_path && task.uses("shape") && task.shape() != PathShape::JointLine {
+        let change = single_change("task.shape", PathShape::JointLine.words().file);
+        found.push(Proposal::new("take joint lines from point to point", change));
+    }
+    if matches!(refusal, Refusal::Time(_) | Refusal::TooLong { .. }) && task.law != TimeLaw::Quintic {
+        found
+            .push(Proposal::new("take the quintic time law", single_change("task.law", TimeLaw::Quintic.words().file)));
+    }
+    if !Inertia::of(machine).is_balanced() {
+        found.extend(balancing_change(scenario).map(|change| Proposal::new("balance the machine", change)));
+    }
+    if task.kind != TaskKind::LeastReaction {
+        found.push(kind(TaskKind::LeastReaction, "take the path of least reaction"));
+    }
+    if task.kind != TaskKind::MinimumNorm {
+        found.push(kind(TaskKind::MinimumNorm, "follow the path, whatever the base feels"));
+    }
+    found
+}
+
+/// Returns whether only a simulation shows whether a change leads out of a refusal: the task could be planned already.
+pub(super) fn shows_only_in_motion(refusal: &Refusal) -> bool {
+    matches!(refusal, Refusal::Edit { .. } | Refusal::Diverged { .. } | Refusal::Untrusted { .. })
+}
+
+/// Returns whether another plan may lead out of a refusal. It cannot if the task could be planned already.
+pub(super) fn would_plan(refusal: &Refusal) -> bool {
+    match refusal {
+        Refusal::Edit { refusal, .. } => would_plan(refusal),
+        Refusal::TooManySteps { .. }
+        | Refusal::TooLarge { .. }
+        | Refusal::Full { .. }
+        | Refusal::Stopped
+        | Refusal::Diverged { .. }
+        | Refusal::Untrusted { .. }
+        | Refusal::LeavesLimits { .. } => false,
+        _ => true,
+    }
+}
+
+/// Proposes to move a point that cannot be reached to the nearest place that can: with b held, and at a b that all
+/// other points share.
+fn moved_point(scenario: &Scenario, name: &str) -> Vec<Proposal> {
+    let task = &scenario.task;
+    let points = task.points();
+    let Some(i) = (0..points.len()).find(|i| task.name_of(*i) == name) else { return Vec::new() };
+    let Ok(space) = PoseSpace::of(&scenario.machine) else { return Vec::new() };
+    let moved = |[x, y]: [Decimal; 2], b: Option<Decimal>| {
+        let to = Vector::new(x.value(), y.value());
+        if to == points[i] {
+            // Another b alone is proposed elsewhere.
+            return None;
+        }
+        let mut change = task.moving(i, to)?;
+        let at = b.map_or_else(String::new, |b| format!(", at b = {b} rad"));
+        change.extend(b.map(|b| ("b".to_owned(), b.value().into())));
+        Some(Proposal::of_task(format!("move {name} to ({x}, {y}) m{at}"), change))
+    };
+    let held = nearest_place(&space, points[i], Some(task.b)).and_then(|to| moved(to, None));
+    let shown = nearest_common_place(&space, &points, i).and_then(|mend| mend.shown);
+    held.into_iter().chain(shown.and_then(|shown| moved(shown.to, Some(shown.b)))).collect()
+}
+
+/// Proposes a task made for the machine.
+pub(super) fn made_task(scenario: &Scenario) -> Option<Proposal> {
+    let own = gentle_motion(&scenario.machine).ok()?;
+    Some(Proposal::of_task("take a task made for this machine", own.task.whole()))
+}
+
+/// Proposes to keep b and turn all points of the task about the base pin. The workspace turns by the same angle when
+/// b changes from `feasible_b`, rad, to the b of the task.
+fn turned_task(scenario: &Scenario, feasible_b: f64) -> Vec<Proposal> {
+    let task = &scenario.task;
+    let Ok(space) = PoseSpace::of(&scenario.machine) else { return Vec::new() };
+    if task.samples.is_some() {
+        return Vec::new();
+    }
+    let turn = unit(space.turn(task.b - feasible_b));
+    // Rounding may move a point out of the workspace; the first of the roundings that is feasible is proposed.
+    let rounded = TURNED_DECIMALS.into_iter().filter_map(|decimals| {
+        let round = |x: f64| Decimal::nearest(x, decimals).value();
+        let points: Vec<Vector> =
+            task.points().into_iter().map(|p| turn * p).map(|p| Vector::new(round(p.re), round(p.im))).collect();
+        let text = format!("keep b = {} rad, and turn the task with it", significant(task.b));
+        Some(Proposal::of_task(text, Task::visiting(&points)?))
+    });
+    rounded.collect()
+}

@@ -1,0 +1,308 @@
+//! Ways out: whatever is refused, what is proposed can be done; and what the statements say agrees.
+
+use std::collections::BTreeMap;
+
+use stillbase::mechanics::machine::{Machine, builtins};
+use stillbase::planning::pose_space::Reach;
+use stillbase::session::scenario::{Scenario, Value};
+use stillbase::session::verdict::{Statements, StatusLight};
+use stillbase::session::{
+    Edit, Proposal, Run, Session, TargetProposals, for_machine, proposals, proposals_for_settings, replay,
+};
+use stillbase::settings::change::{join, single_change};
+use stillbase::settings::key::KeyType;
+use stillbase_query::QuickQuery as _;
+use toml::Table;
+
+use crate::support::Noise;
+
+fn case_3() -> Scenario {
+    Scenario::builtin("case-3").expect("built in")
+}
+
+/// A session of each machine of the gallery, at rest at the start of a task of its own.
+fn gallery() -> impl Iterator<Item = (Machine, Session)> {
+    builtins().iter().map(|machine| {
+        let session = Session::open(for_machine(&case_3(), machine)).expect("it opens");
+        (machine.clone(), session)
+    })
+}
+
+fn edit(proposal: &Proposal) -> Edit {
+    proposal.edit().expect("an edit")
+}
+
+/// A number out of the range of its key: the nearest allowed number is proposed, and the scenario starts with it.
+#[test]
+fn a_number_out_of_range_proposes_the_nearest_one() {
+    // The length of a link that others share is set under its own name, which the refusal states; a second setting
+    // cannot take back the first.
+    let shared = |path: &str| path.starts_with("link.") && path.ends_with(".length");
+    let scenario = case_3();
+    let (mut tried, mut without) = (0, BTreeMap::new());
+    for (path, key, _) in scenario.settings() {
+        let Some(range) = key.range().filter(|range| range.high() < 1e300) else { continue };
+        let past = 1.5 * range.high().abs() + 1.0;
+        let value = match key.value_type {
+            KeyType::Number(_) | KeyType::PerDrive(_) => Value::Float(past),
+            KeyType::Whole(_) if past < 1e15 => Value::Integer(past as i64),
+            KeyType::List(count, _) => vec![past; count].into(),
+            _ => continue,
+        };
+        let wanted = single_change(&path, value);
+        let changed = scenario.with_settings(&wanted);
+        if changed.is_ok_and(|changed| changed.check("").is_ok()) {
+            continue;
+        }
+        tried += 1;
+        let found = proposals_for_settings(&scenario, &wanted);
+        for proposal in &found {
+            let whole = join(wanted.clone(), proposal.change().expect("settings"));
+            let changed = scenario.with_settings(&whole).unwrap_or_else(|why| panic!("{proposal:?}: {why}"));
+            changed.check("").unwrap_or_else(|why| panic!("{proposal:?}: {why}"));
+            Run::new(&changed).unwrap_or_else(|why| panic!("{proposal:?}: {why}"));
+        }
+        if found.is_empty() && !shared(&path) {
+            without.insert(path, wanted);
+        }
+    }
+    assert!(tried > 40, "only {tried} keys");
+    assert!(without.is_empty(), "{} of {tried} without a way out: {without:#?}", without.len());
+}
+
+/// Words that are no choice of a key, and bounds in the wrong order, have a way out too.
+#[test]
+fn a_wrong_word_proposes_the_nearest_one() {
+    for (key, given, want) in [
+        ("task.kind", Value::from("reactionles"), "take task.kind = reactionless"),
+        ("base.kind", "fre".into(), "take base.kind = free"),
+        ("limits.a1", vec![3.0, 0.2].into(), "take limits.a1 = 0.2,3"),
+        ("task.time", "soon".into(), "keep task.time = 1"),
+        ("task.shape", "xyzzy".into(), "keep task.shape = default"),
+    ] {
+        let found = proposals_for_settings(&case_3(), &single_change(key, given));
+        assert_eq!(found.first().map(|one| one.text.as_str()), Some(want), "{key}: {found:?}");
+    }
+}
+
+/// A target out of reach: to go to the nearest point, or to the b that reaches it, makes the target reachable.
+#[test]
+fn a_target_out_of_reach_has_ways_out() {
+    let mut noise = Noise::of(907);
+    let mut seen = 0;
+    for (machine, session) in gallery().filter(|(_, session)| session.run().pose_space().is_ok()) {
+        let reach = session.run().pose_space().expect("a space").farthest();
+        for _ in 0..4 {
+            let mut session = session.clone();
+            let size = 1.6 * reach;
+            let (x, y) = (noise.between(-size, size), noise.between(-size, size));
+            session.apply(Edit::DragTarget { x, y }).expect("any place");
+            session.end_gesture();
+            session.tick(2500);
+            let Some(missed) = session.missed_target() else { continue };
+            let found = TargetProposals::answer(&missed);
+            assert!(found.iter().any(|one| one.text.starts_with("go to the nearest point")), "{found:?}");
+            for proposal in &found {
+                seen += 1;
+                let mut session = session.clone();
+                session.apply(edit(proposal)).unwrap_or_else(|why| panic!("{proposal:?}: {why}"));
+                session.end_gesture();
+                session.tick(6000);
+                let target = session.frame().target;
+                let is_off =
+                    matches!(target.reach, Reach::Outside { nearest, .. } if (nearest - target.at).norm() > 1e-3);
+                assert!(!is_off, "{}: ({x}, {y}): {proposal:?}: {:?}", machine.name(), target);
+            }
+        }
+    }
+    assert!(seen > 20, "only {seen} proposals");
+}
+
+/// A b that does not serve the points: the nearest that does, or the points turned.
+#[test]
+fn a_b_that_does_not_serve_has_ways_out() {
+    let mut noise = Noise::of(311);
+    for (machine, session) in gallery() {
+        let Ok(space) = session.run().pose_space().cloned() else { continue };
+        for _ in 0..3 {
+            let b = noise.between(-1.0, 2.0) * space.period();
+            if session.nearest_feasible_b(b) == Some(b) {
+                continue;
+            }
+            let found = session.proposals_for_b(b);
+            assert!(!found.is_empty(), "{}: {b}", machine.name());
+            for proposal in found {
+                let mut session = session.clone();
+                session.apply(edit(&proposal)).unwrap_or_else(|why| panic!("{}: {proposal:?}: {why}", machine.name()));
+                assert!(session.run().waiting().is_none(), "{}: {proposal:?}", machine.name());
+            }
+        }
+    }
+}
+
+/// A joint limit tightened while a hand leads: the limit is put back, or made as tight as the pose lets it.
+#[test]
+fn a_limit_that_leaves_out_the_pose_has_two_ways_out() {
+    let mut seen = 0;
+    for (machine, mut session) in gallery().filter(|(_, session)| session.can_be_dragged()) {
+        let at = session.frame().end_effector;
+        session.apply(Edit::DragTarget { x: 0.97 * at.re, y: 0.97 * at.im }).expect("near");
+        session.end_gesture();
+        session.tick(300);
+        session.pause();
+        let frame = *session.frame();
+        for angle in machine.angles() {
+            let now = frame.q[angle.to] - frame.q[angle.from] + angle.offset;
+            let (low, high) = (*angle.limits.start(), *angle.limits.end());
+            let tight = now - 0.2;
+            if !(low.is_finite() && high.is_finite() && tight > low + 0.05) {
+                continue;
+            }
+            let mut session = session.clone();
+            let key = format!("limits.{}", angle.name);
+            if session.apply(Edit::set(&key, vec![low, tight])).is_err() {
+                continue;
+            }
+            session.end_gesture();
+            let Some(outside) = session.outside_limits() else { continue };
+            assert_eq!(outside.proposals.len(), 2, "{outside:?}");
+            assert!(outside.why.starts_with(&format!("{} is at ", angle.name)), "{outside:?}");
+            for proposal in &outside.proposals {
+                seen += 1;
+                let mut session = session.clone();
+                session.apply(edit(proposal)).unwrap_or_else(|why| panic!("{proposal:?}: {why}"));
+                assert_eq!(session.outside_limits(), None, "{}: {proposal:?}", machine.name());
+            }
+        }
+    }
+    assert!(seen >= 2, "only {seen} proposals");
+}
+
+/// A point that no b reaches is moved to the nearest place from which the task can be run.
+#[test]
+fn a_point_that_no_b_reaches_is_moved() {
+    for (machine, session) in gallery() {
+        let Ok(space) = session.run().pose_space().cloned() else { continue };
+        let far = 1.3 * space.farthest();
+        let scenario = session.scenario().without_edits();
+        let wanted = single_change("task.to", vec![far, 0.1 * far]);
+        let Ok(changed) = scenario.with_settings(&wanted) else { continue };
+        let Err(why) = Run::new(&changed) else { continue };
+        let found = proposals(&changed, &why);
+        assert!(!found.is_empty(), "{}: {why}", machine.name());
+        for proposal in &found {
+            let settings = proposal.change().expect("settings");
+            Run::new(&changed.with_settings(settings).expect("settings")).expect("it starts");
+        }
+    }
+}
+
+/// An edit of a file that is refused at its step: what is proposed lets the whole file run.
+#[test]
+fn a_refused_edit_proposes_what_lets_the_file_run() {
+    let mut scenario = case_3();
+    let text = "step = 0\ndo = \"set\"\nchange = { task = { b = 0.2 } }";
+    let table: Table = text.parse().expect("TOML");
+    scenario.edits = vec![stillbase::session::TimedEdit::from_table(table).expect("an edit")];
+    let why = replay(&scenario, |_, _| {}).map(|_| ()).expect_err("refused");
+    for proposal in proposals(&scenario, &why) {
+        let changed = scenario.with_settings(proposal.change().expect("settings")).expect("settings");
+        let done = replay(&changed, |_, _| {});
+        assert!(done.is_ok() || !matches!(why, stillbase::session::Refusal::Edit { .. }), "{proposal:?}");
+    }
+}
+
+/// After the plan has become shorter under way, the run does not keep the length of the earlier plan.
+#[test]
+fn a_run_has_the_length_of_its_plan_after_an_undo() {
+    let mut session = Session::open(case_3()).expect("it opens");
+    session.apply(Edit::set("task.time", 3.0)).expect("a time");
+    session.end_gesture();
+    session.play();
+    session.tick(2000);
+    assert!(session.is_playing() && session.length() == 3.0);
+    session.undo().expect("undone");
+    assert!((session.run().planned_time() - 1.0).abs() < 1e-12);
+    assert!((session.length() - 1.0).abs() < 2e-3, "{} s for a plan of 1 s", session.length());
+    assert!((session.frame().time - session.length()).abs() < 2e-3);
+    // At rest, too: a shorter motion ends the run with it, and undo brings the longer run back as it was.
+    let mut session = Session::open(case_3()).expect("it opens");
+    session.play();
+    session.tick(1200);
+    session.pause();
+    let before = session.frames().to_vec();
+    session.apply(Edit::set("task.time", 0.5)).expect("a time");
+    session.end_gesture();
+    assert!((session.length() - 0.5).abs() < 2e-3, "{}", session.length());
+    session.undo().expect("undone");
+    assert!(*session.frames() == before, "the same frames");
+}
+
+/// The three statements on every scenario and machine, with and without a payload, a hand and a moving base: none calls
+/// good what another calls bad without naming what does it.
+#[test]
+fn statements_agree() {
+    let payload: Table = "[plant.payload]\nmass = 0.3".parse().expect("TOML");
+    let base: Table = "[base]\nkind = \"free\"".parse().expect("TOML");
+    let bare = Scenario::builtins().cloned();
+    let machines = builtins().iter().map(|machine| for_machine(&case_3(), machine));
+    for scenario in bare.chain(machines) {
+        for change in [None, Some(&payload), Some(&base)] {
+            let scenario = match change.map(|change| scenario.with_settings(change)) {
+                None => scenario.clone(),
+                Some(Ok(changed)) if changed.check("").is_ok() => changed,
+                Some(_) => continue,
+            };
+            let Ok(mut session) = Session::open(scenario.clone()) else { continue };
+            for slides in [false, true] {
+                if slides && !session.can_be_dragged() {
+                    continue;
+                }
+                if slides {
+                    let b = session.b_aim() + 0.4;
+                    session.apply(Edit::SlideB { b }).expect("any b");
+                    session.end_gesture();
+                }
+                session.play();
+                for steps in [1, 300, 2500] {
+                    session.tick(steps);
+                    agree(&session, &format!("{} {change:?} slides {slides}, step {steps}", scenario.name));
+                }
+            }
+        }
+    }
+}
+
+fn agree(session: &Session, what: &str) {
+    let (run, frame) = (session.run(), session.frames().last().expect("a frame"));
+    let Statements { machine, plan, run: stated } = Statements::of(run, frame);
+    let all = || format!("{what}: {machine:?} {plan:?} {stated:?}");
+    let held = &run.scenario().plant.payload;
+    if held.is_held(frame.time, 0.5 * run.scenario().step) {
+        let built = run.scenario().plant.machine(&run.scenario().machine).expect("a machine");
+        let moves = held.held_by(&built).expect("a machine");
+        let balanced = stillbase::mechanics::machine::Inertia::of(&moves).is_balanced();
+        assert_eq!(machine.outcome == StatusLight::Good, balanced, "{}", all());
+    }
+    // With machine and plan good, only what is neither of them can have moved the base, and it is named.
+    let is_good = machine.outcome == StatusLight::Good && plan.outcome == StatusLight::Good;
+    if is_good && stated.outcome == StatusLight::Bad {
+        assert!(stated.why.contains("neither machine nor path"), "{}", all());
+        let plain = run.scenario().plant == Default::default() && !run.scenario().base.moves();
+        assert!(!plain || session.is_dragged(), "{}", all());
+    }
+    if stated.why.contains("a hand does this") {
+        assert!(plan.outcome == StatusLight::Bad && plan.words.contains("turn"), "{}", all());
+    }
+    if stated.why.contains("the path does this") {
+        assert!(plan.outcome == StatusLight::Bad && machine.outcome == StatusLight::Good, "{}", all());
+    }
+    if stated.why.contains("the machine") && stated.why.contains("not balanced") {
+        assert_eq!(machine.outcome, StatusLight::Bad, "{}", all());
+    }
+    // A plan whose b is held says so if the run is off it.
+    let off = (frame.b - frame.b_reference).abs();
+    if plan.words.starts_with("holds b") {
+        assert_eq!(plan.words.contains("the run is off"), off > 5e-4, "{}", all());
+    }
+}
