@@ -101,8 +101,14 @@ const PINS: Chart = Chart {
     place: ChartPlace::Pins,
     ..EMPTY_CHART
 };
-const ANGLES: Chart =
-    Chart { title: "Drive angles", unit: "rad", signals: &["angle"], min_range: 0.5, axis: AxisKind::Free, ..EMPTY_CHART };
+const ANGLES: Chart = Chart {
+    title: "Drive angles",
+    unit: "rad",
+    signals: &["angle"],
+    min_range: 0.5,
+    axis: AxisKind::Free,
+    ..EMPTY_CHART
+};
 const POSE: Chart = Chart {
     title: "Pose constant",
     unit: "rad",
@@ -114,7 +120,8 @@ const POSE: Chart = Chart {
 /// Of internal signals, all but one are magnitudes.
 const INSIDE: Chart = Chart { place: ChartPlace::Inside, axis: AxisKind::FromZero, ..EMPTY_CHART };
 const EACH_PIN: Chart = Chart { title: "Force of each pin", unit: "N", signals: &["pin"], min_range: 1.0, ..INSIDE };
-const TILT: Chart = Chart { title: "Tilting moment", unit: "N m", signals: &["tilt"], axis: AxisKind::Centred, ..INSIDE };
+const TILT: Chart =
+    Chart { title: "Tilting moment", unit: "N m", signals: &["tilt"], axis: AxisKind::Centred, ..INSIDE };
 const TRANSMISSION: Chart =
     Chart { title: "Transmission |sin(q_k − q_l)|", unit: "1", signals: &["transmission"], ..INSIDE };
 const CHANGE_POINT: Chart =

@@ -43,7 +43,8 @@ impl<W: Write> Film<W> {
     /// If the head cannot be written, a side of a GIF is longer than 65,535 pixels, `count` is 0 for a PNG, or a picture
     /// would stay longer than 65,535 s.
     pub fn begin(to: W, format: FilmFormat, [width, height]: [u32; 2], count: u32, fps: f64) -> io::Result<Self> {
-        if !(1.0 / fps <= MAX_DELAY_S) {
+        let is_shown = (0.0..=MAX_DELAY_S).contains(&(1.0 / fps));
+        if !is_shown {
             let why = format!("{fps} pictures per second: want at least one in {MAX_DELAY_S} s");
             return Err(io::Error::new(io::ErrorKind::InvalidInput, why));
         }

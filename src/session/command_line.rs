@@ -2,9 +2,9 @@
 
 use super::scenario::Scenario;
 use super::{Edit, Session, TimedEdit};
-use stillbase_simulation::signals::Signal;
 use stillbase_settings::change::{join, leaves, same_value, single_change, typed};
 use stillbase_settings::text::shell_word;
+use stillbase_simulation::signals::Signal;
 use toml::Table;
 
 /// Bounds of time intervals are written in parts of this many per second.

@@ -139,7 +139,8 @@ fn limits_come_back() {
     for (name, text) in [("nine-link", true), ("serial-3r", true), ("serial-3r", false), ("scara", false)] {
         let machine = builtin(name).expect("built in");
         let at = if text { middle(machine) } else { vec![0.0; machine.drives()] };
-        let text = if text { mjcf(machine, &at, &Cut::default()).expect("a model") } else { urdf(machine, &Cut::default()) };
+        let text =
+            if text { mjcf(machine, &at, &Cut::default()).expect("a model") } else { urdf(machine, &Cut::default()) };
         let found = import(&text).expect("a machine");
         assert_eq!(found.machine.angles().len(), machine.angles().len(), "{name}");
         for (own, other) in machine.angles().iter().zip(found.machine.angles()) {
@@ -166,7 +167,8 @@ fn a_thousand_machines_go_out_and_come_back() {
         let at: Vec<f64> = (0..machine.drives()).map(|_| noise.between(-3.0, 3.0)).collect();
         let found = import(&urdf(&machine, &Cut::default())).unwrap_or_else(|why| panic!("{i}: {why}"));
         same(&machine, &found, &vec![0.0; machine.drives()], &mut noise, true);
-        let found = import(&mjcf(&machine, &at, &Cut::default()).expect("a model")).unwrap_or_else(|why| panic!("{i}: {why}"));
+        let found =
+            import(&mjcf(&machine, &at, &Cut::default()).expect("a model")).unwrap_or_else(|why| panic!("{i}: {why}"));
         same(&machine, &found, &at, &mut noise, false);
     }
 }
@@ -209,7 +211,11 @@ fn all_limits_come_back() {
         let machine = Machine::new(spec).expect("a machine");
         let at: Vec<f64> = (0..n).map(|_| noise.between(-3.0, 3.0)).collect();
         for is_urdf in [true, false] {
-            let text = if is_urdf { urdf(&machine, &Cut::default()) } else { mjcf(&machine, &at, &Cut::default()).expect("a model") };
+            let text = if is_urdf {
+                urdf(&machine, &Cut::default())
+            } else {
+                mjcf(&machine, &at, &Cut::default()).expect("a model")
+            };
             let found = import(&text).unwrap_or_else(|why| panic!("{why}\n{text}"));
             let from = if is_urdf { vec![0.0; n] } else { at.clone() };
             for _ in 0..3 {

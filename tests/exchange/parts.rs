@@ -119,7 +119,8 @@ fn a_disc_is_as_thick_in_every_export() {
     spec.counterweights = vec![disc("1", 10.737, -0.12, 0.1204), disc("2", 0.105, -0.46, 0.0119)];
     let machine = &Machine::new(spec).expect("a machine");
     let weights = &machine.spec().counterweights;
-    for cut in [Cut::default(), Cut { density: 2700.0, ..Cut::default() }, Cut { thickness: Some(0.05), ..Cut::default() }]
+    for cut in
+        [Cut::default(), Cut { density: 2700.0, ..Cut::default() }, Cut { thickness: Some(0.05), ..Cut::default() }]
     {
         let models = [
             (mjcf(machine, &middle(machine), &cut).expect("a model"), "geom", 2.0),

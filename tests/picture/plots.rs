@@ -413,7 +413,7 @@ fn a_picture_names_the_runs_laid_over() {
         let height = |figure: &Figure| figure.axes.sides[3] - figure.axes.sides[1];
         assert!((height(&named) - height(&plain)).abs() < 1e-3, "the axes keep their size");
         let text = svg(&named);
-        assert!(text.contains("the run on display") && text.contains(">3  <") && text.contains(">8  <"), "{text}");
+        assert!(text.contains("the run on disp") && text.contains(">3  <") && text.contains(">8  <"), "{text}");
         assert!(text.contains("Other &lt;pose&gt;") && !text.contains(&long) && text.contains('…'), "{text}");
         let samples: Vec<_> = named
             .items
@@ -427,9 +427,9 @@ fn a_picture_names_the_runs_laid_over() {
         for (sample, run) in samples[1..].iter().zip([2, 7]) {
             assert_eq!((sample.1, sample.2), (run_colour(run, &p), dashes(run).0));
         }
-        assert!(samples.iter().all(|(points, ..)| points.iter().all(|[x, y]| {
-            (0.0..=size[0]).contains(x) && *y > 30.0 && *y < named.axes.sides[1]
-        })));
+        assert!(samples.iter().all(|(points, ..)| {
+            points.iter().all(|[x, y]| (0.0..=size[0]).contains(x) && *y > 30.0 && *y < named.axes.sides[1])
+        }));
     }
     assert!(figure(&[], 800.0, &p).is_none());
     assert!(figure(&runs, 800.0, &p).is_some_and(|figure| svg(&figure).contains("Other")));

@@ -1,10 +1,10 @@
 //! The command that runs what is on display.
 
-use stillbase::session::scenario::Scenario;
 use stillbase::mechanics::machine::Machine;
+use stillbase::session::scenario::Scenario;
 use stillbase::session::{row_options, simulate_command};
-use stillbase::simulation::signals::{Signal, chosen_signals, signals};
 use stillbase::settings::change::{join, single_change, value};
+use stillbase::simulation::signals::{Signal, chosen_signals, signals};
 use toml::Table;
 
 /// Splits a command into words as a shell does, quotes included.

@@ -87,7 +87,8 @@ fn signal_rows(ui: &mut Ui, choice: &mut SignalChoice, what: &ValuesContext<'_>)
     ui.data_mut(|data| data.insert_temp(id, text));
     let frame = egui::Frame::new().stroke(egui::Stroke::new(1.0, colour(p.line))).inner_margin(6.0);
     frame.show(ui, |ui| {
-        let list = ScrollArea::vertical().id_salt("signals").max_height(LIST_HEIGHT_PT).min_scrolled_height(LIST_HEIGHT_PT);
+        let list =
+            ScrollArea::vertical().id_salt("signals").max_height(LIST_HEIGHT_PT).min_scrolled_height(LIST_HEIGHT_PT);
         let list = list.auto_shrink([false, true]);
         list.show(ui, |ui| {
             ui.set_width(WIDTH_PT - 28.0);
@@ -121,7 +122,11 @@ fn group_rows(ui: &mut Ui, group: &[&Signal], paths: &mut BTreeSet<String>, what
         name(&tick, &format!("{title}: all {}", group.len()));
         if tick.clicked() {
             for signal in group {
-                if whole { paths.insert(signal.path.clone()) } else { paths.remove(&signal.path) };
+                if whole {
+                    paths.insert(signal.path.clone())
+                } else {
+                    paths.remove(&signal.path)
+                };
             }
         }
         // Files hold SI units, whatever the window shows.
@@ -134,7 +139,11 @@ fn group_rows(ui: &mut Ui, group: &[&Signal], paths: &mut BTreeSet<String>, what
             let mut on = paths.contains(&signal.path);
             let words = notation.name(&signal.label, &signal.symbol);
             if ui.checkbox(&mut on, RichText::new(words).font(plain(12.0))).on_hover_text(&signal.path).clicked() {
-                if on { paths.insert(signal.path.clone()) } else { paths.remove(&signal.path) };
+                if on {
+                    paths.insert(signal.path.clone())
+                } else {
+                    paths.remove(&signal.path)
+                };
             }
         });
     }

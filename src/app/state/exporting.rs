@@ -58,7 +58,8 @@ impl AppState {
     fn film_work(&self, choice: &FilmChoice) -> Result<Work, String> {
         let FilmChoice { ref look, whole, fps, slow, .. } = *choice;
         let times = if whole { TimeChoice::Whole } else { TimeChoice::Shown };
-        let order = FilmOrder { picture: self.order(look), times: times.of(&self.session, &self.view_state), fps, slow };
+        let order =
+            FilmOrder { picture: self.order(look), times: times.of(&self.session, &self.view_state), fps, slow };
         order.count().map_err(|e| e.to_string())?;
         let mut copy = self.copy();
         Ok(Box::new(move |ticket, path, force| {

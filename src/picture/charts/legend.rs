@@ -50,12 +50,8 @@ pub fn items(runs: &[RunName], [left, top]: [f32; 2], width: f32, p: &Palette) -
     let share = width / columns as f32;
     let own = (OWN_RUN, None, p.ink, None);
     let others = runs.iter().map(|name| {
-        let number = FigureText {
-            text: format!("{}  ", name.run + 1),
-            size: SIZE_PT,
-            bold: true,
-            colour: p.run(name.run),
-        };
+        let number =
+            FigureText { text: format!("{}  ", name.run + 1), size: SIZE_PT, bold: true, colour: p.run(name.run) };
         (name.title.as_str(), Some(number), run_colour(name.run, p), dashes(name.run).0)
     });
     let mut items = Vec::new();

@@ -61,7 +61,11 @@ impl Report<'_> {
         section(&mut page, "Start and end", &self.pictures_html());
         section(&mut page, "Results", &self.results());
         section(&mut page, "Plots", &self.figures_html());
-        section(&mut page, "Runs compared", &self.comparison.map_or_else(String::new, |of| sections::compared(of, self.notation)));
+        section(
+            &mut page,
+            "Runs compared",
+            &self.comparison.map_or_else(String::new, |of| sections::compared(of, self.notation)),
+        );
         section(&mut page, "Task", &self.task());
         section(&mut page, "Other settings that are not at their defaults", &self.settings());
         section(&mut page, "Machine", &self.machine());
@@ -89,10 +93,11 @@ impl Report<'_> {
         let figures = self.figures.iter().enumerate();
         let legend = self.legend.map(|legend| svg_element(legend, "legend"));
         let legend = legend.map_or_else(String::new, |legend| format!("<div class=\"legend\">{legend}</div>\n"));
-        legend + &row_of(
-            "row small",
-            figures.map(|(i, figure)| format!("<figure>{}</figure>\n", svg_element(figure, &format!("axes-{i}")))),
-        )
+        legend
+            + &row_of(
+                "row small",
+                figures.map(|(i, figure)| format!("<figure>{}</figure>\n", svg_element(figure, &format!("axes-{i}")))),
+            )
     }
 
     fn repeat(&self) -> String {

@@ -217,7 +217,8 @@ pub(super) fn compared(comparison: &Comparison, notation: Notation) -> String {
     let moves = runs().any(|run: &Summary| run.base_shift > 0.0 || run.base_tilt > 0.0);
     let has_value = |c: &SummaryColumn| runs().any(|run| (c.value)(run).is_some());
     let is_shown = |c: &SummaryColumn| has_value(c) && (moves || !matches!(c.key, "base_shift" | "base_tilt"));
-    let of_runs = SUMMARY_COLUMNS.iter().enumerate().filter(|(_, c)| is_shown(c)).map(|(i, c)| Column::of(i, c, notation));
+    let of_runs =
+        SUMMARY_COLUMNS.iter().enumerate().filter(|(_, c)| is_shown(c)).map(|(i, c)| Column::of(i, c, notation));
     let designs = if comparison.has_designs() { &DESIGN_COLUMNS[..] } else { &[] };
     let of_designs = designs.iter().enumerate().map(|(i, c)| Column::of(SUMMARY_COLUMNS.len() + i, c, notation));
     let columns: Vec<Column> = of_runs.chain(of_designs).collect();
@@ -229,7 +230,8 @@ pub(super) fn compared(comparison: &Comparison, notation: Notation) -> String {
         let entry = &entries[i];
         match &entry.outcome {
             Ok(run) => {
-                let value = |column: &Column| entry.value(column.place).map(|x| fixed(column.factor * x, column.decimals));
+                let value =
+                    |column: &Column| entry.value(column.place).map(|x| fixed(column.factor * x, column.decimals));
                 let cells = columns.iter().map(|column| value(column).unwrap_or_else(|| NO_VALUE.into()));
                 let verdict = run.summary.verdict.answer();
                 table.row([(i + 1).to_string(), entry.title.clone()].into_iter().chain(cells).chain([verdict]));
