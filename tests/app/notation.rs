@@ -30,7 +30,7 @@ fn names_unit(text: &str, units: &[&str]) -> bool {
         let number = |w: &str| w.trim_start_matches(['−', '-', '+']).starts_with(|c: char| c.is_ascii_digit());
         let alone =
             i == 0 || number(words[i - 1]) || words[i - 1].chars().count() <= 2 && !["N", "kg"].contains(&words[i - 1]);
-        units.contains(word) && (*word != "m" || alone)
+        units.contains(word) && (!["m", "m²"].contains(word) || alone)
     })
 }
 
