@@ -6,7 +6,7 @@ use super::{AppState, ViewChange};
 use stillbase_picture::canvas::Canvas;
 use stillbase_picture::render::offscreen::{NoAdapter, NoPicture, Picture, legible_scale};
 use stillbase_picture::scene::options::ViewOptions;
-use stillbase_picture::scene::palette::Theme;
+use stillbase_picture::scene::palette::{Theme, palette};
 use stillbase_picture::scene::views::ViewKind;
 
 /// What a picture shows.
@@ -71,7 +71,7 @@ impl PictureOrder {
             }
         };
         if self.transparent {
-            scene.background[3] = 0.0;
+            scene.lay_over_any(&palette(self.theme));
         }
         canvas.scene(&Arc::new(scene), &camera)
     }

@@ -45,10 +45,10 @@ pub struct ExportModelArguments {
     /// Diameter of the holes for pins, m, in .svg and .dxf; default: 0.008
     #[arg(long, value_name = "D")]
     pin_diameter: Option<f64>,
-    /// Density of the counterweights, kg/m³, in drawings and lists; default: that of steel, 7850
+    /// Density of the counterweights, kg/m³; default: that of steel, 7850
     #[arg(long, value_name = "DENSITY")]
     material: Option<f64>,
-    /// Thickness of the counterweights, m, in drawings and lists; default: the thickness that gives each its mass
+    /// Thickness of the counterweights, m; default: the thickness that gives each its mass
     #[arg(long, value_name = "T")]
     thickness: Option<f64>,
     #[arg(short, long, value_name = "FILE", help = format!("Write it to this file; what is written goes by the ending: {}", form::endings().join(", ")))]
@@ -125,14 +125,10 @@ impl ExportModelArguments {
 
     /// Refuses options that have no effect on the file.
     fn check_options(&self, form: Form) -> Result<(), Failure> {
-        let all: [OptionScope; 5] = [
+        let all: [OptionScope; 3] = [
             ("--pose", self.pose.is_empty(), |shows| shows == ModelContent::Pose),
             ("--bar-width", self.bar_width.is_none(), |shows| shows == ModelContent::Links),
             ("--pin-diameter", self.pin_diameter.is_none(), |shows| shows == ModelContent::Links),
-            ("--material", self.material.is_none(), |shows| matches!(shows, ModelContent::Links | ModelContent::Parts)),
-            ("--thickness", self.thickness.is_none(), |shows| {
-                matches!(shows, ModelContent::Links | ModelContent::Parts)
-            }),
         ];
         match all.into_iter().find(|(_, is_left_out, counts)| !is_left_out && !counts(form.shows)) {
             Some((option, _, counts)) => {

@@ -1,6 +1,7 @@
 //! [`Cut`]: dimensions of bars and holes, and the material of discs.
 
-use stillbase_mechanics::machine::Machine;
+use super::look::DRAWN_BAR_RADIUS;
+use stillbase_mechanics::machine::{Counterweight, Machine};
 use stillbase_settings::number::{ShortNumber, fixed};
 
 /// Dimensions of bars, holes and discs, and the density of discs.
@@ -96,9 +97,15 @@ impl Cut {
         Ok(())
     }
 
-    /// Returns the thickness of a disc, m, for its mass, kg, and radius, m; `None` for a point.
-    pub fn thickness_of(&self, mass: f64, radius: f64) -> Option<f64> {
-        (radius > 0.0).then(|| self.thickness.unwrap_or(mass / (self.density * disc_area(radius))))
+    /// Returns the thickness of a counterweight, m; `None` for a point. Drawings, lists and models have it from here.
+    pub fn thickness_of(&self, weight: &Counterweight) -> Option<f64> {
+        weight.thickness(self.density).map(|own| self.thickness.unwrap_or(own))
+    }
+
+    /// Returns radius and thickness of a counterweight in a model, m. A point is drawn as wide as a bar.
+    pub(super) fn drawn_disc(&self, weight: &Counterweight) -> [f64; 2] {
+        let point = [DRAWN_BAR_RADIUS, 2.0 * DRAWN_BAR_RADIUS];
+        self.thickness_of(weight).map_or(point, |thickness| [weight.radius, thickness])
     }
 
     /// Returns the mass of a disc, kg, for its radius and thickness, m.

@@ -33,9 +33,9 @@ pub enum ModelContent {
 /// All export formats.
 pub const FORMS: [Form; 6] = [
     // For MuJoCo.
-    Form { ending: "xml", shows: ModelContent::Pose, write: |machine, pose, _| Ok(mjcf(machine, pose)?) },
+    Form { ending: "xml", shows: ModelContent::Pose, write: |machine, pose, cut| Ok(mjcf(machine, pose, cut)?) },
     // For ROS, Pinocchio and others.
-    Form { ending: "urdf", shows: ModelContent::Joints, write: |machine, _, _| Ok(urdf(machine)) },
+    Form { ending: "urdf", shows: ModelContent::Joints, write: |machine, _, cut| Ok(urdf(machine, cut)) },
     // For viewing.
     Form { ending: "svg", shows: ModelContent::Links, write: |machine, _, cut| Ok(svg(&Sheet::of(machine, cut)?)) },
     // For cutting.
@@ -100,6 +100,7 @@ impl Form {
     /// # Errors
     /// If the machine cannot be exported in this format.
     pub fn written(&self, machine: &Machine, pose: &[f64], cut: &Cut) -> Result<String, ExchangeError> {
+        cut.check_discs()?;
         (self.write)(machine, pose, cut)
     }
 }

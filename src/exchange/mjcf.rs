@@ -10,6 +10,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
+use super::cut::Cut;
 use super::look::{DRAWN_BAR_RADIUS, DRIVE_COLOURS};
 use super::tree::{Tree, TreePart};
 use super::turn::PinAngleSum;
@@ -48,11 +49,12 @@ const MIN_MASS_OR_INERTIA: f64 = 1e-12;
 /// Mass of a rotor's body, kg: the rotor's real mass belongs to the link that carries it.
 const ROTOR_MASS_KG: f64 = 1e-11;
 
-/// Returns the model of a machine as text; its keyframe `start` is the pose `q`, rad, with motors at rest.
+/// Returns the model of a machine as text; its keyframe `start` is the pose `q`, rad, with motors at rest. `cut` gives
+/// the thickness of counterweights, which is for the eye: mass and inertia are those of the machine.
 ///
 /// # Errors
 /// If MuJoCo cannot simulate the machine, or if the pose does not have one angle for each drive.
-pub fn mjcf(machine: &Machine, q: &[f64]) -> Result<String, MjcfError> {
+pub fn mjcf(machine: &Machine, q: &[f64], cut: &Cut) -> Result<String, MjcfError> {
     let model = Model::of(machine, q)?;
     let massless = |link: &str, what| MjcfError::Massless { link: link.into(), what };
     for link in machine.links() {
@@ -63,7 +65,7 @@ pub fn mjcf(machine: &Machine, q: &[f64]) -> Result<String, MjcfError> {
             return Err(massless(&link.name, "inertia"));
         }
     }
-    Ok(model.text(q))
+    Ok(model.text(q, cut))
 }
 
 /// Returns the angles of all hinges of the model in a pose, rad, in the order of `qpos`: links and rotors, depth first.
@@ -115,7 +117,7 @@ impl<'a> Model<'a> {
         })
     }
 
-    fn text(mut self, q: &[f64]) -> String {
+    fn text(mut self, q: &[f64], cut: &Cut) -> String {
         let spec = self.machine.spec();
         let [gx, gy] = spec.gravity;
         line!(self, 0, "<mujoco model=\"{}\">", quoted(&spec.name));
@@ -136,7 +138,7 @@ impl<'a> Model<'a> {
         line!(self, 3, "<site name=\"base\" size=\"0.02\"/>");
         self.rotors(3, None);
         for j in self.children(None) {
-            self.body(3, j);
+            self.body(3, j, cut);
         }
         line!(self, 2, "</body>");
         line!(self, 1, "</worldbody>");
@@ -162,7 +164,7 @@ impl<'a> Model<'a> {
     }
 
     /// Writes a link with all links that it carries.
-    fn body(&mut self, depth: usize, j: usize) {
+    fn body(&mut self, depth: usize, j: usize, cut: &Cut) {
         let (link, part) = (&self.machine.links()[j], &self.machine.resolved_links()[j]);
         let (name, colour) = (self.tree.name(TreePart::Link(j)), DRIVE_COLOURS[part.drive % DRIVE_COLOURS.len()]);
         let on = part.parent.map_or(1.0, |on| self.machine.resolved_links()[on].sign);
@@ -178,12 +180,10 @@ impl<'a> Model<'a> {
             line!(self, depth + 1, "<geom fromto=\"{from} 0 0 {to} 0 0\" rgba=\"{colour}\"/>");
         }
         for weight in self.machine.spec().counterweights.iter().filter(|weight| weight.link == link.name) {
-            let (at, radius) = (part.sign * weight.at, weight.radius.max(DRAWN_BAR_RADIUS));
-            line!(
-                self,
-                depth + 1,
-                "<geom type=\"cylinder\" pos=\"{at} 0 0\" size=\"{radius} {DRAWN_BAR_RADIUS}\" rgba=\"{colour}\"/>"
-            );
+            let (at, [radius, thickness]) = (part.sign * weight.at, cut.drawn_disc(weight));
+            // MuJoCo wants half the height of a cylinder.
+            let size = format!("{radius} {}", 0.5 * thickness);
+            line!(self, depth + 1, "<geom type=\"cylinder\" pos=\"{at} 0 0\" size=\"{size}\" rgba=\"{colour}\"/>");
         }
         for (number, pinned) in self.machine.loops().iter().enumerate() {
             for (side, of, at) in [("a", pinned.a, pinned.at_a), ("b", pinned.b, pinned.at_b)] {
@@ -198,7 +198,7 @@ impl<'a> Model<'a> {
         }
         self.rotors(depth + 1, Some(j));
         for child in self.children(Some(j)) {
-            self.body(depth + 1, child);
+            self.body(depth + 1, child, cut);
         }
         line!(self, depth, "</body>");
     }

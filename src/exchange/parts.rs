@@ -191,7 +191,7 @@ fn links(machine: &Machine) -> PartTable {
 
 fn counterweights(machine: &Machine, cut: &Cut) -> PartTable {
     let row = |(i, weight): (usize, &Counterweight)| {
-        let thickness = cut.thickness_of(weight.mass, weight.radius);
+        let thickness = cut.thickness_of(weight);
         vec![
             PartCell::words((i + 1).to_string()),
             PartCell::words(&weight.link),
@@ -297,7 +297,8 @@ fn pins(machine: &Machine) -> PartTable {
 fn totals(machine: &Machine) -> PartTable {
     let spec = machine.spec();
     let links = spec.links.iter().map(|link| link.mass).sum::<f64>();
-    let discs = spec.counterweights.iter().map(|weight| weight.mass).sum::<f64>();
+    // The sum of nothing is −0.
+    let discs = spec.counterweights.iter().map(|weight| weight.mass).sum::<f64>() + 0.0;
     let row = |name: &str, count: Option<usize>, mass: f64| {
         let count = count.map_or(PartCell::None, |count| PartCell::Number(count as f64, 0));
         vec![PartCell::words(name), count, PartCell::Number(mass, 3)]

@@ -18,6 +18,7 @@
 //! motion of the base belong to a scenario. Inertias about axes in the plane do not affect a plane motion; their values
 //! are made up.
 
+use super::cut::Cut;
 use super::look::{DRAWN_BAR_RADIUS, DRIVE_COLOURS};
 use super::tree::{Tree, TreeJoint, TreePart, Turns};
 use super::xml::{XmlWriter, quoted, remark};
@@ -28,9 +29,10 @@ const AUXILIARY_MASS_FRACTION: f64 = 1e-13;
 /// Limit written for an unlimited torque, N m, or rate, rad/s, because URDF requires one.
 const UNLIMITED: f64 = 1e9;
 
-/// Returns the model of a machine as text.
-pub fn urdf(machine: &Machine) -> String {
-    Model::of(machine).text()
+/// Returns the model of a machine as text. `cut` gives the thickness of counterweights, which is for the eye: mass and
+/// inertia are those of the machine.
+pub fn urdf(machine: &Machine, cut: &Cut) -> String {
+    Model::of(machine, cut).text()
 }
 
 /// Returns the name of the joint that turns by the angle of motor k.
@@ -46,6 +48,7 @@ pub(super) fn meet(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 
 struct Model<'a> {
     machine: &'a Machine,
+    cut: &'a Cut,
     tree: Tree<'a>,
     /// Mass, kg, and inertia, kg m², of an auxiliary link.
     least: f64,
@@ -63,9 +66,10 @@ struct Body {
 }
 
 impl<'a> Model<'a> {
-    fn of(machine: &'a Machine) -> Self {
+    fn of(machine: &'a Machine, cut: &'a Cut) -> Self {
         Self {
             machine,
+            cut,
             tree: Tree::of(machine),
             least: AUXILIARY_MASS_FRACTION * machine.mass(),
             lines: XmlWriter::default(),
@@ -248,8 +252,8 @@ impl<'a> Model<'a> {
         let bar = format!("<box size=\"{length} {} {}\"/>", 2.0 * DRAWN_BAR_RADIUS, 0.5 * DRAWN_BAR_RADIUS);
         self.visual(part.drive, middle, &bar);
         for weight in machine.spec().counterweights.iter().filter(|weight| weight.link == link.name) {
-            let disc =
-                format!("<cylinder radius=\"{}\" length=\"{DRAWN_BAR_RADIUS}\"/>", weight.radius.max(DRAWN_BAR_RADIUS));
+            let [radius, thickness] = self.cut.drawn_disc(weight);
+            let disc = format!("<cylinder radius=\"{radius}\" length=\"{thickness}\"/>");
             self.visual(part.drive, part.sign * weight.at, &disc);
         }
     }

@@ -1,14 +1,16 @@
 //! The table of charts: the signals of each plot, its title, unit and range, and the colours of its lines. Both the
 //! window and recordings use this table.
 
+pub mod axis;
 pub mod choice;
 pub mod drawn;
 pub mod figure;
+pub mod legend;
 pub mod range;
 pub mod search;
 pub mod svg;
 
-use super::numbers::round_up;
+use self::axis::AxisKind;
 use super::scene::Rgba;
 use super::scene::palette::{Palette, mix};
 use stillbase_planning::pose_space::constant_inertia;
@@ -28,8 +30,8 @@ pub struct Chart {
     /// Smallest length of the range, or half of it if the range is centred on zero, in the unit of the values given to
     /// [`Chart::range`].
     pub min_range: f64,
-    /// Whether the range is symmetric about zero.
-    pub centred: bool,
+    /// How the vertical axis lies.
+    pub axis: AxisKind,
     /// Factor from SI values to the unit of the window.
     pub scale: f64,
     /// Place of the chart.
@@ -55,7 +57,7 @@ pub const EMPTY_CHART: Chart = Chart {
     unit: "",
     signals: &[],
     min_range: 0.1,
-    centred: true,
+    axis: AxisKind::Centred,
     scale: 1.0,
     place: ChartPlace::Beside,
     is_overlaid: false,
@@ -77,6 +79,7 @@ const FORCE: Chart = Chart {
     unit: "N, from motion",
     signals: &["force/dynamic"],
     min_range: 0.5,
+    axis: AxisKind::FromZero,
     ..EMPTY_CHART
 };
 const BASE: Chart = Chart {
@@ -94,24 +97,32 @@ const PINS: Chart = Chart {
     unit: "N",
     signals: &["pin/worst"],
     min_range: 1.0,
-    centred: false,
+    axis: AxisKind::FromZero,
     place: ChartPlace::Pins,
     ..EMPTY_CHART
 };
-const ANGLES: Chart =
-    Chart { title: "Drive angles", unit: "rad", signals: &["angle"], min_range: 0.5, centred: false, ..EMPTY_CHART };
+const ANGLES: Chart = Chart {
+    title: "Drive angles",
+    unit: "rad",
+    signals: &["angle"],
+    min_range: 0.5,
+    axis: AxisKind::Free,
+    ..EMPTY_CHART
+};
 const INERTIAL_ANGLES: Chart = Chart { title: "Drive angles, inertial", ..ANGLES };
 const POSE: Chart = Chart {
     title: "Pose constant",
     unit: "rad",
     signals: &["pose/b"],
-    centred: false,
+    axis: AxisKind::Free,
     is_overlaid: true,
     ..EMPTY_CHART
 };
-const INSIDE: Chart = Chart { place: ChartPlace::Inside, centred: false, ..EMPTY_CHART };
+/// Of internal signals, all but one are magnitudes.
+const INSIDE: Chart = Chart { place: ChartPlace::Inside, axis: AxisKind::FromZero, ..EMPTY_CHART };
 const EACH_PIN: Chart = Chart { title: "Force of each pin", unit: "N", signals: &["pin"], min_range: 1.0, ..INSIDE };
-const TILT: Chart = Chart { title: "Tilting moment", unit: "N m", signals: &["tilt"], centred: true, ..INSIDE };
+const TILT: Chart =
+    Chart { title: "Tilting moment", unit: "N m", signals: &["tilt"], axis: AxisKind::Centred, ..INSIDE };
 const TRANSMISSION: Chart =
     Chart { title: "Transmission |sin(q_k − q_l)|", unit: "1", signals: &["transmission"], ..INSIDE };
 const CHANGE_POINT: Chart =
@@ -157,22 +168,10 @@ impl Chart {
         }
     }
 
-    /// Returns bounds of the axis that contain the values from `low` to `high`, rounded outwards. Rounded bounds seldom
-    /// change as values arrive. The range is never smaller than `min_range`, so that rounding noise does not look like
-    /// a signal.
+    /// Returns bounds of the axis for the values from `low` to `high`, as [`AxisKind::bounds`]. The range is never smaller
+    /// than `min_range`, so that rounding noise does not look like a signal.
     pub fn range(&self, low: f64, high: f64) -> [f64; 2] {
-        if self.centred {
-            let most = round_up(low.abs().max(high.abs()).max(self.min_range));
-            let most = if most.is_finite() { most } else { self.min_range };
-            return [-most, most];
-        }
-        if !(low.is_finite() && high.is_finite()) {
-            return [0.0, 1.0];
-        }
-        let step = round_up((high - low).max(self.min_range) / 2.0);
-        let bottom = (low / step).floor() * step;
-        let count = ((high - bottom) / step).ceil().max(1.0);
-        [bottom, bottom + count * step]
+        self.axis.bounds([low, high], self.min_range)
     }
 }
 

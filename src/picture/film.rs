@@ -19,6 +19,8 @@ pub enum FilmFormat {
 const QUANTISATION_SPEED: i32 = 10;
 /// Number of units in which a GIF counts the delays between pictures, per second.
 const GIF_DELAYS_PER_SECOND: f64 = 100.0;
+/// Longest time that a picture may stay, s: an animated PNG cannot say a longer one.
+const MAX_DELAY_S: f64 = 65_535.0;
 
 /// A film that is being written.
 pub struct Film<W: Write> {
@@ -38,8 +40,14 @@ impl<W: Write> Film<W> {
     /// Begins a film of `count` pictures of a size in pixels, shown at `fps` pictures per second.
     ///
     /// # Errors
-    /// If the head cannot be written, a side of a GIF is longer than 65,535 pixels, or `count` is 0 for a PNG.
+    /// If the head cannot be written, a side of a GIF is longer than 65,535 pixels, `count` is 0 for a PNG, or a picture
+    /// would stay longer than 65,535 s.
     pub fn begin(to: W, format: FilmFormat, [width, height]: [u32; 2], count: u32, fps: f64) -> io::Result<Self> {
+        let is_shown = (0.0..=MAX_DELAY_S).contains(&(1.0 / fps));
+        if !is_shown {
+            let why = format!("{fps} pictures per second: want at least one in {MAX_DELAY_S} s");
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, why));
+        }
         let encoder = match format {
             FilmFormat::Gif => {
                 let side = |side: u32| u16::try_from(side).map_err(io::Error::other);
@@ -50,7 +58,8 @@ impl<W: Write> Film<W> {
             FilmFormat::Png => {
                 let mut encoder = png_encoder(to, [width, height]);
                 encoder.set_animated(count, 0)?;
-                encoder.set_frame_delay(1000, (1000.0 * fps).round().clamp(1.0, 65_535.0) as u16)?;
+                let [numerator, denominator] = png_delay(1.0 / fps);
+                encoder.set_frame_delay(numerator, denominator)?;
                 FilmEncoder::Png(encoder.write_header()?)
             }
         };
@@ -67,10 +76,18 @@ impl<W: Write> Film<W> {
                 let side = |side: u32| u16::try_from(side).map_err(io::Error::other);
                 let (width, height, mut rgba) = (side(picture.width)?, side(picture.height)?, picture.rgba);
                 let mut frame = Frame::from_rgba_speed(width, height, &mut rgba, QUANTISATION_SPEED);
-                // Differences of rounded sums, so that rounding errors do not add up in films of up to 655 s.
-                let until = |count: u32| (f64::from(count) * GIF_DELAYS_PER_SECOND / self.fps).round() as u16;
-                frame.delay = until(self.count + 1) - until(self.count);
+                // Rounded sums, not the rounded delay, so that the film is as long as the run.
+                let until = |count: u32| (f64::from(count) * GIF_DELAYS_PER_SECOND / self.fps).round() as u64;
+                let mut delay = until(self.count + 1) - until(self.count);
+                frame.delay = first_part(&mut delay);
                 encoder.write_frame(&frame).map_err(io::Error::other)?;
+                // A picture that stays longer than a GIF can say stays under pictures of its first pixel.
+                let mut pixel = rgba.get(..4).map(<[u8]>::to_vec).unwrap_or_default();
+                while delay > 0 && pixel.len() == 4 {
+                    let mut frame = Frame::from_rgba_speed(1, 1, &mut pixel, QUANTISATION_SPEED);
+                    frame.delay = first_part(&mut delay);
+                    encoder.write_frame(&frame).map_err(io::Error::other)?;
+                }
             }
             FilmEncoder::Png(writer) => writer.write_image_data(&picture.rgba)?,
         }
@@ -89,4 +106,21 @@ impl<W: Write> Film<W> {
             FilmEncoder::Png(writer) => Ok(writer.finish()?),
         }
     }
+}
+
+/// Takes as much of a delay as a picture of a GIF can say.
+fn first_part(delay: &mut u64) -> u16 {
+    let part = u16::try_from(*delay).unwrap_or(u16::MAX);
+    *delay -= u64::from(part);
+    part
+}
+
+/// Returns numerator and denominator of a delay, s, as near to it as two numbers of 16 bits with a round one allow.
+fn png_delay(delay: f64) -> [u16; 2] {
+    let most = f64::from(u16::MAX);
+    // The shorter of a delay and its reciprocal takes the round number.
+    let (longer, round) = (delay.max(1.0 / delay), [1000.0, 100.0, 10.0, 1.0]);
+    let round = round.into_iter().find(|round| (round * longer).round() <= most).unwrap_or(1.0);
+    let other = (round * longer).round().min(most);
+    if delay < 1.0 { [round as u16, other as u16] } else { [other as u16, round as u16] }
 }

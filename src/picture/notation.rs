@@ -114,6 +114,7 @@ impl Notation {
         };
         angle.or(match (self.length, unit) {
             (LengthUnit::Millimetres, "m") => Some(ShownUnit::of("mm", 1e3, -3)),
+            (LengthUnit::Millimetres, "m²") => Some(ShownUnit::of("mm²", 1e6, -6)),
             (LengthUnit::Millimetres, "m/s") => Some(ShownUnit::of("mm/s", 1e3, -3)),
             _ => None,
         })

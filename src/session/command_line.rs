@@ -4,7 +4,11 @@ use super::scenario::Scenario;
 use super::{Edit, Session, TimedEdit};
 use stillbase_settings::change::{join, leaves, same_value, single_change, typed};
 use stillbase_settings::text::shell_word;
+use stillbase_simulation::signals::Signal;
 use toml::Table;
+
+/// Bounds of time intervals are written in parts of this many per second.
+const TIMES_PER_SECOND: f64 = 1e9;
 
 /// Returns the command that simulates a scenario without its edits: the built-in scenario of its name, and the settings
 /// that differ. Returns `None` if no settings lead from a built-in scenario to this one; a file is then needed.
@@ -26,6 +30,37 @@ pub fn simulate_command(scenario: &Scenario) -> Option<String> {
 /// Returns the command that simulates a session from its start, as [`simulate_command`]. Returns `None` if the session
 /// has edits other than settings at its start; a file is then needed.
 pub fn session_command(session: &Session) -> Option<String> {
+    simulate_command(session.scenario()).filter(|_| has_settings_only(session))
+}
+
+/// Whether all edits of a session are settings at its start.
+pub fn has_settings_only(session: &Session) -> bool {
     let is_setting = |timed: &TimedEdit| timed.step == 0 && matches!(timed.edit, Edit::Set { .. });
-    simulate_command(session.scenario()).filter(|_| session.script().iter().all(is_setting))
+    session.script().iter().all(is_setting)
+}
+
+/// Returns the options of `simulate` that write the signals `chosen` of a table in a time interval, s; `None` for a
+/// signal that no option can name. A group of signals that is chosen as a whole is one name.
+pub fn row_options(table: &[Signal], chosen: &[Signal], times: Option<[f64; 2]>) -> Option<String> {
+    let mut options = String::new();
+    if !table.iter().all(|signal| chosen.contains(signal)) {
+        let is_whole = |group: &str| table.iter().filter(|s| s.group() == group).all(|s| chosen.contains(s));
+        let mut names: Vec<&str> = Vec::new();
+        for signal in chosen {
+            let name = if is_whole(signal.group()) { signal.group() } else { &signal.path };
+            // Names are separated by commas.
+            if name.contains(',') {
+                return None;
+            }
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        options = format!(" --signals {}", shell_word(&names.join(",")));
+    }
+    let rounded = |time: f64| (TIMES_PER_SECOND * time).round() / TIMES_PER_SECOND;
+    if let Some([from, to]) = times.map(|times| times.map(rounded)) {
+        options += &format!(" --from {from} --to {to}");
+    }
+    Some(options)
 }

@@ -1,7 +1,6 @@
 //! Applies a [`DesignBrief`]: edits that keep a machine balanced, and choices of counterweights.
 
 use std::collections::BTreeSet;
-use std::f64::consts::PI;
 
 use toml::{Table, Value};
 
@@ -36,10 +35,10 @@ impl DesignBrief {
     /// farther behind the root than its link is long, the largest distance becomes the bound.
     pub fn of(machine: &Machine) -> Self {
         let weights = &machine.spec().counterweights;
-        let plates = weights.iter().filter(|weight| weight.radius > 0.0);
         // Only the mass per area of a disc is known; it gives the thickness if the disc is of steel.
-        let thickest = plates
-            .map(|weight| weight.mass / (PI * weight.radius.powi(2) * Disc::STEEL.density))
+        let thickest = weights
+            .iter()
+            .filter_map(|weight| weight.thickness(Disc::STEEL.density))
             .fold(None, |thickest: Option<f64>, thickness| {
                 Some(thickest.map_or(thickness, |known| known.max(thickness)))
             });

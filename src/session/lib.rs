@@ -25,7 +25,7 @@ pub mod scenario;
 mod script;
 pub mod verdict;
 
-pub use command_line::{session_command, simulate_command};
+pub use command_line::{has_settings_only, row_options, session_command, simulate_command};
 #[doc(hidden)]
 pub use designs::{DesignVersion, designs};
 pub use document::ProgressCallback;

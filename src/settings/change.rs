@@ -5,6 +5,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
+use crate::number::nine_digits;
 use crate::range::{quote_clipped, shortened};
 
 /// Word that removes a key, so that its default applies.
@@ -151,6 +152,38 @@ pub fn typed(value: &Value) -> String {
             items.iter().map(typed).collect::<Vec<_>>().join(",")
         }
         value => value.to_string(),
+    }
+}
+
+/// Whether a value consists of numbers only.
+pub fn is_of_numbers(value: &Value) -> bool {
+    match value {
+        Value::Integer(_) | Value::Float(_) => true,
+        Value::Array(items) => items.iter().all(is_of_numbers),
+        _ => false,
+    }
+}
+
+/// Returns a value as typed, for reading: its numbers have at most nine digits, and are multiplied by a factor if there
+/// is one.
+pub fn typed_short(value: &Value, factor: Option<f64>) -> String {
+    typed(&rounded(value, factor))
+}
+
+fn rounded(value: &Value, factor: Option<f64>) -> Value {
+    let round = |x: f64| {
+        let x: f64 = nine_digits(x).parse().unwrap_or(x);
+        // A whole number is written without decimals.
+        if x.fract() == 0.0 && x.abs() < 1e9 { Value::Integer(x as i64) } else { Value::Float(x) }
+    };
+    match (value, factor) {
+        (Value::Float(x), _) if x.is_finite() => round(x * factor.unwrap_or(1.0)),
+        (Value::Integer(x), Some(factor)) => round(*x as f64 * factor),
+        (Value::Array(items), _) => Value::Array(items.iter().map(|item| rounded(item, factor)).collect()),
+        (Value::Table(table), _) => {
+            Value::Table(table.iter().map(|(key, item)| (key.clone(), rounded(item, factor))).collect())
+        }
+        (value, _) => value.clone(),
     }
 }
 

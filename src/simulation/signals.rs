@@ -53,6 +53,18 @@ impl Signal {
         }
     }
 
+    /// Whether its values are never negative: a norm, a root mean square, a worst value, or a state of 0 or 1.
+    pub fn is_magnitude(&self) -> bool {
+        match self.group() {
+            "impulse" | "angular_impulse" | "payload" | "wheel_saturated" | "dexterity" | "torque_per_force"
+            | "pin" => true,
+            "transmission" | "change_point" | "reactionless" | "energy" | "audit_closure" | "audit_step" => true,
+            "force" => matches!(self.path.as_str(), "force/dynamic" | "force/rms"),
+            "moment" => self.path == "moment/rms",
+            _ => false,
+        }
+    }
+
     /// Returns the first part of the path: signals of one group share a plot and a unit.
     pub fn group(&self) -> &str {
         self.path.split('/').next().unwrap_or(&self.path)

@@ -30,7 +30,7 @@ fn names_unit(text: &str, units: &[&str]) -> bool {
         let number = |w: &str| w.trim_start_matches(['−', '-', '+']).starts_with(|c: char| c.is_ascii_digit());
         let alone =
             i == 0 || number(words[i - 1]) || words[i - 1].chars().count() <= 2 && !["N", "kg"].contains(&words[i - 1]);
-        units.contains(word) && (*word != "m" || alone)
+        units.contains(word) && (!["m", "m²"].contains(word) || alone)
     })
 }
 
@@ -60,7 +60,7 @@ fn every_text_is_in_the_chosen_units() {
             state(&mut h, ViewChange::Kind(view));
             choose(&mut h, OTHER);
             wrong.extend(
-                offenders(&h, &["rad", "mrad", "rad/s", "m", "m/s"])
+                offenders(&h, &["rad", "mrad", "rad/s", "m", "m/s", "m²"])
                     .into_iter()
                     .map(|text| (format!("{name} {view:?}"), text)),
             );
@@ -75,7 +75,7 @@ fn every_text_is_in_the_chosen_units() {
         for layout in [Layout::Compare, Layout::Present, Layout::Explore] {
             state(&mut h, ViewChange::Layout(layout));
             wrong.extend(
-                offenders(&h, &["rad", "mrad", "rad/s", "m", "m/s"])
+                offenders(&h, &["rad", "mrad", "rad/s", "m", "m/s", "m²"])
                     .into_iter()
                     .map(|text| (format!("{name} {layout:?}"), text)),
             );
@@ -83,7 +83,7 @@ fn every_text_is_in_the_chosen_units() {
         for switch in [Switch::Study, Switch::Pins, Switch::History, Switch::Help] {
             state(&mut h, ViewChange::Switch(switch, true));
             wrong.extend(
-                offenders(&h, &["rad", "mrad", "rad/s", "m", "m/s"])
+                offenders(&h, &["rad", "mrad", "rad/s", "m", "m/s", "m²"])
                     .into_iter()
                     .map(|text| (format!("{name} {switch:?}"), text)),
             );
@@ -91,7 +91,7 @@ fn every_text_is_in_the_chosen_units() {
         // A refusal of the core is a sentence like any other.
         h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::set("task.end", vec![5.0, 5.0])));
         h.run_steps(3);
-        wrong.extend(offenders(&h, &["rad", "m"]).into_iter().map(|text| (name.to_string(), text)));
+        wrong.extend(offenders(&h, &["rad", "m", "m²"]).into_iter().map(|text| (name.to_string(), text)));
         assert_ne!(h.state().app_state().view_state().below, Some(BottomPanel::Table));
     }
     assert!(wrong.is_empty(), "{wrong:#?}");

@@ -4,15 +4,18 @@ use std::fs;
 use std::path::Path;
 
 use egui::{Key, Modifiers};
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::app::export::{
-    Export, FilmChoice, FilmForm, FilmOrder, Look, PictureSize, RowForm, ValuesChoice, write_film,
+    Export, FilmChoice, FilmForm, FilmOrder, Look, PictureSize, RowForm, SignalChoice, TimeChoice, ValuesChoice,
+    write_film,
 };
 use stillbase::app::jobs::Threads;
 use stillbase::app::{Activity, AppState, Message, PictureOrder, SessionCommand, Shot, ViewChange, WindowCommand};
+use stillbase::mechanics::machine::{Counterweight, Machine};
 use stillbase::picture::charts::choice::PlotChange;
+use stillbase::picture::notation::{AngleUnit, LengthUnit, NameOrder, Notation};
 use stillbase::picture::render::offscreen::Picture;
-use stillbase::picture::scene::palette::Theme;
+use stillbase::picture::scene::palette::{Theme, palette};
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::scenario::Scenario;
 
@@ -29,8 +32,12 @@ pub const TESTS: &[Test] = tests![
     without_its_encoder_an_mp4_says_what_to_install,
     a_film_is_drawn_beside_the_window_and_can_be_cancelled,
     values_are_those_of_the_plots_or_all,
+    single_signals_and_times_are_chosen_on_the_card,
+    a_choice_without_rows_is_refused,
     a_report_of_the_window_shows_its_plots,
     an_encoder_gets_every_picture,
+    a_report_is_in_the_units_and_names_of_the_window,
+    a_transparent_picture_is_legible_on_any_colour,
 ];
 
 const SIZE: [u32; 2] = [320, 200];
@@ -276,26 +283,82 @@ fn values_are_those_of_the_plots_or_all() {
     // Nothing is computed yet of the run: what is to be written is computed first.
     let mut app_state = app_state("case-1");
     app_state.carry_out(ViewChange::Charts(PlotChange::Range(Some([0.25, 0.5]))));
-    let choice = ValuesChoice { all: false, whole: false, form: RowForm::Csv };
-    saved(&mut app_state, &folder.path("part.csv"), Export::Values(choice));
+    let choice = ValuesChoice { signals: SignalChoice::Plots, times: TimeChoice::Shown, form: RowForm::Csv };
+    saved(&mut app_state, &folder.path("part.csv"), Export::Values(choice.clone()));
     let text = fs::read_to_string(folder.path("part.csv")).expect("a file");
     let head = text.lines().next().expect("a head");
     assert!(head.starts_with("time s,torque/1 N m,"), "{head}");
     assert_eq!(text.lines().count(), 252, "0.25, 0.251 … 0.5 s and the head");
     assert!(text.lines().nth(1).is_some_and(|line| line.starts_with("0.25,")));
-    saved(&mut app_state, &folder.path("all.csv"), Export::Values(ValuesChoice { all: true, whole: true, ..choice }));
+    let everything = ValuesChoice { signals: SignalChoice::All, times: TimeChoice::Whole, ..choice.clone() };
+    saved(&mut app_state, &folder.path("all.csv"), Export::Values(everything));
     let all = fs::read_to_string(folder.path("all.csv")).expect("a file");
     let columns = |line: &str| line.split(',').count();
     assert!(all.lines().next().map(columns) > Some(columns(head)));
     assert_eq!(all.lines().count(), 1002);
-    saved(&mut app_state, &folder.path("all.parquet"), Export::Values(choice));
+    saved(&mut app_state, &folder.path("all.parquet"), Export::Values(choice.clone()));
     assert!(fs::read(folder.path("all.parquet")).expect("a file").starts_with(b"PAR1"));
-    let why = said(&mut app_state, &folder.path("all.xls"), Export::Values(choice));
+    let why = said(&mut app_state, &folder.path("all.xls"), Export::Values(choice.clone()));
     assert!(why.is_problem && why.text.contains(".csv or .parquet"), "{why:?}");
-    let why = said(&mut app_state, &folder.path("all.csv"), Export::Values(choice));
+    let why = said(&mut app_state, &folder.path("all.csv"), Export::Values(choice.clone()));
     assert!(why.is_problem && why.text.contains("exists"), "{why:?}");
     let why = said(&mut app_state, &folder.path("no/all.csv"), Export::Values(choice));
     assert!(why.is_problem && why.text.contains("no folder"), "{why:?}");
+}
+
+/// The card ticks signals, takes two times, and shows the command that writes the very same file.
+fn single_signals_and_times_are_chosen_on_the_card() {
+    let folder = Folder::new("results");
+    let mut h: Window = window("case-1", Theme::Dark);
+    h.state_mut().app_state_mut().carry_out(ViewChange::Export(Some(Export::values())));
+    h.run_steps(3);
+    h.get_by_label("none").click();
+    h.run_steps(3);
+    assert!(h.query_by_label_contains("no signal is chosen").is_some(), "nothing to write is said at once");
+    assert!(h.get_by_label("Choose a file…").accesskit_node().is_disabled());
+    h.get_by_label("Torque: all 3").click();
+    h.run_steps(3);
+    h.get_by_label("Find a signal to be written").click();
+    h.run_steps(2);
+    h.event(egui::Event::Text("n_B".into()));
+    h.run_steps(3);
+    h.get_by_label("turning moment on the base, n_B").click();
+    h.run_steps(3);
+    let export = |h: &Window| h.state().app_state().view_state().open.export.clone();
+    let Some(Export::Values(mut choice)) = export(&h) else { panic!("{:?}", export(&h)) };
+    let paths = ["moment/total", "torque/1", "torque/2", "torque/3"].map(String::from);
+    assert_eq!(choice.signals, SignalChoice::These(paths.into()));
+    choice.times = TimeChoice::Between([0.25, 0.5]);
+    h.state_mut().app_state_mut().carry_out(ViewChange::Export(Some(Export::Values(choice.clone()))));
+    h.run_steps(3);
+    let command = "stillbase simulate case-1 -o values.csv --signals torque,moment/total --from 0.25 --to 0.5";
+    assert!(h.query_by_label(command).is_some(), "the command is shown");
+    let mut app_state = app_state("case-1");
+    saved(&mut app_state, &folder.path("window.csv"), Export::Values(choice));
+    let out = std::process::Command::new(env!("CARGO_BIN_EXE_stillbase"))
+        .args(command.split(' ').skip(1))
+        .current_dir(&folder.0)
+        .output()
+        .expect("the program starts");
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    let [window, line] = ["window.csv", "values.csv"].map(|name| fs::read(folder.path(name)).expect("a file"));
+    assert!(window.len() > 1000 && window == line, "the same file");
+}
+
+fn a_choice_without_rows_is_refused() {
+    let folder = Folder::new("results");
+    let mut app_state = app_state("case-1");
+    let choice = |signals, times| Export::Values(ValuesChoice { signals, times, form: RowForm::Csv });
+    for (signals, times, words) in [
+        (SignalChoice::These([].into()), TimeChoice::Whole, "want at least one"),
+        (SignalChoice::These(["torque/9".into()].into()), TimeChoice::Whole, "want at least one"),
+        (SignalChoice::All, TimeChoice::Between([0.5, 0.2]), "the first before the second"),
+        (SignalChoice::All, TimeChoice::Between([2.0, 3.0]), "want one within it"),
+    ] {
+        let why = said(&mut app_state, &folder.path("no.csv"), choice(signals, times));
+        assert!(why.is_problem && why.text.contains(words), "{why:?}");
+    }
+    assert!(folder.names().is_empty());
 }
 
 fn a_report_of_the_window_shows_its_plots() {
@@ -316,4 +379,59 @@ fn a_report_of_the_window_shows_its_plots() {
     saved(&mut app_state, &folder.path("led.html"), Export::Report);
     let page = fs::read_to_string(folder.path("led.html")).expect("a page");
     assert!(page.contains("Save the session"), "no settings alone lead there");
+}
+
+/// Texts and tables follow the choice of the window as the plots do.
+fn a_report_is_in_the_units_and_names_of_the_window() {
+    let folder = Folder::new("results");
+    let mut app_state = app_state("case-1");
+    let mut spec = app_state.session().scenario().machine.spec().clone();
+    let link = spec.links[0].name.clone();
+    let disc = |at, mass| Counterweight { link: link.clone(), mass, at, radius: 0.05, fixed: false };
+    spec.counterweights = vec![disc(-0.1, 1.25), disc(-0.2, 0.5)];
+    let machine = Machine::new(spec).expect("a machine");
+    let scenario = Scenario { machine, ..app_state.session().scenario().clone() };
+    app_state = AppState::new(scenario, Theme::Dark).expect("it starts");
+    let page = |app_state: &mut AppState, notation: Notation, name: &str| {
+        app_state.carry_out(ViewChange::Notation(notation));
+        saved(app_state, &folder.path(name), Export::Report);
+        fs::read_to_string(folder.path(name)).expect("a page")
+    };
+    let usual = page(&mut app_state, Notation::default(), "usual.html");
+    assert!(usual.contains("<td>task.from</td><td>0.5,0.5</td><td>m</td>"), "{usual}");
+    assert!(usual.contains("peak moment on the base, |n_B|") && usual.contains("<th class=\"number\">length (m)</th>"));
+    assert!(usual.contains("kg with its counterweights, reach 1.260 m."));
+    assert!(usual.contains("The masses, inertias and centres of mass of links are without counterweights."));
+    assert!(usual.contains(&format!("<td>2</td><td>{link}</td><td class=\"number\">0.5</td>")), "they are numbered");
+    let other = Notation { angle: AngleUnit::Degrees, length: LengthUnit::Millimetres, names: NameOrder::Symbols };
+    let page = page(&mut app_state, other, "other.html");
+    assert!(page.contains("<td>task.from</td><td>500,500</td><td>mm</td>"), "{page}");
+    assert!(page.contains("<td>limits.a1</td><td>0,180</td><td>°</td>"));
+    assert!(page.contains("|n_B|, peak moment on the base") && page.contains("<th class=\"number\">length (mm)</th>"));
+    assert!(page.contains("reach 1260 mm.") && page.contains("<td class=\"number\">-200</td>"));
+    for unit in ["<td>m</td>", "<td>rad</td>", "(m)", " rad<", "(rad)"] {
+        assert!(!page.contains(unit), "{unit} is left");
+    }
+}
+
+/// On white, grey and black alike, text stands out of what is behind it: in the colours of a plate of its own.
+fn a_transparent_picture_is_legible_on_any_colour() {
+    let folder = Folder::new("results");
+    let mut app_state = app_state("case-3");
+    for theme in [Theme::Dark, Theme::Light] {
+        let file = folder.path(&format!("{theme:?}.png"));
+        let look = Look { transparent: true, theme, size: PictureSize::Pixels([640, 400]), ..look(Shot::Scene) };
+        saved(&mut app_state, &file, Export::Picture(look));
+        let picture = picture_in(&file);
+        let p = palette(theme);
+        let near = |pixel: &[u8], colour: [f32; 4]| {
+            pixel[3] > 190 && (0..3).all(|i| (f32::from(pixel[i]) - 255.0 * colour[i]).abs() < 14.0)
+        };
+        let pixels = picture.rgba.as_chunks::<4>().0;
+        let count = |colour| pixels.iter().filter(|pixel| near(&pixel[..], colour)).count();
+        assert!(count(p.background) > 1500, "{theme:?}: {} pixels of plates", count(p.background));
+        // The grid is a mean grey, which neither shouts on white nor on black.
+        let faint = pixels.iter().filter(|c| (4..90).contains(&c[3]) && c[0].abs_diff(128) < 20 && c[0] == c[1]);
+        assert!(faint.count() > 1000, "{theme:?}: the grid");
+    }
 }

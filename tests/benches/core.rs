@@ -445,7 +445,7 @@ fn plot_of_three_million_samples(bencher: Bencher) {
     bencher.bench_local(|| {
         from = (from + 0.37) % 100.0;
         let drawn = PlotLines::of(&plots[0], black_box(&samples), &[], [from, from + 900.0], 1000, true);
-        Figure::of(&plots[0], &drawn, [1060.0, 300.0], &look)
+        Figure::of(&plots[0], &drawn, [1060.0, 300.0], &look, &[])
     });
 }
 

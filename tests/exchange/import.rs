@@ -1,6 +1,7 @@
 //! Machines from other programs: what goes out comes back as the same machine, arms as others write them come in as what
 //! textbooks say, and all else is refused by name.
 
+use stillbase::exchange::cut::Cut;
 use stillbase::exchange::import::{ImportedMachine, import};
 use stillbase::exchange::mjcf::{middle, mjcf};
 use stillbase::exchange::urdf::urdf;
@@ -110,7 +111,7 @@ fn same(machine: &Machine, found: &ImportedMachine, at: &[f64], noise: &mut Nois
 fn what_goes_out_as_urdf_comes_back() {
     let mut noise = Noise::of(12);
     for machine in machines() {
-        let text = urdf(&machine);
+        let text = urdf(&machine, &Cut::default());
         let found = import(&text).unwrap_or_else(|why| panic!("{}: {why}\n{text}", machine.name()));
         same(&machine, &found, &vec![0.0; machine.drives()], &mut noise, true);
     }
@@ -121,7 +122,7 @@ fn what_goes_out_as_mjcf_comes_back_with_its_loops() {
     let mut noise = Noise::of(13);
     for machine in machines() {
         let at = middle(&machine);
-        let text = mjcf(&machine, &at).expect("a model");
+        let text = mjcf(&machine, &at, &Cut::default()).expect("a model");
         let found = import(&text).unwrap_or_else(|why| panic!("{}: {why}\n{text}", machine.name()));
         same(&machine, &found, &at, &mut noise, false);
         assert_eq!(found.machine.spec().gravity, machine.spec().gravity);
@@ -138,7 +139,8 @@ fn limits_come_back() {
     for (name, text) in [("nine-link", true), ("serial-3r", true), ("serial-3r", false), ("scara", false)] {
         let machine = builtin(name).expect("built in");
         let at = if text { middle(machine) } else { vec![0.0; machine.drives()] };
-        let text = if text { mjcf(machine, &at).expect("a model") } else { urdf(machine) };
+        let text =
+            if text { mjcf(machine, &at, &Cut::default()).expect("a model") } else { urdf(machine, &Cut::default()) };
         let found = import(&text).expect("a machine");
         assert_eq!(found.machine.angles().len(), machine.angles().len(), "{name}");
         for (own, other) in machine.angles().iter().zip(found.machine.angles()) {
@@ -163,9 +165,10 @@ fn a_thousand_machines_go_out_and_come_back() {
     for i in 0..1000 {
         let machine = if i % 2 == 0 { a_machine(&mut noise) } else { a_chain(&mut noise, 1 + i / 2 % 8) };
         let at: Vec<f64> = (0..machine.drives()).map(|_| noise.between(-3.0, 3.0)).collect();
-        let found = import(&urdf(&machine)).unwrap_or_else(|why| panic!("{i}: {why}"));
+        let found = import(&urdf(&machine, &Cut::default())).unwrap_or_else(|why| panic!("{i}: {why}"));
         same(&machine, &found, &vec![0.0; machine.drives()], &mut noise, true);
-        let found = import(&mjcf(&machine, &at).expect("a model")).unwrap_or_else(|why| panic!("{i}: {why}"));
+        let found =
+            import(&mjcf(&machine, &at, &Cut::default()).expect("a model")).unwrap_or_else(|why| panic!("{i}: {why}"));
         same(&machine, &found, &at, &mut noise, false);
     }
 }
@@ -208,7 +211,11 @@ fn all_limits_come_back() {
         let machine = Machine::new(spec).expect("a machine");
         let at: Vec<f64> = (0..n).map(|_| noise.between(-3.0, 3.0)).collect();
         for is_urdf in [true, false] {
-            let text = if is_urdf { urdf(&machine) } else { mjcf(&machine, &at).expect("a model") };
+            let text = if is_urdf {
+                urdf(&machine, &Cut::default())
+            } else {
+                mjcf(&machine, &at, &Cut::default()).expect("a model")
+            };
             let found = import(&text).unwrap_or_else(|why| panic!("{why}\n{text}"));
             let from = if is_urdf { vec![0.0; n] } else { at.clone() };
             for _ in 0..3 {
@@ -237,7 +244,7 @@ fn all_limits_come_back() {
 fn joints_have_one_name() {
     for machine in machines() {
         let at = middle(&machine);
-        let texts = [urdf(&machine), mjcf(&machine, &at).expect("a model")];
+        let texts = [urdf(&machine, &Cut::default()), mjcf(&machine, &at, &Cut::default()).expect("a model")];
         let documents = texts.each_ref().map(|text| roxmltree::Document::parse(text).expect("XML"));
         let joints = documents[0].root_element().children().filter(|node| node.has_tag_name("joint"));
         let names: Vec<&str> = joints.filter_map(|node| node.attribute("name")).collect();
@@ -372,7 +379,7 @@ fn what_is_outside_of_the_family_is_refused_by_name() {
 #[test]
 fn what_mjcf_has_besides_is_refused_by_name() {
     let machine = builtin("nine-link").expect("built in");
-    let text = mjcf(machine, &middle(machine)).expect("a model");
+    let text = mjcf(machine, &middle(machine), &Cut::default()).expect("a model");
     for (from, to, words) in [
         (
             "<joint name=\"joint_link_1\"/>",

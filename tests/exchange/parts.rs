@@ -1,7 +1,9 @@
 //! Lists of parts.
 
 use stillbase::exchange::cut::Cut;
+use stillbase::exchange::mjcf::{middle, mjcf};
 use stillbase::exchange::parts::PartsList;
+use stillbase::exchange::urdf::urdf;
 use stillbase::mechanics::machine::{Counterweight, Machine, builtin, builtins};
 
 fn parts(machine: &Machine) -> PartsList {
@@ -105,6 +107,52 @@ fn names_are_no_formulas() {
         for cell in list.csv().replace("\r\n", ",").split(',') {
             let is_formula = cell.trim_start_matches(['"', ' ']).starts_with(['=', '+', '-', '@']);
             assert!(!is_formula || cell.parse::<f64>().is_ok(), "{cell} in {}", list.csv());
+        }
+    }
+}
+
+/// Every kind of export has a disc of the same size: its volume and density give its mass.
+#[test]
+fn a_disc_is_as_thick_in_every_export() {
+    let mut spec = builtin("serial-3r").expect("built in").spec().clone();
+    let disc = |link: &str, mass, at, radius| Counterweight { link: link.into(), mass, at, radius, fixed: false };
+    spec.counterweights = vec![disc("1", 10.737, -0.12, 0.1204), disc("2", 0.105, -0.46, 0.0119)];
+    let machine = &Machine::new(spec).expect("a machine");
+    let weights = &machine.spec().counterweights;
+    for cut in
+        [Cut::default(), Cut { density: 2700.0, ..Cut::default() }, Cut { thickness: Some(0.05), ..Cut::default() }]
+    {
+        let models = [
+            (mjcf(machine, &middle(machine), &cut).expect("a model"), "geom", 2.0),
+            (urdf(machine, &cut), "cylinder", 1.0),
+        ];
+        for (model, tag, heights) in models {
+            let document = roxmltree::Document::parse(&model).expect("XML");
+            let numbers = |node: roxmltree::Node, key: &str| -> Vec<f64> {
+                let words = node.attribute(key).unwrap_or_default().split(' ');
+                words.filter_map(|word| word.parse().ok()).collect()
+            };
+            let mut discs: Vec<[f64; 2]> = Vec::new();
+            for node in document.descendants().filter(|node| node.has_tag_name(tag)) {
+                match (node.attribute("type"), tag) {
+                    (Some("cylinder"), _) => {
+                        let size = numbers(node, "size");
+                        discs.push([size[0], heights * size[1]]);
+                    }
+                    (_, "cylinder") => discs.push([numbers(node, "radius")[0], numbers(node, "length")[0]]),
+                    _ => {}
+                }
+            }
+            assert_eq!(discs.len(), weights.len(), "{tag}");
+            for weight in weights {
+                let listed = cut.thickness_of(weight).expect("a disc");
+                let near = |[radius, thickness]: &[f64; 2]| {
+                    (radius - weight.radius).abs() < 1e-12 && (thickness - listed).abs() < 1e-12
+                };
+                assert!(discs.iter().any(near), "{tag}: {discs:?}, want {} by {listed}", weight.radius);
+                let mass = cut.disc_mass(weight.radius, listed);
+                assert_eq!((mass - weight.mass).abs() < 1e-12, cut.thickness.is_none(), "{mass}");
+            }
         }
     }
 }

@@ -16,6 +16,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+use stillbase::exchange::cut::Cut;
 use stillbase::exchange::import::import;
 use stillbase::exchange::mjcf::{middle, mjcf};
 use stillbase::exchange::urdf::urdf;
@@ -352,7 +353,9 @@ fn models() {
     let machines = ["nine-link-geared", "serial-3r", "two-drive"].map(|name| machine::builtin(name).expect("built in"));
     let good: Vec<Vec<u8>> = machines
         .iter()
-        .flat_map(|machine| [urdf(machine), mjcf(machine, &middle(machine)).expect("a model")])
+        .flat_map(|machine| {
+            [urdf(machine, &Cut::default()), mjcf(machine, &middle(machine), &Cut::default()).expect("a model")]
+        })
         .chain([TWO.to_owned(), THREE.to_owned(), ARM.to_owned()])
         .map(String::into_bytes)
         .collect();

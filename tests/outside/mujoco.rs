@@ -1,10 +1,11 @@
 //! MuJoCo opens the models that are written for it and finds the same mass matrix, torques and reactions.
 
 use serde_json::{Value, json};
+use stillbase::exchange::cut::Cut;
 use stillbase::exchange::mjcf::{hinges, middle, mjcf};
 use stillbase::mechanics::dynamics::{ExternalLoads, inverse_with_wrench, mass_matrix};
 use stillbase::mechanics::kinematics::end_effector;
-use stillbase::mechanics::machine::{Inertia, Machine, builtins};
+use stillbase::mechanics::machine::{Counterweight, Inertia, Machine, builtins};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
 use stillbase::session::replay;
 use stillbase::session::scenario::Scenario;
@@ -65,7 +66,7 @@ fn asked(machine: &Machine, motions: &[Motion]) -> String {
             json!({ "qpos": qpos, "qvel": rates(&motion.qd), "qacc": rates(&motion.qdd) })
         })
         .collect();
-    let model = mjcf(machine, &middle(machine)).expect("a model");
+    let model = mjcf(machine, &middle(machine), &Cut::default()).expect("a model");
     json!({ "model": model, "columns": columns, "motions": motions }).to_string()
 }
 
@@ -116,7 +117,10 @@ fn every_machine_weighs_and_pulls_the_same() {
             other = other.set(&key("com_normal"), &normal).expect("in range");
         }
         let payload = [("payload.mass", "0.4"), ("payload.inertia", "0.003"), ("payload.offset", "0.03,-0.02")];
-        machines.push(other.set_all(payload).expect("in range"));
+        let mut spec = other.set_all(payload).expect("in range").spec().clone();
+        let link = spec.links[0].name.clone();
+        spec.counterweights.push(Counterweight { link, mass: 1.5, at: -0.1, radius: 0.05, fixed: false });
+        machines.push(Machine::new(spec).expect("a machine"));
     }
     let motions: Vec<Vec<Motion>> = machines
         .iter()

@@ -1,6 +1,7 @@
 //! Pinocchio opens the models that are written for it and finds the same mass matrix, weight, torques and reactions.
 
 use serde_json::{Value, json};
+use stillbase::exchange::cut::Cut;
 use stillbase::exchange::import::import;
 use stillbase::exchange::urdf::{joint, urdf};
 use stillbase::mechanics::dynamics::{ExternalLoads, inverse_with_wrench, mass_matrix};
@@ -140,7 +141,7 @@ fn every_machine_weighs_and_pulls_the_same() {
     }
     let line = |(machine, motions): (&Machine, &Vec<Motion>)| {
         let joints: Vec<(String, f64)> = (0..machine.drives()).map(|k| (joint(machine, k), 1.0)).collect();
-        asked(machine, &urdf(machine), &joints, &vec![0.0; machine.drives()], motions)
+        asked(machine, &urdf(machine, &Cut::default()), &joints, &vec![0.0; machine.drives()], motions)
     };
     let lines: Vec<String> = machines.iter().zip(&motions).map(line).collect();
     let found = answers(SCRIPT, &lines);

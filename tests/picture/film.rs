@@ -57,3 +57,56 @@ fn a_gif_holds_every_picture_and_is_as_long_as_the_run() {
     assert_eq!(count, COUNT);
     assert!((f64::from(delay) / 100.0 - f64::from(COUNT) / FPS).abs() <= 0.005, "{delay} hundredths of a second");
 }
+
+/// The delay of each picture, s, as a decoder of others reads it; pictures of a GIF that show the same are added up.
+fn delays(format: FilmFormat, count: u32, fps: f64) -> Vec<f64> {
+    let mut bytes = Vec::new();
+    let mut film = Film::begin(&mut bytes, format, SIZE, count, fps).expect("a head");
+    (0..count).for_each(|i| film.push(picture(i)).expect("a picture"));
+    film.finish().expect("an end");
+    let mut delays = Vec::new();
+    if format == FilmFormat::Gif {
+        let mut decoder = gif::DecodeOptions::new().read_info(Cursor::new(&bytes)).expect("a GIF");
+        while let Some(frame) = decoder.read_next_frame().expect("a picture") {
+            let delay = f64::from(frame.delay) / 100.0;
+            match [u32::from(frame.width), u32::from(frame.height)] == SIZE {
+                true => delays.push(delay),
+                false => *delays.last_mut().expect("one before") += delay,
+            }
+        }
+        return delays;
+    }
+    let mut reader = png::Decoder::new(Cursor::new(&bytes)).read_info().expect("a PNG");
+    for _ in 0..count {
+        let mut rgba = vec![0; reader.output_buffer_size().expect("a size")];
+        reader.next_frame(&mut rgba).expect("a picture");
+        let control = reader.info().frame_control().expect("a time");
+        delays.push(f64::from(control.delay_num) / f64::from(control.delay_den));
+    }
+    delays
+}
+
+/// Neither many pictures nor long ones make a film shorter than the run.
+#[test]
+fn a_long_film_is_as_long_as_the_run() {
+    for (count, fps) in [(800, 1.0), (3, 0.001), (2, 0.000_4), (5, 0.3), (4, 29.97), (4, 240.0)] {
+        for format in [FilmFormat::Gif, FilmFormat::Png] {
+            let (delays, wanted) = (delays(format, count, fps), 1.0 / fps);
+            assert_eq!(delays.len(), count as usize, "{format:?} at {fps}");
+            // A GIF counts in hundredths of a second, an animated PNG by fractions of 16 bits.
+            let off = if format == FilmFormat::Gif { 0.01 } else { 5e-4 * wanted };
+            assert!(delays.iter().all(|delay| (delay - wanted).abs() <= off), "{format:?} at {fps}: {delays:?}");
+            let all: f64 = delays.iter().sum();
+            assert!((all - f64::from(count) * wanted).abs() <= 0.005 + 5e-4 * all, "{format:?} at {fps}: {all} s");
+        }
+    }
+}
+
+#[test]
+fn a_picture_that_would_stay_for_days_is_refused() {
+    for (format, fps) in [(FilmFormat::Gif, 1e-5), (FilmFormat::Png, 1e-5), (FilmFormat::Gif, 0.0)] {
+        let begun = Film::begin(Vec::new(), format, SIZE, COUNT, fps).map(|_| ());
+        let why = begun.expect_err("too slow").to_string();
+        assert!(why.contains("pictures per second: want at least one in 65535 s"), "{why}");
+    }
+}

@@ -2,13 +2,15 @@
 
 use proptest::prelude::*;
 use stillbase::mechanics::machine::builtin;
+use stillbase::picture::charts::axis::{AxisKind, floor};
 use stillbase::picture::charts::choice::{PlotChange, PlotChoice};
 use stillbase::picture::charts::drawn::PlotLines;
-use stillbase::picture::charts::figure::{Figure, FigureItem, PlotContext};
+use stillbase::picture::charts::figure::{Figure, FigureItem, PlotContext, dashes, run_colour};
+use stillbase::picture::charts::legend::{RunName, figure};
 use stillbase::picture::charts::range::TimeExtent;
 use stillbase::picture::charts::search::search;
 use stillbase::picture::charts::svg::svg;
-use stillbase::picture::notation::Notation;
+use stillbase::picture::notation::{AngleUnit, Notation};
 use stillbase::picture::numbers::{at_step, round_ticks, ticks};
 use stillbase::picture::scene::palette::{Theme, palette};
 use stillbase::picture::scene::thin::simplify_line;
@@ -213,7 +215,7 @@ fn a_drawing_holds_what_the_plot_shows() {
         PlotContext { palette: &p, peaks: &session.frame().peaks, now: session.frame(), mark: None, hover: None };
     for plot in [&plots[0], plots.last().expect("one's own")] {
         let drawn = PlotLines::of(plot, &samples, &[], [0.0, 1.0], 600, true);
-        let figure = Figure::of(plot, &drawn, [720.0, 320.0], &look);
+        let figure = Figure::of(plot, &drawn, [720.0, 320.0], &look, &[]);
         let text = svg(&figure);
         let opened = text.matches("<text").count();
         assert_eq!(opened, text.matches("</text>").count());
@@ -321,4 +323,114 @@ fn ticks_are_short() {
             }
         }
     }
+}
+
+/// A magnitude begins at zero, and rounding noise does not fill its axes.
+#[test]
+fn noise_is_no_signal_and_magnitudes_begin_at_zero() {
+    let mut session = Session::open(Scenario::builtin("case-3").expect("built in")).expect("it starts");
+    session.seek(1.0);
+    let table = signals(&session.scenario().machine);
+    let mut choice = PlotChoice::default();
+    let added = ["moment/dynamic", "force/dynamic_x", "energy/kinetic", "pin/worst", "angle/1"];
+    added.iter().for_each(|path| choice.change(PlotChange::Plot((*path).into())));
+    choice.change(PlotChange::Against("plot 1".into(), Some("moment/total".into())));
+    for notation in [Notation::default(), Notation { angle: AngleUnit::Degrees, ..Notation::default() }] {
+        let plots = choice.plots(session.scenario(), &table, false, notation);
+        let wanted: Vec<Signal> =
+            plots.iter().flat_map(|plot| plot.curves.iter().chain(&plot.against).map(|c| c.signal.clone())).collect();
+        let samples: SignalSamples = stillbase::query::answer_sequence(&wanted, session.frames());
+        let drawn = |name: &str| {
+            let plot = plots.iter().find(|plot| plot.name == name || plot.title == name).expect("a plot");
+            PlotLines::of(plot, &samples, &[], [0.0, 1.0], 600, false)
+        };
+        // The moments of a reactionless run are below a micronewton metre: a flat line in the middle.
+        let length = |[low, high]: [f64; 2]| high - low;
+        let moment = drawn("plot 1");
+        assert!(length(moment.y) >= 1e-3 && length(moment.x) >= 1e-3, "{moment:?}");
+        assert!(length(drawn("plot 2").y) >= 1e-2);
+        let ticks = |y: [f64; 2]| round_ticks(y[0], y[1], 9.0).0;
+        for name in ["Force on the base", "plot 3", "plot 4"] {
+            let y = drawn(name).y;
+            assert!(ticks(y).iter().all(|tick| *tick >= 0.0) && y[0] <= 0.0, "{name}: {y:?}");
+        }
+        // What may be negative is shown around its values.
+        let angle = drawn("plot 5").y;
+        assert!(angle[0] > 0.5 * angle[1], "{angle:?}");
+    }
+}
+
+/// With a component of the force beside its norm, the axis goes as far down as the component.
+#[test]
+fn a_negative_value_extends_the_axis_of_a_magnitude() {
+    assert_eq!(AxisKind::FromZero.bounds([0.2, 3.0], 0.5), [0.0, 4.0]);
+    assert_eq!(AxisKind::FromZero.bounds([-1e-12, 1e-13], 0.5), [0.0, 0.5]);
+    let [low, high] = AxisKind::FromZero.bounds([-2.0, 3.0], 0.5);
+    assert!(low <= -2.0 && high >= 3.0);
+    assert_eq!(AxisKind::Free.bounds([f64::INFINITY, f64::NEG_INFINITY], 0.5), [0.0, 1.0]);
+    let machine = Scenario::builtin("case-3").expect("built in").machine;
+    for signal in signals(&machine) {
+        assert!(floor(&signal) > 0.0, "{} has no floor for {:?}", signal.path, signal.unit);
+        if signal.symbol.starts_with('|') {
+            assert!(signal.is_magnitude(), "{} is a norm", signal.path);
+        }
+    }
+}
+
+/// What is called a magnitude is never negative in runs of all kinds of machines.
+#[test]
+fn magnitudes_are_never_negative() {
+    for name in ["case-1", "scara", "spacecraft", "four-drive"] {
+        let mut session = Session::open(Scenario::builtin(name).expect("built in")).expect("it starts");
+        session.seek(1.0);
+        for signal in signals(&session.scenario().machine).iter().filter(|signal| signal.is_magnitude()) {
+            let least = session.frames().iter().map(|frame| signal.value(frame)).fold(f64::INFINITY, f64::min);
+            assert!(least >= -1e-9, "{name}: {} is {least}", signal.path);
+        }
+    }
+}
+
+/// A picture of a plot names the runs laid over: number, name, colour and dash of each.
+#[test]
+fn a_picture_names_the_runs_laid_over() {
+    let mut session = Session::open(Scenario::builtin("case-1").expect("built in")).expect("it starts");
+    session.seek(1.0);
+    let table = signals(&session.scenario().machine);
+    let choice = PlotChoice::default();
+    let plots = choice.plots(session.scenario(), &table, false, Notation::default());
+    let wanted: Vec<Signal> = plots[1].curves.iter().map(|c| c.signal.clone()).collect();
+    let samples: SignalSamples = stillbase::query::answer_sequence(&wanted, session.frames());
+    let p = palette(Theme::Light);
+    let look =
+        PlotContext { palette: &p, peaks: &session.frame().peaks, now: session.frame(), mark: None, hover: None };
+    let drawn = PlotLines::of(&plots[1], &samples, &[(2, &samples), (7, &samples)], [0.0, 1.0], 600, false);
+    let long = "Least torque & a name that goes on and on until nobody reads it any more".to_owned();
+    let runs = [RunName { run: 2, title: "Other <pose>".into() }, RunName { run: 7, title: long.clone() }];
+    for size in [[720.0, 320.0], [200.0, 120.0]] {
+        let plain = Figure::of(&plots[1], &drawn, size, &look, &[]);
+        let named = Figure::of(&plots[1], &drawn, size, &look, &runs);
+        assert!(named.size[1] > plain.size[1] && plain.size == size);
+        let height = |figure: &Figure| figure.axes.sides[3] - figure.axes.sides[1];
+        assert!((height(&named) - height(&plain)).abs() < 1e-3, "the axes keep their size");
+        let text = svg(&named);
+        assert!(text.contains("the run on disp") && text.contains(">3  <") && text.contains(">8  <"), "{text}");
+        assert!(text.contains("Other &lt;pose&gt;") && !text.contains(&long) && text.contains('…'), "{text}");
+        let samples: Vec<_> = named
+            .items
+            .iter()
+            .filter_map(|item| match item {
+                FigureItem::Line { points, colour, dash, inside: false, .. } => Some((points, *colour, *dash)),
+                _ => None,
+            })
+            .collect();
+        assert_eq!(samples.len(), 3);
+        for (sample, run) in samples[1..].iter().zip([2, 7]) {
+            assert_eq!((sample.1, sample.2), (run_colour(run, &p), dashes(run).0));
+        }
+        assert!(samples.iter().all(|(points, ..)| {
+            points.iter().all(|[x, y]| (0.0..=size[0]).contains(x) && *y > 30.0 && *y < named.axes.sides[1])
+        }));
+    }
+    assert!(figure(&[], 800.0, &p).is_none());
+    assert!(figure(&runs, 800.0, &p).is_some_and(|figure| svg(&figure).contains("Other")));
 }

@@ -567,13 +567,16 @@ fn a_machine_goes_elsewhere_by_the_ending_of_the_file() {
     assert!(read("arm.csv").starts_with("part,name,drive,length m,mass kg,"));
     assert!(prints(&["export-model", "scara", "-o", &file("arm.md")]).contains("10.000 kg in all"));
     fails(&["export-model", "scara", "-o", &file("arm.md")], 2, &["arm.md", "--force"]);
-    for (name, option) in [
-        ("b.urdf", ["--pose", "1,2"]),
-        ("b.xml", ["--bar-width", "0.04"]),
-        ("b.csv", ["--pin-diameter", "0.01"]),
-        ("b.urdf", ["--thickness", "0.01"]),
-    ] {
+    for (name, option) in
+        [("b.urdf", ["--pose", "1,2"]), ("b.xml", ["--bar-width", "0.04"]), ("b.csv", ["--pin-diameter", "0.01"])]
+    {
         fails(&[&["export-model", "scara", "-o", &file(name)], &option[..]].concat(), 2, &[option[0], "has no effect"]);
+    }
+    for name in ["b.urdf", "b.xml"] {
+        let command = ["export-model", "serial-3r", "-o", &file(name)];
+        fails(&[&command[..], &["--material", "0"]].concat(), 2, &["material 0 kg/m³"]);
+        prints(&[&command[..], &["--thickness", "0.03"]].concat());
+        std::fs::remove_file(folder.path(name)).expect("it was written");
     }
     for (option, words) in [
         (["--bar-width", "0.008"], "want bars wider"),

@@ -1,8 +1,10 @@
 //! The command that runs what is on display.
 
+use stillbase::mechanics::machine::Machine;
 use stillbase::session::scenario::Scenario;
-use stillbase::session::simulate_command;
+use stillbase::session::{row_options, simulate_command};
 use stillbase::settings::change::{join, single_change, value};
+use stillbase::simulation::signals::{Signal, chosen_signals, signals};
 use toml::Table;
 
 /// Splits a command into words as a shell does, quotes included.
@@ -63,4 +65,28 @@ fn what_settings_do_not_lead_to_has_no_command() {
     let other = Scenario::builtin("space-arm").expect("built in");
     assert_eq!(simulate_command(&Scenario { machine: other.machine, ..case.clone() }), None);
     assert_eq!(simulate_command(&Scenario { name: "mine".into(), ..case }), None);
+}
+
+/// Options name whole groups where they can, and every one of them means the signals that were chosen.
+#[test]
+fn options_of_rows_mean_the_chosen_signals() {
+    let machine = &Scenario::builtin("case-1").expect("built in").machine;
+    let table = signals(machine);
+    let named = |paths: &[&str]| -> Vec<Signal> {
+        table.iter().filter(|signal| paths.contains(&signal.path.as_str())).cloned().collect()
+    };
+    assert_eq!(row_options(&table, &table, None).as_deref(), Some(""));
+    let some = named(&["torque/1", "torque/2", "torque/3", "angle/2"]);
+    let options = row_options(&table, &some, Some([0.1 + 0.2, 0.5])).expect("nameable");
+    assert_eq!(options, " --signals torque,angle/2 --from 0.3 --to 0.5");
+    let names: Vec<String> = ["torque", "angle/2"].map(String::from).into();
+    assert_eq!(chosen_signals(&table, &names).expect("known"), some);
+    let machine = machine.spec().clone();
+    let mut comma = machine.clone();
+    comma.drives[1].name = "a, b".into();
+    comma.links.iter_mut().filter(|link| link.drive == machine.drives[1].name).for_each(|l| l.drive = "a, b".into());
+    comma.angles.clear();
+    let table = signals(&Machine::new(comma).expect("a machine"));
+    let one: Vec<Signal> = table.iter().filter(|signal| signal.path == "torque/a, b").cloned().collect();
+    assert_eq!((one.len(), row_options(&table, &one, None)), (1, None), "a comma separates names");
 }

@@ -2,14 +2,17 @@
 
 use egui::{Align2, ComboBox, DragValue, Grid, ScrollArea, Ui};
 
-use super::{DisplaySize, Export, FilmChoice, FilmForm, Look, PictureSize, RowForm, ValuesChoice};
+use super::values_card::{self, ValuesContext};
+use super::values_choice::times_in_words;
+use super::{DisplaySize, Export, FilmChoice, FilmForm, Look, PictureSize, TimeChoice};
 use crate::shot::Shot;
 use crate::theme::{colour, plain};
 use crate::widgets::name;
-use crate::{Command, FileDialog, FilePurpose, ViewChange, ViewState, plots};
+use crate::{Command, FileDialog, FilePurpose, ViewChange, ViewState};
 use stillbase_picture::scene::palette::Theme;
+use stillbase_query::Queries;
 use stillbase_session::Session;
-use stillbase_settings::number::fixed;
+use stillbase_simulation::signals::Signal;
 
 /// Width of the column of choices, points.
 const WIDTH_PT: f32 = 330.0;
@@ -20,7 +23,13 @@ const MAX_TOP_PT: f32 = 120.0;
 const FRAME_HEIGHT_PT: f32 = 160.0;
 
 /// Draws the card, if it is open.
-pub fn show(ctx: &egui::Context, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
+pub fn show(
+    ctx: &egui::Context,
+    session: &Session,
+    (queries, signals): (&Queries, &[Signal]),
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) {
     let Some(before) = &view_state.open.export else { return };
     let (mut export, mut open) = (before.clone(), true);
     let height = ctx.content_rect().height();
@@ -44,13 +53,20 @@ pub fn show(ctx: &egui::Context, session: &Session, view_state: &ViewState, comm
                     ui.end_row();
                 }
                 Export::Film(choice) => film_rows(ui, choice, session, view_state),
-                Export::Values(choice) => values_rows(ui, choice, session, view_state),
+                Export::Values(choice) => {
+                    values_card::rows(ui, choice, &ValuesContext { session, queries, signals, view_state }, commands);
+                }
                 Export::Report => {}
             };
             choices.show(ui, |ui| Grid::new("choices").num_columns(2).spacing([14.0, 8.0]).show(ui, rows));
             ui.add_space(6.0);
             ui.horizontal(|ui| {
-                let choose = ui.button("Choose a file…");
+                let nothing = match &export {
+                    Export::Values(choice) => choice.order(session, view_state, signals).err(),
+                    _ => None,
+                };
+                let choose = ui.add_enabled(nothing.is_none(), egui::Button::new("Choose a file…"));
+                let choose = choose.on_disabled_hover_text(nothing.unwrap_or_default());
                 if ctx.memory(|m| m.focused().is_none()) {
                     choose.request_focus();
                 }
@@ -121,13 +137,11 @@ fn look_rows(ui: &mut Ui, look: &mut Look, display: &DisplaySize) {
 
 /// Draws the choice between the time that plots show and the whole run.
 fn time_row(ui: &mut Ui, whole: &mut bool, session: &Session, view_state: &ViewState) {
-    let end = session.length();
-    let [from, to] = plots::extent(session).shown(view_state.charts.range);
+    let words = |of: TimeChoice| times_in_words(of.of(session, view_state));
     ui.label("Time");
     ui.vertical(|ui| {
-        ui.radio_value(whole, true, format!("the whole run, 0 to {} s", fixed(end, 3)));
-        let shown = format!("what the plots show, {} to {} s", fixed(from, 3), fixed(to.min(end), 3));
-        ui.radio_value(whole, false, shown);
+        ui.radio_value(whole, true, format!("the whole run, {}", words(TimeChoice::Whole)));
+        ui.radio_value(whole, false, format!("what the plots show, {}", words(TimeChoice::Shown)));
     });
     ui.end_row();
 }
@@ -155,23 +169,6 @@ fn film_rows(ui: &mut Ui, choice: &mut FilmChoice, session: &Session, view_state
         ui.label("pictures per second,");
         name(&ui.add(DragValue::new(&mut choice.slow).range(0.01..=1000.0).speed(0.05)), "Times slower than the run");
         ui.label("times slower than the run");
-    });
-    ui.end_row();
-}
-
-fn values_rows(ui: &mut Ui, choice: &mut ValuesChoice, session: &Session, view_state: &ViewState) {
-    ui.label("Signals");
-    ui.horizontal(|ui| {
-        ui.radio_value(&mut choice.all, false, "those of the plots on display");
-        ui.radio_value(&mut choice.all, true, "all");
-    });
-    ui.end_row();
-    time_row(ui, &mut choice.whole, session, view_state);
-    ui.label("Format");
-    ui.horizontal(|ui| {
-        for form in RowForm::ALL {
-            ui.radio_value(&mut choice.form, form, form.words());
-        }
     });
     ui.end_row();
 }

@@ -9,6 +9,8 @@ mod picture;
 mod report;
 mod size;
 mod values;
+mod values_card;
+mod values_choice;
 
 pub use card::show;
 pub use error::ExportError;
@@ -18,6 +20,7 @@ pub use picture::write_picture;
 pub use report::{ReportDone, write_report};
 pub use size::{DisplaySize, PictureSize};
 pub use values::{RowForm, ValuesOrder, write_values};
+pub use values_choice::{SignalChoice, TimeChoice, ValuesChoice};
 
 use super::Shot;
 use stillbase_picture::scene::palette::Theme;
@@ -63,17 +66,6 @@ pub struct FilmChoice {
     pub slow: f64,
 }
 
-/// Choices for values of signals.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ValuesChoice {
-    /// Whether all signals are written, not only those of the plots.
-    pub all: bool,
-    /// Whether the whole run is written, not only the time that plots show.
-    pub whole: bool,
-    /// Format that is suggested; the ending of the file's name decides.
-    pub form: RowForm,
-}
-
 impl Export {
     /// Returns a picture as the window would show it by default.
     pub fn picture(theme: Theme) -> Self {
@@ -88,7 +80,7 @@ impl Export {
 
     /// Returns values of signals with default choices.
     pub fn values() -> Self {
-        Self::Values(ValuesChoice { all: false, whole: false, form: RowForm::Csv })
+        Self::Values(ValuesChoice { signals: SignalChoice::Plots, times: TimeChoice::Shown, form: RowForm::Csv })
     }
 
     /// Returns the title of the card with its choices, and of the dialog for its file.

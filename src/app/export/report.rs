@@ -5,9 +5,10 @@ use std::path::Path;
 use super::ExportError;
 use crate::shot::{PictureOrder, Shot};
 use crate::{AppState, SessionCommand};
+use stillbase_picture::charts::legend::{self, run_names};
 use stillbase_picture::render::offscreen::NoPicture;
 use stillbase_picture::report::{Report, ReportPicture};
-use stillbase_picture::scene::palette::Theme;
+use stillbase_picture::scene::palette::{Theme, palette};
 use stillbase_session::session_command;
 use stillbase_session::verdict::{Statements, Verdict};
 use stillbase_settings::number::fixed;
@@ -41,6 +42,8 @@ fn report(app_state: &mut AppState, command: Option<String>) -> (String, ReportD
     let pictures = pictures(app_state, [0.0, end]);
     app_state.carry_out(SessionCommand::Seek(end));
     let figures = app_state.figures(PLOT_SIZE_PT, Theme::Light);
+    let runs = run_names(app_state.comparison());
+    let legend = legend::figure(&runs, 2.0 * PLOT_SIZE_PT[0], &palette(Theme::Light));
     let session = app_state.session();
     let command = command.or_else(|| session_command(session));
     let how = "Save the session (Ctrl S); stillbase report FILE.toml -o report.html then writes this page.";
@@ -50,6 +53,8 @@ fn report(app_state: &mut AppState, command: Option<String>) -> (String, ReportD
         frame: newest,
         pictures,
         figures: &figures,
+        legend: legend.as_ref(),
+        notation: app_state.view_state().arrangement.notation,
         comparison: app_state.comparison(),
         command: command.ok_or_else(|| how.to_owned()),
     };

@@ -20,11 +20,6 @@ pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, width: f32) {
         return;
     }
     let p = what.view_state.palette();
-    let title = |place: usize| {
-        let entry = &comparison.entries()[place];
-        let scenario = entry.outcome.as_ref().map(|run| run.scenario.title.as_str()).unwrap_or_default();
-        if entry.added_by_user && !scenario.is_empty() { scenario.to_owned() } else { entry.title.clone() }
-    };
     // The names share one row. If that would shorten them too much, the row wraps.
     let share = width / shown.len() as f32;
     let taken = SAMPLE_WIDTH_PT + 28.0;
@@ -38,7 +33,7 @@ pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, width: f32) {
                 let (rect, _) = ui.allocate_exact_size(vec2(SAMPLE_WIDTH_PT, 14.0), Sense::hover());
                 sample(ui, rect, dashes(place).0, colour(run_colour(place, &p)));
                 ui.label(egui::RichText::new(format!("{}", place + 1)).font(bold(10.5)).color(colour(p.run(place))));
-                fit::label_within(ui, &title(place), plain(11.0), colour(p.dim), room);
+                fit::label_within(ui, comparison.entries()[place].shown_title(), plain(11.0), colour(p.dim), room);
                 ui.add_space(4.0);
             }
         });

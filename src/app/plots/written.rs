@@ -7,6 +7,7 @@ use stillbase_picture::canvas::Canvas;
 use stillbase_picture::charts::choice::Plot;
 use stillbase_picture::charts::drawn::PlotLines;
 use stillbase_picture::charts::figure::{Figure, PlotContext};
+use stillbase_picture::charts::legend::run_names;
 use stillbase_picture::charts::svg::svg;
 use stillbase_picture::paint::figure::paint_figure;
 use stillbase_picture::scene::palette::Palette;
@@ -36,7 +37,7 @@ pub fn written(what: &DisplayContext<'_>, name: &str, file: PlotFile) -> Result<
     let mark = view_state.mark.map(|time| super::shown::instant(session, time));
     let palette = view_state.palette();
     let look = PlotContext { palette: &palette, peaks: &newest.peaks, now: session.frame(), mark, hover: None };
-    let figure = Figure::of(plot, drawn, PICTURE_SIZE_PT, &look);
+    let figure = Figure::of(plot, drawn, PICTURE_SIZE_PT, &look, &run_names(what.comparison));
     Ok(match file {
         PlotFile::Csv => {
             let range = extent(session).shown(view_state.charts.range);
@@ -49,7 +50,7 @@ pub fn written(what: &DisplayContext<'_>, name: &str, file: PlotFile) -> Result<
 }
 
 /// Returns drawings of all plots on display, of a size in points and in the colours of `palette`. They show `times`, s,
-/// with the cursors of the window.
+/// with the cursors of the window. They do not name overlaid runs.
 pub fn figures(what: &DisplayContext<'_>, times: [f64; 2], size: [f32; 2], palette: &Palette) -> Vec<Figure> {
     let DisplayContext { session, signals, view_state, .. } = *what;
     let plots = view_state.plots(session.scenario(), signals);
@@ -62,7 +63,7 @@ pub fn figures(what: &DisplayContext<'_>, times: [f64; 2], size: [f32; 2], palet
     let mark = view_state.mark.map(|time| super::shown::instant(session, time));
     let look = PlotContext { palette, peaks: &newest.peaks, now: session.frame(), mark, hover: None };
     let drawn = |plot: &Plot<'_>| PlotLines::of(plot, &samples, &others, times, size[0] as usize, false);
-    plots.iter().map(|plot| Figure::of(plot, &drawn(plot), size, &look)).collect()
+    plots.iter().map(|plot| Figure::of(plot, &drawn(plot), size, &look, &[])).collect()
 }
 
 /// Returns the signals whose values a plot shows.
@@ -71,7 +72,7 @@ pub fn columns(plot: &Plot<'_>) -> Vec<Signal> {
 }
 
 fn png(figure: &Figure) -> Result<Vec<u8>, String> {
-    let mut canvas = Canvas::new(PICTURE_SIZE_PT.map(|side| 2 * side as u32), 2.0).map_err(|why| why.to_string())?;
+    let mut canvas = Canvas::new(figure.size.map(|side| 2 * side.ceil() as u32), 2.0).map_err(|why| why.to_string())?;
     let mut has_fonts = false;
     let picture = canvas.draw(|ui| {
         // Fonts are available from the second pass on.

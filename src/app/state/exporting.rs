@@ -5,7 +5,7 @@ use std::path::Path;
 use super::AppState;
 use super::writing::absolute;
 use crate::export::{
-    self, Export, FilmChoice, FilmOrder, Look, ValuesChoice, ValuesOrder, write_film, write_picture, write_report,
+    self, Export, FilmChoice, FilmOrder, Look, TimeChoice, ValuesChoice, write_film, write_picture, write_report,
     write_values,
 };
 use crate::shot::PictureOrder;
@@ -33,7 +33,7 @@ impl AppState {
             Ok(match wanted {
                 Export::Picture(look) => app_state.picture_work(look),
                 Export::Film(choice) => app_state.film_work(choice)?,
-                Export::Values(choice) => app_state.values_work(*choice),
+                Export::Values(choice) => app_state.values_work(choice)?,
                 Export::Report => app_state.report_work(),
             })
         })
@@ -57,7 +57,9 @@ impl AppState {
 
     fn film_work(&self, choice: &FilmChoice) -> Result<Work, String> {
         let FilmChoice { ref look, whole, fps, slow, .. } = *choice;
-        let order = FilmOrder { picture: self.order(look), times: self.chosen_times(whole), fps, slow };
+        let times = if whole { TimeChoice::Whole } else { TimeChoice::Shown };
+        let order =
+            FilmOrder { picture: self.order(look), times: times.of(&self.session, &self.view_state), fps, slow };
         order.count().map_err(|e| e.to_string())?;
         let mut copy = self.copy();
         Ok(Box::new(move |ticket, path, force| {
@@ -69,24 +71,16 @@ impl AppState {
         }))
     }
 
-    fn values_work(&self, choice: ValuesChoice) -> Work {
-        let all = self.signals();
-        let signals = match choice.all {
-            true => all.to_vec(),
-            false => {
-                let plots = self.view_state.plots(self.session.scenario(), &all);
-                plots::shown_signals(&plots)
-            }
-        };
-        let order = ValuesOrder { signals, times: self.chosen_times(choice.whole) };
+    fn values_work(&self, choice: &ValuesChoice) -> Result<Work, String> {
+        let order = choice.order(&self.session, &self.view_state, &self.signals())?;
         let mut session = self.session.clone();
-        Box::new(move |ticket, path, force| {
+        Ok(Box::new(move |ticket, path, force| {
             let goes_on = &mut |done| ticket.goes_on(done);
             session.seek_while(order.times[1], &mut |_| goes_on(0.0));
             let rows = write_values(session.frames(), &order, path, force, goes_on).map_err(|e| e.to_string())?;
             let columns = counted(order.signals.len(), "signal");
             Ok(format!("saved {}, {} of {columns}", absolute(path), counted(rows, "row")))
-        })
+        }))
     }
 
     fn report_work(&self) -> Work {
@@ -97,16 +91,6 @@ impl AppState {
             write_report(&mut copy.open(), None, path, force, goes_on).map_err(|e| e.to_string())?;
             Ok(format!("saved {}; a browser shows and prints it", absolute(path)))
         })
-    }
-
-    /// Returns the time interval to be written, s: the whole run, or what plots show of it.
-    fn chosen_times(&self, whole: bool) -> [f64; 2] {
-        let extent = plots::extent(&self.session);
-        let end = self.session.length();
-        match whole {
-            true => [0.0, end],
-            false => extent.shown(self.view_state.charts.range).map(|time| time.clamp(0.0, end)),
-        }
     }
 
     /// Returns drawings of the plots on display, of a size in points.

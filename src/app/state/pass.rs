@@ -139,7 +139,7 @@ impl AppState {
         finder::show(ui.ctx(), &self.session, &self.signals(), &facts, recent, &mut self.view_state, &mut commands);
         notes::show(ui.ctx(), &self.session, &self.views, &mut self.view_state, &mut commands);
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
-        export::show(ui.ctx(), &self.session, &self.view_state, &mut commands);
+        export::show(ui.ctx(), &self.session, (&queries, &self.signals()), &self.view_state, &mut commands);
         commands
             .extend(widgets::refused_entry(ui.ctx()).map(|entry| Command::Window(WindowCommand::RefuseEntry(entry))));
         if widgets::drag_cancelled(ui.ctx()) {

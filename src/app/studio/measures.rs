@@ -29,7 +29,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, p: &Palette) {
     ];
     if let Some(planes) = run.planes() {
         let noun = if planes.is_reactionless() { "reactionless workspace" } else { "nearly reactionless workspace" };
-        rows.push((noun.into(), format!("{} m²", signed(planes.boundary().area(), 3))));
+        rows.push((noun.into(), notation.write(planes.boundary().area(), 3, "m²")));
     }
     if let Some(measures) = &facts.measures
         && measures.added_mass > 1e-9

@@ -257,7 +257,7 @@ fn outline_area(machine: &Machine, cut: &Cut, j: usize) -> f64 {
 /// Returns the line of text about a counterweight.
 fn disc(cut: &Cut, weight: &Counterweight) -> String {
     let (mass, at) = (fixed(weight.mass, 3), signed(weight.at));
-    let Some(thickness) = cut.thickness_of(weight.mass, weight.radius) else {
+    let Some(thickness) = cut.thickness_of(weight) else {
         return format!("counterweight at {at} mm: a point of {mass} kg");
     };
     let across = mm(2.0 * weight.radius);

@@ -189,6 +189,12 @@ impl Counterweight {
     pub fn inertia(&self) -> f64 {
         0.5 * self.mass * self.radius * self.radius
     }
+
+    /// Returns the thickness, m, that gives it its mass in a material of this density, kg/m³; `None` for a point.
+    pub fn thickness(&self, density: f64) -> Option<f64> {
+        let area = std::f64::consts::PI * self.radius * self.radius;
+        (self.radius > 0.0).then(|| self.mass / (density * area))
+    }
 }
 
 impl Link {

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
+use super::axis::AxisKind;
 use super::{Chart, EMPTY_CHART, charts};
 use crate::notation::{NameOrder, Notation, ShownUnit};
 use stillbase_session::scenario::Scenario;
@@ -189,7 +190,7 @@ impl PlotChoice {
         let open = table.filter(|chart| !of(chart.title).closed);
         let known = open.map(|chart| Plot::of(chart.title, chart, false, of(chart.title), (signals, notation)));
         let own = self.own.iter().map(|name| {
-            let chart = Chart { centred: false, min_range: 0.0, ..EMPTY_CHART };
+            let chart = Chart { axis: AxisKind::Free, min_range: 0.0, ..EMPTY_CHART };
             Plot::of(name, chart, true, of(name), (signals, notation))
         });
         // An added plot is omitted if the machine has none of its signals.

@@ -1,5 +1,6 @@
 //! The curves of a plot in a time interval ([`PlotLines`]), recomputed when samples, interval or choice change.
 
+use super::axis::{self, AxisKind};
 use super::choice::Plot;
 use stillbase_study::samples::SignalSamples;
 use stillbase_study::series::Statistics;
@@ -96,8 +97,8 @@ impl PlotLines {
         }
         drawn.all = rounded_bounds(plot, drawn.y);
         drawn.y = plot.values.unwrap_or(drawn.all);
-        if plot.against.is_some() {
-            drawn.x = with_margin(across);
+        if let Some(against) = plot.against {
+            drawn.x = with_margin(across, against.scale * axis::floor(against.signal));
         }
         drawn
     }
@@ -126,21 +127,25 @@ fn widen(bounds: &mut [f64; 2], [low, high]: [f64; 2]) {
 /// Returns rounded bounds of values, with a margin.
 fn rounded_bounds(plot: &Plot<'_>, [low, high]: [f64; 2]) -> [f64; 2] {
     let mut chart = plot.chart;
-    if chart.min_range == 0.0 {
-        // A plot that the user added has no minimum range; 0.1 % of its largest value replaces it.
+    if plot.added_by_user {
+        // A plot that the user added follows its curves; its axis is at least 0.1 % of the largest value long.
         let most = low.abs().max(high.abs());
-        chart.min_range = if most.is_finite() && most > 0.0 { 1e-3 * most } else { 1.0 };
+        let floor = plot.shown().fold(0.0_f64, |floor, curve| floor.max(curve.scale * axis::floor(curve.signal)));
+        let floor = if most.is_finite() { floor.max(1e-3 * most) } else { floor };
+        chart.min_range = if floor > 0.0 { floor } else { 1.0 };
+        chart.axis = AxisKind::of(plot.shown().map(|curve| curve.signal));
     }
     let [low, high] = chart.range(low, high);
     let margin = 0.06 * (high - low);
     [low - margin, high + margin]
 }
 
-/// Returns bounds widened by a margin, so that they are never equal.
-fn with_margin([low, high]: [f64; 2]) -> [f64; 2] {
+/// Returns bounds widened by a margin, at least `floor` apart.
+fn with_margin([low, high]: [f64; 2], floor: f64) -> [f64; 2] {
     if !(low.is_finite() && high.is_finite()) {
         return [0.0, 1.0];
     }
-    let margin = (0.06 * (high - low)).max(1e-9 * low.abs().max(high.abs())).max(1e-12);
+    let least = floor.max(1e-9 * low.abs().max(high.abs())).max(1e-12);
+    let margin = (0.06 * (high - low)).max(0.5 * (least - (high - low)));
     [low - margin, high + margin]
 }

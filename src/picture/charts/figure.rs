@@ -4,6 +4,7 @@
 use super::choice::Plot;
 use super::colour;
 use super::drawn::PlotLines;
+use super::legend::{self, RunName};
 use crate::numbers::{at_step, round_ticks, ticks};
 use crate::scene::Rgba;
 use crate::scene::palette::{Palette, faded};
@@ -307,18 +308,22 @@ pub struct Figure {
 }
 
 impl Figure {
-    /// Returns the picture of a plot, with its title, its units and the symbols of its curves; `size` in points.
-    pub fn of(plot: &Plot<'_>, drawn: &PlotLines, size: [f32; 2], look: &PlotContext<'_>) -> Self {
+    /// Returns the picture of a plot, with its title, its units, the symbols of its curves, and the names of the overlaid
+    /// runs `runs`, for which it is higher. `size` in points is without these names.
+    pub fn of(plot: &Plot<'_>, drawn: &PlotLines, size: [f32; 2], look: &PlotContext<'_>, runs: &[RunName]) -> Self {
         let p = look.palette;
-        let [width, height] = size;
-        let axes = Axes::within([12.0, 40.0, width - 16.0, height - 12.0], drawn);
+        let width = size[0];
+        let named = legend::height(runs, width - 32.0);
+        let height = size[1] + named;
+        let axes = Axes::within([12.0, 40.0 + named, width - 16.0, height - 12.0], drawn);
         let words = |text: String, bold, colour| FigureText { text, size: 13.0, bold, colour };
         let head = vec![words(plot.heading(), true, p.ink), words(format!("  {}", plot.unit()), false, p.dim)];
         let mut items = vec![FigureItem::Text { at: [16.0, 12.0], anchor: [0.0, 0.0], words: head }];
         let curves = plot.curves.iter().enumerate().filter(|(_, curve)| curve.on);
         let names = curves.map(|(i, c)| words(format!("  {}", c.signal.symbol), false, pen(plot, i, look).0)).collect();
         items.push(FigureItem::Text { at: [width - 16.0, 12.0], anchor: [1.0, 0.0], words: names });
+        items.extend(legend::items(runs, [16.0, 34.0], width - 32.0, p));
         items.extend(body(plot, drawn, &axes, look));
-        Self { size, background: p.panel, axes, items }
+        Self { size: [width, height], background: p.panel, axes, items }
     }
 }

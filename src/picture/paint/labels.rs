@@ -6,6 +6,7 @@ use egui::{Align2, CentralPanel, Frame, Galley, Painter, Pos2, Rect, Stroke, Ui,
 
 use super::{SceneViewport, colour, paint, plain};
 use crate::scene::camera::Camera;
+use crate::scene::overlay::PLATE_OPACITY;
 use crate::scene::palette::faded;
 use crate::scene::{Anchor, Label, NOTES, Scene};
 
@@ -158,8 +159,10 @@ fn lead(painter: &Painter, spot: &SceneViewport, scene: &Scene, (label, place): 
 }
 
 fn write(painter: &Painter, scene: &Scene, label: &Label, galley: Arc<Galley>, place: Rect) {
-    // A translucent background keeps the text legible over bars and curves.
-    painter.rect_filled(place.expand2(vec2(3.0, 0.0)), 3.0, colour(faded(scene.background, 0.55)));
+    // A translucent background keeps the text legible over bars and curves, and over whatever lies behind the scene.
+    let [r, g, b, opacity] = scene.background;
+    let plate = if opacity > 0.0 { faded(scene.background, 0.55) } else { [r, g, b, PLATE_OPACITY] };
+    painter.rect_filled(place.expand2(vec2(3.0, 0.0)), 3.0, colour(plate));
     painter.galley(place.min, galley, colour(label.colour));
 }
 

@@ -2,6 +2,7 @@
 //! two.
 
 pub mod markup;
+mod quantity;
 mod sections;
 mod table;
 
@@ -11,6 +12,7 @@ use markup::{base64, escaped};
 
 use super::charts::figure::Figure;
 use super::charts::svg::svg_element;
+use super::notation::Notation;
 use stillbase_session::Run;
 use stillbase_simulation::frame::Frame;
 use stillbase_study::comparison::Comparison;
@@ -25,10 +27,14 @@ pub struct Report<'a> {
     pub pictures: Result<Vec<ReportPicture>, String>,
     /// Drawings of plots.
     pub figures: &'a [Figure],
+    /// The names of the runs laid over in the plots, with samples of their lines.
+    pub legend: Option<&'a Figure>,
     /// Runs side by side.
     pub comparison: Option<&'a Comparison>,
     /// The command that repeats the run, or how to get one.
     pub command: Result<String, String>,
+    /// Units and names in texts and tables.
+    pub notation: Notation,
 }
 
 /// A picture of a report.
@@ -55,7 +61,11 @@ impl Report<'_> {
         section(&mut page, "Start and end", &self.pictures_html());
         section(&mut page, "Results", &self.results());
         section(&mut page, "Plots", &self.figures_html());
-        section(&mut page, "Runs compared", &self.comparison.map_or_else(String::new, sections::compared));
+        section(
+            &mut page,
+            "Runs compared",
+            &self.comparison.map_or_else(String::new, |of| sections::compared(of, self.notation)),
+        );
         section(&mut page, "Task", &self.task());
         section(&mut page, "Other settings that are not at their defaults", &self.settings());
         section(&mut page, "Machine", &self.machine());
@@ -81,10 +91,13 @@ impl Report<'_> {
 
     fn figures_html(&self) -> String {
         let figures = self.figures.iter().enumerate();
-        row_of(
-            "row small",
-            figures.map(|(i, figure)| format!("<figure>{}</figure>\n", svg_element(figure, &format!("axes-{i}")))),
-        )
+        let legend = self.legend.map(|legend| svg_element(legend, "legend"));
+        let legend = legend.map_or_else(String::new, |legend| format!("<div class=\"legend\">{legend}</div>\n"));
+        legend
+            + &row_of(
+                "row small",
+                figures.map(|(i, figure)| format!("<figure>{}</figure>\n", svg_element(figure, &format!("axes-{i}")))),
+            )
     }
 
     fn repeat(&self) -> String {
@@ -128,6 +141,7 @@ tbody tr { border-top: 1px solid #eef0f3; break-inside: avoid; }
 .row { display: flex; flex-wrap: wrap; gap: 10px; }
 figure { margin: 0; flex: 1 1 460px; max-width: 520px; break-inside: avoid; }
 figure img, figure svg { width: 100%; height: auto; border: 1px solid #dfe2e7; border-radius: 4px; }
+.legend svg { max-width: 100%; height: auto; margin-bottom: 6px; }
 figcaption { font-size: 12px; color: #6b7280; }
 pre { background: #f5f6f8; padding: 8px 10px; border-radius: 4px; white-space: pre-wrap; overflow-wrap: anywhere; }
 @page { size: A4; margin: 11mm; }

@@ -3,11 +3,12 @@
 use super::Report;
 use super::markup::escaped;
 use super::table::{NO_VALUE, PageTable};
+use crate::notation::{NameOrder, Notation};
 use stillbase_mechanics::machine::{Inertia, MachineSpec};
 use stillbase_session::verdict::{Statements, Verdict};
 use stillbase_settings::change;
 use stillbase_settings::key::Key;
-use stillbase_settings::number::{counted, fixed, nine_digits};
+use stillbase_settings::number::{counted, fixed, nine_digits, subscript};
 use stillbase_study::balance_constants::BalanceConstants;
 use stillbase_study::comparison::{Comparison, DESIGN_COLUMNS, SUMMARY_COLUMNS, Summary, SummaryColumn};
 
@@ -26,15 +27,15 @@ impl Report<'_> {
             escaped(&scenario.name),
             escaped(machine.name()),
             escaped(&counted(machine.drives(), "drive")),
-            escaped(&verdict.sentence())
+            escaped(&self.notation.sentence(&verdict.sentence()))
         );
         text += "<table>\n<tbody>\n";
         for (subject, statement) in Statements::of(self.run, self.frame).named() {
             text += &format!(
                 "<tr><td>{subject}</td><td class=\"{}\">{}</td><td>{}</td></tr>\n",
                 statement.outcome.name(),
-                escaped(&statement.words),
-                escaped(&statement.why)
+                escaped(&self.notation.sentence(&statement.words)),
+                escaped(&self.notation.sentence(&statement.why))
             );
         }
         text + "</tbody>\n</table>\n"
@@ -45,24 +46,33 @@ impl Report<'_> {
         let (scenario, totals, peaks) = (self.run.scenario(), &self.frame.totals, &self.frame.peaks);
         let verdict = Verdict::of(scenario, self.frame);
         let mut table = PageTable::new(1, ["", "value", "unit"]);
-        let mut row = |name: String, value: f64, decimals: usize, unit: &str| {
-            table.row([name, fixed(value, decimals), unit.into()]);
+        let notation = self.notation;
+        let mut row = |(term, symbol): (&str, &str), value: f64, decimals: usize, unit: &str| {
+            let (value, unit) = notation.fixed(value, decimals, unit);
+            table.row([notation.name(term, symbol), value, unit.into()]);
         };
-        row("duration".into(), self.frame.time, 3, "s");
+        row(("duration", ""), self.frame.time, 3, "s");
+        let drives = &scenario.machine.spec().drives;
         for (k, torque) in peaks.torque.iter().enumerate() {
-            row(format!("peak torque of drive {} in the run, |τ_{}|", k + 1, k + 1), *torque, TORQUE_DECIMALS, "N m");
+            let number = (k + 1).to_string();
+            let drive = drives.get(k).map_or(number.as_str(), |drive| &drive.name);
+            let (term, symbol) = (format!("peak torque of drive {drive} in the run"), format!("|τ{}|", subscript(k + 1)));
+            row((&term, &symbol), *torque, TORQUE_DECIMALS, "N m");
         }
-        row("peak moment on the base, |n_B|".into(), verdict.arm_moment, REACTION_DECIMALS, "N m");
-        row("root mean square of n_B".into(), totals.arm_moment_rms(), REACTION_DECIMALS, "N m");
+        let mean = "root mean square of the";
+        row(("peak moment on the base", "|n_B|"), verdict.arm_moment, REACTION_DECIMALS, "N m");
+        row((&format!("{mean} moment on the base"), "n rms"), totals.arm_moment_rms(), REACTION_DECIMALS, "N m");
         if let Some(past_wheel) = verdict.past_wheel {
-            row("peak moment past the wheel".into(), past_wheel, REACTION_DECIMALS, "N m");
+            row(("peak moment past the wheel", ""), past_wheel, REACTION_DECIMALS, "N m");
         }
-        row("peak dynamic force on the base, |f_B|".into(), verdict.force, REACTION_DECIMALS, "N");
-        row("root mean square of f_B".into(), totals.force_rms(), REACTION_DECIMALS, "N");
-        row("the base shifts by".into(), totals.shift, REACTION_DECIMALS, "m");
-        row("the base turns by".into(), totals.base_angle, REACTION_DECIMALS, "rad");
+        row(("peak dynamic force on the base", "|f_B|"), verdict.force, REACTION_DECIMALS, "N");
+        row((&format!("{mean} force on the base"), "f rms"), totals.force_rms(), REACTION_DECIMALS, "N");
+        if scenario.base.moves() {
+            row(("the base shifts by", ""), totals.shift, REACTION_DECIMALS, "m");
+            row(("the base turns by", ""), totals.base_angle, REACTION_DECIMALS, "rad");
+        }
         if verdict.has_target {
-            row("end effector from its target at the end".into(), verdict.target_distance, REACTION_DECIMALS, "m");
+            row(("end effector from its target at the end", ""), verdict.target_distance, REACTION_DECIMALS, "m");
         }
         table.html()
     }
@@ -83,8 +93,18 @@ impl Report<'_> {
             let typed = change::typed(&value);
             let is_default = typed == change::DEFAULT_WORD || change::same_value(&value, &change::value(key.default));
             if is_wanted(key) && !is_default {
-                let default = if key.default == Key::REQUIRED { NO_VALUE } else { key.default };
-                table.row([path, shortened(&typed), key.unit().into(), default.into(), key.meaning.into()]);
+                // Numbers beside others of other units stay in SI units.
+                // Angles of several turns have a unit that says so.
+                let unit = if key.unit().starts_with("rad, ") { "rad" } else { key.unit() };
+                let shown = self.notation.shown_unit(unit).filter(|_| change::is_of_numbers(&value));
+                let factor = shown.map(|shown| shown.factor);
+                let unit = shown.map_or(unit, |shown| shown.name);
+                let default = match key.default {
+                    Key::REQUIRED => NO_VALUE.to_owned(),
+                    default => change::typed_short(&change::value(default), factor),
+                };
+                let typed = shortened(&change::typed_short(&value, factor));
+                table.row([path, typed, unit.into(), default, key.meaning.into()]);
             }
         }
         table.html()
@@ -101,18 +121,37 @@ impl Report<'_> {
         };
         let mut text = format!(
             "<p>{}</p>\n",
-            escaped(&format!("{summary}Mass {} kg, reach {} m.", fixed(inertia.mass(), 3), fixed(machine.reach(), 3)))
+            escaped(&format!(
+                "{summary}Mass {} kg{}, {}.",
+                fixed(inertia.mass(), 3),
+                if spec.counterweights.is_empty() { "" } else { " with its counterweights" },
+                self.notation.sentence(&format!("reach {} m", fixed(machine.reach(), 3)))
+            ))
         );
-        let heads = ["link", "drive", "length m", "mass kg", "inertia kg m²", "centre of mass m"];
-        let mut links = PageTable::new(2, heads);
-        for (link, part) in machine.links().iter().zip(machine.resolved_links()) {
-            let numbers = [part.length, link.mass, link.inertia, link.com].map(nine_digits);
+        if !spec.counterweights.is_empty() {
+            text += "<p>The masses, inertias and centres of mass of links are without counterweights.</p>\n";
+        }
+        let notation = self.notation;
+        let length = |x: f64| notation.nine_digits(x, "m");
+        let heads = [notation.head("length", "m"), "mass (kg)".into(), "inertia (kg m²)".into()];
+        let heads = ["link", "drive"].map(String::from).into_iter().chain(heads);
+        let mut links = PageTable::new(2, heads.chain([notation.head("centre of mass", "m")]));
+        for (link, part) in spec.links.iter().zip(machine.resolved_links()) {
+            let numbers = [length(part.length), nine_digits(link.mass), nine_digits(link.inertia), length(link.com)];
             links.row([link.name.clone(), link.drive.clone()].into_iter().chain(numbers));
         }
         text += &links.html();
-        text += &lengths(spec);
-        text += &counterweights(spec);
-        let mut drives = PageTable::new(1, ["drive", "g kg m", "H kg m²", "D kg m²", "λ"]);
+        text += &lengths(spec, notation);
+        text += &counterweights(spec, notation);
+        let constant = |term, symbol, unit| notation.head(&notation.name(term, symbol), unit);
+        let heads = [
+            "drive".to_owned(),
+            constant("first moment", "g", "kg m"),
+            constant("diagonal of the mass matrix", "H", "kg m²"),
+            constant("angular momentum per rate", "D", "kg m²"),
+            constant("coefficient of b", "λ", ""),
+        ];
+        let mut drives = PageTable::new(1, heads);
         for (k, drive) in spec.drives.iter().enumerate() {
             let constants = [&balance.gamma_coefficients, &balance.h, &balance.d, &balance.lambda];
             let constants = constants.map(|of| of.get(k).map_or_else(String::new, |x| fixed(*x, 9)));
@@ -122,16 +161,21 @@ impl Report<'_> {
     }
 }
 
-fn lengths(spec: &MachineSpec) -> String {
-    let mut table = PageTable::new(1, ["shared length", "m"]);
-    spec.lengths.iter().for_each(|(name, length)| table.row([name.clone(), nine_digits(*length)]));
+fn lengths(spec: &MachineSpec, notation: Notation) -> String {
+    let mut table = PageTable::new(1, ["shared length", notation.unit_name("m")]);
+    spec.lengths.iter().for_each(|(name, length)| table.row([name.clone(), notation.nine_digits(*length, "m")]));
     table.html()
 }
 
-fn counterweights(spec: &MachineSpec) -> String {
-    let mut table = PageTable::new(1, ["counterweight of link", "mass kg", "along it m", "radius m"]);
-    for weight in &spec.counterweights {
-        table.row([weight.link.clone()].into_iter().chain([weight.mass, weight.at, weight.radius].map(nine_digits)));
+/// Returns the table of counterweights, counted from 1 as in their settings.
+fn counterweights(spec: &MachineSpec, notation: Notation) -> String {
+    let heads = ["counterweight", "on link", "mass (kg)"].map(String::from).into_iter();
+    let lengths = ["place along it", "radius"].map(|name| notation.head(name, "m"));
+    let mut table = PageTable::new(2, heads.chain(lengths));
+    for (i, weight) in spec.counterweights.iter().enumerate() {
+        let lengths = [weight.at, weight.radius].map(|x| notation.nine_digits(x, "m"));
+        let names = [(i + 1).to_string(), weight.link.clone(), nine_digits(weight.mass)];
+        table.row(names.into_iter().chain(lengths));
     }
     table.html()
 }
@@ -150,45 +194,52 @@ fn shortened(value: &str) -> String {
 struct Column {
     /// Its index among all columns.
     place: usize,
-    head: &'static str,
-    unit: &'static str,
+    head: String,
+    factor: f64,
     decimals: usize,
 }
 
 impl Column {
-    fn of<T>(place: usize, column: &SummaryColumn<T>) -> Self {
-        let SummaryColumn { head, unit, decimals, .. } = *column;
-        Self { place, head, unit, decimals }
+    fn of<T>(place: usize, column: &SummaryColumn<T>, notation: Notation) -> Self {
+        let SummaryColumn { head, term, unit, decimals, .. } = *column;
+        let name = if notation.names == NameOrder::Symbols { head } else { term };
+        let unit = if unit == "1" { "" } else { unit };
+        let shown = notation.shown_unit(unit);
+        let (factor, decimals) = shown.map_or((1.0, decimals), |shown| (shown.factor, shown.decimals(decimals)));
+        Self { place, head: notation.head(name, unit), factor, decimals }
     }
 }
 
 /// Returns the table of runs in the order on display; columns without a value are left out.
-pub(super) fn compared(comparison: &Comparison) -> String {
+pub(super) fn compared(comparison: &Comparison, notation: Notation) -> String {
     let entries = comparison.entries();
     let runs = || entries.iter().filter_map(|entry| Some(&entry.outcome.as_ref().ok()?.summary));
     let moves = runs().any(|run: &Summary| run.base_shift > 0.0 || run.base_tilt > 0.0);
     let has_value = |c: &SummaryColumn| runs().any(|run| (c.value)(run).is_some());
     let is_shown = |c: &SummaryColumn| has_value(c) && (moves || !matches!(c.key, "base_shift" | "base_tilt"));
-    let of_runs = SUMMARY_COLUMNS.iter().enumerate().filter(|(_, c)| is_shown(c)).map(|(i, c)| Column::of(i, c));
+    let of_runs =
+        SUMMARY_COLUMNS.iter().enumerate().filter(|(_, c)| is_shown(c)).map(|(i, c)| Column::of(i, c, notation));
     let designs = if comparison.has_designs() { &DESIGN_COLUMNS[..] } else { &[] };
-    let of_designs = designs.iter().enumerate().map(|(i, c)| Column::of(SUMMARY_COLUMNS.len() + i, c));
+    let of_designs = designs.iter().enumerate().map(|(i, c)| Column::of(SUMMARY_COLUMNS.len() + i, c, notation));
     let columns: Vec<Column> = of_runs.chain(of_designs).collect();
-    let heads = columns.iter().map(|column| match column.unit {
-        "1" => column.head.to_owned(),
-        unit => format!("{} {unit}", column.head),
-    });
-    let mut table = PageTable::new(1, ["run".to_owned()].into_iter().chain(heads).chain(["reactionless".to_owned()]));
+    let heads = columns.iter().map(|column| column.head.clone());
+    let names = ["number", "run"].map(String::from).into_iter();
+    let mut table = PageTable::new(2, names.chain(heads).chain(["reactionless".to_owned()]));
     let mut refused = String::new();
     for i in comparison.order() {
         let entry = &entries[i];
         match &entry.outcome {
             Ok(run) => {
-                let value = |column: &Column| entry.value(column.place).map(|x| fixed(x, column.decimals));
+                let value =
+                    |column: &Column| entry.value(column.place).map(|x| fixed(column.factor * x, column.decimals));
                 let cells = columns.iter().map(|column| value(column).unwrap_or_else(|| NO_VALUE.into()));
                 let verdict = run.summary.verdict.answer();
-                table.row([entry.title.clone()].into_iter().chain(cells).chain([verdict]));
+                table.row([(i + 1).to_string(), entry.title.clone()].into_iter().chain(cells).chain([verdict]));
             }
-            Err(why) => refused += &format!("<p>{}</p>\n", escaped(&format!("{}: {why}", entry.title))),
+            Err(why) => {
+                let why = format!("{}: {}", entry.title, notation.sentence(&why.to_string()));
+                refused += &format!("<p>{}</p>\n", escaped(&why));
+            }
         }
     }
     table.html() + &refused

@@ -35,6 +35,7 @@ pub mod measurement;
 #[doc(hidden)]
 pub mod mesh;
 pub mod options;
+pub mod overlay;
 pub mod palette;
 #[doc(hidden)]
 pub mod pick;

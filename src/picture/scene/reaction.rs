@@ -51,7 +51,16 @@ pub struct ReactionGlyph {
     pub has_force: bool,
     /// Whether the moment exceeds rounding errors, relative to the torques of the run so far.
     pub has_moment: bool,
+    /// Whether the run so far has had a force on the base, from motion.
+    pub had_force: bool,
+    /// Whether the run so far has had a moment on the base, less a wheel's.
+    pub had_moment: bool,
+    /// Whether the machine has moved so far.
+    pub has_moved: bool,
 }
+
+/// Inertial forces of a machine that has moved exceed this, N.
+const MIN_INERTIAL_PULL_N: f64 = 1e-9;
 
 impl ReactionGlyph {
     /// Returns the reaction of a frame.
@@ -62,6 +71,9 @@ impl ReactionGlyph {
             moment,
             static_force: frame.wrench.static_part.force.norm(),
             has_force: force.norm() > REACTIONLESS_SHARE * frame.peaks.inertial_pull.max(1e-9),
+            had_force: frame.peaks.transmits_force(),
+            had_moment: frame.peaks.moment > REACTIONLESS_SHARE * frame.peaks.torque_sum.max(1e-9),
+            has_moved: frame.peaks.inertial_pull > MIN_INERTIAL_PULL_N,
             has_moment: moment.abs() > REACTIONLESS_SHARE * frame.peaks.torque_sum.max(1e-9),
         }
     }
@@ -79,12 +91,18 @@ impl ReactionGlyph {
         (self.has_moment && sweep.abs() > MIN_SWEEP_RAD).then_some(sweep)
     }
 
-    /// Returns the texts of f_B and n_B with their colours.
+    /// Returns the texts of f_B and n_B with their colours: red for a reaction, green where none has come of a motion so
+    /// far. Zero says nothing while nothing has moved yet, or between reactions; it has the colour of text then.
     pub fn readings(&self, palette: &Palette) -> [(String, Rgba); 2] {
-        let tone = |real: bool| if real { palette.reaction } else { palette.zero };
+        let tone = |real: bool, stays_zero: bool| match (real, stays_zero && self.has_moved) {
+            (true, _) => palette.reaction,
+            (false, true) => palette.zero,
+            (false, false) => palette.dim,
+        };
+        let [force, moment] = [tone(self.has_force, !self.had_force), tone(self.has_moment, !self.had_moment)];
         [
-            (format!("f_B {} N", reading(self.force.norm(), self.has_force)), tone(self.has_force)),
-            (format!("n_B {} N m", reading(self.moment, self.has_moment)), tone(self.has_moment)),
+            (format!("f_B {} N", reading(self.force.norm(), self.has_force)), force),
+            (format!("n_B {} N m", reading(self.moment, self.has_moment)), moment),
         ]
     }
 

@@ -27,6 +27,12 @@ pub struct ComparisonEntry {
 }
 
 impl ComparisonEntry {
+    /// Returns the name by which plots and pictures tell the run: of a run that the user added, its scenario's title.
+    pub fn shown_title(&self) -> &str {
+        let scenario = self.outcome.as_ref().map(|run| run.scenario.title.as_str()).unwrap_or_default();
+        if self.added_by_user && !scenario.is_empty() { scenario } else { &self.title }
+    }
+
     /// Returns the value in a column; columns of runs come first, then those of designs.
     pub fn value(&self, column: usize) -> Option<f64> {
         match column.checked_sub(SUMMARY_COLUMNS.len()) {

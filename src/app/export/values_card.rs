@@ -1,0 +1,215 @@
+//! The choices for values of signals: a list of signals by groups, times, and the command that writes the same.
+
+use std::collections::BTreeSet;
+
+use egui::{Button, Checkbox, DragValue, Id, Label, RichText, ScrollArea, TextEdit, Ui};
+
+use super::values_choice::times_in_words;
+use super::{RowForm, SignalChoice, TimeChoice, ValuesChoice};
+use crate::theme::{bold, colour, plain};
+use crate::widgets::name;
+use crate::{Command, ViewState, WindowCommand};
+use stillbase_picture::charts::search::search;
+use stillbase_query::{Queries, QuickQuery, QuickWork, Shared};
+use stillbase_session::scenario::Scenario;
+use stillbase_session::{Session, has_settings_only, simulate_command};
+use stillbase_simulation::signals::Signal;
+
+/// Width of the column of choices, and height of the list of signals, points.
+const WIDTH_PT: f32 = 430.0;
+const LIST_HEIGHT_PT: f32 = 210.0;
+
+/// Query for the command that simulates a scenario.
+struct SimulateCommandOf;
+
+impl QuickQuery for SimulateCommandOf {
+    type Input = Shared<Scenario>;
+    type Answer = Option<String>;
+
+    fn answer(scenario: &Self::Input) -> Self::Answer {
+        simulate_command(&scenario.0)
+    }
+}
+
+/// The data that the choices refer to.
+pub struct ValuesContext<'a> {
+    pub session: &'a Session,
+    pub queries: &'a Queries,
+    /// All signals.
+    pub signals: &'a [Signal],
+    pub view_state: &'a ViewState,
+}
+
+/// Draws the choices.
+pub fn rows(ui: &mut Ui, choice: &mut ValuesChoice, what: &ValuesContext<'_>, commands: &mut Vec<Command>) {
+    ui.label("Signals");
+    ui.vertical(|ui| signal_rows(ui, &mut choice.signals, what));
+    ui.end_row();
+    ui.label("Time");
+    ui.vertical(|ui| time_rows(ui, &mut choice.times, what));
+    ui.end_row();
+    ui.label("Format");
+    ui.horizontal(|ui| {
+        for form in RowForm::ALL {
+            ui.radio_value(&mut choice.form, form, form.words());
+        }
+    });
+    ui.end_row();
+    ui.label("Command line");
+    ui.vertical(|ui| command_row(ui, choice, what, commands));
+    ui.end_row();
+}
+
+fn signal_rows(ui: &mut Ui, choice: &mut SignalChoice, what: &ValuesContext<'_>) {
+    let (p, all) = (what.view_state.palette(), what.signals);
+    let chosen = choice.of(what.session, what.view_state, all);
+    let mut paths: BTreeSet<String> = chosen.iter().map(|signal| signal.path.clone()).collect();
+    let before = paths.clone();
+    ui.horizontal(|ui| {
+        ui.radio_value(choice, SignalChoice::Plots, "those of the plots on display");
+        ui.radio_value(choice, SignalChoice::All, "all");
+        let words = format!("these: {} of {}", chosen.len(), all.len());
+        if ui.radio(matches!(choice, SignalChoice::These(_)), words).clicked() {
+            *choice = SignalChoice::These(paths.clone());
+        }
+    });
+    let id = Id::unique("part of the name of a signal to be written");
+    let mut text: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    ui.horizontal(|ui| {
+        let hint = RichText::new("find a signal: name, symbol, unit").font(plain(11.5));
+        let edit = TextEdit::singleline(&mut text).id(id.with("field")).hint_text(hint).font(plain(11.5));
+        name(&ui.add(edit.desired_width(WIDTH_PT - 70.0)), "Find a signal to be written");
+        if ui.small_button("none").on_hover_text("Takes all ticks away").clicked() {
+            paths.clear();
+        }
+    });
+    let found = search(all, &text);
+    ui.data_mut(|data| data.insert_temp(id, text));
+    let frame = egui::Frame::new().stroke(egui::Stroke::new(1.0, colour(p.line))).inner_margin(6.0);
+    frame.show(ui, |ui| {
+        let list =
+            ScrollArea::vertical().id_salt("signals").max_height(LIST_HEIGHT_PT).min_scrolled_height(LIST_HEIGHT_PT);
+        let list = list.auto_shrink([false, true]);
+        list.show(ui, |ui| {
+            ui.set_width(WIDTH_PT - 28.0);
+            ui.spacing_mut().item_spacing.y = 1.0;
+            ui.spacing_mut().interact_size.y = 18.0;
+            let seen: Vec<&Signal> = all.iter().filter(|signal| found.contains(signal)).collect();
+            if seen.is_empty() {
+                ui.label(RichText::new("no signal answers to all of this").color(colour(p.dim)));
+            }
+            for group in seen.chunk_by(|a, b| a.group() == b.group()) {
+                group_rows(ui, group, &mut paths, what);
+            }
+        });
+    });
+    if paths != before {
+        *choice = SignalChoice::These(paths);
+    }
+}
+
+/// Draws the tick of a group of signals, and one for each of them.
+fn group_rows(ui: &mut Ui, group: &[&Signal], paths: &mut BTreeSet<String>, what: &ValuesContext<'_>) {
+    let p = what.view_state.palette();
+    let notation = what.view_state.arrangement.notation;
+    let Some(first) = group.first() else { return };
+    let ticked = group.iter().filter(|signal| paths.contains(&signal.path)).count();
+    let mut whole = ticked == group.len();
+    ui.horizontal(|ui| {
+        let title = capital(&first.group().replace('_', " "));
+        let tick = Checkbox::new(&mut whole, RichText::new(&title).font(bold(12.0)));
+        let tick = ui.add(tick.indeterminate(ticked > 0 && ticked < group.len()));
+        name(&tick, &format!("{title}: all {}", group.len()));
+        if tick.clicked() {
+            for signal in group {
+                if whole {
+                    paths.insert(signal.path.clone())
+                } else {
+                    paths.remove(&signal.path)
+                };
+            }
+        }
+        // Files hold SI units, whatever the window shows.
+        let unit = if first.unit == "1" { "" } else { first.unit };
+        ui.label(RichText::new(unit).font(plain(11.5)).color(colour(p.dim)));
+    });
+    for signal in group {
+        ui.horizontal(|ui| {
+            ui.add_space(18.0);
+            let mut on = paths.contains(&signal.path);
+            let words = notation.name(&signal.label, &signal.symbol);
+            if ui.checkbox(&mut on, RichText::new(words).font(plain(12.0))).on_hover_text(&signal.path).clicked() {
+                if on {
+                    paths.insert(signal.path.clone())
+                } else {
+                    paths.remove(&signal.path)
+                };
+            }
+        });
+    }
+}
+
+fn time_rows(ui: &mut Ui, choice: &mut TimeChoice, what: &ValuesContext<'_>) {
+    let (session, view_state) = (what.session, what.view_state);
+    let end = session.length();
+    let words = |of: TimeChoice| times_in_words(of.of(session, view_state));
+    ui.radio_value(choice, TimeChoice::Whole, format!("the whole run, {}", words(TimeChoice::Whole)));
+    ui.radio_value(choice, TimeChoice::Shown, format!("what the plots show, {}", words(TimeChoice::Shown)));
+    let mut times = choice.of(session, view_state);
+    let before = times;
+    ui.horizontal(|ui| {
+        let mut typed = matches!(choice, TimeChoice::Between(_));
+        if ui.radio(typed, "from").clicked() {
+            typed = true;
+        }
+        for (i, words) in ["First instant, s", "Last instant, s"].into_iter().enumerate() {
+            if i > 0 {
+                ui.label("to");
+            }
+            let field = DragValue::new(&mut times[i]).range(0.0..=end).speed(0.002 * end).max_decimals(6).suffix(" s");
+            name(&ui.add(field), words);
+        }
+        if typed || times != before {
+            *choice = TimeChoice::Between(times);
+        }
+    });
+}
+
+/// Draws the command that writes the same, with a button that copies it, or why nothing can be written.
+fn command_row(ui: &mut Ui, choice: &ValuesChoice, what: &ValuesContext<'_>, commands: &mut Vec<Command>) {
+    let p = what.view_state.palette();
+    ui.set_width(WIDTH_PT);
+    let say = |ui: &mut Ui, words: &str, tone| {
+        ui.add(Label::new(RichText::new(words).font(plain(11.5)).color(colour(tone))).wrap())
+    };
+    let order = match choice.order(what.session, what.view_state, what.signals) {
+        Ok(order) => order,
+        Err(why) => {
+            say(ui, why, p.reaction);
+            return;
+        }
+    };
+    let Some(options) = choice.options(&order, what.session, what.signals) else {
+        say(ui, "a name with a comma cannot stand in a command: want the machine's parts without", p.dim);
+        return;
+    };
+    let known = what.queries.ask::<QuickWork<SimulateCommandOf>>(&what.session.run().shared_scenario());
+    let known = known.as_ref().as_ref().filter(|_| has_settings_only(what.session));
+    let command = format!("{}{options}", known.map_or("stillbase simulate FILE.toml", String::as_str));
+    ui.add(Label::new(RichText::new(&command).font(egui::FontId::monospace(11.5))).wrap());
+    ui.horizontal(|ui| {
+        let copy = ui.add(Button::new("Copy")).on_hover_text("Copies the command that writes the same file");
+        name(&copy, "Copy the command");
+        if copy.clicked() {
+            commands.push(WindowCommand::Copy(command.clone()).into());
+        }
+        if known.is_none() {
+            say(ui, "FILE.toml is this session, saved (Ctrl S)", p.dim);
+        }
+    });
+}
+
+fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
