@@ -9,6 +9,7 @@ mod guide;
 mod hands;
 mod intro;
 mod jobs;
+mod labels;
 mod layout;
 mod lessons;
 mod notation;
@@ -40,7 +41,7 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 28] = [
+pub const TESTS: [&[Test]; 29] = [
     saving::TESTS,
     family::TESTS,
     files::TESTS,
@@ -51,6 +52,7 @@ pub const TESTS: [&[Test]; 28] = [
     hands::TESTS,
     intro::TESTS,
     jobs::TESTS,
+    labels::TESTS,
     layout::TESTS,
     notation::TESTS,
     lessons::TESTS,

@@ -1,0 +1,208 @@
+//! Labels of the scene in the window: nothing overlaps, in any machine, size, theme, view and layout, and nothing jumps.
+
+use egui::{Pos2, Rect, Vec2, vec2};
+use stillbase::app::{Layout, Preferences, SessionCommand, Switch, ViewChange};
+use stillbase::mechanics::machine;
+use stillbase::picture::paint::SceneViewport;
+use stillbase::picture::paint::labels::{Placement, forget, last};
+use stillbase::picture::scene::palette::Theme;
+use stillbase::picture::scene::place;
+use stillbase::picture::scene::views::ViewKind;
+use stillbase::session::scenario::Scenario;
+
+use super::{Window, window_liked};
+use crate::Test;
+
+pub const TESTS: &[Test] = tests![nothing_overlaps_in_any_machine, labels_do_not_jump];
+
+const SIZES: [[f32; 2]; 4] = [[960.0, 600.0], [1280.0, 800.0], [1440.0, 900.0], [1920.0, 1200.0]];
+
+/// The built-in scenarios, and each machine that none of them has.
+fn gallery() -> Vec<Scenario> {
+    let case = Scenario::builtin("case-3").expect("built in");
+    let mut all: Vec<Scenario> = Scenario::builtins().cloned().collect();
+    for machine in machine::builtins() {
+        if !all.iter().any(|scenario| scenario.machine.name() == machine.name()) {
+            all.push(Scenario { name: machine.name().to_owned(), machine: machine.clone(), ..case.clone() });
+        }
+    }
+    all
+}
+
+fn carry_out(h: &mut Window, change: ViewChange) {
+    h.state_mut().app_state_mut().carry_out(change);
+}
+
+/// Texts on the screen with their rectangles, but for labels of a scene.
+fn texts(h: &Window) -> Vec<(Rect, String)> {
+    fn of(shape: &egui::Shape, clip: Rect, all: &mut Vec<(Rect, String)>) {
+        match shape {
+            egui::Shape::Text(text) => {
+                let rect = text.galley.rect.translate(text.pos.to_vec2()).intersect(clip);
+                if rect.is_positive() {
+                    all.push((rect, text.galley.text().to_owned()));
+                }
+            }
+            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| of(shape, clip, all)),
+            _ => {}
+        }
+    }
+    let mut all = Vec::new();
+    h.output().shapes.iter().for_each(|clipped| of(&clipped.shape, clipped.clip_rect, &mut all));
+    all
+}
+
+/// Triangles of the opaque solids of a scene on the screen.
+fn triangles(placement: &Placement) -> Vec<[Pos2; 3]> {
+    let spot = SceneViewport { rect: placement.view, camera: placement.camera };
+    let solids = placement.scene.solids.iter().filter(|solid| solid.name.starts_with("machine") && solid.colour[3] > 0.9);
+    let mut all = Vec::new();
+    for solid in solids {
+        let mesh = &placement.scene.model.meshes[solid.mesh];
+        let seen = |p: &[f32; 3]| spot.screen(place(&solid.world_from_item, *p).map(f64::from));
+        let points: Vec<Option<Pos2>> = mesh.positions.iter().map(seen).collect();
+        all.extend(mesh.triangles.iter().filter_map(|corners| {
+            let [a, b, c] = corners.map(|i| points[i as usize]);
+            Some([a?, b?, c?])
+        }));
+    }
+    all
+}
+
+/// Whether a triangle and a rectangle meet: no line along a side of either lies between them.
+fn meet(triangle: &[Pos2; 3], rect: Rect) -> bool {
+    let corners = [rect.left_top(), rect.right_top(), rect.right_bottom(), rect.left_bottom()];
+    let sides = (0..3).map(|i| (triangle[(i + 1) % 3] - triangle[i]).rot90());
+    let mut normals = sides.chain([vec2(1.0, 0.0), vec2(0.0, 1.0)]).filter(|n| n.length_sq() > 1e-9);
+    let range = |points: &[Pos2], n: Vec2| {
+        points.iter().map(|p| p.to_vec2().dot(n)).fold([f32::MAX, f32::MIN], |[a, b], x| [a.min(x), b.max(x)])
+    };
+    !normals.any(|n| {
+        let ([a, b], [c, d]) = (range(triangle, n), range(&corners, n));
+        b <= c || d <= a
+    })
+}
+
+/// What is wrong with the labels of a scene.
+fn faults(h: &Window, number: usize, found: &mut Vec<String>, at: &str) -> usize {
+    let Some(placement) = last(&h.ctx, number) else { return 0 };
+    let triangles = triangles(&placement);
+    let discs = placement.scene.markers.iter().filter(|marker| marker.radius >= 3.0);
+    let spot = SceneViewport { rect: placement.view, camera: placement.camera };
+    let discs: Vec<(Pos2, f32)> =
+        discs.filter_map(|marker| Some((spot.screen(marker.at.map(f64::from))?, marker.radius))).collect();
+    let texts = texts(h);
+    for (i, own) in placement.all.iter().enumerate() {
+        let (rect, words) = (own.place, own.label.text.as_str());
+        let mut wrong = |what: &str| found.push(format!("{at}, scene {number}: \"{words}\" {what}, {rect:?}"));
+        if !placement.view.contains_rect(rect) {
+            wrong("is cut off");
+        }
+        for other in &placement.all[..i] {
+            if other.place.shrink(1.0).intersects(rect.shrink(1.0)) {
+                wrong(&format!("lies over \"{}\"", other.label.text));
+            }
+        }
+        if triangles.iter().any(|triangle| meet(triangle, rect)) {
+            wrong("lies across the machine");
+        }
+        if let Some((at, _)) = discs.iter().find(|(at, radius)| rect.distance_to_pos(*at) < *radius) {
+            wrong(&format!("lies over a disc at {at:?}"));
+        }
+        for (place, text) in &texts {
+            if place.shrink(1.0).intersects(rect.shrink(1.0)) && (place.min - rect.min).length() > 0.5 {
+                wrong(&format!("lies under the text \"{text}\""));
+            }
+        }
+    }
+    placement.all.len()
+}
+
+fn picture(h: &mut Window, name: &str) {
+    let Some(folder) = std::env::var_os("STILLBASE_LOOK") else { return };
+    let only = std::env::var("STILLBASE_LOOK_AT").unwrap_or_default();
+    if only.split(',').any(|word| name.contains(word)) {
+        h.render().expect("drawn").save(std::path::Path::new(&folder).join(format!("{name}.png"))).expect("saved");
+    }
+}
+
+fn nothing_overlaps_in_any_machine() {
+    let mut h = window_liked(SIZES[0], &Preferences { hints: false, ..Preferences::default() });
+    h.run_steps(2);
+    let (mut found, mut labels) = (Vec::new(), 0);
+    for scenario in gallery() {
+        h.state_mut().app_state_mut().carry_out(SessionCommand::Open(Box::new(scenario.clone())));
+        h.run_steps(2);
+        for (k, size) in SIZES.into_iter().enumerate() {
+            h.set_size(Vec2::from(size));
+            for (view, layout, pair, theme) in [
+                (ViewKind::Flat, Layout::Explore, false, Theme::Dark),
+                (ViewKind::Flat, Layout::Explore, false, Theme::Light),
+                (ViewKind::Space, Layout::Explore, false, Theme::Light),
+                (ViewKind::Flat, Layout::Compare, false, Theme::Light),
+                (ViewKind::Flat, Layout::Present, false, Theme::Dark),
+                (ViewKind::Flat, Layout::Present, true, Theme::Light),
+                (ViewKind::Flat, Layout::Explore, true, Theme::Light),
+            ] {
+                // What is expensive is looked at in two sizes.
+                if pair && k % 2 == 1 {
+                    continue;
+                }
+                carry_out(&mut h, ViewChange::Theme(theme));
+                carry_out(&mut h, ViewChange::Layout(layout));
+                carry_out(&mut h, ViewChange::Kind(view));
+                carry_out(&mut h, ViewChange::Switch(Switch::Pair, pair));
+                forget(&h.ctx, 1);
+                h.run_steps(if pair { 4 } else { 3 });
+                let shown = if pair { "pair" } else { "alone" };
+                let at = format!("{}-{}-{}-{view:?}-{layout:?}-{shown}-{theme:?}", scenario.name, size[0], size[1]);
+                labels += faults(&h, 0, &mut found, &at);
+                if pair {
+                    labels += faults(&h, 1, &mut found, &at);
+                }
+                picture(&mut h, &at);
+            }
+            carry_out(&mut h, ViewChange::Switch(Switch::Pair, false));
+            carry_out(&mut h, ViewChange::Layout(Layout::Explore));
+        }
+    }
+    assert!(labels > 1000, "{labels} labels");
+    assert!(found.is_empty(), "{} faults:\n{}", found.len(), found.join("\n"));
+}
+
+/// Over a run, a label changes its place relative to its point only rarely.
+fn labels_do_not_jump() {
+    let mut h = window_liked(SIZES[1], &Preferences { hints: false, ..Preferences::default() });
+    h.run_steps(2);
+    let mut found = Vec::new();
+    for scenario in gallery() {
+        h.state_mut().app_state_mut().carry_out(SessionCommand::Open(Box::new(scenario.clone())));
+        h.run_steps(3);
+        h.state_mut().app_state_mut().carry_out(SessionCommand::TogglePlay);
+        let (mut jumps, mut frames) = (0, 0);
+        let mut before: Vec<(String, Vec2)> = Vec::new();
+        while frames < 50 {
+            h.step();
+            if frames % 10 == 5 {
+                faults(&h, 0, &mut found, &format!("{} moving", scenario.name));
+            }
+            let placement = last(&h.ctx, 0).expect("drawn");
+            let spot = SceneViewport { rect: placement.view, camera: placement.camera };
+            let now: Vec<(String, Vec2)> = placement.all.iter().filter_map(|own| {
+                let at = spot.screen(own.label.at.map(f64::from))?;
+                Some((own.label.name.to_string(), own.place.center() - at))
+            }).collect();
+            for (name, by) in &now {
+                let same: Vec<_> = before.iter().filter(|(other, _)| other == name).collect();
+                jumps += usize::from(!same.is_empty() && same.iter().all(|(_, old)| (*old - *by).length() > 24.0));
+            }
+            before = now;
+            frames += 1;
+        }
+        println!("{}: {jumps} jumps in {frames} frames", scenario.name);
+        if jumps > 6 {
+            found.push(format!("{}: {jumps} jumps in {frames} frames", scenario.name));
+        }
+    }
+    assert!(found.is_empty(), "{} faults:\n{}", found.len(), found.join("\n"));
+}
