@@ -1,8 +1,6 @@
 //! The card in which the user writes, changes or removes a note, and the notes of the scene that open it.
 
-use egui::{
-    Align2, Area, ComboBox, CursorIcon, DragValue, Frame, Id, Key, Order, Pos2, RichText, Sense, TextEdit, Ui,
-};
+use egui::{Align2, Area, ComboBox, CursorIcon, DragValue, Frame, Id, Key, Order, Pos2, RichText, Sense, TextEdit, Ui};
 
 use super::theme::{bold, colour, plain};
 use super::widgets::name;

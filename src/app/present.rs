@@ -18,7 +18,7 @@ pub fn size(rect: Rect) -> f32 {
 
 /// Returns the rectangle of a scene that the results cover.
 pub fn covers(rect: Rect) -> Rect {
-    Rect::from_min_size(rect.min, vec2(6.2 * size(rect), 3.6 * size(rect)))
+    Rect::from_min_size(rect.min, vec2(6.6 * size(rect), 4.6 * size(rect)))
 }
 
 /// Draws the results; returns the rectangles that they cover.

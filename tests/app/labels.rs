@@ -1,8 +1,11 @@
 //! Labels of the scene in the window: nothing overlaps, in any machine, size, theme, view and layout, and nothing jumps.
 
-use egui::{Pos2, Rect, Vec2, vec2};
+use egui::{Pos2, Rect, Vec2, pos2, vec2};
+use egui_kittest::kittest::Queryable as _;
 use stillbase::app::{Layout, Preferences, SessionCommand, Switch, ViewChange};
 use stillbase::mechanics::machine;
+use stillbase::picture::charts::choice::PlotChange;
+use stillbase::picture::notation::{NameOrder, Notation};
 use stillbase::picture::paint::SceneViewport;
 use stillbase::picture::paint::labels::{Placement, forget, last};
 use stillbase::picture::scene::palette::Theme;
@@ -10,10 +13,17 @@ use stillbase::picture::scene::place;
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::scenario::Scenario;
 
-use super::{Window, window_liked};
+use super::{Window, drag, pull, seen, session, window_liked};
 use crate::Test;
 
-pub const TESTS: &[Test] = tests![nothing_overlaps_in_any_machine, labels_do_not_jump];
+pub const TESTS: &[Test] = tests![
+    nothing_overlaps_in_any_machine,
+    nothing_overlaps_beside_another_run,
+    labels_do_not_jump,
+    the_table_of_runs_fits,
+    no_card_of_the_scene_shows_under_a_window,
+    what_is_dragged_stays_in_the_scene,
+];
 
 const SIZES: [[f32; 2]; 4] = [[960.0, 600.0], [1280.0, 800.0], [1440.0, 900.0], [1920.0, 1200.0]];
 
@@ -55,7 +65,8 @@ fn texts(h: &Window) -> Vec<(Rect, String)> {
 /// Triangles of the opaque solids of a scene on the screen.
 fn triangles(placement: &Placement) -> Vec<[Pos2; 3]> {
     let spot = SceneViewport { rect: placement.view, camera: placement.camera };
-    let solids = placement.scene.solids.iter().filter(|solid| solid.name.starts_with("machine") && solid.colour[3] > 0.9);
+    let solids =
+        placement.scene.solids.iter().filter(|solid| solid.name.starts_with("machine") && solid.colour[3] > 0.9);
     let mut all = Vec::new();
     for solid in solids {
         let mesh = &placement.scene.model.meshes[solid.mesh];
@@ -71,6 +82,9 @@ fn triangles(placement: &Placement) -> Vec<[Pos2; 3]> {
 
 /// Whether a triangle and a rectangle meet: no line along a side of either lies between them.
 fn meet(triangle: &[Pos2; 3], rect: Rect) -> bool {
+    if !Rect::from_points(triangle).intersects(rect) {
+        return false;
+    }
     let corners = [rect.left_top(), rect.right_top(), rect.right_bottom(), rect.left_bottom()];
     let sides = (0..3).map(|i| (triangle[(i + 1) % 3] - triangle[i]).rot90());
     let mut normals = sides.chain([vec2(1.0, 0.0), vec2(0.0, 1.0)]).filter(|n| n.length_sq() > 1e-9);
@@ -126,39 +140,34 @@ fn picture(h: &mut Window, name: &str) {
     }
 }
 
-fn nothing_overlaps_in_any_machine() {
+/// A view of a window, and whether another run stands beside it.
+type Look = (ViewKind, Layout, bool, Theme);
+
+/// What is wrong in every machine of the gallery, in every size and look.
+fn look_at_all(looks: impl Fn(usize) -> Vec<Look>) {
     let mut h = window_liked(SIZES[0], &Preferences { hints: false, ..Preferences::default() });
     h.run_steps(2);
-    let (mut found, mut labels) = (Vec::new(), 0);
+    let (mut found, mut placed, mut all) = (Vec::new(), 0, 0);
     for scenario in gallery() {
         h.state_mut().app_state_mut().carry_out(SessionCommand::Open(Box::new(scenario.clone())));
         h.run_steps(2);
         for (k, size) in SIZES.into_iter().enumerate() {
             h.set_size(Vec2::from(size));
-            for (view, layout, pair, theme) in [
-                (ViewKind::Flat, Layout::Explore, false, Theme::Dark),
-                (ViewKind::Flat, Layout::Explore, false, Theme::Light),
-                (ViewKind::Space, Layout::Explore, false, Theme::Light),
-                (ViewKind::Flat, Layout::Compare, false, Theme::Light),
-                (ViewKind::Flat, Layout::Present, false, Theme::Dark),
-                (ViewKind::Flat, Layout::Present, true, Theme::Light),
-                (ViewKind::Flat, Layout::Explore, true, Theme::Light),
-            ] {
-                // What is expensive is looked at in two sizes.
-                if pair && k % 2 == 1 {
-                    continue;
-                }
+            let mut before = None;
+            for (view, layout, pair, theme) in looks(k) {
                 carry_out(&mut h, ViewChange::Theme(theme));
                 carry_out(&mut h, ViewChange::Layout(layout));
                 carry_out(&mut h, ViewChange::Kind(view));
                 carry_out(&mut h, ViewChange::Switch(Switch::Pair, pair));
-                forget(&h.ctx, 1);
-                h.run_steps(if pair { 4 } else { 3 });
+                (0..2).for_each(|number| forget(&h.ctx, number));
+                let recoloured = Some((view, layout, pair)) == before;
+                before = Some((view, layout, pair));
+                h.run_steps(if pair { 4 } else { 2 - usize::from(recoloured) });
                 let shown = if pair { "pair" } else { "alone" };
                 let at = format!("{}-{}-{}-{view:?}-{layout:?}-{shown}-{theme:?}", scenario.name, size[0], size[1]);
-                labels += faults(&h, 0, &mut found, &at);
-                if pair {
-                    labels += faults(&h, 1, &mut found, &at);
+                for number in 0..2 {
+                    placed += faults(&h, number, &mut found, &at);
+                    all += last(&h.ctx, number).map_or(0, |placement| placement.scene.labels.len());
                 }
                 picture(&mut h, &at);
             }
@@ -166,8 +175,35 @@ fn nothing_overlaps_in_any_machine() {
             carry_out(&mut h, ViewChange::Layout(Layout::Explore));
         }
     }
-    assert!(labels > 1000, "{labels} labels");
+    println!("{placed} labels of {all}");
+    assert!(placed > 1000 && 10 * placed > 9 * all, "{placed} labels of {all} have a place");
     assert!(found.is_empty(), "{} faults:\n{}", found.len(), found.join("\n"));
+}
+
+fn nothing_overlaps_in_any_machine() {
+    look_at_all(|k| {
+        let mut looks = vec![
+            (ViewKind::Flat, Layout::Explore, false, Theme::Dark),
+            (ViewKind::Flat, Layout::Explore, false, Theme::Light),
+            (ViewKind::Space, Layout::Explore, false, [Theme::Light, Theme::Dark][k % 2]),
+            (ViewKind::Flat, Layout::Present, false, [Theme::Dark, Theme::Light][k % 2]),
+        ];
+        // The table of runs takes long to make.
+        if k == 0 {
+            looks.push((ViewKind::Flat, Layout::Compare, false, Theme::Light));
+        }
+        looks
+    });
+}
+
+fn nothing_overlaps_beside_another_run() {
+    look_at_all(|k| match k {
+        0 | 2 => vec![
+            (ViewKind::Flat, Layout::Present, true, Theme::Light),
+            (ViewKind::Flat, Layout::Explore, true, Theme::Dark),
+        ],
+        _ => vec![(ViewKind::Space, Layout::Explore, true, Theme::Dark)],
+    });
 }
 
 /// Over a run, a label changes its place relative to its point only rarely.
@@ -188,10 +224,14 @@ fn labels_do_not_jump() {
             }
             let placement = last(&h.ctx, 0).expect("drawn");
             let spot = SceneViewport { rect: placement.view, camera: placement.camera };
-            let now: Vec<(String, Vec2)> = placement.all.iter().filter_map(|own| {
-                let at = spot.screen(own.label.at.map(f64::from))?;
-                Some((own.label.name.to_string(), own.place.center() - at))
-            }).collect();
+            let now: Vec<(String, Vec2)> = placement
+                .all
+                .iter()
+                .filter_map(|own| {
+                    let at = spot.screen(own.label.at.map(f64::from))?;
+                    Some((own.label.name.to_string(), own.place.center() - at))
+                })
+                .collect();
             for (name, by) in &now {
                 let same: Vec<_> = before.iter().filter(|(other, _)| other == name).collect();
                 jumps += usize::from(!same.is_empty() && same.iter().all(|(_, old)| (*old - *by).length() > 24.0));
@@ -205,4 +245,71 @@ fn labels_do_not_jump() {
         }
     }
     assert!(found.is_empty(), "{} faults:\n{}", found.len(), found.join("\n"));
+}
+
+/// The table of runs has no column that is cut off, and in a usual window every column, with its symbols as with words.
+fn the_table_of_runs_fits() {
+    for (size, least) in [([960.0, 600.0], 6), ([1440.0, 900.0], 12)] {
+        for names in [NameOrder::Terms, NameOrder::Symbols] {
+            let mut h = window_liked(size, &Preferences { hints: false, ..Preferences::default() });
+            let notation = Notation { names, ..Notation::default() };
+            carry_out(&mut h, ViewChange::Notation(notation));
+            h.key_press(egui::Key::C);
+            h.run_steps(6);
+            let rects: Vec<Rect> = h.query_all_by_label_contains("Sort by").map(|head| head.rect()).collect();
+            assert!(rects.len() >= least, "{} columns at {size:?}", rects.len());
+            let right = rects.iter().map(|rect| rect.right()).fold(0.0, f32::max);
+            assert!(right <= size[0] - 16.0, "{right} of {size:?}");
+        }
+    }
+}
+
+const CARD: &str = "drag: the machine follows, b stays";
+
+/// Where the ring of the target is on the screen.
+fn target(h: &Window) -> Pos2 {
+    let placement = last(&h.ctx, 0).expect("drawn");
+    let ring = placement.scene.markers.iter().find(|marker| marker.name == "target").expect("a target");
+    seen(h, ring.at.map(f64::from))
+}
+
+/// A card of the scene shows where the scene is on top: not through a plot in a window, nor behind a dialog.
+fn no_card_of_the_scene_shows_under_a_window() {
+    let hovered = || {
+        let mut h = window_liked(SIZES[2], &Preferences { hints: false, ..Preferences::default() });
+        h.run_steps(3);
+        let at = target(&h);
+        h.hover_at(at);
+        h.run_steps(40);
+        assert!(h.query_by_label_contains(CARD).is_some(), "over the target");
+        (h, at)
+    };
+    let (mut h, at) = hovered();
+    let window = [at.x - 150.0, at.y - 80.0, 320.0, 200.0];
+    let name = "Torque".to_owned();
+    carry_out(&mut h, ViewChange::Charts(PlotChange::Window(name, Some(window))));
+    h.run_steps(4);
+    h.hover_at(at + vec2(0.0, 1.0));
+    h.run_steps(30);
+    assert!(h.query_by_label_contains(CARD).is_none(), "a plot lies over the target");
+    let before = session(&h).frame().target.at;
+    drag(&mut h, at, at + vec2(0.0, 60.0));
+    h.run_steps(4);
+    assert_eq!(session(&h).frame().target.at, before, "the plot was dragged, not the target");
+    let (mut h, _) = hovered();
+    h.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::K);
+    h.run_steps(30);
+    assert!(h.query_by_label_contains(CARD).is_none(), "a dialog is open");
+}
+
+/// A target dragged over the plots stops at the edge of the scene.
+fn what_is_dragged_stays_in_the_scene() {
+    let mut h = window_liked(SIZES[2], &Preferences { hints: false, ..Preferences::default() });
+    h.run_steps(3);
+    let from = target(&h);
+    let scene = h.get_by_label_contains("Scene:").rect();
+    pull(&mut h, from, pos2(scene.right() + 200.0, from.y));
+    h.run_steps(3);
+    let at = target(&h);
+    assert!(scene.expand(1.0).contains(at) && at.x > scene.right() - 4.0, "{at} in {scene}");
 }

@@ -121,6 +121,12 @@ fn seen(h: &Window, point: [f64; 3]) -> egui::Pos2 {
     rect.min + egui::vec2(u as f32 * rect.width(), v as f32 * rect.height())
 }
 
+/// Where a label of the scene stands.
+fn written(h: &Window, text: &str) -> egui::Pos2 {
+    let placement = stillbase::picture::paint::labels::last(&h.ctx, 0).expect("drawn");
+    placement.all.iter().find(|own| own.text == text).expect("it is written").place.center()
+}
+
 fn drag(h: &mut Window, from: egui::Pos2, to: egui::Pos2) {
     pull(h, from, to);
     h.drop_at(to);

@@ -79,7 +79,7 @@ pub fn draw_labels(ui: &Ui, number: usize, spot: &SceneViewport, scene: &Arc<Sce
         // What is laid out is not kept: it refers to an atlas of letters that may be made anew.
         let galley = laid_out(&painter, label, text.clone());
         // A translucent background keeps the text legible over curves.
-        painter.rect_filled(boxed(*place), 3.0, colour(faded(scene.background, 0.55)));
+        painter.rect_filled(boxed(*place), 3.0, colour(faded(scene.background, 0.75)));
         painter.galley(place.min, galley, colour(label.colour));
     }
     ui.ctx().data_mut(|data| data.insert_temp(id(number), current.clone()));

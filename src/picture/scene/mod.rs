@@ -353,7 +353,6 @@ impl Label {
         Self { handle: Some(handle), ..self }
     }
 
-
     /// Returns a label of the given text, colour and size beside a point.
     pub fn new(
         name: impl Into<Name>,
@@ -427,7 +426,8 @@ impl Scene {
 
     /// Whether another scene looks the same except for its labels.
     pub fn looks_like(&self, other: &Self) -> bool {
-        let Self { background, model, areas, shadows, solids, lines, markers, labels: _, bodies: _, notation: _ } = self;
+        let Self { background, model, areas, shadows, solids, lines, markers, labels: _, bodies: _, notation: _ } =
+            self;
         Arc::ptr_eq(model, &other.model)
             && (background, areas, solids, markers) == (&other.background, &other.areas, &other.solids, &other.markers)
             && (shadows, lines) == (&other.shadows, &other.lines)

@@ -349,7 +349,7 @@ impl Stage {
         scene.notation = options.notation;
         self.bodies(&mut scene, &palette, shown, options);
         self.grid.draw(&mut scene, &palette);
-        self.base.unmoved(&mut scene, linkage, &palette, shown, options.exaggeration);
+        self.base.unmoved(&mut scene, linkage, &palette, shown, options.exaggeration.factor());
         self.base.draw(&mut scene, linkage, &palette, shown);
         if let Some(workspace) = self.outlined() {
             let parts = WorkspaceParts { fill: self.fill, compared_b: self.compared };

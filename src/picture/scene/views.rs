@@ -444,9 +444,10 @@ impl Views {
                 });
                 let point = points.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
                 // So is a payload.
-                let load = self.stage.handle(Handle::Payload, shown).filter(|at| {
-                    first.is_none() && pointer.distance(*at).is_some_and(|off| off < PAYLOAD_PICK_PX)
-                });
+                let load = self
+                    .stage
+                    .handle(Handle::Payload, shown)
+                    .filter(|at| first.is_none() && pointer.distance(*at).is_some_and(|off| off < PAYLOAD_PICK_PX));
                 let load = load.map(|at| Pick::of(Handle::Payload, at));
                 let ends = self.stage.limits(shown).filter_map(|end| {
                     let off = pointer.distance(end.at).filter(|off| *off < POINT_PICK_PX)?;

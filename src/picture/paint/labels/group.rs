@@ -8,17 +8,18 @@ use super::room::{Room, nearest};
 use crate::scene::{Anchor, Label, NOTES, Name};
 
 /// Horizontal and vertical shifts of a place, points.
-const SHIFTS_X_PT: [f32; 9] = [0.0, -30.0, 30.0, -60.0, 60.0, -110.0, 110.0, -170.0, 170.0];
+const SHIFTS_X_PT: [f32; 13] = [0.0, -10.0, 10.0, -20.0, 20.0, -40.0, 40.0, -70.0, 70.0, -110.0, 110.0, -170.0, 170.0];
 const SHIFT_Y_PT: f32 = 8.0;
 const SHIFTS_Y: i32 = 12;
 /// Costs, in points of shift, of a row that is left out, of covering an arrow, and of each way to stand.
 const ROW_COST: f32 = 150.0;
 const ARROW_COST: f32 = 40.0;
-const WAYS: [(Way, f32); 4] =
-    [(Way { left: false, up: false }, 0.0), (Way { left: true, up: false }, 10.0), (Way { left: false, up: true }, 12.0), (
-        Way { left: true, up: true },
-        20.0,
-    )];
+const WAYS: [(Way, f32); 4] = [
+    (Way { left: false, up: false }, 0.0),
+    (Way { left: true, up: false }, 10.0),
+    (Way { left: false, up: true }, 12.0),
+    (Way { left: true, up: true }, 20.0),
+];
 /// A group moves only to a place that is better by this much, points, and clear of everything by the margin.
 const MIN_GAIN_PT: f32 = 22.0;
 const MARGIN_PT: f32 = 5.0;
@@ -47,8 +48,11 @@ pub struct Choice {
 /// All ways and shifts, the cheapest first.
 static CHOICES: LazyLock<Vec<Choice>> = LazyLock::new(|| {
     let shifts = SHIFTS_X_PT.iter().flat_map(|x| (-SHIFTS_Y..=SHIFTS_Y).map(|i| vec2(*x, i as f32 * SHIFT_Y_PT)));
-    let choice = |shift: Vec2, (way, cost): (Way, f32)| {
-        Choice { rows: 0, way, shift, cost: cost + shift.y.abs() + 0.6 * shift.x.abs() }
+    let choice = |shift: Vec2, (way, cost): (Way, f32)| Choice {
+        rows: 0,
+        way,
+        shift,
+        cost: cost + shift.y.abs() + 0.6 * shift.x.abs(),
     };
     let mut all: Vec<Choice> = shifts.flat_map(|shift| WAYS.map(|way| choice(shift, way))).collect();
     all.sort_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -107,9 +111,9 @@ pub struct Group<'a> {
 impl<'a> Group<'a> {
     /// Whether a label belongs to it.
     pub fn takes(&self, label: &Label) -> bool {
-        self.rows.first().is_some_and(|(first, ..)| {
-            first.at == label.at && Kind::shared(&first.name) == Kind::shared(&label.name)
-        })
+        self.rows
+            .first()
+            .is_some_and(|(first, ..)| first.at == label.at && Kind::shared(&first.name) == Kind::shared(&label.name))
     }
 
     /// Adds a label at its best place.

@@ -56,9 +56,8 @@ impl Room {
             Some(Strip { ends: [at; 2], radius: marker.radius + CLEARANCE_PT })
         });
         let arrows = scene.lines.iter().filter(|line| line.on_top && line.width >= MIN_ARROW_PX && line.dash.is_none());
-        let short = |line: &&crate::scene::Polyline| {
-            line.strips.iter().map(Vec::len).sum::<usize>() <= MAX_ARROW_VERTICES
-        };
+        let short =
+            |line: &&crate::scene::Polyline| line.strips.iter().map(Vec::len).sum::<usize>() <= MAX_ARROW_VERTICES;
         let pairs = |line: &crate::scene::Polyline| {
             let at = |p: &[f32; 3]| seen(crate::scene::place(&line.world_from_item, *p));
             let strips = line.strips.iter().flat_map(|strip| strip.windows(2));

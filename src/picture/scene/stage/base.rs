@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use crate::numbers::{signed, three_digits};
 use crate::scene::arrow::head;
-use crate::scene::exaggeration::{DrawnFrame, Exaggeration};
+use crate::scene::exaggeration::DrawnFrame;
 use crate::scene::linkage::{LinkageModel, PLATE_HALF_SIZE};
 use crate::scene::options::{Handle, ViewOptions};
 use crate::scene::palette::{Palette, faded, mix};
@@ -13,7 +13,6 @@ use crate::scene::{Anchor, Label, Marker, Polyline, Scene, Transform, point, pos
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::{Pose2, UnitVectors, Vector, unit};
 use stillbase_session::Run;
-use stillbase_settings::number::ShortNumber;
 use stillbase_simulation::frame::Frame;
 use stillbase_simulation::plant::{Base, BaseKind, Load};
 
@@ -196,33 +195,21 @@ impl BaseStage {
         scene.labels.push(Label::new("push/size", point(to, z), [aside, 0.0], words, palette.amber, 12.5, anchor));
     }
 
-    /// Writes the motion of a base that can move, and the scale of a motion that is drawn larger than it is. If the base
-    /// has moved visibly, also draws base and machine as if it had not.
+    /// Writes the motion of a base that can move. If it has moved visibly, also draws base and machine as if it had
+    /// not. `times` is the factor of exaggeration.
     pub fn unmoved(
         &self,
         scene: &mut Scene,
         linkage: &LinkageModel,
         palette: &Palette,
         shown: &DrawnFrame<'_>,
-        exaggeration: Exaggeration,
+        times: f64,
     ) {
         let Pose2 { at, angle } = shown.base;
         let reach = linkage.reach();
-        let beside = point(Vector::new(0.2 * reach, -0.11 * reach), linkage.top());
-        let mut words = |text: String| {
-            let label = Label::new("base_motion", beside, [0.0, -17.0], text, palette.dim, 11.5, Anchor::Left);
-            scene.labels.push(label);
-        };
-        if let Exaggeration::Mount(compliance) = exaggeration {
-            let turn = ShortNumber(compliance.to_degrees());
-            words(format!("drawn on a soft mount: 1 N m turns the base by {turn}°"));
-        }
         if !self.base.moves() {
             return;
         }
-        let times = exaggeration.factor();
-        let exaggerated = if times == 1.0 { String::new() } else { format!(" · shown ×{times}") };
-        words(format!("{}{exaggerated}", motion(shown.frame)));
         if at.norm() + angle.abs() * reach > 0.002 * reach {
             let (z, colour) = (linkage.floor(), faded(palette.dim, 0.75));
             let mut e: UnitVectors = shown.q.units();
@@ -241,6 +228,10 @@ impl BaseStage {
             strips.push(outline);
             scene.lines.push(Polyline::new("unmoved", strips, 1.2, colour).dashed(3.0, 3.0));
         }
+        let exaggerated = if times == 1.0 { String::new() } else { format!(" · shown ×{times}") };
+        let text = format!("{}{exaggerated}", motion(shown.frame));
+        let at = point(Vector::new(0.2 * reach, -0.11 * reach), linkage.top());
+        scene.labels.push(Label::new("base_motion", at, [0.0, -17.0], text, palette.dim, 11.5, Anchor::Left));
     }
 }
 
