@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use egui::{CentralPanel, CursorIcon, Frame, PointerButton, PopupAnchor, Pos2, Rect, Sense, Tooltip, Ui, Vec2};
+use egui::{
+    CentralPanel, CursorIcon, Frame, LayerId, Order, PointerButton, PopupAnchor, Pos2, Rect, Sense, Tooltip, Ui, Vec2,
+};
 
 use super::card::Card;
 use super::intro::Intro;
@@ -242,6 +244,16 @@ pub(super) fn is_on_top(response: &egui::Response, pos: Pos2) -> bool {
     response.ctx.layer_id_at(pos).is_none_or(|layer| layer == response.layer_id)
 }
 
+/// Whether a dialog is open that takes clicks.
+fn has_dialog(ctx: &egui::Context) -> bool {
+    ctx.memory(|memory| {
+        let on_top = |layer: &LayerId| memory.layer_id_at(memory.area_rect(layer.id)?.center());
+        let takes_clicks = |layer: &LayerId| on_top(layer) == Some(*layer);
+        let layers = memory.areas().visible_layer_ids();
+        layers.iter().any(|layer| layer.order == Order::Foreground && takes_clicks(layer))
+    })
+}
+
 /// Shows the card of the object under the pointer, after a delay.
 fn show_card(response: &egui::Response, session: &Session, views: &Views, view_state: &ViewState) {
     let (ctx, id) = (&response.ctx, response.id.with("told of"));
@@ -252,7 +264,7 @@ fn show_card(response: &egui::Response, session: &Session, views: &Views, view_s
         }
         return;
     }
-    let listed = egui::Popup::is_any_open(ctx);
+    let listed = egui::Popup::is_any_open(ctx) || has_dialog(ctx);
     let rests = view_state.gesture.grabbed.is_none() && !response.dragged() && !listed;
     let quiet = rests && response.hovered() && response.hover_pos().is_some_and(|pos| is_on_top(response, pos));
     let Some(thing) = view_state.pointed.object.filter(|_| quiet) else {
