@@ -18,7 +18,7 @@ use crate::scene::camera::Camera;
 use crate::scene::options::Handle;
 use crate::scene::palette::faded;
 use crate::scene::{Label, NOTES, Name, Scene};
-use group::{Choice, Group, Kind, boxed};
+use group::{Choice, Group, Kind, boxed, choices};
 use room::{Room, nearest};
 
 /// A label that has a place.
@@ -52,6 +52,8 @@ pub struct Placement {
     room: Room,
     pixels_per_point: f32,
     choices: HashMap<(Name, usize), Choice>,
+    /// All places of a group, which never change.
+    all_choices: Arc<[Choice]>,
 }
 
 /// Paints a scene with its labels over the whole surface, without input.
@@ -137,6 +139,7 @@ pub fn placed(
         room: room.clone(),
         pixels_per_point,
         choices: HashMap::new(),
+        all_choices: before.map_or_else(choices, |before| before.all_choices.clone()),
     };
     let mut room = room;
     for (number, group) in groups(painter, spot, scene).into_iter().enumerate() {
@@ -145,7 +148,7 @@ pub fn placed(
             continue;
         }
         let own = before.and_then(|before| before.choices.get(&group.key)).copied();
-        let Some(choice) = group.choose(&room, own) else { continue };
+        let Some(choice) = group.choose(&room, &current.all_choices, own) else { continue };
         let places: Vec<Rect> = group.places(&choice, view).collect();
         let block = places.iter().fold(Rect::NOTHING, |block, place| block.union(boxed(*place)));
         if let Some(ends) = group.lead(block) {

@@ -1,6 +1,6 @@
 //! [`Group`]: labels that stand in rows beside one point, and the places that they may take.
 
-use std::sync::LazyLock;
+use std::sync::Arc;
 
 use egui::{Align2, Pos2, Rect, Vec2, vec2};
 
@@ -45,8 +45,8 @@ pub struct Choice {
     cost: f32,
 }
 
-/// All ways and shifts, the cheapest first.
-static CHOICES: LazyLock<Vec<Choice>> = LazyLock::new(|| {
+/// Returns all ways and shifts, the cheapest first.
+pub fn choices() -> Arc<[Choice]> {
     let shifts = SHIFTS_X_PT.iter().flat_map(|x| (-SHIFTS_Y..=SHIFTS_Y).map(|i| vec2(*x, i as f32 * SHIFT_Y_PT)));
     let choice = |shift: Vec2, (way, cost): (Way, f32)| Choice {
         rows: 0,
@@ -56,8 +56,8 @@ static CHOICES: LazyLock<Vec<Choice>> = LazyLock::new(|| {
     };
     let mut all: Vec<Choice> = shifts.flat_map(|shift| WAYS.map(|way| choice(shift, way))).collect();
     all.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    all
-});
+    all.into()
+}
 
 /// How important a group is, and how far it may move.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -148,25 +148,26 @@ impl<'a> Group<'a> {
     }
 
     /// Returns the cheapest place that is free, or that before if it is nearly as good; `None` if there is none.
-    pub fn choose(&self, room: &Room, before: Option<Choice>) -> Option<Choice> {
+    pub fn choose(&self, room: &Room, all: &[Choice], before: Option<Choice>) -> Option<Choice> {
         let before = before.filter(|choice| choice.rows <= self.rows.len()).and_then(|choice| {
             let missing = (self.rows.len() - choice.rows) as f32 * ROW_COST;
             let own = Choice { cost: choice.way.cost() + choice.shift.y.abs() + 0.6 * choice.shift.x.abs(), ..choice };
             self.priced(room, own, 0.0).map(|cost| Choice { cost: cost + missing, ..choice })
         });
         if let Some(before) = before {
-            let better = self.cheapest(room, MARGIN_PT, before.cost - MIN_GAIN_PT);
+            let better = self.cheapest(room, all, MARGIN_PT, before.cost - MIN_GAIN_PT);
             return Some(better.unwrap_or(before));
         }
-        self.cheapest(room, MARGIN_PT, f32::INFINITY).or_else(|| self.cheapest(room, 0.0, f32::INFINITY))
+        let cheapest = |margin: f32| self.cheapest(room, all, margin, f32::INFINITY);
+        cheapest(MARGIN_PT).or_else(|| cheapest(0.0))
     }
 
     /// Returns the cheapest free place that costs less than `limit`, clear of everything by `margin`, points.
-    fn cheapest(&self, room: &Room, margin: f32, limit: f32) -> Option<Choice> {
+    fn cheapest(&self, room: &Room, all: &[Choice], margin: f32, limit: f32) -> Option<Choice> {
         let mut best: Option<Choice> = None;
         for rows in (1..=self.rows.len()).rev() {
             let missing = (self.rows.len() - rows) as f32 * ROW_COST;
-            for choice in CHOICES.iter().take_while(|choice| choice.cost <= self.kind.reach) {
+            for choice in all.iter().take_while(|choice| choice.cost <= self.kind.reach) {
                 let least = best.map_or(limit, |best| best.cost);
                 if choice.cost + missing >= least {
                     break;
