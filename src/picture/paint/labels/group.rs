@@ -23,6 +23,8 @@ const WAYS: [(Way, f32); 4] = [
 /// A group moves only to a place that is better by this much, points, and clear of everything by the margin.
 const MIN_GAIN_PT: f32 = 22.0;
 const MARGIN_PT: f32 = 5.0;
+/// Number of pictures of a moving scene for which a place is held while it is free, though there is a better one.
+const MIN_HELD: u16 = 40;
 /// Labels farther from their point than they would stand at best by more than this have a line to it, points.
 const LEADS_BEYOND_PT: f32 = 18.0;
 
@@ -43,6 +45,8 @@ pub struct Choice {
     way: Way,
     shift: Vec2,
     cost: f32,
+    /// Number of pictures in which it has been held.
+    held: u16,
 }
 
 /// Returns all ways and shifts, the cheapest first.
@@ -53,6 +57,7 @@ pub fn choices() -> Arc<[Choice]> {
         way,
         shift,
         cost: cost + shift.y.abs() + 0.6 * shift.x.abs(),
+        held: 0,
     };
     let mut all: Vec<Choice> = shifts.flat_map(|shift| WAYS.map(|way| choice(shift, way))).collect();
     all.sort_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -154,7 +159,11 @@ impl<'a> Group<'a> {
             let own = Choice { cost: choice.way.cost() + choice.shift.y.abs() + 0.6 * choice.shift.x.abs(), ..choice };
             self.priced(room, own, 0.0).map(|cost| Choice { cost: cost + missing, ..choice })
         });
-        if let Some(before) = before {
+        if let Some(mut before) = before {
+            before.held = before.held.saturating_add(1);
+            if before.held < MIN_HELD {
+                return Some(before);
+            }
             let better = self.cheapest(room, all, MARGIN_PT, before.cost - MIN_GAIN_PT);
             return Some(better.unwrap_or(before));
         }
