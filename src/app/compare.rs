@@ -1,5 +1,7 @@
 //! The table of runs at the bottom: the same task done in several ways, and kept runs.
 
+mod columns;
+
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{
@@ -8,11 +10,16 @@ use super::{
 };
 use egui::{Align, Button, CursorIcon, Frame, Grid, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui};
 use stillbase_picture::charts::figure::{dashes, run_colour};
-use stillbase_picture::notation::{NameOrder, Notation};
-use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::scenario::Scenario;
-use stillbase_study::comparison::{Comparison, ComparisonEntry, DESIGN_COLUMNS, SUMMARY_COLUMNS, SummaryColumn};
+use stillbase_study::comparison::{Comparison, ComparisonEntry};
+
+use columns::{COLUMN_GAP_PT, HEAD_SIZE_PT, Head};
+
+/// Width of the mark of columns that are left out, points.
+const MARK_WIDTH_PT: f32 = 30.0;
+/// Height of the row of a refused run, points.
+const ROW_HEIGHT_PT: f32 = 20.0;
 
 /// Draws this panel.
 pub fn show(ui: &mut Ui, comparison: &Comparison, view_state: &ViewState, commands: &mut Vec<Command>) {
@@ -20,7 +27,7 @@ pub fn show(ui: &mut Ui, comparison: &Comparison, view_state: &ViewState, comman
     let frame = Frame::new().inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 });
     let rows = comparison.entries().len() as f32;
     let most = (0.42 * ui.available_height()).max(120.0);
-    let height = (76.0 + 27.5 * rows).min(most);
+    let height = (90.0 + 27.5 * rows).min(most);
     Panel::bottom("compare").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {
         ui.horizontal(|ui| {
             ui.label(RichText::new("Side by side").font(bold(13.5)));
@@ -65,56 +72,21 @@ fn buttons(ui: &mut Ui, comparison: &Comparison, commands: &mut Vec<Command>) {
     name(&add.response.on_hover_text("Another scenario to compare with"), "Add a run");
 }
 
-/// Height of a row, points.
-const ROW_HEIGHT_PT: f32 = 20.0;
-
-/// Head of a column.
-struct Head {
-    /// Its index among all columns.
-    at: usize,
-    head: &'static str,
-    meaning: &'static str,
-    unit: &'static str,
-    /// Factor from SI values to displayed values.
-    factor: f64,
-    decimals: usize,
-}
-
-impl Head {
-    fn of<T>(at: usize, column: &SummaryColumn<T>, notation: Notation) -> Self {
-        let SummaryColumn { term, head, meaning, unit, decimals, .. } = *column;
-        let head = if notation.names == NameOrder::Symbols { head } else { term };
-        match notation.shown_unit(unit) {
-            Some(shown) => {
-                let decimals = shown.decimals(decimals);
-                Self { at, head, meaning, unit: shown.name, factor: shown.factor, decimals }
-            }
-            None => Self { at, head, meaning, unit, factor: 1.0, decimals },
-        }
-    }
-}
-
-/// Returns the columns that have a value in any row. Columns of base motion need a base that moves; columns of
-/// designs need different machines.
-fn columns(comparison: &Comparison, notation: Notation) -> Vec<Head> {
-    let runs = || comparison.entries().iter().filter_map(|e| e.outcome.as_ref().ok());
-    let moves = runs().any(|r| r.summary.base_shift > 0.0 || r.summary.base_tilt > 0.0);
-    let has_value = |c: &SummaryColumn| runs().any(|r| (c.value)(&r.summary).is_some());
-    let all = SUMMARY_COLUMNS.iter().enumerate();
-    let of_runs = all.filter(|(_, c)| has_value(c) && (moves || !matches!(c.key, "base_shift" | "base_tilt")));
-    let designs = if comparison.has_designs() { &DESIGN_COLUMNS[..] } else { &[] };
-    let of_designs = designs.iter().enumerate().map(|(i, c)| Head::of(SUMMARY_COLUMNS.len() + i, c, notation));
-    of_runs.map(|(i, c)| Head::of(i, c, notation)).chain(of_designs).collect()
-}
-
 fn table(ui: &mut Ui, p: &Palette, comparison: &Comparison, commands: &mut Vec<Command>) {
-    let columns = columns(comparison, notation::of(ui.ctx()));
+    let all = columns::all(comparison, notation::of(ui.ctx()));
+    let (columns, left_out) = columns::fitting(ui, all, comparison, ui.available_width() - MARK_WIDTH_PT);
     ui.spacing_mut().button_padding = egui::vec2(0.0, 0.0);
-    Grid::new("runs").num_columns(columns.len() + 3).spacing([14.0, 5.0]).min_col_width(0.0).show(ui, |ui| {
+    let grid = Grid::new("runs").num_columns(columns.len() + 3).spacing([COLUMN_GAP_PT, 5.0]).min_col_width(0.0);
+    grid.show(ui, |ui| {
         ui.label("");
         ui.label(RichText::new("run").font(plain(11.5)).color(colour(p.dim)));
         for column in &columns {
             head(ui, p, comparison, column, commands);
+        }
+        if !left_out.is_empty() {
+            let mark = RichText::new(format!("+{}", left_out.len())).font(plain(11.5)).color(colour(p.dim));
+            let words = format!("Left out here: {}. Copy has all columns; so has a wider window.", left_out.join(", "));
+            ui.label(mark).on_hover_text(words);
         }
         ui.end_row();
         for i in comparison.order() {
@@ -124,6 +96,7 @@ fn table(ui: &mut Ui, p: &Palette, comparison: &Comparison, commands: &mut Vec<C
     });
 }
 
+/// Draws the title of a column in two lines; a click sorts by it.
 fn head(ui: &mut Ui, p: &Palette, comparison: &Comparison, column: &Head, commands: &mut Vec<Command>) {
     let i = column.at;
     let arrow = match comparison.sorted() {
@@ -131,10 +104,22 @@ fn head(ui: &mut Ui, p: &Palette, comparison: &Comparison, column: &Head, comman
         _ => "",
     };
     let strong = if arrow.is_empty() { p.dim } else { p.ink };
-    let text =
-        RichText::new(format!("{}, {}{arrow}", column.head, column.unit)).font(plain(11.5)).color(colour(strong));
+    let [first, second] = column.lines(ui);
+    let lines = [first, format!("{second}{arrow}")]
+        .map(|line| ui.painter().layout_no_wrap(line, plain(HEAD_SIZE_PT), colour(strong)));
+    let size = egui::vec2(lines[0].size().x.max(lines[1].size().x), lines[0].size().y + lines[1].size().y);
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-        let head = ui.add(Button::new(text).frame(false));
+        let (rect, head) = ui.allocate_exact_size(size, Sense::click());
+        let mut top = rect.top();
+        for line in lines {
+            let at = egui::pos2(rect.right() - line.size().x, top);
+            top += line.size().y;
+            ui.painter().galley(at, line, colour(strong));
+        }
+        if head.has_focus() {
+            let stroke = ui.visuals().selection.stroke;
+            ui.painter().rect_stroke(rect.expand(2.0), 2.0, stroke, egui::StrokeKind::Outside);
+        }
         name(&head, &format!("Sort by {}", column.meaning));
         let head = head.on_hover_cursor(CursorIcon::PointingHand);
         if head.on_hover_text(format!("{}, {}; click to sort", column.meaning, column.unit)).clicked() {
@@ -181,10 +166,7 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &ComparisonEntry, columns: &[H
     match &entry.outcome {
         Ok(_) => {
             for column in columns {
-                let text = match entry.value(column.at) {
-                    Some(x) => signed(column.factor * x, column.decimals),
-                    None => "–".into(),
-                };
+                let text = column.written(entry);
                 let zero = text.chars().all(|c| matches!(c, '0' | '.' | '–'));
                 let tone = if zero { p.dim } else { p.ink };
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

@@ -42,13 +42,18 @@ pub fn show(ui: &mut Ui, rect: Rect, view_state: &ViewState, views: &Views, comm
     }
 }
 
+/// Returns the rectangle of a scene that the button *show everything* covers.
+pub fn recentre_covers(rect: Rect) -> Rect {
+    let size = vec2(140.0, 24.0);
+    Rect::from_min_size(pos2(rect.center().x - 0.5 * size.x, rect.top() + 10.0), size)
+}
+
 /// Draws the button *show everything* at the upper edge. It is needed when a part of the machine or its target is out
 /// of view.
 pub fn recentre_button(ui: &mut Ui, rect: Rect, view_state: &ViewState, commands: &mut Vec<Command>) {
     let p = view_state.palette();
     let words = RichText::new("show everything (F)").font(plain(11.5)).color(colour(p.ink));
-    let size = vec2(140.0, 24.0);
-    let at = Rect::from_min_size(pos2(rect.center().x - 0.5 * size.x, rect.top() + 10.0), size);
+    let at = recentre_covers(rect);
     let button = Button::new(words).fill(colour(p.panel)).stroke((1.0, colour(p.line))).corner_radius(8);
     let button = ui.put(at, button).on_hover_text("A part of the machine, or its target, is out of view");
     super::widgets::name(&button, "Show everything: a part is out of view");

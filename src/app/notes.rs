@@ -1,12 +1,11 @@
 //! The card in which the user writes, changes or removes a note, and the notes of the scene that open it.
 
-use egui::{
-    Align2, Area, ComboBox, CursorIcon, DragValue, Frame, Id, Key, Order, Pos2, Rect, RichText, Sense, TextEdit, Ui,
-};
+use egui::{Align2, Area, ComboBox, CursorIcon, DragValue, Frame, Id, Key, Order, Pos2, RichText, Sense, TextEdit, Ui};
 
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, SessionCommand, Tool, ViewChange, ViewState};
+use stillbase_picture::paint::labels::PlacedLabel;
 use stillbase_picture::scene::views::Views;
 use stillbase_picture::scene::{Label, NOTES};
 use stillbase_session::Session;
@@ -51,9 +50,9 @@ impl NoteDraft {
 }
 
 /// Makes the drawn notes of the scene react: a click opens the card of a note.
-pub fn labels(ui: &Ui, placed: &[(&Label, Rect)], session: &Session, tool: &Tool, commands: &mut Vec<Command>) {
+pub fn labels(ui: &Ui, placed: &[PlacedLabel], session: &Session, tool: &Tool, commands: &mut Vec<Command>) {
     let own = |label: &Label| label.name.strip_prefix(NOTES)?.strip_prefix('/')?.parse::<usize>().ok()?.checked_sub(1);
-    for (i, rect) in placed.iter().filter_map(|(label, rect)| Some((own(label)?, *rect))) {
+    for (i, rect) in placed.iter().filter_map(|it| Some((own(&it.label)?, it.place))) {
         let Some(note) = session.notes().get(i).filter(|_| *tool == Tool::Hold) else { continue };
         let response = ui.interact(rect, ui.scope_id().with(("note", i)), Sense::click());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Note: {}", note.text)));

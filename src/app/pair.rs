@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{Align2, Button, ComboBox, Rect, Ui, UiBuilder, pos2, vec2};
+use egui::{Button, ComboBox, Rect, Ui, UiBuilder, pos2, vec2};
 
 use super::notation;
 use super::theme::{bold, colour, plain};
@@ -21,7 +21,6 @@ use stillbase_picture::scene::options::ViewOptions;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::scenario::{Scenario, TaskKind};
 use stillbase_session::{Fork, Session};
-use stillbase_settings::number::ShortNumber;
 use stillbase_simulation::frame::Frame;
 use stillbase_study::comparison::{Alternative, Comparison};
 
@@ -97,8 +96,11 @@ const MIN_WIDTH_OF_BOTH_PT: f32 = 680.0;
 const MIN_HEIGHT_OF_BOTH_PT: f32 = 420.0;
 /// Width of the panel of plots and the tool bar, for which a window needs room beside both views, points.
 const PANELS_WIDTH_PT: f32 = 360.0;
-/// Height that a caption covers, points.
+/// Height that a caption covers, points; in low views it is short.
 const CAPTION_HEIGHT_PT: f32 = 116.0;
+const SHORT_CAPTION_HEIGHT_PT: f32 = 62.0;
+/// Views below this height have short captions, points.
+const LOW_VIEW_PT: f32 = 320.0;
 /// Smaller moments are shown as zero, N m.
 const ZERO_BELOW_N_M: f64 = 0.005;
 
@@ -173,11 +175,12 @@ impl Other<'_> {
                 };
                 let scene = Arc::new(beside.stage.scene(frame, &options));
                 paint(ui, 1, rect, &scene, &camera);
-                draw_labels(ui, &SceneViewport { rect, camera }, &scene, &[]);
                 let words = self.words(beside);
                 let tone = if is_zero(frame) { p.zero } else { p.reaction };
                 let tone = if self.pair.demonstrates { p.reaction } else { tone };
-                caption(ui, rect, &p, (&title, &words), (frame, beside.peak_moment()), (tone, large));
+                let said = caption(ui, rect, &p, (&title, words), (frame, beside.peak_moment()), (tone, large));
+                let taken = [said, controls_cover(rect)];
+                draw_labels(ui, 1, &SceneViewport { rect, camera }, &scene, &taken);
             }
             Some(Err(why)) => message(ui, rect, &p, &title, &format!("This cannot be run: {why}")),
             None => message(ui, rect, &p, &title, "running it …"),
@@ -199,32 +202,24 @@ impl Other<'_> {
         if one.resolved_links() == other.resolved_links() {
             return *camera;
         }
-        let covered = vec![[0.0, 0.0, f64::from(rect.width()), f64::from(CAPTION_HEIGHT_PT)]];
+        let covered = vec![[0.0, 0.0, f64::from(rect.width()), f64::from(caption_covers(rect).height())]];
         let size = [rect.width(), rect.height()].map(f64::from);
         beside.content().framed(*camera, &PictureArea { size, covered })
     }
 
     /// Returns what the caption says of the other run.
-    fn words(&self, beside: &Beside) -> String {
-        let drawn = match self.exaggeration {
-            Exaggeration::Mount(compliance) if beside.peak_moment() > ZERO_BELOW_N_M => {
-                format!(", drawn {}° for 1 N m", ShortNumber(compliance.to_degrees()))
-            }
-            _ => String::new(),
-        };
+    fn words(&self, beside: &Beside) -> &'static str {
         let shakes = beside.peak_moment() > ZERO_BELOW_N_M;
         match (&self.pair.with, shakes) {
-            (PairWith::Way(Alternative::StraightLine), true) => {
-                format!("From A to B along a line. The arm shakes its base{drawn}.")
-            }
-            (_, true) => format!("The arm shakes its base{drawn}."),
-            (_, false) => "The base feels nothing.".into(),
+            (PairWith::Way(Alternative::StraightLine), true) => "From A to B along a line. The arm shakes its base.",
+            (_, true) => "The arm shakes its base.",
+            (_, false) => "The base feels nothing.",
         }
     }
 
     /// Draws the choice of the other run, the buttons of the arrangement, and the button that closes the view.
     fn controls(&self, ui: &mut Ui, rect: Rect, beside: bool, commands: &mut Vec<Command>) {
-        let at = Rect::from_min_size(pos2(rect.left() + 16.0, rect.bottom() - 34.0), vec2(rect.width() - 32.0, 26.0));
+        let at = controls_cover(rect);
         let layout = egui::Layout::left_to_right(egui::Align::Center);
         let mut row = ui.new_child(UiBuilder::new().max_rect(at).layout(layout));
         let set = |pair: Pair| Command::View(ViewChange::Pair(pair));
@@ -253,8 +248,8 @@ impl Other<'_> {
     }
 }
 
-/// Draws the caption of the session's own run.
-pub fn own_caption(ui: &Ui, rect: Rect, session: &Session, pair: &Pair, view_state: &ViewState) {
+/// Draws the caption of the session's own run; returns its rectangle.
+pub fn own_caption(ui: &Ui, rect: Rect, session: &Session, pair: &Pair, view_state: &ViewState) -> Rect {
     let (p, frame) = (view_state.palette(), session.frame());
     let scenario = session.scenario();
     let peak = frame.peaks.moment;
@@ -268,12 +263,18 @@ pub fn own_caption(ui: &Ui, rect: Rect, session: &Session, pair: &Pair, view_sta
         (false, own) => format!("{title}: {own}"),
     };
     let tone = if pair.demonstrates || is_zero(frame) { p.zero } else { p.reaction };
-    caption(ui, rect, &p, (&title, words), (frame, peak), (tone, false));
+    caption(ui, rect, &p, (&title, words), (frame, peak), (tone, false))
+}
+
+/// Returns the rectangle of a view that the choice of the other run covers.
+fn controls_cover(rect: Rect) -> Rect {
+    Rect::from_min_size(pos2(rect.left() + 16.0, rect.bottom() - 34.0), vec2(rect.width() - 32.0, 26.0))
 }
 
 /// Returns the rectangle of a view that a caption covers.
 pub fn caption_covers(rect: Rect) -> Rect {
-    Rect::from_min_size(rect.min, vec2(rect.width().min(420.0), CAPTION_HEIGHT_PT))
+    let height = if rect.height() < LOW_VIEW_PT { SHORT_CAPTION_HEIGHT_PT } else { CAPTION_HEIGHT_PT };
+    Rect::from_min_size(rect.min, vec2(rect.width().min(420.0), height))
 }
 
 fn is_zero(frame: &Frame) -> bool {
@@ -290,7 +291,7 @@ fn message(ui: &Ui, rect: Rect, p: &Palette, title: &str, words: &str) {
 }
 
 /// Draws a title and a text over the upper left corner of a view; below them the moment on the base and its largest
-/// value, N m.
+/// value, N m. Returns their rectangle.
 fn caption(
     ui: &Ui,
     rect: Rect,
@@ -298,25 +299,39 @@ fn caption(
     (title, about): (&str, &str),
     (frame, peak): (&Frame, f64),
     (tone, large): (Rgba, bool),
-) {
+) -> Rect {
     let painter = ui.painter().with_clip_rect(rect);
     let scale = if large { present::size(rect) / 40.0 } else { 1.0 };
-    let left = rect.left() + 22.0;
+    let is_short = !large && rect.height() < LOW_VIEW_PT;
     let room = rect.width() - 40.0;
-    let title = painter.layout_no_wrap(title.to_owned(), bold(16.0 * scale), colour(p.ink));
-    let about = notation::sentence(ui.ctx(), about).into_owned();
-    let about = painter.layout(about, plain(12.0 * scale), colour(p.dim), room);
-    let at = rect.top() + 12.0 + title.size().y + 4.0;
-    let below = at + about.size().y + 8.0;
-    painter.galley(pos2(left, rect.top() + 12.0), title, colour(p.ink));
-    painter.galley(pos2(left, at), about, colour(p.dim));
+    let mut at = rect.min + vec2(22.0, 12.0);
+    let mut covered = Rect::NOTHING;
+    let mut row = |text: String, font: egui::FontId, ink: Rgba, gap: f32| {
+        let galley = painter.layout(text, font, colour(ink), room);
+        let place = Rect::from_min_size(at, galley.size());
+        painter.galley(at, galley, colour(ink));
+        at.y = place.bottom() + gap;
+        covered = covered.union(place);
+        place
+    };
+    row(title.to_owned(), bold(16.0 * scale), p.ink, 4.0);
+    if !is_short {
+        row(notation::sentence(ui.ctx(), about).into_owned(), plain(12.0 * scale), p.dim, 8.0);
+    }
     let shown = signed(frame.wrench.total().moment + 0.0, 2);
-    let number = painter.text(pos2(left, below), Align2::LEFT_TOP, shown, bold(26.0 * scale), colour(tone));
-    let unit = number.right_bottom() + vec2(8.0, -4.0);
     let name = notation::of(ui.ctx()).name("turning moment on the base", "n_B");
-    let words = format!("N m   {name}; largest {} N m", signed(peak + 0.0, 2));
-    let room = rect.right() - unit.x - 8.0;
-    let words = painter.layout(words, plain(12.0 * scale), colour(p.dim), room.max(80.0));
-    let height = words.size().y;
-    painter.galley(unit - vec2(0.0, height), words, colour(p.dim));
+    let largest = format!("largest {} N m", signed(peak + 0.0, 2));
+    if large {
+        row(format!("{shown} N m"), bold(40.0 * scale), tone, 2.0);
+        row(format!("{name}; {largest}"), plain(12.8 * scale), p.dim, 0.0);
+        return covered;
+    }
+    let size = if is_short { 16.0 } else { 26.0 };
+    let number = row(shown, bold(size), tone, 0.0);
+    let unit = number.right_bottom() + vec2(8.0, if is_short { -2.0 } else { -4.0 });
+    let words = if is_short { format!("N m, {largest}") } else { format!("N m   {name}; {largest}") };
+    let words = painter.layout(words, plain(12.0), colour(p.dim), (rect.right() - unit.x - 8.0).max(80.0));
+    let beside = Rect::from_min_size(unit - vec2(0.0, words.size().y), words.size());
+    painter.galley(beside.min, words, colour(p.dim));
+    covered.union(beside)
 }

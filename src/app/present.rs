@@ -18,11 +18,17 @@ pub fn size(rect: Rect) -> f32 {
 
 /// Returns the rectangle of a scene that the results cover.
 pub fn covers(rect: Rect) -> Rect {
-    Rect::from_min_size(rect.min, vec2(6.2 * size(rect), 3.6 * size(rect)))
+    Rect::from_min_size(rect.min, vec2(6.6 * size(rect), 4.6 * size(rect)))
 }
 
-/// Draws the results.
-pub fn show(ui: &mut Ui, rect: Rect, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
+/// Draws the results; returns the rectangles that they cover.
+pub fn show(
+    ui: &mut Ui,
+    rect: Rect,
+    session: &Session,
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) -> [Rect; 2] {
     let (p, f, large) = (view_state.palette(), session.frame(), size(rect));
     let corner = covers(rect).shrink(0.4 * large);
     let mut corner = ui.new_child(UiBuilder::new().max_rect(corner).layout(Layout::top_down(Align::Min)));
@@ -60,4 +66,5 @@ pub fn show(ui: &mut Ui, rect: Rect, session: &Session, view_state: &ViewState, 
     if back.show_in(&mut right, &p, colour(p.dim)).clicked() {
         commands.push(ViewChange::Layout(WindowLayout::Explore).into());
     }
+    [corner.min_rect(), at]
 }

@@ -2,10 +2,11 @@
 
 use egui::{CursorIcon, PointerButton, Pos2, Response, Ui, Vec2};
 
+use super::viewport::is_on_top;
 use super::widgets::FINE_DRAG_FACTOR;
 use super::{Command, DragGesture, SessionCommand, Tool, ViewChange, ViewState, place, set_b};
 use stillbase_mechanics::planar::Vector;
-use stillbase_picture::paint::SceneViewport;
+use stillbase_picture::paint::{SceneViewport, labels};
 use stillbase_picture::scene::exaggeration::DrawnFrame;
 use stillbase_picture::scene::options::Handle;
 use stillbase_picture::scene::pick::{DragAction, Pick};
@@ -78,12 +79,21 @@ impl<'a> ScenePointer<'a> {
         self.catches_arm.then(near).flatten()
     }
 
+    /// Returns the object whose label is at a position, where it was drawn last.
+    fn named(&self, pos: Pos2) -> Option<Pick> {
+        let handle = labels::last(self.ui.ctx(), 0).filter(|_| self.view.shows_machine())?.handle_at(pos)?;
+        Some(Pick::of(handle, self.views.stage().handle(handle, self.shown)?))
+    }
+
     /// Returns the object at a position that can be dragged.
     fn under(&self, pos: Pos2) -> Option<Pick> {
         let pointer = self.spot.pointer(pos);
         let pick = match self.pushes {
             true => self.views.pick_tip(self.shown, &pointer),
-            false => self.arm(pos).or_else(|| self.views.pick(self.view, self.shown, &pointer)),
+            false => {
+                let pulled = || self.views.pick(self.view, self.shown, &pointer);
+                self.named(pos).or_else(|| self.arm(pos)).or_else(pulled)
+            }
         };
         // Targets cannot be dragged while the run waits, in any view.
         pick.filter(|pick| pick.handle != Handle::Target || self.session.can_be_dragged())
@@ -97,7 +107,7 @@ impl<'a> ScenePointer<'a> {
         let seen = |pos: Pos2| match self.pushes {
             true => self.under(pos).map(|pick| pick.handle),
             false => {
-                let arm = self.arm(pos).map(|pick| pick.handle);
+                let arm = self.named(pos).or_else(|| self.arm(pos)).map(|pick| pick.handle);
                 arm.or_else(|| self.views.under(self.view, self.shown, &self.spot.pointer(pos)))
             }
         };
@@ -150,7 +160,10 @@ impl<'a> ScenePointer<'a> {
         // The last movement may come together with the release.
         let moved =
             response.drag_delta() != Vec2::ZERO || (view_state.gesture.dragged && response.drag_stopped()) || lasts;
-        if let Some(pos) = response.interact_pointer_pos().filter(|_| moved) {
+        // What is dragged stays in sight: it stops at the edges of the scene and at windows over it.
+        let inside = |pos: Pos2| pos.clamp(self.spot.rect.min, self.spot.rect.max);
+        let pos = response.interact_pointer_pos().filter(|_| moved).map(inside);
+        if let Some(pos) = pos.filter(|pos| is_on_top(response, *pos)) {
             let DragGesture { last_pointer, pointer_offset, .. } = &mut view_state.gesture;
             if self.ui.input(|i| i.modifiers.shift) {
                 *pointer_offset += (1.0 - FINE_DRAG_FACTOR) * (pos.to_vec2() - *last_pointer);

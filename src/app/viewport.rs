@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use egui::{CentralPanel, CursorIcon, Frame, PointerButton, PopupAnchor, Rect, Sense, Tooltip, Ui, Vec2};
+use egui::{
+    CentralPanel, CursorIcon, Frame, LayerId, Order, PointerButton, PopupAnchor, Pos2, Rect, Sense, Tooltip, Ui, Vec2,
+};
 
 use super::card::Card;
 use super::intro::Intro;
@@ -120,19 +122,21 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
         let spot = SceneViewport { rect, camera: *view_state.camera() };
         // The problem message covers the scene while it lasts.
         covered.extend(status::has_bad_news(session, view_state).then(|| status::news_rect(ui.ctx())).flatten());
-        let placed = draw_labels(ui, &spot, &scene, &covered);
-        notes::labels(ui, &placed, session, &view_state.tool, commands);
-        corner::show(ui, rect, view_state, views, commands);
-        coordinates::show(ui, rect, session, views, view_state, commands);
-        let seen = |at: [f64; 3]| spot.screen(at).is_some_and(|at| rect.contains(at));
-        if view_state.view.shows_machine() && !views.stage().outline(&shown).all(seen) {
-            corner::recentre_button(ui, rect, view_state, commands);
+        if let Some((pair, _)) = both.filter(|_| !presents) {
+            covered.push(pair::own_caption(ui, rect, session, pair, view_state));
         }
         if presents {
-            present::show(ui, rect, session, view_state, commands);
+            covered.extend(present::show(ui, rect, session, view_state, commands));
         }
-        if let Some((pair, _)) = both.filter(|_| !presents) {
-            pair::own_caption(ui, rect, session, pair, view_state);
+        let seen = |at: [f64; 3]| spot.screen(at).is_some_and(|at| rect.contains(at));
+        let is_partly_out = view_state.view.shows_machine() && !views.stage().outline(&shown).all(seen);
+        covered.extend(is_partly_out.then(|| corner::recentre_covers(rect)));
+        let placed = draw_labels(ui, 0, &spot, &scene, &covered);
+        notes::labels(ui, &placed.all, session, &view_state.tool, commands);
+        corner::show(ui, rect, view_state, views, commands);
+        coordinates::show(ui, rect, session, views, view_state, commands);
+        if is_partly_out {
+            corner::recentre_button(ui, rect, view_state, commands);
         }
         let tour = view_state.open.tour.as_ref();
         let things = tour.map(Tour::points_at).or(intro.map(Intro::points_at)).unwrap_or_default();
@@ -235,6 +239,21 @@ fn force(session: &Session) -> Option<[f64; 2]> {
     Some(session.scenario().plant.force).filter(|_| lasting || session.is_at_end())
 }
 
+/// Whether nothing lies over the scene at a position: no window, dialog or menu.
+pub(super) fn is_on_top(response: &egui::Response, pos: Pos2) -> bool {
+    response.ctx.layer_id_at(pos).is_none_or(|layer| layer == response.layer_id)
+}
+
+/// Whether a dialog is open that takes clicks.
+fn has_dialog(ctx: &egui::Context) -> bool {
+    ctx.memory(|memory| {
+        let on_top = |layer: &LayerId| memory.layer_id_at(memory.area_rect(layer.id)?.center());
+        let takes_clicks = |layer: &LayerId| on_top(layer) == Some(*layer);
+        let layers = memory.areas().visible_layer_ids();
+        layers.iter().any(|layer| layer.order == Order::Foreground && takes_clicks(layer))
+    })
+}
+
 /// Shows the card of the object under the pointer, after a delay.
 fn show_card(response: &egui::Response, session: &Session, views: &Views, view_state: &ViewState) {
     let (ctx, id) = (&response.ctx, response.id.with("told of"));
@@ -245,8 +264,9 @@ fn show_card(response: &egui::Response, session: &Session, views: &Views, view_s
         }
         return;
     }
-    let listed = egui::Popup::is_any_open(ctx);
-    let quiet = view_state.gesture.grabbed.is_none() && response.hovered() && !response.dragged() && !listed;
+    let listed = egui::Popup::is_any_open(ctx) || has_dialog(ctx);
+    let rests = view_state.gesture.grabbed.is_none() && !response.dragged() && !listed;
+    let quiet = rests && response.hovered() && response.hover_pos().is_some_and(|pos| is_on_top(response, pos));
     let Some(thing) = view_state.pointed.object.filter(|_| quiet) else {
         ctx.data_mut(|data| data.remove_temp::<Option<(Handle, f64)>>(id));
         return;

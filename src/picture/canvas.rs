@@ -60,6 +60,7 @@ impl Canvas {
             paint::install_fonts(&self.ctx);
             self.fonts = true;
             self.pass(behind, |ui| labels::paint_still(ui, scene, camera));
+            labels::forget(&self.ctx, 0);
         }
         self.pass(behind, |ui| labels::paint_still(ui, scene, camera));
         self.read()

@@ -10,7 +10,7 @@ use stillbase::picture::scene::pointer::Pointer;
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::Edit;
 
-use super::{Window, drag, hold, on_screen, pull, seen, session, type_into, window};
+use super::{Window, drag, hold, on_screen, pull, seen, session, type_into, window, written};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![
@@ -271,7 +271,8 @@ fn a_payload_is_hung_on_and_aside() {
     choose(&mut h, tip, "Hang a payload of 0.3 kg on it");
     assert_eq!((load(&h).mass, load(&h).offset), (0.3, [0.0; 2]));
     // Under the target it is held by its mass.
-    let name = on_screen(&h, 0.5, 0.5) - vec2(0.0, 22.0);
+    h.run_steps(2);
+    let name = written(&h, "0.3 kg");
     let side = on_screen(&h, 0.5 + 0.08, 0.5 + 0.06);
     drag(&mut h, name, side);
     h.run_steps(3);

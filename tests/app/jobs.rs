@@ -11,7 +11,7 @@ use proptest::test_runner::{Config, TestRunner};
 use stillbase::app::jobs::Threads;
 use stillbase::app::window::{App, Clock};
 use stillbase::app::{AppState, Command, Message, SessionCommand, Switch, ViewChange, WindowCommand};
-use stillbase::picture::scene::options::{Handle, ViewOptions};
+use stillbase::picture::scene::options::ViewOptions;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::query::{InlineWorkers, Job, Poll, Work, Workers};
@@ -19,7 +19,7 @@ use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session};
 
 use super::screen::{Screen, whole};
-use super::{Window, pull, seen, session};
+use super::{Window, pull, session, written};
 use crate::Test;
 use crate::folder::Folder;
 
@@ -374,10 +374,9 @@ fn a_drag_that_is_given_up_takes_back_what_it_did() {
     tell(&mut h, Command::Session(SessionCommand::EndGesture));
     work_all(&mut h, &workers);
     let before = session(&h).to_scenario();
-    let handle = h.state().app_state().stage().handle(Handle::Waypoint(1), &session(&h).frame().into()).expect("B");
-    let at = seen(&h, handle);
     // B is held by its name where the target covers it.
-    let name = at - egui::vec2(17.0, 0.0);
+    h.run_steps(2);
+    let name = written(&h, "B");
     pull(&mut h, name, name + egui::vec2(-14.0, 6.0));
     assert!(h.state().app_state().view_state().gesture.grabbed.is_some(), "it is held");
     h.key_press(egui::Key::Escape);

@@ -9,6 +9,7 @@ mod guide;
 mod hands;
 mod intro;
 mod jobs;
+mod labels;
 mod layout;
 mod lessons;
 mod notation;
@@ -40,7 +41,7 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 28] = [
+pub const TESTS: [&[Test]; 29] = [
     saving::TESTS,
     family::TESTS,
     files::TESTS,
@@ -51,6 +52,7 @@ pub const TESTS: [&[Test]; 28] = [
     hands::TESTS,
     intro::TESTS,
     jobs::TESTS,
+    labels::TESTS,
     layout::TESTS,
     notation::TESTS,
     lessons::TESTS,
@@ -117,6 +119,12 @@ fn seen(h: &Window, point: [f64; 3]) -> egui::Pos2 {
     let aspect = f64::from(rect.width() / rect.height());
     let [u, v] = app_state.view_state().camera().project(point, aspect).expect("in front of the eye");
     rect.min + egui::vec2(u as f32 * rect.width(), v as f32 * rect.height())
+}
+
+/// Where a label of the scene stands.
+fn written(h: &Window, text: &str) -> egui::Pos2 {
+    let placement = stillbase::picture::paint::labels::last(&h.ctx, 0).expect("drawn");
+    placement.all.iter().find(|own| own.text == text).expect("it is written").place.center()
 }
 
 fn drag(h: &mut Window, from: egui::Pos2, to: egui::Pos2) {

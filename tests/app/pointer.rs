@@ -11,7 +11,7 @@ use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 use stillbase::simulation::frame::Reach;
 
-use super::{Window, drag, on_screen, pull, session, type_into, window};
+use super::{Window, drag, on_screen, pull, session, type_into, window, written};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![
@@ -162,8 +162,8 @@ fn waypoints_are_handles() {
     let (from, to) = (on_screen(&h, 0.55, 0.90), on_screen(&h, 0.60, 0.75));
     drag(&mut h, from, to);
     assert!((points(&h)[1].re - 0.60).abs() < 2e-3 && (points(&h)[1].im - 0.75).abs() < 2e-3, "{:?}", points(&h));
-    let letter = egui::vec2(-17.0, 0.0);
-    let (from, to) = (on_screen(&h, 0.50, 0.50) + letter, on_screen(&h, 0.45, 0.45));
+    h.run_steps(2);
+    let (from, to) = (written(&h, "A"), on_screen(&h, 0.45, 0.45));
     drag(&mut h, from, to);
     assert!((points(&h)[0].re - 0.45).abs() < 2e-3 && (points(&h)[0].im - 0.45).abs() < 2e-3, "{:?}", points(&h));
     assert!(!session(&h).is_dragged(), "nobody leads the machine");
@@ -206,7 +206,8 @@ fn the_target_comes_before_the_point_that_it_covers() {
         assert_eq!(hot(&mut h, left), Some(Handle::Target), "{left} px left");
     }
     assert!(h.query_by_label_contains("target at 0.500, 0.500 m").is_some());
-    assert_eq!(hot(&mut h, 19.0), Some(Handle::Waypoint(0)));
+    let letter = ring.x - written(&h, "A").x;
+    assert_eq!(hot(&mut h, letter), Some(Handle::Waypoint(0)));
     assert!(h.query_by_label_contains("start point A of the path").is_some());
     drag(&mut h, ring - egui::vec2(11.0, 0.0), ring + egui::vec2(-40.0, 0.0));
     assert!(session(&h).is_dragged() && session(&h).scenario().task.from == [0.5, 0.5]);

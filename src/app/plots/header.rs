@@ -47,7 +47,13 @@ pub fn show(
             plot.curves.iter().map(|curve| wide(ui, &words(plot, curve, drawn, look, fewer), plain(11.5))).sum()
         };
         // Where space is short, digits are omitted first, then the unit, which the tooltips of the values still show.
-        let heading = if has_heading { plot.heading() } else { String::new() };
+        let parts = if has_heading { plot.heading_parts() } else { Default::default() };
+        let heading = parts.concat();
+        // The symbol that comes before a title stands for it.
+        let least_heading = match parts[0].is_empty() {
+            true => MIN_HEADING_PT,
+            false => wide(ui, parts[0].trim_end(), bold(12.5)),
+        };
         let unit = plot.unit();
         let room = ui.available_width() - if has_heading { wide(ui, &heading, bold(12.5)) } else { 0.0 };
         let unit_wide = wide(ui, &unit, plain(11.5));
@@ -55,10 +61,10 @@ pub fn show(
         let fewer = (ALL_DIGITS..SYMBOLS_ONLY).find(fits);
         let fewer = fewer.or((values(ui, 2) <= room).then_some(2));
         // Values are worth more than a whole title.
-        let beside = |fewer: &usize| values(ui, *fewer) + MIN_HEADING_PT <= ui.available_width();
+        let beside = |fewer: &usize| values(ui, *fewer) + least_heading <= ui.available_width();
         let fewer = fewer.or((ALL_DIGITS + 1..SYMBOLS_ONLY).find(beside)).unwrap_or(SYMBOLS_ONLY);
         // Where not even the symbols fit beside the title, the title is shortened, and the last symbols give way.
-        let least = if has_heading { wide(ui, &heading, bold(12.5)).min(MIN_HEADING_PT) } else { 0.0 };
+        let least = if has_heading { wide(ui, &heading, bold(12.5)).min(least_heading) } else { 0.0 };
         let mut seen = plot.curves.len();
         let symbols = |ui: &Ui, seen: usize| -> f32 {
             plot.curves[..seen].iter().map(|curve| wide(ui, &words(plot, curve, drawn, look, fewer), plain(11.5))).sum()
@@ -68,7 +74,7 @@ pub fn show(
         }
         let taken = symbols(ui, seen);
         if has_heading {
-            title(ui, plot, &heading, ui.available_width() - taken, look);
+            title(ui, plot, &parts, ui.available_width() - taken, look);
         }
         if taken + unit_wide <= room {
             ui.label(RichText::new(unit).font(plain(11.5)).color(colour(p.dim)));
@@ -82,11 +88,15 @@ pub fn show(
 }
 
 /// Draws the title in a room of this width, points. A drag of it moves the plot.
-fn title(ui: &mut Ui, plot: &Plot<'_>, heading: &str, room: f32, look: &PlotContext<'_>) {
-    let shown = fitted(ui, heading, &bold(12.5), room);
-    let label = Label::new(RichText::new(&*shown).font(bold(12.5)).color(colour(look.palette.ink)));
+fn title(ui: &mut Ui, plot: &Plot<'_>, parts: &[String; 2], room: f32, look: &PlotContext<'_>) {
+    let [symbol, words] = parts;
+    let heading = parts.concat();
+    let font = bold(12.5);
+    let shown = fitted(ui, words, &font, room - width_of(ui, symbol, &font));
+    let shown = format!("{symbol}{shown}");
+    let label = Label::new(RichText::new(shown.trim_end()).font(bold(12.5)).color(colour(look.palette.ink)));
     let label = ui.add(label.wrap_mode(TextWrapMode::Extend).sense(Sense::drag()));
-    say(&label, heading);
+    say(&label, &heading);
     place::handle_drag(&label, plot);
     if !label.dragged() {
         label.on_hover_text(format!("{heading}\nDrag: to another place, or out of the panel into a window of its own"));

@@ -1,6 +1,6 @@
 //! Plots in windows of their own, over the scene. Their places are saved with the session.
 
-use egui::{Context, Id, Rect, RichText, Window, pos2, vec2};
+use egui::{Color32, Context, Id, Rect, RichText, Window, pos2, vec2};
 
 use super::cell;
 use super::shown::DisplayContext;
@@ -8,9 +8,12 @@ use crate::theme::bold;
 use crate::{Command, ViewChange};
 use stillbase_picture::charts::choice::{Plot, PlotChange};
 use stillbase_picture::charts::drawn::PlotLines;
+use stillbase_settings::text::cut_at_word;
 
 /// Minimum width and height of a window, points.
 const MIN_SIZE_PT: [f32; 2] = [260.0, 160.0];
+/// Width beside the title: margins and the button that closes the window, points.
+const TITLE_MARGINS_PT: f32 = 64.0;
 /// Least move of a window that is saved, points.
 const MIN_MOVE_PT: f32 = 0.5;
 
@@ -55,8 +58,9 @@ fn one(
     }
     let [left, top, width, height] = window;
     let (mut open, mut over) = (true, None);
+    let heading = fitted_title(ctx, &plot.heading(), width - TITLE_MARGINS_PT);
     let frame = egui::Frame::window(&ctx.global_style()).inner_margin(8);
-    let made = Window::new(RichText::new(plot.heading()).font(bold(12.5)))
+    let made = Window::new(RichText::new(heading).font(bold(12.5)))
         .id(id.with(known.opened))
         .open(&mut open)
         .collapsible(false)
@@ -85,4 +89,13 @@ fn one(
     }
     ctx.data_mut(|data| data.insert_temp(id, known));
     over
+}
+
+/// Returns a title that fits a width, points, shortened at a word.
+fn fitted_title(ctx: &Context, title: &str, room: f32) -> String {
+    let width = |part: &str| {
+        let part = part.to_owned();
+        ctx.fonts_mut(|fonts| fonts.layout_no_wrap(part, bold(12.5), Color32::WHITE).size().x)
+    };
+    cut_at_word(title, |part| width(part) <= room).into_owned()
 }

@@ -312,14 +312,21 @@ impl<'a> Plot<'a> {
     /// Returns the title, with the symbol of the horizontal axis unless that is time. If symbols come first, that of the
     /// curves precedes the title.
     pub fn heading(&self) -> String {
-        let name = match (self.names, self.symbol()) {
-            (NameOrder::Symbols, Some(symbol)) => format!("{symbol}  {}", self.title),
-            _ => self.title.clone(),
+        let [symbol, words] = self.heading_parts();
+        symbol + &words
+    }
+
+    /// Returns the heading in two parts: the symbol before the title with a gap, if symbols come first, and the rest.
+    pub fn heading_parts(&self) -> [String; 2] {
+        let symbol = match (self.names, self.symbol()) {
+            (NameOrder::Symbols, Some(symbol)) => format!("{symbol}  "),
+            _ => String::new(),
         };
-        match &self.against {
-            Some(across) => format!("{name} against {}", across.signal.symbol),
-            None => name,
-        }
+        let words = match &self.against {
+            Some(across) => format!("{} against {}", self.title, across.signal.symbol),
+            None => self.title.clone(),
+        };
+        [symbol, words]
     }
 
     /// Returns the symbol that the curves share but for their indices.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::mesh::{bar, cylinder};
 use super::palette::{Palette, faded, mix};
-use super::{ItemChanges, Mesh, MeshSet, Name, Rgba, Shadow, Solid, posed};
+use super::{Body, ItemChanges, Mesh, MeshSet, Name, Rgba, Shadow, Solid, point, posed};
 use stillbase_mechanics::machine::{Chain, Machine, ResolvedLink, place_of};
 use stillbase_mechanics::planar::{Pose2, UnitVectors, Vector, unit};
 
@@ -309,6 +309,35 @@ impl LinkageModel {
         }
         solids.push(turned("machine/base/cap".into(), self.cap, 0.0, grey));
         solids
+    }
+
+    /// Returns links, counterweights, drives and base as strips and discs; `moves` says whether the base can move.
+    pub fn bodies(&self, e: &UnitVectors, base: Pose2, moves: bool) -> impl Iterator<Item = Body> {
+        let (e, reach) = (*e, self.reach);
+        let body = move |ends: [(Vector, f64); 2], radius: f64, height: f64| Body {
+            ends: ends.map(|(p, z)| point(base.at + p, z)),
+            radius: radius as f32,
+            height: (height * reach) as f32,
+        };
+        let links = self.bars.iter().flat_map(move |bar| {
+            let (root, along, z) = bar.pose(&e);
+            let link = body(bar.span.map(|s| (root + along * s, z)), bar.radius, BAR_HEIGHT);
+            let under = z - 0.3 * BAR_HEIGHT * reach;
+            let disc = move |[s, radius]: &[f64; 2]| body([(root + along * *s, under); 2], *radius, 1.6 * BAR_HEIGHT);
+            bar.weights.iter().map(disc).chain([link])
+        });
+        let drives = self.motors.iter().filter_map(move |motor| {
+            let at = (place_of(motor.at.as_ref()?, &e), motor.z);
+            Some(body([at; 2], 0.75 * DRIVE_RADIUS * reach, 0.05))
+        });
+        let centre = Vector::default();
+        let foot = body([(centre, self.bottom()); 2], self.foot(), 0.015);
+        // The drives on the base and the cap above the links.
+        let column = body([(centre, self.bottom()), (centre, self.top)], 1.25 * DRIVE_RADIUS * reach, 0.0);
+        let [length, width] = PLATE_HALF_SIZE.map(|part| part * reach);
+        let end = move |side: f64| (unit(base.angle) * (side * (length - width)), self.bottom());
+        let plate = moves.then(|| body([end(-1.0), end(1.0)], width, 0.015));
+        links.chain(drives).chain([foot, column]).chain(plate)
     }
 
     /// Returns the shadows of the links on the floor, in light from the upper left; `base` is the position of the base,

@@ -52,6 +52,7 @@ pub mod views;
 pub mod wall;
 
 use crate::notation::Notation;
+use options::Handle;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -331,9 +332,28 @@ pub struct Label {
     pub size: f32,
     /// Position of the anchor point.
     pub anchor: Anchor,
+    /// Handle that the pointer takes by the label, too.
+    pub handle: Option<Handle>,
+}
+
+/// A part of the machine seen from above: a strip with round ends, or a disc if both ends are equal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// Ends of the centre line of its lower face, m.
+    pub ends: [[f32; 3]; 2],
+    /// Half its width, m.
+    pub radius: f32,
+    /// Height, m.
+    pub height: f32,
 }
 
 impl Label {
+    /// Returns the label as a part of a handle.
+    #[must_use]
+    pub fn of_handle(self, handle: Handle) -> Self {
+        Self { handle: Some(handle), ..self }
+    }
+
     /// Returns a label of the given text, colour and size beside a point.
     pub fn new(
         name: impl Into<Name>,
@@ -344,7 +364,7 @@ impl Label {
         size: f32,
         anchor: Anchor,
     ) -> Self {
-        Self { name: name.into(), at, offset, text: text.into(), colour, size, anchor }
+        Self { name: name.into(), at, offset, text: text.into(), colour, size, anchor, handle: None }
     }
 }
 
@@ -382,8 +402,8 @@ pub struct Scene {
     pub markers: Vec<Marker>,
     /// Labels, over everything; drawn by egui, which has the fonts.
     pub labels: Vec<Label>,
-    /// Centre lines of the bars of the machine, which labels avoid.
-    pub bars: Vec<[[f32; 3]; 2]>,
+    /// Parts of the machine, which labels avoid.
+    pub bodies: Vec<Body>,
     /// Notation of the user: quantities with SI units in label texts are converted to it when the labels are painted.
     pub notation: Notation,
 }
@@ -400,14 +420,15 @@ impl Scene {
             lines: Vec::new(),
             markers: Vec::new(),
             labels: Vec::new(),
-            bars: Vec::new(),
+            bodies: Vec::new(),
             notation: Notation::default(),
         }
     }
 
     /// Whether another scene looks the same except for its labels.
     pub fn looks_like(&self, other: &Self) -> bool {
-        let Self { background, model, areas, shadows, solids, lines, markers, labels: _, bars: _, notation: _ } = self;
+        let Self { background, model, areas, shadows, solids, lines, markers, labels: _, bodies: _, notation: _ } =
+            self;
         Arc::ptr_eq(model, &other.model)
             && (background, areas, solids, markers) == (&other.background, &other.areas, &other.solids, &other.markers)
             && (shadows, lines) == (&other.shadows, &other.lines)

@@ -30,7 +30,7 @@ use super::options::{Handle, ViewOptions};
 use super::palette::{Palette, palette};
 use super::pick::{DragAction, GrabPoint, LinkHold, Pick, Pivot};
 use super::pointer::Pointer;
-use super::{Measure, Scene, point};
+use super::{Measure, Scene};
 use base::BaseStage;
 use limits::LimitArcs;
 use path::PlannedPath;
@@ -393,8 +393,7 @@ impl Stage {
             }
         }
         let units = shown.q.units();
-        let seen = |[x, y, z]: [f64; 3]| point(shown.base.at + Vector::new(x, y), z);
-        scene.bars.extend(self.linkage.bars().iter().map(|bar| bar.ends(&units).map(seen)));
+        scene.bodies.extend(self.linkage.bodies(&units, shown.base, self.base.moves()));
         let mut solids = self.linkage.solids(&units, shown.base, self.base.moves(), palette);
         under::light(&mut solids, &self.linkage, options.highlighted, palette);
         scene.solids.extend(solids);

@@ -27,14 +27,6 @@ const POINT_PICK_PX: f64 = 9.0;
 /// Distance within which the pointer picks a payload, px.
 const PAYLOAD_PICK_PX: f64 = 12.0;
 
-/// Distance of the label of a point to the left of the point, px.
-const NAME_DISTANCE_PX: f64 = 17.0;
-/// Distance of the label of a payload above the payload, px.
-const MASS_DISTANCE_PX: f64 = 22.0;
-
-/// Radius of the target's ring, px.
-const RING_RADIUS_PX: f64 = 14.0;
-
 /// A payload that is dragged nearer to the end effector than this fraction of the reach snaps to it.
 const TIP_SNAP: f64 = 0.015;
 
@@ -443,26 +435,19 @@ impl Views {
                 });
                 let near = picks.filter(|(_, d)| *d < PICK_RADIUS);
                 let first = near.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
-                // If the target covers a point of the path, the point is picked by its label, which is to its left.
+                // Within its ring the target takes precedence; a point there is taken by its label.
                 let points = self.stage.waypoints().filter_map(|i| {
                     let handle = Handle::Waypoint(i);
                     let at = self.stage.handle(handle, shown)?;
-                    let [x, y] = pointer.project(at)?;
-                    let name = (pointer.at[0] - x + NAME_DISTANCE_PX).hypot(pointer.at[1] - y);
-                    let own = (pointer.at[0] - x).hypot(pointer.at[1] - y);
-                    let off = if first.is_some() { name } else { own.min(name) };
-                    // Within its ring the target takes precedence.
-                    (off < POINT_PICK_PX && !(first.is_some() && own < RING_RADIUS_PX))
-                        .then_some((Pick::of(handle, at), off))
+                    let off = pointer.distance(at)?;
+                    (first.is_none() && off < POINT_PICK_PX).then_some((Pick::of(handle, at), off))
                 });
                 let point = points.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
-                // A payload under the target is picked by its label, which is above it.
-                let load = self.stage.handle(Handle::Payload, shown).filter(|at| {
-                    let Some([x, y]) = pointer.project(*at) else { return false };
-                    let [px, py] = pointer.at;
-                    let on = first.is_none() && (px - x).hypot(py - y) < PAYLOAD_PICK_PX;
-                    on || (px - x).hypot(py - y + MASS_DISTANCE_PX) < POINT_PICK_PX
-                });
+                // So is a payload.
+                let load = self
+                    .stage
+                    .handle(Handle::Payload, shown)
+                    .filter(|at| first.is_none() && pointer.distance(*at).is_some_and(|off| off < PAYLOAD_PICK_PX));
                 let load = load.map(|at| Pick::of(Handle::Payload, at));
                 let ends = self.stage.limits(shown).filter_map(|end| {
                     let off = pointer.distance(end.at).filter(|off| *off < POINT_PICK_PX)?;

@@ -176,15 +176,8 @@ impl BaseStage {
             scene.markers.push(disc.edged(palette.ink, if hot { 3.0 } else { 1.6 }));
             let words = format!("{} kg", three_digits(self.load.mass));
             let offset = [0.0, -22.0];
-            scene.labels.push(Label::new(
-                "payload/mass",
-                point(at, z),
-                offset,
-                words,
-                palette.dim,
-                11.5,
-                Anchor::Centre,
-            ));
+            let own = Label::new("payload/mass", point(at, z), offset, words, palette.dim, 11.5, Anchor::Centre);
+            scene.labels.push(own.of_handle(Handle::Payload));
         }
         let Some([x, y]) = options.external_force else { return };
         let force = Vector::new(x, y);

@@ -65,7 +65,8 @@ impl PlannedPath {
             let disc = Marker::disc("plan/waypoints", at, if hot { 6.5 } else { 4.5 }, palette.background);
             scene.markers.push(disc.edged(ink, if hot { 2.2 } else { 1.6 }));
             let mut words = |own: &'static str, text: &str, down: f32, colour, size| {
-                scene.labels.push(Label::new(own, at, [-12.0, down], text, colour, size, Anchor::Right));
+                let label = Label::new(own, at, [-12.0, down], text, colour, size, Anchor::Right);
+                scene.labels.push(label.of_handle(Handle::Waypoint(*i)));
             };
             words("plan/names", name, 0.0, ink, 13.0);
             let mut remedy = |text: &str| words("plan/unserved", text, 15.0, palette.reaction, 11.5);

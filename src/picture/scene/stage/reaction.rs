@@ -4,13 +4,14 @@ use std::f64::consts::FRAC_PI_2;
 
 use crate::numbers::round_number;
 use crate::scene::arrow::head;
-use crate::scene::exaggeration::DrawnFrame;
+use crate::scene::exaggeration::{DrawnFrame, Exaggeration};
 use crate::scene::linkage::LinkageModel;
 use crate::scene::options::{Handle, ViewOptions};
 use crate::scene::palette::Palette;
 use crate::scene::reaction::{ARC_RADIUS, FULL_ARROW, ReactionGlyph, Scale};
 use crate::scene::{Anchor, Label, Polyline, Scene, Strips, point, posed};
 use stillbase_mechanics::planar::{Vector, unit};
+use stillbase_settings::number::ShortNumber;
 use stillbase_simulation::frame::Frame;
 
 /// Draws the reaction on the base and the centre of mass; `static_force_name` is the name of the constant force.
@@ -72,12 +73,23 @@ pub fn draw(
         (felt.static_force_text(static_force_name).unwrap_or_default(), palette.dim, 11.5),
         (centre_of_mass(frame, reach), palette.dim, 11.5),
         (scale.join(" · "), palette.dim, 11.5),
+        (mount(options.exaggeration), palette.dim, 11.5),
     ];
     let at = point(Vector::new(0.2 * reach, -0.11 * reach), z);
     let mut down = 0.0;
     for (text, colour, size) in rows.into_iter().filter(|(t, ..)| !t.is_empty()) {
         scene.labels.push(Label::new("reaction/words", at, [0.0, down], text, colour, size, Anchor::Left));
         down += 17.0;
+    }
+}
+
+/// Returns how far the base is drawn turned on a soft mount; empty without one.
+fn mount(exaggeration: Exaggeration) -> String {
+    match exaggeration {
+        Exaggeration::Mount(compliance) => {
+            format!("drawn on a soft mount: 1 N m turns it {}°", ShortNumber(compliance.to_degrees()))
+        }
+        Exaggeration::Times(_) => String::new(),
     }
 }
 

@@ -12,6 +12,8 @@ use stillbase_planning::pose_space::PoseSpace;
 
 /// Number of vertices of the circle.
 const CIRCLE_VERTICES: u32 = 96;
+/// Distance of the name from the knob, px.
+const NAME_DISTANCE_PX: f64 = 18.0;
 
 /// The ring in the frame of the base.
 #[derive(Clone, Debug)]
@@ -60,7 +62,10 @@ impl BaseRing {
         let hot = options.highlighted == Some(Handle::Ring);
         let disc = Marker::disc("b_ring/knob", point(self.knob(shown), z), if hot { 9.0 } else { 7.0 }, palette.amber);
         scene.markers.push(disc.edged(palette.background, 2.0));
-        let beside = point(at + unit(turn) * (self.radius * 1.28), z);
-        scene.labels.push(Label::new("b_ring/name", beside, [0.0; 2], "b", palette.amber, 14.0, Anchor::Centre));
+        // Beyond the knob, as seen from the base.
+        let out = unit(turn) * NAME_DISTANCE_PX;
+        let (at, offset) = (point(self.knob(shown), z), [out.re as f32, -out.im as f32]);
+        let name = Label::new("b_ring/name", at, offset, "b", palette.amber, 14.0, Anchor::Centre);
+        scene.labels.push(name.of_handle(Handle::Ring));
     }
 }

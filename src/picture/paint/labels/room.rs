@@ -1,0 +1,143 @@
+//! [`Room`]: what labels leave free: the machine, discs, arrows, and what lies over the scene.
+
+use egui::{Pos2, Rect, Vec2, pos2};
+
+use crate::paint::SceneViewport;
+use crate::scene::{Body, Scene};
+
+/// Discs with a smaller radius are dots, which labels may cover, px.
+const MIN_DISC_PX: f32 = 2.9;
+/// Lines of at least this width, over everything and with at most so many vertices, are arrows.
+const MIN_ARROW_PX: f32 = 2.0;
+const MAX_ARROW_VERTICES: usize = 72;
+/// Minimum distance of labels from the drawn edge of a part, points.
+const CLEARANCE_PT: f32 = 1.5;
+
+/// A strip with round ends on the screen; a disc if both ends are equal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Strip {
+    ends: [Pos2; 2],
+    radius: f32,
+}
+
+/// The screen as labels find it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Room {
+    /// The view.
+    pub view: Rect,
+    /// Rectangles that are taken: by what lies over the scene, and by labels placed before.
+    pub taken: Vec<Rect>,
+    /// Parts of the machine, discs, and lines that lead to labels.
+    strips: Vec<Strip>,
+    /// Arrows, which labels cover only if there is no other place.
+    arrows: Vec<[Pos2; 2]>,
+}
+
+impl Room {
+    /// Returns the room that a scene leaves in a viewport, outside the rectangles `taken`.
+    pub fn of(scene: &Scene, spot: &SceneViewport, taken: &[Rect]) -> Self {
+        let seen = |at: [f32; 3]| spot.screen(at.map(f64::from));
+        let face = |[a, b]: [[f32; 3]; 2], radius: f32| {
+            let ends = [seen(a)?, seen(b)?];
+            let aside = [[radius, 0.0], [0.0, radius]].map(|[x, y]| seen([a[0] + x, a[1] + y, a[2]]));
+            let radius = aside.into_iter().flatten().fold(0.0, |most, at| ends[0].distance(at).max(most));
+            Some(Strip { ends, radius: radius + CLEARANCE_PT })
+        };
+        // Seen from above, the upper face covers the lower one.
+        let body = |body: &Body| {
+            let upper = body.ends.map(|[x, y, z]| [x, y, z + body.height]);
+            let (low, high) = (face(body.ends, body.radius), face(upper, body.radius));
+            let differ = |low: Strip, high: Strip| low.ends[0].distance(high.ends[0]) > 0.5;
+            let both = low.zip(high).is_none_or(|(low, high)| differ(low, high));
+            low.filter(|_| both).into_iter().chain(high)
+        };
+        let discs = scene.markers.iter().filter(|marker| marker.radius > MIN_DISC_PX).filter_map(|marker| {
+            let at = seen(marker.at)?;
+            Some(Strip { ends: [at; 2], radius: marker.radius + CLEARANCE_PT })
+        });
+        let arrows = scene.lines.iter().filter(|line| line.on_top && line.width >= MIN_ARROW_PX && line.dash.is_none());
+        let short =
+            |line: &&crate::scene::Polyline| line.strips.iter().map(Vec::len).sum::<usize>() <= MAX_ARROW_VERTICES;
+        let pairs = |line: &crate::scene::Polyline| {
+            let at = |p: &[f32; 3]| seen(crate::scene::place(&line.world_from_item, *p));
+            let strips = line.strips.iter().flat_map(|strip| strip.windows(2));
+            strips.filter_map(|pair| Some([at(&pair[0])?, at(&pair[1])?])).collect::<Vec<_>>()
+        };
+        Self {
+            view: spot.rect,
+            taken: taken.to_vec(),
+            strips: scene.bodies.iter().flat_map(body).chain(discs).collect(),
+            arrows: arrows.filter(short).flat_map(pairs).collect(),
+        }
+    }
+
+    /// Adds a line that leads to a label, so that later labels leave it free.
+    pub fn take_line(&mut self, ends: [Pos2; 2]) {
+        self.strips.push(Strip { ends, radius: 1.0 });
+    }
+
+    /// Whether a rectangle is in view and touches nothing within `margin`, points. A disc at the point that it belongs to
+    /// may be nearer.
+    pub fn is_free(&self, place: Rect, margin: f32, own: Pos2) -> bool {
+        let wide = place.expand(margin);
+        self.view.contains_rect(place)
+            && !self.taken.iter().any(|other| other.intersects(wide))
+            && !self.strips.iter().any(|strip| strip.touches(if strip.ends == [own; 2] { place } else { wide }))
+    }
+
+    /// Whether a line crosses a rectangle that is taken.
+    pub fn crosses_taken(&self, ends: [Pos2; 2]) -> bool {
+        self.taken.iter().any(|place| crosses(ends, *place))
+    }
+
+    /// Whether a rectangle covers a part of an arrow.
+    pub fn covers_arrow(&self, place: Rect) -> bool {
+        self.arrows.iter().any(|ends| crosses(*ends, place))
+    }
+}
+
+impl Strip {
+    fn touches(&self, place: Rect) -> bool {
+        let Self { ends, radius } = *self;
+        let near = place.expand(radius);
+        if !near.intersects(Rect::from_two_pos(ends[0], ends[1])) {
+            return false;
+        }
+        let corners = [place.left_top(), place.right_top(), place.left_bottom(), place.right_bottom()];
+        crosses(ends, place)
+            || ends.iter().any(|end| place.distance_to_pos(*end) < radius)
+            || corners.iter().any(|corner| distance(ends, *corner) < radius)
+    }
+}
+
+/// Returns the distance of a point from a segment.
+fn distance([a, b]: [Pos2; 2], at: Pos2) -> f32 {
+    let along: Vec2 = b - a;
+    let share = ((at - a).dot(along) / along.length_sq().max(1e-9)).clamp(0.0, 1.0);
+    (a + share * along).distance(at)
+}
+
+/// Whether a segment meets a rectangle.
+fn crosses([a, b]: [Pos2; 2], place: Rect) -> bool {
+    // Interval of the segment, from 0 to 1, that lies between both pairs of sides.
+    let along = b - a;
+    let mut within = [0.0_f32, 1.0];
+    for (from, by, low, high) in
+        [(a.x, along.x, place.left(), place.right()), (a.y, along.y, place.top(), place.bottom())]
+    {
+        if by.abs() < 1e-6 {
+            if from < low || from > high {
+                return false;
+            }
+            continue;
+        }
+        let ends = [(low - from) / by, (high - from) / by];
+        within = [within[0].max(ends[0].min(ends[1])), within[1].min(ends[0].max(ends[1]))];
+    }
+    within[0] <= within[1]
+}
+
+/// Returns the nearest point of a rectangle to a point.
+pub fn nearest(place: Rect, at: Pos2) -> Pos2 {
+    pos2(at.x.clamp(place.left(), place.right()), at.y.clamp(place.top(), place.bottom()))
+}
