@@ -213,7 +213,7 @@ pub const ACTIONS: &[Action] = actions![
     Run, "Ten steps back" = "backward skip", [on(SHIFT, Key::ArrowLeft)], "keyboard", |_, _| Some(Command::Session(SessionCommand::Step(-10)));
     Run, "To the start" = "rewind reset beginning", [on(PLAIN, Key::Home)], "top bar", |_, _| Some(Command::Session(SessionCommand::Seek(0.0)));
     Run, "To the newest instant" = "end last finish latest now", [on(PLAIN, Key::End)], "keyboard", |s, _| Some(Command::Session(SessionCommand::Seek(s.length())));
-    Run, "Bookmark here, or away" = "remember mark pin note flag", [on(PLAIN, Key::K)], "time line", |s, _| {
+    Run, "Add or remove a bookmark here" = "remember mark pin note flag", [on(PLAIN, Key::K)], "time line", |s, _| {
         let time = s.frame().time;
         let name = if s.bookmark_at(time).is_some() { String::new() } else { s.free_name() };
         Some(Command::Session(SessionCommand::Bookmark(time, name)))
@@ -234,7 +234,7 @@ pub const ACTIONS: &[Action] = actions![
     Run, "Compare with the newest branch" = "difference", [on(SHIFT, Key::G)], "history", |s, _| {
         s.branch_count().checked_sub(1).map(|it| Command::Session(SessionCommand::CompareBranch(it)))
     };
-    Run, "Play over and over, what plots show of it if a range was chosen" = "loop repeat cycle", [on(PLAIN, Key::O)], "top bar, loop" turns Loop;
+    Run, "Play in a loop; only the time range of the plots, if one was chosen" = "loop repeat cycle", [on(PLAIN, Key::O)], "top bar, loop" turns Loop;
     Export, "Copy as command line" = "shell terminal script cli simulate", [on(CTRL_SHIFT, Key::C)], "top bar, File", |_, _| Some(Command::Window(WindowCommand::CopyCommand));
     Run, "Twice as slow" = "speed slow motion slower rate", [on(PLAIN, Key::Comma)], "top bar, speed", |_, v| slower(v);
     Run, "Twice as fast" = "speed faster speed up rate quick", [on(PLAIN, Key::Period)], "top bar, speed", |_, v| faster(v);
@@ -308,7 +308,7 @@ pub const ACTIONS: &[Action] = actions![
     View, "Present: the scene alone, what counts in large type" = "presentation slides talk full screen projector lecture fullscreen", [on(PLAIN, Key::Num7)], "tool bar, layout", |_, _| {
         Some(Command::View(ViewChange::Layout(Layout::Present)))
     };
-    View, "What a repaint takes, or no longer" = "fps performance frame rate", [on(PLAIN, Key::F12)], "keyboard" turns Times;
+    View, "Time that a repaint takes, shown or hidden" = "fps performance frame rate", [on(PLAIN, Key::F12)], "keyboard" turns Times;
     View, "Light or dark" = "theme night mode colours color white black background appearance", [on(PLAIN, Key::L)], "top bar", |_, v| Some(Command::View(ViewChange::Theme(other(v.arrangement.theme))));
 
     View, "Angles in degrees or radians" = "unit units deg rad angle", [], "tool bar, layout", |_, v| notation(v, |shown| {
@@ -338,7 +338,7 @@ pub const ACTIONS: &[Action] = actions![
     Analysis, "Statistics of the time that plots show" = "mean average maximum minimum rms", [], "menu of a plot", |_, v| {
         Some(Command::View(ViewChange::Charts(PlotChange::Statistics(!v.charts.statistics))))
     };
-    Analysis, "Second cursor here, or away" = "measure difference delta", [on(PLAIN, Key::M)], "plots, Shift click", |s, v| {
+    Analysis, "Add or remove a second cursor here" = "measure difference delta", [on(PLAIN, Key::M)], "plots, Shift click", |s, v| {
         Some(Command::View(ViewChange::Mark(v.mark.is_none().then(|| s.frame().time))))
     };
 
@@ -390,7 +390,7 @@ pub const FINE_ACTIONS: &[Action] = actions![
 pub const GESTURES: [(&str, &str); 25] = [
     ("drag the target", "the machine follows on its plane"),
     ("drag a link", "its drive turns, the others follow so that b stays"),
-    ("drag a link of four drives or more", "it goes along, the tip and b stay"),
+    ("drag a link, four drives or more", "it follows the pointer, the tip and b stay"),
     ("drag A, B, 1 …", "move a point of the path; where the target covers it, drag its name"),
     ("double click", "add a point to the path"),
     ("Delete", "leave out the point under the pointer"),

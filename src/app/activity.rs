@@ -37,14 +37,14 @@ impl Activity {
             Self::Saving => ("saving", None),
             Self::Recording => ("recording", Some("cancelled: no file is left")),
             Self::Exporting => ("writing the file", Some("cancelled: no file is left")),
-            Self::Table => ("finding what the table says", Some("cancelled: another choice asks the table again")),
-            Self::Study => ("drawing machines", Some("cancelled: no machines were drawn for the run as it is")),
+            Self::Table => ("finding what the table says", Some("cancelled: choose again to assess the table again")),
+            Self::Study => ("sampling machines", Some("cancelled: no machines were sampled for the present run")),
             Self::TaskVariants => {
                 ("running the ways of the task", Some("cancelled: the ways of the task were not run again"))
             }
             Self::Fronts => ("finding fronts", Some("cancelled: take one away, or add one, to find them again")),
             Self::Seeking => ("seeking lengths", Some("cancelled: no lengths were found")),
-            Self::ExtraRun => ("running one more beside them", Some("cancelled: no run was added")),
+            Self::ExtraRun => ("running one more for the table of runs", Some("cancelled: no run was added")),
         }
     }
 

@@ -78,7 +78,7 @@ impl Card {
                     rows.push(format!("{} m along, {} m across the last link", signed(along, 3), signed(across, 3)));
                 }
                 let title = format!("payload, {} kg", three_digits(load.mass));
-                Self::new(title, rows, "drag: hangs it aside or back\nclick: its rows in the panel")
+                Self::new(title, rows, "drag: moves its centre of mass\nclick: its rows in the panel")
             }
             Handle::Ring => {
                 let rows =
@@ -179,7 +179,7 @@ fn link(i: usize, session: &Session) -> Option<Card> {
             format!("drag: turns drive {}, the others follow so that b stays\nclick: its rows in the panel", drive + 1)
         }
         Some(map) if map.leaves_freedoms() => {
-            "drag: it goes along, the tip and b stay\nclick: its rows in the panel".to_owned()
+            "drag: it follows the pointer, the tip and b stay\nclick: its rows in the panel".to_owned()
         }
         _ => "click: its rows in the panel".to_owned(),
     };

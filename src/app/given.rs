@@ -110,7 +110,7 @@ fn options_column(ui: &mut Ui, p: &Palette, shown: &TableView<'_>, commands: &mu
         shown.ask(commands, |options| options.content = to);
     });
     if content == Some(TableContent::Measurement) {
-        let tip = "Leaves measured rates and accelerations alone, and finds them from the angles";
+        let tip = "Ignores measured rates and accelerations, and computes both from the angles";
         switch(ui, "from the angles alone", tip, options.angles_only, |on| {
             shown.ask(commands, |options| options.angles_only = on);
         });

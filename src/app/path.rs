@@ -368,7 +368,7 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
         }
     };
     let (first, ink) = match forecast.exceeded_limit {
-        Some((limit, factor)) => (format!("{limit} passes its limit, {} times", signed(factor, 2)), p.reaction),
+        Some((limit, factor)) => (format!("{limit} is {} times its limit", signed(factor, 2)), p.reaction),
         None => (of.to_owned(), p.dim),
     };
     for (words, ink, tip) in [

@@ -72,7 +72,7 @@ const ANALYSES: [Toggle; 3] = [
         Switch::Table,
         Icon::Samples,
         "table",
-        "A motion of your own without reactions, or what a measured machine lacks of balance: from a table, CSV",
+        "From a CSV table: a motion of your own made reactionless, or the change that balances a measured machine",
     ),
 ];
 
@@ -90,7 +90,7 @@ pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &View
             for view in ViewKind::ALL {
                 let size = vec2(BUTTON_SIZE_PT.x, VIEW_BUTTON_HEIGHT_PT);
                 if let Err(why) = Views::has(view, session.run()) {
-                    let tip = format!("Not of this machine: {why}");
+                    let tip = format!("This machine has no such view: {why}");
                     disabled_word_button(ui, &p, view.name(), &tip, size);
                     continue;
                 }

@@ -139,7 +139,7 @@ pub(super) fn show(
             ],
         );
     } else if let Some((_, when)) = &saving.left_session {
-        let words = format!("The program did not end in order {when}. What was done then is still there.");
+        let words = format!("The program did not end properly {when}. What was done then is still there.");
         card(
             ctx,
             view_state,

@@ -172,7 +172,7 @@ fn pose_constant(
         let who = all_points(session);
         let mut turn = view_state.turn_task;
         let words = RichText::new("turn the task too").font(plain(11.0)).color(colour(p.dim));
-        let tip = format!("Past the b that serve {who}, where b stops: turn the points along with their workspace");
+        let tip = format!("Beyond the b that serve {who}: turn the points with the workspace instead of stopping b");
         if ui.checkbox(&mut turn, words).on_hover_text(tip).changed() {
             commands.push(ViewChange::Switch(Switch::TurnTask, turn).into());
         }
@@ -321,7 +321,7 @@ fn balance(ui: &mut Ui, session: &Session, facts: &ScenarioFacts<'_>, p: &Palett
         fact(ui, p, &label, &significant(value), in_unit, tone, tip);
     }
     for (k, inertia) in balance.inertia.iter().enumerate() {
-        let tip = "What the angular momentum has of the drive: D in Eq. (11), without what gears only add to H";
+        let tip = "Coefficient of q̇ in the angular momentum: D in Eq. (11), without what gears only add to H";
         let label = notation.name("effective inertia", &format!("D{}", subscript(k + 1)));
         fact(ui, p, &label, &format!("{inertia:.4}"), "kg m²", p.drive(k), tip);
     }

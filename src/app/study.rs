@@ -40,7 +40,7 @@ pub fn show(
             let words = match study {
                 Some(Ok(study)) => summary(study),
                 Some(Err(_)) => String::new(),
-                None => "drawing machines …".into(),
+                None => "sampling machines …".into(),
             };
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if ui.button("Close").on_hover_text("T").clicked() {
@@ -233,7 +233,7 @@ fn band(ui: &mut Ui, p: &Palette, study: &Study, time: f64) {
     });
     name(&response.response, "Band of the turning moment on the base over time, N m");
     response.response.on_hover_text(
-        "The moment less that of the machine as drawn.\nPale: 5 to 95 % of the machines; full: 25 to 75 %; line: mean; \
+        "The moment minus the nominal one.\nPale: 5 to 95 % of the machines; full: 25 to 75 %; line: mean; \
          dashed: σ to first order",
     );
 }

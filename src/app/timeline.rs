@@ -27,7 +27,7 @@ pub fn show(
     let p = view_state.palette();
     let (mut time, length) = (session.frame().time, session.length().max(1e-3));
     clock(ui, &p, time, length, behind);
-    let tip = "Play over and over, what plots show of it if a range was chosen there (O)";
+    let tip = "Play over and over: the time range chosen in the plots, or else the whole run (O)";
     let again = IconButton { on: Some(view_state.loops), ..IconButton::of(Icon::Loop, "loop", tip) };
     if again.show(ui, &p).clicked() {
         commands.push(ViewChange::Switch(Switch::Loop, !view_state.loops).into());
@@ -105,7 +105,7 @@ fn clock(ui: &mut Ui, p: &Palette, time: f64, length: f64, behind: Option<f64>) 
     let mut below = ui.new_child(egui::UiBuilder::new().max_rect(below).layout(layout));
     below
         .label(words)
-        .on_hover_text("The run takes longer to compute than it lasts: time passes so fast, and no frame is left out");
+        .on_hover_text("The run takes longer to compute than it lasts: time is slowed, and no frame is left out");
 }
 
 /// Returns the text of a playback rate, such as `0.6× real time`.

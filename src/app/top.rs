@@ -64,7 +64,7 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewStat
     let tip = if changed {
         "The machine; it differs from the built-in one of this name"
     } else {
-        "The machine; another one of these brings a task that shows what it is for"
+        "The machine; choosing another one opens a task that shows its purpose"
     };
     let width = list_width(ui, &current, if is_narrow(ui) { [104.0, 150.0] } else { [136.0, 190.0] });
     let combo = ComboBox::from_id_salt("machine")

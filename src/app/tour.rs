@@ -237,7 +237,7 @@ const STEPS: [Step; 7] = [
     },
     Step {
         title: "The reactionless workspace",
-        words: "It leaves {free}: enough to go anywhere {inside} the amber {area}. Every path in it is free of \
+        words: "One b leaves {free}: enough to go anywhere {inside} the amber {area}. Every path in it is free of \
                 reactions, whichever way it goes. (Eqs. 15, 16)",
         exercise: "Drag the white ring about {inside} the amber {area}.",
         scene: ("case-3", 0.0),

@@ -181,7 +181,7 @@ impl ExportArguments {
         let every = steps.round();
         if !(every >= 1.0 && (steps - every).abs() < 1e-6 * every) {
             let why = format!(
-                "--rate {} does not divide the simulation's {:.6} steps a second: want a part of it, or another step in the \
+                "--rate {} does not divide the simulation's {:.6} steps a second: want a divisor, or another step in the \
                  scenario",
                 self.rate,
                 1.0 / scenario.step

@@ -49,6 +49,6 @@ fn find(machine: &Machine, key: &str) -> Result<Parameter, Failure> {
                  counterweight.1.at"
             }
         };
-        Failure::wrong_input(format!("nothing of this machine that balance depends on is called {key:?}: {why}"))
+        Failure::wrong_input(format!("no parameter {key:?} of this machine affects its balance: {why}"))
     })
 }

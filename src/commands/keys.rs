@@ -116,8 +116,8 @@ fn page(rows: &[Row]) -> String {
     let mut text = String::from(
         "# Every setting\n\nEach key is the same in a scenario's file, after `--set` on the command line, in an edit of a \
          saved session, and in the window under *All settings*. In a key, `*` stands for a name: of a link, a named length, \
-         a drive or a relative angle of the machine. The word `default` takes a key out, so that what stands there by \
-         default returns; so does `none` where that is the default. Numbers outside their range are refused, with the range; a key without an effect is told.\n\n\
+         a drive or a relative angle of the machine. The word `default` removes a key, so that its default applies \
+         again; `none` does the same where it is the default. A number out of range is refused with its range, and a key without effect is reported.\n\n\
          `stillbase keys WORD` prints these on the command line. This page is what `stillbase keys --markdown` writes.\n",
     );
     for rows in rows.chunk_by(|a, b| a.part == b.part) {

@@ -250,7 +250,7 @@ impl PlanArguments {
             && let none @ PoseConstant::None(_) = PoseConstant::of(&scenario.machine)
         {
             print_message(format!(
-                "note: {}: pose constant {none}; planned as minimum-norm, with what that does to the base",
+                "note: {}: pose constant {none}; planned as minimum-norm, which may cause reactions on the base",
                 scenario.machine.name()
             ));
             scenario.task.kind = TaskKind::MinimumNorm;
@@ -323,8 +323,7 @@ fn table(answer: &PlanSummary) -> String {
     }
     let held = cost.limiting.iter().map(|limit| {
         let gap = cost.gap.filter(|gap| *gap > 5e-4);
-        let gap =
-            gap.map_or(String::new(), |gap| format!(", {:.1} % over the motion with unlimited jerk", 100.0 * gap));
+        let gap = gap.map_or(String::new(), |gap| format!(", {:.1} % longer than with unlimited jerk", 100.0 * gap));
         format!("\nheld back by the {limit}{gap}\n")
     });
     let rests = cost.blended.map_or(String::new(), |blended| {

@@ -19,8 +19,8 @@ use super::size::size;
 
 /// Draw a picture or a film of a run, without a display
 ///
-/// A still picture shows the instant --at. With --film the run is shown from one time to another: .gif for slides and
-/// mail and .png (animated) with all colours play over and over; .mp4 is written by the program ffmpeg; a name without
+/// A still picture shows the instant --at. With --film the run is shown from one time to another. A .gif (slides and
+/// mail) or an animated .png (all colours) repeats forever. A .mp4 is written by the program ffmpeg. A name without
 /// an ending gives a folder of numbered pictures.
 #[derive(Args)]
 #[command(after_help = "\

@@ -18,7 +18,7 @@ use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
 
 /// Compute the spectra of the base reactions of a run, and compare them with jitter limits
 ///
-/// The scenario is simulated; dynamic f_Bx and f_By and the whole n_B of every step are transformed. Amplitude spectral
+/// The scenario is simulated; dynamic f_Bx and f_By and the total n_B of every step are transformed. Amplitude spectral
 /// densities are one-sided; the cumulative RMS adds up their power from 0 Hz. With a rectangular window, its last value
 /// is the RMS of the samples. With a Hann window, it is the RMS weighted by the window, which emphasises the middle of
 /// the record.
@@ -86,7 +86,7 @@ impl SpectrumArguments {
             check_output(file, self.force, &["csv"])?;
         }
         if scenario.base.wheel.is_some() {
-            print_message(format!("note: {}: n_B is what the reaction wheel leaves of it for the base", scenario.name));
+            print_message(format!("note: {}: n_B is the moment minus that of the reaction wheel", scenario.name));
         }
         let failed = |why| failed(why, &scenario);
         let mut of = BaseSpectrum::of(&scenario, self.window).map_err(failed)?;
@@ -144,8 +144,8 @@ fn text(answer: &BaseSpectrum) -> String {
     }
     let why = match answer.window {
         WindowFunction::Hann => {
-            "Frequencies and the cumulative RMS are of the samples as the window weighs them, its middle most: it ends at the \
-             weighted RMS. --window rectangular weighs all alike.\n"
+            "Frequencies and the cumulative RMS are those of the windowed samples. The last value is the \
+             weighted RMS. --window rectangular weights all samples equally.\n"
         }
         WindowFunction::Rectangular => "",
     };

@@ -273,7 +273,7 @@ impl Layout<'_> {
         let symbols: Vec<String> = lines.iter().take(MAX_TITLE_CONDITIONS).map(|line| line.symbol()).collect();
         let more = if lines.len() > MAX_TITLE_CONDITIONS { " …" } else { "" };
         let unit = lines.first().map_or("", |line| line.unit());
-        let name = format!("{name}  {}{more}  {unit}, white: left", symbols.join(" "));
+        let name = format!("{name}  {}{more}  {unit}, white: sum of all links", symbols.join(" "));
         let legend = view::PlotLegend::new().with_visible(false);
         self.view("BarChart", &name, origin, &["$origin/**".into()], &[("PlotLegend", &legend)])
     }

@@ -12,7 +12,7 @@ use stillbase_mechanics::balance::{
     Body, BodyQuantity, ListedParameter, Parameter, ParameterBounds, RebalanceRequest, rebalance,
 };
 use stillbase_mechanics::counterweights::{
-    BoundRelaxation, CounterweightError, CounterweightSite, CounterweightSpec, Disc, FreeRotor, Front, Objective,
+    BoundRelaxation, CounterweightError, CounterweightSite, CounterweightSpec, FreeRotor, Front, Objective,
     PlacedCounterweights, RotorFreedom, front, place_weights,
 };
 use stillbase_mechanics::machine::{Counterweight, Drive, Inertia, Length, Link, Machine, MachineSpec};
@@ -27,36 +27,7 @@ const PLACE_PENALTY_PER_M: f64 = 5.0;
 /// Weight of mass in the objective, in kg m² of Σ |D_k| for each kg: enough that no useless mass is added.
 const MASS_WEIGHT: f64 = 1e-3;
 
-/// A counterweight may exceed its bound behind the root by this much, m, because of rounding.
-const PLACE_TOLERANCE_M: f64 = 1e-6;
-
 impl DesignBrief {
-    /// Returns a brief for counterweights like those of a machine: steel discs of their maximum thickness. If one lies
-    /// farther behind the root than its link is long, the largest distance becomes the bound.
-    pub fn of(machine: &Machine) -> Self {
-        let weights = &machine.spec().counterweights;
-        // Only the mass per area of a disc is known; it gives the thickness if the disc is of steel.
-        let thickest = weights
-            .iter()
-            .filter_map(|weight| weight.thickness(Disc::STEEL.density))
-            .fold(None, |thickest: Option<f64>, thickness| {
-                Some(thickest.map_or(thickness, |known| known.max(thickness)))
-            });
-        let length = |link: &str| {
-            let place = machine.links().iter().position(|own| own.name == link)?;
-            Some(machine.resolved_links()[place].length)
-        };
-        let is_usual = |weight: &Counterweight| {
-            length(&weight.link).is_some_and(|length| weight.at >= -length - PLACE_TOLERANCE_M)
-        };
-        let back = weights.iter().fold(0.0_f64, |back, weight| back.max(-weight.at));
-        Self {
-            thickness: thickest.unwrap_or(Disc::STEEL.thickness),
-            behind_root: (!weights.iter().all(is_usual)).then_some(back),
-            ..Self::default()
-        }
-    }
-
     /// Returns a change of a machine as an edit. If the machine is kept balanced, the edit also adjusts all free
     /// numbers, each as near as possible to its value in `start`.
     ///

@@ -6,7 +6,7 @@ use super::changes::in_order;
 use super::edit::{Edit, TimedEdit};
 use super::events::GESTURE_PAUSE;
 use super::refusal::Refusal;
-use super::scenario::Scenario;
+use super::scenario::{DesignBrief, Scenario};
 use stillbase_mechanics::machine::{Machine, is_of_machine};
 
 /// A state of the machine.
@@ -20,6 +20,8 @@ pub struct DesignVersion {
     pub words: String,
     /// The machine.
     pub machine: Machine,
+    /// The bounds on its design.
+    pub brief: DesignBrief,
 }
 
 /// Maximum number of states that are kept: the first one and the newest.
@@ -32,19 +34,33 @@ const MAX_STATES: usize = 200;
 /// If an edit cannot be applied to the machine.
 pub fn designs(scenario: &Scenario) -> Result<Vec<DesignVersion>, Refusal> {
     let mut now = scenario.without_edits();
-    let mut all = vec![DesignVersion { changes: 0, step: 0, words: String::new(), machine: now.machine.clone() }];
-    let edits: Vec<TimedEdit> = in_order(&scenario.edits).into_iter().filter(|e| e.edit.sets_machine()).collect();
+    let version = |changes: usize, step: u64, words: String, now: &Scenario| DesignVersion {
+        changes,
+        step,
+        words,
+        machine: now.machine.clone(),
+        brief: now.design.clone(),
+    };
+    let mut all = vec![version(0, 0, String::new(), &now)];
+    let edits: Vec<TimedEdit> =
+        in_order(&scenario.edits).into_iter().filter(|e| e.edit.sets_machine() || e.edit.sets_design()).collect();
     let mut changes = 0;
     for (i, timed) in edits.iter().enumerate() {
         let Edit::Set { change } = &timed.edit else { continue };
-        let of_machine: Table = change.clone().into_iter().filter(|(key, _)| is_of_machine(key)).collect();
-        now = now.with_settings(&of_machine)?;
+        let part = |is_part: &dyn Fn(&str) -> bool| -> Table {
+            change.clone().into_iter().filter(|(key, _)| is_part(key)).collect()
+        };
+        now = now.with_settings(&part(&|key| is_of_machine(key) || key == "design"))?;
+        let of_machine = part(&is_of_machine);
+        if of_machine.is_empty() {
+            continue;
+        }
         if edits.get(i + 1).is_some_and(|next| is_dragged_on(timed, next, scenario.step)) {
             continue;
         }
         changes += 1;
         let (step, words) = (timed.step, Edit::Set { change: of_machine }.title());
-        all.push(DesignVersion { changes, step, words, machine: now.machine.clone() });
+        all.push(version(changes, step, words, &now));
         if all.len() > MAX_STATES {
             all.remove(1);
         }

@@ -187,6 +187,11 @@ impl Edit {
         self.sets(&MACHINE_TABLES)
     }
 
+    /// Returns whether the edit changes the bounds on the design.
+    pub(super) fn sets_design(&self) -> bool {
+        self.sets(&["design"])
+    }
+
     /// Checks the range of the numbers of a drag or pose. Settings are checked together with the rest of the scenario.
     ///
     /// # Errors

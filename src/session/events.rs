@@ -332,7 +332,7 @@ impl EventLog {
                 let text = format!("the reaction wheel saturates at {} rad/s", significant(frame.wheel.rate));
                 self.add(step, EventKind::Warning, text);
             }
-            (true, false) => self.add(step, EventKind::Note, "the reaction wheel gives what is wanted again"),
+            (true, false) => self.add(step, EventKind::Note, "the reaction wheel is no longer saturated"),
             _ => {}
         }
         if let Some(fault) = (!self.now.faulty).then(|| frame.first_violation()).flatten() {

@@ -179,7 +179,7 @@ impl Verdict {
         if let Some(past_wheel) = self.past_wheel.filter(|_| self.is_base_unloaded && !self.reactionless) {
             let all = significant(self.arm_moment);
             let long = format!(
-                "the arm transmits up to {all} N m; the wheel takes it up and leaves {} N m",
+                "the arm transmits up to {all} N m; the moment past the wheel is {} N m",
                 significant(past_wheel)
             );
             add("the wheel takes it up", long);

@@ -188,7 +188,7 @@ fn a_view_that_a_machine_lacks_says_why() {
         let at = button.rect().center();
         h.hover_at(at);
         h.run_steps(60);
-        let tip = format!("Not of this machine: {why}");
+        let tip = format!("This machine has no such view: {why}");
         assert!(h.query_by_label_contains(&tip).is_some(), "{case}: {tip}");
         h.get_by_label("Tower").click();
         h.run_steps(2);

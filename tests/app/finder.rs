@@ -120,7 +120,7 @@ fn what_a_newcomer_types_is_among_the_first_three() {
         ("urdf", "Take the machine elsewhere: MJCF, URDF, DXF…"),
         ("mujoco", "Take the machine elsewhere: MJCF, URDF, DXF…"),
         ("slow motion", "Twice as slow"),
-        ("loop", "Play over and over, what plots show of it if a range was chosen"),
+        ("loop", "Play in a loop; only the time range of the plots, if one was chosen"),
         ("rewind", "To the start"),
         ("fit", "Show everything"),
         ("fullscreen", "Present: the scene alone, what counts in large type"),

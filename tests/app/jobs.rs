@@ -95,18 +95,18 @@ fn studies_run_beside_the_window() {
     let mut h = window("case-3", &workers);
     h.run_steps(2);
     tell(&mut h, Command::View(ViewChange::Switch(Switch::Study, true)));
-    assert!(h.query_by_label("drawing machines …").is_some(), "a panel without a study says so");
+    assert!(h.query_by_label("sampling machines …").is_some(), "a panel without a study says so");
     assert!(h.query_by_label("drawing machines, 0 %").is_some(), "the line at the bottom says how far");
     assert_eq!(workers.work(), 1);
     h.run_steps(3);
-    assert!(h.query_by_label("drawing machines …").is_none());
+    assert!(h.query_by_label("sampling machines …").is_none());
     assert!(h.query_by_label_contains("To blame").is_some(), "the study is on display");
     // Two edits, one after the other: the first study is not wanted any more, the last one stays on display.
     for time in [1.5, 2.0] {
         tell(&mut h, Command::Session(SessionCommand::Edit(Edit::set("task.time", time))));
         tell(&mut h, Command::Session(SessionCommand::EndGesture));
     }
-    assert!(h.query_by_label("drawing machines …").is_none(), "the last study is on display");
+    assert!(h.query_by_label("sampling machines …").is_none(), "the last study is on display");
     assert_eq!(session(&h).scenario().task.time, 2.0, "the hand has not waited");
     assert_eq!(workers.work(), 2);
     h.run_steps(3);

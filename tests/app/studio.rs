@@ -347,7 +347,7 @@ fn discs_keep_clear_and_serve_a_range_of_payloads() {
         let nearest = taken.resolved_links()[link].pins.iter().map(|pin| (pin - weight.at).abs());
         assert!(nearest.fold(f64::INFINITY, f64::min) > weight.radius + 0.005 - 1e-6, "link {}", weight.link);
     }
-    assert!(h.query_by_label_contains("What is left over the payloads: at worst 0.05").is_some());
+    assert!(h.query_by_label_contains("Imbalance over the payloads: at worst 0.05").is_some());
 }
 
 /// What is found is lighter than with the lengths as they are, reaches as far as it has to, and is one step to undo.

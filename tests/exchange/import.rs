@@ -349,7 +349,7 @@ fn what_is_outside_of_the_family_is_refused_by_name() {
         ("<mass value=\"2.5\"/>", "", ["link \"upper_arm\"", "no <mass>"]),
         ("<child link=\"forearm\"/>", "<child link=\"foream\"/>", ["<child>", "no link \"foream\""]),
         ("<child link=\"forearm\"/>", "<child link=\"upper_arm\"/>", ["joint \"elbow\"", "a second joint"]),
-        ("name=\"tool0\"", "name=\"forearm\"", ["link \"forearm\"", "names that stand once"]),
+        ("name=\"tool0\"", "name=\"forearm\"", ["link \"forearm\"", "each name once"]),
         ("<origin xyz=\"0.4 0 0\"/>", "<origin xyz=\"0.4 0 0 1\"/>", ["<origin>", "4 numbers: want 3"]),
         ("lower=\"-2.5\"", "lower=\"9.5\"", ["joint \"elbow\"", "lower not above upper"]),
         ("izz=\"0.04\"", "izz=\"-0.04\"", ["link \"upper_arm\"", "not below 0"]),
@@ -443,8 +443,8 @@ fn xml_that_is_dear_to_parse_is_refused_before() {
         (nested(3000, " "), "line 2: <a>: 33 declarations of namespaces in the file so far: want at most 32"),
         (many(101), "line 3: <link>: 101 attributes: want at most 100"),
         (many(40_000), "line 3: <link>: 40000 attributes: want at most 100"),
-        (deep(250), "line 1: <b>: 251 elements around each other: want at most 250"),
-        (deep(200_000), "line 1: <b>: 251 elements around each other: want at most 250"),
+        (deep(250), "line 1: <b>: 251 levels of nested elements: want at most 250"),
+        (deep(200_000), "line 1: <b>: 251 levels of nested elements: want at most 250"),
     ] {
         assert_eq!(import(&text).expect_err(words).to_string(), words);
     }

@@ -253,7 +253,7 @@ fn couplings_of_hinges_keep_links_parallel() {
     }
     for (equality, words) in [
         (second.to_owned(), "body \"back\": no motor turns it"),
-        (back.replace("-1", "-2") + second, "it couples what is no rotor and motor"),
+        (back.replace("-1", "-2") + second, "it does not couple a rotor to its motor"),
         (back.replace("0 -1 0", "0 -1 1") + second, "a coupling that is not linear"),
     ] {
         let why = import(&model(&equality)).map(|_| ()).expect_err(words).to_string();

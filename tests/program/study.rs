@@ -136,7 +136,7 @@ fn tolerance_counts_what_keeps_within_limits() {
     let ratio = simulated["against_tracking"]["peak_moment_ratio"].as_f64().expect("a ratio");
     assert!(simulated["simulated"] == true && (ratio - 1.0).abs() < 0.1 && ratio != 1.0, "{ratio}");
     let printed = prints(&args);
-    for word in ["peak |n_B|", "yield", "95 % between", "what matters", "first order against all", "others"] {
+    for word in ["peak |n_B|", "yield", "95 % between", "what matters", "first order, compared", "others"] {
         assert!(printed.contains(word), "{printed}");
     }
     fails(&["tolerance", "case-3", "--spread", "link.1.com"], 2, &["KEY=SPREAD"]);

@@ -96,7 +96,7 @@ fn signal_rows(ui: &mut Ui, choice: &mut SignalChoice, what: &ValuesContext<'_>)
             ui.spacing_mut().interact_size.y = 18.0;
             let seen: Vec<&Signal> = all.iter().filter(|signal| found.contains(signal)).collect();
             if seen.is_empty() {
-                ui.label(RichText::new("no signal answers to all of this").color(colour(p.dim)));
+                ui.label(RichText::new("no signal has all these words").color(colour(p.dim)));
             }
             for group in seen.chunk_by(|a, b| a.group() == b.group()) {
                 group_rows(ui, group, &mut paths, what);

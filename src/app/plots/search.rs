@@ -87,7 +87,7 @@ fn state(ui: &mut Ui, shown: &DisplayContext<'_>, commands: &mut Vec<Command>) {
     };
     if let Some(mark) = view_state.mark {
         let text = format!("Δt {} s ×", at_step(session.frame().time - mark, step));
-        let tip = format!("The second cursor stands at {} s; click: away (Esc)", at_step(mark, step));
+        let tip = format!("The second cursor stands at {} s; a click removes it (Esc)", at_step(mark, step));
         if button(ui, text, p.amber, "Put the second cursor away", &tip) {
             commands.push(ViewChange::Mark(None).into());
         }
@@ -145,7 +145,7 @@ fn field(ui: &mut Ui, shown: &DisplayContext<'_>, plots: &[Plot<'_>], commands: 
         .show(|ui| {
             ScrollArea::vertical().max_height(260.0).show(ui, |ui| {
                 if found.is_empty() {
-                    ui.label(RichText::new("no signal answers to all of this").font(plain(11.5)).color(colour(p.dim)));
+                    ui.label(RichText::new("no signal has all these words").font(plain(11.5)).color(colour(p.dim)));
                 }
                 for (i, signal) in found.iter().enumerate() {
                     let row = ui.horizontal(|ui| {

@@ -113,7 +113,7 @@ impl AppState {
             QueryStatus::Broken => Some(Arc::new(Err(fault("the study")))),
             // A stopped study is not started again until something changes.
             QueryStatus::Stopped if last.is_none() => {
-                Some(Arc::new(Err("cancelled: to change something draws machines again".into())))
+                Some(Arc::new(Err("cancelled: any change samples the machines again".into())))
             }
             _ => last,
         }

@@ -103,7 +103,7 @@ impl AppState {
         let other = (present.name() != case.machine.name()).then(|| present.clone());
         let own = case.machine.name();
         let news = |machine: &Machine| {
-            format!("{}, with {}; the paper's machine is {own}, top left", case.title, machine.name())
+            format!("{}, with {}; choose the paper's machine, {own}, at the top left", case.title, machine.name())
         };
         let instead = |machine: &Machine| {
             let said = format!(

@@ -20,13 +20,13 @@ const RESIDUAL_WIDTH_PT: f32 = 76.0;
 /// Draws the bars.
 pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, view_state: &ViewState) {
     let p = &view_state.palette();
-    heading(ui, p, "(7) and (8)", "part of each link; below: what is left");
+    heading(ui, p, "(7) and (8)", "part of each link; below: the residual");
     let hot = hot_link(view_state, session);
     for term in facts.terms.iter() {
         row(ui, p, session, term, hot);
     }
     if facts.terms.iter().any(|term| term.residual[1].abs() > 1e-9) {
-        let words = "Some masses lie off the axes of their links; the bars show what they do along them.";
+        let words = "Some masses lie off the axes of their links; the bars show only the components along the axes.";
         ui.label(RichText::new(words).font(plain(11.0)).color(colour(p.dim)));
     }
 }
@@ -105,7 +105,7 @@ fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &BalanceBars, hot: Opt
         .iter()
         .map(|(link, part)| format!("link {} {}", session.scenario().machine.links()[*link].name, signed(*part, 4)))
         .collect();
-    let words = format!("{}, {}: {} {} left; {}", term.symbol, term.meaning, text, term.unit, of.join(", "));
+    let words = format!("{}, {}: residual {} {}; {}", term.symbol, term.meaning, text, term.unit, of.join(", "));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &words));
 }
 

@@ -240,7 +240,7 @@ fn summary(
     let tone = if at.is_some() { p.ink } else { p.amber };
     ui.label(RichText::new(text).font(bold(13.0)).color(colour(tone)));
     let gap = points.iter().map(|point| point.placed.gap).fold(0.0, f64::max);
-    let proof = format!("proved: nothing lies below the curve, to {gap:.0e} of what is least");
+    let proof = format!("proved: every point of the curve is within {gap:.0e} of the least value of its objective");
     note(ui, p, &proof);
     ui.horizontal(|ui| {
         let last = points.len() - 1;

@@ -10,8 +10,8 @@ use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Session;
 
-const BETA: &str = "What is left of what the machine without counterweights does in the same motion of its drives: \
-                    0 is nothing, 1 as much";
+const BETA: &str = "Ratio of root mean squares to those of the machine without counterweights, in the same motion of \
+                    its drives: 0 is no reaction, 1 the same";
 
 /// Draws the totals.
 pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, p: &Palette) {
@@ -35,7 +35,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, p: &Palette) {
         && measures.added_mass > 1e-9
     {
         let of = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), |x| signed(x, 3));
-        rows.push(("mass–inertia factor, 2 is bare".into(), of(measures.mass_inertia_factor)));
+        rows.push(("mass–inertia factor, 2 without counterweights".into(), of(measures.mass_inertia_factor)));
         if let Some(beta) = &measures.beta {
             rows.push((
                 "β of force · moment · torque".into(),

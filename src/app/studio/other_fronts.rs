@@ -49,7 +49,7 @@ pub(super) fn list(ui: &mut Ui, facts: &DesignFacts, p: &Palette, commands: &mut
                 }
             }
         });
-        name(&add.response.on_hover_text("The front of another machine, as this one is asked"), "Add a front");
+        name(&add.response.on_hover_text("The front of another machine, with the same settings"), "Add a front");
     });
     for (i, MachineFront { name: called, outcome }) in facts.other_fronts().iter().enumerate() {
         ui.horizontal(|ui| {

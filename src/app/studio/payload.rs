@@ -17,7 +17,7 @@ pub fn show(ui: &mut Ui, facts: &DesignFacts, held: f64, p: &Palette) {
     let Some(payloads) = &facts.payloads else { return };
     let Some((first, last)) = payloads.first().zip(payloads.last()) else { return };
     ui.add_space(8.0);
-    heading(ui, p, "Over the payloads", "what is left of this machine's balance");
+    heading(ui, p, "Over the payloads", "imbalance of this machine");
     let worst = payloads.iter().fold([0.0_f64; 2], |most, at| [most[0].max(at.force), most[1].max(at.coupling)]);
     let ([left, right], top) = ([first.payload, last.payload], (1.1 * worst[0]).max(1e-6));
     ui.label(RichText::new("greatest |g|, kg m").font(plain(11.0)).color(colour(p.dim)));
@@ -43,7 +43,7 @@ pub fn show(ui: &mut Ui, facts: &DesignFacts, held: f64, p: &Palette) {
         signed(worst[1], 4),
         signed(held, 3)
     );
-    name(&response.response, &format!("What is left over the payloads: {words}"));
+    name(&response.response, &format!("Imbalance over the payloads: {words}"));
     ui.horizontal(|ui| {
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.label(RichText::new("payload, kg").font(plain(11.0)).color(colour(p.dim)));

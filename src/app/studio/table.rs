@@ -231,7 +231,7 @@ fn holding(
         let around = [(now - away).max(least), (now + away).min(greatest)];
         let ends = if let Some(ParameterBounds::Within(ends)) = hold { Some(ends) } else { None };
         for (words, one, is) in [
-            ("follows if its kind does", None, hold.is_none()),
+            ("as set for all numbers of its kind", None, hold.is_none()),
             ("stays", Some(ParameterBounds::Fixed), hold == Some(ParameterBounds::Fixed)),
             ("may change", Some(ParameterBounds::Free), hold == Some(ParameterBounds::Free)),
             ("may change within", Some(ParameterBounds::Within(ends.unwrap_or(around))), ends.is_some()),

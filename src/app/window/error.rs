@@ -43,7 +43,7 @@ pub enum WindowError {
 fn kept_in(kept: Option<&Path>) -> String {
     match kept {
         Some(file) => format!("what was done is in {}, and the next start offers it", file.display()),
-        None => "nothing was done that is in no file".into(),
+        None => "every change is in a file".into(),
     }
 }
 
@@ -56,7 +56,7 @@ pub(super) fn what_is_missing() -> String {
     }
     match Gpu::new() {
         // The list of drivers that were tried would not help the user.
-        Err(NoAdapter::Missing(_)) => "no graphics driver answers; on Debian and its kin one in software comes with \
+        Err(NoAdapter::Missing(_)) => "no graphics driver answers; on Debian and the like a software one comes with \
                                        `apt-get install mesa-vulkan-drivers`"
             .into(),
         Err(other) => other.to_string(),

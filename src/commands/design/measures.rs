@@ -11,12 +11,12 @@ pub fn text(measures: &Measures) -> String {
         fixed(measures.added_inertia, 6)
     );
     if let Some(factor) = measures.mass_inertia_factor {
-        text.push_str(&format!("mass–inertia     {}, the sum of both ratios to before\n", fixed(factor, 4)));
+        text.push_str(&format!("mass–inertia     {}, M ratio + Σ D_k ratio, now to before\n", fixed(factor, 4)));
     }
     if let Some(beta) = measures.beta {
         let [force, moment, torque] =
             [beta.force, beta.moment, beta.torque].map(|ratio| ratio.map_or_else(|| "–".into(), |x| fixed(x, 4)));
-        text.push_str(&format!("β                force {force}, moment {moment}, torque {torque} of before\n"));
+        text.push_str(&format!("β                force {force}, moment {moment}, torque {torque}, now to before\n"));
     }
     text
 }

@@ -333,7 +333,7 @@ pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
         text.push_str(&format!("\n{table}"));
     }
     if let Some((first, last)) = report.payload.first().zip(report.payload.last()) {
-        let mut table = TextTable::new(["payload kg", "left of (7) kg m", "left of (8) kg m²"]);
+        let mut table = TextTable::new(["payload kg", "residual of (7) kg m", "residual of (8) kg m²"]);
         for at in &report.payload {
             table.row([fixed(at.payload, 4), fixed(at.force, 6), fixed(at.coupling, 6)]);
         }
@@ -341,11 +341,11 @@ pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
         let bounds = match report.is_balanced {
             true => "",
             false => {
-                "the worst |g_k|, or |C_kl| divided by the reach, over all payloads is as small as can be; what \
-                 balances the middle: --set payload.mass instead of --payload\n"
+                "the largest |g_k|, or |C_kl| divided by the reach, over all payloads is as small as possible; to \
+                 balance the middle one instead, use --set payload.mass, not --payload\n"
             }
         };
-        text.push_str(&format!("\n{bounds}holding {middle} kg, the middle, here and in the new file\n\n{table}"));
+        text.push_str(&format!("\n{bounds}in the results and the new file, the payload is {middle} kg\n\n{table}"));
     }
     if !report.front_points.is_empty() {
         let mut table = TextTable::new(FRONT_HEADINGS);

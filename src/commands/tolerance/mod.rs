@@ -190,7 +190,7 @@ impl ToleranceArguments {
         }
         if self.simulate && scenario.base.wheel.is_some() {
             print_message(format!(
-                "note: {}: |n_B| of the simulated machines is what the reaction wheel leaves of it for the base",
+                "note: {}: |n_B| of the simulated machines is without the part that the reaction wheel takes up",
                 scenario.name
             ));
         }

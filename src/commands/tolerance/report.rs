@@ -154,7 +154,7 @@ fn shares_table(report: &PartReport) -> TextTable {
 fn orders(report: &PartReport) -> String {
     let a = &report.agreement;
     let mut table =
-        TextTable::new(["first order against all", "worst, in σ", "at s", "of the time %", "verdict"]).with_words(4);
+        TextTable::new(["first order, compared", "worst, in σ", "at s", "of the time %", "verdict"]).with_words(4);
     let rows = [
         ("mean of n_B: nominal, exact", &a.moment_mean, a.tolerance),
         ("deviation of n_B: first order, exact", &a.moment_deviation, a.tolerance),
@@ -166,7 +166,7 @@ fn orders(report: &PartReport) -> String {
         let verdict = match gap.largest <= tolerance {
             _ if name.ends_with("sampled") && report.bands.samples < MIN_SAMPLES => "too few samples".into(),
             true => "agree".to_owned(),
-            false => format!("part, by more than {} σ", fixed(tolerance, 2)),
+            false => format!("differ by more than {} σ", fixed(tolerance, 2)),
         };
         let numbers = [fixed(gap.largest, 4), fixed(gap.time, 3), fixed(100.0 * gap.share, 1)];
         table.row([name.to_owned()].into_iter().chain(numbers).chain([verdict]));

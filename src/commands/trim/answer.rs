@@ -65,7 +65,7 @@ fn change_text(report: &TrimReport) -> String {
         table.row([key.clone(), fixed(from, 1), fixed(to, 1), format!("{:+.1}", to - from), unit.into()]);
     }
     let worth = worth.map_or_else(String::new, |worth| format!("Over these motions it lowers {worth}.\n"));
-    format!("{table}Set to 0.1 g and 0.1 mm; what that leaves stands above, beside the intervals.\n{worth}\n")
+    format!("{table}Rounded to 0.1 g and 0.1 mm; the imbalance after the change is in the table above.\n{worth}\n")
 }
 
 fn suggestion_text(next: &Suggestion) -> String {

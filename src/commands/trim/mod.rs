@@ -128,7 +128,7 @@ impl TrimArguments {
         let found = answer_now::<TrimQuery>(request);
         if let Some(noise) = found.angle_noise {
             print_message(format!(
-                "note: noise of the angles is {:.0} % of their accelerations, or samples are too far apart: what is found \
+                "note: {:.0} % of the accelerations is noise of the angles, or samples are too far apart: results \
                  may be off; want faster motions or finer encoders",
                 100.0 * noise
             ));

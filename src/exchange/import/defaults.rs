@@ -112,7 +112,7 @@ impl<'a> Defaults<'a> {
                 node.attribute("class").ok_or_else(|| element_error(node, "a class without a name", "class=\"…\""))?;
             if defaults.named.insert(name, own).is_some() {
                 let what = format!("a second class \"{}\"", quote_clipped(name));
-                return Err(element_error(node, what, "names that stand once"));
+                return Err(element_error(node, what, "each name once"));
             }
             if defaults.named.len() > MAX_CLASSES {
                 return Err(element_error(node, "too many classes", format!("at most {MAX_CLASSES}")));

@@ -450,7 +450,7 @@ impl Builder<'_> {
             self.notes.push(format!(
                 "the armature of \"{0}\", {armature} kg m², became a rotor of {inertia} kg m² behind a gear of \
                  {ARMATURE_RATIO}, which adds next to nothing to the momentum: --set drive.{0}.rotor.inertia and .ratio \
-                 say what it is",
+                 set the real values",
                 quote_clipped(&name)
             ));
         }

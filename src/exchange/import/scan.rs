@@ -43,7 +43,7 @@ pub fn check_bounds(text: &str) -> Result<(), ImportError> {
                 namespaces += tag.namespaces;
                 depth += 1;
                 for (count, what, most) in [
-                    (depth, "elements around each other", MAX_DEPTH),
+                    (depth, "levels of nested elements", MAX_DEPTH),
                     (tag.attributes, "attributes", MAX_ATTRIBUTES),
                     (namespaces, "declarations of namespaces in the file so far", MAX_NAMESPACES),
                 ] {

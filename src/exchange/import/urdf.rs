@@ -182,7 +182,7 @@ impl<'a> File<'a> {
         for link in each(robot, "link") {
             let name = word(link, "name")?;
             if links.insert(name, link).is_some() {
-                return Err(element_error(link, "a second link of this name", "names that stand once"));
+                return Err(element_error(link, "a second link of this name", "each name once"));
             }
         }
         let mut joints = Vec::new();
@@ -214,7 +214,7 @@ impl<'a> File<'a> {
         let root = roots.iter().find(|name| carriers.contains(*name));
         let root = *root.ok_or_else(|| element_error(robot, "no link is the base", "a tree of links"))?;
         if let Some(other) = roots.iter().find(|other| **other != root) {
-            let what = format!("it hangs on nothing, as \"{}\" does", quote_clipped(root));
+            let what = format!("no joint carries it, nor \"{}\"", quote_clipped(root));
             return Err(element_error(links[other], what, "one link that is the base"));
         }
         Ok(Self { links, joints, root })
@@ -306,7 +306,7 @@ fn followed(joints: &[Node<'_, '_>], named: &BTreeMap<&str, usize>, i: usize) ->
             )
         })?;
     }
-    Err(element_error(joints[i], "joints that mimic each other", "one in the end that mimics none"))
+    Err(element_error(joints[i], "joints that mimic each other", "a chain that ends at a joint without mimic"))
 }
 
 fn origin(node: Node<'_, '_>) -> Result<Isometry3<f64>, ImportError> {
@@ -407,7 +407,7 @@ fn turning(
         let from = match is_still(from) {
             true => None,
             false => Some(set(from).ok_or_else(|| {
-                element_error(joint, "it sits on what turns as no driven joint does", "motors on the base or on links")
+                element_error(joint, "its parent turns as no driven joint does", "motors on the base or on links")
             })?),
         };
         if set(&rates[*i]) != Some(k) {

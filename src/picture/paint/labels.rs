@@ -15,8 +15,8 @@ use egui::{CentralPanel, Frame, Galley, Id, Painter, Pos2, Rect, Stroke, Ui};
 
 use super::{SceneViewport, colour, paint, plain};
 use crate::scene::camera::Camera;
-use crate::scene::overlay::PLATE_OPACITY;
 use crate::scene::options::Handle;
+use crate::scene::overlay::PLATE_OPACITY;
 use crate::scene::palette::faded;
 use crate::scene::{Label, NOTES, Name, Scene};
 use group::{Choice, Group, Kind, boxed, choices};

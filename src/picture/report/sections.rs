@@ -56,7 +56,8 @@ impl Report<'_> {
         for (k, torque) in peaks.torque.iter().enumerate() {
             let number = (k + 1).to_string();
             let drive = drives.get(k).map_or(number.as_str(), |drive| &drive.name);
-            let (term, symbol) = (format!("peak torque of drive {drive} in the run"), format!("|τ{}|", subscript(k + 1)));
+            let (term, symbol) =
+                (format!("peak torque of drive {drive} in the run"), format!("|τ{}|", subscript(k + 1)));
             row((&term, &symbol), *torque, TORQUE_DECIMALS, "N m");
         }
         let mean = "root mean square of the";

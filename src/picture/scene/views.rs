@@ -74,7 +74,7 @@ impl ViewKind {
             Self::Flat => "The machine and its reactionless workspace from above",
             Self::Space => "The machine and its reactionless workspace in perspective",
             Self::Joints => {
-                "Joint space: the drive angles q, and the plane Σ λq = b within the joint limits; a line of two drives"
+                "Joint space: the drive angles q, and the plane Σ λq = b within the limits, a line for two drives"
             }
             Self::Tower => "All reactionless workspaces: b as height over the plane of motion",
             Self::Design => {

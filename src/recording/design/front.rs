@@ -1,5 +1,4 @@
-//! [`RecordedFronts`]: the Pareto front of added mass and inertia, with the point of the present machine. Unlike the
-//! design view, it takes bounds from [`DesignBrief::of`] and also replaces fixed counterweights.
+//! [`RecordedFronts`]: the Pareto front of added mass and inertia, with the point of the present machine.
 
 use crate::rerun::{EntityPath, LineStrips2D, Points2D, Radius};
 
@@ -10,7 +9,8 @@ use crate::style::{colour, under};
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_picture::numbers::{at_step, round_ticks, signed};
 use stillbase_picture::scene::palette::{Theme, mix, palette};
-use stillbase_session::design::DesignBrief;
+use stillbase_session::DesignVersion;
+use stillbase_session::scenario::DesignBrief;
 
 /// Number of points of a Pareto front.
 const FRONT_POINTS: usize = 13;
@@ -25,29 +25,45 @@ pub const FRONT_VIEW: [f64; 4] = [-0.3, -0.16, 2.36, 1.4];
 /// The Pareto fronts of the states of a design.
 #[derive(Debug)]
 pub struct RecordedFronts {
-    /// Each machine, its counterweights removed, and its points: added mass, kg, and Σ D_k, kg m².
-    all: Vec<(Machine, Vec<[f64; 2]>)>,
+    all: Vec<RecordedFront>,
     /// Intervals of the axes, kg and kg m².
     ranges: [[f64; 2]; 2],
 }
 
+/// The Pareto front of a machine.
+#[derive(Debug)]
+struct RecordedFront {
+    /// The machine without its counterweights.
+    bare: Machine,
+    /// Bounds on the counterweights.
+    brief: DesignBrief,
+    /// Added mass, kg, and Σ D_k, kg m², of each point.
+    points: Vec<[f64; 2]>,
+}
+
+impl RecordedFront {
+    fn is_of(&self, bare: &Machine, brief: &DesignBrief) -> bool {
+        self.bare == *bare && self.brief == *brief
+    }
+}
+
 impl RecordedFronts {
-    /// Computes the Pareto fronts of those machines that have counterweights; `None` if no counterweights within the
-    /// bounds of [`DesignBrief::of`] balance any of them.
-    pub fn of<'a>(machines: impl Iterator<Item = &'a Machine>) -> Option<Self> {
-        let mut all: Vec<(Machine, Vec<[f64; 2]>)> = Vec::new();
+    /// Computes the Pareto fronts of those machines that have counterweights, as the design view does; `None` if no
+    /// counterweights within the bounds of the design balance any of them.
+    pub fn of<'a>(versions: impl Iterator<Item = &'a DesignVersion>) -> Option<Self> {
+        let mut all: Vec<RecordedFront> = Vec::new();
         let mut seen: Vec<[f64; 2]> = Vec::new();
-        for machine in machines {
+        for DesignVersion { machine, brief, .. } in versions {
             let Some(bare) = bare(machine) else { continue };
-            if !all.iter().any(|(known, _)| *known == bare) {
-                let found = DesignBrief::of(machine).front(&bare, FRONT_POINTS);
+            if !all.iter().any(|known| known.is_of(&bare, brief)) {
+                let found = brief.front(&bare, FRONT_POINTS);
                 let points = found.map_or_else(|_| Vec::new(), |front| front.measures());
                 seen.extend(&points);
-                all.push((bare, points));
+                all.push(RecordedFront { bare, brief: brief.clone(), points });
             }
             seen.push(own(machine));
         }
-        if all.iter().all(|(_, points)| points.is_empty()) {
+        if all.iter().all(|front| front.points.is_empty()) {
             return None;
         }
         let range = |i: usize| {
@@ -72,14 +88,14 @@ impl RecordedFronts {
         &self,
         store: &mut Store,
         root: &EntityPath,
-        states: impl Iterator<Item = (Instant, &'a Machine)>,
+        states: impl Iterator<Item = (Instant, &'a DesignVersion)>,
     ) -> Result<(), StoreError> {
         let root = &under(root, "front");
         self.axes(store, root)?;
         let (mut curves, mut points) = (SparseRows::new(), SparseRows::new());
-        for (at, machine) in states {
-            let known = bare(machine).and_then(|bare| self.all.iter().find(|(known, _)| *known == bare));
-            curves.push(at, known.map(|(_, points)| points.iter().map(|at| self.place(*at)).collect::<Vec<_>>()));
+        for (at, DesignVersion { machine, brief, .. }) in states {
+            let known = bare(machine).and_then(|bare| self.all.iter().find(|known| known.is_of(&bare, brief)));
+            curves.push(at, known.map(|known| known.points.iter().map(|at| self.place(*at)).collect::<Vec<_>>()));
             points.push(at, known.map(|_| own(machine)));
         }
         let palette = palette(Theme::Dark);

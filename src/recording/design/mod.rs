@@ -66,7 +66,7 @@ impl RecordedDesign {
         let has_weights = states.iter().any(|state| !state.of.machine.spec().counterweights.is_empty());
         Ok(Self {
             eye: above(states.iter().map(|state| &state.of.machine), &start.q.units()),
-            fronts: has_weights.then(|| RecordedFronts::of(states.iter().map(|state| &state.of.machine))).flatten(),
+            fronts: has_weights.then(|| RecordedFronts::of(states.iter().map(|state| &state.of))).flatten(),
             leads: several || has_weights,
             states,
             start,
@@ -93,7 +93,7 @@ impl RecordedDesign {
             bars.write(store, root, self.states.iter().map(|state| (state.at, &state.breakdown)))?;
         }
         match &self.fronts {
-            Some(fronts) => fronts.write(store, root, self.states.iter().map(|state| (state.at, &state.of.machine))),
+            Some(fronts) => fronts.write(store, root, self.states.iter().map(|state| (state.at, &state.of))),
             None => Ok(()),
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::store::Instant;
 use stillbase_mechanics::balance::Breakdown;
-use stillbase_mechanics::machine::{Machine, MachineSpec};
+use stillbase_mechanics::machine::Machine;
 use stillbase_planning::Motion;
 use stillbase_session::DesignVersion;
 use stillbase_study::measures::Measures;
@@ -27,21 +27,18 @@ impl DesignState {
     }
 }
 
-/// Returns the cost of balance relative to the machine without any counterweights; the window keeps fixed ones. A
-/// machine without counterweights is compared with the machine at the start.
+/// Returns the cost of balance relative to the machine without counterweights, as in the window. A machine without
+/// counterweights is compared with the machine at the start.
 fn measured(of: &DesignVersion, first: &Machine, motion: &Motion) -> Option<(&'static str, Measures)> {
     let motion = Some(motion);
     match bare(&of.machine) {
-        Some(bare) => Some(("beside it without discs", Measures::of(&bare, &of.machine, motion))),
-        None if of.changes > 0 => Some(("beside the start", Measures::of(first, &of.machine, motion))),
+        Some(bare) => Some(("compared with it without counterweights", Measures::of(&bare, &of.machine, motion))),
+        None if of.changes > 0 => Some(("compared with the start", Measures::of(first, &of.machine, motion))),
         None => None,
     }
 }
 
-/// Returns a machine without its counterweights, if it has any.
+/// Returns a machine without its counterweights that are not fixed, if it has any.
 pub fn bare(machine: &Machine) -> Option<Machine> {
-    if machine.spec().counterweights.is_empty() {
-        return None;
-    }
-    Machine::new(MachineSpec { counterweights: Vec::new(), ..machine.spec().clone() }).ok()
+    machine.without_counterweights().ok().filter(|bare| bare != machine)
 }

@@ -60,7 +60,7 @@ pub(super) fn state(state: &DesignState, count: usize) -> String {
 
 /// Returns the text of the largest residual of one kind of conditions.
 fn residual(largest: f64, is_zero: bool) -> String {
-    if is_zero { "nothing".into() } else { signed(largest, 4) }
+    if is_zero { "0".into() } else { signed(largest, 4) }
 }
 
 /// Returns the table of the links, their masses and their counterweights.
@@ -125,7 +125,7 @@ pub(super) fn balance(machine: &Machine, breakdown: &Breakdown) -> String {
         true => "**0**".to_owned(),
         false => format!("**{}**", complex(term.residual)),
     });
-    let residuals = ["**left**".to_owned()].into_iter().chain(of_term).collect::<Vec<_>>();
+    let residuals = ["**residual**".to_owned()].into_iter().chain(of_term).collect::<Vec<_>>();
     let rows = [residuals].into_iter().chain(machine.links().iter().enumerate().map(row)).collect::<Vec<_>>();
     if terms.len() <= MAX_COLUMNS {
         return table(&heads, &rows);

@@ -21,7 +21,7 @@ pub(super) fn change_b(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<P
     let space = match space {
         Err(NoPoseSpace::Free) => {
             let why =
-                "no motion of this machine has a price, as no drive turns the base: want reactionless or minimum-norm";
+                "no change of b costs a moment on the base, as no drive turns it: want reactionless or minimum-norm";
             return Err(Refusal::Task(why.into()));
         }
         space => space.map_err(Clone::clone)?,

@@ -37,7 +37,7 @@ pub(super) fn given(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan
         return refuse("samples say where to go: want no points between and an open path, or no samples".into());
     }
     if task.law.is_fastest() {
-        return refuse("samples say when to be where: want the law quintic, which has no say, or no samples".into());
+        return refuse("samples say when to be where: want the law quintic, which they ignore, or no samples".into());
     }
     let columns = samples.columns();
     let unsound = || Refusal::Task("the samples give no spline: want times further apart".into());

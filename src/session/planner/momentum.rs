@@ -33,13 +33,13 @@ pub(super) fn zero_momentum(scenario: &Scenario, space: PlannerSpace<'_>) -> Res
         MomentumFreedom::OneCurve => {
             if task.shape.is_some_and(|shape| shape != PathShape::JointLine) {
                 return Err(Refusal::Task(
-                    "at zero momentum the end effector of two drives has its own way: want the shape joint-line".into(),
+                    "at zero momentum two drives keep the end effector on a curve: want the shape joint-line".into(),
                 ));
             }
             let integral = BIntegral::of(&model).ok_or_else(|| {
                 Refusal::NoWay(
-                    "turned as a whole, this machine has no momentum in some poses: want rotors that turn the other way \
-                     less fast or lighter"
+                    "turning as a whole, this machine has no angular momentum in some poses: want slower or lighter \
+                     counter-rotating rotors"
                         .into(),
                 )
             })?;

@@ -98,7 +98,7 @@ fn proposal(request: &PostureRequest<'_>, task: &Task) -> Option<String> {
     if task.posture == Posture::Orientation {
         let free = PostureRequest { hand: (request.hand.0, None), ..*request };
         if request.hand.1.is_some() && is_feasible(&free, Posture::Orientation) {
-            return Some("no orientation, so that it keeps the one that serves".into());
+            return Some("no task.orientation: the hand then keeps a feasible one".into());
         }
         if is_feasible(request, Posture::LeastRates) {
             return Some("posture = least-rates".into());

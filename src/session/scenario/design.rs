@@ -49,7 +49,7 @@ keyed! {
         /// Minimum distance between the edge of a disc and the centre of every pin of its link.
         clearance: Option<f64> = Key::NONE, range: Range::new(0.0, 1.0, "m"), instead: "discs may cover pins";
         /// Counterweights minimise the largest residual over all payloads from the first to the second mass; to balance
-        /// one payload exactly, set it and omit this key.
+        /// one payload exactly, set `payload.mass` and omit this key.
         payload: Option<[f64; 2]> = Key::NONE, range: ranges::LOAD, instead: "what the end effector holds";
         /// Minimum reach of the arms together, Σ |L_k|, if lengths are sought.
         reach: Option<f64> = Key::NONE, range: Range::new(0.0, 1e6, "m"), instead: "any reach", when: SOUGHT;
@@ -84,7 +84,7 @@ pub const BOUND_KEYS: [Key; 5] = [
 ];
 
 const fn held(path: &'static str, range: Range, words: &'static str) -> Key {
-    Key::new(path, KeyType::Bounds(range), Key::NONE, words).instead("it follows if its kind does")
+    Key::new(path, KeyType::Bounds(range), Key::NONE, words).instead("it is adjusted if numbers of its kind are")
 }
 
 /// Returns the key of the bounds on a number without its prefix `design.hold.`.

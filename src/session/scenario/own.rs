@@ -11,7 +11,7 @@ keyed! {
     pub struct ScenarioSettings {
         /// Fixed step of the simulation.
         step: f64 = "0.001", range: STEP_RANGE, reaching: Effect::Plan, saved: always;
-        /// Duration of a recording, and of every command that runs to the end.
+        /// Time that a recording or the run of a command covers; a saved session is replayed up to it.
         duration: Option<f64> = Key::NONE, range: DURATION_RANGE, instead: "that of the planned motion",
             reaching: Effect::NoFrame;
         /// Bound on |b̈| while b is slid by hand.

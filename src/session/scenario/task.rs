@@ -48,7 +48,7 @@ keyed! {
     /// The task of the machine. A task read from a file has to be completed with the keys that the file omits.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Task at "task" {
-        /// How the redundancy of three drives over two coordinates of the end effector is resolved.
+        /// How the redundancy of three drives or more over two coordinates of the end effector is resolved.
         kind: TaskKind = Key::REQUIRED, saved: always;
         /// Shape of the path between the points.
         shape: Option<PathShape> = Key::NONE, instead: "joint-line for reactionless, line for the other kinds",

@@ -222,7 +222,7 @@ impl Statement {
         }
         if let Some(past_wheel) = verdict.past_wheel.filter(|_| verdict.is_base_unloaded) {
             let words = format!("the wheel took up {:.3} N m", verdict.arm_moment);
-            let why = format!("{figures}; the wheel leaves the base {} N m", significant(past_wheel));
+            let why = format!("{figures}; the moment past the wheel is {} N m", significant(past_wheel));
             return Self::new(StatusLight::Good, words, why);
         }
         let parts = [

@@ -13,7 +13,7 @@ use crate::import::refusal::{ImportError, element_error};
 use stillbase_settings::range::quote_clipped;
 
 /// The couplings that are supported, for messages.
-pub(super) const PARALLEL_WANTED: &str = "a rotor on what carries its motor, coupled to what that turns, or hinges whose \
+pub(super) const PARALLEL_WANTED: &str = "a rotor on its motor's body, coupled to the driven body, or hinges whose \
                                           coupling by 1 or -1 keeps two bodies parallel";
 
 /// A set, and another relative to which it turns.

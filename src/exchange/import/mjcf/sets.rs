@@ -20,7 +20,7 @@ impl CoupledBodies<'_> {
             let sits = |k: &usize| motors[*k].1.1 == self.set(self.on(geared.part));
             k.filter(|k| is_leaf && sits(k))
                 .map(|k| (geared.part, k, geared.ratio))
-                .ok_or_else(|| element_error(geared.node, "it couples what is no rotor and motor", PARALLEL_WANTED))
+                .ok_or_else(|| element_error(geared.node, "it does not couple a rotor to its motor", PARALLEL_WANTED))
         };
         self.geared.iter().map(rotor).collect()
     }
@@ -41,7 +41,7 @@ impl CoupledBodies<'_> {
             match k.is_some() || own != i || is_rotor || self.set(own) == self.base {
                 true => Ok(k),
                 false => {
-                    let what = "no motor turns it, and nothing keeps it parallel to what one turns";
+                    let what = "no motor turns it, and nothing keeps it parallel to a body that a motor turns";
                     Err(part.wrong(what, "a motor, a loop or an equality"))
                 }
             }
