@@ -38,7 +38,7 @@ struct Entry<'a> {
 
 /// Place of the signals, and the reduction of their scores: many have the same name, one for each drive.
 const SIGNALS_PLACE: &str = "plots";
-const SIGNALS_STEP_BACK: i32 = 12;
+const SIGNALS_STEP_BACK: i32 = 24;
 
 /// Maximum number of lines.
 const MAX_ENTRIES: usize = 60;

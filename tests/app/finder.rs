@@ -128,7 +128,7 @@ fn what_a_newcomer_types_is_among_the_first_three() {
         ("monte carlo", "Tolerances: what the bases of many machines feel, and the spectrum"),
         ("vibration", "Tolerances: what the bases of many machines feel, and the spectrum"),
         ("balance", "Design: masses, centres of mass, lengths and counterweights"),
-        ("friction", "Setting: Coulomb friction"),
+        ("friction", "Setting: viscous friction"),
         ("how do i save", "Save"),
         ("compare", "Compare: scene, wide plots and the runs side by side"),
         ("snapshots", "Snapshots along the motion"),

@@ -96,7 +96,7 @@ fn studies_run_beside_the_window() {
     h.run_steps(2);
     tell(&mut h, Command::View(ViewChange::Switch(Switch::Study, true)));
     assert!(h.query_by_label("sampling machines …").is_some(), "a panel without a study says so");
-    assert!(h.query_by_label("drawing machines, 0 %").is_some(), "the line at the bottom says how far");
+    assert!(h.query_by_label("sampling machines, 0 %").is_some(), "the line at the bottom says how far");
     assert_eq!(workers.work(), 1);
     h.run_steps(3);
     assert!(h.query_by_label("sampling machines …").is_none());
@@ -110,7 +110,7 @@ fn studies_run_beside_the_window() {
     assert_eq!(session(&h).scenario().task.time, 2.0, "the hand has not waited");
     assert_eq!(workers.work(), 2);
     h.run_steps(3);
-    assert!(h.query_by_label("drawing machines, 0 %").is_none());
+    assert!(h.query_by_label("sampling machines, 0 %").is_none());
     assert_eq!(workers.work(), 0, "nothing is left to do");
 }
 
@@ -257,8 +257,8 @@ fn what_is_cancelled_is_stopped() {
     }
     // A study: what is on display stays, and it is not begun again until something changes.
     tell(&mut h, Command::View(ViewChange::Switch(Switch::Study, true)));
-    cancel(&mut h, "drawing machines");
-    assert!(h.query_by_label_contains("cancelled: to change something").is_some());
+    cancel(&mut h, "sampling machines");
+    assert!(h.query_by_label_contains("cancelled: any change samples").is_some());
     assert_eq!(workers.work(), 1);
     h.run_steps(3);
     assert!(h.query_by_label_contains("To blame").is_none(), "nobody waits for it any more");
@@ -268,7 +268,7 @@ fn what_is_cancelled_is_stopped() {
     assert!(h.query_by_label_contains("To blame").is_some(), "the run has changed: it is studied");
     tell(&mut h, Command::Session(SessionCommand::Edit(Edit::set("task.time", 1.6))));
     tell(&mut h, Command::Session(SessionCommand::EndGesture));
-    cancel(&mut h, "drawing machines");
+    cancel(&mut h, "sampling machines");
     workers.work();
     h.run_steps(2);
     assert!(h.query_by_label_contains("To blame").is_some(), "the last study stays");

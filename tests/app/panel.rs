@@ -401,7 +401,7 @@ fn the_panel_holds_still() {
         assert_eq!(top(&h), before, "{kind}");
     }
     // A limit that the plan exceeds is said in the place of another line.
-    let exceeded = |h: &Window| h.query_by_label_contains("passes its limit, ").is_some();
+    let exceeded = |h: &Window| h.query_all_by_label_contains("times its limit").next().is_some();
     assert!(!exceeded(&h) && h.query_by_label("planned").is_some());
     let torque = session(&h).run().plan().forecast.torque[0];
     let edit = Edit::set("drive.1.torque_limit", 0.5 * torque);

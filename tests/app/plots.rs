@@ -262,10 +262,10 @@ fn a_signal_is_sought_and_plotted_by_keys_alone() {
     h.key_press(Key::A);
     h.run_steps(2);
     say(&mut h, "cheese");
-    assert!(h.query_by_label_contains("no signal answers").is_some());
+    assert!(h.query_by_label_contains("no signal has all these words").is_some());
     h.key_press(Key::Escape);
     h.run_steps(3);
-    assert!(h.query_by_label_contains("no signal answers").is_none());
+    assert!(h.query_by_label_contains("no signal has all these words").is_none());
     assert_eq!(h.state().app_state().view_state().mark, Some(0.2));
     // By the pointer: a press on an answer.
     h.get_by_label("Plot a signal").click();

@@ -74,7 +74,7 @@ fn bars_say_which_link_brings_what() {
     h.key_press(Key::D);
     h.run_steps(3);
     assert_eq!(h.state().app_state().view_state().view, ViewKind::Design);
-    for words in ["g₁, no force: 0 kg m left", "C₁₂, no coupling: 0 kg m² left"] {
+    for words in ["g₁, no force: residual 0 kg m", "C₁₂, no coupling: residual 0 kg m²"] {
         assert!(h.query_by_label_contains(words).is_some(), "{words}");
     }
     // Link 5 alone is made to weigh on drive 2.
@@ -82,7 +82,7 @@ fn bars_say_which_link_brings_what() {
     h.run_steps(3);
     let inertia = Inertia::of(machine(&h));
     let left = inertia.first_moment(1).re;
-    let words = format!("g₂, no force: {left:.4} kg m left").replace('-', "−");
+    let words = format!("g₂, no force: residual {left:.4} kg m").replace('-', "−");
     // Drive 2 is where link 5 brings most of what pulls its way; the pointer on it lights it up.
     let rect = h.get_by_label_contains(&words).rect();
     let mut lit = Vec::new();
@@ -132,7 +132,7 @@ fn a_centre_of_mass_is_dragged_and_the_others_follow() {
 
 fn counterweights_are_taken_and_follow_a_length() {
     let mut h = bare();
-    assert!(h.query_by_label_contains("g₁, no force: 1.2750 kg m left").is_some());
+    assert!(h.query_by_label_contains("g₁, no force: residual 1.2750 kg m").is_some());
     h.get_by_label("behind the root").click();
     h.run_steps(3);
     h.get_by_label("least mass").click();
@@ -238,7 +238,8 @@ fn equations_light_up_their_links() {
     h.key_press(Key::E);
     h.run_steps(3);
     assert!(
-        !view_state(&h).arrangement.shows_equations && h.query_by_label_contains("g₁, no force: 0 kg m left").is_some()
+        !view_state(&h).arrangement.shows_equations
+            && h.query_by_label_contains("g₁, no force: residual 0 kg m").is_some()
     );
 }
 
