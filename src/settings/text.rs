@@ -84,6 +84,12 @@ pub fn cut_at_word<'a>(text: &'a str, fits: impl Fn(&str) -> bool) -> Cow<'a, st
     ends.into_iter().rev().find_map(|end| cut(&word[..end])).unwrap_or_default().into()
 }
 
+/// Returns words that begin with a capital letter.
+pub fn capitalised(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
 /// Returns a text without signs, joining words and single letters at its end.
 fn without_loose_end(text: &str) -> &str {
     let mut kept = text;

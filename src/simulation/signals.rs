@@ -2,7 +2,7 @@
 
 use crate::frame::Frame;
 use stillbase_mechanics::joint_forces::{self, Joints, MAX_FRAME_PINS};
-use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::machine::{Drive, Inertia, Machine};
 use stillbase_mechanics::planar::MAX_DRIVES;
 use stillbase_query::QuickQuery;
 use stillbase_settings::number::subscript;
@@ -65,11 +65,24 @@ impl Signal {
         }
     }
 
+    /// Returns the last word of the settings that limit the group of the signal, one for each drive; `None` if none do.
+    pub fn limit_key(&self) -> Option<&'static str> {
+        LIMITED.iter().find(|(group, ..)| *group == self.group()).map(|(_, key, _)| *key)
+    }
+
     /// Returns the first part of the path: signals of one group share a plot and a unit.
     pub fn group(&self) -> &str {
         self.path.split('/').next().unwrap_or(&self.path)
     }
 }
+
+/// Groups of signals that drives limit, with the key of the limit, and the limit of a drive.
+type Limited = (&'static str, &'static str, fn(&Drive) -> Option<f64>);
+const LIMITED: [Limited; 3] = [
+    ("torque", "torque_limit", |drive| drive.torque_limit),
+    ("rate", "speed_limit", |drive| drive.speed_limit),
+    ("acceleration", "acceleration_limit", |drive| drive.acceleration_limit),
+];
 
 /// Returns the heads of the columns of a table of signals over time: the name and the unit of each.
 pub fn row_heads(signals: &[Signal]) -> Vec<String> {
@@ -126,11 +139,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
                 label: format!("{label} {name}"),
                 unit,
                 drive: Some(k),
-                limit: match path {
-                    "torque" => drive.torque_limit,
-                    "rate" => drive.speed_limit,
-                    _ => None,
-                },
+                limit: LIMITED.iter().find(|(group, ..)| *group == path).and_then(|(.., limit)| limit(drive)),
                 quantity: Quantity::PerIndex(k, value),
             });
         }

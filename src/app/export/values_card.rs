@@ -13,6 +13,7 @@ use stillbase_picture::charts::search::search;
 use stillbase_query::{Queries, QuickQuery, QuickWork, Shared};
 use stillbase_session::scenario::Scenario;
 use stillbase_session::{Session, has_settings_only, simulate_command};
+use stillbase_settings::text::capitalised;
 use stillbase_simulation::signals::Signal;
 
 /// Width of the column of choices, and height of the list of signals, points.
@@ -116,7 +117,7 @@ fn group_rows(ui: &mut Ui, group: &[&Signal], paths: &mut BTreeSet<String>, what
     let ticked = group.iter().filter(|signal| paths.contains(&signal.path)).count();
     let mut whole = ticked == group.len();
     ui.horizontal(|ui| {
-        let title = capital(&first.group().replace('_', " "));
+        let title = capitalised(&first.group().replace('_', " "));
         let tick = Checkbox::new(&mut whole, RichText::new(&title).font(bold(12.0)));
         let tick = ui.add(tick.indeterminate(ticked > 0 && ticked < group.len()));
         name(&tick, &format!("{title}: all {}", group.len()));
@@ -207,9 +208,4 @@ fn command_row(ui: &mut Ui, choice: &ValuesChoice, what: &ValuesContext<'_>, com
             say(ui, "FILE.toml is this session, saved (Ctrl S)", p.dim);
         }
     });
-}
-
-fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

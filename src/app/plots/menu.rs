@@ -11,6 +11,7 @@ use crate::theme::{bold, colour};
 use crate::{Command, FileDialog, FilePurpose, PlotFile, ViewChange};
 use stillbase_picture::charts::choice::{Plot, PlotChange};
 use stillbase_query::answer_sequence;
+use stillbase_settings::text::capitalised;
 use stillbase_study::samples::SignalSamples;
 
 /// Draws the button, and the menu while it is open.
@@ -102,6 +103,14 @@ fn entries(ui: &mut Ui, shown: &DisplayContext<'_>, plot: &Plot<'_>, rect: Rect,
     }
     if ui.add_enabled(plot.values.is_some(), Button::new("Show all values")).clicked() {
         commands.push(ViewChange::Charts(PlotChange::Values(plot.name.clone(), None)).into());
+        ui.close();
+    }
+    // Every drive has a setting of this name: the list shows all of them.
+    let key = plot.curves.iter().find_map(|curve| curve.signal.limit_key());
+    if let Some(key) = key
+        && ui.button(format!("{}s of the drives…", capitalised(&key.replace('_', " ")))).clicked()
+    {
+        commands.push(ViewChange::LookUp(key.to_owned()).into());
         ui.close();
     }
     ui.separator();

@@ -9,6 +9,7 @@ use super::{Chart, EMPTY_CHART, charts};
 use crate::notation::{NameOrder, Notation, ShownUnit};
 use stillbase_session::scenario::Scenario;
 use stillbase_settings::number::without_subscript;
+use stillbase_settings::text::capitalised;
 use stillbase_simulation::frame::Frame;
 use stillbase_simulation::signals::Signal;
 
@@ -293,7 +294,7 @@ impl<'a> Plot<'a> {
         let against =
             changes.against.as_ref().and_then(find).map(|signal| PlotCurve::of(signal, true, true, false, notation));
         let mut title = match curves.first() {
-            Some(first) if added_by_user => capital(&first.signal.label),
+            Some(first) if added_by_user => capitalised(&first.signal.label),
             _ => chart.title.to_owned(),
         };
         if added_by_user && curves.len() > 1 {
@@ -361,9 +362,4 @@ impl<'a> Plot<'a> {
 fn is_window([left, top, width, height]: &[f32; 4]) -> bool {
     let [least, most] = WINDOW_SIDE_PT;
     [left, top].iter().all(|x| x.abs() <= most) && [width, height].iter().all(|side| (least..=most).contains(*side))
-}
-
-fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
