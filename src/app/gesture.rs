@@ -24,7 +24,7 @@ pub struct HoverTarget {
 /// A drag, from the press of the button to its release.
 #[derive(Clone, Debug, Default)]
 pub struct DragGesture {
-    /// Object under the pointer when the button was pressed; either may have moved before the drag is recognised.
+    /// Object under the pointer when the button was pressed; object or pointer may move until the drag is recognised.
     pub pressed: Option<Pick>,
     /// The dragged object.
     pub grabbed: Option<Pick>,

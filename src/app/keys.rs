@@ -11,8 +11,8 @@ use super::{Command, Layout, OpenDialogs, SessionCommand, Switch, Tool, ViewChan
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Session;
 
-/// Turns pressed keys into commands. While a text field has the focus, only keys that it does not use count: Ctrl S,
-/// Ctrl O, Ctrl K, Ctrl P, F1 and F2.
+/// Turns pressed keys into commands. While a text field has the focus, only the keys of `works_while_typing` and
+/// Esc count.
 pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
     let typing = ctx.egui_wants_keyboard_input()
         || view_state.open.dialog.is_some()
@@ -68,7 +68,7 @@ fn works_while_typing(key: &KeyboardShortcut) -> bool {
     asks_for_text(key) || matches!(key.logical_key, Key::F1 | Key::F2)
 }
 
-/// Whether the key opens a text field: the list of commands, or a file name.
+/// Whether the key may open a text field: the list of commands, or a file name.
 fn asks_for_text(key: &KeyboardShortcut) -> bool {
     key.modifiers.command && [Key::S, Key::O, Key::K, Key::P].contains(&key.logical_key)
 }

@@ -200,7 +200,7 @@ fn grouped(marks: &[TimelineMark], min_separation: f64) -> Vec<MarkGroup> {
     let mut groups: Vec<(usize, &TimelineMark)> = Vec::new();
     for (i, mark) in marks.iter().enumerate() {
         let (mut start, mut best) = (i, mark);
-        // A mark that joins a group may move it too close to the previous group.
+        // A group never moves to an earlier time, so at most the last one is removed here.
         while let Some((before, other)) = groups.pop_if(|(_, other)| best.time - other.time < min_separation) {
             (start, best) = (before, if other.tone >= best.tone { other } else { best });
         }

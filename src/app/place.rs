@@ -16,7 +16,7 @@ const MARK_DURATION_S: f64 = 1.6;
 struct Places {
     /// The object whose rows are marked, and the time at which the mark ends, s; no time until the rows are drawn.
     marked: Option<(Handle, Option<f64>)>,
-    /// The object whose rows are under the pointer or have the keyboard focus.
+    /// The object whose rows are under the pointer or have the keyboard focus, or that a panel mentions.
     panel_object: Option<Handle>,
 }
 
@@ -73,8 +73,8 @@ pub fn open(ctx: &Context, thing: Handle, session: &Session) {
     });
 }
 
-/// Removes and returns the object whose rows are under the pointer or have the focus; to be called after all rows
-/// have been drawn.
+/// Removes and returns the object whose rows are under the pointer or have the focus, or that a panel mentions. To be
+/// called after all rows have been drawn.
 pub fn lit(ctx: &Context) -> Option<Handle> {
     ctx.data_mut(|data| data.get_temp_mut_or_default::<Places>(id()).panel_object.take())
 }

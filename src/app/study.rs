@@ -82,7 +82,10 @@ fn summary(study: &Study) -> String {
         text += ", not for the mean of |f_B|, which is a norm";
     }
     if !study.left_out.is_empty() {
-        text += &format!("  ·  left out: {}; `stillbase tolerance --simulate` includes it", study.left_out.join(", "));
+        text += &format!(
+            "  ·  left out: {}; on the command line, tolerance --simulate includes it",
+            study.left_out.join(", ")
+        );
     }
     text
 }

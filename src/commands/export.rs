@@ -101,7 +101,7 @@ impl ExportArguments {
                 let (start, later) = with_start_edits(&scenario)?;
                 if later > 0 {
                     print_message(format!(
-                        "note: the reference leaves out {} after the start; --what simulated",
+                        "note: the reference leaves out {} after the start; --what simulated has all",
                         counted(later, "edit")
                     ));
                 }

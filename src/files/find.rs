@@ -47,7 +47,7 @@ pub fn machine(name: &str, folder: Option<&Path>) -> Result<Machine, FileError> 
 pub struct FoundScenario {
     /// The scenario.
     pub scenario: Scenario,
-    /// Note that the scenario was made for a machine; `None` otherwise.
+    /// Note that the scenario was made for a machine, with the notes of its import; `None` otherwise.
     pub note: Option<String>,
 }
 
@@ -55,7 +55,7 @@ pub struct FoundScenario {
 /// the scenario. For the name or file of a machine, makes a scenario with a task.
 ///
 /// # Errors
-/// If there is no such scenario, machine or file, or if the file is neither a scenario nor a machine.
+/// If there is no such scenario, machine or file, the file is neither, or no task can be stated for the machine.
 pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
     if let Some(scenario) = Scenario::builtin(name) {
         return Ok(FoundScenario { scenario, note: None });

@@ -65,7 +65,7 @@ impl Mp4File {
     /// Begins a film of pictures of a size in pixels, at `fps` pictures per second.
     ///
     /// # Errors
-    /// If the file cannot be created, or there is no encoder.
+    /// If the file cannot be created, or the encoder is missing or cannot be started.
     pub fn create(file: &Path, force: bool, [width, height]: [u32; 2], fps: f64) -> Result<Self, VideoError> {
         let out = NewFile::create(file, force)?;
         let mut target = std::ffi::OsString::from("file:");

@@ -115,10 +115,10 @@ fn first_part(delay: &mut u64) -> u16 {
     part
 }
 
-/// Returns numerator and denominator of a delay, s, as near to it as two numbers of 16 bits with a round one allow.
+/// Returns numerator and denominator of a delay, s: one is a power of ten up to 1000, the other rounded to 16 bits.
 fn png_delay(delay: f64) -> [u16; 2] {
     let most = f64::from(u16::MAX);
-    // The shorter of a delay and its reciprocal takes the round number.
+    // The smaller of the two numbers is the power of ten.
     let (longer, round) = (delay.max(1.0 / delay), [1000.0, 100.0, 10.0, 1.0]);
     let round = round.into_iter().find(|round| (round * longer).round() <= most).unwrap_or(1.0);
     let other = (round * longer).round().min(most);

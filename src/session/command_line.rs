@@ -7,7 +7,7 @@ use stillbase_settings::text::shell_word;
 use stillbase_simulation::signals::Signal;
 use toml::Table;
 
-/// Bounds of time intervals are written in parts of this many per second.
+/// Bounds of time intervals are rounded to multiples of 1 s divided by this.
 const TIMES_PER_SECOND: f64 = 1e9;
 
 /// Returns the command that simulates a scenario without its edits: the built-in scenario of its name, and the settings

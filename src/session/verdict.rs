@@ -157,7 +157,7 @@ impl Verdict {
         self.remarks_if(true)
     }
 
-    /// Returns the remarks on a run that may still go on, without those that depend on its end.
+    /// Returns the remarks on a run that may still go on. Those that depend on its end come only once it is at rest.
     pub fn so_far(&self) -> Vec<Remark> {
         self.remarks_if(self.ended)
     }

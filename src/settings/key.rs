@@ -11,7 +11,7 @@ use super::range::{Range, RangeCheck};
 /// One setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Key {
-    /// Parts of the key joined by dots; `*` is a placeholder for the name of a link, a length, a drive or an angle.
+    /// Parts of the key joined by dots; `*` is the name of a link, length, drive or angle, or a counterweight number.
     pub path: &'static str,
     /// Type and range of the value.
     pub value_type: KeyType,

@@ -300,6 +300,8 @@ fn a_balanced_machine_is_left_alone() {
         assert!(placed.added_mass < 1e-6 && placed.machine.spec().counterweights.is_empty(), "{}", placed.added_mass);
     }
     let points = front(machine, &weighing(machine, Objective::mass()), 5).expect("one point").points;
+    let two = front(machine, &weighing(machine, Objective::mass()), 2).expect("one point").points;
+    assert_eq!((points.len(), two.len()), (1, 1));
     assert!(points.iter().all(|placed| placed.added_mass < 1e-6));
 }
 

@@ -14,13 +14,13 @@ pub const COLUMN_GAP_PT: f32 = 12.0;
 pub const HEAD_SIZE_PT: f32 = 11.5;
 /// Size of the values, points.
 const VALUE_SIZE_PT: f32 = 12.5;
-/// Width of the box and the sample of a line, and of the number before a title, points.
+/// Width of the checkbox with the line sample beside it, and of the number before a title, points.
 const TICK_WIDTH_PT: f32 = 66.0;
 const NUMBER_WIDTH_PT: f32 = 22.0;
 /// Width of the button that removes a row, points.
 const REMOVE_WIDTH_PT: f32 = 24.0;
 
-/// Keys of the columns that give way where space is short, the first first.
+/// Keys of the columns that give way where space is short, in this order.
 const GIVE_WAY: [&str; 24] = [
     "beta_force",
     "beta_torque",
@@ -121,7 +121,7 @@ pub fn all(comparison: &Comparison, notation: Notation) -> Vec<Head> {
     of_runs.map(|(i, c)| Head::of(i, c, notation)).chain(of_designs).collect()
 }
 
-/// Returns the columns that have room beside the titles of the rows in a width, points, and the names of the others.
+/// Returns the columns that fit into `width`, points, beside the titles of the rows, and the names of the others.
 pub fn fitting(ui: &Ui, columns: Vec<Head>, comparison: &Comparison, width: f32) -> (Vec<Head>, Vec<&'static str>) {
     let titles = comparison.entries().iter().map(|entry| {
         let remove = if entry.added_by_user { REMOVE_WIDTH_PT } else { 0.0 };

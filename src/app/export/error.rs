@@ -23,7 +23,7 @@ pub enum ExportError {
     /// No GPU adapter can be used.
     #[error(transparent)]
     Adapter(#[from] NoAdapter),
-    /// A picture cannot be read back.
+    /// A picture cannot be drawn or read back.
     #[error(transparent)]
     Picture(#[from] NoPicture),
     /// A picture cannot be encoded or written.

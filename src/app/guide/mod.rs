@@ -41,7 +41,7 @@ impl GuidePlace {
         Self { page, anchor: anchor_of(heading) }
     }
 
-    /// Returns the place that explains a section of the panel of settings that folds.
+    /// Returns the place that explains a foldable section of the panel of settings.
     pub(super) fn of_section(title: &str) -> Self {
         match title {
             "Base" => Self::under(Page::Plants, "Bases"),
@@ -101,7 +101,7 @@ pub struct GuideView {
     pub place: GuidePlace,
     /// Distance of the display from the top of the page, points.
     offset: f32,
-    /// Where the next passes scroll to, and how many more after the next one.
+    /// Where the next pass scrolls to, and how many passes after it scroll there too.
     scroll: Option<(Scroll, u8)>,
     /// Places before and after this one, the nearest last, with their offsets.
     back: Vec<(GuidePlace, f32)>,

@@ -18,7 +18,7 @@ const MIN_SIZE_PT: egui::Vec2 = vec2(420.0, 300.0);
 /// Width of the list of pages, and the width of a window that has room for it, points.
 const LIST_WIDTH_PT: f32 = 196.0;
 const MIN_WIDTH_WITH_LIST_PT: f32 = 600.0;
-/// Maximum number of places found, and letters shown of each before the word sought and from its start on.
+/// Maximum number of places found, and numbers of letters shown: before the word sought, and from its first letter.
 const MAX_FOUND: usize = 40;
 const LETTERS_BEFORE: usize = 24;
 const LETTERS_AFTER: usize = 90;

@@ -33,7 +33,7 @@ pub fn remember(ui: &Ui, over: Option<f64>) {
     }
 }
 
-/// Draws the values of all curves at an instant, in a card.
+/// Draws the values of all curves that are on at an instant, in a card.
 pub fn card(
     ui: &mut Ui,
     shown: &DisplayContext<'_>,

@@ -53,7 +53,7 @@ impl AppState {
     /// Sets the person's own session aside; what is done from now on does not touch it.
     ///
     /// # Errors
-    /// If the session is being changed, opened or saved.
+    /// If the session is being changed, opened or saved, or one more run for the table of runs is under way.
     fn set_aside(&mut self) -> Result<(), String> {
         self.hand_back();
         if let Some(work) = WORK_OF_SESSION.into_iter().find(|work| self.background.runs(*work)) {
@@ -115,7 +115,7 @@ impl AppState {
     /// Begins the tour in a scene of its own.
     ///
     /// # Errors
-    /// If the session is being changed, opened or saved.
+    /// If the session is being changed, opened or saved, or one more run for the table of runs is under way.
     pub(super) fn begin_tour(&mut self) -> Result<(), String> {
         self.set_aside()?;
         let mut view_state = ViewState::new(self.view_state.arrangement.theme, &self.views);
@@ -138,7 +138,7 @@ impl AppState {
     /// Begins the hints on the machine on display, with its task as it was opened.
     ///
     /// # Errors
-    /// If the session is being changed, opened or saved.
+    /// If the session is being changed, opened or saved, or one more run for the table of runs is under way.
     pub(super) fn begin_hints(&mut self) -> Result<(), String> {
         self.set_aside()?;
         self.view_state.lay_out(Layout::Explore);

@@ -198,7 +198,7 @@ impl AppState {
             WindowCommand::CopyCommand => {
                 let Some(command) = session_command(&self.session) else {
                     return Err(
-                        "settings alone are not enough: save (Ctrl S), then `stillbase simulate FILE.toml`".into()
+                        "settings alone are not enough: save (Ctrl S), then type: stillbase simulate FILE.toml".into(),
                     );
                 };
                 let said = format!("copied: {command}");

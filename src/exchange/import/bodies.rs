@@ -65,7 +65,7 @@ impl<'a> MjcfBodies<'a> {
     /// Reads the bodies of a `<mujoco>`.
     ///
     /// # Errors
-    /// If a body is neither fixed nor on a single hinge, or if an element is not supported.
+    /// If a body is neither fixed nor on a single hinge, or if something is missing, malformed or not supported.
     pub fn of(model: Node<'a, 'a>) -> Result<Self, ImportError> {
         let other = |node: &Node| ["include", "replicate", "attach", "frame"].contains(&node.tag_name().name());
         if let Some(node) = model.descendants().find(other) {
@@ -214,7 +214,7 @@ impl<'a> MjcfBodies<'a> {
     /// Returns the part of the hinge that an attribute names.
     ///
     /// # Errors
-    /// If there is no such hinge.
+    /// If the attribute is missing, or names no hinge.
     pub fn part_of(&self, node: impl AttributeSource<'a>, attribute: &'static str) -> Result<usize, ImportError> {
         self.hinges.part_of(node, attribute)
     }
@@ -265,7 +265,7 @@ impl<'a> MjcfBodies<'a> {
     /// Returns both points of a `<connect>`.
     ///
     /// # Errors
-    /// If a site or body does not exist.
+    /// If a site or body does not exist, an attribute is missing, or the anchor is malformed.
     pub fn ends(&self, node: Node<'a, 'a>) -> Result<[AttachmentPoint; 2], ImportError> {
         if node.has_attribute("site1") {
             let end = |attribute: &'static str| {

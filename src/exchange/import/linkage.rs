@@ -172,8 +172,8 @@ pub fn common_axis(parts: &[ImportedPart]) -> Result<(Unit<Vector3<f64>>, Vec<f6
     Ok((axis, signs))
 }
 
-/// Returns for each part the turning part with which it moves; `None` for the base. This is the part itself if it has a
-/// hinge, or else the part to which it is fixed.
+/// Returns for each part the turning part with which it moves; `None` if it moves with the base. This is the part
+/// itself if it has a hinge, or else that of the part to which it is fixed.
 pub fn owners(parts: &[ImportedPart]) -> Vec<Option<usize>> {
     let mut owners: Vec<Option<usize>> = Vec::with_capacity(parts.len());
     for (i, part) in parts.iter().enumerate() {

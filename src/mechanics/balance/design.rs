@@ -106,7 +106,7 @@ pub fn conditions(machine: &Machine) -> (DMatrix<f64>, DVector<f64>) {
 /// Returns the balanced, invariant machine with the least Σ (p_j l_cj)², (10).
 ///
 /// # Errors
-/// If a penalty is not positive, if there is not one penalty for each link, or if no l_c satisfies (7) and (8).
+/// If a penalty is not positive or missing, if no l_c satisfies (7) and (8), or if the result is no valid machine.
 pub fn design(machine: &Machine, penalty: &[f64]) -> Result<Machine, DesignError> {
     let links = machine.links();
     if penalty.len() != links.len() {

@@ -1,4 +1,4 @@
-//! [`SearchCell`]: a range of mass and position of a counterweight, and upper bounds of its inertia there.
+//! [`SearchCell`]: a range of mass w and position x = s/w of a counterweight, and upper bounds of its inertia there.
 //!
 //! If D_k is negative, more inertia reduces |D_k|, so s²/w and w² need upper bounds. For x from a to b,
 //! s²/w ≤ (a + b) s − a b w. For w from a to b, w² ≤ (a + b) w − a b. Both are equalities at a and at b.

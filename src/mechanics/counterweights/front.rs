@@ -84,12 +84,12 @@ impl FrontSearch {
             // Least inertia comes first, so that it reports the errors that both objectives share.
             0 => (0, inertia.clone()),
             1 => (0, mass.clone()),
-            known if known >= *count => return Ok(false),
             // If one machine is best in both measures, it is the whole Pareto front.
             last if [0, 1].iter().all(|axis| alike(points[0].0[*axis], points[last - 1].0[*axis])) => {
                 points.truncate(1);
                 return Ok(false);
             }
+            known if known >= *count => return Ok(false),
             last => {
                 let size =
                     [0, 1].map(|axis| (points[last - 1].0[axis] - points[0].0[axis]).abs().max(f64::MIN_POSITIVE));

@@ -194,7 +194,7 @@ fn pair(
 fn is_regular(links: &[TreeLink], closures: &[CutClosure], block: &SolveStep) -> bool {
     let SolveStep::Together { closures: open, rows } = block else { return true };
     let moment = vec![0.0; links.len()];
-    // Three sample poses. The golden angle between successive drives keeps pairs away from change points.
+    // Three sample poses; successive drives are `start` plus the golden angle apart. One regular pose is sufficient.
     [0.7, 1.9, 4.4].into_iter().any(|start| {
         let e: UnitVectors = std::array::from_fn(|k| unit(start * (1.0 + k as f64) + 2.399_963 * k as f64));
         together(links, closures, open, rows, &e, &moment).1

@@ -14,7 +14,7 @@ use stillbase_settings::number::ShortNumber;
 use stillbase_settings::range::{quote_clipped, shortened};
 use stillbase_settings::text::control_character;
 
-/// Tolerance of the distance between the two points of a closure, m.
+/// Tolerance of the gap between the two points of a closure along each drive, m.
 pub const CLOSURE_TOLERANCE: f64 = 1e-9;
 
 impl Machine {

@@ -3,7 +3,7 @@
 use super::error::{KeyPath, MachineError};
 use stillbase_settings::range::{Range, Requirement};
 
-/// Largest magnitude of a number of a machine, in SI units: products of larger numbers could overflow.
+/// Largest magnitude of most numbers of a machine, in SI units: products of larger numbers could overflow.
 const MAX_NUMBER: f64 = 1e6;
 /// Smallest limit of a drive and smallest |gear ratio|, in SI units: quotients of smaller numbers could overflow.
 pub(super) const MIN_POSITIVE: f64 = 1e-9;

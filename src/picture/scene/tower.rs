@@ -178,7 +178,7 @@ impl Tower {
         vec![barred(&TowerPost { name: "target".into(), at, reach: self.space.reach(at).ok() }, window)]
     }
 
-    /// Returns the item under the pointer that can be dragged: the dot of the end effector, a bar, or the section.
+    /// Returns the item under the pointer that can be dragged: the target, a bar, or the section.
     pub fn pick(&self, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
         let [low, _] = self.window(frame.b_reference);
         let height = |b: f64| (b - low) * self.rise();

@@ -443,7 +443,7 @@ impl Views {
                     (first.is_none() && off < POINT_PICK_PX).then_some((Pick::of(handle, at), off))
                 });
                 let point = points.min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick);
-                // So is a payload.
+                // Within that ring a payload, too, is taken by its label.
                 let load = self
                     .stage
                     .handle(Handle::Payload, shown)

@@ -103,7 +103,7 @@ impl Curve {
     /// distances between the points.
     ///
     /// # Errors
-    /// If there are too few points, or two neighbours coincide.
+    /// If there are too few points, two neighbours coincide, or a coordinate is not finite.
     pub fn spline(points: &[Vector], closed: bool) -> Result<Self, CurveError> {
         check(points, closed)?;
         let want = if closed { 3 } else { 2 };
@@ -129,7 +129,7 @@ impl Curve {
     /// ends and another begins.
     ///
     /// # Errors
-    /// If there are fewer than two points, or two neighbours coincide.
+    /// If there are fewer than two points, two neighbours coincide, or a coordinate is not finite.
     pub fn polyline(points: &[Vector], closed: bool, blend: f64) -> Result<Vec<Self>, CurveError> {
         check(points, closed)?;
         let n = points.len();

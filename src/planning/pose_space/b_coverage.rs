@@ -76,7 +76,7 @@ impl BCoverage {
         (0..n).find(same)
     }
 
-    /// Returns whether no critical value passes the gap on its way from gap i of another distance to gap j. Then the
+    /// Returns whether no critical value passes the gap that is i at another distance and j at this one. Then the
     /// values near both gaps are the same and lie on the same sides.
     fn has_sides(&self, j: usize, of: &Self, i: usize) -> bool {
         let near = NEAR_GAP * self.period;

@@ -97,8 +97,10 @@ impl PoseSpace {
             let rate = self.lift(&[a + 1.0], b).0.minus(&q.0);
             (0..2).map(|k| self.arms[k] * rate[k] * unit(q[k])).sum::<Vector>().norm()
         };
-        // Number of chords from the curvature: |p″| is at most Σ |c|.
-        let turns = (high - low) * (self.farthest() / (8.0 * CURVE_CHORD_TOLERANCE * self.farthest().max(1e-3))).sqrt();
+        // Number of chords from the curvature: |p″| is at most Σ |c_k| q_k′², with constant rates q_k′.
+        let rate = self.lift(&[low + 1.0], b).0.minus(&self.lift(&[low], b).0);
+        let bend: f64 = (0..2).map(|k| self.arms[k].abs() * rate[k] * rate[k]).sum();
+        let turns = (high - low) * (bend / (8.0 * CURVE_CHORD_TOLERANCE * self.farthest().max(1e-3))).sqrt();
         let parts = (turns.ceil() as usize).clamp(16, 4000) & !1;
         let at = |i: usize| low + (high - low) * i as f64 / parts as f64;
         let curve: Vec<[f64; 2]> = (0..=parts).map(|i| place(at(i))).map(|p| [p.re, p.im]).collect();

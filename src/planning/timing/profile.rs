@@ -2,7 +2,7 @@
 
 use crate::timing::law::{PathProgress, TimeLaw};
 
-/// Timing of a motion on its path: s(t) from 0 to 1 with its derivatives, at rest before 0 and from T on.
+/// Timing of a motion on its path: s(t) from 0 to 1 with its derivatives, at rest before 0 and after T.
 ///
 /// Rest before the start and after the end is part of every profile. The rate jumps there only for [`even`](Self::even)
 /// and [`running`](Self::running) profiles.
@@ -161,7 +161,7 @@ impl Profile {
 
     /// Builds a profile through stations s that rise from 0 to 1 with given x = ṡ², 1/s². Between stations s̈ is linear
     /// in time and changes by `rise`, 1/s²; where `rise` is missing, s̈ is constant. Returns `None` if two neighbours
-    /// are both at rest, so that the time is infinite, or if the lengths differ.
+    /// are both at rest (infinite time), `stations` and `x` differ in length, or there are fewer than two stations.
     pub fn through(stations: &[f64], x: &[f64], rise: &[f64]) -> Option<Self> {
         let spaces = stations.len().checked_sub(1).filter(|n| *n > 0 && x.len() == stations.len())?;
         let mut starts = Vec::with_capacity(spaces);

@@ -8,8 +8,8 @@ use crate::refusal::Refusal;
 use stillbase_query::ProgressCallback;
 
 impl Session {
-    /// Applies an edit. Drags and pushes apply at the present step, and so do other edits while the machine moves. At
-    /// rest, settings and poses change the start, and the run so far is computed again.
+    /// Applies an edit. Drags and pushes apply at the present step, as do most other edits while the machine moves.
+    /// All others change the start, and the run so far is computed again.
     ///
     /// # Errors
     /// If the edit cannot apply; then nothing has changed. Joint limits always apply: if the task does not fit them,

@@ -14,8 +14,8 @@ const TRIAL_DEPTHS: [f64; 8] = [1e-3, 0.1, 0.3, 0.6, 1.0, 1.4, 1.7, 1.9];
 /// Number of decimals of the values tried.
 const DECIMALS: usize = 4;
 
-/// Returns the refusal with only those proposals that `try_path` finds feasible. Points that share a b may still have
-/// no path between them on its plane.
+/// Returns the refusal, its proposals tried with `try_path`: infeasible ones are replaced, marked or removed. Points
+/// that share a b may still have no path between them on its plane.
 pub(super) fn proved_refusal(
     task: &Task,
     space: &PoseSpace,

@@ -65,7 +65,7 @@ pub struct OutsideLimits {
 }
 
 impl Session {
-    /// Returns the target that is out of reach on display, for [`TargetProposals`]; `None` if it is reached.
+    /// Returns the target on display for [`TargetProposals`]; `None` if it is reached or there is no pose space.
     pub fn missed_target(&self) -> Option<MissedTarget> {
         let target = &self.frame().target;
         let space = ByIdentity(self.run().pose_space().ok()?.clone());
@@ -90,7 +90,7 @@ impl Session {
     }
 
     /// Returns the joint limits that leave out the present pose of a machine that a hand leads, with ways out: the
-    /// limits before the last change of them, and the tightest limits that contain the pose. `None` if there are none.
+    /// limits before their last change, and the present limits widened to the pose. `None` if no limit is exceeded.
     pub fn outside_limits(&self) -> Option<OutsideLimits> {
         if !self.is_dragged() {
             return None;

@@ -90,8 +90,8 @@ pub enum FileContent {
     Scenario,
 }
 
-/// Returns whether a file is meant as machine or as scenario, by tables that only one of them has. Returns `None` if it
-/// has tables of neither or of both.
+/// Returns whether a file is a machine or a scenario, by tables that only one of them has. Returns `None` if it has
+/// tables of neither or of both, or is not TOML.
 pub fn content(text: &str) -> Option<FileContent> {
     let table: toml::Table = text.parse().ok()?;
     let has = |keys: [&str; 2]| keys.iter().any(|key| table.contains_key(*key));
@@ -212,7 +212,7 @@ impl Scenario {
             }
             ScenarioError::Machine { file, error, .. } => {
                 let file = file.trim_end_matches(": plant").to_owned();
-                // The plant keys links by name, the machine by index. The table `lengths` is `length` in the plant.
+                // Links are keyed by name in the plant, by index in the machine. `lengths` is `length` in the plant.
                 let place = error.place().map_or_else(KeyPath::default, |place| match place.0.as_slice() {
                     [link, KeyStep::Named(_, name), rest @ ..] => {
                         let named = [link.clone(), KeyStep::Key(name.clone())];

@@ -182,7 +182,7 @@ impl Note {
 /// Reads the notes of a file for a machine.
 ///
 /// # Errors
-/// If a note is wrong: the index of the first wrong one, and the reason.
+/// If there are too many notes or one is wrong: the index of the first such note, and the reason.
 pub(super) fn notes(stated: Vec<StatedNote>, machine: &Machine) -> Result<Vec<Note>, (usize, String)> {
     if stated.len() > MAX_NOTES {
         return Err((MAX_NOTES, format!("want at most {MAX_NOTES} notes")));

@@ -143,7 +143,7 @@ impl Scenario {
     }
 
     /// Returns the present values of the keys of a change, with which [`with_settings`](Self::with_settings) undoes it.
-    /// Returns `None` if one of the keys does not exist.
+    /// Returns `None` if a part, or a key of the machine, does not exist.
     pub fn present_values(&self, change: &Table) -> Option<Table> {
         let (of_machine, mut own): (Table, Table) = change.clone().into_iter().partition(|(key, _)| is_of_machine(key));
         let known = |part: &String| {

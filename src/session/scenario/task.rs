@@ -142,7 +142,7 @@ impl Task {
     /// determine b.
     ///
     /// # Errors
-    /// If a key is missing, its name: `b` for samples of the end effector without one.
+    /// The name of the missing key: `b`, or `from` if the samples do not fit the machine.
     pub fn sampled(kind: TaskKind, samples: Samples, b: Option<f64>, machine: &Machine) -> Result<Self, &'static str> {
         let stated = |key: &str| key == "kind" || (key == "b" && b.is_some());
         let task = Self { kind, samples: Some(samples), b: b.unwrap_or_default(), ..Self::default() };

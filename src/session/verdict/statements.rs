@@ -246,8 +246,8 @@ impl Statement {
     }
 }
 
-/// Returns by how much a hand has turned b from those of the planned path, rad; `None` if b is as planned, no hand leads
-/// the machine, or the machine was put there without a motion.
+/// Returns how far a hand has turned b out of its range on the planned path, rad; `None` if b is in it, no hand leads
+/// the machine, or no moment has reached the base.
 fn turned_by_hand(run: &Run, frame: &Frame) -> Option<f64> {
     let Guide::Follow(follower) = run.simulation().guide() else { return None };
     let [least, greatest] = run.plan().forecast.b;

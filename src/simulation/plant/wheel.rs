@@ -6,7 +6,7 @@
 //! | τ_w | torque of the wheel's motor on the wheel; −τ_w on the base | N m |
 //! | Ω | rate of the wheel, absolute | rad/s |
 //!
-//! The wheel's controller knows the sum of the motors' torques, which act on the base as −Σ τ_k, and commands τ_w = −Σ
+//! With motors on the base and no gears, their moment on the base is −Σ τ_k. The wheel's controller commands τ_w = −Σ
 //! τ_k. The wheel saturates where τ_w or Ω would exceed their limits; the remaining moment acts on the base.
 //!
 //! # At the maximum rate

@@ -1,5 +1,5 @@
-//! A motion of the end effector at constant b, for machines with free drives at a point and a b. The first posture that
-//! can be planned is used.
+//! Motion of the end effector at constant b, for machines without planes whose workspace is an area. The first b and
+//! posture that can be planned are used.
 
 use super::judge::{MotionCandidate, MotionEvaluator};
 use crate::advice::Advice;

@@ -26,7 +26,7 @@ pub struct BaseRing {
 }
 
 impl BaseRing {
-    /// Returns the ring of a machine with a b; `radius` in m.
+    /// Returns the ring of a machine that has a pose constant b; `radius` in m.
     pub fn of(space: &PoseSpace, radius: f64) -> Self {
         let corner = |i: u32| point(unit(TAU * f64::from(i) / f64::from(CIRCLE_VERTICES)) * radius, 0.0);
         let circle = vec![(0..=CIRCLE_VERTICES).map(corner).collect::<Vec<_>>()];
