@@ -255,7 +255,7 @@ pub const ACTIONS: &[Action] = actions![
     Task, "Target down by 10 mm; Shift: by 1 mm" = "move tip end effector goal", [on(CTRL, Key::ArrowDown)], "scene", |s, _| {
         nudge(s, [0.0, -TARGET_STEP_M])
     };
-    Task, "Turn b on by 0.01 rad; Shift: by 0.001 rad" = "pose constant plane", [on(PLAIN, Key::CloseBracket)], "left panel", |s, v| {
+    Task, "Turn b forward by 0.01 rad; Shift: by 0.001 rad" = "pose constant plane", [on(PLAIN, Key::CloseBracket)], "left panel", |s, v| {
         turn(s, v, B_STEP_RAD)
     };
     Task, "Turn b back by 0.01 rad; Shift: by 0.001 rad" = "pose constant plane", [on(PLAIN, Key::OpenBracket)], "left panel", |s, v| {

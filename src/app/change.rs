@@ -140,9 +140,11 @@ impl SessionSource {
             why: refusal.to_string(),
             refused: Some(RefusedEdit::of_opening(&scenario, &refusal)),
         })?;
-        if let Some(ResumePoint { time, .. }) = &left_off {
+        if let Some(ResumePoint { time, reached, .. }) = &left_off {
             // The file may name any time: the run is not extended beyond its length.
-            session.seek_while(time.min(session.length()), watch);
+            for time in [reached.max(*time), *time] {
+                session.seek_while(time.min(session.length()), watch);
+            }
         }
         Ok(Opened::Session(Box::new(OpenedSession { session, note, left_off })))
     }

@@ -56,9 +56,7 @@ pub fn show(
                     let button = egui::Button::new(words).selected(false).frame(on);
                     let tip = match on {
                         true => "This drive has an axis",
-                        false => {
-                            "The section is where this drive stands; click to give it an axis, in place of the first"
-                        }
+                        false => "This drive keeps its present angle; click to give it an axis, in place of the first",
                     };
                     let button = ui.add(button).on_hover_text(tip);
                     name(

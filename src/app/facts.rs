@@ -145,7 +145,7 @@ pub(super) struct ScenarioFacts<'a> {
     /// Number of poses that put the end effector at its present point, and the point's distance from the workspace
     /// boundary, m, positive inside. `None` for a machine without planes.
     pub standing: Option<(usize, f64)>,
-    /// Ways out of a target that is out of reach; none while it is being dragged.
+    /// Proposals for a target that is out of reach; none while it is being dragged.
     pub target_proposals: Arc<Vec<Proposal>>,
 }
 

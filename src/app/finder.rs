@@ -2,12 +2,14 @@
 //! searched by a few letters. A setting followed by a value, such as `payload 0.4`, is set from here.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use egui::{Align2, Area, Frame, Id, Key, Modifiers, Order, RichText, ScrollArea, TextEdit, Ui, vec2};
 
 use super::actions::{ACTIONS, shortcut_label};
 use super::facts::{ScenarioFacts, Setting};
 use super::guide::{self, GuideStep, Section};
+use super::path::chosen;
 use super::side::setting;
 use super::theme::{bold, colour, plain};
 use super::top::with_machine;
@@ -17,8 +19,9 @@ use stillbase_mechanics::machine;
 use stillbase_picture::charts::choice::PlotChange;
 use stillbase_picture::notation::Notation;
 use stillbase_picture::scene::palette::Palette;
-use stillbase_session::scenario::{Scenario, Value};
-use stillbase_session::{Edit, Session};
+use stillbase_session::scenario::{Scenario, TaskKind, Value};
+use stillbase_session::{Edit, Proposal, Session};
+use stillbase_settings::word::{Choice as _, ChoiceWords};
 use stillbase_simulation::signals::Signal;
 
 /// A line of the list.
@@ -40,6 +43,10 @@ struct Entry<'a> {
 const SIGNALS_PLACE: &str = "plots";
 const SIGNALS_STEP_BACK: i32 = 24;
 
+/// Place of the proposals that improve the plan, and the increase of their scores.
+const WAYS_PLACE: &str = "status line";
+const WAYS_BONUS: i32 = 40;
+
 /// Maximum number of lines.
 const MAX_ENTRIES: usize = 60;
 
@@ -55,12 +62,14 @@ struct Known<'a> {
     settings: &'a [Setting],
     recent: &'a [PathBuf],
     sections: &'a [Section],
+    /// Proposals that improve the plan on display.
+    improvements: &'a [Proposal],
 }
 
 /// Returns the entries available now: actions, notes, recent files, scenarios, machines, signals, settings, and
 /// headings of the guide.
 fn entries<'a>(known: Known<'a>, view_state: &ViewState) -> Vec<Entry<'a>> {
-    let Known { session, signals, settings, recent, sections } = known;
+    let Known { session, signals, settings, recent, sections, improvements } = known;
     let actions = ACTIONS.iter().filter_map(|action| {
         let command = action.command(session, view_state)?;
         let keys = action.keys.first().map(shortcut_label).unwrap_or_default();
@@ -125,7 +134,19 @@ fn entries<'a>(known: Known<'a>, view_state: &ViewState) -> Vec<Entry<'a>> {
         let read = || Command::View(ViewChange::Guide(GuideStep::Go(place)));
         Entry { hides: true, tells: true, ..entry(title, "guide", also, Box::new(read)) }
     });
-    actions
+    let ways = improvements.iter().filter_map(|proposal| {
+        let edit = proposal.edit()?;
+        let take = move || Command::Session(SessionCommand::Edit(edit));
+        Some(entry(format!("Way out: {}", proposal.text), WAYS_PLACE, "improve fix mend why", Box::new(take)))
+    });
+    let present_kind = session.scenario().task.kind;
+    let kinds = TaskKind::ALL.iter().filter(move |kind| ![present_kind, TaskKind::Given].contains(kind)).map(|kind| {
+        let ChoiceWords { file: word, screen, meaning } = kind.words();
+        let choose = || Command::Session(SessionCommand::Edit(chosen(session, "kind", word)));
+        Entry { hides: true, ..entry(format!("Path: {screen}"), "left panel, path", meaning, Box::new(choose)) }
+    });
+    ways.chain(actions)
+        .chain(kinds)
         .chain(notes)
         .chain(recent)
         .chain(scenarios)
@@ -228,7 +249,9 @@ fn found<'a>(entries: Vec<Entry<'a>>, sought: &str) -> Vec<Entry<'a>> {
             true => search::score_of_prose(sought, entry.also, &entry.title)? / 2,
             false => search::score_with(sought, &entry.title, entry.also).or_else(place)?,
         };
-        Some(score - if entry.place == SIGNALS_PLACE { SIGNALS_STEP_BACK } else { i32::from(entry.hides) })
+        // What improves the motion on display comes before another scenario of the same words.
+        let bonus = if entry.place == WAYS_PLACE { WAYS_BONUS } else { 0 };
+        Some(score + bonus - if entry.place == SIGNALS_PLACE { SIGNALS_STEP_BACK } else { i32::from(entry.hides) })
     };
     let offered = entries.into_iter().filter(|entry| !(entry.hides && sought.trim().is_empty()));
     search::best_first(offered, score, MAX_ENTRIES)
@@ -240,6 +263,7 @@ pub fn show(
     session: &Session,
     signals: &[Signal],
     facts: &ScenarioFacts<'_>,
+    improvements: Option<Arc<Vec<Proposal>>>,
     recent: &[PathBuf],
     view_state: &mut ViewState,
     commands: &mut Vec<Command>,
@@ -248,7 +272,8 @@ pub fn show(
     let Some(mut finder) = view_state.open.finder.clone() else { return };
     let settings = facts.settings();
     let sections = facts.guide();
-    let known = Known { session, signals, settings: &settings, recent, sections: &sections };
+    let improvements: &[Proposal] = improvements.as_ref().map_or(&[], |all| all);
+    let known = Known { session, signals, settings: &settings, recent, sections: &sections, improvements };
     let found = found(entries(known, view_state), &finder.search_text);
     let list: Vec<Entry<'_>> =
         typed(&settings, &finder.search_text, view_state.arrangement.notation).into_iter().chain(found).collect();

@@ -30,7 +30,8 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
     if !busy && pressed(&KeyboardShortcut::new(Modifiers::NONE, Key::Escape)) {
         commands.push(escape(view_state));
     }
-    if view_state.open.guide.is_some() && !typing {
+    // The field of the guide's search has no use for these keys either.
+    if view_state.open.guide.is_some() {
         for (key, step) in [(Key::ArrowLeft, GuideStep::Back), (Key::ArrowRight, GuideStep::Forward)] {
             if pressed(&KeyboardShortcut::new(Modifiers::ALT, key)) {
                 commands.push(ViewChange::Guide(step).into());
@@ -117,6 +118,10 @@ pub fn help(ctx: &Context, view_state: &ViewState, commands: &mut Vec<Command>) 
         let mut sought = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_default();
         let field = ui.add(TextEdit::singleline(&mut sought).hint_text("search the keys").desired_width(f32::INFINITY));
         name(&field, "Search the keys");
+        // Letters typed here are no shortcuts.
+        if ctx.memory(|memory| memory.focused().is_none()) {
+            field.request_focus();
+        }
         ui.data_mut(|d| d.insert_temp(id, sought.clone()));
         ui.add_space(6.0);
         let [width, height] = [ctx.content_rect().width(), ctx.content_rect().height()];

@@ -278,7 +278,7 @@ pub fn caption_covers(rect: Rect) -> Rect {
 }
 
 fn is_zero(frame: &Frame) -> bool {
-    frame.wrench.total().moment.abs() < ZERO_BELOW_N_M
+    frame.net_base_moment().abs() < ZERO_BELOW_N_M
 }
 
 /// Draws a title with a text below it over the upper left corner of a view.
@@ -318,7 +318,7 @@ fn caption(
     if !is_short {
         row(notation::sentence(ui.ctx(), about).into_owned(), plain(12.0 * scale), p.dim, 8.0);
     }
-    let shown = signed(frame.wrench.total().moment + 0.0, 2);
+    let shown = signed(frame.net_base_moment() + 0.0, 2);
     let name = notation::of(ui.ctx()).name("turning moment on the base", "n_B");
     let largest = format!("largest {} N m", signed(peak + 0.0, 2));
     if large {

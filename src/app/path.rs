@@ -65,6 +65,25 @@ struct ChoiceRow<'a> {
     width: f32,
 }
 
+/// Returns the edit that chooses a word for a key of the task, with what must change besides.
+pub fn chosen(session: &Session, key: &str, word: &str) -> Edit {
+    let mut change = TaskChange::from_iter([(key.to_owned(), Value::String(word.into()))]);
+    if word == "arc" && session.scenario().task.via.is_empty() {
+        // The via point of the new arc is the middle of the present path.
+        let p = session.run().end_effector_on_path(0.5);
+        change.insert("via".into(), vec![vec![p.re, p.im]].into());
+    }
+    if key == "kind" {
+        // Keys that the new kind may lack return to their defaults.
+        change.extend(["b_to", "moment_limit"].map(|key| (key.into(), "default".into())));
+        let takes = ["given", "reactionless", "minimum-norm"].contains(&word);
+        if session.scenario().task.samples.as_ref().is_some_and(|s| s.columns() != 2 || !takes) {
+            change.extend(["samples", "turn"].map(|key| (key.into(), "default".into())));
+        }
+    }
+    Edit::of("task", change)
+}
+
 /// Draws the choices of a key of the task.
 fn choose<T: Choice>(
     ui: &mut Ui,
@@ -80,22 +99,8 @@ fn choose<T: Choice>(
         for choice in choices {
             let ChoiceWords { file: word, screen, meaning } = choice.words();
             if ui.selectable_label(*choice == now, screen).on_hover_text(meaning).clicked() && *choice != now {
-                let mut change = TaskChange::from_iter([(key.to_owned(), Value::String(word.into()))]);
-                if word == "arc" && session.scenario().task.via.is_empty() {
-                    // The via point of the new arc is the middle of the present path.
-                    let p = session.run().end_effector_on_path(0.5);
-                    change.insert("via".into(), vec![vec![p.re, p.im]].into());
-                }
-                if key == "kind" {
-                    // Keys that the new kind may lack return to their defaults.
-                    change.extend(["b_to", "moment_limit"].map(|key| (key.into(), "default".into())));
-                    let takes = ["given", "reactionless", "minimum-norm"].contains(&word);
-                    if session.scenario().task.samples.as_ref().is_some_and(|s| s.columns() != 2 || !takes) {
-                        change.extend(["samples", "turn"].map(|key| (key.into(), "default".into())));
-                    }
-                }
                 commands.extend([
-                    Command::Session(SessionCommand::Edit(Edit::of("task", change))),
+                    Command::Session(SessionCommand::Edit(chosen(session, key, word))),
                     Command::Session(SessionCommand::EndGesture),
                 ]);
             }

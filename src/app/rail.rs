@@ -94,7 +94,7 @@ pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &View
                     disabled_word_button(ui, &p, view.name(), &tip, size);
                     continue;
                 }
-                let tip = format!("{}{}", view.explanation(), key("The next view: 2D, 3D, joint space, tower"));
+                let tip = format!("{}{}", view.explanation(), key("The next view: 2D, 3D, joint space, tower, design"));
                 if word_button(ui, &p, view.name(), &tip, view_state.view == view, size).clicked() {
                     commands.push(ViewChange::Kind(view).into());
                 }

@@ -11,6 +11,7 @@ use stillbase_files::heading;
 use stillbase_picture::charts::choice::PlotChoice;
 use stillbase_picture::scene::Measure;
 use stillbase_picture::scene::camera::Camera;
+use stillbase_picture::scene::measurement::Measurement;
 use stillbase_picture::scene::views::{ViewKind, Views};
 use stillbase_session::{Run, Session};
 
@@ -44,6 +45,10 @@ pub struct ResumePoint {
     pub file: Option<PathBuf>,
     /// The choice of plots.
     pub plots: PlotChoice,
+    /// Distances and angles that the scene shows.
+    pub measurements: Vec<Measurement>,
+    /// Time up to which the run had been simulated, s.
+    pub reached: f64,
     /// Cameras that the user has moved; a view without one shows everything.
     pub cameras: Vec<ViewCamera>,
 }
@@ -73,6 +78,8 @@ impl Default for ResumePoint {
             turn_task: false,
             file: None,
             plots: PlotChoice::default(),
+            measurements: Vec::new(),
+            reached: 0.0,
             cameras: Vec::new(),
         }
     }
@@ -85,6 +92,8 @@ impl ResumePoint {
         let camera = |view: ViewKind| ViewCamera { view, camera: view_state.cameras[view as usize] };
         Self {
             time: session.frame().time,
+            measurements: view_state.measurements.clone(),
+            reached: session.frames().last().map_or(0.0, |frame| frame.time),
             layout: view_state.arrangement.layout,
             view: view_state.view,
             below: view_state.below.filter(|below| *below != BottomPanel::Table),
@@ -116,6 +125,8 @@ impl ResumePoint {
         view_state.snapshots = self.snapshots;
         view_state.turn_task = self.turn_task;
         view_state.charts = self.plots;
+        let machine = &run.scenario().machine;
+        view_state.measurements = self.measurements.into_iter().filter(|one| one.is_of(machine)).collect();
         view_state.framing = Default::default();
         for ViewCamera { view, camera } in self.cameras {
             let i = view as usize;
@@ -127,7 +138,7 @@ impl ResumePoint {
 
     /// Whether another state differs from this one in the instant at most.
     pub fn is_alike_at_another_time(&self, other: &Self) -> bool {
-        Self { time: self.time, ..other.clone() } == *self
+        Self { time: self.time, reached: self.reached, ..other.clone() } == *self
     }
 
     /// Returns the text of a session, with this state in comments before it.
@@ -140,6 +151,7 @@ impl ResumePoint {
         let is_time = |time: f64| time.is_finite() && time >= 0.0;
         heading::of(text).filter(|left: &Self| {
             is_time(left.time)
+                && is_time(left.reached)
                 && left.mark.is_none_or(is_time)
                 && (MIN_SPEED..=MAX_SPEED).contains(&left.speed)
                 && left.cameras.iter().all(|kept| kept.camera.is_valid())

@@ -92,7 +92,9 @@ impl<'a> ScenePointer<'a> {
             true => self.views.pick_tip(self.shown, &pointer),
             false => {
                 let pulled = || self.views.pick(self.view, self.shown, &pointer);
-                self.named(pos).or_else(|| self.arm(pos)).or_else(pulled)
+                // The knob of b may lie over a link, which the demonstration would take for the arm.
+                let ring = || pulled().filter(|pick| pick.handle == Handle::Ring);
+                self.named(pos).or_else(ring).or_else(|| self.arm(pos)).or_else(pulled)
             }
         };
         // Targets cannot be dragged while the run waits, in any view.
@@ -107,8 +109,10 @@ impl<'a> ScenePointer<'a> {
         let seen = |pos: Pos2| match self.pushes {
             true => self.under(pos).map(|pick| pick.handle),
             false => {
-                let arm = self.named(pos).or_else(|| self.arm(pos)).map(|pick| pick.handle);
-                arm.or_else(|| self.views.under(self.view, self.shown, &self.spot.pointer(pos)))
+                let under = || self.views.under(self.view, self.shown, &self.spot.pointer(pos));
+                let ring = || under().filter(|handle| *handle == Handle::Ring);
+                let named = self.named(pos).map(|pick| pick.handle).or_else(ring);
+                named.or_else(|| self.arm(pos).map(|pick| pick.handle)).or_else(under)
             }
         };
         view_state.pointed.object = self.response.hover_pos().and_then(seen);

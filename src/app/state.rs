@@ -233,7 +233,7 @@ impl AppState {
         format!("{} – Stillbase", stillbase_settings::text::shorten_message(&name))
     }
 
-    /// Returns the number of changes of the person's own session so far, and whether some of them are not saved in a file of the user.
+    /// Returns the number of changes of the person's own session so far, and whether some are in no file of the user.
     pub fn changes(&self) -> (u64, bool) {
         (self.own_saving().changes, self.own_saving().is_unsaved())
     }

@@ -18,9 +18,9 @@ pub struct StatusMessage {
     pub left_branch: bool,
     /// The last refused edit.
     pub refused: Option<RefusedEdit>,
-    /// Ways out of the last message that are known at once.
+    /// Proposals that solve the problem of the last message and are known without a search.
     pub(super) proposals: Vec<Proposal>,
-    /// The number of the last message that was typed out of its range.
+    /// The typed entry that the last message refuses.
     pub(super) entry: Option<RefusedEntry>,
 }
 
@@ -45,7 +45,7 @@ pub struct Message {
 pub struct RefusedEdit {
     /// The requested curve, and the point from which it cannot be followed.
     pub curve: Option<Arc<RefusedCurve>>,
-    /// What is refused, as the search for proposals takes it; `None` if the edit is a drag or a push.
+    /// What is refused, for the search for proposals; `None` if the edit changes neither settings nor the start.
     pub refused: Option<RefusedChange>,
     /// What was to be done.
     attempt: Attempt,

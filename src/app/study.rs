@@ -291,7 +291,7 @@ fn contributions(ui: &mut Ui, p: &Palette, study: &Study) {
             name(&response, &format!("{called} {:.1} %", 100.0 * share.moment_share));
             let deviation = share.deviation;
             response.on_hover_text(format!(
-                "{called}, {}\nσ = {deviation:.3e} {unit}; RMS of ∂n_B: {slope} N m/{unit}",
+                "{called}, {}\nσ = {deviation:.3e} {unit}; greatest |∂n_B|: {slope} N m/{unit}",
                 share.key
             ));
         }

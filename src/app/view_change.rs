@@ -139,7 +139,7 @@ impl ViewState {
         }
     }
 
-    /// Takes a step in the guide; opens it if it is closed.
+    /// Takes a step in the guide. Opens a closed guide only for a step to a place.
     fn read(&mut self, step: GuideStep) {
         (self.open.help, self.open.finder) = (false, None);
         match (&mut self.open.guide, step) {

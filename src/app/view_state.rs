@@ -189,7 +189,7 @@ impl ViewState {
     }
 }
 
-/// Returns the edit for a new b, rad. While time runs, the machine moves to the plane b; otherwise the edit puts it
+/// Returns the edit for a new b, rad. While the newest frame plays, the machine moves to the plane b; else it is put
 /// there. A dragged machine takes any b, and so does a task whose points may rotate with the plane. Otherwise the
 /// edit takes the nearest b that is feasible for the points.
 pub(super) fn set_b(session: &Session, view_state: &ViewState, b: f64) -> Edit {

@@ -308,7 +308,7 @@ fn refused_id() -> egui::Id {
     egui::Id::unique("refused entry")
 }
 
-/// A number that was typed out of its range, or no number.
+/// A refused entry: a number out of its range, or text that is no number.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RefusedEntry {
     /// Reason of the refusal.
@@ -336,7 +336,7 @@ fn taken_id(id: egui::Id) -> egui::Id {
     id.with("taken")
 }
 
-/// Takes the number that was refused in this pass.
+/// Takes the entry that was refused in this pass, and returns it.
 pub(super) fn refused_entry(ctx: &egui::Context) -> Option<RefusedEntry> {
     ctx.data_mut(|data| data.remove_temp(refused_id()))
 }

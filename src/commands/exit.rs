@@ -117,7 +117,7 @@ fn nearest_words(error: &clap::Error, words: &[OsString]) -> Option<Vec<OsString
     Some(words)
 }
 
-/// Returns a command line as a shell takes it; `None` if a word is no text.
+/// Returns a command line as a shell takes it; `None` if a word is not valid UTF-8.
 fn as_typed(words: &[OsString]) -> Option<String> {
     let rest = words.iter().skip(1).map(|word| Some(shell_word(word.to_str()?.trim()).to_string()));
     Some(std::iter::once(Some("stillbase".to_owned())).chain(rest).collect::<Option<Vec<_>>>()?.join(" "))

@@ -51,7 +51,7 @@ pub struct ExportModelArguments {
     /// Thickness of the counterweights, m; default: the thickness that gives each its mass
     #[arg(long, value_name = "T")]
     thickness: Option<f64>,
-    #[arg(short, long, value_name = "FILE", help = format!("Write it to this file; what is written goes by the ending: {}", form::endings().join(", ")))]
+    #[arg(short, long, value_name = "FILE", help = format!("Write it to this file; its ending chooses what is written: {}", form::endings().join(", ")))]
     output: PathBuf,
     /// Replace the file if it exists
     #[arg(long)]

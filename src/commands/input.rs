@@ -57,7 +57,7 @@ impl Settings {
     /// Returns the machine with all settings changed together.
     ///
     /// # Errors
-    /// If there is no such setting, or the machine would not be valid.
+    /// If there is no such setting, it has no effect, or the machine would not be valid.
     pub fn apply(&self, machine: Machine) -> Result<Machine, Failure> {
         if self.pairs.is_empty() {
             return Ok(machine);
@@ -118,7 +118,7 @@ impl MachineArgument {
     /// Returns the machine with its settings changed.
     ///
     /// # Errors
-    /// If there is no such machine, or it is not valid.
+    /// If there is no such machine or it is not valid, or as [`Settings::apply`].
     pub fn load(&self) -> Result<Machine, Failure> {
         self.settings.apply(stillbase_files::machine(&self.name, None)?)
     }

@@ -245,7 +245,7 @@ impl SimulateArguments {
         require_audit(&name, fault)
     }
 
-    /// Whether rows are written: to a file, or to standard output if it is not a terminal.
+    /// Whether rows are written: to a file, or without --json to standard output if it is not a terminal.
     fn writes_csv(&self) -> bool {
         self.output.is_some() || !(self.format.json || std::io::stdout().is_terminal())
     }

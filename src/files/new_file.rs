@@ -181,7 +181,7 @@ impl NewFile {
     /// Gives the file its final name.
     ///
     /// # Errors
-    /// If not everything could be written, or another file has taken the name meanwhile.
+    /// If not everything could be written or synced, or another file has taken the name meanwhile.
     pub fn finish(self) -> Result<(), WriteError> {
         finish_all([self])
     }
@@ -311,7 +311,7 @@ impl Taken {
 /// file is in place, all are.
 ///
 /// # Errors
-/// If not everything could be written, or another file has taken a name meanwhile.
+/// If not everything could be written or synced, or another file has taken a name meanwhile.
 pub fn finish_all<const N: usize>(mut files: [NewFile; N]) -> Result<(), WriteError> {
     for file in &mut files {
         file.sync_content()?;

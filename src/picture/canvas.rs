@@ -20,8 +20,8 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// Creates a canvas of the given size in physical pixels; `scale` is the number of physical pixels per logical
-    /// point.
+    /// Creates a canvas of the given size in physical pixels, or of the largest that the GPU allows; `scale` is the
+    /// number of physical pixels per logical point.
     ///
     /// # Errors
     /// If there is no usable GPU adapter; the message names the package to install.
@@ -50,7 +50,13 @@ impl Canvas {
         self.read()
     }
 
-    /// Draws a scene with its labels over the whole canvas.
+    /// Forgets where the labels of a scene stood, so that the next picture does not depend on the one before.
+    pub fn forget_labels(&self) {
+        labels::forget(&self.ctx, 0);
+    }
+
+    /// Draws a scene with its labels over the whole canvas. Labels stay where they stood in the picture before, if they
+    /// can, so that they stand still in films.
     ///
     /// # Errors
     /// If the picture cannot be read back.
@@ -60,7 +66,7 @@ impl Canvas {
             paint::install_fonts(&self.ctx);
             self.fonts = true;
             self.pass(behind, |ui| labels::paint_still(ui, scene, camera));
-            labels::forget(&self.ctx, 0);
+            self.forget_labels();
         }
         self.pass(behind, |ui| labels::paint_still(ui, scene, camera));
         self.read()

@@ -15,7 +15,7 @@ use super::scene::Rgba;
 use super::scene::palette::{Palette, mix};
 use stillbase_planning::pose_space::constant_inertia;
 use stillbase_session::scenario::Scenario;
-use stillbase_simulation::frame::{Peaks, REACTIONLESS_SHARE};
+use stillbase_simulation::frame::Peaks;
 use stillbase_simulation::signals::Signal;
 
 /// A plot of signals over time.
@@ -175,13 +175,11 @@ impl Chart {
     }
 }
 
-/// Returns the colour of a signal in every chart. Reactions are red if their peak exceeds [`REACTIONLESS_SHARE`] times
-/// a reference value, Σ|τ| for moments and Σ m|a| for forces, and otherwise green.
+/// Returns the colour of a signal in every chart. Reactions are red if their peak counts as nonzero, otherwise green.
 pub fn colour(signal: &Signal, palette: &Palette, peaks: &Peaks) -> Rgba {
     let paler = |rgba| mix(rgba, palette.dim, 0.6);
     let reaction = |real: bool| if real { palette.reaction } else { palette.zero };
-    let turns = peaks.moment > REACTIONLESS_SHARE * peaks.torque_sum;
-    let pulls = peaks.force > REACTIONLESS_SHARE * peaks.inertial_pull;
+    let (turns, pulls) = (peaks.counts_as_moment(peaks.moment), peaks.counts_as_force(peaks.force));
     match (signal.drive, signal.group(), signal.path.as_str()) {
         (Some(k), "reference", _) => paler(palette.drive(k)),
         (Some(k), ..) => palette.drive(k),

@@ -1,5 +1,5 @@
-//! [`Notation`]: how the window writes angles, lengths and terms. Files, settings, recordings and the command line stay
-//! in SI units.
+//! [`Notation`]: how the window and its reports write angles, lengths and terms. Other files, settings, recordings
+//! and the command line stay in SI units.
 
 use std::borrow::Cow;
 
@@ -143,7 +143,7 @@ impl Notation {
     }
 
     /// Returns a sentence with its angles and lengths in the user's units. A unit applies to the number before it, and
-    /// to numbers joined to that one, with equally many decimals, not 0: `1.20 to 1.35 rad`, `0.550, 0.900 m`.
+    /// to numbers joined to it that have as many decimals, at least one: `1.20 to 1.35 rad`, `0.550, 0.900 m`.
     pub fn sentence(self, text: &str) -> Cow<'_, str> {
         let mut written: Option<String> = None;
         let mut copied = 0;

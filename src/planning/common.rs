@@ -40,7 +40,7 @@ fn widened(space: &PoseSpace, mut set: BSet) -> BSet {
     set
 }
 
-/// Returns the b at which all points, m, can be reached; `None` if there are none.
+/// Returns the b at which all points, m, can be reached; for several, widened by `b_slack`. `None` if there are none.
 pub fn common_b_set(space: &PoseSpace, points: &[Vector]) -> Option<BSet> {
     if let [point] = points {
         return space.reach(*point).ok();
@@ -87,7 +87,7 @@ pub fn unreached(space: &PoseSpace, points: &[Vector], b: f64) -> Option<(usize,
     Some((i, unreachable_reason(space, points, i, b)))
 }
 
-/// Explains why point `i` cannot be reached at b, and which b would be feasible for all points.
+/// Explains why point `i` is out of reach at b, and which b serve all points, or point `i` alone if another has none.
 pub fn unreachable_reason(space: &PoseSpace, points: &[Vector], i: usize, b: f64) -> Unreachable {
     let (x, y) = (points[i].re, points[i].im);
     let own = match set_of(space, points[i]) {

@@ -109,8 +109,8 @@ pub fn nearest_poses(space: &PoseSpace, points: [Vector; 2], b: [f64; 2]) -> Opt
 }
 
 /// Returns the positions of points, m, after b has changed from `old` to `new`, rad. They stay if all can be reached at
-/// `new`. Otherwise they turn with the workspace: with planes from the b nearest to `new` at which all can be reached,
-/// else from `old`.
+/// `new`. Otherwise they turn with the workspace. Without planes they turn from `old`; with planes from the b nearest
+/// to `new` at which all can be reached; if there is no such b, they stay.
 pub fn carried_points(space: &PoseSpace, points: &[Vector], [old, new]: [f64; 2]) -> Vec<Vector> {
     if points.iter().all(|p| space.reaches(*p, new)) {
         return points.to_vec();

@@ -53,7 +53,7 @@ impl JobState {
     }
 }
 
-/// The job's end of the shared state: reports progress and reads whether to stop.
+/// The job's access to the shared state: it reports progress and reads whether to stop.
 #[derive(Clone, Debug)]
 pub struct Ticket(Arc<JobState>);
 

@@ -118,7 +118,7 @@ pub enum RecordError {
     /// Two scenarios of one recording have the same name.
     #[error("two scenarios are called {0:?}: want different names in one recording")]
     SameName(String),
-    /// A scenario cannot start, or one of its edits cannot apply.
+    /// A scenario cannot start, one of its edits cannot apply, or its state diverges.
     #[error("{scenario}: {refusal}")]
     Refused {
         /// Name of the scenario.
@@ -150,8 +150,8 @@ pub enum RecordError {
 /// progress and returns whether to continue.
 ///
 /// # Errors
-/// If a scenario cannot run, if the file exists and must not be replaced or cannot be written, or if `progress` returns
-/// false. No file is left in these cases.
+/// Any [`RecordError`], for example if a scenario cannot run, the file exists already, or `progress` returns false.
+/// No file is created or changed in these cases.
 pub fn record(
     scenarios: &[Scenario],
     file: &Path,

@@ -57,7 +57,7 @@ impl Preview {
     /// Runs a scenario; `tick` is called with the number of completed steps and returns whether to continue.
     ///
     /// # Errors
-    /// If the scenario cannot start, one of its edits cannot be applied, or `tick` returns false.
+    /// If the scenario cannot start, one of its edits cannot be applied, its state diverges, or `tick` returns false.
     pub fn of(scenario: &Scenario, tick: &mut dyn FnMut(u64) -> bool) -> Result<Self, Refusal> {
         let none = [f64::INFINITY, f64::NEG_INFINITY];
         let wider = |range: &mut [f64; 2], x: f64| *range = [range[0].min(x), range[1].max(x)];

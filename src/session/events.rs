@@ -186,7 +186,7 @@ pub fn bookmarked(bookmarks: &[Bookmark], step: f64) -> Vec<Event> {
     bookmarks.iter().map(event).collect()
 }
 
-/// Returns notes as events; one for all times stands at the start. `step` is the step size, s.
+/// Returns notes as events; a note for all times is at the start of the run. `step` is the step size, s.
 pub fn noted(notes: &[Note], step: f64) -> Vec<Event> {
     let event = |note: &Note| Event {
         step: (note.time.start().unwrap_or_default() / step).round() as u64,

@@ -8,7 +8,7 @@ use stillbase_query::{ByIdentity, QuickQuery, Sequence};
 /// Difference between a branch and the run on display.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fork {
-    /// First gesture of the branch that is not in the other run; if there is none, the last gesture, or `as planned`.
+    /// First gesture that only the branch has; else the last gesture, if the machine was dragged, or `as planned`.
     pub title: String,
     /// Time at which the two runs diverge, s.
     pub from: f64,

@@ -7,8 +7,8 @@ use stillbase_query::Queries;
 use stillbase_simulation::audit::AuditFigure;
 use stillbase_simulation::frame::Frame;
 
-/// Applies the edits at step 0 that precede the first drag. Returns the scenario without the other edits, and their
-/// number.
+/// Applies the edits at step 0 that precede the first drag. Returns the scenario without the other edits, and the
+/// number of the others.
 ///
 /// # Errors
 /// If an edit cannot apply.
@@ -23,7 +23,7 @@ pub fn with_start_edits(scenario: &Scenario) -> Result<(Scenario, usize), Refusa
 /// its last step.
 ///
 /// # Errors
-/// If the scenario cannot start, or an edit cannot apply.
+/// If the scenario cannot start, an edit cannot apply, the run has too many steps, or the motion diverges.
 pub fn replay(scenario: &Scenario, see: impl FnMut(&Run, &Frame)) -> Result<Run, Refusal> {
     replay_if(scenario, |_| Ok(()), see)
 }

@@ -75,6 +75,16 @@ impl Peaks {
         REACTIONLESS_SHARE * self.inertial_pull + ROUNDING * self.weight
     }
 
+    /// Returns whether a dynamic force of this size, N, counts as nonzero.
+    pub fn counts_as_force(&self, force: f64) -> bool {
+        force > self.no_force().max(SMALLEST_REACTION)
+    }
+
+    /// Returns whether a moment of this size, N m, counts as nonzero.
+    pub fn counts_as_moment(&self, moment: f64) -> bool {
+        moment > self.no_moment().max(SMALLEST_REACTION)
+    }
+
     /// Returns whether the arm transmits no reaction. The peak |n_B| must be at most 1e-6 of the peak Σ|τ_k|. The peak
     /// dynamic |f_B| must be at most 1e-6 of the peak Σ m_j |a_cj|. Both tolerances include rounding of weight.
     pub fn is_reactionless(&self) -> bool {
@@ -105,6 +115,9 @@ fn worse(a: f64, b: f64) -> f64 {
 
 /// Peaks below this fraction of torques or inertial forces count as zero.
 pub const REACTIONLESS_SHARE: f64 = 1e-6;
+
+/// Smallest force or moment that counts as nonzero before anything has moved, N or N m.
+const SMALLEST_REACTION: f64 = 1e-15;
 
 /// Rounding error relative to the weight: in free fall, weight cancels in the dynamic force only up to this error. For
 /// moments, a lever of 1 m is assumed.

@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use stillbase::app::{Command, SessionCommand, Tool, ViewChange};
+use stillbase::app::{Command, ResumePoint, SessionCommand, Tool, ViewChange};
 use stillbase::picture::notation::{AngleUnit, LengthUnit, Notation};
 use stillbase::picture::scene::Scene;
 use stillbase::picture::scene::measurement::Measurement;
@@ -241,6 +241,14 @@ fn a_distance_is_measured_by_two_clicks_and_follows() {
     press(&mut h, PLAIN, Key::Escape);
     assert_eq!(h.state().app_state().view_state().tool, Tool::Hold, "Esc ends the tool");
     assert_eq!(measurements(&h), [Measurement::of(vec![end, SnapPoint::EndEffector])]);
+    // A saved session keeps them; points of another machine, or too few, are left out.
+    let left = h.state().app_state().left_off();
+    assert_eq!(left.measurements, measurements(&h));
+    assert_eq!(ResumePoint::of(&left.before("")), Some(left));
+    let machine = &h.state().app_state().session().scenario().machine;
+    for strange in [vec![], vec![SnapPoint::Target], vec![SnapPoint::Target, SnapPoint::Pin(vec!["nobody".into()])]] {
+        assert!(!Measurement::of(strange.clone()).is_of(machine), "{strange:?}");
+    }
     let [x, y] = session(&h).scenario().task.to;
     let distance = |h: &Window| {
         let tip = session(h).frame().end_effector;

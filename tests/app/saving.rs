@@ -238,7 +238,9 @@ fn own_plots_and_the_instant_are_recovered() {
     }
     tell(&mut h, Command::View(ViewChange::Kind(ViewKind::Space)));
     tell(&mut h, Command::View(ViewChange::Look(CameraMove::Turn([0.3, -0.2]))));
+    tell(&mut h, Command::Session(SessionCommand::Seek(1.0)));
     tell(&mut h, Command::Session(SessionCommand::Seek(0.412)));
+    let frames = session(&h).frames().len();
     let left_off = h.state().app_state().left_off();
     assert_eq!(left_off.cameras.iter().map(|kept| kept.view).collect::<Vec<_>>(), [ViewKind::Space]);
     assert_eq!(left_off.time, session(&h).frame().time);
@@ -253,6 +255,7 @@ fn own_plots_and_the_instant_are_recovered() {
     h.run_steps(4);
     assert_eq!(h.state().app_state().left_off(), left_off);
     assert!((session(&h).frame().time - 0.412).abs() < 1e-9);
+    assert_eq!(session(&h).frames().len(), frames, "the run is as complete as it was");
     // An instant that the run never had: no more is made than the run has.
     let far = ResumePoint { time: 1e300, ..ResumePoint::default() }.before(&kept.to_toml());
     let mut h = found(&folder.file("session-0.toml", far));

@@ -88,7 +88,12 @@ fn fast_and_straightforward_agree_on_the_nine_link_machine() {
         ("payload.mass", "uniform:100%"),
         ("payload.inertia", "normal:20%"),
     ]);
-    let settings = [("payload.mass", "0.8"), ("payload.inertia", "0.01"), ("gravity", "1.2,-9.81")];
+    let settings = [
+        ("payload.mass", "0.8"),
+        ("payload.inertia", "0.01"),
+        ("payload.offset", "0.06,-0.04"),
+        ("gravity", "1.2,-9.81"),
+    ];
     let machine = nine_link().set_all(settings).expect("valid");
     let ensemble = Ensemble::new(&machine, &motion("case-1"), 200, &wild, 2).expect("it varies");
     assert_eq!(ensemble.parameters().len(), 9 * 4 + 5 + 2);
@@ -128,7 +133,7 @@ fn serial_arm(n: usize, numbers: &[f64]) -> Machine {
     for j in 0..n {
         text += &format!("l{j} = {}\n", 0.2 + 0.3 * number(j));
     }
-    text += "[payload]\nmass = 0.4\ninertia = 0.02\n";
+    text += "[payload]\nmass = 0.4\ninertia = 0.02\noffset = [0.05, 0.03]\n";
     for j in 0..n {
         let attach = if j == 0 { "\"base\"".into() } else { format!("{{ link = \"{}\", at = \"tip\" }}", j - 1) };
         text += &format!(

@@ -108,8 +108,8 @@ fn head_width(ui: &Ui, text: &str) -> f32 {
     width_of(ui, text, &plain(HEAD_SIZE_PT))
 }
 
-/// Returns the columns that have a value in any row. Columns of base motion need a base that moves; columns of
-/// designs need different machines.
+/// Returns the columns of runs that have a value in any row; those of base motion need a base that moves. If machines
+/// differ, also returns all columns of designs.
 pub fn all(comparison: &Comparison, notation: Notation) -> Vec<Head> {
     let runs = || comparison.entries().iter().filter_map(|e| e.outcome.as_ref().ok());
     let moves = runs().any(|r| r.summary.base_shift > 0.0 || r.summary.base_tilt > 0.0);

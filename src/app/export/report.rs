@@ -74,6 +74,7 @@ fn pictures(app_state: &mut AppState, times: [f64; 2]) -> Result<Vec<ReportPictu
     let mut pictures = Vec::new();
     for time in times {
         app_state.carry_out(SessionCommand::Seek(time));
+        canvas.forget_labels();
         let picture = order.draw(&mut canvas, app_state).map_err(|why: NoPicture| why.to_string())?;
         let png = picture.to_png().map_err(|why| why.to_string())?;
         pictures.push(ReportPicture { caption: format!("The scene at {} s", fixed(time, 3)), png });

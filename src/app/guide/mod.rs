@@ -83,6 +83,11 @@ pub fn search_words(place: &GuidePlace) -> &'static str {
         (Page::FirstRun, "") => "units degrees radians millimetres",
         (Page::Recording, "pictures-and-films") => "film movie video gif animation",
         (Page::Paper, "symbols") => "notation letters meaning",
+        (Page::Trim, "") => "measure measurement real machine sensor identify calibrate lab",
+        (Page::Planning, "") => "change of b motion trajectory refused",
+        (Page::Design, "") => "balance counterweights new machine optimise",
+        (Page::Elsewhere, "") => "export import urdf mjcf dxf cad",
+        (Page::Tolerances, "") => "monte carlo manufacturing spread yield",
         (Page::Index, "") => "help manual documentation contents",
         _ => "",
     }
@@ -108,6 +113,8 @@ pub struct GuideView {
     forward: Vec<(GuidePlace, f32)>,
     /// The search text.
     pub search_text: String,
+    /// Whether the field of the search takes the keyboard in the next pass.
+    takes_keyboard: bool,
 }
 
 /// A place within a page to scroll to.
@@ -145,6 +152,7 @@ impl GuideView {
             back,
             forward,
             search_text: String::new(),
+            takes_keyboard: true,
         }
     }
 

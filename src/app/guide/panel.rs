@@ -38,6 +38,7 @@ pub fn show(ctx: &Context, queries: &Queries, view_state: &mut ViewState, comman
         let ui = &mut ui.new_child(egui::UiBuilder::new().max_rect(rect));
         ui.set_clip_rect(rect.expand(2.0).intersect(ui.clip_rect()));
         let (text, enters) = bar(ui, &view, &p, commands);
+        view.takes_keyboard = false;
         text.into_iter().for_each(|text| view.search_text = text);
         if enters {
             open_first_found(queries, &view, commands);
@@ -104,6 +105,9 @@ fn bar(ui: &mut Ui, view: &GuideView, p: &Palette, commands: &mut Vec<Command>) 
         let field = TextEdit::singleline(&mut text).hint_text("search the guide").desired_width(f32::INFINITY);
         let field = ui.add(field.text_color(colour(p.ink)));
         name(&field, "Search the guide");
+        if view.takes_keyboard {
+            field.request_focus();
+        }
         field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter))
     });
     ((text != view.search_text).then_some(text), enters.inner)
@@ -174,7 +178,7 @@ impl QuickQuery for Found {
     type Answer = Vec<(usize, String)>;
 
     fn answer((ByIdentity(sections), sought): &Self::Input) -> Self::Answer {
-        let title = |s: &Section| format!("{} {}", s.heading, s.page);
+        let title = |s: &Section| format!("{} {} {}", s.heading, s.page, super::search_words(&s.place));
         let score = |(_, s): &(usize, &Section)| search::score_of_prose(sought, &title(s), &s.text);
         let found = search::best_first(sections.iter().enumerate(), score, MAX_FOUND);
         found.into_iter().map(|(i, section)| (i, excerpt(&section.text, sought))).collect()

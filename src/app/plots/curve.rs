@@ -31,7 +31,7 @@ enum Hold {
     Range(f64),
 }
 
-/// Draws a plot; returns the time under the pointer, s, if the pointer is over the plot.
+/// Draws a plot. Returns the time under the pointer, s, if it is over the curves and the horizontal axis is time.
 pub fn show(
     ui: &mut Ui,
     shown: &DisplayContext<'_>,

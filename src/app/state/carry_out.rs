@@ -231,7 +231,7 @@ impl AppState {
                 }
             }
             WindowCommand::Hints => self.begin_hints()?,
-            // Hints that the user has not followed return at the next start.
+            // The tour ends the hints. `self.hints` stays as it is, so unfinished hints return at the next start.
             WindowCommand::Tour(true) => self.begin_tour()?,
             WindowCommand::Tour(false) => return Ok(self.hand_back().then(|| HANDED_BACK.into())),
             WindowCommand::TurnTour(forward) => {

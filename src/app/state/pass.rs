@@ -136,7 +136,17 @@ impl AppState {
         keys::help(ui.ctx(), &self.view_state, &mut commands);
         saving::show(ui.ctx(), (&self.saving, self.session.undo_count()), &self.view_state, &mut commands);
         let recent = &self.saving.recent;
-        finder::show(ui.ctx(), &self.session, &self.signals(), &facts, recent, &mut self.view_state, &mut commands);
+        let improvements = self.view_state.open.finder.is_some().then(|| self.improvements()).flatten();
+        finder::show(
+            ui.ctx(),
+            &self.session,
+            &self.signals(),
+            &facts,
+            improvements,
+            recent,
+            &mut self.view_state,
+            &mut commands,
+        );
         notes::show(ui.ctx(), &self.session, &self.views, &mut self.view_state, &mut commands);
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
         export::show(ui.ctx(), &self.session, (&queries, &self.signals()), &self.view_state, &mut commands);

@@ -36,7 +36,7 @@ pub struct DesignFacts {
     pub(super) measures: Option<Arc<Measures>>,
     /// Residual of the balance over the payloads of the brief.
     pub(super) payloads: Option<Arc<Vec<PayloadResidual>>>,
-    /// Pareto front of added mass and inertia; `None` while the equations are on display.
+    /// Pareto front of added mass and inertia; `None` beside the equations, or without a valid bare machine.
     front: Option<QueryResult<Points>>,
     /// The search for lengths of this machine, if there is one.
     pub(super) length_search: Option<LengthsResult>,
@@ -184,7 +184,7 @@ pub(super) struct BalanceBars {
     /// Residual along the axes of the links, and across them, in `unit`.
     pub residual: [f64; 2],
     pub is_balanced: bool,
-    /// Index and contribution of each link with all bodies that it carries, the largest contribution first.
+    /// Index of each link, and its contribution along the axes with its payload and discs; the largest comes first.
     /// Negligible contributions are omitted.
     pub parts: Vec<(usize, f64)>,
 }

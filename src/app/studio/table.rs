@@ -141,7 +141,7 @@ fn details(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comma
     ui.data_mut(|data| data.insert_temp(id, at));
 }
 
-/// Draws the checkbox that keeps a link unchanged while the balance is kept.
+/// Draws the checkbox that keeps a link unchanged, both when the balance is kept and when counterweights are placed.
 fn fixed(ui: &mut Ui, link: &str, brief: &DesignBrief, commands: &mut Vec<Command>) {
     let mut is_fixed = brief.fixed.contains(link);
     let ticked = ui.add(egui::Checkbox::without_text(&mut is_fixed)).on_hover_text(tip_of("design.fixed.*"));

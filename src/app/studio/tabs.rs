@@ -11,7 +11,7 @@ const HELP_WIDTH_PT: f32 = 19.0;
 
 const TABS: [(bool, &str, &str); 2] = [
     (false, "Balance", "What is out of balance, and counterweights to take"),
-    (true, "Equations", "Every equation of the paper with today's numbers in it"),
+    (true, "Equations", "Every equation of the paper with the numbers of the machine"),
 ];
 
 /// Draws the tabs.

@@ -9,7 +9,7 @@ use stillbase_files::journal::{self, Journal, LeftoverJournal};
 use stillbase_files::preferences;
 use stillbase_query::{Job, Poll};
 
-/// Writes changes in the background: the first at once, later ones within a second.
+/// Writes the first change at once, later ones within a second; the journal is written in the background.
 pub struct Keeper {
     liked: Liked,
     journal: Option<Journal>,
@@ -49,7 +49,7 @@ const PREFERENCES_INTERVAL: Duration = Duration::from_secs(1);
 const JOURNAL_INTERVAL: Duration = Duration::from_millis(500);
 /// Maximum time added to [`JOURNAL_INTERVAL`] because a long session takes long to copy.
 const MAX_COPY_PAUSE: Duration = Duration::from_millis(250);
-/// Maximum number of checks for the end of a write when the window closes.
+/// Maximum number of checks for the end of a write when the program ends.
 const MAX_CHECKS: u32 = 1000;
 /// Interval of these checks.
 const CHECK_INTERVAL: Duration = Duration::from_millis(2);

@@ -42,7 +42,7 @@ impl From<accesskit_winit::Event> for Wake {
 /// Shows an application in a window until the window is closed.
 ///
 /// # Errors
-/// If there is no display, or no device can draw on it, at the start or after the device was lost.
+/// If there is no display, the window system fails, or no device can draw, at the start or after the device was lost.
 pub fn show(app: &mut App, place: ViewportBuilder) -> Result<(), WindowError> {
     let events = EventLoop::<Wake>::with_user_event().build().map_err(|why| match why {
         EventLoopError::Os(why) => WindowError::NoDisplay(last_clause(&why.to_string())),
@@ -209,7 +209,7 @@ impl Shell<'_> {
         }
         if !is_unseen {
             let shapes = ctx.tessellate(shapes, pixels_per_point);
-            // Presenting may wait for the screen. So the guard is dropped before, and background work can start.
+            // Presenting may wait for the screen. So the guard `drawing` is dropped before, and work can start.
             drop(drawing);
             let behind = ctx.global_style().visuals.panel_fill;
             if screen.draw(window, &shapes, pixels_per_point, behind) == PaintOutcome::Again {

@@ -40,7 +40,7 @@ impl Times {
 
     /// Records that the shapes of a repaint are complete.
     pub fn end(&mut self, now: Instant) {
-        // The first repaint is left out, because it loads the fonts.
+        // The first repaint is left out, because it loads the fonts; so is the first one after each pause.
         if let Some(begun) = self.begun.filter(|_| self.follows) {
             blend(&mut self.interface, (now - begun).as_secs_f64());
         }

@@ -41,7 +41,7 @@ impl Compiler {
     /// Reads the settings of a `<mujoco>`, each with its last value.
     ///
     /// # Errors
-    /// If a setting has an unknown value.
+    /// If a setting has an unknown value, or is not the number or numbers expected.
     pub fn of(model: Node<'_, '_>) -> Result<Self, ImportError> {
         let last = |name: &str| each(model, "compiler").filter(|node| node.has_attribute(name)).last();
         let word = |name: &str| last(name).and_then(|node| node.attribute(name));
@@ -85,7 +85,7 @@ impl Compiler {
     /// Returns position, m, and orientation of an element in the frame of its parent.
     ///
     /// # Errors
-    /// If a vector or quaternion of its orientation is zero.
+    /// If an attribute is not the numbers expected, or a vector or quaternion of its orientation is zero.
     pub fn place<'a>(&self, element: &impl AttributeSource<'a>) -> Result<Isometry3<f64>, ImportError> {
         let at = vector(element, "pos")?.unwrap_or_default();
         Ok(Isometry3::from_parts(Translation3::from(at), self.turn(element)?))

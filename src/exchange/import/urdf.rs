@@ -17,7 +17,7 @@ use stillbase_settings::range::{quote_clipped, shortened};
 
 /// Tolerance within which rate ratios are equal; also the relative tolerance of limits.
 const RATE_TOLERANCE: f64 = 1e-9;
-/// A limit of at least this, or not above 0, is treated as no limit.
+/// A limit of torque, N m, or speed, rad/s, of at least this, or not above 0, is treated as no limit.
 const UNLIMITED: f64 = 1e9;
 
 /// Maximum number of joints: the export of the largest machine has fewer.

@@ -10,7 +10,7 @@ use stillbase_study::tolerance::SampleOutcome;
 /// Merges shards, given in any order, into one file, and returns the study and the outcomes of its machines.
 ///
 /// # Errors
-/// If a shard belongs to another study, or if samples are duplicate or missing.
+/// If a shard is unreadable or of another study, samples are duplicate or missing, or `whole` cannot be written.
 pub fn merge(parts: &[PathBuf], whole: &Path, force: bool) -> Result<(StudyId, Vec<SampleOutcome>), ShardError> {
     let mut opened = Vec::with_capacity(parts.len());
     for file in parts {

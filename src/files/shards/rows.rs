@@ -115,7 +115,7 @@ enum Kind {
 }
 
 impl Kind {
-    /// Returns the end of its files at which the study is identified.
+    /// Returns whether the first or the last bytes of its files identify the study and contain the checksum.
     fn end(self) -> ChecksumPlace {
         if self == Self::Csv { ChecksumPlace::Head } else { ChecksumPlace::Tail }
     }
@@ -266,7 +266,7 @@ impl StudyPart {
     /// Opens a file, verifies its checksum, and reads its header.
     ///
     /// # Errors
-    /// If this program did not write the file, or if the file has changed since.
+    /// If the file cannot be read, this program did not write it, or it has changed since.
     pub fn open(file: &Path) -> Result<Self, ShardError> {
         let (kind, mut opened) = plain_file(file)?;
         let unreadable = |e| shard_error(file, e);

@@ -29,7 +29,7 @@ impl<'a> TableReader<'a> {
     /// the first line that is not a comment has one, otherwise the comma.
     ///
     /// # Errors
-    /// If there is no header, or if a row has too many columns. Columns are counted before memory is allocated.
+    /// If there is no header, a row has too many columns, or it is not CSV. Columns are counted before allocation.
     pub fn new(text: &'a str, file: &'a str, want: &str) -> Result<Self, TableError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let first = text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#')).unwrap_or_default();

@@ -187,7 +187,7 @@ impl CounterweightProblem {
         }
     }
 
-    /// Adds the weight of Σ H_kk to the objective.
+    /// Adds Σ H_kk, multiplied by its weight in the objective, to the objective.
     fn cost(&self, machine: &Machine, request: &CounterweightSpec, unknowns: &UnknownIndices, program: &mut Program) {
         for k in 0..self.drives() {
             let [_, turned] = self.of_rotors(request, machine, k);

@@ -6,7 +6,7 @@ use super::ranges::{ANGLE, LENGTH, MIN_POSITIVE, within};
 use super::spec::MachineSpec;
 use stillbase_settings::range::Requirement;
 
-/// Checks every number of a specification; returns an error for the first that is not finite or out of range.
+/// Checks every number of a specification. It fails if one is out of range or not finite, or an angle has one limit.
 pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
     let check = |part: &str, bodies: usize| {
         let rows = rows_of(part);

@@ -35,7 +35,7 @@ const FLOORS: [(&str, f64); 16] = [
     ("1", 1e-2),
 ];
 
-/// Checks of the computation are judged far below what a person can see.
+/// Factor on the least length for audits: checks of the computation are judged far below what a person can see.
 const AUDIT_SHARE: f64 = 1e-5;
 
 /// Returns the least length of an axis for a signal, in its own unit.
@@ -51,7 +51,7 @@ impl AxisKind {
     }
 
     /// Returns bounds of an axis that contain the values from `low` to `high`, rounded outwards. Rounded bounds seldom
-    /// change as values arrive. The length, or half of it if the axis is centred, is at least `floor`.
+    /// change as values arrive. The length is at least `floor`, or twice `floor` if the axis is centred.
     pub fn bounds(self, [low, high]: [f64; 2], floor: f64) -> [f64; 2] {
         if self == Self::Centred {
             let most = round_up(low.abs().max(high.abs()).max(floor));
@@ -66,7 +66,7 @@ impl AxisKind {
         let low = if self == Self::FromZero && low > -floor { 0.0 } else { low };
         let step = round_up((high - low).max(floor) / 2.0);
         let bottom = (low / step).floor() * step;
-        let count = ((high - bottom) / step).ceil().max(1.0);
+        let count = ((high - bottom) / step).ceil().max((floor / step).ceil()).max(1.0);
         [bottom, bottom + count * step]
     }
 }

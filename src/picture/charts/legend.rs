@@ -41,7 +41,7 @@ pub fn height(runs: &[RunName], width: f32) -> f32 {
     lines as f32 * LINE_PT
 }
 
-/// Returns the names as items, from a left upper corner on and in a width, points.
+/// Returns the names as items within a width, below and to the right of the corner `[left, top]`, points.
 pub fn items(runs: &[RunName], [left, top]: [f32; 2], width: f32, p: &Palette) -> Vec<FigureItem> {
     if runs.is_empty() {
         return Vec::new();

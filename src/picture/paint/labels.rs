@@ -1,9 +1,9 @@
 //! Placement of the labels of a scene: beside their points, in view, clear of the machine and of one another.
 //!
 //! Labels of one point form a [`Group`]. The groups are placed one after the other, the most important first, each at
-//! the cheapest place that is free: where it would stand at best, mirrored, or shifted. A group stays where it was while
-//! that place is free and no other is clearly better, so labels do not jump while the machine moves. What finds no place
-//! is left out, its last rows first.
+//! the cheapest place that is free: its preferred place, mirrored, or shifted. A group stays where it was while
+//! that place is free and no other is clearly better, so labels do not jump while the machine moves. If a group has
+//! no place for all its rows, its last rows are left out.
 
 mod group;
 mod room;
@@ -53,7 +53,7 @@ pub struct Placement {
     room: Room,
     pixels_per_point: f32,
     choices: HashMap<(Name, usize), Choice>,
-    /// All places of a group, which never change.
+    /// All ways and shifts from which each group chooses its place, the cheapest first; they never change.
     all_choices: Arc<[Choice]>,
 }
 
@@ -79,7 +79,7 @@ pub fn draw_labels(ui: &Ui, number: usize, spot: &SceneViewport, scene: &Arc<Sce
     for own in &current.all {
         lead_note(&painter, spot, scene, own);
         let PlacedLabel { label, text, place, .. } = own;
-        // What is laid out is not kept: it refers to an atlas of letters that may be made anew.
+        // The laid-out text is not kept: it refers to egui's font atlas, which may be rebuilt.
         let galley = laid_out(&painter, label, text.clone());
         // A translucent background keeps the text legible over curves.
         let [r, g, b, opacity] = scene.background;
@@ -144,6 +144,8 @@ pub fn placed(
         choices: HashMap::new(),
         all_choices: before.map_or_else(choices, |before| before.all_choices.clone()),
     };
+    // What covered the scene has gone or changed: labels that gave way to it go back.
+    let released = before.is_some_and(|before| before.room.taken != room.taken);
     let mut room = room;
     for (number, group) in groups(painter, spot, scene).into_iter().enumerate() {
         // Labels of points out of view are omitted unless they are fully visible.
@@ -151,7 +153,7 @@ pub fn placed(
             continue;
         }
         let own = before.and_then(|before| before.choices.get(&group.key)).copied();
-        let Some(choice) = group.choose(&room, &current.all_choices, own) else { continue };
+        let Some(choice) = group.choose(&room, &current.all_choices, own, released) else { continue };
         let places: Vec<Rect> = group.places(&choice, view).collect();
         let block = places.iter().fold(Rect::NOTHING, |block, place| block.union(boxed(*place)));
         if let Some(ends) = group.lead(block) {

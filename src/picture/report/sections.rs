@@ -94,7 +94,7 @@ impl Report<'_> {
             let typed = change::typed(&value);
             let is_default = typed == change::DEFAULT_WORD || change::same_value(&value, &change::value(key.default));
             if is_wanted(key) && !is_default {
-                // Numbers beside others of other units stay in SI units.
+                // Lists of mixed units, such as m and rad, stay in SI units.
                 // Angles of several turns have a unit that says so.
                 let unit = if key.unit().starts_with("rad, ") { "rad" } else { key.unit() };
                 let shown = self.notation.shown_unit(unit).filter(|_| change::is_of_numbers(&value));

@@ -40,7 +40,7 @@ impl Measure {
     pub fn explanation(self) -> &'static str {
         match self {
             Self::Det => {
-                "|det ∂(x, y)/∂(a₁, a₂)|: how far the end effector moves for a motion on its plane; 0 if singular"
+                "|det ∂(x, y)/∂(a₁, a₂)|: the area that the end effector covers for each rad² of a₁, a₂; 0 if singular"
             }
             Self::Manipulability => {
                 "√det(J J*), J* transposed: manipulability with b free; 0 where all arms are in line"

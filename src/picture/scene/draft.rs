@@ -17,7 +17,7 @@ use stillbase_simulation::frame::Frame;
 const CROSS_HALF_SIZE: f64 = 0.0105;
 /// Number of vertices of a circle.
 const CIRCLE_VERTICES: u32 = 64;
-/// Fraction of the background colour in links that are not under the pointer.
+/// Fraction of the background colour in links that are neither under the pointer nor in [`ViewOptions::links`].
 const DIMMING: f32 = 0.42;
 /// Distance within which the pointer picks the end of a link, px.
 const END_PICK_PX: f64 = 11.0;

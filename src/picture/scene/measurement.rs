@@ -1,14 +1,17 @@
 //! [`Measurement`]: a distance between two points, or the angle between the lines to two points.
 
+use serde::{Deserialize, Serialize};
+use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
 use stillbase_session::scenario::SnapPoint;
 
 /// A distance or an angle that the user measures in the scene.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measurement {
     /// Its points: two for a distance; three for the angle at the second one.
     pub points: Vec<SnapPoint>,
     /// Whether it is under the pointer.
+    #[serde(skip)]
     pub highlighted: bool,
 }
 
@@ -19,6 +22,11 @@ impl Measurement {
     /// Returns the measurement with these points.
     pub fn of(points: Vec<SnapPoint>) -> Self {
         Self { points, highlighted: false }
+    }
+
+    /// Whether it has two or three points, and a machine has all of them.
+    pub fn is_of(&self, machine: &Machine) -> bool {
+        (2..=ANGLE_POINTS).contains(&self.points.len()) && self.points.iter().all(|point| point.check(machine).is_ok())
     }
 
     /// Returns whether it has enough points for a distance.

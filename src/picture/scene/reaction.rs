@@ -9,7 +9,7 @@ use super::Rgba;
 use super::palette::Palette;
 use crate::numbers::{round_up, signed};
 use stillbase_mechanics::planar::Vector;
-use stillbase_simulation::frame::{Frame, REACTIONLESS_SHARE};
+use stillbase_simulation::frame::Frame;
 
 /// Length of the arrow of a full-scale force, as a fraction of the reach of the machine.
 pub const FULL_ARROW: f64 = 0.25;
@@ -70,11 +70,11 @@ impl ReactionGlyph {
             force,
             moment,
             static_force: frame.wrench.static_part.force.norm(),
-            has_force: force.norm() > REACTIONLESS_SHARE * frame.peaks.inertial_pull.max(1e-9),
+            has_force: frame.peaks.counts_as_force(force.norm()),
             had_force: frame.peaks.transmits_force(),
-            had_moment: frame.peaks.moment > REACTIONLESS_SHARE * frame.peaks.torque_sum.max(1e-9),
+            had_moment: frame.peaks.counts_as_moment(frame.peaks.moment),
             has_moved: frame.peaks.inertial_pull > MIN_INERTIAL_PULL_N,
-            has_moment: moment.abs() > REACTIONLESS_SHARE * frame.peaks.torque_sum.max(1e-9),
+            has_moment: frame.peaks.counts_as_moment(moment.abs()),
         }
     }
 

@@ -169,7 +169,7 @@ impl Stage {
         self.grid.width()
     }
 
-    /// Body of the machine.
+    /// Returns the meshes of the machine, and their placement in a pose.
     pub fn linkage(&self) -> &LinkageModel {
         &self.linkage
     }

@@ -64,7 +64,7 @@ pub struct Samples {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SamplesError {
     /// Fewer samples than the spline needs.
-    #[error("{}: want at least {MIN_SPLINE_SAMPLES}, because the spline's ends take six", counted(got, "sample"))]
+    #[error("{}: want at least {MIN_SPLINE_SAMPLES}, because each end of the spline needs six", counted(got, "sample"))]
     TooFew {
         /// Number of samples.
         got: usize,

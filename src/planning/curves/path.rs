@@ -403,7 +403,7 @@ impl SameTip {
     /// Follows the end effector of the joint line `from`–`to` while drive 1 turns linearly to `first_to`, rad.
     ///
     /// # Errors
-    /// If drives 2 and 3 cannot place the end effector somewhere.
+    /// If drives 2 and 3 cannot place the end effector at one of the sampled s.
     pub fn new(tip: &Chain, from: DriveAngles, to: DriveAngles, first_to: f64) -> Result<Self, PathError> {
         let elbow = (from[2] - from[1]).sin();
         let path = Self { tip: *tip, from, to, first_to, elbow };

@@ -167,8 +167,8 @@ impl Follower {
         self.steer();
     }
 
-    /// Sets the target of the relative angles, rad. The aim is the last point before a limit or a fold on the straight
-    /// line to them.
+    /// Sets the target of the relative angles, rad, within the limits. If a fold or a change point to be avoided lies
+    /// on the straight line to it, the aim is the last point before it.
     pub fn set_angles(&mut self, a: &PerDrive) {
         self.let_go();
         self.aim = self.as_far_as_open(self.map.clamped(a));
@@ -284,7 +284,7 @@ impl Follower {
         }
     }
 
-    /// Returns the pose `to`, or the last one before a limit or a fold on the straight line to it.
+    /// Returns the pose `to`, or the last before a fold or a change point to be avoided on the straight line to it.
     fn as_far_as_open(&self, to: PerDrive) -> PerDrive {
         let from = self.a.x;
         if !self.map.has_barriers() || self.map.is_unblocked(&from, &to) {
@@ -366,7 +366,7 @@ impl Follower {
     }
 
     /// Returns whether the coming step with these accelerations, and the straight line from there to the stop, meet no
-    /// limit or fold.
+    /// fold or change point to be avoided.
     fn can_stop_after(&self, acc: &PerDrive) -> bool {
         let next = Courses { acc: *acc, ..self.a }.after(self.step);
         let speed = norm(&next.v);

@@ -169,7 +169,7 @@ impl Corridor {
     /// joint limits divide the corridor, it takes the part nearest to the middle of the corridor at the station before.
     ///
     /// # Errors
-    /// If the pose does not fit the motion's start, or where the sheet ends.
+    /// If the start pose is unsuitable, or where the motion is not finite or the sheet ends.
     pub fn along(
         map: &PlaneMap,
         curve: impl Fn(f64) -> CurvePoint,

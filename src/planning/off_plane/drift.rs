@@ -76,8 +76,8 @@ const MAX_STEP_ERROR: f64 = 1e-4;
 /// norm.
 ///
 /// # Errors
-/// If a machine with angular momentum has fewer than three drives, the start is not on the curve, or [J; D] loses
-/// rank.
+/// If the start has a wrong number of angles or is off the curve, if a machine with angular momentum has fewer than
+/// three drives, or if [J; D] loses rank.
 pub fn zero_momentum_path(
     model: &Inertia,
     start: DriveAngles,

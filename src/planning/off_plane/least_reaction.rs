@@ -249,7 +249,7 @@ pub struct Verdicts {
     pub least: BaseReaction,
 }
 
-/// Serialised as the base moment of each way, and the first t/T at which constant b is infeasible.
+/// Serialised as the feasibility of constant b, the other base moments, and whether minimum norm keeps the limits.
 impl Serialize for Verdicts {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
@@ -291,7 +291,7 @@ pub struct MinimumNorm {
     pub reaction: BaseReaction,
     /// b at its end, rad.
     pub end_b: f64,
-    /// Whether the joint limits are kept all the way.
+    /// Whether the joint limits are kept all the way. Where a session holds b, change points to be avoided count too.
     pub keeps_limits: bool,
 }
 

@@ -14,7 +14,7 @@
 //!
 //! # Source
 //! D_k = C_kk + J_k + Σ_{l≠k} Re Z_kl, so ∂D_k/∂q_m = −Im Z_km for m ≠ k and ∂D_k/∂q_k = Σ_{l≠k} Im Z_kl. By
-//! Frobenius, D q̇ = 0 is integrable where D ∧ dD = 0. For three drives that 3-form is 2 Im[(H_11 C_23 − C_21 C_13)
+//! Frobenius, D q̇ = 0 is integrable where D ∧ dD = 0: for three drives without rotors, 2 Im[(H_11 C_23 − C_21 C_13)
 //! e^{i(q_3−q_2)} + (H_22 C_31 − C_32 C_21) e^{i(q_1−q_3)} + (H_33 C_12 − C_13 C_32) e^{i(q_2−q_1)}]. It vanishes in
 //! all poses only if its coefficients do; if H is positive definite, these vanish only if every C_kl is zero.
 
@@ -235,8 +235,8 @@ pub fn integrability_violation(model: &Inertia, q: &DriveAngles) -> f64 {
 
 /// Returns whether the machine has a pose constant: a b(q) that is constant along every motion of zero momentum.
 ///
-/// One or two drives always have one. Three and more have one if H_jj C_kl = C_kj C_jl for every three of them. If H
-/// is positive definite, this means an invariant mass matrix, constant D and b = Σ λ_k q_k.
+/// One or two drives always have one. Others have one if E_j C_kl = C_kj C_jl for every three drives; E_j is D_j if
+/// all C_kl vanish. If H is positive definite, the mass matrix is then invariant, D constant and b = Σ λ_k q_k.
 pub fn is_integrable(model: &Inertia) -> bool {
     let n = model.drives();
     let whole: f64 = (0..n).map(|k| model.diagonal(k)).sum();

@@ -20,7 +20,7 @@ impl PoseSpace {
         self.drives() > 3
     }
 
-    /// Whether a straight line in joint space within the limits can be blocked.
+    /// Whether a fold, or a change point to be avoided, can block a straight line in joint space within the limits.
     pub fn has_barriers(&self) -> bool {
         self.planes().is_ok_and(|planes| planes.has_barriers())
     }

@@ -196,7 +196,7 @@ impl PoseSpace {
         }
     }
 
-    /// Whether a pose at B is found from one of this many samples; if so, one exists at every b.
+    /// Whether a pose at B is found from one of the first `starts` samples; if so, one exists at every b.
     fn has_pose_at_base(&self, starts: usize) -> bool {
         let windows = self.windows();
         let leads = |a: &PerDrive| self.solved(Vector::default(), 0.0, a, &windows).is_some();

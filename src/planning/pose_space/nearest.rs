@@ -3,8 +3,8 @@
 //! # Method
 //! Minimises ½ Σ w_i (a_i − y_i)² over the poses at (p, b) within the limits by sequential quadratic programming; after
 //! each step Newton's iteration restores p. A full Newton step uses the Hessian of the Lagrangian, including the second
-//! derivatives of p; angles at their limits are held. If it does not improve the objective, shortened steps without
-//! second derivatives are tried.
+//! derivatives of p; angles at their limits are held. If it does not improve the objective, steps without
+//! second derivatives are tried, the full one first and then shorter ones.
 
 use nalgebra::{SMatrix, SVector};
 

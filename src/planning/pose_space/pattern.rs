@@ -1,5 +1,5 @@
-//! [`Pattern`]: a choice of joints held at their limits, with the quantities for finding stationary poses that do not
-//! depend on the point.
+//! [`Pattern`]: a choice of joints held at their limits. It stores what the search for stationary poses needs
+//! and what is the same for all points. Symbols: see [`pose_space`](super).
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::{Arc, OnceLock};

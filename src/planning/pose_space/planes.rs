@@ -71,7 +71,7 @@ impl Planes {
     /// Returns the planes of a machine, with λ_k = D_k / D_1, (12).
     ///
     /// # Errors
-    /// If it does not have three drives and two relative angles with limits, or has no b.
+    /// If it lacks three drives, two relative angles with limits, or a b, or these define no plane coordinates.
     pub(super) fn of(machine: &Machine) -> Result<Self, PlaneError> {
         let map = plane_map(machine)?;
         let (boundary, is_reactionless) = (Boundary::of(&map), is_reactionless(machine));
@@ -182,7 +182,7 @@ pub fn plane_area(machine: &Machine) -> Option<f64> {
 /// Returns the coordinate map of a machine, Eqs (13)–(16).
 ///
 /// # Errors
-/// If it does not have three drives and two relative angles with limits, or has no b.
+/// If it lacks three drives, two relative angles with limits, or a b, or these define no plane coordinates.
 pub fn plane_map(machine: &Machine) -> Result<PlaneMap, PlaneError> {
     let shape = || PlaneError::Shape { drives: machine.drives(), angles: machine.angles().len() };
     let [first, second] = machine.angles() else { return Err(shape()) };

@@ -54,7 +54,7 @@ impl PoseSpace {
     /// Returns the pose space of a machine whose D is constant, or nearly so; its angular momentum is D q̇.
     ///
     /// # Errors
-    /// If the machine has no b: the reason.
+    /// If the machine has no b; the error is the reason.
     pub fn of(machine: &Machine) -> Result<Self, NoPoseSpace> {
         Self::holding(machine, Planes::of(machine).map(Arc::new))
     }
@@ -62,7 +62,7 @@ impl PoseSpace {
     /// Returns the pose space by the general method, also for three drives: tests compare it with the closed forms.
     ///
     /// # Errors
-    /// If the machine has no b: the reason.
+    /// If the machine has no b; the error is the reason.
     pub fn general(machine: &Machine) -> Result<Self, NoPoseSpace> {
         Self::holding(machine, Err(PlaneError::NotRequested))
     }

@@ -1,7 +1,7 @@
 //! [`Layers`]: samples, at stations along a path, of poses that can be reached from the start of the path.
 //!
 //! # Method
-//! The first layer begins with at least one pose on every connected component of the set of poses. A layer is filled
+//! The first layer begins with at least one pose on each connected component that is found. A layer is filled
 //! along the null space until it covers its components. Then each pose is continued to the next station within limits.
 //! If no pose reaches a station in this way, the station is treated as unreachable.
 

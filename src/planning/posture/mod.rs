@@ -40,7 +40,7 @@ words! {
         LeastRates = "least-rates", "Drives turn least", "The drives turn as little as they can";
         Orientation = "orientation", "Keep the hand's orientation", "The last link does not turn";
         /// Least ∫ |T q̈|² dt.
-        LeastTorque = "least-torque", "Least motor torque", "What the motors need to set the motion up is least";
+        LeastTorque = "least-torque", "Least motor torque", "The motors need least torque to accelerate the machine";
         /// Least ∫ ½ Σ x_i² ds.
         MidRange = "mid-range", "Far from limits", "Joints stay as near to the middle of their ranges as can be";
     }

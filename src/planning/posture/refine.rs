@@ -118,8 +118,8 @@ impl StepModel<'_> {
     /// Returns the step with the least value of the model; `None` if none is found.
     ///
     /// Each solution for a set of active limits shows which limits are active there. The step is the solution that
-    /// agrees with its own set. If the Hessian `is_convex`, an exact line search towards each solution ensures that such
-    /// a set is found.
+    /// agrees with its own set. If the Hessian `is_convex`, a line search towards each solution lowers the model;
+    /// if no set that was tried agrees, the last step is returned.
     fn least(&self, is_convex: bool) -> Option<Vec<f64>> {
         let mut x = vec![0.0; self.side.len()];
         let mut active: Vec<bool> = self.limits.iter().map(|limit| limit.force > 0.0).collect();
@@ -305,7 +305,7 @@ impl RefinementProblem<'_> {
         worst
     }
 
-    /// Makes a Newton step and returns the new poses and the length of the step, rad.
+    /// Makes a Newton step and returns the new poses and its length, rad; 0 if it is shortened and gains too little.
     fn step(
         &self,
         goal: &PostureCost,

@@ -7,16 +7,16 @@ use crate::pose_space::PoseSpace;
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive};
 
-/// Weight of every drive as a fraction of the trace, so that rates stay finite for a drive without inertia.
+/// Weight added to each drive, as a fraction of the trace, so that rates stay finite for a drive without inertia.
 const MIN_DRIVE_WEIGHT: f64 = 1e-9;
 
 /// Weights of a machine's drives.
 #[derive(Clone, Debug)]
 pub struct PostureWeights<'a> {
     space: &'a PoseSpace,
-    /// TᵀT divided by its trace, plus `MIN_DRIVE_WEIGHT` on the diagonal.
+    /// TᵀT divided by its trace, plus `MIN_DRIVE_WEIGHT` on the diagonal; T q̈ is the motor torque at rest, g = 0.
     pub(super) torque: WeightMatrix,
-    /// ∂x_i/∂q_k.
+    /// ∂x_i/∂q_k, 1/rad; [`off_middle`](Self::off_middle) defines x_i.
     shares: Vec<PerDrive>,
 }
 

@@ -107,7 +107,7 @@ impl PlaneMap {
     /// Checks these numbers and returns their map.
     ///
     /// # Errors
-    /// If a number is out of range, or (a_1, a_2, b) does not determine q.
+    /// If a number is out of range, the arms are too uneven, or (a_1, a_2, b) does not determine q.
     pub fn new(
         c: [f64; 3],
         lambda: [f64; 3],

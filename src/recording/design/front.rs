@@ -33,7 +33,7 @@ pub struct RecordedFronts {
 /// The Pareto front of a machine.
 #[derive(Debug)]
 struct RecordedFront {
-    /// The machine without its counterweights.
+    /// The machine without its counterweights, except fixed ones.
     bare: Machine,
     /// Bounds on the counterweights.
     brief: DesignBrief,

@@ -77,7 +77,7 @@ impl Plan {
     }
 
     /// Returns a plan at rest for a run that waits. The pose is one of A, at the b of the task or otherwise at the
-    /// nearest b. If no b reaches A, the joints are in the middle of their ranges.
+    /// nearest b. If no b reaches A, the joints are in the middle of their ranges; without coordinates (a, b), q = 0.
     pub fn rest(scenario: &Scenario, space: Option<&PoseSpace>) -> Self {
         let (task, machine) = (&scenario.task, &scenario.machine);
         let p = task.points()[0];

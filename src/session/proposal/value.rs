@@ -31,9 +31,9 @@ fn shown(value: &Value) -> String {
     }
 }
 
-/// Returns proposals for settings that are refused, to be made after them: the nearest allowed values or, without any,
-/// the present ones. `present` returns the present value of a key, and `accepts` whether settings are allowed after the
-/// wanted ones.
+/// Returns a proposal for settings that are refused: the nearest allowed values or, without any, the present ones.
+/// It is applied on top of the wanted settings. `present` returns the present value of a key, and `accepts` whether
+/// settings are allowed on top of the wanted ones.
 pub fn proposals_for_values(
     wanted: &Table,
     present: &dyn Fn(&str) -> Option<Value>,
@@ -92,7 +92,7 @@ pub(super) fn taking_back(wanted: &Table, present: &dyn Fn(&str) -> Option<Value
     (!change.is_empty()).then(|| Proposal::new(format!("keep {}", text.join(", ")), change))
 }
 
-/// Returns the value nearest to another one that a key accepts by its type and range alone; `None` if no value is near.
+/// Returns the value nearest to `value` among those that a key accepts by its type and range; `None` if none is near.
 fn within_key(of: &KeyType, value: &Value) -> Option<Value> {
     let clamped = |range: &Range, value: &Value| match value {
         Value::Integer(x) if range.contains(*x as f64) => Some(Value::Integer(*x)),

@@ -1,11 +1,14 @@
 //! [`SnapPoint`]: the points of a picture to which notes and measures stick.
 
+use serde::{Deserialize, Serialize};
+
 use super::task::POINT_RANGE;
 use stillbase_mechanics::machine::Machine;
 use stillbase_settings::range::{quote_clipped, range_error, shortened};
 
 /// A point to which a note or a measure sticks; all but a place move with what they belong to.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum SnapPoint {
     /// The end effector.
     EndEffector,
@@ -24,7 +27,8 @@ pub enum SnapPoint {
 }
 
 /// A point of a task: A, those between, B.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum PathPoint {
     /// A.
     Start,
@@ -88,8 +92,8 @@ impl SnapPoint {
     /// Checks the numbers of a place, and the links of a pin.
     ///
     /// # Errors
-    /// If a number is out of range, or the machine has no such link. The error says what would be right.
-    pub(super) fn check(&self, machine: &Machine) -> Result<(), String> {
+    /// If a number is out of range, or a pin names no link, too many or unknown ones. The error says what is right.
+    pub fn check(&self, machine: &Machine) -> Result<(), String> {
         match self {
             Self::Place(at) => {
                 let wrong = at.iter().map(|x| POINT_RANGE.check("at", *x)).find(|check| !check.ok);

@@ -24,7 +24,7 @@ pub struct Simulation {
     pub(super) load: Load,
     pub(super) loaded: bool,
     pub(super) control_loop: ControlLoop,
-    /// m_j a_jk of each link, `drives` entries per link, kg m: without and with the payload.
+    /// m_j a_jk of each link and payload, `drives` entries for each, kg m: without and with the temporary payload.
     pub(super) link_moments: [Vec<Vector>; 2],
     /// Pin loads without and with the payload.
     pub(super) inside: [PinLoads; 2],

@@ -120,7 +120,9 @@ impl Alternative {
             other.task = task;
         }
         if self == Self::Slowly {
-            other.duration = other.duration.map(|duration| SLOW_FACTOR * duration);
+            // A duration of the session's own run must not end the slow run before its plan.
+            let whole = SLOW_FACTOR * scenario.task.time;
+            other.duration = other.duration.map(|duration| (SLOW_FACTOR * duration).max(whole));
         }
         if self == Self::OtherPose && other.task.first_drive_to.is_none() {
             other.task.first_drive_to = start_of_first_drive(scenario).map(|q| q + OTHER_POSE_OFFSET_RAD);

@@ -27,7 +27,7 @@ pub struct ComparisonEntry {
 }
 
 impl ComparisonEntry {
-    /// Returns the name by which plots and pictures tell the run: of a run that the user added, its scenario's title.
+    /// Returns the name of the run in plots and pictures: for a run of the user its scenario's title, else the row's.
     pub fn shown_title(&self) -> &str {
         let scenario = self.outcome.as_ref().map(|run| run.scenario.title.as_str()).unwrap_or_default();
         if self.added_by_user && !scenario.is_empty() { scenario } else { &self.title }
@@ -229,7 +229,7 @@ impl Comparison {
         self.sort
     }
 
-    /// Returns all rows in the order of insertion.
+    /// Returns all rows: first the alternatives, then the runs that the user added, in the order of insertion.
     pub fn entries(&self) -> &[ComparisonEntry] {
         &self.entries
     }

@@ -19,7 +19,7 @@ pub struct Summary {
     pub rms_force: f64,
     /// ∫ |f_B| dt, N s.
     pub force_impulse: f64,
-    /// Largest |n_B| that the arm transmits, N m; only if a reaction wheel changes the moment on the base.
+    /// Largest |n_B| that the arm transmits, N m; only if the base has a reaction wheel.
     pub peak_arm_moment: Option<f64>,
     /// Largest |moment| on the base, after the reaction wheel, N m.
     pub peak_moment: f64,

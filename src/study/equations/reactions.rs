@@ -162,7 +162,7 @@ impl<'a> Reactions<'a> {
         let mut notes =
             vec!["The paper prints the last term with +; with g the acceleration of (1) it is −.".to_owned()];
         if self.machine.motors().in_joints() {
-            notes.push("τ is of absolute angles; a motor in a joint gives the sum of those that it carries.".into());
+            notes.push("τ belongs to absolute angles; a motor in a joint gives the sum of the τ of the drives that it carries.".into());
         }
         Equation {
             number: "4",

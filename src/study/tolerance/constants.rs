@@ -95,13 +95,15 @@ pub(super) fn bodies(machine: &Machine, parameters: &[UncertainParameter]) -> Re
             stretch: Vec::new(),
         })
         .collect();
+    let (end, [along, left]) = (&machine.resolved_links()[machine.end_link()], spec.payload.offset);
+    let fixed = |nominal| UncertainNumber { nominal, parameter: None };
     bodies.push(LinkConstants {
-        drive: machine.resolved_links()[machine.end_link()].drive,
-        sign: 1.0,
+        drive: end.drive,
+        sign: end.sign,
         mass: term(spec.payload.mass, VariedQuantity::PayloadMass),
         inertia: term(spec.payload.inertia, VariedQuantity::PayloadInertia),
-        com: zero,
-        com_normal: zero,
+        com: fixed(along),
+        com_normal: fixed(left),
         root: *machine.end_effector(),
         on: Vec::new(),
         stretch: Vec::new(),
@@ -110,7 +112,7 @@ pub(super) fn bodies(machine: &Machine, parameters: &[UncertainParameter]) -> Re
     let carrier = |link: &str| spec.links.iter().position(|l| l.name == link);
     let carriers: Vec<usize> = spec.counterweights.iter().filter_map(|weight| carrier(&weight.link)).collect();
     bodies.extend(spec.counterweights.iter().zip(&carriers).map(|(weight, j)| {
-        let (part, fixed) = (&machine.resolved_links()[*j], |nominal| UncertainNumber { nominal, parameter: None });
+        let part = &machine.resolved_links()[*j];
         LinkConstants {
             drive: part.drive,
             sign: part.sign,

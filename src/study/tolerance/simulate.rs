@@ -9,7 +9,7 @@ use stillbase_simulation::{Guide, Setup, Simulation};
 /// Simulates a planned motion, control included, with another machine as the plant.
 ///
 /// # Errors
-/// Fails if the state diverges, or an audit fails: a study must not contain values of a run that failed its audit.
+/// If the plant cannot hold its payload, the state diverges, or an audit fails: a study has no values of such runs.
 pub fn simulate(planned: &Run, plant: &Machine) -> Result<SampleOutcome, Refusal> {
     let scenario = planned.scenario();
     let guide = Guide::Motion { motion: planned.plan().motion.clone(), start: 0.0 };

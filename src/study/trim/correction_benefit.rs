@@ -9,8 +9,8 @@
 //! | ℓ | radius of gyration of the machine, the weight of force against moment | m |
 //!
 //! The gain J(x) − J(x + Δ) = −2 Δᵀ W x − Δᵀ W Δ is linear in x, so its variance is 4 Δᵀ W V W Δ for every x. Δ was
-//! chosen to suit this x, by the unknowns adopted from the measurement. Their number is the degrees of freedom of
-//! χ². By
+//! computed from this x, with the unknowns adopted from the measurement. Their number is the number of degrees of
+//! freedom of χ². By
 //! Scheffé (1953), an interval valid for any such choice uses the root of the 95 % quantile of χ² instead of 1.96.
 
 use nalgebra::{DMatrix, DVector};

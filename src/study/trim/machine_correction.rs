@@ -77,7 +77,7 @@ const NEGLIGIBLE_MASS: f64 = 1e-3;
 /// that no values of these numbers can remove is included in [`MachineCorrection::residuals`].
 ///
 /// # Errors
-/// Fails if the bounds permit no solution.
+/// Fails if the parameters are not valid, if the bounds permit no solution, or if the result is no valid machine.
 pub fn correct_machine(
     machine: &Machine,
     taken: &AdoptedParameters,

@@ -64,9 +64,9 @@ const ROWS_PER_HALF_WIDTH: f64 = 4.0;
 const ACCEPTED_NOISE: f64 = 2e-3;
 /// A drive counts as still if the relative noise of its acceleration is at least this for all windows.
 const STILL_NOISE: f64 = 0.2;
-/// Range, rad, up to which a drive counts as still.
+/// A drive counts as still if its angle varies by at most this, rad.
 const TURNING_ABOVE_RAD: f64 = 1e-9;
-/// Range, rad, up to which a drive counts as still if accelerations are measured and satisfy the next bound.
+/// The same with measured accelerations, which must also satisfy the next bound, rad.
 const STILL_RANGE_RAD: f64 = 1e-3;
 /// Upper bound on the root mean square acceleration of a still drive, as a fraction of that of the fastest drive.
 const STILL_ACCELERATION: f64 = 1e-2;

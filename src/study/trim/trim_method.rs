@@ -15,7 +15,7 @@ pub enum TrimMethod {
 }
 
 impl TrimMethod {
-    /// Returns the numbers that a brief permits to change: the machine's counterweights and the numbers that the brief
+    /// Returns the numbers that a brief permits to change: counterweights that may move, and numbers that the brief
     /// frees. If there are none, returns new counterweights.
     pub fn of(brief: &DesignBrief, machine: &Machine) -> Self {
         let is_movable = |weight: &Counterweight| !weight.fixed && !brief.fixed.contains(&weight.link);

@@ -77,7 +77,7 @@ impl<'a> CoupledBodies<'a> {
         Ok(if motors.is_empty() { self.usual_motors() } else { motors })
     }
 
-    /// Returns a motor in the first hinge of each set, for models without actuators.
+    /// Returns a motor in the first hinge of each set, for models without actuators. Hinges of geared parts get none.
     fn usual_motors(&self) -> Vec<(ImportedMotor, RelativeSet)> {
         let (mut seen, mut motors) = (vec![self.base], Vec::new());
         for (i, part) in self.bodies.parts.iter().enumerate().filter(|(_, part)| part.hinge.is_some()) {
@@ -116,7 +116,7 @@ impl<'a> CoupledBodies<'a> {
         motors.iter().enumerate().map(numbered).collect()
     }
 
-    /// Adds the armatures of hinges, kg m², to the motors that turn them.
+    /// Adds the armatures of hinges, kg m², to the motors that turn them; ignores those of hinges of rotors.
     ///
     /// # Errors
     /// If an armature is negative, or belongs to a hinge without a motor or to a motor with a rotor.

@@ -45,8 +45,8 @@ impl RebalancedMachine {
 /// Returns the balanced, invariant machine, (7) and (8), with the least change of the listed parameters.
 ///
 /// # Errors
-/// If the list is not valid, or if no such machine exists. The error then names the limits that contradict each other,
-/// and relaxed values that are sufficient.
+/// If the list is not valid, no such machine exists, or the solver fails. If limits contradict each other, the error
+/// names them, and relaxed values that are sufficient if any were found.
 pub fn rebalance(machine: &Machine, request: &RebalanceRequest) -> Result<RebalancedMachine, RebalanceError> {
     rebalance_with(machine, request, &[])
 }
@@ -100,7 +100,7 @@ pub fn unreachable_by_changes(
     Ok((0..count).map(|i| Vector::new(missed[i], missed[count + i])).collect())
 }
 
-/// The conditions as equations in y, and the limits of y.
+/// The conditions as equations in y, and the limits of y; [`keep`](super) defines y.
 struct Problem<'a> {
     machine: &'a Machine,
     request: &'a RebalanceRequest,
@@ -171,7 +171,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Returns m₀ of a body, kg.
+    /// Returns the reference mass m₀ of a body, kg.
     fn mass_from(&self, body: Body) -> f64 {
         Parameter::new(body, BodyQuantity::Mass).value(&self.from).unwrap_or_default()
     }

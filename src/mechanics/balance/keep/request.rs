@@ -116,7 +116,7 @@ impl RebalanceRequest {
         }
     }
 
-    /// Checks that the parameters exist in a machine and that all numbers are within range.
+    /// Checks that the parameters exist in a machine, none is listed twice, and all numbers are within range.
     pub(super) fn check(&self, machine: &Machine) -> Result<(), RebalanceError> {
         for (i, one) in self.parameters.iter().enumerate() {
             let bad = |what: &str, value: f64, want: String| {

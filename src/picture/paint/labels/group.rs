@@ -152,8 +152,9 @@ impl<'a> Group<'a> {
         rows.iter().map(move |(.., place)| flip(*place).translate(by))
     }
 
-    /// Returns the cheapest place that is free, or that before if it is nearly as good; `None` if there is none.
-    pub fn choose(&self, room: &Room, all: &[Choice], before: Option<Choice>) -> Option<Choice> {
+    /// Returns the cheapest place that is free, or that before if it is nearly as good; `None` if there is none. A place
+    /// with all rows is held for a while, unless `released`.
+    pub fn choose(&self, room: &Room, all: &[Choice], before: Option<Choice>, released: bool) -> Option<Choice> {
         let before = before.filter(|choice| choice.rows <= self.rows.len()).and_then(|choice| {
             let missing = (self.rows.len() - choice.rows) as f32 * ROW_COST;
             let own = Choice { cost: choice.way.cost() + choice.shift.y.abs() + 0.6 * choice.shift.x.abs(), ..choice };
@@ -161,7 +162,8 @@ impl<'a> Group<'a> {
         });
         if let Some(mut before) = before {
             before.held = before.held.saturating_add(1);
-            if before.held < MIN_HELD {
+            let is_whole = before.rows == self.rows.len();
+            if before.held < MIN_HELD && is_whole && !released {
                 return Some(before);
             }
             let better = self.cheapest(room, all, MARGIN_PT, before.cost - MIN_GAIN_PT);

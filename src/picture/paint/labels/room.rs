@@ -5,9 +5,9 @@ use egui::{Pos2, Rect, Vec2, pos2};
 use crate::paint::SceneViewport;
 use crate::scene::{Body, Scene};
 
-/// Discs with a smaller radius are dots, which labels may cover, px.
+/// Radius, px, up to which a disc is a dot, which labels may cover.
 const MIN_DISC_PX: f32 = 2.9;
-/// Lines of at least this width, over everything and with at most so many vertices, are arrows.
+/// Minimum width, px, and maximum number of vertices of arrows: solid lines that are drawn over everything.
 const MIN_ARROW_PX: f32 = 2.0;
 const MAX_ARROW_VERTICES: usize = 72;
 /// Minimum distance of labels from the drawn edge of a part, points.
@@ -76,8 +76,8 @@ impl Room {
         self.strips.push(Strip { ends, radius: 1.0 });
     }
 
-    /// Whether a rectangle is in view and touches nothing within `margin`, points. A disc at the point that it belongs to
-    /// may be nearer.
+    /// Whether a rectangle is in view and `margin`, points, away from what is taken and from all strips. A disc at
+    /// `own`, the point of the label, may be nearer than that.
     pub fn is_free(&self, place: Rect, margin: f32, own: Pos2) -> bool {
         let wide = place.expand(margin);
         self.view.contains_rect(place)

@@ -70,7 +70,7 @@ impl BaseStage {
         }
     }
 
-    /// Draws the symbols of the base: panels of a spacecraft, or springs between the plate and the ground.
+    /// Draws the symbols of the base: panels or springs, the centre of mass of a base that can move, and the wheel.
     pub fn draw(&self, scene: &mut Scene, linkage: &LinkageModel, palette: &Palette, shown: &DrawnFrame<'_>) {
         let reach = linkage.reach();
         let (z, top) = (linkage.bottom(), linkage.top());
@@ -130,7 +130,7 @@ impl BaseStage {
         let on = |angle: f64, share: f64| point(unit(angle) * (share * radius), 0.0);
         let rim: Vec<_> = (0..=72).map(|i| on(TAU * f64::from(i) / 72.0, 1.0)).collect();
         let spokes = (0..3).map(|i| TAU * f64::from(i) / 3.0).map(|angle| vec![on(angle, 0.72), on(angle, 1.0)]);
-        // The colour changes when the wheel saturates, so more than the pose may change.
+        // Not `moving`, which would mean that only the pose changes: the colour changes when the wheel saturates.
         let line = |name: &'static str, strips: Vec<_>, width| Polyline {
             world_from_item: pose,
             ..Polyline::new(name, strips, width, colour).on_top()

@@ -45,7 +45,7 @@ struct LimitArc {
 }
 
 impl LimitArcs {
-    /// Returns the arcs of a machine. A relative angle has no arc if it has no limits, or if no pin connects its links.
+    /// Returns the arcs of a machine. An angle has no arc if it allows a full turn, or no pin connects its links.
     pub fn of(machine: &Machine, linkage: &LinkageModel) -> Self {
         let e = [Vector::new(1.0, 0.0); MAX_DRIVES];
         let pins: Vec<Vec<usize>> = linkage.joints(&e).map(|(_, links)| links.to_vec()).collect();

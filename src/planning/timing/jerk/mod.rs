@@ -16,7 +16,7 @@
 //! ends is not a singularity: y stays above 0 there.
 //!
 //! A primal-dual interior-point method (Mehrotra's predictor and corrector) improves a slow feasible motion through
-//! feasible ones to the fastest. It omits the curvature of non-convex sides. Each row contains three neighbouring
+//! feasible ones to the fastest. It omits the curvature of non-convex sides. Each limit has three neighbouring
 //! coefficients, so the cost of a step is proportional to the number of nodes. It finds a local optimum.
 
 mod band;
