@@ -121,8 +121,8 @@ pub enum SessionCommand {
     Take(usize),
     /// Apply the link lengths found, with their counterweights.
     TakeLengths,
-    /// Apply the counterweights and rotor ratios with the least Σ |D_k|, the momentum that the drives give to the
-    /// base.
+    /// Apply the counterweights and rotor ratios with the least Σ |D_k|, kg m², from which the angular momentum
+    /// Σ D_k q̇_k of the arm follows.
     TakeStillest,
     /// Add the session's run to the table of runs.
     KeepRun,

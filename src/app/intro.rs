@@ -29,8 +29,8 @@ const MAX_NARROW_WORDS: usize = 120;
 /// Number of hints.
 const HINT_COUNT: usize = 3;
 
-/// Returns the text and the explanation of a hint; `None` if there is no such hint. Of a machine without an amber area
-/// there is one hint, which says why.
+/// Returns the text and the explanation of a hint; `None` if there is no such hint. Without a pose constant, or while
+/// the run waits, there is one hint, which says why.
 fn hint(i: usize, session: &Session) -> Option<(String, String)> {
     let machine = session.scenario().machine.name();
     let map = match (session.run().pose_space(), session.run().waiting()) {
@@ -96,8 +96,8 @@ impl Intro {
         self.rested > 0.0
     }
 
-    /// Observes a command that was carried out: it may complete the hint. Returns whether it touches the machine, which
-    /// ends the demonstration. `held` is `true` during a drag.
+    /// Observes a command that was carried out: it may complete the hint. Returns whether it ends the demonstration:
+    /// it touches the machine, or opens another view, panel or tool. `held` is `true` during a drag.
     pub fn observe(&mut self, command: &Command, session: &Session, held: bool) -> bool {
         let touches = match command {
             Command::Session(

@@ -105,7 +105,7 @@ const LOW_VIEW_PT: f32 = 320.0;
 const ZERO_BELOW_N_M: f64 = 0.005;
 
 impl Pair {
-    /// Returns the pair that differs most: the reactionless run beside a straight line, else the straight line.
+    /// Returns the pair with the straight line, or the reactionless run if the session's task has minimum norm.
     pub fn of(session: &Session) -> Self {
         let shakes = session.scenario().task.kind == TaskKind::MinimumNorm;
         let way = if shakes { Alternative::Reactionless } else { Alternative::StraightLine };

@@ -110,7 +110,7 @@ impl ResumePoint {
         }
     }
 
-    /// Shows this state, without a view that the machine lacks. The instant is that of the session.
+    /// Shows this state, except a view that the machine lacks, and except the instant, which opening has set already.
     pub(super) fn show(self, view_state: &mut ViewState, run: &Run) {
         if self.layout != view_state.arrangement.layout {
             view_state.lay_out(self.layout);
@@ -136,7 +136,7 @@ impl ResumePoint {
         }
     }
 
-    /// Whether another state differs from this one in the instant at most.
+    /// Whether another state differs from this one at most in the instant and in how far the run is simulated.
     pub fn is_alike_at_another_time(&self, other: &Self) -> bool {
         Self { time: self.time, reached: self.reached, ..other.clone() } == *self
     }

@@ -44,7 +44,7 @@ pub fn news(
     let outside = session.outside_limits();
     let reasons = [view_state.status.problem(), fault.as_ref(), waiting.as_ref(), outside.as_ref().map(|it| &it.why)];
     let Some(text) = reasons.into_iter().flatten().next().filter(|_| view_state.open.dialog.is_none()) else { return };
-    // Ways out of what is said, not of what stands behind it.
+    // The proposals belong to the message shown, not to a problem that it hides.
     let of_limits = outside.as_ref().filter(|outside| *text == outside.why);
     let status = &view_state.status;
     let proposals = match (of_limits, &status.proposals[..]) {

@@ -104,8 +104,8 @@ fn chosen_text(ui: &Ui, name: &str, is_edited: bool, width: f32) -> String {
     edited(&fit::fitted(ui, name, &font, width - taken - added), is_edited)
 }
 
-/// Returns the scenario to open for a chosen machine: its built-in scenario, or else the present scenario with this
-/// machine and without edits.
+/// Returns the scenario to open for a chosen machine: its built-in scenario, else the present scenario with this
+/// machine and without edits if that can run, else another one for this machine.
 pub(super) fn with_machine(session: &Session, machine: &Machine) -> Scenario {
     for_machine(session.scenario(), machine)
 }

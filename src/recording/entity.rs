@@ -221,8 +221,8 @@ impl Entity {
         }
     }
 
-    /// Converts several solids of one name to instances of one mesh, and several rings to one shape; the entity then
-    /// has no pose.
+    /// Converts several solids of one name, or one that is stretched, to instances of one mesh, and several rings
+    /// to one shape; the entity then has no pose.
     pub fn share(&mut self) {
         if let (Some(StaticShape::Ring { width, rgba, .. }), (middles, radius)) = (&self.constant, &self.rings)
             && middles.len() > 1
@@ -448,7 +448,7 @@ impl Strokes {
         (self.width, self.rgba, self.dash) == (other.width, other.rgba, other.dash)
     }
 
-    /// Returns the strips in coordinates of the recording, divided into at most about `most` dashes and gaps if dashed.
+    /// Returns the strips in coordinates of the recording; if dashed, each has at most about `most` dashes and gaps.
     pub fn drawn(&self, eye: &Eye, most: f32) -> Vec<Vec<[f32; 3]>> {
         let strips = self.strips.iter().filter(|strip| strip.len() > 1);
         let placed = |strip: &Vec<[f32; 3]>| strip.iter().map(|p| eye.place(*p)).collect::<Vec<_>>();

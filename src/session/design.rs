@@ -7,7 +7,7 @@ use toml::{Table, Value};
 use super::edit::Edit;
 use super::proposal::Proposal;
 pub use super::scenario::DesignBrief;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, key_of};
 use stillbase_mechanics::balance::{
     Body, BodyQuantity, ListedParameter, Parameter, ParameterBounds, RebalanceRequest, rebalance,
 };
@@ -124,10 +124,10 @@ impl DesignBrief {
         (from..=to).contains(&weight.at).then_some([from, to])
     }
 
-    /// Returns the Pareto front of added mass against inertia, for counterweights alone, as `count` machines.
+    /// Returns the Pareto front of added mass and inertia by counterweights: `count` machines, or one best in both.
     ///
     /// # Errors
-    /// If no counterweights within the bounds balance the machine.
+    /// If no counterweights within the bounds balance the machine, or if the request is invalid or the search fails.
     pub fn front(&self, machine: &Machine, count: usize) -> Result<Front, CounterweightError> {
         front(machine, &self.lightest_problem(machine), count)
     }
@@ -136,7 +136,7 @@ impl DesignBrief {
     /// Σ D_k q̇_k, with D_k in kg m².
     ///
     /// # Errors
-    /// If no counterweights and ratios within the bounds balance the machine.
+    /// If none within the bounds balance the machine, or if the request is invalid or the search fails.
     pub fn least_momentum(&self, machine: &Machine) -> Result<PlacedCounterweights, CounterweightError> {
         let objective = Objective { momentum: 1.0, mass: MASS_WEIGHT, ..Objective::mass() };
         let drives = machine.spec().drives.iter().enumerate();
@@ -227,9 +227,11 @@ pub fn machine_edit(scenario: &Scenario, of: &Machine) -> Option<Edit> {
     let links = was.links.iter().zip(&is.links).flat_map(|(was, is)| {
         let [before, after] = [was, is].map(|link| Table::try_from(link).unwrap_or_default());
         let keys: BTreeSet<String> = before.keys().chain(after.keys()).cloned().collect();
-        let changed = keys.into_iter().filter(|key| before.get(key) != after.get(key));
-        // An omitted key means zero.
-        let value = |key: &str| after.get(key).cloned().unwrap_or_else(|| 0.0.into());
+        // Keys such as the direction of a link are no settings.
+        let is_setting = |key: &String| key_of(&format!("link.{}.{key}", was.name)).is_some();
+        let changed = keys.into_iter().filter(|key| before.get(key) != after.get(key)).filter(is_setting);
+        // An omitted key has its default.
+        let value = |key: &str| after.get(key).cloned().unwrap_or_else(|| DEFAULT_WORD.into());
         changed.map(|key| at(&["link", &was.name, &key], value(&key))).collect::<Vec<_>>()
     });
     let lengths = is.lengths.iter().filter(|(name, x)| was.lengths.get(*name) != Some(x));

@@ -311,8 +311,10 @@ fn title_of(change: &Table) -> String {
         _ => {}
     }
     match change.get("compare_b").filter(|_| change.len() == 1) {
-        Some(Value::Float(b)) => return format!("compare with b = {b:.3} rad"),
-        Some(_) => return "stop comparing".into(),
+        Some(b) => {
+            let with = |b: f64| format!("compare with b = {b:.3} rad");
+            return change::number(b).map_or_else(|| "stop comparing".into(), with);
+        }
         None => {}
     }
     let one = |(path, value): (String, &Value)| {

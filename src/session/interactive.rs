@@ -140,7 +140,7 @@ impl Session {
     }
 
     /// Returns the pose constant nearest to `b`, rad, at which the points of the task stay where they are. Returns
-    /// `None` if no b reaches all of them, or if the workspace at constant b is not an area.
+    /// `None` if no b reaches all, or if the workspace at constant b is no area. Drive samples give the task's b.
     pub fn nearest_feasible_b(&self, b: f64) -> Option<f64> {
         let task = &self.scenario().task;
         if task.samples.as_ref().is_some_and(|samples| samples.columns() != 2) {

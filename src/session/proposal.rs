@@ -121,7 +121,7 @@ impl Proposal {
         }
     }
 
-    /// Returns one edit that makes the settings of an edit and then those of the proposal.
+    /// Returns one edit with the settings of an edit and then of the proposal; if either has none, the latter's own.
     pub fn edit_after(&self, edit: &Edit) -> Option<Edit> {
         match (edit, self.change()) {
             (Edit::Set { change }, Some(own)) => Some(Edit::Set { change: join(change.clone(), own) }),

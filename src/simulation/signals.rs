@@ -53,7 +53,7 @@ impl Signal {
         }
     }
 
-    /// Whether its values are never negative: a norm, a root mean square, a worst value, or a state of 0 or 1.
+    /// Whether its values are never negative: a norm, a root mean square, an impulse, an energy, a worst value, 0/1.
     pub fn is_magnitude(&self) -> bool {
         match self.group() {
             "impulse" | "angular_impulse" | "payload" | "wheel_saturated" | "dexterity" | "torque_per_force"

@@ -104,7 +104,7 @@ pub enum NoLengths {
         /// Reason that the first start's lengths give no machine, or else the bound violations of the nearest machine.
         why: String,
     },
-    /// The counterweights have no solution.
+    /// The lower bound of the reach or of the workspace is out of range.
     #[error(transparent)]
     Weights(#[from] CounterweightError),
 }

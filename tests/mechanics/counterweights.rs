@@ -546,6 +546,8 @@ fn rotors_that_turn_the_other_way_take_momentum_away() {
             RotorFreedom::Ratio(_) => assert!(rotor.inertia == 0.01),
         }
         assert!(found.value < alone.value);
+        let refused = front(&geared, &free(freedom), 4).expect_err("two measures");
+        assert_eq!(refused, CounterweightError::FreeRotorOfFront("1".into()));
     }
     // At its bound, and no further.
     let found = place_weights(&geared, &free(RotorFreedom::Inertia([0.0, 0.004]))).expect("it can be balanced");

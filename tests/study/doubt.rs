@@ -418,3 +418,20 @@ fn campaign_of_any_machine() {
     let nearly_all = |refused: u64| 20 * refused >= 19 * count;
     assert!([reversed, reading].into_iter().chain(of_force).all(nearly_all), "faults are missed");
 }
+
+/// Masses of the machine's file in g are a thousand times too large: the measurement seems a thousand times too small.
+#[test]
+fn masses_of_the_file_in_other_units_are_named() {
+    let machine = builtin("nine-link").expect("built in");
+    let mut noise = Noise::of(77);
+    let body = built(machine, &mut noise, USUAL.off);
+    let recording = recorded(&body, &mut noise, QUICK);
+    for (factor, unit) in [(1e3, "in g"), (1e-3, "in t")] {
+        let mut spec = machine.spec().clone();
+        for link in &mut spec.links {
+            (link.mass, link.inertia) = (factor * link.mass, factor * link.inertia);
+        }
+        let doubt = asked(&Machine::new(spec).expect("valid"), &recording).expect("refused").to_string();
+        assert!(doubt.contains(&format!("masses of the machine's file {unit}")), "{unit}: {doubt}");
+    }
+}

@@ -67,7 +67,7 @@ fn report(app_state: &mut AppState, command: Option<String>) -> (String, ReportD
     (report.html(), done)
 }
 
-/// Draws the scene at some instants, s; fails with the reason if nothing can draw.
+/// Draws the scene at two instants, s; fails with the reason if a picture cannot be drawn or encoded.
 fn pictures(app_state: &mut AppState, times: [f64; 2]) -> Result<Vec<ReportPicture>, String> {
     let order = PictureOrder { scale: PICTURE_SCALE, ..PictureOrder::new(Shot::Scene, Theme::Light, PICTURE_SIZE_PX) };
     let mut canvas = order.canvas().map_err(|why| why.to_string())?;

@@ -42,7 +42,7 @@ pub struct TableOptions {
     pub gaps: bool,
     /// Frequency at which smoothing halves the amplitude, Hz; by default, samples are not smoothed.
     pub smoothing: Option<f64>,
-    /// The part of the given motion that the proposed motion preserves; by default, the nearest motion is proposed.
+    /// What the proposed motion preserves of the given one; by default the end effector's motion, if possible.
     pub keep: Option<PreservedPath>,
     /// Pose constant b of the proposed motion, rad; by default, the program chooses it.
     pub b: Option<f64>,

@@ -154,7 +154,7 @@ fn switch(
     }
 }
 
-/// Draws the statistics of the curves over the time range on display: one row for each curve, in columns of equal
+/// Draws the statistics of the shown curves over the time range on display: one row each, in columns of equal
 /// width.
 pub fn statistics(ui: &mut Ui, plot: &Plot<'_>, drawn: &PlotLines, look: &PlotContext<'_>) {
     let p = look.palette;

@@ -95,8 +95,8 @@ impl AppState {
         self.show_outcome(Ok(news));
     }
 
-    /// Opens one of the paper's cases with the machine on display; the message names this machine if it is not the
-    /// paper's.
+    /// Opens one of the paper's cases with the machine on display, or the paper's if both have the same name. The
+    /// message names the machine on display if it is another one.
     pub(super) fn open_case(&mut self, name: &str) {
         let Some(case) = Scenario::builtin(name) else { return };
         let present = &self.session.scenario().machine;

@@ -243,6 +243,7 @@ pub fn request_failure(why: CounterweightError) -> Failure {
         CounterweightError::OutOfRange { .. }
         | CounterweightError::Twice(_)
         | CounterweightError::RotorTwice(_)
+        | CounterweightError::FreeRotorOfFront(_)
         | CounterweightError::NoRotor(_) => Failure::wrong_input(why),
         why => Failure::no_answer(why),
     }

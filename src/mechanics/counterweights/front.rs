@@ -33,7 +33,7 @@ const RELATIVE_TOLERANCE: f64 = 1e-9;
 /// measure in which its neighbours differ most.
 ///
 /// # Errors
-/// As [`place_weights`].
+/// As [`place_weights`], and if a rotor is free.
 pub fn front(machine: &Machine, request: &CounterweightSpec, count: usize) -> Result<Front, CounterweightError> {
     answer_now::<FrontSearch>((machine.clone(), request.clone(), count))
 }
@@ -80,6 +80,10 @@ impl FrontSearch {
     /// Adds one more point; returns false if the Pareto front is complete.
     fn one_more(&mut self) -> Result<bool, CounterweightError> {
         let Self { machine, mass, inertia, count, points } = self;
+        if let Some(free) = inertia.rotors.first() {
+            let name = machine.spec().drives.get(free.drive).map_or_else(String::new, |drive| drive.name.clone());
+            return Err(CounterweightError::FreeRotorOfFront(name));
+        }
         let (i, request) = match points.len() {
             // Least inertia comes first, so that it reports the errors that both objectives share.
             0 => (0, inertia.clone()),

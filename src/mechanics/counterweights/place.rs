@@ -49,7 +49,7 @@ const MAX_GAP: f64 = 5e-7;
 /// objective. Exact balance with the mean payload attains this minimum, but other solutions may attain it as well.
 ///
 /// # Errors
-/// If the request is not valid, or if its requirements contradict each other.
+/// If the request is not valid or contradicts itself, the search or the solver gives up, or the result is invalid.
 pub fn place_weights(
     machine: &Machine,
     request: &CounterweightSpec,
@@ -111,7 +111,7 @@ impl CounterweightTask<'_> {
         }
     }
 
-    /// Returns the solution of least inertia among those of the same mass, if mass alone is minimised.
+    /// Returns the solution of least inertia among those of equal mass, if only mass is minimised and Σ D_k is free.
     fn least_inertia(&self, best: PlacedCounterweights, least: &Optimum) -> PlacedCounterweights {
         let CounterweightSpec { objective, max_inertia, .. } = self.spec;
         if objective.depends_on_inertia() || objective.mass == 0.0 || max_inertia.is_some() {

@@ -100,6 +100,10 @@ pub enum CounterweightError {
     /// One link is named twice.
     #[error("link {0} may carry its counterweight in two ranges: want one a link")]
     Twice(String),
+    /// A Pareto front is asked for while the rotor of this drive is free: Σ H_kk, which is minimised, and Σ D_k, which
+    /// is measured, then differ by more than a constant.
+    #[error("the rotor of drive {0} is free: want it fixed for a Pareto front, or one objective without a front")]
+    FreeRotorOfFront(String),
     /// One rotor is named twice.
     #[error("the rotor of drive {0} is free in two ways: want its inertia or its ratio")]
     RotorTwice(String),

@@ -32,7 +32,7 @@ const MAX_LINEARISATIONS: usize = 25;
 /// limit, returns the best solution found, with the remaining gap.
 ///
 /// # Errors
-/// If there are too many choices, or if the solver fails. If there is no solution, the inner result is an error.
+/// If there are too many choices, or a child fails and momentum has no weight. Inner: no solution, or a failed root.
 pub(super) fn search(
     problem: &CounterweightProblem,
     machine: &Machine,

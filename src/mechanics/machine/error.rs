@@ -169,9 +169,9 @@ pub enum MachineError {
     Cycle {
         /// Place in the machine file.
         place: KeyPath,
-        /// A link of the cycle.
+        /// A link that belongs to the cycle or leads to it.
         link: String,
-        /// The links of the cycle, in order.
+        /// The links from this one into the cycle, in order; links of the cycle may repeat.
         chain: String,
     },
     /// A closure whose two points do not coincide in every pose.
@@ -204,9 +204,9 @@ pub enum MachineError {
     StatorCycle {
         /// Place in the machine file.
         place: KeyPath,
-        /// A drive of the cycle.
+        /// A drive that belongs to the cycle or leads to it.
         drive: String,
-        /// The drives of the cycle, in order.
+        /// The drives from this one into the cycle, in order, up to the first that repeats.
         chain: String,
     },
     /// More than one end effector.

@@ -144,8 +144,8 @@ pub fn placed(
         choices: HashMap::new(),
         all_choices: before.map_or_else(choices, |before| before.all_choices.clone()),
     };
-    // What covered the scene has gone or changed: labels that gave way to it go back.
-    let released = before.is_some_and(|before| before.room.taken != room.taken);
+    // Something that covered the scene has gone: labels that gave way to it go back.
+    let released = before.is_some_and(|before| before.room.taken.len() > room.taken.len());
     let mut room = room;
     for (number, group) in groups(painter, spot, scene).into_iter().enumerate() {
         // Labels of points out of view are omitted unless they are fully visible.

@@ -364,7 +364,7 @@ impl LinkageModel {
         })
     }
 
-    /// Returns drive and end points, m, of the links between base and end effector, in the machine's order of links.
+    /// Returns drive and end points, m, for a fixed base, of the links up to the end effector, in the file's order.
     pub fn skeleton(&self, e: &UnitVectors) -> Vec<(usize, [Vector; 2])> {
         let carriers = self.bars.iter().filter(|b| b.carries_tip);
         carriers
@@ -389,7 +389,7 @@ impl LinkageModel {
 }
 
 impl LinkageModel {
-    /// Returns the end points, m, of the links between base and end effector.
+    /// Returns the end points, m, of the links between base and end effector, for a fixed base.
     pub fn outlines(&self, e: &UnitVectors) -> impl Iterator<Item = [Vector; 2]> {
         let e = *e;
         self.bars.iter().filter(|b| b.carries_tip).map(move |bar| {

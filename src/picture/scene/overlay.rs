@@ -12,8 +12,8 @@ const BORDER_OPACITY: f32 = 0.75;
 pub const PLATE_OPACITY: f32 = 0.85;
 
 impl Scene {
-    /// Leaves out what is behind the scene. Text lies on plates, and lines and markers in the colours of text have
-    /// borders, all in the colour of the background that is left out; so they stay legible on any other.
+    /// Makes the background transparent. Text then lies on plates, and lines and markers in its colours get borders,
+    /// all in the colour of that background, so that they stay legible on any other. Faint lines become grey.
     pub fn lay_over_any(&mut self, palette: &Palette) {
         let border = faded(palette.background, BORDER_OPACITY);
         self.background = faded(palette.background, 0.0);

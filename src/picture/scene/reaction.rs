@@ -53,7 +53,7 @@ pub struct ReactionGlyph {
     pub has_moment: bool,
     /// Whether the run so far has had a force on the base, from motion.
     pub had_force: bool,
-    /// Whether the run so far has had a moment on the base, less a wheel's.
+    /// Whether a moment, after subtraction of a wheel's, has reached the base in the run so far.
     pub had_moment: bool,
     /// Whether the machine has moved so far.
     pub has_moved: bool,
@@ -91,8 +91,8 @@ impl ReactionGlyph {
         (self.has_moment && sweep.abs() > MIN_SWEEP_RAD).then_some(sweep)
     }
 
-    /// Returns the texts of f_B and n_B with their colours: red for a reaction, green where none has come of a motion so
-    /// far. Zero says nothing while nothing has moved yet, or between reactions; it has the colour of text then.
+    /// Returns the texts of f_B and n_B with their colours. A reaction is red; zero is green if the machine has moved
+    /// without any reaction so far. Before the first motion, and after an earlier reaction, zero is dim.
     pub fn readings(&self, palette: &Palette) -> [(String, Rgba); 2] {
         let tone = |real: bool, stays_zero: bool| match (real, stays_zero && self.has_moved) {
             (true, _) => palette.reaction,

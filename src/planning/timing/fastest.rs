@@ -26,7 +26,7 @@ pub const GRID_INTERVALS: usize = 600;
 /// quantities change much. Finally the motion is slowed down until it keeps the limits between stations too.
 ///
 /// # Errors
-/// If no limit acts on the motion, or no motion keeps the limits.
+/// If numbers of drives differ, a needed limit is missing (jerk too if `smooth`), or no motion keeps the limits.
 pub fn fastest(
     path: &Path,
     model: &Inertia,

@@ -10,15 +10,15 @@ use stillbase_planning::curves::path::{SameTip, same_tip_path};
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::posed::PoseAngles;
 
-/// Follows the curves of the end effector with least joint rates, from a pose of A.
+/// Follows the curves of the end effector with least joint rates, from a pose with the end effector at A.
 pub(super) fn minimum_norm(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<PathSegments, Refusal> {
     let (task, points) = (&scenario.task, scenario.task.points());
     let start = start(scenario, space, &[points[0], points[points.len() - 1]])?;
     by_least_rates(scenario, start, &curves(task, &points)?, None)
 }
 
-/// Moves the end effector as on the joint line from A to B. Drive 1 turns to an angle that the task sets, and the other
-/// drives follow.
+/// Moves the end effector as on the joint line from A to B. Drive 1 turns to the angle `first_drive_to` of the task,
+/// by default its start angle, and the other drives follow.
 pub(super) fn same_tip(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<PathSegments, Refusal> {
     let (task, machine) = (&scenario.task, &scenario.machine);
     if !machine.is_redundant() {

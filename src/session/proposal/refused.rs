@@ -97,7 +97,7 @@ impl Query for ProposalsQuery {
     }
 }
 
-/// Returns proposals for a scenario that was refused, the least change first; each has been planned, and starts.
+/// Returns proposals for a refused scenario, the least change first. Each has been tried, by a plan or a whole run.
 pub fn proposals(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal> {
     proposals_while(scenario, refusal, &mut |_| true).unwrap_or_default()
 }
@@ -136,8 +136,8 @@ fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: ProgressCall
     Some(proposals)
 }
 
-/// Returns proposals for settings that a scenario cannot have: the nearest allowed values. The scenario with the wanted
-/// settings, and then those of a proposal, starts.
+/// Returns proposals for settings that a scenario cannot have: the nearest allowed values, or else the present ones.
+/// A run with the wanted settings, and then those of a proposal, starts.
 pub fn proposals_for_settings(scenario: &Scenario, wanted: &Table) -> Vec<Proposal> {
     settings_while(scenario, wanted, &mut |_| true).unwrap_or_default()
 }

@@ -4,7 +4,7 @@
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | v | sliding rate: in a bearing q̇_k less the rate of the stator (θ̇ on the base), in a pin q̇_l − q̇_k | rad/s |
-//! | f | friction torque against v: c v + τ_C sgn v while sliding, any |f| ≤ τ_C while stuck | N m |
+//! | f | friction torque against v: c v + τ_C sgn v while sliding, any \|f\| ≤ τ_C while stuck | N m |
 //!
 //! Friction acts between two parts with equal and opposite torques. Coulomb friction is not smoothed: a contact either
 //! slides in one direction or is stuck. A stuck contact transmits exactly the torque that keeps it stuck
@@ -198,8 +198,8 @@ impl Contacts {
 
     /// Computes the torques of stuck contacts by projected Gauss–Seidel sweeps and adds them to `torques`. Each torque
     /// either satisfies |f| ≤ τ_C with v̇ = 0, or is at its bound, against v̇. `solve` returns accelerations for
-    /// generalised forces; `free` are the accelerations without these torques. Returns the dissipated power, W, which is zero unless a contact has begun to
-    /// slide since the step began. The number of sweeps is bounded; one sweep is exact if contacts do not interact.
+    /// generalised forces; `free` are the accelerations without these torques. Returns the dissipated power, W. It
+    /// is zero unless a contact starts to slide in the step. At most 2000 sweeps; one is exact without interaction.
     pub fn solve_stuck(
         &self,
         slip: &SlipDirections,

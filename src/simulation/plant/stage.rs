@@ -346,7 +346,7 @@ impl MovingBody {
         }
     }
 
-    /// Returns the wrench of the arm on the base, about B at rest, from its mass matrix and velocity terms.
+    /// Returns the wrench of the arm on the base about B, without B's acceleration, from its mass matrix and v.
     #[inline(always)]
     fn wrench<const N: usize>(
         &self,

@@ -139,7 +139,7 @@ impl Alternative {
     }
 }
 
-/// Returns the angle of drive 1 at A and the task's b, rad. `None` if no pose of A is found, or if the machine has
+/// Returns the angle of drive 1, rad, in a pose at A with the task's b. `None` if none is found or the machine has
 /// neither planes nor more than three drives.
 fn start_of_first_drive(scenario: &Scenario) -> Option<f64> {
     let points = scenario.task.points();

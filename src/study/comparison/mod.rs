@@ -40,7 +40,7 @@ impl ComparedRun {
     /// Runs a scenario.
     ///
     /// # Errors
-    /// If the scenario cannot start, or one of its edits cannot be applied.
+    /// If the scenario cannot start, an edit cannot apply, the run has too many steps, or the motion diverges.
     pub fn of(scenario: Scenario) -> Result<Self, Refusal> {
         Self::of_while(scenario, &mut |_| true)
     }
@@ -73,7 +73,7 @@ impl ComparedRun {
         Ok(Self { scenario, frames, summary, candidate: DesignCandidate::of(&run) })
     }
 
-    /// Returns the machine that control assumes.
+    /// Returns the machine that control assumes before any edit.
     pub fn machine(&self) -> &Machine {
         &self.scenario.machine
     }

@@ -47,7 +47,7 @@ impl GivenMotion {
     /// Returns the motion smoothed without delay; at the cut-off frequency, Hz, half of the amplitude remains.
     ///
     /// # Errors
-    /// Fails if the cut-off frequency is not below half of the mean sampling rate.
+    /// Fails if the cut-off frequency is not above 0 and below half of the mean sampling rate.
     pub fn smoothed(self, cut_off: f64) -> Result<Self, SamplesError> {
         let samples = self.samples.smoothed(cut_off)?;
         let all = |samples: &Samples| samples.rows().flat_map(|row| row[1..].to_vec()).collect::<Vec<_>>();

@@ -103,8 +103,8 @@ fn everything(spec: &MachineSpec) -> Vec<(VariedQuantity, String, f64)> {
 /// Returns the parameters of a machine that vary; if several keys match one, the key with the fewest `*` applies.
 ///
 /// # Errors
-/// Fails if a key matches no number, a relative spread refers to zero, or too large a fraction of a distribution is
-/// impossible.
+/// Fails if a key matches no number, a percentage refers to zero, nothing varies, a spread is too wide, or too much
+/// of a distribution is impossible.
 pub(super) fn parameters(
     machine: &Machine,
     spreads: &BTreeMap<String, Spread>,

@@ -12,7 +12,7 @@ use stillbase_session::scenario::Scenario;
 /// measurement was evaluated.
 ///
 /// # Errors
-/// Fails if the session's machine has other links, or the new machine is not valid.
+/// Fails if the session's machine has other links, there is no correction to adopt, or the new machine is not valid.
 pub fn adopting_edit(
     scenario: &Scenario,
     measured: &Machine,

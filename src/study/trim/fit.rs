@@ -62,7 +62,7 @@ const EXACT_BELOW: f64 = 1e-9;
 /// Fits the unknowns by least squares about the machine's file, with weights from the residuals of force and moment.
 ///
 /// # Errors
-/// Fails if there are too few rows, or the residuals are too strongly correlated.
+/// Fails if there are too few rows, the residuals are too strongly correlated, or a result is not finite.
 pub fn fit(machine: &Machine, rows: &Regressor) -> Result<Fit, TrimError> {
     let Estimate { fit, rank, share } = estimate(machine, rows)?;
     if share < MIN_FREEDOM {

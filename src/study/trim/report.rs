@@ -76,7 +76,7 @@ pub struct Number {
     pub half_width: Option<f64>,
     /// Whether the unknown differs significantly from the machine's file, given the values used for the others.
     pub off: bool,
-    /// Value used: for (7) and (8), measured if `off`, else that of the file; for a momentum, measured if identifiable.
+    /// Value used: estimated with the values from the file held fixed; for (7) and (8) that of the file unless `off`.
     pub taken: f64,
     /// Half width of the 95 % interval of that value; 0 if it is from the file.
     pub taken_half_width: f64,

@@ -152,7 +152,7 @@ impl<'a> Group<'a> {
         rows.iter().map(move |(.., place)| flip(*place).translate(by))
     }
 
-    /// Returns the cheapest place that is free, or that before if it is nearly as good; `None` if there is none. A place
+    /// Returns the cheapest free place, or the previous one if it is nearly as good; `None` if there is none. A place
     /// with all rows is held for a while, unless `released`.
     pub fn choose(&self, room: &Room, all: &[Choice], before: Option<Choice>, released: bool) -> Option<Choice> {
         let before = before.filter(|choice| choice.rows <= self.rows.len()).and_then(|choice| {
@@ -162,9 +162,11 @@ impl<'a> Group<'a> {
         });
         if let Some(mut before) = before {
             before.held = before.held.saturating_add(1);
-            let is_whole = before.rows == self.rows.len();
-            if before.held < MIN_HELD && is_whole && !released {
-                return Some(before);
+            if before.held < MIN_HELD && !released {
+                // A row that was left out comes back where the others stand.
+                let whole = Choice { rows: self.rows.len(), ..before };
+                let cost = (before.rows < whole.rows).then(|| self.priced(room, whole, 0.0)).flatten();
+                return Some(cost.map_or(before, |cost| Choice { cost, ..whole }));
             }
             let better = self.cheapest(room, all, MARGIN_PT, before.cost - MIN_GAIN_PT);
             return Some(better.unwrap_or(before));

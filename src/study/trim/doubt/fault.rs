@@ -181,12 +181,18 @@ fn units() -> Vec<Fault> {
         scaled("fx and fy are in mN, not in N", &named("fx (mN)"), 1e-3, 1.0),
         scaled("fx and fy are in kN, not in N", &named("fx (kN)"), 1e3, 1.0),
         scaled(
-            "force and moment are in mN and mN m, or masses of the machine's file in g",
+            "force and moment are in mN and mN m, or masses of the machine's file in t",
             "units in the header, as fx (mN) and nz (mN m), and kg in the machine's file",
             1e-3,
             1e-3,
         ),
-        scaled("force and moment are in kN and kN m", &named("fx (kN) and nz (kN m)"), 1e3, 1e3),
+        // Masses in g are numbers a thousand times too large, so the measurement seems a thousand times too small.
+        scaled(
+            "force and moment are in kN and kN m, or masses of the machine's file in g",
+            "units in the header, as fx (kN) and nz (kN m), and kg in the machine's file",
+            1e3,
+            1e3,
+        ),
         scaled("lengths of the machine's file are in mm", "m and kg m² in the machine's file", 1e3, 1e6),
     ]
 }

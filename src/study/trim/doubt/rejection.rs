@@ -12,7 +12,7 @@ pub struct Doubt {
     pub causes: Vec<Cause>,
     /// Values that no machine can have.
     pub impossible: Vec<MeasuredValue>,
-    /// The unknown with the largest deviation from the file.
+    /// The unknown that deviates most from its value after the likeliest correction, or else from the file.
     pub furthest: Option<MeasuredValue>,
     /// Root mean square residuals of force, N, and of moment, N m, as given.
     pub noise: [f64; 2],
@@ -35,7 +35,7 @@ pub struct Cause {
     pub noise: [f64; 2],
     /// These residuals as fractions of the corrected measured values.
     pub shares: [f64; 2],
-    /// Value, after correction, of the unknown with the largest deviation.
+    /// Value, after correction, of the unknown in [`Doubt::furthest`].
     pub furthest: Option<f64>,
     /// Violation of the limits of relative angles after correction, rad; 0 if there is none.
     pub limit_violation: f64,
