@@ -97,8 +97,7 @@ impl Report<'_> {
             let is_default = typed == change::DEFAULT_WORD || change::same_value(&value, &change::value(key.default));
             if is_wanted(key) && !is_default {
                 // Numbers beside others of other units stay in SI units.
-                // Angles of several turns have a unit that says so.
-                let unit = if key.unit().starts_with("rad, ") { "rad" } else { key.unit() };
+                let unit = if key.unit_of_each().is_empty() { key.unit() } else { key.unit_of_each() };
                 let shown = self.notation.shown_unit(unit).filter(|_| change::is_of_numbers(&value));
                 let factor = shown.map(|shown| shown.factor);
                 let unit = shown.map_or(unit, |shown| shown.name);
