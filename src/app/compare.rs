@@ -10,11 +10,12 @@ use super::{
 };
 use egui::{Align, Button, CursorIcon, Frame, Grid, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui};
 use stillbase_picture::charts::figure::{dashes, run_colour};
+use stillbase_picture::columns::RunColumn;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::scenario::Scenario;
 use stillbase_study::comparison::{Comparison, ComparisonEntry};
 
-use columns::{COLUMN_GAP_PT, HEAD_SIZE_PT, Head};
+use columns::{COLUMN_GAP_PT, HEAD_SIZE_PT};
 
 /// Width of the mark of columns that are left out, points.
 const MARK_WIDTH_PT: f32 = 30.0;
@@ -73,7 +74,7 @@ fn buttons(ui: &mut Ui, comparison: &Comparison, commands: &mut Vec<Command>) {
 }
 
 fn table(ui: &mut Ui, p: &Palette, comparison: &Comparison, commands: &mut Vec<Command>) {
-    let all = columns::all(comparison, notation::of(ui.ctx()));
+    let all = RunColumn::all(comparison, notation::of(ui.ctx()));
     let (columns, left_out) = columns::fitting(ui, all, comparison, ui.available_width() - MARK_WIDTH_PT);
     ui.spacing_mut().button_padding = egui::vec2(0.0, 0.0);
     let grid = Grid::new("runs").num_columns(columns.len() + 3).spacing([COLUMN_GAP_PT, 5.0]).min_col_width(0.0);
@@ -97,14 +98,14 @@ fn table(ui: &mut Ui, p: &Palette, comparison: &Comparison, commands: &mut Vec<C
 }
 
 /// Draws the title of a column in two lines; a click sorts by it.
-fn head(ui: &mut Ui, p: &Palette, comparison: &Comparison, column: &Head, commands: &mut Vec<Command>) {
+fn head(ui: &mut Ui, p: &Palette, comparison: &Comparison, column: &RunColumn, commands: &mut Vec<Command>) {
     let i = column.at;
     let arrow = match comparison.sorted() {
         Some((sorted, down)) if sorted == i => [" ↑", " ↓"][usize::from(down)],
         _ => "",
     };
     let strong = if arrow.is_empty() { p.dim } else { p.ink };
-    let [first, second] = column.lines(ui);
+    let [first, second] = columns::lines(ui, column);
     let lines = [first, format!("{second}{arrow}")]
         .map(|line| ui.painter().layout_no_wrap(line, plain(HEAD_SIZE_PT), colour(strong)));
     let size = egui::vec2(lines[0].size().x.max(lines[1].size().x), lines[0].size().y + lines[1].size().y);
@@ -122,13 +123,20 @@ fn head(ui: &mut Ui, p: &Palette, comparison: &Comparison, column: &Head, comman
         }
         name(&head, &format!("Sort by {}", column.meaning));
         let head = head.on_hover_cursor(CursorIcon::PointingHand);
-        if head.on_hover_text(format!("{}, {}; click to sort", column.meaning, column.unit)).clicked() {
+        if head.on_hover_text(format!("{}, {}; click to sort", column.meaning, column.format.unit)).clicked() {
             commands.push(WindowCommand::Comparison(ComparisonCommand::Sort(i)).into());
         }
     });
 }
 
-fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &ComparisonEntry, columns: &[Head], commands: &mut Vec<Command>) {
+fn row(
+    ui: &mut Ui,
+    p: &Palette,
+    i: usize,
+    entry: &ComparisonEntry,
+    columns: &[RunColumn],
+    commands: &mut Vec<Command>,
+) {
     let mut shown = entry.shown;
     ui.horizontal(|ui| {
         let tick = ui.add_enabled(entry.outcome.is_ok(), egui::Checkbox::without_text(&mut shown));
@@ -166,7 +174,7 @@ fn row(ui: &mut Ui, p: &Palette, i: usize, entry: &ComparisonEntry, columns: &[H
     match &entry.outcome {
         Ok(_) => {
             for column in columns {
-                let text = column.written(entry);
+                let text = columns::written(column, entry);
                 let zero = text.chars().all(|c| matches!(c, '0' | '.' | '–'));
                 let tone = if zero { p.dim } else { p.ink };
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

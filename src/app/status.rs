@@ -1,5 +1,7 @@
 //! The status line at the bottom: the verdict, and a hint on what to do next.
 
+pub mod news;
+
 use std::sync::Arc;
 
 use egui::{Align, Layout, Margin, Panel, RichText, Sense, Ui, vec2};
@@ -16,77 +18,6 @@ use stillbase_planning::pose_space::NoPoseSpace;
 use stillbase_session::verdict::Verdict;
 use stillbase_session::{Proposal, Session};
 use stillbase_simulation::frame::{Frame, Reach};
-
-/// Whether a problem message must be shown.
-pub fn has_bad_news(session: &Session, view_state: &ViewState) -> bool {
-    let bad = view_state.status.problem().is_some() || session.run().waiting().is_some();
-    let bad = bad || session.outside_limits().is_some();
-    (bad || fault(session.frame()).is_some()) && view_state.open.dialog.is_none()
-}
-
-/// Returns the rectangle of the problem message in the last pass.
-pub fn news_rect(ctx: &egui::Context) -> Option<egui::Rect> {
-    ctx.memory(|memory| memory.area_rect(egui::Id::unique("news")))
-}
-
-/// Draws the problem message in full over the lower edge of a scene, with a button for each proposal.
-pub fn news(
-    ctx: &egui::Context,
-    scene: egui::Rect,
-    session: &Session,
-    view_state: &ViewState,
-    proposals: &[Proposal],
-    commands: &mut Vec<Command>,
-) {
-    let fault = fault(session.frame());
-    let waits = session.run().waiting();
-    let waiting = waits.map(|waiting| format!("The run waits: {}", waiting.why));
-    let outside = session.outside_limits();
-    let reasons = [view_state.status.problem(), fault.as_ref(), waiting.as_ref(), outside.as_ref().map(|it| &it.why)];
-    let Some(text) = reasons.into_iter().flatten().next().filter(|_| view_state.open.dialog.is_none()) else { return };
-    // The proposals belong to the message shown, not to a problem that it hides.
-    let of_limits = outside.as_ref().filter(|outside| *text == outside.why);
-    let status = &view_state.status;
-    let proposals = match (of_limits, &status.proposals[..]) {
-        (Some(outside), _) => &outside.proposals,
-        (None, known @ [_, ..]) => known,
-        (None, []) => proposals,
-    };
-    // While the run waits, a refused edit hides neither the reason for the wait nor the remedy.
-    let also = waits.zip(waiting.as_ref()).filter(|(waits, said)| text != *said && *text != waits.why.to_string());
-    let text = match (&also, &waiting) {
-        (None, Some(said)) if waits.is_some_and(|waits| *text == waits.why.to_string()) => said,
-        _ => text,
-    };
-    let p = view_state.palette();
-    let frame =
-        egui::Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.reaction))).corner_radius(8).inner_margin(10);
-    // The message does not cover the panels.
-    let width = (0.42 * ctx.content_rect().width()).clamp(320.0, (scene.width() - 40.0).max(320.0));
-    let area = egui::Area::new(egui::Id::unique("news")).pivot(egui::Align2::CENTER_BOTTOM);
-    area.fixed_pos(scene.center_bottom() - vec2(0.0, 34.0)).show(ctx, |ui| {
-        frame.show(ui, |ui| {
-            ui.set_max_width(width);
-            let text = notation::sentence(ui.ctx(), text);
-            ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(p.ink))).wrap());
-            if let Some((_, said)) = also {
-                let said = notation::sentence(ui.ctx(), said);
-                ui.add(egui::Label::new(RichText::new(said).font(plain(12.0)).color(colour(p.dim))).wrap());
-            }
-            if proposals.is_empty() && status.entry.is_none() {
-                return;
-            }
-            ui.horizontal_wrapped(|ui| {
-                if let Some(entry) = &status.entry {
-                    entry.button(ui);
-                }
-                for proposal in proposals {
-                    lamp::proposal(ui, proposal, status.refused.as_ref().filter(|_| of_limits.is_none()), commands);
-                }
-            });
-        });
-    });
-}
 
 /// Draws a dot for each figure of the audit: small within its limit, large and red beyond it.
 fn audit_dots(ui: &mut Ui, frame: &Frame, p: &Palette) {
@@ -119,20 +50,6 @@ fn audit_dots(ui: &mut Ui, frame: &Frame, p: &Palette) {
 /// Returns a number with two digits and its power of ten.
 fn power(x: f64) -> String {
     if x == 0.0 { "0".into() } else { format!("{x:.1e}").replace("e-", "e−") }
-}
-
-/// Returns the warning about a failed audit.
-fn fault(frame: &Frame) -> Option<String> {
-    let figure = frame.first_violation()?;
-    let limit = figure.limit.unwrap_or_default();
-    Some(format!(
-        "This run cannot be trusted: {} ({}) is off by {} {}, at most {} is right. A smaller step or softer gains help.",
-        figure.name,
-        figure.meaning,
-        power(figure.value),
-        figure.unit,
-        power(limit)
-    ))
 }
 
 /// Draws this panel.

@@ -16,8 +16,9 @@ use super::tour::Tour;
 use super::widgets::name;
 use super::{
     Command, Layout, SessionCommand, Switch, Tool, ViewChange, ViewState, coordinates, corner, framing, measuring,
-    menu, notes, pair, present, status,
+    menu, notes, pair, present,
 };
+use crate::status::news;
 use stillbase_mechanics::planar::{DriveAngles, Vector};
 use stillbase_picture::paint::labels::draw_labels;
 use stillbase_picture::paint::{SceneViewport, paint};
@@ -45,11 +46,13 @@ pub struct SceneContent<'a> {
     pub other: Option<&'a Result<Beside, String>>,
     /// Counterweights of the point of the Pareto front that is under the pointer.
     pub weights: &'a [WeightOption],
+    /// Whether a problem message covers the scene.
+    pub has_news: bool,
 }
 
 /// Draws the scene and handles the pointer; returns the rectangle of the scene.
 pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, commands: &mut Vec<Command>) -> Rect {
-    let SceneContent { session, views, exaggeration, comparison, intro, other, .. } = content;
+    let SceneContent { session, views, exaggeration, comparison, intro, other, has_news, .. } = content;
     let shown = CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let intro = intro.filter(|_| view_state.view.shows_machine());
@@ -121,7 +124,7 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
         paint(ui, 0, rect, &scene, view_state.camera());
         let spot = SceneViewport { rect, camera: *view_state.camera() };
         // The problem message covers the scene while it lasts.
-        covered.extend(status::has_bad_news(session, view_state).then(|| status::news_rect(ui.ctx())).flatten());
+        covered.extend(has_news.then(|| news::rect(ui.ctx())).flatten());
         if let Some((pair, _)) = both.filter(|_| !presents) {
             covered.push(pair::own_caption(ui, rect, session, pair, view_state));
         }

@@ -11,7 +11,7 @@ use stillbase_mechanics::planar::Vector;
 use stillbase_planning::pose_constant::PoseConstant;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_session::scenario::{POINT_RANGE, POSE_CONSTANT_RANGE, Scenario, TaskChange, key_of};
-use stillbase_session::{proposals_for_machine, proposals_for_settings, proposals_for_values};
+use stillbase_session::{ReachablePoints, proposals_for_machine, proposals_for_settings, proposals_for_values};
 use stillbase_settings::change;
 use stillbase_settings::key::Key;
 use stillbase_settings::range::Range;
@@ -320,6 +320,15 @@ pub fn point(text: &str) -> Result<Vector, WrongNumber> {
             nearest: numbers.map(|both| both.map(|x| within(x, POINT_RANGE).to_string()).join(",")),
         }),
     }
+}
+
+/// Returns points, m, as a command line takes them, with those in their new places that `way` moves.
+pub fn typed_points(points: &[Vector], way: &ReachablePoints) -> String {
+    let typed = |(i, p): (usize, &Vector)| match way.place_of(i) {
+        Some([x, y]) => format!("{x},{y}"),
+        None => format!("{},{}", p.re, p.im),
+    };
+    points.iter().enumerate().map(typed).collect::<Vec<_>>().join(" ")
 }
 
 /// Parses a pose constant, rad.

@@ -3,16 +3,14 @@
 use clap::Args;
 use serde::Serialize;
 use stillbase_mechanics::planar::Vector;
-use stillbase_planning::common::nearest_place;
 use stillbase_planning::pose_constant::Unreachable;
 use stillbase_planning::pose_space::PoseSpace;
-use stillbase_planning::reactionless::{BSet, Decimal, NoReach};
-use stillbase_session::Proposal;
-use stillbase_session::scenario::POSE_CONSTANT_RANGE;
+use stillbase_planning::reactionless::{BSet, NoReach};
+use stillbase_session::{Proposal, ReachablePoints};
 use stillbase_study::pose_measures::PoseMeasures;
 
 use super::failure::Failure;
-use super::input::{MachineArgument, point, pose_constant, pose_space};
+use super::input::{MachineArgument, point, pose_constant, pose_space, typed_points};
 use super::output::{Format, TextTable};
 use stillbase_settings::number::fixed;
 
@@ -72,34 +70,21 @@ impl PoseArguments {
     fn ways_out(&self, space: &PoseSpace) -> Vec<Proposal> {
         let (p, machine) = (self.point, self.machine.as_typed());
         let json = if self.format.json { " --json" } else { "" };
-        let command = |at: String, b: String| format!("stillbase pose {machine} {at} --b {b}{json}");
-        let of = |p: Vector| {
-            let set = space.reach(p).ok()?;
-            let inner =
-                [0.0, 1e-9, 1e-6, 1e-3, 0.5].map(|share| set.nearest(self.b).map(|b| set.moved_inside(b, share)));
-            // At the ends of the range of b, the nearest one may lie a period inside.
-            let turns = [0.0, -space.period(), space.period()];
-            let all = turns.into_iter().flat_map(|turn| inner.into_iter().flatten().map(move |b| b + turn));
-            let serves = |b: f64| POSE_CONSTANT_RANGE.contains(b) && space.reaches(p, b);
-            all.into_iter().find_map(|b| Decimal::shortest_passing(b, 4, serves))
-        };
-        let at = |[x, y]: &[Decimal; 2]| (format!("{x},{y}"), Vector::new(x.value(), y.value()));
-        let another_b = of(p).map(|b| {
-            Proposal::of_command(format!("take b = {b} rad"), command(format!("{},{}", p.re, p.im), b.to_string()))
-        });
-        let at_b = nearest_place(space, p, Some(self.b)).map(|to| {
-            let text = format!("take the nearest point of b = {} rad, ({}, {}) m", self.b, to[0], to[1]);
-            Proposal::of_command(text, command(at(&to).0, self.b.to_string()))
-        });
-        let anywhere = || {
-            let to = nearest_place(space, p, None)?;
-            let (typed, place) = at(&to);
-            let b = of(place)?;
-            let text = format!("take the nearest point of all, ({}, {}) m, at b = {b} rad", to[0], to[1]);
-            Some(Proposal::of_command(text, command(typed, b.to_string())))
-        };
+        let another_b = ReachablePoints::at_nearest_b(space, p, self.b);
+        let anywhere = || ReachablePoints::at_any_b(space, p, self.b);
         let nearer = if another_b.is_some() { None } else { anywhere() };
-        another_b.into_iter().chain(nearer).chain(at_b).collect()
+        let at_b = ReachablePoints::at_b(space, &[p], 0, self.b);
+        let rendered = |way: ReachablePoints| {
+            let b = way.b.map_or_else(|| self.b.to_string(), |b| b.to_string());
+            let text = match (way.place_of(0), way.b) {
+                (None, _) => format!("take b = {b} rad"),
+                (Some([x, y]), None) => format!("take the nearest point of b = {b} rad, ({x}, {y}) m"),
+                (Some([x, y]), Some(_)) => format!("take the nearest point of all, ({x}, {y}) m, at b = {b} rad"),
+            };
+            let at = typed_points(&[p], &way);
+            Proposal::of_command(text, format!("stillbase pose {machine} {at} --b {b}{json}"))
+        };
+        another_b.into_iter().chain(nearer).chain(at_b).map(rendered).collect()
     }
 
     fn no_pose(&self, set: Result<BSet, NoReach>) -> Unreachable {

@@ -3,14 +3,14 @@
 use clap::Args;
 use serde::Serialize;
 use stillbase_mechanics::planar::Vector;
-use stillbase_planning::common::{common_b_set, nearest_place, no_common};
-use stillbase_planning::pose_constant::{NoCommonB, PointCorrection, Unreachable};
+use stillbase_planning::common::{common_b_set, no_common};
+use stillbase_planning::pose_constant::{PointCorrection, Unreachable};
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::reactionless::BSet;
-use stillbase_session::Proposal;
+use stillbase_session::{Proposal, ReachablePoints};
 
 use super::failure::Failure;
-use super::input::{MachineArgument, point, pose_space};
+use super::input::{MachineArgument, point, pose_space, typed_points};
 use super::output::{Format, TextTable};
 use stillbase_settings::number::fixed;
 
@@ -59,12 +59,10 @@ impl ReachArguments {
         let machine = self.machine.load()?;
         let space = pose_space(&machine)?;
         let mut sets = Vec::with_capacity(self.points.len());
-        for (i, p) in self.points.iter().enumerate() {
+        for p in &self.points {
             let none = |reason| {
                 let failure = Failure::from(Unreachable::Anywhere { x: p.re, y: p.im, reason });
-                failure.with_proposals(
-                    self.reached(&space).map(|points| self.with_points(i, &points)).into_iter().collect(),
-                )
+                failure.with_proposals(self.mended(&space).into_iter().collect())
             };
             sets.push(space.reach(*p).map_err(none)?);
         }
@@ -77,48 +75,29 @@ impl ReachArguments {
             overlap,
             period: space.period(),
             mend: why.and_then(|why| why.correction),
-            proposals: why.and_then(|why| self.mended(&why)).into_iter().collect(),
+            proposals: why.and_then(|_| self.mended(&space)).into_iter().collect(),
         };
         self.format.print(&answer, table)?;
-        let said = || why.map_or("no b serves all points".into(), |w| w.in_words(&|i| format!("point {}", i + 1)));
+        let said = || why.map_or("no b serves all points".into(), |w| w.in_words(&point_name));
         match apart {
             true => Err(Failure::no_answer(said()).with_printed_proposals(answer.proposals)),
             false => Ok(()),
         }
     }
 
-    /// Returns the points as typed, each that cannot be reached at any b moved to the nearest place that can; `None` if
-    /// there is no such place.
-    fn reached(&self, space: &PoseSpace) -> Option<Vec<String>> {
-        let place = |p: &Vector| match space.reach(*p) {
-            Ok(_) => Some(format!("{},{}", p.re, p.im)),
-            Err(_) => nearest_place(space, *p, None).map(|[x, y]| format!("{x},{y}")),
-        };
-        self.points.iter().map(place).collect()
-    }
-
-    fn with_points(&self, moved: usize, points: &[String]) -> Proposal {
-        let text = format!("take the nearest point for point {}, ({}) m", moved + 1, points[moved].replace(',', ", "));
-        Proposal::of_command(text, self.command(points))
-    }
-
-    fn command(&self, points: &[String]) -> String {
+    /// Returns the command line with points moved so that all have a common b.
+    fn mended(&self, space: &PoseSpace) -> Option<Proposal> {
+        let way = ReachablePoints::with_common_b(space, &self.points)?;
         let json = if self.format.json { " --json" } else { "" };
-        format!("stillbase reach {} {}{json}", self.machine.as_typed(), points.join(" "))
+        let (machine, points) = (self.machine.as_typed(), typed_points(&self.points, &way));
+        let text = way.moves_in_words(&point_name);
+        Some(Proposal::of_command(text, format!("stillbase reach {machine} {points}{json}")))
     }
+}
 
-    /// Returns the command line with the point moved that keeps all points from a common b.
-    fn mended(&self, why: &NoCommonB) -> Option<Proposal> {
-        let mend = why.correction?;
-        let [x, y] = mend.shown?.to;
-        let typed = |(i, p): (usize, &Vector)| match i == mend.point {
-            true => format!("{x},{y}"),
-            false => format!("{},{}", p.re, p.im),
-        };
-        let points: Vec<String> = self.points.iter().enumerate().map(typed).collect();
-        let text = format!("move point {} to ({x}, {y}) m", mend.point + 1);
-        Some(Proposal::of_command(text, self.command(&points)))
-    }
+/// Returns the name of a point by its index, counted from 0.
+fn point_name(i: usize) -> String {
+    format!("point {}", i + 1)
 }
 
 /// Rounds the bounds of an interval of b, rad, inwards to a number of decimals, so that both stay feasible. The bounds

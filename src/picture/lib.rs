@@ -7,6 +7,8 @@
 pub mod canvas;
 #[doc(hidden)]
 pub mod charts;
+#[doc(hidden)]
+pub mod columns;
 #[cfg(feature = "render")]
 pub mod film;
 #[cfg(feature = "ui")]

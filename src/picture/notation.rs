@@ -63,6 +63,17 @@ pub struct ShownUnit {
     pub decimals: i32,
 }
 
+/// How the values of a quantity are written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NumberFormat<'a> {
+    /// Factor from values in the original unit.
+    pub factor: f64,
+    /// Number of decimals.
+    pub decimals: usize,
+    /// Name of the unit on display.
+    pub unit: &'a str,
+}
+
 impl AngleUnit {
     /// Returns the other unit.
     #[must_use]
@@ -125,12 +136,18 @@ impl Notation {
         self.shown_unit(unit).map_or(unit, |shown| shown.name)
     }
 
+    /// Returns how values with the unit `unit` are written; `decimals` belong to that unit.
+    pub fn format(self, decimals: usize, unit: &str) -> NumberFormat<'_> {
+        match self.shown_unit(unit) {
+            Some(shown) => NumberFormat { factor: shown.factor, decimals: shown.decimals(decimals), unit: shown.name },
+            None => NumberFormat { factor: 1.0, decimals, unit },
+        }
+    }
+
     /// Writes a value with its unit; `decimals` belong to `unit`.
     pub fn write(self, value: f64, decimals: usize, unit: &str) -> String {
-        match self.shown_unit(unit) {
-            Some(shown) => with_unit(&signed(shown.factor * value, shown.decimals(decimals)), shown.name),
-            None => with_unit(&signed(value, decimals), unit),
-        }
+        let NumberFormat { factor, decimals, unit } = self.format(decimals, unit);
+        with_unit(&signed(factor * value, decimals), unit)
     }
 
     /// Returns both names of a quantity in the user's order: `turning moment on the base, n_B`.

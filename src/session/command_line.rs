@@ -2,6 +2,7 @@
 
 use super::scenario::Scenario;
 use super::{Edit, Session, TimedEdit};
+use stillbase_query::{Queries, QuickQuery, QuickWork, Shared};
 use stillbase_settings::change::{join, leaves, same_value, single_change, typed};
 use stillbase_settings::text::shell_word;
 use stillbase_simulation::signals::Signal;
@@ -27,16 +28,24 @@ pub fn simulate_command(scenario: &Scenario) -> Option<String> {
     same.then(|| format!("stillbase simulate {}{settings}", shell_word(&scenario.name)))
 }
 
-/// Returns the command that simulates a session from its start, as [`simulate_command`]. Returns `None` if the session
-/// has edits other than settings at its start; a file is then needed.
-pub fn session_command(session: &Session) -> Option<String> {
-    simulate_command(session.scenario()).filter(|_| has_settings_only(session))
+/// Query for [`simulate_command`].
+struct SimulateCommand;
+
+impl QuickQuery for SimulateCommand {
+    type Input = Shared<Scenario>;
+    type Answer = Option<String>;
+
+    fn answer(scenario: &Self::Input) -> Self::Answer {
+        simulate_command(&scenario.0)
+    }
 }
 
-/// Whether all edits of a session are settings at its start.
-pub fn has_settings_only(session: &Session) -> bool {
+/// Returns the command that simulates a session from its start, as [`simulate_command`]. Returns `None` if the session
+/// has edits other than settings at its start; a file is then needed.
+pub fn session_command(session: &Session, queries: &Queries) -> Option<String> {
     let is_setting = |timed: &TimedEdit| timed.step == 0 && matches!(timed.edit, Edit::Set { .. });
-    session.script().iter().all(is_setting)
+    let command = || queries.ask::<QuickWork<SimulateCommand>>(&session.run().shared_scenario());
+    session.script().iter().all(is_setting).then(command)?.as_ref().clone()
 }
 
 /// Returns the options of `simulate` that write the signals `chosen` of a table in a time interval, s; `None` for a

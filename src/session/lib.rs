@@ -25,7 +25,7 @@ pub mod scenario;
 mod script;
 pub mod verdict;
 
-pub use command_line::{has_settings_only, row_options, session_command, simulate_command};
+pub use command_line::{row_options, session_command, simulate_command};
 #[doc(hidden)]
 pub use designs::{DesignVersion, designs};
 pub use document::ProgressCallback;
@@ -39,7 +39,7 @@ pub use interactive::Session;
 pub use machines::Machines;
 pub use planner::{Plan, curves};
 #[doc(hidden)]
-pub use proposal::{OutsideLimits, ProposalsQuery, RefusedChange, TargetProposals, is_improvable};
+pub use proposal::{OutsideLimits, ProposalsQuery, ReachablePoints, RefusedChange, TargetProposals, is_improvable};
 pub use proposal::{
     Proposal, WayOut, improvements, proposals, proposals_for_machine, proposals_for_settings, proposals_for_values,
 };

@@ -13,6 +13,7 @@
 
 mod hand;
 mod improve;
+mod points;
 mod refused;
 mod task;
 mod value;
@@ -30,6 +31,7 @@ use stillbase_settings::change::{join, leaves, single_change, typed};
 
 pub use hand::{OutsideLimits, TargetProposals};
 pub use improve::{improvements, is_improvable};
+pub use points::ReachablePoints;
 pub use refused::{ProposalsQuery, RefusedChange, proposals, proposals_for_settings};
 pub use value::proposals_for_values;
 

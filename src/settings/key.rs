@@ -154,6 +154,16 @@ impl Key {
             },
         }
     }
+
+    /// Returns the unit of each of the key's numbers; empty if they have none, or different ones.
+    pub fn unit_of_each(&self) -> &'static str {
+        match self.unit() {
+            // Angles of several turns have a unit that says so.
+            unit if unit.starts_with("rad, ") => "rad",
+            unit if unit.contains(", ") || unit.contains(" or ") => "",
+            unit => unit,
+        }
+    }
 }
 
 /// Words that may replace the bounds on a number.

@@ -64,7 +64,7 @@ fn texts(h: &Window) -> Vec<(Rect, String)> {
 
 /// Triangles of the opaque solids of a scene on the screen.
 fn triangles(placement: &Placement) -> Vec<[Pos2; 3]> {
-    let spot = SceneViewport { rect: placement.view, camera: placement.camera };
+    let spot = SceneViewport { rect: placement.view(), camera: placement.camera };
     let solids =
         placement.scene.solids.iter().filter(|solid| solid.name.starts_with("machine") && solid.colour[3] > 0.9);
     let mut all = Vec::new();
@@ -102,14 +102,14 @@ fn faults(h: &Window, number: usize, found: &mut Vec<String>, at: &str) -> usize
     let Some(placement) = last(&h.ctx, number) else { return 0 };
     let triangles = triangles(&placement);
     let discs = placement.scene.markers.iter().filter(|marker| marker.radius >= 3.0);
-    let spot = SceneViewport { rect: placement.view, camera: placement.camera };
+    let spot = SceneViewport { rect: placement.view(), camera: placement.camera };
     let discs: Vec<(Pos2, f32)> =
         discs.filter_map(|marker| Some((spot.screen(marker.at.map(f64::from))?, marker.radius))).collect();
     let texts = texts(h);
     for (i, own) in placement.all.iter().enumerate() {
         let (rect, words) = (own.place, own.label.text.as_str());
         let mut wrong = |what: &str| found.push(format!("{at}, scene {number}: \"{words}\" {what}, {rect:?}"));
-        if !placement.view.contains_rect(rect) {
+        if !placement.view().contains_rect(rect) {
             wrong("is cut off");
         }
         for other in &placement.all[..i] {
@@ -231,7 +231,7 @@ fn labels_do_not_jump() {
                 faults(&h, 0, &mut found, &format!("{} moving", scenario.name));
             }
             let placement = last(&h.ctx, 0).expect("drawn");
-            let spot = SceneViewport { rect: placement.view, camera: placement.camera };
+            let spot = SceneViewport { rect: placement.view(), camera: placement.camera };
             let now: Vec<(String, Vec2)> = placement
                 .all
                 .iter()

@@ -72,7 +72,7 @@ fn a_target_that_no_b_reaches_leads_to_the_nearest_point() {
 
 /// Led by hand, a limit is tightened past the present pose: it is said, and put back or made as wide as it has to be.
 fn a_limit_that_leaves_out_the_pose_is_put_back() {
-    for way_out in ["put limits.a1 back", "take limits.a1"] {
+    for way_out in ["put the limits of angle a1 back", "take limits of angle a1"] {
         let mut h = window("case-3", Theme::Dark);
         h.run_steps(2);
         let command = |h: &mut Window, command: SessionCommand| h.state_mut().app_state_mut().carry_out(command);

@@ -61,6 +61,18 @@ fn points_that_share_no_b_have_no_answer_but_a_mend() {
     };
     assert_ne!(mended(&got["mend"])["overlap"], json!([]));
     fails(&["reach", "nine-link", "0.5,0.5", "9,9"], 1, &["(9.000, 9.000) m"]);
+    // Each point that has to move is named, and no other moves.
+    let out = stillbase(&["reach", "nine-link", "5,5", "0.5,0.5", "-5,-5", "--json"]);
+    let got: Value = serde_json::from_slice(&out.stdout).expect("JSON");
+    let [way] = &got["proposals"].as_array().expect("proposals")[..] else { panic!("{got}") };
+    let [text, command] = ["text", "command"].map(|key| way[key].as_str().expect("text"));
+    let typed: Vec<&str> = command.split(' ').filter(|word| word.contains(',')).collect();
+    for (i, point) in ["5,5", "0.5,0.5", "-5,-5"].into_iter().enumerate() {
+        let place = format!("point {} to ({}) m", i + 1, typed[i].replace(',', ", "));
+        assert_eq!(text.contains(&place), typed[i] != point, "{text}: {command}");
+    }
+    let words: Vec<&str> = command.split(' ').skip(1).filter(|word| *word != "--json").collect();
+    assert_ne!(object(&words)["overlap"], json!([]));
 }
 
 #[test]

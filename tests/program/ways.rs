@@ -82,6 +82,8 @@ fn what_is_refused_says_what_would_work() {
         "pose nine-link 0.5,0.5 --b 2.4 --set limits.a1=0.1,0.2",
         "reach nine-link 0.5,0.5 5,5",
         "reach nine-link 0.5,0.5 -0.6,-0.2",
+        "reach nine-link 0.5,0.5 -5,-5",
+        "reach nine-link 5,5 -5,-5 0.5,0.5",
         "workspace nine-link --b 1e9",
         "check nine-link --set link.5.mass=-1",
         "check nine-link --set limits.a1=2.7,0.4",

@@ -147,3 +147,27 @@ fn what_is_proposed_starts() {
     assert!(refused > 30, "only {refused} are refused: too few to tell");
     assert!(20 * dead_ends <= refused, "{dead_ends} of {refused} without a way out: {without:#?}");
 }
+
+/// Values are named in plain words, with the unit of their key, so that a display in other units converts them.
+#[test]
+fn values_have_plain_names_and_units_that_a_notation_converts() {
+    use stillbase::picture::notation::{LengthUnit, Notation};
+    use stillbase::session::{proposals_for_settings, proposals_for_values};
+
+    let case = set("case-3", &[]);
+    let text = |key: &str, wanted: &str| {
+        let found = proposals_for_settings(&case, &single_change(key, value(wanted)));
+        found.first().unwrap_or_else(|| panic!("{key} = {wanted} has no way out")).text.clone()
+    };
+    let short = text("task.time", "1e-9");
+    assert!(short.starts_with("take duration from A to B = ") && short.ends_with(" s"), "{short}");
+    assert_eq!(text("control.law", "computed-torqu"), "take control law = computed-torque");
+    // Both numbers of a point are converted.
+    let wanted = single_change("task.from", value("[1, 2e9]"));
+    let found = proposals_for_values(&wanted, &|path| case.value(path), &|_| true);
+    let notation = Notation { length: LengthUnit::Millimetres, ..Notation::default() };
+    let text = &found[0].text;
+    assert!(text.starts_with("take point A = 1.0, ") && text.ends_with(" m"), "{text}");
+    let shown = notation.sentence(text);
+    assert!(shown.starts_with("take point A = 1000, ") && shown.ends_with(" mm"), "{shown}");
+}

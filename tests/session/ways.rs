@@ -74,11 +74,11 @@ fn a_number_out_of_range_proposes_the_nearest_one() {
 #[test]
 fn a_wrong_word_proposes_the_nearest_one() {
     for (key, given, want) in [
-        ("task.kind", Value::from("reactionles"), "take task.kind = reactionless"),
-        ("base.kind", "fre".into(), "take base.kind = free"),
-        ("limits.a1", vec![3.0, 0.2].into(), "take limits.a1 = 0.2,3"),
-        ("task.time", "soon".into(), "keep task.time = 1"),
-        ("task.shape", "xyzzy".into(), "keep task.shape = default"),
+        ("task.kind", Value::from("reactionles"), "take kind of motion = reactionless"),
+        ("base.kind", "fre".into(), "take how the base is held = free"),
+        ("limits.a1", vec![3.0, 0.2].into(), "take limits of angle a1 = 0.2, 3.0 rad"),
+        ("task.time", "soon".into(), "keep duration from A to B = 1 s"),
+        ("task.shape", "xyzzy".into(), "keep shape of the path = default"),
     ] {
         let found = proposals_for_settings(&case_3(), &single_change(key, given));
         assert_eq!(found.first().map(|one| one.text.as_str()), Some(want), "{key}: {found:?}");

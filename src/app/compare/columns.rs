@@ -4,9 +4,9 @@ use egui::Ui;
 
 use crate::fit::width_of;
 use crate::theme::plain;
-use stillbase_picture::notation::{NameOrder, Notation};
+use stillbase_picture::columns::RunColumn;
 use stillbase_picture::numbers::signed;
-use stillbase_study::comparison::{Comparison, ComparisonEntry, DESIGN_COLUMNS, SUMMARY_COLUMNS, SummaryColumn};
+use stillbase_study::comparison::{Comparison, ComparisonEntry};
 
 /// Horizontal distance of columns, points.
 pub const COLUMN_GAP_PT: f32 = 12.0;
@@ -20,125 +20,58 @@ const NUMBER_WIDTH_PT: f32 = 22.0;
 /// Width of the button that removes a row, points.
 const REMOVE_WIDTH_PT: f32 = 24.0;
 
-/// Keys of the columns that give way where space is short, in this order.
-const GIVE_WAY: [&str; 24] = [
-    "beta_force",
-    "beta_torque",
-    "mass_inertia_factor",
-    "coupling_left",
-    "force_left",
-    "force_impulse",
-    "rms_force",
-    "saturated_at",
-    "moment_impulse",
-    "added_inertia",
-    "rms_moment",
-    "beta_moment",
-    "wheel_rate",
-    "peak_arm_moment",
-    "time",
-    "miss",
-    "inertia",
-    "added_mass",
-    "base_tilt",
-    "base_shift",
-    "energy",
-    "mass",
-    "peak_torque",
-    "peak_force",
-];
-
-/// A column as it is drawn.
-pub struct Head {
-    /// Its index among all columns.
-    pub at: usize,
-    key: &'static str,
-    head: &'static str,
-    pub meaning: &'static str,
-    pub unit: &'static str,
-    /// Factor from SI values to displayed values.
-    factor: f64,
-    decimals: usize,
+/// Returns the title of a column with its unit in the two lines that need least width.
+pub fn lines(ui: &Ui, column: &RunColumn) -> [String; 2] {
+    let words: Vec<&str> = column.head.split(' ').collect();
+    let divided = |first: usize| {
+        let rest = words[first..].join(" ");
+        let parts = [rest.as_str(), column.unit()].into_iter().filter(|part| !part.is_empty());
+        [words[..first].join(" "), parts.collect::<Vec<_>>().join(", ")]
+    };
+    let ways = (1..=words.len()).rev().map(divided);
+    let width = |lines: &[String; 2]| lines.iter().map(|line| head_width(ui, line)).fold(0.0, f32::max);
+    ways.min_by(|a, b| width(a).total_cmp(&width(b))).unwrap_or_default()
 }
 
-impl Head {
-    fn of<T>(at: usize, column: &SummaryColumn<T>, notation: Notation) -> Self {
-        let SummaryColumn { key, term, head, meaning, unit, decimals, .. } = *column;
-        let head = if notation.names == NameOrder::Symbols { head } else { term };
-        match notation.shown_unit(unit) {
-            Some(shown) => {
-                let decimals = shown.decimals(decimals);
-                Self { at, key, head, meaning, unit: shown.name, factor: shown.factor, decimals }
-            }
-            None => Self { at, key, head, meaning, unit, factor: 1.0, decimals },
-        }
-    }
+/// Returns the value of a row as it is written.
+pub fn written(column: &RunColumn, entry: &ComparisonEntry) -> String {
+    column.value(entry).map_or_else(|| "–".into(), |x| signed(x, column.format.decimals))
+}
 
-    /// Returns the title with its unit in the two lines that need least width.
-    pub fn lines(&self, ui: &Ui) -> [String; 2] {
-        let unit = if self.unit == "1" { "" } else { self.unit };
-        let words: Vec<&str> = self.head.split(' ').collect();
-        let divided = |first: usize| {
-            let rest = words[first..].join(" ");
-            let parts = [rest.as_str(), unit].into_iter().filter(|part| !part.is_empty());
-            [words[..first].join(" "), parts.collect::<Vec<_>>().join(", ")]
-        };
-        let ways = (1..=words.len()).rev().map(divided);
-        let width = |lines: &[String; 2]| lines.iter().map(|line| head_width(ui, line)).fold(0.0, f32::max);
-        ways.min_by(|a, b| width(a).total_cmp(&width(b))).unwrap_or_default()
-    }
-
-    /// Returns the value of a row as it is written.
-    pub fn written(&self, entry: &ComparisonEntry) -> String {
-        entry.value(self.at).map_or_else(|| "–".into(), |x| signed(self.factor * x, self.decimals))
-    }
-
-    /// Returns its width, points.
-    fn width(&self, ui: &Ui, comparison: &Comparison) -> f32 {
-        let rows = comparison.entries().iter().filter(|entry| entry.outcome.is_ok());
-        let values = rows.map(|entry| width_of(ui, &self.written(entry), &plain(VALUE_SIZE_PT)));
-        let [first, second] = self.lines(ui);
-        // The arrow of a sorted column has room in every column.
-        let title = head_width(ui, &first).max(head_width(ui, &format!("{second} ↓")));
-        values.fold(title, f32::max)
-    }
+/// Returns the width of a column, points.
+fn width_of_column(ui: &Ui, column: &RunColumn, comparison: &Comparison) -> f32 {
+    let rows = comparison.entries().iter().filter(|entry| entry.outcome.is_ok());
+    let values = rows.map(|entry| width_of(ui, &written(column, entry), &plain(VALUE_SIZE_PT)));
+    let [first, second] = lines(ui, column);
+    // The arrow of a sorted column has room in every column.
+    let title = head_width(ui, &first).max(head_width(ui, &format!("{second} ↓")));
+    values.fold(title, f32::max)
 }
 
 fn head_width(ui: &Ui, text: &str) -> f32 {
     width_of(ui, text, &plain(HEAD_SIZE_PT))
 }
 
-/// Returns the columns of runs that have a value in any row; those of base motion need a base that moves. If machines
-/// differ, also returns all columns of designs.
-pub fn all(comparison: &Comparison, notation: Notation) -> Vec<Head> {
-    let runs = || comparison.entries().iter().filter_map(|e| e.outcome.as_ref().ok());
-    let moves = runs().any(|r| r.summary.base_shift > 0.0 || r.summary.base_tilt > 0.0);
-    let has_value = |c: &SummaryColumn| runs().any(|r| (c.value)(&r.summary).is_some());
-    let all = SUMMARY_COLUMNS.iter().enumerate();
-    let of_runs = all.filter(|(_, c)| has_value(c) && (moves || !matches!(c.key, "base_shift" | "base_tilt")));
-    let designs = if comparison.has_designs() { &DESIGN_COLUMNS[..] } else { &[] };
-    let of_designs = designs.iter().enumerate().map(|(i, c)| Head::of(SUMMARY_COLUMNS.len() + i, c, notation));
-    of_runs.map(|(i, c)| Head::of(i, c, notation)).chain(of_designs).collect()
-}
-
 /// Returns the columns that fit into `width`, points, beside the titles of the rows, and the names of the others.
-pub fn fitting(ui: &Ui, columns: Vec<Head>, comparison: &Comparison, width: f32) -> (Vec<Head>, Vec<&'static str>) {
+pub fn fitting(
+    ui: &Ui,
+    columns: Vec<RunColumn>,
+    comparison: &Comparison,
+    width: f32,
+) -> (Vec<RunColumn>, Vec<&'static str>) {
     let titles = comparison.entries().iter().map(|entry| {
         let remove = if entry.added_by_user { REMOVE_WIDTH_PT } else { 0.0 };
         NUMBER_WIDTH_PT + width_of(ui, &entry.title, &plain(VALUE_SIZE_PT)) + remove
     });
     let mut room = width - TICK_WIDTH_PT - titles.fold(0.0, f32::max) - 2.0 * COLUMN_GAP_PT;
     let sorted = comparison.sorted().map(|(at, _)| at);
-    let important = |head: &Head| match GIVE_WAY.iter().position(|key| *key == head.key) {
-        _ if sorted == Some(head.at) => GIVE_WAY.len() + 1,
-        Some(place) => place,
-        None => GIVE_WAY.len(),
-    };
+    // The column that the table is sorted by goes first.
+    let important = |column: &RunColumn| (sorted == Some(column.at), column.priority);
     let mut order: Vec<usize> = (0..columns.len()).collect();
     order.sort_by_key(|i| std::cmp::Reverse(important(&columns[*i])));
     let mut has_room = vec![false; columns.len()];
     for i in order {
-        let width = columns[i].width(ui, comparison) + COLUMN_GAP_PT;
+        let width = width_of_column(ui, &columns[i], comparison) + COLUMN_GAP_PT;
         if width <= room {
             room -= width;
             has_room[i] = true;
@@ -146,11 +79,11 @@ pub fn fitting(ui: &Ui, columns: Vec<Head>, comparison: &Comparison, width: f32)
     }
     let mut left_out = Vec::new();
     let mut kept = Vec::with_capacity(columns.len());
-    for (head, has_room) in columns.into_iter().zip(has_room) {
+    for (column, has_room) in columns.into_iter().zip(has_room) {
         if has_room {
-            kept.push(head);
+            kept.push(column);
         } else {
-            left_out.push(head.head);
+            left_out.push(column.head);
         }
     }
     (kept, left_out)

@@ -45,7 +45,7 @@ fn report(app_state: &mut AppState, command: Option<String>) -> (String, ReportD
     let runs = run_names(app_state.comparison());
     let legend = legend::figure(&runs, 2.0 * PLOT_SIZE_PT[0], &palette(Theme::Light));
     let session = app_state.session();
-    let command = command.or_else(|| session_command(session));
+    let command = command.or_else(|| session_command(session, app_state.queries()));
     let how = "Save the session (Ctrl S); stillbase report FILE.toml -o report.html then writes this page.";
     let newest = session.frames().last().unwrap_or(session.frame());
     let report = Report {

@@ -10,27 +10,14 @@ use crate::theme::{bold, colour, plain};
 use crate::widgets::name;
 use crate::{Command, ViewState, WindowCommand};
 use stillbase_picture::charts::search::search;
-use stillbase_query::{Queries, QuickQuery, QuickWork, Shared};
-use stillbase_session::scenario::Scenario;
-use stillbase_session::{Session, has_settings_only, simulate_command};
+use stillbase_query::Queries;
+use stillbase_session::{Session, session_command};
 use stillbase_settings::text::capitalised;
 use stillbase_simulation::signals::Signal;
 
 /// Width of the column of choices, and height of the list of signals, points.
 const WIDTH_PT: f32 = 430.0;
 const LIST_HEIGHT_PT: f32 = 210.0;
-
-/// Query for the command that simulates a scenario.
-struct SimulateCommandOf;
-
-impl QuickQuery for SimulateCommandOf {
-    type Input = Shared<Scenario>;
-    type Answer = Option<String>;
-
-    fn answer(scenario: &Self::Input) -> Self::Answer {
-        simulate_command(&scenario.0)
-    }
-}
 
 /// The data that the choices refer to.
 pub struct ValuesContext<'a> {
@@ -191,12 +178,12 @@ fn command_row(ui: &mut Ui, choice: &ValuesChoice, what: &ValuesContext<'_>, com
         }
     };
     let Some(options) = choice.options(&order, what.session, what.signals) else {
-        say(ui, "a name with a comma cannot stand in a command: want the machine's parts without", p.dim);
+        let why = "no command can name a signal with a comma: want names of the machine's parts without commas";
+        say(ui, why, p.dim);
         return;
     };
-    let known = what.queries.ask::<QuickWork<SimulateCommandOf>>(&what.session.run().shared_scenario());
-    let known = known.as_ref().as_ref().filter(|_| has_settings_only(what.session));
-    let command = format!("{}{options}", known.map_or("stillbase simulate FILE.toml", String::as_str));
+    let known = session_command(what.session, what.queries);
+    let command = format!("{}{options}", known.as_deref().unwrap_or("stillbase simulate FILE.toml"));
     ui.add(Label::new(RichText::new(&command).font(egui::FontId::monospace(11.5))).wrap());
     ui.horizontal(|ui| {
         let copy = ui.add(Button::new("Copy")).on_hover_text("Copies the command that writes the same file");

@@ -196,7 +196,7 @@ impl AppState {
                 self.focuses_search = true;
             }
             WindowCommand::CopyCommand => {
-                let Some(command) = session_command(&self.session) else {
+                let Some(command) = session_command(&self.session, self.queries()) else {
                     return Err(
                         "settings alone are not enough: save (Ctrl S), then type: stillbase simulate FILE.toml".into(),
                     );

@@ -69,6 +69,7 @@ impl AppState {
             intro: None,
             other: None,
             weights: &weights,
+            has_news: false,
         };
         viewport::still(content, size, &mut self.view_state)
     }

@@ -4,6 +4,7 @@ use super::AppState;
 use crate::export::{self, DisplaySize};
 use crate::facts::ScenarioFacts;
 use crate::marks::Marks;
+use crate::status::news::News;
 use crate::{
     BottomPanel, Command, DrawingGuard, Intro, Layout, SessionCommand, StatusMessage, ViewChange, WindowCommand,
     compare, finder, given, guide, keys, notation, notes, order, place, plots, rail, saving, side, status, studio,
@@ -115,6 +116,7 @@ impl AppState {
             let width = plots::show(ui, &what, has_panel, &mut commands);
             self.view_state.arrangement.now_mut().plots.width = width;
         }
+        let news = News::of(&self.session, &self.view_state);
         let content = viewport::SceneContent {
             session: &self.session,
             views: &self.views,
@@ -123,6 +125,7 @@ impl AppState {
             intro: self.intro.as_ref().filter(|_| !presents),
             other: other.as_deref(),
             weights: &chosen,
+            has_news: news.is_some(),
         };
         let scene = viewport::show(ui, content, &mut self.view_state, &mut commands);
         let window = ui.ctx().content_rect().size();
@@ -130,7 +133,9 @@ impl AppState {
             DisplaySize { window: window.into(), scene: scene.size().into(), scale: ui.ctx().pixels_per_point() };
         let proposals = self.proposals();
         let proposals = proposals.as_ref().map_or(&[][..], |known| known);
-        status::news(ui.ctx(), scene, &self.session, &self.view_state, proposals, &mut commands);
+        if let Some(news) = &news {
+            status::news::show(ui.ctx(), scene, news, &self.view_state, proposals, &mut commands);
+        }
         guide::show(ui.ctx(), &queries, &mut self.view_state, &mut commands);
         side::window(ui.ctx(), &facts, &self.view_state, &mut commands);
         keys::help(ui.ctx(), &self.view_state, &mut commands);

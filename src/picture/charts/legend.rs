@@ -2,6 +2,7 @@
 
 use super::figure::{Axes, Figure, FigureItem, FigureText, dashes, run_colour};
 use crate::scene::palette::Palette;
+use stillbase_settings::range::shortened;
 use stillbase_study::comparison::Comparison;
 
 /// An overlaid run.
@@ -59,8 +60,8 @@ pub fn items(runs: &[RunName], [left, top]: [f32; 2], width: f32, p: &Palette) -
         let at = [left + (i % columns) as f32 * share, top + (i / columns) as f32 * LINE_PT + 0.5 * LINE_PT];
         let points = vec![at, [at[0] + SAMPLE_PT, at[1]]];
         items.push(FigureItem::Line { points, width: 1.8, colour, dash, inside: false });
-        let room = ((share - SAMPLE_PT - 36.0) / (LETTER_SHARE * SIZE_PT)).max(4.0) as usize;
-        let name = FigureText { text: clipped(title, room), size: SIZE_PT, bold: false, colour: p.ink };
+        let most = ((share - SAMPLE_PT - 36.0) / (LETTER_SHARE * SIZE_PT)).max(4.0) as usize - 1;
+        let name = FigureText { text: shortened(title, most), size: SIZE_PT, bold: false, colour: p.ink };
         let words = number.into_iter().chain([name]).collect();
         items.push(FigureItem::Text { at: [at[0] + SAMPLE_PT + 6.0, at[1]], anchor: [0.0, 0.5], words });
     }
@@ -73,11 +74,4 @@ pub fn figure(runs: &[RunName], width: f32, p: &Palette) -> Option<Figure> {
     let axes = Axes { sides: [0.0, 0.0, size[0], size[1]], x: [0.0, 1.0], y: [0.0, 1.0] };
     let items = items(runs, [8.0, 4.0], width - 16.0, p);
     (!items.is_empty()).then_some(Figure { size, background: p.panel, axes, items })
-}
-
-fn clipped(title: &str, room: usize) -> String {
-    if title.chars().count() <= room {
-        return title.to_owned();
-    }
-    title.chars().take(room.saturating_sub(1)).chain(['…']).collect()
 }

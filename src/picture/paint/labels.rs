@@ -40,16 +40,13 @@ pub struct PlacedLabel {
 pub struct Placement {
     /// The scene.
     pub scene: Arc<Scene>,
-    /// The view, points.
-    pub view: Rect,
     /// The camera.
     pub camera: Camera,
-    /// Rectangles over the scene that labels leave free.
-    pub taken: Vec<Rect>,
     /// The labels that have a place.
     pub all: Vec<PlacedLabel>,
     /// Lines from points to labels that stand far from them, with the label's index in `all`.
     leads: Vec<(usize, [Pos2; 2])>,
+    /// What the labels found free: without the labels themselves.
     room: Room,
     pixels_per_point: f32,
     choices: HashMap<(Name, usize), Choice>,
@@ -106,6 +103,11 @@ pub fn forget(ctx: &egui::Context, number: usize) {
 }
 
 impl Placement {
+    /// Returns the view, points.
+    pub fn view(&self) -> Rect {
+        self.room.view
+    }
+
     /// Returns the handle that the label at a position is a part of.
     pub fn handle_at(&self, at: Pos2) -> Option<Handle> {
         self.all.iter().filter(|own| boxed(own.place).contains(at)).find_map(|own| own.label.handle)
@@ -121,7 +123,7 @@ pub fn placed(
     before: Option<&Arc<Placement>>,
 ) -> Arc<Placement> {
     let SceneViewport { rect: view, camera } = *spot;
-    let before = before.filter(|before| before.view == view);
+    let before = before.filter(|before| before.room.view == view);
     let room = Room::of(scene, spot, taken);
     let pixels_per_point = painter.pixels_per_point();
     if let Some(before) = before
@@ -134,9 +136,7 @@ pub fn placed(
     }
     let mut current = Placement {
         scene: scene.clone(),
-        view,
         camera,
-        taken: taken.to_vec(),
         all: Vec::with_capacity(scene.labels.len()),
         leads: Vec::new(),
         room: room.clone(),

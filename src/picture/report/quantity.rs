@@ -1,15 +1,13 @@
 //! Numbers of a report in the user's units, as text.
 
-use crate::notation::Notation;
+use crate::notation::{Notation, NumberFormat};
 use stillbase_settings::number::{fixed, nine_digits};
 
 impl Notation {
     /// Returns a number with fixed decimals, which belong to `unit`, and the name of its unit.
     pub(super) fn fixed(self, value: f64, decimals: usize, unit: &str) -> (String, &str) {
-        match self.shown_unit(unit) {
-            Some(shown) => (fixed(shown.factor * value, shown.decimals(decimals)), shown.name),
-            None => (fixed(value, decimals), unit),
-        }
+        let NumberFormat { factor, decimals, unit } = self.format(decimals, unit);
+        (fixed(factor * value, decimals), unit)
     }
 
     /// Returns a number with at most nine digits.
@@ -19,6 +17,11 @@ impl Notation {
 
     /// Returns the head of a column with its unit.
     pub(super) fn head(self, name: &str, unit: &str) -> String {
-        if unit.is_empty() { name.to_owned() } else { format!("{name} ({})", self.unit_name(unit)) }
+        headed(name, self.unit_name(unit))
     }
+}
+
+/// Returns the head of a column with its unit as displayed.
+pub(super) fn headed(name: &str, unit: &str) -> String {
+    if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") }
 }

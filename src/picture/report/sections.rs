@@ -2,15 +2,17 @@
 
 use super::Report;
 use super::markup::escaped;
+use super::quantity::headed;
 use super::table::{NO_VALUE, PageTable};
-use crate::notation::{NameOrder, Notation};
+use crate::columns::RunColumn;
+use crate::notation::Notation;
 use stillbase_mechanics::machine::{Inertia, MachineSpec};
 use stillbase_session::verdict::{Statements, Verdict};
 use stillbase_settings::change;
 use stillbase_settings::key::Key;
 use stillbase_settings::number::{counted, fixed, nine_digits, subscript};
 use stillbase_study::balance_constants::BalanceConstants;
-use stillbase_study::comparison::{Comparison, DESIGN_COLUMNS, SUMMARY_COLUMNS, Summary, SummaryColumn};
+use stillbase_study::comparison::Comparison;
 
 /// Decimals of torques, and of reactions and motions of the base, as on the command line.
 const TORQUE_DECIMALS: usize = 6;
@@ -95,8 +97,7 @@ impl Report<'_> {
             let is_default = typed == change::DEFAULT_WORD || change::same_value(&value, &change::value(key.default));
             if is_wanted(key) && !is_default {
                 // Lists of mixed units, such as m and rad, stay in SI units.
-                // Angles of several turns have a unit that says so.
-                let unit = if key.unit().starts_with("rad, ") { "rad" } else { key.unit() };
+                let unit = if key.unit_of_each().is_empty() { key.unit() } else { key.unit_of_each() };
                 let shown = self.notation.shown_unit(unit).filter(|_| change::is_of_numbers(&value));
                 let factor = shown.map(|shown| shown.factor);
                 let unit = shown.map_or(unit, |shown| shown.name);
@@ -191,39 +192,11 @@ fn shortened(value: &str) -> String {
     }
 }
 
-/// A column of the table of runs.
-struct Column {
-    /// Its index among all columns.
-    place: usize,
-    head: String,
-    factor: f64,
-    decimals: usize,
-}
-
-impl Column {
-    fn of<T>(place: usize, column: &SummaryColumn<T>, notation: Notation) -> Self {
-        let SummaryColumn { head, term, unit, decimals, .. } = *column;
-        let name = if notation.names == NameOrder::Symbols { head } else { term };
-        let unit = if unit == "1" { "" } else { unit };
-        let shown = notation.shown_unit(unit);
-        let (factor, decimals) = shown.map_or((1.0, decimals), |shown| (shown.factor, shown.decimals(decimals)));
-        Self { place, head: notation.head(name, unit), factor, decimals }
-    }
-}
-
 /// Returns the table of runs in the order on display; columns without a value are left out.
 pub(super) fn compared(comparison: &Comparison, notation: Notation) -> String {
     let entries = comparison.entries();
-    let runs = || entries.iter().filter_map(|entry| Some(&entry.outcome.as_ref().ok()?.summary));
-    let moves = runs().any(|run: &Summary| run.base_shift > 0.0 || run.base_tilt > 0.0);
-    let has_value = |c: &SummaryColumn| runs().any(|run| (c.value)(run).is_some());
-    let is_shown = |c: &SummaryColumn| has_value(c) && (moves || !matches!(c.key, "base_shift" | "base_tilt"));
-    let of_runs =
-        SUMMARY_COLUMNS.iter().enumerate().filter(|(_, c)| is_shown(c)).map(|(i, c)| Column::of(i, c, notation));
-    let designs = if comparison.has_designs() { &DESIGN_COLUMNS[..] } else { &[] };
-    let of_designs = designs.iter().enumerate().map(|(i, c)| Column::of(SUMMARY_COLUMNS.len() + i, c, notation));
-    let columns: Vec<Column> = of_runs.chain(of_designs).collect();
-    let heads = columns.iter().map(|column| column.head.clone());
+    let columns = RunColumn::all(comparison, notation);
+    let heads = columns.iter().map(|column| headed(column.head, column.unit()));
     let names = ["number", "run"].map(String::from).into_iter();
     let mut table = PageTable::new(2, names.chain(heads).chain(["reactionless".to_owned()]));
     let mut refused = String::new();
@@ -231,8 +204,7 @@ pub(super) fn compared(comparison: &Comparison, notation: Notation) -> String {
         let entry = &entries[i];
         match &entry.outcome {
             Ok(run) => {
-                let value =
-                    |column: &Column| entry.value(column.place).map(|x| fixed(column.factor * x, column.decimals));
+                let value = |column: &RunColumn| column.value(entry).map(|x| fixed(x, column.format.decimals));
                 let cells = columns.iter().map(|column| value(column).unwrap_or_else(|| NO_VALUE.into()));
                 let verdict = run.summary.verdict.answer();
                 table.row([(i + 1).to_string(), entry.title.clone()].into_iter().chain(cells).chain([verdict]));

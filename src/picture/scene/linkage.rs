@@ -2,11 +2,13 @@
 //!
 //! Links that share a pin follow different drives, so each drive has its own layer and links do not intersect.
 
+mod bodies;
+
 use std::sync::Arc;
 
 use super::mesh::{bar, cylinder};
 use super::palette::{Palette, faded, mix};
-use super::{Body, ItemChanges, Mesh, MeshSet, Name, Rgba, Shadow, Solid, point, posed};
+use super::{ItemChanges, Mesh, MeshSet, Name, Rgba, Shadow, Solid, posed};
 use stillbase_mechanics::machine::{Chain, Machine, ResolvedLink, place_of};
 use stillbase_mechanics::planar::{Pose2, UnitVectors, Vector, unit};
 
@@ -21,11 +23,11 @@ pub struct LinkageModel {
     pin: usize,
     hole: usize,
     motors: Vec<Motor>,
-    plate: usize,
-    body: usize,
-    cap: usize,
+    plate: Disc,
+    /// Plate of a moving base.
+    body: Slab,
+    cap: Disc,
     reach: f64,
-    top: f64,
 }
 
 /// A link with its counterweight.
@@ -48,9 +50,51 @@ pub struct Bar {
     span: [f64; 2],
     /// Half its width, m.
     radius: f64,
-    /// Position along the link and radius of each counterweight, m.
-    weights: Vec<[f64; 2]>,
+    /// Its height from its lower to its upper face, m.
+    height: f64,
+    weights: Vec<Weight>,
     z: f64,
+}
+
+/// A counterweight of a link, in the mesh of the link.
+#[derive(Clone, Copy, Debug)]
+struct Weight {
+    /// Position along the link, m.
+    at: f64,
+    /// Radius, m.
+    radius: f64,
+    /// Height of its lower face above that of the link, m; negative, because it is thicker.
+    z: f64,
+    /// Height from its lower to its upper face, m.
+    height: f64,
+}
+
+/// A mesh around a vertical axis.
+#[derive(Clone, Copy, Debug)]
+struct Disc {
+    mesh: usize,
+    /// Radius, m.
+    radius: f64,
+    /// Height, m.
+    height: f64,
+}
+
+impl Disc {
+    fn of(meshes: &mut Vec<Mesh>, radius: f64, height: f64, bevel: f64) -> Self {
+        Self { mesh: added(meshes, cylinder(radius, height, bevel)), radius, height }
+    }
+}
+
+/// A plate with round ends.
+#[derive(Clone, Copy, Debug)]
+struct Slab {
+    mesh: usize,
+    /// Distance of the centres of its ends from its own, m.
+    half_length: f64,
+    /// Half its width, m.
+    radius: f64,
+    /// Height, m.
+    height: f64,
 }
 
 /// A link seen from straight above.
@@ -79,7 +123,7 @@ struct Pin {
 #[derive(Clone, Debug)]
 struct Motor {
     name: Name,
-    mesh: usize,
+    disc: Disc,
     drive: usize,
     /// The pin about which it turns its link; `None` if it is mounted on the base.
     at: Option<Chain>,
@@ -110,31 +154,33 @@ impl LinkageModel {
         let carries = carriers(machine);
         let heaviest = machine.links().iter().fold(0.0_f64, |m, l| m.max(l.mass));
         let mut meshes = Vec::new();
-        let mut add = |mesh: Mesh| {
-            meshes.push(mesh);
-            meshes.len() - 1
-        };
         let mut bars = Vec::new();
         for (j, (link, part)) in machine.links().iter().zip(machine.resolved_links()).enumerate() {
             let radius = reach * if carries[j] { BAR_RADIUS } else { THIN_BAR_RADIUS };
             let ends = part.pins.iter().copied().chain([part.length]);
             let (from, to) = ends.fold((0.0_f64, 0.0_f64), |(a, b), s| (a.min(s), b.max(s)));
             let weights = machine.spec().counterweights.iter().filter(|weight| weight.link == link.name);
-            let mut discs: Vec<[f64; 2]> = weights.map(|w| [w.at, w.radius.max(1.5 * radius)]).collect();
+            let disc = |at: f64, size: f64| Weight {
+                at,
+                radius: size.max(1.5 * radius),
+                z: -0.3 * height,
+                height: 1.6 * height,
+            };
+            let mut discs: Vec<Weight> = weights.map(|w| disc(w.at, w.radius)).collect();
             if discs.is_empty() && (link.com < from || link.com > to) {
                 // If the centre of mass is beyond the ends, a disc there suggests a counterweight; area ∝ mass of the
                 // link.
-                discs.push([link.com, (reach * WEIGHT_RADIUS * (link.mass / heaviest).sqrt()).max(1.5 * radius)]);
+                discs.push(disc(link.com, reach * WEIGHT_RADIUS * (link.mass / heaviest).sqrt()));
             }
-            let span = discs.iter().fold([from, to], |[from, to], [at, _]| [from.min(*at), to.max(*at)]);
+            let span = discs.iter().fold([from, to], |[from, to], disc| [from.min(disc.at), to.max(disc.at)]);
             let mut mesh = bar(span[0], span[1], radius, height, 0.2 * height);
-            for [at, size] in &discs {
-                append(&mut mesh, &cylinder(*size, 1.6 * height, 0.2 * height), [*at, 0.0, -0.3 * height]);
+            for disc in &discs {
+                append(&mut mesh, &cylinder(disc.radius, disc.height, 0.2 * height), [disc.at, 0.0, disc.z]);
             }
             bars.push(Bar {
                 name: link.name.clone(),
                 item: format!("machine/link/{}", link.name).into(),
-                mesh: add(mesh),
+                mesh: added(&mut meshes, mesh),
                 drive: part.drive,
                 carries_tip: carries[j],
                 root: part.root,
@@ -142,6 +188,7 @@ impl LinkageModel {
                 length: part.length,
                 span,
                 radius,
+                height,
                 weights: discs,
                 z: layer(part.drive),
             });
@@ -149,8 +196,8 @@ impl LinkageModel {
         let mut pins = Vec::new();
         let radius = 0.62 * THIN_BAR_RADIUS * reach;
         let shortest = height + 2.0 * gap;
-        let pin = add(cylinder(1.25 * radius, shortest, 0.15 * radius));
-        let hole = add(cylinder(0.7 * radius, 0.2 * gap, 0.0));
+        let pin = added(&mut meshes, cylinder(1.25 * radius, shortest, 0.15 * radius));
+        let hole = added(&mut meshes, cylinder(0.7 * radius, 0.2 * gap, 0.0));
         for (at, links) in joints(machine) {
             let drives = links.iter().map(|j| machine.resolved_links()[*j].drive);
             let (low, high) = drives.fold((usize::MAX, 0), |(low, high), k| (low.min(k), high.max(k)));
@@ -174,30 +221,20 @@ impl LinkageModel {
                     -f64::from(on_base) * drive_height
                 }
             };
-            let mesh = add(cylinder(size * drive_radius, 0.92 * drive_height, 0.1 * drive_height));
+            let disc = Disc::of(&mut meshes, size * drive_radius, 0.92 * drive_height, 0.1 * drive_height);
             let on = if at.is_some() { "machine" } else { "machine/base" };
-            Motor { name: format!("{on}/drive/{}", k + 1).into(), mesh, drive: k, at, z: below - gap }
+            Motor { name: format!("{on}/drive/{}", k + 1).into(), disc, drive: k, at, z: below - gap }
         };
         let motors: Vec<Motor> = (0..n).map(motor).collect();
-        let plate = add(cylinder(2.0 * drive_radius, 0.3 * drive_height, 0.05 * drive_height));
-        // Plate of a moving base.
+        let (plate_height, plate_bevel) = (0.3 * drive_height, 0.05 * drive_height);
+        let plate = Disc::of(&mut meshes, 2.0 * drive_radius, plate_height, plate_bevel);
         let [length, width] = PLATE_HALF_SIZE.map(|part| part * reach);
-        let body = add(bar(width - length, length - width, width, 0.3 * drive_height, 0.05 * drive_height));
+        let half_length = length - width;
+        let mesh = added(&mut meshes, bar(-half_length, half_length, width, plate_height, plate_bevel));
+        let body = Slab { mesh, half_length, radius: width, height: plate_height };
         let top = layer(n - 1) + height;
-        let cap = add(cylinder(0.6 * drive_radius, top + 2.0 * gap, 0.2 * gap));
-        Self {
-            model: Arc::new(MeshSet { meshes }),
-            bars,
-            pins,
-            pin,
-            hole,
-            motors,
-            plate,
-            body,
-            cap,
-            reach,
-            top: top + 2.0 * gap,
-        }
+        let cap = Disc::of(&mut meshes, 0.6 * drive_radius, top + 2.0 * gap, 0.2 * gap);
+        Self { model: Arc::new(MeshSet { meshes }), bars, pins, pin, hole, motors, plate, body, cap, reach }
     }
 
     /// Upper bound of the end effector's distance from B, m.
@@ -212,25 +249,23 @@ impl LinkageModel {
 
     /// Height above every link, m.
     pub fn top(&self) -> f64 {
-        self.top
+        self.cap.height
     }
 
     /// Height of the plate under the drives, m; negative, because it lies below the links.
     pub fn bottom(&self) -> f64 {
         let on_base = self.motors.iter().filter(|motor| motor.at.is_none());
-        on_base.fold(0.0_f64, |m, motor| m.min(motor.z)) - 0.015 * self.reach
+        on_base.fold(0.0_f64, |m, motor| m.min(motor.z)) - self.plate.height
     }
 
     /// Radius of the plate under the drives, m.
     pub fn foot(&self) -> f64 {
-        2.0 * DRIVE_RADIUS * self.reach
+        self.plate.radius
     }
 
     /// Adds a mesh and returns its index.
     pub fn add(&mut self, mesh: Mesh) -> usize {
-        let meshes = &mut Arc::make_mut(&mut self.model).meshes;
-        meshes.push(mesh);
-        meshes.len() - 1
+        added(&mut Arc::make_mut(&mut self.model).meshes, mesh)
     }
 
     /// The links.
@@ -261,7 +296,7 @@ impl LinkageModel {
             FlatLink {
                 ends: bar.span.map(|s| root + along * s),
                 radius: bar.radius,
-                weights: bar.weights.iter().map(|[s, radius]| (root + along * *s, *radius)).collect(),
+                weights: bar.weights.iter().map(|disc| (root + along * disc.at, disc.radius)).collect(),
                 drive: bar.drive,
             }
         };
@@ -285,17 +320,17 @@ impl LinkageModel {
             colour,
             changes: with_base,
         };
-        solids.push(turned("machine/base".into(), self.plate, under, grey));
+        solids.push(turned("machine/base".into(), self.plate.mesh, under, grey));
         if moves {
             let colour = mix(grey, palette.line, 0.5);
-            solids.push(turned("machine/base/body".into(), self.body, under - 0.002 * self.reach, colour));
+            solids.push(turned("machine/base/body".into(), self.body.mesh, under - 0.002 * self.reach, colour));
         }
         for motor in &self.motors {
             let colour = mix(palette.drive(motor.drive), grey, 0.45);
             let name = motor.name.clone();
             solids.push(match &motor.at {
-                Some(at) => upright(name, motor.mesh, place_of(at, e), motor.z, colour, ItemChanges::Pose),
-                None => turned(name, motor.mesh, motor.z, colour),
+                Some(at) => upright(name, motor.disc.mesh, place_of(at, e), motor.z, colour, ItemChanges::Pose),
+                None => turned(name, motor.disc.mesh, motor.z, colour),
             });
         }
         solids.extend(self.bars.iter().map(|bar| bar.solid(e, base.at, palette.drive(bar.drive))));
@@ -307,37 +342,8 @@ impl LinkageModel {
             let colour = palette.background;
             solids.push(upright("machine/joints/holes".into(), self.hole, at, pin.z[1], colour, ItemChanges::Pose));
         }
-        solids.push(turned("machine/base/cap".into(), self.cap, 0.0, grey));
+        solids.push(turned("machine/base/cap".into(), self.cap.mesh, 0.0, grey));
         solids
-    }
-
-    /// Returns links, counterweights, drives and base as strips and discs; `moves` says whether the base can move.
-    pub fn bodies(&self, e: &UnitVectors, base: Pose2, moves: bool) -> impl Iterator<Item = Body> {
-        let (e, reach) = (*e, self.reach);
-        let body = move |ends: [(Vector, f64); 2], radius: f64, height: f64| Body {
-            ends: ends.map(|(p, z)| point(base.at + p, z)),
-            radius: radius as f32,
-            height: (height * reach) as f32,
-        };
-        let links = self.bars.iter().flat_map(move |bar| {
-            let (root, along, z) = bar.pose(&e);
-            let link = body(bar.span.map(|s| (root + along * s, z)), bar.radius, BAR_HEIGHT);
-            let under = z - 0.3 * BAR_HEIGHT * reach;
-            let disc = move |[s, radius]: &[f64; 2]| body([(root + along * *s, under); 2], *radius, 1.6 * BAR_HEIGHT);
-            bar.weights.iter().map(disc).chain([link])
-        });
-        let drives = self.motors.iter().filter_map(move |motor| {
-            let at = (place_of(motor.at.as_ref()?, &e), motor.z);
-            Some(body([at; 2], 0.75 * DRIVE_RADIUS * reach, 0.05))
-        });
-        let centre = Vector::default();
-        let foot = body([(centre, self.bottom()); 2], self.foot(), 0.015);
-        // The drives on the base and the cap above the links.
-        let column = body([(centre, self.bottom()), (centre, self.top)], 1.25 * DRIVE_RADIUS * reach, 0.0);
-        let [length, width] = PLATE_HALF_SIZE.map(|part| part * reach);
-        let end = move |side: f64| (unit(base.angle) * (side * (length - width)), self.bottom());
-        let plate = moves.then(|| body([end(-1.0), end(1.0)], width, 0.015));
-        links.chain(drives).chain([foot, column]).chain(plate)
     }
 
     /// Returns the shadows of the links on the floor, in light from the upper left; `base` is the position of the base,
@@ -345,8 +351,7 @@ impl LinkageModel {
     pub fn shadows(&self, e: &UnitVectors, base: Vector) -> impl Iterator<Item = Shadow> {
         let (e, floor) = (*e, self.floor());
         self.bars.iter().map(move |bar| {
-            let [width, height] =
-                [if bar.carries_tip { BAR_RADIUS } else { THIN_BAR_RADIUS }, BAR_HEIGHT].map(|part| part * self.reach);
+            let (width, height) = (bar.radius, bar.height);
             let ends = bar.ends(&e).map(|[x, y, z]| {
                 let away = base + Vector::new(x, y) + SHADOW_SHIFT * (z + 0.5 * height - floor);
                 [away.re as f32, away.im as f32]
@@ -476,6 +481,12 @@ fn joints(machine: &Machine) -> Vec<(Chain, Vec<usize>)> {
         }
     }
     joints
+}
+
+/// Adds a mesh and returns its index.
+fn added(meshes: &mut Vec<Mesh>, mesh: Mesh) -> usize {
+    meshes.push(mesh);
+    meshes.len() - 1
 }
 
 fn reach_of(machine: &Machine) -> f64 {

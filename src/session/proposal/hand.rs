@@ -7,7 +7,7 @@ use super::Proposal;
 use super::value::{numbers, taking};
 use crate::edit::Edit;
 use crate::interactive::Session;
-use crate::scenario::POSE_CONSTANT_RANGE;
+use crate::scenario::{POSE_CONSTANT_RANGE, name_of};
 use crate::verdict::LIMIT_TOLERANCE;
 use stillbase_mechanics::planar::Vector;
 use stillbase_planning::common::nearest_place;
@@ -112,7 +112,7 @@ impl Session {
         let back = before.map(|before| {
             let bounds = numbers(&before).unwrap_or_default();
             let words: Vec<String> = bounds.iter().map(|x| format!("{x:.3}")).collect();
-            let text = format!("put {key} back to {} rad", words.join(" to "));
+            let text = format!("put the {} back to {} rad", name_of(&key), words.join(" to "));
             Proposal { text, ..taking(&key, before) }
         });
         let why = format!("{} is at {now:.3} rad, outside its limits of {low:.3} to {high:.3} rad", angle.name);

@@ -1,5 +1,6 @@
 //! Changes of a task that may lead out of a refusal. Whether one does, a trial shows.
 
+use super::points::ReachablePoints;
 use super::value::taking;
 use super::{Proposal, round_up};
 use crate::design::balancing_change;
@@ -8,7 +9,6 @@ use crate::refusal::Refusal;
 use crate::scenario::{MAX_STEPS, PathShape, Scenario, Task, TaskKind};
 use stillbase_mechanics::machine::Inertia;
 use stillbase_mechanics::planar::{Vector, unit};
-use stillbase_planning::common::{nearest_common_place, nearest_place};
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::reactionless::Decimal;
 use stillbase_planning::timing::TimeLaw;
@@ -34,13 +34,7 @@ pub(super) fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal
     match refusal {
         Refusal::Edit { refusal, .. } => return candidates(scenario, refusal),
         Refusal::NoCommonPlane { why, .. } => {
-            let shown = why.correction.and_then(|correction| Some((correction.point, correction.shown?)));
-            found.extend(shown.and_then(|(point, shown)| {
-                let mut change = task.moving(point, shown.point())?;
-                change.insert("b".into(), shown.b.value().into());
-                let [x, y] = shown.to;
-                Some(Proposal::of_task(format!("move {} to ({x}, {y}) m", task.name_of(point)), change))
-            }));
+            found.extend(ReachablePoints::mended(why).and_then(|mended| moved(task, &mended)));
         }
         Refusal::OutOfRange { what, value, want: Requirement::Within(range) } => {
             found.push(taking(what, value.clamp(range.low(), range.high())));
@@ -110,20 +104,24 @@ fn moved_point(scenario: &Scenario, name: &str) -> Vec<Proposal> {
     let points = task.points();
     let Some(i) = (0..points.len()).find(|i| task.name_of(*i) == name) else { return Vec::new() };
     let Ok(space) = PoseSpace::of(&scenario.machine) else { return Vec::new() };
-    let moved = |[x, y]: [Decimal; 2], b: Option<Decimal>| {
-        let to = Vector::new(x.value(), y.value());
-        if to == points[i] {
-            // Another b alone is proposed elsewhere.
-            return None;
-        }
-        let mut change = task.moving(i, to)?;
-        let at = b.map_or_else(String::new, |b| format!(", at b = {b} rad"));
-        change.extend(b.map(|b| ("b".to_owned(), b.value().into())));
-        Some(Proposal::of_task(format!("move {name} to ({x}, {y}) m{at}"), change))
+    let held = ReachablePoints::at_b(&space, &points, i, task.b);
+    let shared = ReachablePoints::shared_by(&space, &points, i);
+    // Another b alone is proposed elsewhere.
+    let ways = [held, shared].into_iter().flatten().filter(|way| way.applied(&points) != points);
+    let proposal = |way: ReachablePoints| {
+        let found = moved(task, &way)?;
+        let at = way.b.map_or_else(String::new, |b| format!(", at b = {b} rad"));
+        Some(Proposal { text: found.text + &at, ..found })
     };
-    let held = nearest_place(&space, points[i], Some(task.b)).and_then(|to| moved(to, None));
-    let shown = nearest_common_place(&space, &points, i).and_then(|mend| mend.shown);
-    held.into_iter().chain(shown.and_then(|shown| moved(shown.to, Some(shown.b)))).collect()
+    ways.filter_map(proposal).collect()
+}
+
+/// Proposes points of a task that can be reached, with the b that they need.
+fn moved(task: &Task, way: &ReachablePoints) -> Option<Proposal> {
+    let [(point, [x, y])] = way.moved[..] else { return None };
+    let mut change = task.moving(point, Vector::new(x.value(), y.value()))?;
+    change.extend(way.b.map(|b| ("b".to_owned(), b.value().into())));
+    Some(Proposal::of_task(way.moves_in_words(&|i| task.name_of(i)), change))
 }
 
 /// Proposes a task made for the machine.

@@ -3,10 +3,10 @@
 use toml::{Table, Value};
 
 use super::Proposal;
-use crate::scenario::key_of;
+use crate::scenario::{key_of, name_of};
 use stillbase_planning::reactionless::Decimal;
 use stillbase_settings::change::{DEFAULT_WORD, join, leaves, number, single_change, typed};
-use stillbase_settings::key::KeyType;
+use stillbase_settings::key::{Key, KeyType};
 use stillbase_settings::number::ShortNumber;
 use stillbase_settings::range::Range;
 
@@ -15,19 +15,39 @@ const BISECTIONS: usize = 40;
 /// Rounding may move a value back by this fraction of the way from the present value to the wanted one.
 const ROUNDING: f64 = 2e-3;
 
-/// Returns the proposal to give a key a value.
-pub(super) fn taking(path: &str, value: impl Into<Value>) -> Proposal {
-    let value = value.into();
-    Proposal::new(format!("take {path} = {}", shown(&value)), single_change(path, value))
+impl Proposal {
+    /// Returns the proposal to give keys values; `verb` says what that is: `take duration from A to B = 0.8 s`.
+    pub(super) fn of_values(verb: &str, values: &[(String, Value)]) -> Self {
+        let text: Vec<String> =
+            values.iter().map(|(path, value)| format!("{} = {}", name_of(path), shown(path, value))).collect();
+        let change = values.iter().map(|(path, value)| single_change(path, value.clone()));
+        Self::new(format!("{verb} {}", text.join(", ")), change.fold(Table::new(), |all, one| join(all, &one)))
+    }
 }
 
-/// Returns a value as it may be typed, in few digits.
-fn shown(value: &Value) -> String {
-    match (value, numbers(value)) {
-        (Value::Float(_) | Value::Array(_), Some(all)) => {
-            all.into_iter().map(|x| ShortNumber(x).to_string()).collect::<Vec<_>>().join(",")
+/// Returns the proposal to give a key a value.
+pub(super) fn taking(path: &str, value: impl Into<Value>) -> Proposal {
+    Proposal::of_values("take", &[(path.to_owned(), value.into())])
+}
+
+/// Returns a value for reading, in few digits, with the unit of its key.
+fn shown(path: &str, value: &Value) -> String {
+    let unit = key_of(path).map_or("", Key::unit_of_each);
+    let with_unit = |number: &str| if unit.is_empty() { number.to_owned() } else { format!("{number} {unit}") };
+    let Some(all) = numbers(value) else { return typed(value) };
+    let short: Vec<String> = all.iter().map(|x| ShortNumber(*x).to_string()).collect();
+    match &short[..] {
+        [] => "none".into(),
+        [one] => with_unit(one),
+        several if several.iter().any(|x| x.contains('e')) => {
+            several.iter().map(|x| with_unit(x)).collect::<Vec<_>>().join(", ")
         }
-        _ => typed(value),
+        several => {
+            // Numbers with equally many decimals, not 0, share the unit after the last of them.
+            let count = |x: &String| x.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+            let decimals = several.iter().map(count).fold(1, usize::max);
+            with_unit(&all.iter().map(|x| format!("{x:.decimals$}")).collect::<Vec<_>>().join(", "))
+        }
     }
 }
 
@@ -51,12 +71,7 @@ pub(super) fn nearest_values(
     accepts: &dyn Fn(&Table) -> bool,
 ) -> Option<Proposal> {
     let all: Vec<(String, &Value)> = leaves(wanted);
-    let of = |changed: &[(String, Value)]| {
-        let text: Vec<String> = changed.iter().map(|(path, value)| format!("{path} = {}", shown(value))).collect();
-        let change =
-            changed.iter().fold(Table::new(), |all, (path, value)| join(all, &single_change(path, value.clone())));
-        (!change.is_empty()).then(|| Proposal::new(format!("take {}", text.join(", ")), change))
-    };
+    let of = |changed: &[(String, Value)]| (!changed.is_empty()).then(|| Proposal::of_values("take", changed));
     // First every value is brought into the range of its key.
     let ranged: Vec<(String, Value)> = all
         .iter()
@@ -87,9 +102,7 @@ pub(super) fn nearest_values(
 pub(super) fn taking_back(wanted: &Table, present: &dyn Fn(&str) -> Option<Value>) -> Option<Proposal> {
     let kept: Vec<(String, Value)> =
         leaves(wanted).into_iter().filter_map(|(path, _)| Some((path.clone(), present(&path)?))).collect();
-    let text: Vec<String> = kept.iter().map(|(path, value)| format!("{path} = {}", shown(value))).collect();
-    let change = kept.iter().fold(Table::new(), |all, (path, value)| join(all, &single_change(path, value.clone())));
-    (!change.is_empty()).then(|| Proposal::new(format!("keep {}", text.join(", ")), change))
+    (!kept.is_empty()).then(|| Proposal::of_values("keep", &kept))
 }
 
 /// Returns the value nearest to `value` among those that a key accepts by its type and range; `None` if none is near.

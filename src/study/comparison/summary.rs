@@ -64,39 +64,47 @@ pub struct SummaryColumn<T = Summary> {
     pub unit: &'static str,
     /// Number of decimals shown.
     pub decimals: usize,
+    /// Columns with lower priority give way first where space is short.
+    pub priority: u8,
     /// Returns the value; `None` if the row has none.
     pub value: fn(&T) -> Option<f64>,
 }
 
 /// Columns of the table, in order.
 pub const SUMMARY_COLUMNS: [SummaryColumn; 15] = [
-    column("time", "time", "T", "time of the motion", "s", 3, |s| Some(s.time)),
-    column("peak_moment", "peak moment", "peak n", "largest moment that the base feels", "N m", 4, |s| {
+    column(["time", "time", "T", "time of the motion"], "s", 3, 14, |s| Some(s.time)),
+    column(["peak_moment", "peak moment", "peak n", "largest moment that the base feels"], "N m", 4, 24, |s| {
         Some(s.peak_moment)
     }),
-    column("rms_moment", "RMS moment", "rms n", "its root mean square", "N m", 4, |s| Some(s.rms_moment)),
-    column("moment_impulse", "moment impulse", "∫|n|dt", "its impulse", "N m s", 4, |s| Some(s.moment_impulse)),
-    column("peak_force", "peak force", "peak f", "largest force on the base, from motion", "N", 4, |s| {
+    column(["rms_moment", "RMS moment", "rms n", "its root mean square"], "N m", 4, 10, |s| Some(s.rms_moment)),
+    column(["moment_impulse", "moment impulse", "∫|n|dt", "its impulse"], "N m s", 4, 8, |s| Some(s.moment_impulse)),
+    column(["peak_force", "peak force", "peak f", "largest force on the base, from motion"], "N", 4, 23, |s| {
         Some(s.peak_force)
     }),
-    column("rms_force", "RMS force", "rms f", "its root mean square", "N", 4, |s| Some(s.rms_force)),
-    column("force_impulse", "force impulse", "∫|f|dt", "its impulse", "N s", 4, |s| Some(s.force_impulse)),
-    column("base_shift", "base shift", "shift", "largest displacement of the base", "m", 5, |s| Some(s.base_shift)),
-    column("base_tilt", "base angle", "angle", "largest angle of the base", "rad", 5, |s| Some(s.base_tilt)),
-    column("miss", "miss", "miss", "distance of the end effector from its target at the end", "m", 5, |s| Some(s.miss)),
-    column("peak_torque", "peak torque", "peak τ", "largest torque of any drive", "N m", 4, |s| Some(s.peak_torque)),
-    column("energy", "energy", "energy", "energy that motors took, none given back", "J", 4, |s| Some(s.energy)),
-    column("wheel_rate", "wheel rate", "wheel", "largest rate of the reaction wheel", "rad/s", 1, |s| s.wheel_rate),
-    column("saturated_at", "saturates at", "saturates", "when the wheel could give no more", "s", 3, |s| {
+    column(["rms_force", "RMS force", "rms f", "its root mean square"], "N", 4, 6, |s| Some(s.rms_force)),
+    column(["force_impulse", "force impulse", "∫|f|dt", "its impulse"], "N s", 4, 5, |s| Some(s.force_impulse)),
+    column(["base_shift", "base shift", "shift", "largest displacement of the base"], "m", 5, 19, |s| {
+        Some(s.base_shift)
+    }),
+    column(["base_tilt", "base angle", "angle", "largest angle of the base"], "rad", 5, 18, |s| Some(s.base_tilt)),
+    column(["miss", "miss", "miss", "distance of the end effector from its target at the end"], "m", 5, 15, |s| {
+        Some(s.miss)
+    }),
+    column(["peak_torque", "peak torque", "peak τ", "largest torque of any drive"], "N m", 4, 22, |s| {
+        Some(s.peak_torque)
+    }),
+    column(["energy", "energy", "energy", "energy that motors took, none given back"], "J", 4, 20, |s| Some(s.energy)),
+    column(["wheel_rate", "wheel rate", "wheel", "largest rate of the reaction wheel"], "rad/s", 1, 12, |s| {
+        s.wheel_rate
+    }),
+    column(["saturated_at", "saturates at", "saturates", "when the wheel could give no more"], "s", 3, 7, |s| {
         s.saturated_at
     }),
     column(
-        "peak_arm_moment",
-        "peak arm moment",
-        "peak n_B",
-        "largest moment of the arm, before the wheel",
+        ["peak_arm_moment", "peak arm moment", "peak n_B", "largest moment of the arm, before the wheel"],
         "N m",
         4,
+        13,
         |s| s.peak_arm_moment,
     ),
 ];
@@ -109,15 +117,13 @@ impl SummaryColumn {
 }
 
 pub(super) const fn column<T>(
-    key: &'static str,
-    term: &'static str,
-    head: &'static str,
-    meaning: &'static str,
+    [key, term, head, meaning]: [&'static str; 4],
     unit: &'static str,
     decimals: usize,
+    priority: u8,
     value: fn(&T) -> Option<f64>,
 ) -> SummaryColumn<T> {
-    SummaryColumn { key, term, head, meaning, unit, decimals, value }
+    SummaryColumn { key, term, head, meaning, unit, decimals, priority, value }
 }
 
 impl Summary {

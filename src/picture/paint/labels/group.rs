@@ -52,14 +52,8 @@ pub struct Choice {
 /// Returns all ways and shifts, the cheapest first.
 pub fn choices() -> Arc<[Choice]> {
     let shifts = SHIFTS_X_PT.iter().flat_map(|x| (-SHIFTS_Y..=SHIFTS_Y).map(|i| vec2(*x, i as f32 * SHIFT_Y_PT)));
-    let choice = |shift: Vec2, (way, cost): (Way, f32)| Choice {
-        rows: 0,
-        way,
-        shift,
-        cost: cost + shift.y.abs() + 0.6 * shift.x.abs(),
-        held: 0,
-    };
-    let mut all: Vec<Choice> = shifts.flat_map(|shift| WAYS.map(|way| choice(shift, way))).collect();
+    let choice = |shift: Vec2, way: Way| Choice { rows: 0, way, shift, cost: way.cost(shift), held: 0 };
+    let mut all: Vec<Choice> = shifts.flat_map(|shift| WAYS.map(|(way, _)| choice(shift, way))).collect();
     all.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     all.into()
 }
@@ -157,7 +151,7 @@ impl<'a> Group<'a> {
     pub fn choose(&self, room: &Room, all: &[Choice], before: Option<Choice>, released: bool) -> Option<Choice> {
         let before = before.filter(|choice| choice.rows <= self.rows.len()).and_then(|choice| {
             let missing = (self.rows.len() - choice.rows) as f32 * ROW_COST;
-            let own = Choice { cost: choice.way.cost() + choice.shift.y.abs() + 0.6 * choice.shift.x.abs(), ..choice };
+            let own = Choice { cost: choice.way.cost(choice.shift), ..choice };
             self.priced(room, own, 0.0).map(|cost| Choice { cost: cost + missing, ..choice })
         });
         if let Some(mut before) = before {
@@ -224,8 +218,10 @@ impl<'a> Group<'a> {
 }
 
 impl Way {
-    fn cost(self) -> f32 {
-        WAYS.iter().find(|(way, _)| *way == self).map_or(0.0, |(_, cost)| *cost)
+    /// Returns the cost of standing so at a shift, points.
+    fn cost(self, shift: Vec2) -> f32 {
+        let own = WAYS.iter().find(|(way, _)| *way == self).map_or(0.0, |(_, cost)| *cost);
+        own + shift.y.abs() + 0.6 * shift.x.abs()
     }
 }
 

@@ -1,0 +1,53 @@
+//! [`RunColumn`]: a column of the table of runs, as the window and a report show it.
+
+use crate::notation::{NameOrder, Notation, NumberFormat};
+use stillbase_study::comparison::{Comparison, ComparisonEntry, DESIGN_COLUMNS, SUMMARY_COLUMNS, SummaryColumn};
+
+/// Keys of the columns that need a base that moves.
+const OF_MOVING_BASE: [&str; 2] = ["base_shift", "base_tilt"];
+
+/// A column in the user's units and names.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RunColumn {
+    /// Its index among all columns.
+    pub at: usize,
+    /// Its title, without unit.
+    pub head: &'static str,
+    /// What it means.
+    pub meaning: &'static str,
+    /// How its values are written; the unit `1` marks a ratio.
+    pub format: NumberFormat<'static>,
+    /// Columns with lower priority give way first where space is short.
+    pub priority: u8,
+}
+
+impl RunColumn {
+    fn of<T>(at: usize, column: &SummaryColumn<T>, notation: Notation) -> Self {
+        let SummaryColumn { term, head, meaning, unit, decimals, priority, .. } = *column;
+        let head = if notation.names == NameOrder::Symbols { head } else { term };
+        Self { at, head, meaning, format: notation.format(decimals, unit), priority }
+    }
+
+    /// Returns the columns that have a value in any row. Columns of base motion need a base that moves; columns of
+    /// designs need different machines.
+    pub fn all(comparison: &Comparison, notation: Notation) -> Vec<Self> {
+        let runs = || comparison.entries().iter().filter_map(|entry| Some(&entry.outcome.as_ref().ok()?.summary));
+        let moves = runs().any(|run| run.base_shift > 0.0 || run.base_tilt > 0.0);
+        let has_value = |column: &SummaryColumn| runs().any(|run| (column.value)(run).is_some());
+        let is_shown = |column: &SummaryColumn| has_value(column) && (moves || !OF_MOVING_BASE.contains(&column.key));
+        let of_runs = SUMMARY_COLUMNS.iter().enumerate().filter(|(_, column)| is_shown(column));
+        let designs = if comparison.has_designs() { &DESIGN_COLUMNS[..] } else { &[] };
+        let of_designs = (SUMMARY_COLUMNS.len()..).zip(designs).map(|(at, column)| Self::of(at, column, notation));
+        of_runs.map(|(at, column)| Self::of(at, column, notation)).chain(of_designs).collect()
+    }
+
+    /// Returns its unit as a title states it; empty for a ratio.
+    pub fn unit(&self) -> &'static str {
+        if self.format.unit == "1" { "" } else { self.format.unit }
+    }
+
+    /// Returns the value of a row in the unit on display, if it has one.
+    pub fn value(&self, entry: &ComparisonEntry) -> Option<f64> {
+        entry.value(self.at).map(|x| self.format.factor * x)
+    }
+}
