@@ -1,11 +1,14 @@
 //! Columns of the table of runs: their titles in two lines, and which of them have room.
 
-use egui::Ui;
+use std::sync::Arc;
+
+use egui::{Id, Ui};
 
 use crate::fit::width_of;
 use crate::theme::plain;
 use stillbase_picture::notation::{NameOrder, Notation};
 use stillbase_picture::numbers::signed;
+use stillbase_query::ByIdentity;
 use stillbase_study::comparison::{Comparison, ComparisonEntry, DESIGN_COLUMNS, SUMMARY_COLUMNS, SummaryColumn};
 
 /// Horizontal distance of columns, points.
@@ -49,6 +52,7 @@ const GIVE_WAY: [&str; 24] = [
 ];
 
 /// A column as it is drawn.
+#[derive(Debug)]
 pub struct Head {
     /// Its index among all columns.
     pub at: usize,
@@ -75,7 +79,7 @@ impl Head {
     }
 
     /// Returns the title with its unit in the two lines that need least width.
-    pub fn lines(&self, ui: &Ui) -> [String; 2] {
+    fn lines(&self, ui: &Ui) -> [String; 2] {
         let unit = if self.unit == "1" { "" } else { self.unit };
         let words: Vec<&str> = self.head.split(' ').collect();
         let divided = |first: usize| {
@@ -110,7 +114,7 @@ fn head_width(ui: &Ui, text: &str) -> f32 {
 
 /// Returns the columns that have a value in any row. Columns of base motion need a base that moves; columns of
 /// designs need different machines.
-pub fn all(comparison: &Comparison, notation: Notation) -> Vec<Head> {
+fn all(comparison: &Comparison, notation: Notation) -> Vec<Head> {
     let runs = || comparison.entries().iter().filter_map(|e| e.outcome.as_ref().ok());
     let moves = runs().any(|r| r.summary.base_shift > 0.0 || r.summary.base_tilt > 0.0);
     let has_value = |c: &SummaryColumn| runs().any(|r| (c.value)(&r.summary).is_some());
@@ -121,8 +125,41 @@ pub fn all(comparison: &Comparison, notation: Notation) -> Vec<Head> {
     of_runs.map(|(i, c)| Head::of(i, c, notation)).chain(of_designs).collect()
 }
 
+/// Columns of a table of runs that have been measured for a width.
+#[derive(Debug)]
+pub struct ColumnLayout {
+    key: LayoutKey,
+    /// The columns that have room, each with its title in two lines.
+    pub columns: Vec<(Head, [String; 2])>,
+    /// Names of the others.
+    pub left_out: Vec<&'static str>,
+}
+
+/// All that a layout depends on: the table, the notation, the width, points, and the pixels per point.
+#[derive(Clone, Debug, PartialEq)]
+struct LayoutKey(ByIdentity<()>, Notation, f32, f32);
+
+/// Returns the columns that fit into `width`, points. They are measured again only when the table, the notation or the
+/// display has changed.
+pub fn laid_out(ui: &Ui, comparison: &Comparison, notation: Notation, width: f32) -> Arc<ColumnLayout> {
+    let key = LayoutKey(comparison.version(), notation, width, ui.pixels_per_point());
+    let id = Id::unique("columns of the table of runs");
+    if let Some(known) = ui.data(|data| data.get_temp::<Arc<ColumnLayout>>(id)).filter(|known| known.key == key) {
+        return known;
+    }
+    let (columns, left_out) = fitting(ui, all(comparison, notation), comparison, width);
+    let with_lines = |head: Head| {
+        let lines = head.lines(ui);
+        (head, lines)
+    };
+    let columns = columns.into_iter().map(with_lines).collect();
+    let layout = Arc::new(ColumnLayout { key, columns, left_out });
+    ui.data_mut(|data| data.insert_temp(id, layout.clone()));
+    layout
+}
+
 /// Returns the columns that fit into `width`, points, beside the titles of the rows, and the names of the others.
-pub fn fitting(ui: &Ui, columns: Vec<Head>, comparison: &Comparison, width: f32) -> (Vec<Head>, Vec<&'static str>) {
+fn fitting(ui: &Ui, columns: Vec<Head>, comparison: &Comparison, width: f32) -> (Vec<Head>, Vec<&'static str>) {
     let titles = comparison.entries().iter().map(|entry| {
         let remove = if entry.added_by_user { REMOVE_WIDTH_PT } else { 0.0 };
         NUMBER_WIDTH_PT + width_of(ui, &entry.title, &plain(VALUE_SIZE_PT)) + remove
