@@ -74,14 +74,15 @@ fn buttons(ui: &mut Ui, comparison: &Comparison, commands: &mut Vec<Command>) {
 }
 
 fn table(ui: &mut Ui, p: &Palette, comparison: &Comparison, commands: &mut Vec<Command>) {
-    let all = RunColumn::all(comparison, notation::of(ui.ctx()));
-    let (columns, left_out) = columns::fitting(ui, all, comparison, ui.available_width() - MARK_WIDTH_PT);
+    let room = ui.available_width() - MARK_WIDTH_PT;
+    let layout = columns::laid_out(ui, comparison, notation::of(ui.ctx()), room);
+    let (columns, left_out) = (&layout.columns, &layout.left_out);
     ui.spacing_mut().button_padding = egui::vec2(0.0, 0.0);
     let grid = Grid::new("runs").num_columns(columns.len() + 3).spacing([COLUMN_GAP_PT, 5.0]).min_col_width(0.0);
     grid.show(ui, |ui| {
         ui.label("");
         ui.label(RichText::new("run").font(plain(11.5)).color(colour(p.dim)));
-        for column in &columns {
+        for column in columns {
             head(ui, p, comparison, column, commands);
         }
         if !left_out.is_empty() {
@@ -91,22 +92,27 @@ fn table(ui: &mut Ui, p: &Palette, comparison: &Comparison, commands: &mut Vec<C
         }
         ui.end_row();
         for i in comparison.order() {
-            row(ui, p, i, &comparison.entries()[i], &columns, commands);
+            row(ui, p, i, &comparison.entries()[i], columns, commands);
             ui.end_row();
         }
     });
 }
 
 /// Draws the title of a column in two lines; a click sorts by it.
-fn head(ui: &mut Ui, p: &Palette, comparison: &Comparison, column: &RunColumn, commands: &mut Vec<Command>) {
+fn head(
+    ui: &mut Ui,
+    p: &Palette,
+    comparison: &Comparison,
+    (column, [first, second]): &(RunColumn, [String; 2]),
+    commands: &mut Vec<Command>,
+) {
     let i = column.at;
     let arrow = match comparison.sorted() {
         Some((sorted, down)) if sorted == i => [" ↑", " ↓"][usize::from(down)],
         _ => "",
     };
     let strong = if arrow.is_empty() { p.dim } else { p.ink };
-    let [first, second] = columns::lines(ui, column);
-    let lines = [first, format!("{second}{arrow}")]
+    let lines = [first.clone(), format!("{second}{arrow}")]
         .map(|line| ui.painter().layout_no_wrap(line, plain(HEAD_SIZE_PT), colour(strong)));
     let size = egui::vec2(lines[0].size().x.max(lines[1].size().x), lines[0].size().y + lines[1].size().y);
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -134,7 +140,7 @@ fn row(
     p: &Palette,
     i: usize,
     entry: &ComparisonEntry,
-    columns: &[RunColumn],
+    columns: &[(RunColumn, [String; 2])],
     commands: &mut Vec<Command>,
 ) {
     let mut shown = entry.shown;
@@ -173,7 +179,7 @@ fn row(
     });
     match &entry.outcome {
         Ok(_) => {
-            for column in columns {
+            for (column, _) in columns {
                 let text = columns::written(column, entry);
                 let zero = text.chars().all(|c| matches!(c, '0' | '.' | '–'));
                 let tone = if zero { p.dim } else { p.ink };
@@ -198,21 +204,18 @@ fn row(
                         .layout(Layout::left_to_right(Align::Center)),
                 );
                 area.spacing_mut().button_padding = egui::vec2(6.0, 1.0);
-                if let Some(scenario) = least.and_then(|way| refused.with(way)) {
-                    let text = least.map_or_else(String::new, |way| way.text.clone());
-                    let text = notation::sentence(ui.ctx(), &text).into_owned();
+                // Scenario and explanation are made for the click and the hover only.
+                if let Some(way) = least.filter(|way| way.change().is_some()) {
+                    let text = notation::sentence(ui.ctx(), &way.text).into_owned();
                     let button = area.add(Button::new(RichText::new(text).font(plain(11.5))).small());
-                    name(&button, &format!("{}: {}", entry.title, least.map_or("", |way| &way.text)));
-                    let all: Vec<String> = refused
-                        .proposals
-                        .iter()
-                        .map(|way| format!("{}: {}", way.text, way.how().replace('\n', ", ")))
-                        .collect();
-                    if button
-                        .on_hover_text(format!("Runs it so, and keeps the run as a row\n{}", all.join("\n")))
-                        .clicked()
-                    {
-                        commands.push(WindowCommand::Comparison(ComparisonCommand::Add(Box::new(scenario))).into());
+                    name(&button, &format!("{}: {}", entry.title, way.text));
+                    let button = button.on_hover_ui(|ui| {
+                        ui.set_max_width(ui.spacing().tooltip_width);
+                        ui.label(format!("Runs it so, and keeps the run as a row\n{}", refused.ways_in_words()));
+                    });
+                    if button.clicked() {
+                        let add = |scenario| WindowCommand::Comparison(ComparisonCommand::Add(Box::new(scenario)));
+                        commands.extend(refused.with(way).map(add).map(Command::from));
                     }
                 }
                 let label = Label::new(RichText::new(&why).font(plain(11.5)).color(colour(p.dim)));

@@ -145,7 +145,7 @@ pub(super) struct ScenarioFacts<'a> {
     /// Number of poses that put the end effector at its present point, and the point's distance from the workspace
     /// boundary, m, positive inside. `None` for a machine without planes.
     pub standing: Option<(usize, f64)>,
-    /// Proposals for a target that is out of reach; none while it is being dragged.
+    /// Proposals for a target that is out of reach; none while it is being dragged, and until they are known.
     pub target_proposals: Arc<Vec<Proposal>>,
 }
 
@@ -159,16 +159,16 @@ impl<'a> ScenarioFacts<'a> {
         let at = frame.in_base(frame.end_effector);
         let stands =
             |planes: &Arc<Planes>| *queries.ask::<QuickWork<Standing>>(&(ByIdentity(planes.clone()), at, frame.b));
+        let missed = session.missed_target().filter(|_| !session.is_in_gesture());
+        // With several shapes for each point the search takes longer than a repaint.
+        let ways_out = |missed| queries.ask_in_background::<QuickWork<TargetProposals>>(&missed).known().cloned();
         Self {
             machine_differs: differs.machine,
             work_differs: differs.work,
             price: balance.pose_inertia * scenario.0.pose_acceleration,
             balance,
             standing: run.planes().map(stands),
-            target_proposals: session
-                .missed_target()
-                .filter(|_| !session.is_in_gesture())
-                .map_or_else(Arc::default, |missed| queries.ask::<QuickWork<TargetProposals>>(&missed)),
+            target_proposals: missed.and_then(ways_out).unwrap_or_default(),
             queries,
             scenario,
         }

@@ -121,15 +121,20 @@ impl NumberRow<'_> {
     fn own_number(&self, ui: &mut Ui, value: &mut f64) -> Response {
         let shown = ui.style().number_formatter.format(*value, self.decimals..=self.decimals);
         let before = *value;
+        // Reason of a refusal, and the number that was read, if it was one.
         let refused = Cell::new(None);
-        let out_of_range = Cell::new(None);
         let read = |text: &str| {
             // If the text is unchanged, the value keeps the digits that the text does not show.
             if text == shown {
                 return None;
             }
-            out_of_range.set(quantity::read(text, self.unit).ok());
-            self.read(text).map_err(|why| refused.set(Some(self.why_not(text, &why)))).ok()
+            let (why, number) = match quantity::read(text, self.unit) {
+                Ok(number) if self.range.contains(&number) => return Some(number),
+                Ok(number) => (self.allowed_range(), Some(number)),
+                Err(why) => (why.to_string(), None),
+            };
+            refused.set(Some((self.why_not(text, &why), number)));
+            None
         };
         let drag = DragValue::new(value)
             .custom_parser(read)
@@ -142,16 +147,17 @@ impl NumberRow<'_> {
         let mut response = ui.add(drag).on_hover_text(self.tip);
         // The factor is 1, because egui itself slows the drag with Shift.
         restrict(&mut response, value, before, &self.range, 1.0, self.round());
-        if let Some(why) = refused.take() {
-            let nearest = out_of_range.get().filter(|x| !x.is_nan());
+        if let Some((why, number)) = refused.take() {
+            let nearest = number.filter(|x| !x.is_nan());
             let nearest = nearest.map(|x| (response.id, x.clamp(*self.range.start(), *self.range.end())));
             let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
             let way_out = nearest
                 .map_or_else(String::new, |(_, x)| format!("take {} = {}{unit}", self.label, signed(x, self.decimals)));
             ui.data_mut(|data| data.insert_temp(refused_id(), RefusedEntry { why, nearest, way_out }));
         }
-        if let Some(taken) = ui.data_mut(|data| data.remove_temp::<f64>(taken_id(response.id))) {
-            *value = taken;
+        let taken = ui.data_mut(|data| data.remove_temp::<TakenNumber>(taken_id(response.id)));
+        if let Some(TakenNumber { number, .. }) = taken.filter(|taken| taken.is_of_last_pass(ui.ctx())) {
+            *value = number;
             // As if the number had been typed: the edit is an undo entry of its own.
             response.flags.insert(Flags::CHANGED | Flags::DRAG_STOPPED);
         }
@@ -159,16 +165,12 @@ impl NumberRow<'_> {
         response
     }
 
-    /// Parses a typed number, with units and arithmetic. Fails with the reason if it is not a number in range.
-    fn read(&self, text: &str) -> Result<f64, String> {
-        let number = quantity::read(text, self.unit).map_err(|why| why.to_string())?;
-        if self.range.contains(&number) {
-            return Ok(number);
-        }
+    /// Returns what is allowed, in words.
+    fn allowed_range(&self) -> String {
         let end = |x: f64| signed(x, self.decimals);
         let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
         let (low, high) = (end(*self.range.start()), end(*self.range.end()));
-        Err(format!("want a number from {low} to {high}{unit}"))
+        format!("want a number from {low} to {high}{unit}")
     }
 
     fn why_not(&self, text: &str, why: &str) -> String {
@@ -320,18 +322,34 @@ pub struct RefusedEntry {
 }
 
 impl RefusedEntry {
-    /// Draws the button that takes the nearest number in range, if there is one.
+    /// Draws the button that takes the nearest number in range, if there is one and its row is on display.
     pub(super) fn button(&self, ui: &mut Ui) {
-        let Some((id, nearest)) = self.nearest else { return };
+        let Some((id, number)) = self.nearest.filter(|(id, _)| ui.ctx().read_response(*id).is_some()) else { return };
         let text = notation::sentence(ui.ctx(), &self.way_out);
         if ui.button(text).on_hover_text("The nearest number that is allowed").clicked() {
-            ui.data_mut(|data| data.insert_temp(taken_id(id), nearest));
+            let taken = TakenNumber { number, pass: ui.ctx().cumulative_pass_nr() };
+            ui.data_mut(|data| data.insert_temp(taken_id(id), taken));
             ui.ctx().request_repaint();
         }
     }
 }
 
-/// Key of a number that the widget `id` is to take.
+/// A number that a widget is to take in the next pass.
+#[derive(Clone, Copy, Default)]
+struct TakenNumber {
+    number: f64,
+    /// The pass in which the button was clicked.
+    pass: u64,
+}
+
+impl TakenNumber {
+    /// Returns whether the click was just now. A row that was not drawn since then keeps its number.
+    fn is_of_last_pass(self, ctx: &egui::Context) -> bool {
+        ctx.cumulative_pass_nr() <= self.pass + 1
+    }
+}
+
+/// Key of a [`TakenNumber`] of the widget `id`.
 fn taken_id(id: egui::Id) -> egui::Id {
     id.with("taken")
 }

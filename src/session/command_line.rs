@@ -1,5 +1,8 @@
 //! [`simulate_command`] and [`session_command`]: the command that runs a scenario as it is on display.
 
+use std::borrow::Borrow;
+use std::collections::HashSet;
+
 use super::scenario::Scenario;
 use super::{Edit, Session, TimedEdit};
 use stillbase_query::{Queries, QuickQuery, QuickWork, Shared};
@@ -50,18 +53,20 @@ pub fn session_command(session: &Session, queries: &Queries) -> Option<String> {
 
 /// Returns the options of `simulate` that write the signals `chosen` of a table in a time interval, s; `None` for a
 /// signal that no option can name. A group of signals that is chosen as a whole is one name.
-pub fn row_options(table: &[Signal], chosen: &[Signal], times: Option<[f64; 2]>) -> Option<String> {
+pub fn row_options(table: &[Signal], chosen: &[impl Borrow<Signal>], times: Option<[f64; 2]>) -> Option<String> {
     let mut options = String::new();
-    if !table.iter().all(|signal| chosen.contains(signal)) {
-        let is_whole = |group: &str| table.iter().filter(|s| s.group() == group).all(|s| chosen.contains(s));
-        let mut names: Vec<&str> = Vec::new();
-        for signal in chosen {
-            let name = if is_whole(signal.group()) { signal.group() } else { &signal.path };
+    let paths: HashSet<&str> = chosen.iter().map(|signal| signal.borrow().path.as_str()).collect();
+    let left_out = table.iter().filter(|signal| !paths.contains(signal.path.as_str()));
+    let parts: HashSet<&str> = left_out.map(Signal::group).collect();
+    if !parts.is_empty() {
+        let (mut names, mut known): (Vec<&str>, HashSet<&str>) = Default::default();
+        for signal in chosen.iter().map(Borrow::borrow) {
+            let name = if parts.contains(signal.group()) { &signal.path } else { signal.group() };
             // Names are separated by commas.
             if name.contains(',') {
                 return None;
             }
-            if !names.contains(&name) {
+            if known.insert(name) {
                 names.push(name);
             }
         }

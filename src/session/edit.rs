@@ -330,7 +330,7 @@ fn title_of(change: &Table) -> String {
             None => shortened(&change::typed(value), 60),
         };
         let has_numbers = typed.starts_with(|c: char| c.is_ascii_digit() || c == '-');
-        let unit = key_of(&path).map(Key::unit).filter(|unit| !unit.is_empty() && has_numbers);
+        let unit = key_of(&path).map(Key::unit_of_each).filter(|unit| !unit.is_empty() && has_numbers);
         let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
         format!("{words} to {typed}{unit}")
     };

@@ -39,7 +39,9 @@ pub use interactive::Session;
 pub use machines::Machines;
 pub use planner::{Plan, curves};
 #[doc(hidden)]
-pub use proposal::{OutsideLimits, ProposalsQuery, ReachablePoints, RefusedChange, TargetProposals, is_improvable};
+pub use proposal::{
+    OutsideLimits, ProposalsQuery, ReachablePoints, RefusedChange, TargetProposals, is_improvable, proposals_while,
+};
 pub use proposal::{
     Proposal, WayOut, improvements, proposals, proposals_for_machine, proposals_for_settings, proposals_for_values,
 };

@@ -32,7 +32,7 @@ use stillbase_settings::change::{join, leaves, single_change, typed};
 pub use hand::{OutsideLimits, TargetProposals};
 pub use improve::{improvements, is_improvable};
 pub use points::ReachablePoints;
-pub use refused::{ProposalsQuery, RefusedChange, proposals, proposals_for_settings};
+pub use refused::{ProposalsQuery, RefusedChange, proposals, proposals_for_settings, proposals_while};
 pub use value::proposals_for_values;
 
 /// A way out: after it, what was refused can be done.

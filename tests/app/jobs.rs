@@ -25,6 +25,7 @@ use crate::folder::Folder;
 
 pub const TESTS: &[Test] = tests![
     studies_run_beside_the_window,
+    ways_to_a_target_are_sought_beside_the_window,
     the_ways_of_a_task_run_beside_the_window,
     a_recording_is_written_beside_the_window,
     what_is_cancelled_is_stopped,
@@ -88,6 +89,25 @@ fn window(case: &str, workers: &Waiting) -> Window {
 fn tell(h: &mut Window, command: Command) {
     h.state_mut().app_state_mut().carry_out(command);
     h.run_steps(2);
+}
+
+fn ways_to_a_target_are_sought_beside_the_window() {
+    let workers = Waiting::default();
+    let mut h = window("four-drive", &workers);
+    h.run_steps(2);
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::DragTarget { x: 5.0, y: 5.0 })));
+    tell(&mut h, Command::Session(SessionCommand::EndGesture));
+    h.run_steps(200);
+    workers.work();
+    h.run_steps(3);
+    assert!(h.query_by_label_contains("go to the nearest point").is_some());
+    tell(&mut h, Command::Session(SessionCommand::Edit(Edit::DragTarget { x: -5.0, y: 5.0 })));
+    tell(&mut h, Command::Session(SessionCommand::EndGesture));
+    h.run_steps(200);
+    assert!(h.query_by_label_contains("go to the nearest point").is_none(), "that was another target");
+    assert!(workers.work() > 0);
+    h.run_steps(3);
+    assert!(h.query_by_label_contains("go to the nearest point").is_some());
 }
 
 fn studies_run_beside_the_window() {

@@ -2,7 +2,7 @@
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use stillbase::app::{AppState, Message, SessionCommand, WindowCommand};
+use stillbase::app::{AppState, Message, SessionCommand, Switch, ViewChange, WindowCommand};
 use stillbase::picture::scene::options::{Handle, ViewOptions};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
@@ -21,6 +21,7 @@ pub const TESTS: &[Test] = tests![
     statements_open_what_improves_them,
     a_limit_that_is_passed_proposes_more_time,
     what_is_typed_out_of_range_proposes_the_nearest_number,
+    a_number_out_of_view_never_changes_by_itself,
     a_b_that_does_not_serve_proposes_one_that_does,
     a_target_that_no_b_reaches_leads_to_the_nearest_point,
     a_limit_that_leaves_out_the_pose_is_put_back,
@@ -37,6 +38,26 @@ fn what_is_typed_out_of_range_proposes_the_nearest_number() {
     h.run_steps(4);
     assert_eq!(session(&h).scenario().task.time, 3600.0);
     assert!(h.query_by_label_contains("take time T = ").is_none(), "the message goes with its reason");
+}
+
+/// The way out of a number needs its row: without it there is no button, and a click that no row took is forgotten.
+fn a_number_out_of_view_never_changes_by_itself() {
+    let side = |h: &mut Window, on: bool| {
+        h.state_mut().app_state_mut().carry_out(ViewChange::Switch(Switch::Side, on));
+        h.run_steps(3);
+    };
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    type_into(&mut h, "time T s", "1e6");
+    side(&mut h, false);
+    assert!(h.query_by_label_contains("take time T = ").is_none(), "no row would take the number");
+    side(&mut h, true);
+    h.get_by_label_contains("take time T = ").click();
+    h.step();
+    assert_eq!(session(&h).scenario().task.time, 1.0, "the row takes the number in the next pass");
+    side(&mut h, false);
+    side(&mut h, true);
+    assert_eq!(session(&h).scenario().task.time, 1.0, "the click was long ago");
 }
 
 /// A b that A and B do not allow: one button takes the nearest that they do, one turns the points with it.

@@ -33,6 +33,7 @@ pub const TESTS: &[Test] = tests![
     a_film_is_drawn_beside_the_window_and_can_be_cancelled,
     values_are_those_of_the_plots_or_all,
     single_signals_and_times_are_chosen_on_the_card,
+    the_keyboard_reaches_every_signal_of_the_card,
     a_choice_without_rows_is_refused,
     a_report_of_the_window_shows_its_plots,
     an_encoder_gets_every_picture,
@@ -343,6 +344,28 @@ fn single_signals_and_times_are_chosen_on_the_card() {
     assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
     let [window, line] = ["window.csv", "values.csv"].map(|name| fs::read(folder.path(name)).expect("a file"));
     assert!(window.len() > 1000 && window == line, "the same file");
+}
+
+/// Only the rows in view are drawn; the others come into view when the keyboard gets to them.
+fn the_keyboard_reaches_every_signal_of_the_card() {
+    let mut h: Window = window("case-1", Theme::Dark);
+    h.state_mut().app_state_mut().carry_out(ViewChange::Export(Some(Export::values())));
+    h.run_steps(3);
+    let all = stillbase::simulation::signals::signals(&h.state().app_state().session().scenario().machine);
+    let last = all.last().expect("signals");
+    let last = Notation::default().name(&last.label, &last.symbol).to_string();
+    assert!(h.query_by_label(&last).is_none(), "{last} is below the list");
+    h.get_by_label("Find a signal to be written").click();
+    h.run_steps(2);
+    let focused = |h: &Window| h.query_by_label(&last).is_some_and(|row| row.accesskit_node().is_focused());
+    for _ in 0..all.len() + 60 {
+        h.key_press(Key::Tab);
+        h.run_steps(2);
+        if focused(&h) {
+            return;
+        }
+    }
+    panic!("the keyboard does not reach {last}");
 }
 
 fn a_choice_without_rows_is_refused() {

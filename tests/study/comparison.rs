@@ -5,7 +5,7 @@ use stillbase::session::scenario::{Scenario, TaskKind};
 use stillbase::session::{Edit, TimedEdit};
 use stillbase::simulation::signals::signals;
 
-use stillbase::query::{Shared, answer_now};
+use stillbase::query::{Portion, Query as _, Shared, answer_now};
 use stillbase::study::comparison::{
     Alternative, AlternativeRuns, ComparedRun, ComparisonTable, SLOW_FACTOR, SUMMARY_COLUMNS, SignalDifference,
     alternatives,
@@ -220,6 +220,32 @@ fn a_comparison_follows_sorts_and_keeps() {
 }
 
 /// Figures of a design agree with what the machines are, and what cannot be set side by side is not.
+/// A way that is refused takes a search for ways out: it says how far it is, and stops when it is told to.
+#[test]
+fn the_search_for_ways_out_of_a_refused_run_stops() {
+    let loaded = toml::from_str("payload.mass = 0.4").expect("keys");
+    let loaded = Shared(Arc::new(scenario("case-1").with_settings(&loaded).expect("settings")));
+    let way = alternatives(&loaded.0).into_iter().position(|(way, _)| way == Alternative::Reactionless);
+    let way = way.expect("a way");
+    let mut work = AlternativeRuns::begin(loaded);
+    for _ in 0..way {
+        assert!(matches!(work.go_on(&mut |_| true), Portion::More(_)));
+    }
+    let mut shares = Vec::new();
+    let stopped = work.go_on(&mut |share| {
+        shares.push(share);
+        shares.len() < 2
+    });
+    assert!(matches!(stopped, Portion::Stopped) && shares.len() == 2, "{shares:?}");
+    shares.clear();
+    let done = work.go_on(&mut |share| {
+        shares.push(share);
+        true
+    });
+    let Portion::More(whole) = done else { panic!("{done:?}") };
+    assert!(shares.len() > 2 && shares.is_sorted() && shares.last().is_some_and(|last| *last <= whole), "{shares:?}");
+}
+
 #[test]
 fn designs_stand_beside_the_first() {
     use stillbase::mechanics::machine::Inertia;

@@ -1,11 +1,15 @@
 //! Columns of the table of runs: their titles in two lines, and which of them have room.
 
-use egui::Ui;
+use std::sync::Arc;
+
+use egui::{Id, Ui};
 
 use crate::fit::width_of;
 use crate::theme::plain;
 use stillbase_picture::columns::RunColumn;
+use stillbase_picture::notation::Notation;
 use stillbase_picture::numbers::signed;
+use stillbase_query::ByIdentity;
 use stillbase_study::comparison::{Comparison, ComparisonEntry};
 
 /// Horizontal distance of columns, points.
@@ -52,8 +56,41 @@ fn head_width(ui: &Ui, text: &str) -> f32 {
     width_of(ui, text, &plain(HEAD_SIZE_PT))
 }
 
+/// Columns of a table of runs that have been measured for a width.
+#[derive(Debug)]
+pub struct ColumnLayout {
+    key: LayoutKey,
+    /// The columns that have room, each with its title in two lines.
+    pub columns: Vec<(RunColumn, [String; 2])>,
+    /// Names of the others.
+    pub left_out: Vec<&'static str>,
+}
+
+/// All that a layout depends on: the table, the notation, the width, points, and the pixels per point.
+#[derive(Clone, Debug, PartialEq)]
+struct LayoutKey(ByIdentity<()>, Notation, f32, f32);
+
+/// Returns the columns that fit into `width`, points. They are measured again only when the table, the notation or the
+/// display has changed.
+pub fn laid_out(ui: &Ui, comparison: &Comparison, notation: Notation, width: f32) -> Arc<ColumnLayout> {
+    let key = LayoutKey(comparison.version(), notation, width, ui.pixels_per_point());
+    let id = Id::unique("columns of the table of runs");
+    if let Some(known) = ui.data(|data| data.get_temp::<Arc<ColumnLayout>>(id)).filter(|known| known.key == key) {
+        return known;
+    }
+    let (columns, left_out) = fitting(ui, RunColumn::all(comparison, notation), comparison, width);
+    let with_lines = |column: RunColumn| {
+        let lines = lines(ui, &column);
+        (column, lines)
+    };
+    let columns = columns.into_iter().map(with_lines).collect();
+    let layout = Arc::new(ColumnLayout { key, columns, left_out });
+    ui.data_mut(|data| data.insert_temp(id, layout.clone()));
+    layout
+}
+
 /// Returns the columns that fit into `width`, points, beside the titles of the rows, and the names of the others.
-pub fn fitting(
+fn fitting(
     ui: &Ui,
     columns: Vec<RunColumn>,
     comparison: &Comparison,

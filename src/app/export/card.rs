@@ -3,7 +3,7 @@
 use egui::{Align2, ComboBox, DragValue, Grid, ScrollArea, Ui};
 
 use super::values_card::{self, ValuesContext};
-use super::values_choice::times_in_words;
+use super::values_choice::{refusal, times_in_words};
 use super::{DisplaySize, Export, FilmChoice, FilmForm, Look, PictureSize, TimeChoice};
 use crate::shot::Shot;
 use crate::theme::{colour, plain};
@@ -32,6 +32,11 @@ pub fn show(
 ) {
     let Some(before) = &view_state.open.export else { return };
     let (mut export, mut open) = (before.clone(), true);
+    // A change of the choice shows from the next pass on.
+    let chosen = match before {
+        Export::Values(choice) => choice.signals.of(session, view_state, signals),
+        _ => Vec::new(),
+    };
     let height = ctx.content_rect().height();
     let top = (0.13 * height).min(MAX_TOP_PT);
     egui::Window::new(export.title())
@@ -54,7 +59,8 @@ pub fn show(
                 }
                 Export::Film(choice) => film_rows(ui, choice, session, view_state),
                 Export::Values(choice) => {
-                    values_card::rows(ui, choice, &ValuesContext { session, queries, signals, view_state }, commands);
+                    let what = ValuesContext { session, queries, signals, chosen: &chosen, view_state };
+                    values_card::rows(ui, choice, &what, commands);
                 }
                 Export::Report => {}
             };
@@ -62,7 +68,7 @@ pub fn show(
             ui.add_space(6.0);
             ui.horizontal(|ui| {
                 let nothing = match &export {
-                    Export::Values(choice) => choice.order(session, view_state, signals).err(),
+                    Export::Values(choice) => refusal(&chosen, choice.times.of(session, view_state), session),
                     _ => None,
                 };
                 let choose = ui.add_enabled(nothing.is_none(), egui::Button::new("Choose a file…"));

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Button, Checkbox, DragValue, Id, Label, RichText, ScrollArea, TextEdit, Ui};
+use egui::{Button, Checkbox, DragValue, Id, Label, Response, RichText, ScrollArea, TextEdit, Ui};
 
-use super::values_choice::times_in_words;
+use super::values_choice::{refusal, times_in_words};
 use super::{RowForm, SignalChoice, TimeChoice, ValuesChoice};
 use crate::theme::{bold, colour, plain};
 use crate::widgets::name;
@@ -18,6 +18,8 @@ use stillbase_simulation::signals::Signal;
 /// Width of the column of choices, and height of the list of signals, points.
 const WIDTH_PT: f32 = 430.0;
 const LIST_HEIGHT_PT: f32 = 210.0;
+/// Height of a row of the list, points.
+const ROW_HEIGHT_PT: f32 = 18.0;
 
 /// The data that the choices refer to.
 pub struct ValuesContext<'a> {
@@ -25,6 +27,8 @@ pub struct ValuesContext<'a> {
     pub queries: &'a Queries,
     /// All signals.
     pub signals: &'a [Signal],
+    /// The signals that were chosen before this pass, in the order of the table.
+    pub chosen: &'a [&'a Signal],
     pub view_state: &'a ViewState,
 }
 
@@ -50,13 +54,12 @@ pub fn rows(ui: &mut Ui, choice: &mut ValuesChoice, what: &ValuesContext<'_>, co
 
 fn signal_rows(ui: &mut Ui, choice: &mut SignalChoice, what: &ValuesContext<'_>) {
     let (p, all) = (what.view_state.palette(), what.signals);
-    let chosen = choice.of(what.session, what.view_state, all);
-    let mut paths: BTreeSet<String> = chosen.iter().map(|signal| signal.path.clone()).collect();
+    let mut paths: BTreeSet<String> = what.chosen.iter().map(|signal| signal.path.clone()).collect();
     let before = paths.clone();
     ui.horizontal(|ui| {
         ui.radio_value(choice, SignalChoice::Plots, "those of the plots on display");
         ui.radio_value(choice, SignalChoice::All, "all");
-        let words = format!("these: {} of {}", chosen.len(), all.len());
+        let words = format!("these: {} of {}", what.chosen.len(), all.len());
         if ui.radio(matches!(choice, SignalChoice::These(_)), words).clicked() {
             *choice = SignalChoice::These(paths.clone());
         }
@@ -71,23 +74,33 @@ fn signal_rows(ui: &mut Ui, choice: &mut SignalChoice, what: &ValuesContext<'_>)
             paths.clear();
         }
     });
-    let found = search(all, &text);
+    let found: BTreeSet<&str> = search(all, &text).into_iter().map(|signal| signal.path.as_str()).collect();
     ui.data_mut(|data| data.insert_temp(id, text));
     let frame = egui::Frame::new().stroke(egui::Stroke::new(1.0, colour(p.line))).inner_margin(6.0);
     frame.show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 1.0;
+        ui.spacing_mut().interact_size.y = ROW_HEIGHT_PT;
+        let seen: Vec<&Signal> = all.iter().filter(|signal| found.contains(signal.path.as_str())).collect();
+        let groups = seen.chunk_by(|a, b| a.group() == b.group());
+        let rows: Vec<ListRow<'_>> =
+            groups.flat_map(|group| [ListRow::Group(group)].into_iter().chain(group.iter().map(ListRow::of))).collect();
         let list =
             ScrollArea::vertical().id_salt("signals").max_height(LIST_HEIGHT_PT).min_scrolled_height(LIST_HEIGHT_PT);
         let list = list.auto_shrink([false, true]);
-        list.show(ui, |ui| {
+        list.show_rows(ui, ROW_HEIGHT_PT, rows.len().max(1), |ui, shown| {
             ui.set_width(WIDTH_PT - 28.0);
-            ui.spacing_mut().item_spacing.y = 1.0;
-            ui.spacing_mut().interact_size.y = 18.0;
-            let seen: Vec<&Signal> = all.iter().filter(|signal| found.contains(signal)).collect();
-            if seen.is_empty() {
+            if rows.is_empty() {
                 ui.label(RichText::new("no signal has all these words").color(colour(p.dim)));
             }
-            for group in seen.chunk_by(|a, b| a.group() == b.group()) {
-                group_rows(ui, group, &mut paths, what);
+            for row in rows.get(shown).unwrap_or_default() {
+                let tick = match row {
+                    ListRow::Group(group) => group_row(ui, group, &mut paths, what),
+                    ListRow::One(signal) => signal_row(ui, signal, &mut paths, what),
+                };
+                // The keyboard reaches the rows below and above those in view.
+                if tick.gained_focus() && !ui.clip_rect().contains_rect(tick.rect) {
+                    tick.scroll_to_me(None);
+                }
             }
         });
     });
@@ -96,45 +109,65 @@ fn signal_rows(ui: &mut Ui, choice: &mut SignalChoice, what: &ValuesContext<'_>)
     }
 }
 
-/// Draws the tick of a group of signals, and one for each of them.
-fn group_rows(ui: &mut Ui, group: &[&Signal], paths: &mut BTreeSet<String>, what: &ValuesContext<'_>) {
+/// A row of the list of signals.
+enum ListRow<'a> {
+    /// The title of a group of signals.
+    Group(&'a [&'a Signal]),
+    /// A signal.
+    One(&'a Signal),
+}
+
+impl<'a> ListRow<'a> {
+    fn of(signal: &&'a Signal) -> Self {
+        Self::One(signal)
+    }
+}
+
+/// Draws the tick of a group of signals.
+fn group_row(ui: &mut Ui, group: &[&Signal], paths: &mut BTreeSet<String>, what: &ValuesContext<'_>) -> Response {
     let p = what.view_state.palette();
-    let notation = what.view_state.arrangement.notation;
-    let Some(first) = group.first() else { return };
+    let (group_name, unit) = group.first().map_or(("", ""), |first| (first.group(), first.unit));
     let ticked = group.iter().filter(|signal| paths.contains(&signal.path)).count();
     let mut whole = ticked == group.len();
-    ui.horizontal(|ui| {
-        let title = capitalised(&first.group().replace('_', " "));
+    let row = ui.horizontal(|ui| {
+        let title = capitalised(&group_name.replace('_', " "));
         let tick = Checkbox::new(&mut whole, RichText::new(&title).font(bold(12.0)));
         let tick = ui.add(tick.indeterminate(ticked > 0 && ticked < group.len()));
         name(&tick, &format!("{title}: all {}", group.len()));
         if tick.clicked() {
-            for signal in group {
-                if whole {
-                    paths.insert(signal.path.clone())
-                } else {
-                    paths.remove(&signal.path)
-                };
-            }
+            group.iter().for_each(|signal| set(paths, signal, whole));
         }
         // Files hold SI units, whatever the window shows.
-        let unit = if first.unit == "1" { "" } else { first.unit };
+        let unit = if unit == "1" { "" } else { unit };
         ui.label(RichText::new(unit).font(plain(11.5)).color(colour(p.dim)));
+        tick
     });
-    for signal in group {
-        ui.horizontal(|ui| {
-            ui.add_space(18.0);
-            let mut on = paths.contains(&signal.path);
-            let words = notation.name(&signal.label, &signal.symbol);
-            if ui.checkbox(&mut on, RichText::new(words).font(plain(12.0))).on_hover_text(&signal.path).clicked() {
-                if on {
-                    paths.insert(signal.path.clone())
-                } else {
-                    paths.remove(&signal.path)
-                };
-            }
-        });
-    }
+    row.inner
+}
+
+/// Draws the tick of a signal.
+fn signal_row(ui: &mut Ui, signal: &Signal, paths: &mut BTreeSet<String>, what: &ValuesContext<'_>) -> Response {
+    let notation = what.view_state.arrangement.notation;
+    let row = ui.horizontal(|ui| {
+        ui.add_space(18.0);
+        let mut on = paths.contains(&signal.path);
+        let words = notation.name(&signal.label, &signal.symbol);
+        let tick = ui.checkbox(&mut on, RichText::new(words).font(plain(12.0))).on_hover_text(&signal.path);
+        if tick.clicked() {
+            set(paths, signal, on);
+        }
+        tick
+    });
+    row.inner
+}
+
+/// Adds a signal to the paths, or removes it.
+fn set(paths: &mut BTreeSet<String>, signal: &Signal, on: bool) {
+    if on {
+        paths.insert(signal.path.clone())
+    } else {
+        paths.remove(&signal.path)
+    };
 }
 
 fn time_rows(ui: &mut Ui, choice: &mut TimeChoice, what: &ValuesContext<'_>) {
@@ -170,16 +203,13 @@ fn command_row(ui: &mut Ui, choice: &ValuesChoice, what: &ValuesContext<'_>, com
     let say = |ui: &mut Ui, words: &str, tone| {
         ui.add(Label::new(RichText::new(words).font(plain(11.5)).color(colour(tone))).wrap())
     };
-    let order = match choice.order(what.session, what.view_state, what.signals) {
-        Ok(order) => order,
-        Err(why) => {
-            say(ui, why, p.reaction);
-            return;
-        }
-    };
-    let Some(options) = choice.options(&order, what.session, what.signals) else {
-        let why = "no command can name a signal with a comma: want names of the machine's parts without commas";
-        say(ui, why, p.dim);
+    let times = choice.times.of(what.session, what.view_state);
+    if let Some(why) = refusal(what.chosen, times, what.session) {
+        say(ui, why, p.reaction);
+        return;
+    }
+    let Some(options) = choice.options((what.chosen, times), what.session, what.signals) else {
+        say(ui, "no command can name a signal with a comma: want names of the machine's parts without commas", p.dim);
         return;
     };
     let known = session_command(what.session, what.queries);

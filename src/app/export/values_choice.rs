@@ -43,13 +43,14 @@ pub enum TimeChoice {
 
 impl SignalChoice {
     /// Returns the chosen signals in the order of the table `all`.
-    pub fn of(&self, session: &Session, view_state: &ViewState, all: &[Signal]) -> Vec<Signal> {
-        let filtered = |is_chosen: &dyn Fn(&Signal) -> bool| all.iter().filter(|s| is_chosen(s)).cloned().collect();
+    pub fn of<'a>(&self, session: &Session, view_state: &ViewState, all: &'a [Signal]) -> Vec<&'a Signal> {
+        let filtered = |is_chosen: &dyn Fn(&Signal) -> bool| all.iter().filter(|s| is_chosen(s)).collect();
         match self {
-            Self::All => all.to_vec(),
+            Self::All => all.iter().collect(),
             Self::Plots => {
                 let shown = plots::shown_signals(&view_state.plots(session.scenario(), all));
-                filtered(&|signal| shown.contains(signal))
+                let paths: BTreeSet<&str> = shown.iter().map(|signal| signal.path.as_str()).collect();
+                filtered(&|signal| paths.contains(signal.path.as_str()))
             }
             Self::These(paths) => filtered(&|signal| paths.contains(&signal.path)),
         }
@@ -82,21 +83,39 @@ impl ValuesChoice {
         view_state: &ViewState,
         all: &[Signal],
     ) -> Result<ValuesOrder, &'static str> {
-        let (signals, times) = (self.signals.of(session, view_state, all), self.times.of(session, view_state));
-        match times {
-            _ if signals.is_empty() => Err("no signal is chosen: want at least one"),
-            [from, to] if from > to => Err("the time ends before it begins: want the first before the second"),
-            [from, _] if from > session.length() => Err("the time begins after the run: want one within it"),
-            _ => Ok(ValuesOrder { signals, times }),
+        let signals = self.signals.of(session, view_state, all);
+        let times = self.times.of(session, view_state);
+        match refusal(&signals, times, session) {
+            Some(why) => Err(why),
+            None => Ok(ValuesOrder { signals: signals.into_iter().cloned().collect(), times }),
         }
     }
 
-    /// Returns the options of the command `simulate` that write the same; `None` if no options can.
-    pub fn options(&self, order: &ValuesOrder, session: &Session, all: &[Signal]) -> Option<String> {
-        let [from, to] = order.times;
+    /// Returns the options of the command `simulate` that write the signals `chosen` at `times`, s; `None` if no
+    /// options can.
+    pub fn options(
+        &self,
+        (chosen, times): (&[&Signal], [f64; 2]),
+        session: &Session,
+        all: &[Signal],
+    ) -> Option<String> {
+        let [from, to] = times;
         let is_part = from > 0.0 || to < session.length();
-        let rows = row_options(all, &order.signals, is_part.then_some(order.times))?;
+        let rows = row_options(all, chosen, is_part.then_some(times))?;
         Some(format!(" -o values.{}{rows}", self.form.ending()))
+    }
+}
+
+/// Returns why these signals at these times, s, cannot be written; `None` if they can.
+pub fn refusal(chosen: &[&Signal], [from, to]: [f64; 2], session: &Session) -> Option<&'static str> {
+    if chosen.is_empty() {
+        Some("no signal is chosen: want at least one")
+    } else if from > to {
+        Some("the time ends before it begins: want the first before the second")
+    } else if from > session.length() {
+        Some("the time begins after the run: want one within it")
+    } else {
+        None
     }
 }
 

@@ -9,6 +9,7 @@ use crate::theme::{bold, code, colour, plain};
 use crate::widgets::name;
 use crate::{Command, ViewChange, WindowCommand};
 use stillbase_picture::scene::palette::Palette;
+use stillbase_query::Queries;
 
 /// Sizes of text, of headings by level, and of code, points.
 const TEXT_PT: f32 = 13.5;
@@ -29,7 +30,7 @@ const COLUMN_POWER: f32 = 0.8;
 pub fn show(
     ui: &mut Ui,
     p: &Palette,
-    document: &Document,
+    (queries, document): (&Queries, &Document),
     (anchor, scroll): (&str, Option<Scroll>),
     salt: &str,
     commands: &mut Vec<Command>,
@@ -51,7 +52,7 @@ pub fn show(
             }
         }
         for (i, block) in document.blocks.iter().enumerate() {
-            let heading = draw(ui, p, block, i, commands);
+            let heading = draw(ui, p, queries, (block, i), commands);
             let is_here = matches!(&block.content, Content::Heading(_, own, _) if own == anchor);
             if is_here && scroll == Some(Scroll::Anchor) {
                 ui.scroll_to_rect_animation(heading, Some(egui::Align::TOP), egui::style::ScrollAnimation::none());
@@ -63,7 +64,13 @@ pub fn show(
 }
 
 /// Draws a block; returns its rectangle.
-fn draw(ui: &mut Ui, p: &Palette, block: &Block, i: usize, commands: &mut Vec<Command>) -> egui::Rect {
+fn draw(
+    ui: &mut Ui,
+    p: &Palette,
+    queries: &Queries,
+    (block, i): (&Block, usize),
+    commands: &mut Vec<Command>,
+) -> egui::Rect {
     let indent = INDENT_PT * block.depth as f32;
     let shown = match &block.content {
         Content::Heading(level, _, spans) => {
@@ -88,7 +95,7 @@ fn draw(ui: &mut Ui, p: &Palette, block: &Block, i: usize, commands: &mut Vec<Co
         Content::Code(kind, text) => block_of_code(ui, p, kind, text, (indent, i)),
         Content::Table(rows) => ui.push_id(i, |ui| table(ui, p, rows, commands)).response,
         Content::Picture(picture, spans) => {
-            let shown = picture::show(ui, picture, spans);
+            let shown = picture::show(ui, queries, picture, spans);
             let caption = RichText::new(plain_words(spans)).font(plain(TEXT_PT - 1.5)).color(colour(p.dim));
             let caption = ui.add(Label::new(caption).wrap());
             shown.map_or(caption.clone(), |shown| shown.union(caption))

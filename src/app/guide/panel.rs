@@ -62,7 +62,7 @@ pub fn show(ctx: &Context, queries: &Queries, view_state: &mut ViewState, comman
                 let document = queries.ask::<QuickWork<ReadPage>>(&view.place.page);
                 ui.vertical(|ui| {
                     let to = (view.place.anchor.as_str(), view.scroll.map(|(scroll, _)| scroll));
-                    view.offset = page::show(ui, &p, &document, to, view.place.page.file(), commands);
+                    view.offset = page::show(ui, &p, (queries, &document), to, view.place.page.file(), commands);
                     // The first pass only measures a new window.
                     view.scroll = view.scroll.and_then(|(scroll, left)| Some((scroll, left.checked_sub(1)?)));
                     if view.scroll.is_some() {

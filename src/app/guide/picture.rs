@@ -1,11 +1,14 @@
 //! Pictures of the guide, as they are compiled into the program: one for each theme.
 
-use egui::{Color32, ColorImage, Image, Response, TextureHandle, TextureOptions, Ui};
+use std::sync::Arc;
+
+use egui::{Color32, ColorImage, Image, Response, Sense, TextureHandle, TextureOptions, Ui};
 
 use super::document::{Span, plain_text};
 use crate::widgets::name;
 use stillbase_picture::render::offscreen::Picture;
 use stillbase_picture::scene::palette::Theme;
+use stillbase_query::{Queries, QuickQuery, QuickWork};
 
 /// Declares the pictures by their names.
 macro_rules! pictures {
@@ -40,31 +43,75 @@ pub fn name_of(address: &str) -> &str {
 }
 
 /// Draws a picture in the theme of the window, as wide as the page, with what it shows for screen readers; `None` if the
-/// program has no picture of this name.
-pub fn show(ui: &mut Ui, picture: &str, shows: &[Span]) -> Option<Response> {
+/// program has no picture of this name. Until it is decoded, its place is empty.
+pub fn show(ui: &mut Ui, queries: &Queries, picture: &str, shows: &[Span]) -> Option<Response> {
     let theme = if ui.visuals().dark_mode { Theme::Dark } else { Theme::Light };
     let width = ui.available_width();
-    let texture = texture(ui, picture, theme, width * ui.pixels_per_point())?;
+    let is_small = width * ui.pixels_per_point() <= SMALL_WIDTH_PX;
+    let variant = PictureVariant { name: picture.to_owned(), theme, is_small };
     let shows = plain_text(shows);
-    let image = Image::new(&texture).max_width(width).corner_radius(6).alt_text(&shows);
-    let response = ui.add(image);
+    let response = match texture(ui, queries, &variant) {
+        Some(texture) => ui.add(Image::new(&texture).max_width(width).corner_radius(6).alt_text(&shows)),
+        None => {
+            let size = variant.size()?;
+            let size = size * (width / size.x).min(1.0);
+            ui.allocate_response(size, Sense::hover())
+        }
+    };
     name(&response, &shows);
     Some(response)
 }
 
-/// Returns the texture of a picture that is shown this wide, pixels; it is decoded once and kept while the window is open.
-fn texture(ui: &Ui, picture: &str, theme: Theme, width: f32) -> Option<TextureHandle> {
-    // The texture is shrunk to hardly less than half its width on the display, so that letters stay smooth.
-    let is_small = width <= SMALL_WIDTH_PX;
-    let id = egui::Id::unique(("picture of the guide", picture, theme == Theme::Dark, is_small));
-    if let Some(texture) = ui.data(|d| d.get_temp::<TextureHandle>(id)) {
-        return Some(texture);
+/// A picture of the guide as it is drawn.
+#[derive(Clone, Debug, PartialEq)]
+struct PictureVariant {
+    /// Name of the picture.
+    name: String,
+    theme: Theme,
+    /// Whether it has half the resolution. It is shrunk to hardly less than half its width on the display, so that
+    /// letters stay smooth.
+    is_small: bool,
+}
+
+impl PictureVariant {
+    /// Returns width and height, pixels, from the head of the file.
+    fn size(&self) -> Option<egui::Vec2> {
+        let [width, height] = Picture::size_of_png(file_of(&self.name, self.theme)?)?;
+        let shrink = if self.is_small { 2 } else { 1 };
+        Some(egui::vec2((width / shrink) as f32, (height / shrink) as f32))
     }
-    let decoded = Picture::from_png(file_of(picture, theme)?)?;
-    let decoded = if is_small { decoded.halved() } else { decoded };
-    let pixels = decoded.rgba.chunks_exact(4).map(|c| Color32::from_rgba_unmultiplied(c[0], c[1], c[2], c[3]));
-    let image = ColorImage::new([decoded.width, decoded.height].map(|n| n as usize), pixels.collect());
-    let texture = ui.ctx().load_texture(picture, image, TextureOptions::LINEAR);
-    ui.data_mut(|d| d.insert_temp(id, texture.clone()));
+}
+
+/// Query for the pixels of a picture.
+struct DecodedPicture;
+
+impl QuickQuery for DecodedPicture {
+    type Input = PictureVariant;
+    type Answer = Option<Arc<ColorImage>>;
+
+    fn answer(variant: &PictureVariant) -> Self::Answer {
+        let decoded = Picture::from_png(file_of(&variant.name, variant.theme)?)?;
+        let decoded = if variant.is_small { decoded.halved() } else { decoded };
+        let pixels = decoded.rgba.chunks_exact(4).map(|c| Color32::from_rgba_unmultiplied(c[0], c[1], c[2], c[3]));
+        Some(Arc::new(ColorImage::new([decoded.width, decoded.height].map(|n| n as usize), pixels.collect())))
+    }
+}
+
+/// Returns the texture of a picture, in the last variant that has been decoded; `None` before the first one. The texture
+/// of a new variant takes the place of the one before.
+fn texture(ui: &Ui, queries: &Queries, wanted: &PictureVariant) -> Option<TextureHandle> {
+    let id = egui::Id::unique(("picture of the guide", &wanted.name));
+    let kept = ui.data(|d| d.get_temp::<(PictureVariant, TextureHandle)>(id));
+    if let Some((_, texture)) = kept.as_ref().filter(|(variant, _)| variant == wanted) {
+        return Some(texture.clone());
+    }
+    let decoded = queries.ask_in_background::<QuickWork<DecodedPicture>>(wanted);
+    let Some(image) = decoded.known().and_then(|image| Option::clone(image)) else {
+        return kept.map(|(_, texture)| texture);
+    };
+    // From here on the texture holds the pixels.
+    queries.forget::<QuickWork<DecodedPicture>>();
+    let texture = ui.ctx().load_texture(&wanted.name, image, TextureOptions::LINEAR);
+    ui.data_mut(|d| d.insert_temp(id, (wanted.clone(), texture.clone())));
     Some(texture)
 }

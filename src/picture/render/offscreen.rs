@@ -82,6 +82,12 @@ impl Picture {
         is_rgba.then_some(Self { width: info.width, height: info.height, rgba })
     }
 
+    /// Returns width and height of a PNG file, pixels, from its head; `None` if it is no PNG file.
+    pub fn size_of_png(file: &[u8]) -> Option<[u32; 2]> {
+        let reader = png::Decoder::new(io::Cursor::new(file)).read_info().ok()?;
+        Some([reader.info().width, reader.info().height])
+    }
+
     /// Returns the picture at half the size: each pixel is the mean of four. An odd row or column at the end is left out.
     pub fn halved(&self) -> Self {
         let [width, height] = [self.width / 2, self.height / 2];

@@ -11,7 +11,7 @@ use super::value::{nearest_values, taking_back};
 use crate::changes::after_start_edit;
 use crate::edit::Edit;
 use crate::refusal::Refusal;
-use crate::replay::replay;
+use crate::replay::replay_while;
 use crate::run::Run;
 use crate::scenario::Scenario;
 use stillbase_query::{Portion, ProgressCallback, Queries, Query, Shared};
@@ -102,8 +102,8 @@ pub fn proposals(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal> {
     proposals_while(scenario, refusal, &mut |_| true).unwrap_or_default()
 }
 
-/// Does the same as [`proposals`], unless `goes_on` cancels it.
-fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: ProgressCallback<'_>) -> Option<Vec<Proposal>> {
+/// Does the same as [`proposals`]; `None` if `goes_on` stops the search. It receives the fraction done, from 0 to 1.
+pub fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: ProgressCallback<'_>) -> Option<Vec<Proposal>> {
     let bare = scenario.without_edits();
     let candidates = candidates(&bare, refusal);
     let count = candidates.len() + 1;
@@ -116,17 +116,16 @@ fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: ProgressCall
             return None;
         }
         let candidate = candidate.reduced(&bare);
-        let works = |candidate: &Proposal| match in_motion {
-            true => candidate
-                .applied(scenario)
-                .and_then(|changed| replay(&changed, |_, _| {}).ok())
-                .is_some_and(|run| run.frame().first_violation().is_none()),
+        let is_new = candidate.change().is_some_and(|change| !change.is_empty())
+            && proposals.iter().all(|known| known.text != candidate.text && known.way != candidate.way);
+        if !is_new {
+            continue;
+        }
+        let works = match in_motion {
+            true => runs_without_fault(scenario, &candidate, &mut || goes_on(i as f64 / count as f64))?,
             false => candidate.tried(&bare).is_some(),
         };
-        if candidate.change().is_some_and(|change| !change.is_empty())
-            && proposals.iter().all(|known| known.text != candidate.text && known.way != candidate.way)
-            && works(&candidate)
-        {
+        if works {
             proposals.push(candidate);
             if proposals.len() == MAX_PROPOSALS {
                 break;
@@ -134,6 +133,17 @@ fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: ProgressCall
         }
     }
     Some(proposals)
+}
+
+/// Runs a scenario after a proposal; returns whether it comes to its end and its audit finds no fault. `None` if
+/// `goes_on` stops the run.
+fn runs_without_fault(scenario: &Scenario, proposal: &Proposal, goes_on: &mut dyn FnMut() -> bool) -> Option<bool> {
+    let Some(changed) = proposal.applied(scenario) else { return Some(false) };
+    match replay_while(&changed, |_, _| goes_on()) {
+        Ok(run) => Some(run.frame().first_violation().is_none()),
+        Err(Refusal::Stopped) => None,
+        Err(_) => Some(false),
+    }
 }
 
 /// Returns proposals for settings that a scenario cannot have: the nearest allowed values, or else the present ones.

@@ -12,6 +12,8 @@
 //!
 //! Window, reports of commands and recordings show these statements.
 
+mod moving;
+
 use serde::Serialize;
 
 use super::Verdict;
@@ -20,7 +22,8 @@ use stillbase_mechanics::machine::Inertia;
 use stillbase_settings::number::significant;
 use stillbase_simulation::Guide;
 use stillbase_simulation::frame::Frame;
-use stillbase_simulation::plant::PlantDifferences;
+
+use moving::{inertia_of, of_moving_machine};
 
 /// b is held if it varies by no more than this, rad.
 const B_TOLERANCE: f64 = 1e-6;
@@ -90,37 +93,6 @@ impl Statement {
                     format!("its mass matrix depends on the pose, (8) does not hold: {figures}"),
                 )
             }
-        }
-    }
-
-    /// States whether the machine of a run is balanced as it moves at a frame: with differences from the model and with
-    /// a payload that is held.
-    fn of_moving_machine(run: &Run, frame: &Frame, model: &Inertia) -> Self {
-        let scenario = run.scenario();
-        let stated = Self::of_machine(model);
-        if scenario.plant == PlantDifferences::default() {
-            return stated;
-        }
-        let load = &scenario.plant.payload;
-        let holds = load.is_held(frame.time, 0.5 * scenario.step);
-        let built = scenario.plant.machine(&scenario.machine);
-        let moving = built.and_then(|built| if holds { load.held_by(&built) } else { Ok(built) });
-        // A plant that is no valid machine is refused before a run begins.
-        let Ok(moving) = moving else { return stated };
-        let own = Self::of_machine(&Inertia::of(&moving));
-        let what = if holds { "the payload that control does not know of" } else { "what differs from the model" };
-        match (stated.outcome, own.outcome) {
-            (StatusLight::Good, StatusLight::Bad) => Self::new(
-                StatusLight::Bad,
-                format!("{} {}", own.words, if holds { "with its payload" } else { "as built" }),
-                format!("the model is balanced, but not the machine with {what}: {}", own.why),
-            ),
-            (StatusLight::Bad, StatusLight::Good) => Self::new(
-                StatusLight::Good,
-                format!("balanced {}", if holds { "with its payload" } else { "as built" }),
-                format!("the model is not balanced, but the machine is with {what}: {}", own.why),
-            ),
-            _ => own,
         }
     }
 
@@ -231,7 +203,7 @@ impl Statement {
         ];
         let words = format!("peak {}", parts.into_iter().flatten().collect::<Vec<_>>().join(", "));
         let cause = match machine.outcome {
-            StatusLight::Bad if Inertia::of(&run.scenario().machine).is_balanced() => {
+            StatusLight::Bad if inertia_of(run).is_balanced() => {
                 "what control does not know of does this: with it the machine is not balanced"
             }
             StatusLight::Bad => "the machine does this: it is not balanced",
@@ -264,7 +236,7 @@ pub(crate) fn changes_b(run: &Run) -> bool {
             greatest - least
         }
     };
-    change > B_TOLERANCE && Inertia::of(&run.scenario().machine).is_invariant()
+    change > B_TOLERANCE && inertia_of(run).is_invariant()
 }
 
 /// The statements on a session.
@@ -288,9 +260,8 @@ impl Statements {
 
     /// Makes the statements on a run up to a frame.
     pub fn of(run: &Run, frame: &Frame) -> Self {
-        let inertia = Inertia::of(&run.scenario().machine);
-        let machine = Statement::of_moving_machine(run, frame, &inertia);
-        let plan = Statement::of_plan(run, frame, &inertia);
+        let machine = Statement::clone(&of_moving_machine(run, frame));
+        let plan = Statement::of_plan(run, frame, &inertia_of(run));
         let run = Statement::of_run(run, frame, &machine);
         Self { machine, plan, run }
     }

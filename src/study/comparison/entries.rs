@@ -6,9 +6,9 @@ use std::sync::Arc;
 use super::{
     Alternative, BaselineMachines, ComparedRun, DESIGN_COLUMNS, DesignMeasures, SUMMARY_COLUMNS, alternatives,
 };
-use stillbase_query::{Portion, ProgressCallback, Query, Shared};
+use stillbase_query::{ByIdentity, Portion, ProgressCallback, Query, Shared, part};
 use stillbase_session::scenario::Scenario;
-use stillbase_session::{Proposal, Refusal, proposals};
+use stillbase_session::{Proposal, Refusal, proposals_while};
 use stillbase_settings::number::nine_digits;
 
 /// One row of the comparison.
@@ -49,6 +49,8 @@ pub struct Comparison {
     entries: Vec<ComparisonEntry>,
     sort: Option<(usize, bool)>,
     baseline: BaselineMachines,
+    /// Replaced at each change of rows or of their order.
+    version: Arc<()>,
     /// The alternatives that the table shows.
     ways: Option<Arc<<AlternativeRuns as Query>::Answer>>,
 }
@@ -67,14 +69,22 @@ pub struct RefusedRun {
 }
 
 impl RefusedRun {
-    fn of(title: &str, scenario: &Scenario, refusal: &Refusal) -> Self {
+    /// Searches for the ways out; `None` if `goes_on` stops the search.
+    fn of_while(title: &str, scenario: &Scenario, refusal: &Refusal, goes_on: ProgressCallback<'_>) -> Option<Self> {
         let scenario = Scenario { name: title.into(), ..scenario.clone() };
-        Self { why: refusal.to_string(), proposals: proposals(&scenario, refusal), scenario }
+        let proposals = proposals_while(&scenario, refusal, goes_on)?;
+        Some(Self { why: refusal.to_string(), proposals, scenario })
     }
 
     /// Returns the scenario after a proposal.
     pub fn with(&self, proposal: &Proposal) -> Option<Scenario> {
         self.scenario.with_settings(proposal.change()?).ok()
+    }
+
+    /// Returns all proposals in words, one a line, each with what it changes.
+    pub fn ways_in_words(&self) -> String {
+        let line = |way: &Proposal| format!("{}: {}", way.text, way.how().replace('\n', ", "));
+        self.proposals.iter().map(line).collect::<Vec<_>>().join("\n")
     }
 }
 
@@ -107,10 +117,21 @@ impl Query for AlternativeRuns {
             return Portion::Done((self.scenario.clone(), std::mem::take(&mut self.done)));
         };
         let share = |done: f64| (known as f64 + done) / count;
-        let outcome = match ComparedRun::of_while(scenario.clone(), &mut |done| goes_on(share(done))) {
+        let mut run_share = 0.0;
+        let run = ComparedRun::of_while(scenario.clone(), &mut |done| {
+            run_share = done;
+            goes_on(share(done))
+        });
+        let outcome = match run {
+            Ok(run) => Ok(Arc::new(run)),
             Err(Refusal::Stopped) => return Portion::Stopped,
-            outcome => {
-                outcome.map(Arc::new).map_err(|refusal| Arc::new(RefusedRun::of(way.title(), scenario, &refusal)))
+            Err(refusal) => {
+                // The search takes what the run has left of its share of the work.
+                let mut rest = part(goes_on, [share(run_share), share(1.0)]);
+                let Some(refused) = RefusedRun::of_while(way.title(), scenario, &refusal, &mut rest) else {
+                    return Portion::Stopped;
+                };
+                Err(Arc::new(refused))
             }
         };
         self.done.push((way.title().to_owned(), outcome));
@@ -126,6 +147,7 @@ impl Comparison {
             entries: Vec::new(),
             sort: None,
             baseline: BaselineMachines::default(),
+            version: Arc::default(),
             ways: None,
         }
     }
@@ -189,6 +211,7 @@ impl Comparison {
 
     /// Compares every machine with that of the first run.
     fn compare_with_baseline(&mut self) {
+        self.version = Arc::default();
         self.baseline = BaselineMachines::default();
         for entry in &mut self.entries {
             entry.design = entry.outcome.as_ref().ok().map(|run| self.baseline.set(&run.candidate));
@@ -217,11 +240,17 @@ impl Comparison {
 
     /// Sorts by a column: ascending the first time, descending the second, not at all the third.
     pub fn sort_by(&mut self, column: usize) {
+        self.version = Arc::default();
         self.sort = match self.sort {
             Some((c, false)) if c == column => Some((c, true)),
             Some((c, true)) if c == column => None,
             _ => Some((column, false)),
         };
+    }
+
+    /// Returns what identifies rows and order of the table: another one after each change of them.
+    pub fn version(&self) -> ByIdentity<()> {
+        ByIdentity(self.version.clone())
     }
 
     /// Returns the sort column, and whether the order is descending.
