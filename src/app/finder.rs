@@ -257,14 +257,22 @@ fn found<'a>(entries: Vec<Entry<'a>>, sought: &str) -> Vec<Entry<'a>> {
     search::best_first(offered, score, MAX_ENTRIES)
 }
 
+/// What the list offers beside actions and settings.
+pub struct FinderContent<'a> {
+    /// All signals of the machine.
+    pub signals: &'a [Signal],
+    /// Recent files, newest first.
+    pub recent: &'a [PathBuf],
+    /// Proposals that improve the plan on display, once they are known.
+    pub improvements: Option<Arc<Vec<Proposal>>>,
+}
+
 /// Draws the list and handles its keys.
 pub fn show(
     ctx: &egui::Context,
     session: &Session,
-    signals: &[Signal],
     facts: &ScenarioFacts<'_>,
-    improvements: Option<Arc<Vec<Proposal>>>,
-    recent: &[PathBuf],
+    FinderContent { signals, recent, improvements }: &FinderContent<'_>,
     view_state: &mut ViewState,
     commands: &mut Vec<Command>,
 ) {

@@ -310,12 +310,9 @@ fn title_of(change: &Table) -> String {
         Some(task) if task.is_empty() => return "go back to the path".into(),
         _ => {}
     }
-    match change.get("compare_b").filter(|_| change.len() == 1) {
-        Some(b) => {
-            let with = |b: f64| format!("compare with b = {b:.3} rad");
-            return change::number(b).map_or_else(|| "stop comparing".into(), with);
-        }
-        None => {}
+    if let Some(b) = change.get("compare_b").filter(|_| change.len() == 1) {
+        let with = |b: f64| format!("compare with b = {b:.3} rad");
+        return change::number(b).map_or_else(|| "stop comparing".into(), with);
     }
     let one = |(path, value): (String, &Value)| {
         if path == "counterweight" {

@@ -3,6 +3,7 @@
 use super::AppState;
 use crate::export::{self, DisplaySize};
 use crate::facts::ScenarioFacts;
+use crate::finder::FinderContent;
 use crate::marks::Marks;
 use crate::status::news::News;
 use crate::{
@@ -142,16 +143,8 @@ impl AppState {
         saving::show(ui.ctx(), (&self.saving, self.session.undo_count()), &self.view_state, &mut commands);
         let recent = &self.saving.recent;
         let improvements = self.view_state.open.finder.is_some().then(|| self.improvements()).flatten();
-        finder::show(
-            ui.ctx(),
-            &self.session,
-            &self.signals(),
-            &facts,
-            improvements,
-            recent,
-            &mut self.view_state,
-            &mut commands,
-        );
+        let content = FinderContent { signals: &self.signals(), recent, improvements };
+        finder::show(ui.ctx(), &self.session, &facts, &content, &mut self.view_state, &mut commands);
         notes::show(ui.ctx(), &self.session, &self.views, &mut self.view_state, &mut commands);
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
         export::show(ui.ctx(), &self.session, (&queries, &self.signals()), &self.view_state, &mut commands);
