@@ -358,7 +358,11 @@ fn what_is_outside_of_the_family_is_refused_by_name() {
             "<robot name=\"two\" xmlns:xacro=\"http://x\"><xacro:include filename=\"a\"/>",
             ["<include>", "plain URDF"],
         ),
-        ("<robot name=\"two\">", "<robot name=\"two\"><link name=\"loose\"/>", ["link \"loose\"", "hangs on nothing"]),
+        (
+            "<robot name=\"two\">",
+            "<robot name=\"two\"><link name=\"loose\"/>",
+            ["link \"loose\"", "no joint carries it"],
+        ),
         ("<robot name=\"two\">", "<sdf><robot name=\"two\">", ["", "XML"]),
     ] {
         assert!(TWO.contains(from), "{from}");

@@ -112,7 +112,7 @@ fn what_is_wrong_is_named_by_row_and_column() {
     refused(&format!("{head}{still}"), 2, &["no drive moves"]);
     let file = word(folder.file("m.csv", format!("{head}{}", good(60))));
     fails(&["trim", &file, "two-drive", "--accelerations", "3"], 2, &["want 2, one for each drive"]);
-    fails(&["trim", &file, "two-drive", "--fix", "7.com"], 2, &["nothing of this machine", "7.com"]);
+    fails(&["trim", &file, "two-drive", "--fix", "7.com"], 2, &["no parameter", "7.com"]);
     fails(&["trim", &file, "two-drive", "--range", "9=0,1"], 2, &["no link 9"]);
     fails(&["trim", &file, "two-drive", "--fix", "1.com", "--range", "1=0,1"], 2, &["--range is for new"]);
 }

@@ -101,7 +101,7 @@ impl PoseSpace {
         let rate = self.lift(&[low + 1.0], b).0.minus(&self.lift(&[low], b).0);
         let bend: f64 = (0..2).map(|k| self.arms[k].abs() * rate[k] * rate[k]).sum();
         let turns = (high - low) * (bend / (8.0 * CURVE_CHORD_TOLERANCE * self.farthest().max(1e-3))).sqrt();
-        let parts = (turns.ceil() as usize).clamp(16, 4000) & !1;
+        let parts = (turns.ceil() as usize).clamp(16, 4000).next_multiple_of(2);
         let at = |i: usize| low + (high - low) * i as f64 / parts as f64;
         let curve: Vec<[f64; 2]> = (0..=parts).map(|i| place(at(i))).map(|p| [p.re, p.im]).collect();
         let h = (high - low) / parts as f64;
