@@ -1,6 +1,6 @@
 //! Placement of the labels of a scene: beside their points, in view, clear of the machine and of one another.
 //!
-//! Labels of one point form a [`Group`]. The groups are placed one after the other, the most important first, each at
+//! Labels of one point form a `Group`. The groups are placed one after the other, the most important first, each at
 //! the cheapest place that is free: its preferred place, mirrored, or shifted. A group stays where it was while
 //! that place is free and no other is clearly better, so labels do not jump while the machine moves. If a group has
 //! no place for all its rows, its last rows are left out.
