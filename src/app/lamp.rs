@@ -15,7 +15,7 @@ use stillbase_picture::scene::views::ViewKind;
 use stillbase_session::verdict::{Statement, Statements, StatusLight};
 use stillbase_session::{Proposal, Session};
 
-/// Width of the panel under a lamp, points.
+/// Width of the panel that a lamp opens, points.
 const POPUP_WIDTH_PT: f32 = 320.0;
 
 /// Returns the statements about machine, plan and the run so far.
@@ -45,7 +45,7 @@ pub fn button(
         let (title, why) = (notation::sentence(ui.ctx(), &title), notation::sentence(ui.ctx(), &statement.why));
         ui.add(egui::Label::new(RichText::new(title).font(bold(13.0)).color(colour(p.ink))).wrap());
         ui.add(egui::Label::new(RichText::new(why).font(plain(12.0)).color(colour(p.dim))).wrap());
-        // What improves a plan is searched for only while it is asked for.
+        // Improvements of plan and machine are searched for only while this panel is open.
         let asks = about != Statements::RUN && statement.outcome != StatusLight::Good;
         if let Some(improvements) = asks.then(improvements).flatten() {
             let is_here = |one: &&Proposal| one.is_of_machine() == (about == Statements::MACHINE);

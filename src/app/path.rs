@@ -132,7 +132,10 @@ fn time(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
     }
     let mut time = session.scenario().task.time;
     let tip = "Duration T from A to B: peaks of torque go with 1/T²";
-    let row = NumberRow { tip, ..NumberRow::of("time T", "task.time").sliding(0.1..=10.0) };
+    let row = NumberRow::of("time T", "task.time").sliding(0.1..=10.0);
+    // A motion takes one step at least.
+    let range = row.range.start().max(session.scenario().step)..=*row.range.end();
+    let row = NumberRow { tip, range, ..row };
     let responses = row.with_slider(ui, p, &mut time);
     send(commands, &responses, || Edit::set("task.time", time));
 }

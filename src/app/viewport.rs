@@ -148,7 +148,7 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
             thing.in_scene(&spot, views.stage(), &shown).filter(|place| shows && rect.contains(place.center()))
         };
         let mentioned: Vec<Rect> = things.iter().copied().filter_map(in_scene).collect();
-        // A card leaves free what can be dragged and the base, too.
+        // A card leaves free the target, the ring of b and the base, too.
         let free = [Pointed::Target, Pointed::Ring, Pointed::Base].into_iter().filter_map(in_scene);
         let left_free: Vec<Rect> = mentioned.iter().copied().chain(free).collect();
         let widgets = pointing::widgets(ui.ctx(), things);
@@ -328,11 +328,17 @@ fn draw(
         stroke.clear();
         stroke.extend(ui.input(|i| i.pointer.press_origin()).and_then(place));
     }
-    if response.dragged_by(PointerButton::Primary) || response.drag_stopped() {
+    // Esc gives up the stroke; another button does not end it.
+    if ui.input(|i| i.key_pressed(egui::Key::Escape)) {
+        stroke.clear();
+        return;
+    }
+    let stops = response.drag_stopped_by(PointerButton::Primary);
+    if response.dragged_by(PointerButton::Primary) || stops {
         let at = response.interact_pointer_pos().and_then(place);
         stroke.extend(at.filter(|at| stroke.last() != Some(at)));
     }
-    if response.drag_stopped() {
+    if stops {
         let points: Vec<Vector> = stroke.iter().map(|[x, y]| Vector::new(*x, *y)).collect();
         commands.push(ViewChange::Switch(Switch::Drawing, false).into());
         if let Some(change) = Task::drawing(&points) {

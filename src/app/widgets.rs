@@ -14,6 +14,7 @@ use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Edit;
 use stillbase_session::scenario::key_of;
 use stillbase_settings::key;
+use stillbase_settings::number::ShortNumber;
 use stillbase_settings::quantity;
 use stillbase_settings::range::shortened;
 
@@ -151,8 +152,8 @@ impl NumberRow<'_> {
             let nearest = number.filter(|x| !x.is_nan());
             let nearest = nearest.map(|x| (response.id, x.clamp(*self.range.start(), *self.range.end())));
             let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
-            let way_out = nearest
-                .map_or_else(String::new, |(_, x)| format!("take {} = {}{unit}", self.label, signed(x, self.decimals)));
+            let way_out =
+                nearest.map_or_else(String::new, |(_, x)| format!("take {} = {}{unit}", self.label, self.exact(x)));
             ui.data_mut(|data| data.insert_temp(refused_id(), RefusedEntry { why, nearest, way_out }));
         }
         let taken = ui.data_mut(|data| data.remove_temp::<TakenNumber>(taken_id(response.id)));
@@ -167,10 +168,19 @@ impl NumberRow<'_> {
 
     /// Returns what is allowed, in words.
     fn allowed_range(&self) -> String {
-        let end = |x: f64| signed(x, self.decimals);
+        let end = |x: f64| self.exact(x);
         let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
         let (low, high) = (end(*self.range.start()), end(*self.range.end()));
         format!("want a number from {low} to {high}{unit}")
+    }
+
+    /// Writes a number with the decimals of the row, or with more if it would be another one.
+    fn exact(&self, x: f64) -> String {
+        let unit = 10f64.powi(self.decimals as i32);
+        match ((x * unit).round() / unit - x).abs() <= 1e-9 * x.abs() {
+            true => signed(x, self.decimals),
+            false => ShortNumber(x).to_string(),
+        }
     }
 
     fn why_not(&self, text: &str, why: &str) -> String {

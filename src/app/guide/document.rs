@@ -33,7 +33,7 @@ pub enum Content {
     Heading(usize, String, Vec<Span>),
     /// A paragraph.
     Text(Vec<Span>),
-    /// A block of code or console text: its kind, which is the word after the opening fence, and its text.
+    /// A block of code or console text: its kind, which is all the text after the opening fence, and its text.
     Code(String, String),
     /// The rows of a table, the heads first.
     Table(Vec<Vec<Vec<Span>>>),
@@ -94,7 +94,7 @@ pub struct Section {
     pub place: GuidePlace,
     /// Heading of its page.
     pub page: String,
-    /// Its heading; that of the page for the part before the first heading.
+    /// Its heading. The first section of a page has the heading of the page.
     pub heading: String,
     /// Its text.
     pub text: String,

@@ -42,7 +42,7 @@ pub fn name_of(address: &str) -> &str {
     stem.strip_suffix("-dark").or(stem.strip_suffix("-light")).unwrap_or(stem)
 }
 
-/// Draws a picture in the theme of the window, as wide as the page, with what it shows for screen readers; `None` if the
+/// Draws a picture in the window's theme, at most as wide as the page, with text for screen readers; `None` if the
 /// program has no picture of this name. Until it is decoded, its place is empty.
 pub fn show(ui: &mut Ui, queries: &Queries, picture: &str, shows: &[Span]) -> Option<Response> {
     let theme = if ui.visuals().dark_mode { Theme::Dark } else { Theme::Light };
@@ -68,7 +68,7 @@ struct PictureVariant {
     /// Name of the picture.
     name: String,
     theme: Theme,
-    /// Whether it has half the resolution. It is shrunk to hardly less than half its width on the display, so that
+    /// Whether it has half the resolution. So the display hardly shrinks a texture to less than half its width, and
     /// letters stay smooth.
     is_small: bool,
 }

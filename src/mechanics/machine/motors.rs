@@ -99,7 +99,7 @@ impl Motors {
         }
     }
 
-    /// Returns Aᵀ m, N m: generalised torques from those of the motors. Their reactions on the base are not included.
+    /// Returns Aᵀ m, N m: generalised torques from those of the motors. What stators exert on the base is left out.
     #[inline]
     #[must_use]
     pub fn generalised_torques(&self, torques: &PerDrive) -> PerDrive {

@@ -4,7 +4,7 @@ use crate::notation::{Notation, NumberFormat};
 use stillbase_settings::number::{fixed, nine_digits};
 
 impl Notation {
-    /// Returns a number with fixed decimals, which belong to `unit`, and the name of its unit.
+    /// Returns a number in the user's unit, and the name of that unit. `decimals` is their number in `unit`.
     pub(super) fn fixed(self, value: f64, decimals: usize, unit: &str) -> (String, &str) {
         let NumberFormat { factor, decimals, unit } = self.format(decimals, unit);
         (fixed(factor * value, decimals), unit)

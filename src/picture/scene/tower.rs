@@ -35,7 +35,7 @@ pub const MAX_TOWER_SPAN: f64 = 4.0 * TOWER_SPAN;
 const RECORDED_GRAIN: f64 = 2.6;
 /// Spacing of contours, rad; contours are at multiples of this, and at both ends of the interval.
 const CONTOUR_STEP_RAD: f64 = 0.5;
-/// Minimum distance of the present b from top and bottom, as a fraction of the interval.
+/// Minimum distance of b from top and bottom, as a fraction of [`TOWER_SPAN`].
 const MARGIN_FRACTION: f64 = 0.08;
 /// Height of the box, as a multiple of the radius of the workspace.
 const HEIGHT_PER_RADIUS: f64 = 2.1;
@@ -147,7 +147,7 @@ impl Tower {
         HEIGHT_PER_RADIUS * self.radius / self.span
     }
 
-    /// Returns the interval of b that is shown, rad: from 0 while the present `b` is well inside, otherwise shifted.
+    /// Returns the interval of b that is shown, rad: a fixed one, or from 0, shifted if `b` is not well inside.
     pub fn window(&self, b: f64) -> [f64; 2] {
         self.fixed.unwrap_or_else(|| axes::sliding_range(b, 0.5 * self.span, self.span, MARGIN_FRACTION * self.span))
     }

@@ -2,19 +2,19 @@
 //!
 //! At each pose the rates with D(q) · q̇ = 0 transmit no moment; they span n − 1 directions. If D is constant, they
 //! span the planes b = const. With three drives, a closed path of the end effector then brings the joints back. If D
-//! is not constant, three drives or more have no surface with these tangents: the joints drift with every cycle.
+//! is not constant, three drives or more rarely have such surfaces: usually the joints drift with every cycle.
 //!
 //! # Symbols
 //! | letter | meaning | shape, unit |
 //! |---|---|---|
-//! | H, D_k, J_k | mass matrix; angular momentum about B is D q̇, (6), (A3); spin, as in [`Inertia`] | n, kg m² |
+//! | H, D_k, J_k | n×n mass matrix; coefficients of momentum D q̇ about B, (6), (A3); spin of [`Inertia`] | kg m² |
 //! | Z_kl | C_kl e^{i (q_l − q_k)} | complex, kg m² |
-//! | J | ∂p/∂q in absolute drive angles | 2×n, m |
-//! | dD | ∂D_k/∂q_m − ∂D_m/∂q_k = −2 Im Z_km | n×n, kg m² |
+//! | J | ∂p/∂q in absolute drive angles; p is the position of the end effector | 2×n, m |
+//! | dD | ∂D_m/∂q_k − ∂D_k/∂q_m = 2 Im Z_km | n×n, kg m² |
 //!
 //! # Source
 //! D_k = C_kk + J_k + Σ_{l≠k} Re Z_kl, so ∂D_k/∂q_m = −Im Z_km for m ≠ k and ∂D_k/∂q_k = Σ_{l≠k} Im Z_kl. By
-//! Frobenius, D q̇ = 0 is integrable where D ∧ dD = 0: for three drives without rotors, 2 Im[(H_11 C_23 − C_21 C_13)
+//! Frobenius, D q̇ = 0 is integrable if D ∧ dD = 0. For three drives without rotors it is 2 Im[(H_11 C_23 − C_21 C_13)
 //! e^{i(q_3−q_2)} + (H_22 C_31 − C_32 C_21) e^{i(q_1−q_3)} + (H_33 C_12 − C_13 C_32) e^{i(q_2−q_1)}]. It vanishes in
 //! all poses only if its coefficients do; if H is positive definite, these vanish only if every C_kl is zero.
 
@@ -150,7 +150,7 @@ pub fn rates(model: &Inertia, q: &DriveAngles, v: Vector, h: f64) -> Option<PerD
 /// Curves that a machine's end effector can follow at zero angular momentum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MomentumFreedom {
-    /// None: a single drive has momentum as soon as it turns.
+    /// None: a single drive, which has momentum as soon as it turns unless its rotor cancels it.
     None,
     /// One curve through each pose: two drives.
     OneCurve,
@@ -235,8 +235,8 @@ pub fn integrability_violation(model: &Inertia, q: &DriveAngles) -> f64 {
 
 /// Returns whether the machine has a pose constant: a b(q) that is constant along every motion of zero momentum.
 ///
-/// One or two drives always have one. Others have one if E_j C_kl = C_kj C_jl for every three drives; E_j is D_j if
-/// all C_kl vanish. If H is positive definite, the mass matrix is then invariant, D constant and b = Σ λ_k q_k.
+/// One or two drives always have one. Others have one if E_j C_kl = C_kj C_jl for every three drives. E_j is D_j with
+/// all C_kl set to 0. If H is positive definite without rotors, H and D are then constant and b = Σ λ_k q_k.
 pub fn is_integrable(model: &Inertia) -> bool {
     let n = model.drives();
     let whole: f64 = (0..n).map(|k| model.diagonal(k)).sum();

@@ -8,7 +8,7 @@ use stillbase_session::design::machine_edit;
 use stillbase_session::scenario::Scenario;
 
 /// Returns the edit that replaces the session's machine by the identified one: as built, or with its correction if
-/// `mends` is set. `None` if the session has that machine already. `measured` is the machine of the file with which the
+/// `mends` is set. `None` if the session has that machine already. `measured` is the machine with which the
 /// measurement was evaluated.
 ///
 /// # Errors

@@ -50,7 +50,7 @@ pub(super) struct Channel {
     /// Matrix, rows × unknowns.
     pub x: DMatrix<f64>,
     pub y: Vec<f64>,
-    /// Expected contribution of the noise in the angles or measured rates to xᵀ x.
+    /// Expected contribution of the noise in the angles or measured rates to xᵀ x; 0 if the source is samples.
     pub noise: DMatrix<f64>,
 }
 
@@ -66,7 +66,7 @@ const ACCEPTED_NOISE: f64 = 2e-3;
 const STILL_NOISE: f64 = 0.2;
 /// A drive counts as still if its angle varies by at most this, rad.
 const TURNING_ABOVE_RAD: f64 = 1e-9;
-/// The same with measured accelerations, which must also satisfy the next bound, rad.
+/// With measured accelerations, a still drive's angle varies by at most this, rad; the next bound must hold too.
 const STILL_RANGE_RAD: f64 = 1e-3;
 /// Upper bound on the root mean square acceleration of a still drive, as a fraction of that of the fastest drive.
 const STILL_ACCELERATION: f64 = 1e-2;
@@ -247,17 +247,18 @@ fn widths(smooth: &[Smooth]) -> Result<Vec<f64>, TrimError> {
 fn noise_ratios(smooth: &[Smooth], half: f64, drives: usize) -> Vec<f64> {
     let (mut noises, mut sizes) = (vec![0.0; drives], vec![f64::MIN_POSITIVE; drives]);
     for own in smooth {
-        let mut centres = own.centres(half, 0.5 * half).peekable();
-        while let Some(centre) = centres.next() {
+        // The noise of the last window that has enough samples stands for that of all.
+        let (mut windows, mut last_gain) = (0_u32, 0.0);
+        for centre in own.centres(half, 0.5 * half) {
             let Some(window) = SmoothingWindow::about(&own.motion.t, centre, half) else { continue };
-            for k in 0..drives {
+            for (k, size) in sizes.iter_mut().enumerate() {
                 let mean: f64 = window.samples.clone().zip(&window.rate).map(|(j, d)| d * own.qd[j][k]).sum();
-                sizes[k] += mean * mean;
-                if centres.peek().is_none() {
-                    noises[k] +=
-                        own.gain(&window).powi(2) * own.noise[k].powi(2) * own.centres(half, 0.5 * half).count() as f64;
-                }
+                *size += mean * mean;
             }
+            (windows, last_gain) = (windows + 1, own.gain(&window));
+        }
+        for (noise, own) in noises.iter_mut().zip(&own.noise) {
+            *noise += last_gain.powi(2) * own.powi(2) * f64::from(windows);
         }
     }
     noises.iter().zip(&sizes).map(|(noise, size)| (noise / size).sqrt()).collect()
