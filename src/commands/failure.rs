@@ -83,6 +83,9 @@ impl Failure {
             Self::NoAnswer(_) | Self::WrongInput(_) => {
                 Self::Refused(Box::new(RefusedScenario { failure: self, proposals, is_printed: false }))
             }
+            Self::Refused(refused) if refused.proposals.is_empty() => {
+                Self::Refused(Box::new(RefusedScenario { proposals, ..*refused }))
+            }
             other => other,
         }
     }
@@ -96,27 +99,35 @@ impl Failure {
     /// Returns the failure with `what` before its reason.
     #[must_use]
     pub fn with_context(self, what: impl Display) -> Self {
+        self.worded(&|why| format!("{what}: {why}"))
+    }
+
+    /// Returns the failure with its reason in other words.
+    #[must_use]
+    pub fn worded(self, words: &dyn Fn(&str) -> String) -> Self {
         match self {
             Self::ReaderGone => Self::ReaderGone,
-            Self::NoAnswer(why) => Self::NoAnswer(format!("{what}: {why}")),
-            Self::WrongInput(why) => Self::WrongInput(format!("{what}: {why}")),
+            Self::NoAnswer(why) => Self::NoAnswer(words(&why)),
+            Self::WrongInput(why) => Self::WrongInput(words(&why)),
             Self::Refused(refused) => {
                 let RefusedScenario { failure, proposals, is_printed } = *refused;
-                Self::Refused(Box::new(RefusedScenario { failure: failure.with_context(what), proposals, is_printed }))
+                Self::Refused(Box::new(RefusedScenario { failure: failure.worded(words), proposals, is_printed }))
             }
         }
     }
 }
 
 impl From<FileError> for Failure {
+    /// Commands read machines and scenarios before they answer, so `--json` gets an object also where nothing leads out.
     fn from(e: FileError) -> Self {
-        Self::wrong_input(e)
+        Self::wrong_input(e).with_proposals(Vec::new())
     }
 }
 
 impl From<ScenarioError> for Failure {
+    /// As for [`FileError`].
     fn from(e: ScenarioError) -> Self {
-        Self::wrong_input(e)
+        Self::wrong_input(e).with_proposals(Vec::new())
     }
 }
 

@@ -48,11 +48,11 @@ impl OpenArguments {
     /// Shows the scenario in a window, or records it if there is no window.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = overlay_for_study(&self.scenario, &self.settings).map_err(|failure| match failure {
-            // The name may be a mistyped command, or the fault is in `--set`.
-            Failure::WrongInput(why) if !self.scenario.ends_with(".toml") => {
-                Failure::WrongInput(format!("{why}; `stillbase --help` lists the commands"))
+            // The name may be a mistyped command.
+            failure if Scenario::builtin(&self.scenario).is_none() && !self.scenario.ends_with(".toml") => {
+                failure.worded(&|why| format!("{why}; `stillbase --help` lists the commands"))
             }
-            other => other,
+            failure => failure,
         })?;
         #[cfg(feature = "window")]
         let why = match stillbase_app::window::run(scenario.clone(), self.theme.map(Theme::from)) {
