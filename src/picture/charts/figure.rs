@@ -308,8 +308,8 @@ pub struct Figure {
 }
 
 impl Figure {
-    /// Returns the picture of a plot, with its title, its units, the symbols of its curves, and the names of the overlaid
-    /// runs `runs`, for which it is higher. `size` in points is without these names.
+    /// Returns the picture of a plot, with its title, its units and the symbols of its curves. The names of the overlaid
+    /// `runs` make it higher; `size`, points, is without these names.
     pub fn of(plot: &Plot<'_>, drawn: &PlotLines, size: [f32; 2], look: &PlotContext<'_>, runs: &[RunName]) -> Self {
         let p = look.palette;
         let width = size[0];

@@ -21,7 +21,7 @@ const SAMPLE_PT: f32 = 24.0;
 /// Size of the font, points, and usual width of a letter as a share of it.
 const SIZE_PT: f32 = 11.5;
 const LETTER_SHARE: f32 = 0.56;
-/// What stands for the run of the session, which has no number.
+/// Name of the run of the session, which has no number.
 const OWN_RUN: &str = "the run on display";
 
 /// Returns the overlaid runs of a comparison.

@@ -12,8 +12,8 @@ const BORDER_OPACITY: f32 = 0.75;
 pub const PLATE_OPACITY: f32 = 0.85;
 
 impl Scene {
-    /// Makes the background transparent. Text then lies on plates, and lines and markers in its colours get borders,
-    /// all in the colour of that background, so that they stay legible on any other. Faint lines become grey.
+    /// Makes the background transparent. Plates behind text, and borders of lines and markers in the colours of text, have
+    /// the former colour of the background: so they stay legible on any other. Faint lines become grey.
     pub fn lay_over_any(&mut self, palette: &Palette) {
         let border = faded(palette.background, BORDER_OPACITY);
         self.background = faded(palette.background, 0.0);
