@@ -113,9 +113,15 @@ impl Card {
                 let weight = scenario.machine.spec().counterweights.get(i)?;
                 let rows = vec![
                     format!("{} kg, {} m from its root", three_digits(weight.mass), signed(weight.at, 4)),
+                    format!("{} m left of its link's axis", signed(weight.across, 4)),
                     format!("radius {} m", signed(weight.radius, 4)),
                 ];
-                Self::new(format!("counterweight of link {}", weight.link), rows, "drag: along its link")
+                let way = if scenario.design.across > 0.0 || weight.across != 0.0 {
+                    "drag: along and across its link"
+                } else {
+                    "drag: along its link"
+                };
+                Self::new(format!("counterweight of link {}", weight.link), rows, way)
             }
             Handle::End(i) => {
                 let part = scenario.machine.resolved_links().get(i)?;

@@ -1,4 +1,4 @@
-//! The lamps: statements about machine, plan and run, each with its number, its reason and what would improve it.
+//! The lamps: statements about machine, plan and run with their reasons; for machine and plan also improvements.
 
 use std::sync::Arc;
 
@@ -67,7 +67,7 @@ fn place(about: &str) -> (&'static str, ViewChange) {
     }
 }
 
-/// Draws the button of a proposal. The edit also makes the settings that were refused, if there are any.
+/// Draws the button of a proposal. A click also does what was `refused`, if anything was.
 pub fn proposal(ui: &mut Ui, proposal: &Proposal, refused: Option<&RefusedEdit>, commands: &mut Vec<Command>) {
     let text = notation::sentence(ui.ctx(), &proposal.text);
     let response = ui.button(text).on_hover_text(proposal.how());

@@ -269,7 +269,7 @@ fn edit_of(aim: DragAction, session: &Session, view_state: &ViewState) -> Option
             Edit::at(&["limits", &machine.angles().get(angle)?.name], ends.to_vec())
         }
         DragAction::Mass { link, to } => Edit::at(&["link", &machine.links().get(link)?.name, "com"], to),
-        DragAction::Weight { weight, to } => Edit::at(&["counterweight", &(weight + 1).to_string(), "at"], to),
+        DragAction::Weight { weight, to } => session.scenario().design.weight_edit(machine, weight, to),
         DragAction::Length { link, to } => length_edit(machine.spec().links.get(link)?, to),
         DragAction::Payload(offset) => Edit::set("plant.payload.offset", offset.to_vec()),
         DragAction::Waypoint(i, [x, y]) => Edit::of("task", session.scenario().task.moving(i, Vector::new(x, y))?),

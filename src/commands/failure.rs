@@ -118,7 +118,7 @@ impl Failure {
 }
 
 impl From<FileError> for Failure {
-    /// Commands read machines and scenarios before they answer, so `--json` gets an object also where nothing leads out.
+    /// Commands read machines and scenarios before they print. So `--json` prints the reason even without proposals.
     fn from(e: FileError) -> Self {
         Self::wrong_input(e).with_proposals(Vec::new())
     }

@@ -23,17 +23,18 @@ pub fn link(machine: &Machine, name: &str) -> Result<usize, Failure> {
     })
 }
 
-/// Returns the sites on the named links. By default, these are all links, each from one link length behind its root to
-/// its tip.
+/// Returns the sites on the named links, up to `across`, m, off their axes. By default, these are all links, each from
+/// one link length behind its root to its tip.
 ///
 /// # Errors
 /// If there is no such link.
-pub fn sites(machine: &Machine, ranges: &[(String, [f64; 2])]) -> Result<Vec<CounterweightSite>, Failure> {
+pub fn sites(machine: &Machine, ranges: &[(String, [f64; 2])], across: f64) -> Result<Vec<CounterweightSite>, Failure> {
     if ranges.is_empty() {
-        return Ok(CounterweightSite::anywhere(machine));
+        let anywhere = CounterweightSite::anywhere(machine).into_iter();
+        return Ok(anywhere.map(|site| CounterweightSite { across, ..site }).collect());
     }
     let site = |(name, [from, to]): &(String, [f64; 2])| {
-        Ok(CounterweightSite { link: link(machine, name)?, from: *from, to: *to, most: f64::INFINITY })
+        Ok(CounterweightSite { across, ..CounterweightSite::on_axis(link(machine, name)?, *from, *to) })
     };
     ranges.iter().map(site).collect()
 }

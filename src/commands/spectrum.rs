@@ -144,7 +144,7 @@ fn text(answer: &BaseSpectrum) -> String {
     }
     let why = match answer.window {
         WindowFunction::Hann => {
-            "Frequencies and the cumulative RMS are those of the windowed samples. The last value is the \
+            "Frequencies and the cumulative RMS are those of the windowed samples; the latter ends at the \
              weighted RMS. --window rectangular weights all samples equally.\n"
         }
         WindowFunction::Rectangular => "",

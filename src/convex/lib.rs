@@ -1,6 +1,6 @@
-//! Convex programs: minimise ½ xᵀ P x + q · x under linear equalities, inequalities and second-order cones of three
-//! rows, by an interior-point method (Clarabel). The same program always has the same answer. The dual solution bounds
-//! how far the answer is from the optimum.
+//! Convex programs: minimise ½ xᵀ P x + q · x under linear equalities, inequalities and second-order cones, by an
+//! interior-point method (Clarabel). The same program always has the same answer. The dual solution bounds how far the
+//! answer is from the optimum.
 //!
 //! This crate serves the workspace alone, and may change in any version.
 
@@ -37,8 +37,8 @@ pub struct Program {
     pub equal: Vec<LinearRow>,
     /// Inequalities Σ value x_j ≤ right, where right is finite.
     pub at_most: Vec<LinearRow>,
-    /// Second-order cones a ≥ |(b, c)|, where a row gives each of a, b and c as Σ value x_j + right.
-    pub cones: Vec<[LinearRow; 3]>,
+    /// Second-order cones a ≥ |(b, c, …)|, where a row gives each of a, b, c … as Σ value x_j + right.
+    pub cones: Vec<Vec<LinearRow>>,
 }
 
 /// Solution of a program.
@@ -63,6 +63,9 @@ pub enum NoOptimum {
     Failed(String),
 }
 
+/// Relative gap above which an answer is rough, so that a second attempt is made.
+const ROUGH_GAP: f64 = 1e-7;
+
 impl Program {
     /// Returns a program over `n` unknowns with objective zero and without constraints.
     pub fn over(n: usize) -> Self {
@@ -76,18 +79,17 @@ impl Program {
         self.quadratic.push((i.min(j), i.max(j), if i == j { 2.0 * factor } else { factor }));
     }
 
-    /// Adds the constraint x_u x_w ≥ x_s² with x_u ≥ 0 and x_w ≥ 0.
-    pub fn add_rotated_cone(&mut self, u: usize, w: usize, s: usize) {
-        self.cones.push([
-            LinearRow::new([(u, 1.0), (w, 1.0)], 0.0),
-            LinearRow::new([(s, 2.0)], 0.0),
-            LinearRow::new([(u, 1.0), (w, -1.0)], 0.0),
-        ]);
+    /// Adds the constraint x_u x_w ≥ Σ x_s² over the listed s, with x_u ≥ 0 and x_w ≥ 0.
+    pub fn add_rotated_cone(&mut self, u: usize, w: usize, squared: impl IntoIterator<Item = usize>) {
+        let mut cone = vec![LinearRow::new([(u, 1.0), (w, 1.0)], 0.0)];
+        cone.extend(squared.into_iter().map(|s| LinearRow::new([(s, 2.0)], 0.0)));
+        cone.push(LinearRow::new([(u, 1.0), (w, -1.0)], 0.0));
+        self.cones.push(cone);
     }
 
     /// Adds the constraint x_v ≥ factor x_w².
     pub fn above_square(&mut self, v: usize, factor: f64, w: usize) {
-        self.cones.push([
+        self.cones.push(vec![
             LinearRow::new([(v, 1.0)], 1.0),
             LinearRow::new([(w, 2.0 * factor.sqrt())], 0.0),
             LinearRow::new([(v, 1.0)], -1.0),
@@ -106,9 +108,9 @@ impl Program {
         }
         let mut cones = vec![ZeroConeT(self.equal.len()), NonnegativeConeT(self.at_most.len())];
         cones.retain(|cone| !matches!(cone, ZeroConeT(0) | NonnegativeConeT(0)));
-        cones.extend(self.cones.iter().map(|_| SecondOrderConeT(3)));
+        cones.extend(self.cones.iter().map(|cone| SecondOrderConeT(cone.len())));
         let (a, p) = (sparse(right.len(), n, &entries), sparse(n, n, &self.quadratic));
-        let mut failed = String::new();
+        let (mut failed, mut rough): (String, Option<Optimum>) = (String::new(), None);
         // Close to the boundary of feasibility, a second attempt with larger tolerances may still succeed.
         for [gap_tolerance, feasibility_tolerance] in [[1e-10, 1e-11], [1e-8, 1e-9]] {
             let settings = DefaultSettings {
@@ -126,7 +128,12 @@ impl Program {
             match found.status {
                 SolverStatus::Solved | SolverStatus::AlmostSolved => {
                     let gap = (found.obj_val - found.obj_val_dual).abs();
-                    return Ok(Optimum { x: found.x, value: found.obj_val, gap });
+                    let optimum = Optimum { x: found.x, value: found.obj_val, gap };
+                    // An answer that is almost solved may have a gap far above the tolerance.
+                    if gap <= ROUGH_GAP * (1.0 + optimum.value.abs()) {
+                        return Ok(optimum);
+                    }
+                    rough = rough.filter(|rough| rough.gap <= gap).or(Some(optimum));
                 }
                 SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
                     let from = self.equal.len();
@@ -135,7 +142,7 @@ impl Program {
                 status => failed = status.to_string(),
             }
         }
-        Err(NoOptimum::Failed(failed))
+        rough.ok_or(NoOptimum::Failed(failed))
     }
 }
 

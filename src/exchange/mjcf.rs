@@ -180,10 +180,11 @@ impl<'a> Model<'a> {
             line!(self, depth + 1, "<geom fromto=\"{from} 0 0 {to} 0 0\" rgba=\"{colour}\"/>");
         }
         for weight in self.machine.spec().counterweights.iter().filter(|weight| weight.link == link.name) {
-            let (at, [radius, thickness]) = (part.sign * weight.at, cut.drawn_disc(weight));
+            let [x, y] = [weight.at, weight.across].map(|x| part.sign * x);
+            let [radius, thickness] = cut.drawn_disc(weight);
             // MuJoCo wants half the height of a cylinder.
             let size = format!("{radius} {}", 0.5 * thickness);
-            line!(self, depth + 1, "<geom type=\"cylinder\" pos=\"{at} 0 0\" size=\"{size}\" rgba=\"{colour}\"/>");
+            line!(self, depth + 1, "<geom type=\"cylinder\" pos=\"{x} {y} 0\" size=\"{size}\" rgba=\"{colour}\"/>");
         }
         for (number, pinned) in self.machine.loops().iter().enumerate() {
             for (side, of, at) in [("a", pinned.a, pinned.at_a), ("b", pinned.b, pinned.at_b)] {

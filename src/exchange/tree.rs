@@ -7,8 +7,8 @@
 //!
 //! A pin between links of two drives turns by a sum of motor angles, but a joint of URDF can mimic only one other
 //! joint. So a sum becomes several joints in series, with auxiliary parts of negligible mass between them. Programs
-//! that read a tree from its root need a joint before the joints that mimic it. In a serial arm the joints have this
-//! order if the motors turn the links directly. In other machines each motor turns a shaft, and all links follow
+//! that read a tree from its root need a joint before the joints that mimic it. Motors turn links directly if that
+//! gives this order, as in a serial arm. Otherwise each motor turns a shaft, and all links follow
 //! shafts.
 
 use std::collections::BTreeMap;

@@ -250,18 +250,18 @@ impl<'a> Model<'a> {
         let ends = part.pins.iter().fold([0.0_f64, part.length], |[least, most], at| [least.min(*at), most.max(*at)]);
         let (middle, length) = (part.sign * 0.5 * (ends[0] + ends[1]), ends[1] - ends[0] + 2.0 * DRAWN_BAR_RADIUS);
         let bar = format!("<box size=\"{length} {} {}\"/>", 2.0 * DRAWN_BAR_RADIUS, 0.5 * DRAWN_BAR_RADIUS);
-        self.visual(part.drive, middle, &bar);
+        self.visual(part.drive, [middle, 0.0], &bar);
         for weight in machine.spec().counterweights.iter().filter(|weight| weight.link == link.name) {
             let [radius, thickness] = self.cut.drawn_disc(weight);
             let disc = format!("<cylinder radius=\"{radius}\" length=\"{thickness}\"/>");
-            self.visual(part.drive, part.sign * weight.at, &disc);
+            self.visual(part.drive, [part.sign * weight.at, part.sign * weight.across], &disc);
         }
     }
 
-    fn visual(&mut self, drive: usize, at: f64, geometry: &str) {
+    fn visual(&mut self, drive: usize, [x, y]: [f64; 2], geometry: &str) {
         let drive = quoted(&self.machine.spec().drives[drive].name);
         self.lines.add(2, format_args!("<visual>"));
-        self.lines.add(3, format_args!("<origin xyz=\"{at} 0 0\"/>"));
+        self.lines.add(3, format_args!("<origin xyz=\"{x} {y} 0\"/>"));
         self.lines.add(3, format_args!("<geometry>{geometry}</geometry>"));
         self.lines.add(3, format_args!("<material name=\"drive_{drive}\"/>"));
         self.lines.add(2, format_args!("</visual>"));

@@ -3,8 +3,8 @@
 //!
 //! The crate `tempfile` makes temporary files too, but does not do three things that this module does. Temporary files
 //! of killed programs are found by their names and released locks, and removed. A signal handler can remove all
-//! temporary files without dropping their owners, while none can take its final name. Tests can inject a fault at each
-//! step.
+//! temporary files without dropping their owners; from then on, no file takes its final name. Tests can inject a
+//! fault at each step.
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;

@@ -158,8 +158,8 @@ impl<G: IncrementalQuery> AnySlot for IncrementalAnswers<G> {
 
 impl<G: IncrementalQuery> IncrementalAnswers<G> {
     /// Removes and returns the entry that has most items in common with a revision, so that it grows outside of the
-    /// store. Other entries without common items are kept while a sequence has or remembers their revision.
-    /// Those with common items are kept only while a sequence has exactly their revision.
+    /// store. Entries without common items stay while a sequence has their revision or lists it as an earlier one.
+    /// Other entries with common items stay only while a sequence still has their revision.
     pub fn take(&mut self, revision: &Revision) -> Option<IncrementalState<G>> {
         let kept = |growth: &IncrementalState<G>| revision.unchanged_since(&growth.of);
         let best = (0..self.0.len()).max_by_key(|i| kept(&self.0[*i])).filter(|i| kept(&self.0[*i]) > 0);

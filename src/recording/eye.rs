@@ -10,8 +10,8 @@ use stillbase_picture::scene::camera::{Camera, FlatCamera, Orbit};
 /// Half the height of the picture, as a fraction of the eye's distance, for the viewer's field of view of 55°.
 const HALF_HEIGHT: f64 = 0.5206;
 
-/// Assumed number of pixels from the centre of the picture to its top. It is smaller than in a usual window, because
-/// the viewer draws labels in boxes.
+/// Assumed number of pixels from the centre of the picture to its top. It is smaller than in a usual window: this
+/// shifts labels farther from their points, because the viewer draws them in boxes.
 const HALF_PIXELS: f64 = 240.0;
 
 /// An eye that looks at a point.

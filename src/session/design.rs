@@ -62,10 +62,15 @@ impl DesignBrief {
             true => spec.links.iter().enumerate().map(|(j, link)| (Parameter::com(j), link.name.as_str())).collect(),
             false => {
                 let weights = spec.counterweights.iter().enumerate();
-                let both = [BodyQuantity::Mass, BodyQuantity::Along];
+                let all = [BodyQuantity::Mass, BodyQuantity::Along, BodyQuantity::Across];
+                let may_leave_axis = |i: usize| self.greatest_across([machine, start], i) > 0.0;
                 weights
                     .flat_map(|(i, weight)| {
-                        both.map(|what| (Parameter::new(Body::Counterweight(i), what), weight.link.as_str()))
+                        all.map(|what| (Parameter::new(Body::Counterweight(i), what), weight.link.as_str()))
+                    })
+                    .filter(|(one, _)| match (one.quantity, one.body) {
+                        (BodyQuantity::Across, Body::Counterweight(i)) => may_leave_axis(i),
+                        _ => true,
                     })
                     .collect()
             }
@@ -80,6 +85,10 @@ impl DesignBrief {
                 bounds: match (parameter.quantity, parameter.body) {
                     _ if stays => ParameterBounds::Fixed,
                     (BodyQuantity::Along, Body::Counterweight(i)) => self.along(machine, start, i),
+                    (BodyQuantity::Across, Body::Counterweight(i)) => {
+                        let most = self.greatest_across([machine, start], i);
+                        ParameterBounds::Within([-most, most])
+                    }
                     _ => ParameterBounds::Free,
                 },
                 penalty: match (parameter.quantity, parameter.body) {
@@ -100,6 +109,24 @@ impl DesignBrief {
         keep.measured_from(start)
     }
 
+    /// Returns the greatest distance of a counterweight from the axis of its link, m: the bound, or its distance in one
+    /// of the machines if that is larger.
+    fn greatest_across(&self, machines: [&Machine; 2], i: usize) -> f64 {
+        let weights = machines.into_iter().filter_map(|machine| machine.spec().counterweights.get(i));
+        weights.map(|weight| weight.across.abs()).fold(self.across, f64::max)
+    }
+
+    /// Returns the edit that moves a counterweight, counted from 0, to a position along its link and to the left of the
+    /// link's axis, m. It stays as near to the axis as the brief demands.
+    pub fn weight_edit(&self, machine: &Machine, i: usize, [at, across]: [f64; 2]) -> Edit {
+        let most = self.greatest_across([machine; 2], i);
+        let mut place = Table::from_iter([("at".into(), at.into())]);
+        if most > 0.0 {
+            place.insert("across".into(), across.clamp(-most, most).into());
+        }
+        Edit::of("counterweight", Table::from_iter([((i + 1).to_string(), Value::from(place))]))
+    }
+
     /// Returns the range of places of a counterweight, m: from its bound behind the root to the length of the link,
     /// widened to include its present place and that in `start`. If it is clear of pins now, it stays clear of them.
     fn along(&self, machine: &Machine, start: &Machine, i: usize) -> ParameterBounds {
@@ -114,10 +141,11 @@ impl DesignBrief {
         ParameterBounds::Within(clear.map_or([low, high], |[from, to]| [low.max(from), high.min(to)]))
     }
 
-    /// Returns the range of places, m, in which a counterweight of its present radius stays clear of the pins on either
-    /// side. Returns `None` if it is not clear of them now.
+    /// Returns the range of places, m, in which a counterweight of its present radius and distance from the axis stays
+    /// clear of the pins on either side. Returns `None` if it is not clear of them now.
     fn clear_of_pins(&self, pins: &[f64], weight: &Counterweight) -> Option<[f64; 2]> {
         let away = self.clearance? + weight.radius;
+        let away = (away * away - weight.across * weight.across).max(0.0).sqrt();
         let behind = pins.iter().filter(|pin| **pin <= weight.at).fold(f64::NEG_INFINITY, |most, pin| most.max(*pin));
         let ahead = pins.iter().filter(|pin| **pin > weight.at).fold(f64::INFINITY, |least, pin| least.min(*pin));
         let [from, to] = [behind + away, ahead - away];
@@ -159,6 +187,7 @@ impl DesignBrief {
                 link,
                 from: -self.behind_root.unwrap_or(part.length),
                 to: part.length,
+                across: self.across,
                 most: self.heaviest.unwrap_or(f64::INFINITY),
             }
         });
@@ -195,13 +224,19 @@ pub fn brief_edit(scenario: &Scenario, change: &Table) -> Result<Edit, String> {
 
 /// Returns proposals that relax the bounds of a brief for which there are no counterweights; each is sufficient.
 pub fn relaxations(why: &CounterweightError) -> Vec<Proposal> {
-    let (CounterweightError::Conflict { reliefs, .. } | CounterweightError::Reaches { reliefs, .. }) = why else {
+    let (CounterweightError::Conflict { reliefs, .. }
+    | CounterweightError::Reaches { reliefs, .. }
+    | CounterweightError::OffAxis { reliefs, .. }) = why
+    else {
         return Vec::new();
     };
     // These are the decimals that a refusal prints; they suffice.
     let of_key = |relaxation: &BoundRelaxation| match relaxation {
         BoundRelaxation::Most(mass) => Some(("design.heaviest", Decimal::nearest(*mass, 6), "kg a counterweight")),
         BoundRelaxation::Clearance(length) => Some(("design.clearance", Decimal::nearest(*length, 4), "m from pins")),
+        BoundRelaxation::Across(length) => {
+            Some(("design.across", Decimal::nearest(*length, 4), "m off the axis of a link"))
+        }
         // No key of a brief bounds these.
         BoundRelaxation::Mass(_) | BoundRelaxation::Inertia(_) => None,
     };

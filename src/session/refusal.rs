@@ -121,10 +121,10 @@ pub enum Refusal {
         /// Steps of the run.
         steps: u64,
     },
-    /// The session contains the maximum number of frames.
+    /// The session contains the maximum number of frames, or has reached the maximum time.
     #[error(
-        "a session keeps {MAX_FRAMES} frames and an hour at most, and this one is full at {time:.3} s: want an earlier \
-         instant, or the start, to go on from; `simulate` and `headless` run longer"
+        "a session keeps {MAX_FRAMES} frames and an hour at most, and this one is full at {time:.3} s: want to go on \
+         from an earlier instant or from the start; `simulate` and `headless` run longer"
     )]
     Full {
         /// Time of the newest frame, s.

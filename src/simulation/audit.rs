@@ -6,7 +6,7 @@
 //! | angular | its angular momentum about the origin with −∫ (n_B + p_B × f_B) dt |
 //! | energy | energy of the plant with the work of motors, wheel and outer force less the losses |
 //! | closure | positions of the two points of every pin that closes a loop |
-//! | step | moment on the base, f_B, torques and end effector of two integrations of a step, relative to their peaks |
+//! | step | moment on the base, f_B, torques and end effector of two integrations of a step, relative to scales |
 //! | plane | b with the reference of b |
 
 use super::peaks::Peaks;
@@ -23,7 +23,7 @@ pub struct Audit {
     pub energy: f64,
     /// Maximum gap of a pin that closes a loop, m.
     pub closure: f64,
-    /// Integration error of the displayed quantities, as a fraction of their peaks.
+    /// Integration error of the displayed quantities, relative to their peaks; positions, to 1 % of the arm length.
     pub step: f64,
     /// b − b_ref, rad: a deviation of the plant, not an error of the simulation.
     pub plane: f64,
@@ -45,7 +45,7 @@ pub struct AuditFigure {
 }
 
 impl AuditFigure {
-    /// Returns whether the figure is within its tolerance; NaN never is.
+    /// Returns whether the figure is within its tolerance, or has none. NaN is never within a tolerance.
     pub fn is_within_tolerance(&self) -> bool {
         self.limit.is_none_or(|limit| self.value <= limit)
     }
@@ -58,7 +58,7 @@ const IMBALANCE_TOLERANCE: f64 = 1e-5;
 const STEP_TOLERANCE: f64 = 1e-3;
 
 impl Audit {
-    /// Returns every figure with its tolerance, which scales with the peaks and totals of the run.
+    /// Returns every figure with its tolerance. Tolerances of imbalances scale with the peaks and totals of the run.
     pub fn figures(&self, peaks: &Peaks, totals: &Totals) -> [AuditFigure; 6] {
         let time = totals.time.max(1e-3);
         let pull = (peaks.inertial_pull * time).max(1e-6);

@@ -76,7 +76,7 @@ pub enum NoBaseSpectrum {
     Spectrum(#[from] SpectrumError),
     /// No frequency of the spectrum lies where the limit is defined.
     #[error(
-        "a limit from {} to {} Hz holds at no line of the spectrum, {} to {} Hz by {}: want one that does",
+        "a limit from {} to {} Hz contains no line of the spectrum, {} to {} Hz in steps of {}: want one that does",
         limit[0], limit[1], fixed(lines[0], 3), fixed(lines[1], 3), fixed(lines[0], 3)
     )]
     Beyond {

@@ -1,16 +1,16 @@
 //! [`balance_by_weights`]: balances a machine by counterweights, optionally with optimised link lengths, and reports on
 //! it.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use thiserror::Error;
 
 use super::balance_constants::BalanceConstants;
 use super::front_point::FrontPoint;
-use super::lengths::{FoundLengths, LengthSearch, NoLengths, SearchProgress, search};
+use super::lengths::{FoundLengths, LengthSearch, NoLengths, SearchProgress, search, stretched};
 use super::measures::Measures;
 use stillbase_mechanics::counterweights::{
-    CounterweightError, CounterweightSite, CounterweightSpec, FreeRotor, PayloadResidual, PlacedCounterweights, front,
-    over_payloads, place_weights,
+    CounterweightError, CounterweightSpec, FreeRotor, PayloadResidual, PlacedCounterweights, front, over_payloads,
+    place_weights,
 };
 use stillbase_mechanics::machine::{Counterweight, Inertia, Machine, MachineError};
 use stillbase_planning::Motion;
@@ -56,6 +56,7 @@ pub struct CounterweightReport {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub torque: Option<f64>,
     /// New counterweights; fixed ones stay in addition.
+    #[serde(serialize_with = "all_numbers")]
     pub weights: Vec<Counterweight>,
     /// Counterweights of the given machine that were removed first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -84,6 +85,22 @@ pub struct CounterweightReport {
     /// Balance constants of the new machine.
     #[serde(flatten)]
     pub balance: BalanceConstants,
+}
+
+/// Serialises new counterweights with every number, also those that a machine file omits where they are 0.
+fn all_numbers<S: Serializer>(weights: &[Counterweight], serializer: S) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Numbers<'a> {
+        link: &'a str,
+        mass: f64,
+        at: f64,
+        across: f64,
+        radius: f64,
+    }
+    serializer.collect_seq(weights.iter().map(|weight| {
+        let Counterweight { link, mass, at, across, radius, fixed: _ } = weight;
+        Numbers { link, mass: *mass, at: *at, across: *across, radius: *radius }
+    }))
 }
 
 /// Optimised lengths, and the reliability of the result.
@@ -139,7 +156,7 @@ pub fn balance_by_weights(
         Some(lengths) => {
             let found = search(machine, lengths, go_on).map_err(NoCounterweights::Lengths)?;
             if lengths.anywhere {
-                weighing.sites = CounterweightSite::anywhere(&found.placed.machine);
+                weighing.sites = stretched(&weighing.sites, machine, &found.placed.machine);
             }
             let sought = LengthsReport::of(lengths, &found);
             (found.placed, Some(sought))

@@ -303,7 +303,7 @@ fn describe_violations([reach, area]: [f64; 2]) -> String {
 }
 
 /// Changes bounds of sites that are at plus or minus the length of their link to plus or minus the new length.
-fn stretched(sites: &[CounterweightSite], machine: &Machine, changed: &Machine) -> Vec<CounterweightSite> {
+pub(crate) fn stretched(sites: &[CounterweightSite], machine: &Machine, changed: &Machine) -> Vec<CounterweightSite> {
     let stretch = |site: &CounterweightSite| {
         let [was, is] = [machine, changed].map(|machine| machine.resolved_links()[site.link].length);
         let end = |at: f64| if at.abs() == was { is.copysign(at) } else { at };

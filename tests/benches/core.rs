@@ -460,9 +460,7 @@ fn pyramid_of_a_million_samples(bencher: Bencher) {
 fn bare() -> (Machine, CounterweightSpec) {
     let machine = parse(include_str!("../reference/family/nine-link-bare.toml"), "bare").expect("a machine");
     let parts = machine.resolved_links().iter().enumerate();
-    let sites = parts
-        .map(|(link, part)| CounterweightSite { link, from: -0.3, to: part.length, most: f64::INFINITY })
-        .collect();
+    let sites = parts.map(|(link, part)| CounterweightSite::on_axis(link, -0.3, part.length)).collect();
     let disc = Disc { density: 7850.0, thickness: 0.03 };
     (machine, CounterweightSpec::least(Objective::inertia(), sites, disc))
 }

@@ -12,7 +12,14 @@ fn machines() -> Vec<Machine> {
         let mut spec = machine.spec().clone();
         for (i, link) in spec.links.iter().enumerate() {
             let (link, radius) = (link.name.clone(), 0.02 * i as f64);
-            spec.counterweights.push(Counterweight { link, mass: 0.5 + i as f64, at: -0.05, radius, fixed: false });
+            spec.counterweights.push(Counterweight {
+                link,
+                mass: 0.5 + i as f64,
+                at: -0.05,
+                across: 0.0,
+                radius,
+                fixed: false,
+            });
         }
         Machine::new(spec).expect("a machine")
     };
@@ -223,7 +230,7 @@ fn bars_are_as_long_as_what_they_hold() {
         let mut spec = machine.spec().clone();
         let link = spec.links[0].name.clone();
         let at = -2.0 * machine.reach();
-        spec.counterweights = vec![Counterweight { link, mass: 1.0, at, radius: 0.05, fixed: false }];
+        spec.counterweights = vec![Counterweight { link, mass: 1.0, at, across: 0.0, radius: 0.05, fixed: false }];
         let machine = Machine::new(spec).expect("a machine");
         let sheet = sheet(&machine);
         let bars = sheet.shapes.iter().filter_map(|shape| match shape {
@@ -290,7 +297,14 @@ fn words_keep_off_parts_and_each_other() {
 #[test]
 fn a_disc_is_as_thick_as_its_mass_takes() {
     let mut spec = builtin("scara").expect("built in").spec().clone();
-    spec.counterweights.push(Counterweight { link: "1".into(), mass: 3.0, at: -0.2, radius: 0.08, fixed: false });
+    spec.counterweights.push(Counterweight {
+        link: "1".into(),
+        mass: 3.0,
+        at: -0.2,
+        across: 0.0,
+        radius: 0.08,
+        fixed: false,
+    });
     let machine = Machine::new(spec).expect("a machine");
     let told = |cut: &Cut| svg(&Sheet::of(&machine, cut).expect("a sheet"));
     // 3 kg / (7850 kg/m³ · 201.06 cm²) = 19.0 mm.

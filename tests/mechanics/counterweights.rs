@@ -16,7 +16,7 @@ const STEEL: Disc = Disc { density: 7850.0, thickness: 0.03 };
 /// Every link from 0.30 m behind its root to its tip.
 fn anywhere(machine: &Machine) -> Vec<CounterweightSite> {
     let parts = machine.resolved_links().iter().enumerate();
-    parts.map(|(link, part)| CounterweightSite { link, from: -0.3, to: part.length, most: f64::INFINITY }).collect()
+    parts.map(|(link, part)| CounterweightSite::on_axis(link, -0.3, part.length)).collect()
 }
 
 fn weighing(machine: &Machine, objective: Objective) -> CounterweightSpec {
@@ -46,6 +46,100 @@ fn the_known_answers_are_found() {
     near.sites[0].from = -0.15;
     let found = place_weights(&bare, &near).expect("it can be balanced");
     assert!((found.added_mass - 14.526).abs() < 1e-6, "{}", found.added_mass);
+}
+
+/// The same request with every counterweight up to a distance, m, off the axis of its link.
+fn off_axis(asked: CounterweightSpec, across: f64) -> CounterweightSpec {
+    let sites = asked.sites.iter().map(|site| CounterweightSite { across, ..*site }).collect();
+    CounterweightSpec { sites, ..asked }
+}
+
+/// Answers of CVXPY with centres of mass off the links' axes.
+#[test]
+fn centres_of_mass_off_the_axes_are_balanced_at_the_known_inertia() {
+    let bare = family_machine("nine-link-bare");
+    for (settings, inertia) in [
+        (vec![("link.9.com_normal", "0.012")], 1.800_001_7),
+        (vec![("link.9.com_normal", "0.012"), ("link.5.com_normal", "-0.008")], 1.800_194_0),
+    ] {
+        let slanted = bare.set_all(settings).expect("in range");
+        let on_axis = place_weights(&slanted, &weighing(&slanted, Objective::inertia()));
+        assert!(matches!(on_axis, Err(CounterweightError::OffAxis { .. })), "{on_axis:?}");
+        let asked = off_axis(weighing(&slanted, Objective::inertia()), 0.1);
+        let found = place_weights(&slanted, &asked).expect("it can be balanced");
+        assert!((momenta(&found.machine) - inertia).abs() < 1e-6, "{}", momenta(&found.machine));
+        let of = Inertia::of(&found.machine);
+        assert!(of.force_residual() < 1e-14 && of.invariance_residual() < 1e-14 && found.is_certified());
+        let light = place_weights(&slanted, &off_axis(weighing(&slanted, Objective::mass()), 0.1));
+        assert!((light.expect("it can be balanced").added_mass - 9.572_666_7).abs() < 1e-6);
+    }
+    // Where all masses lie on the axes, so do the counterweights.
+    let found = place_weights(&bare, &off_axis(weighing(&bare, Objective::inertia()), 0.1)).expect("it can be");
+    assert!((momenta(&found.machine) - 1.798_401_1).abs() < 1e-6, "{}", momenta(&found.machine));
+    assert!(found.machine.spec().counterweights.iter().all(|weight| weight.across.abs() < 1e-6));
+}
+
+/// A machine and its mirror image have counterweights that are mirror images.
+#[test]
+fn mirrored_masses_have_mirrored_counterweights() {
+    let bare = family_machine("nine-link-bare");
+    let [left, right] = ["0.012", "-0.012"].map(|normal| {
+        let slanted = bare.set_all([("link.9.com_normal", normal), ("link.4.com_normal", normal)]).expect("in range");
+        let asked = off_axis(weighing(&slanted, Objective { mass: 0.1, ..Objective::inertia() }), 0.05);
+        place_weights(&slanted, &asked).expect("it can be balanced").machine
+    });
+    let pairs: Vec<_> = left.spec().counterweights.iter().zip(&right.spec().counterweights).collect();
+    assert!(pairs.iter().any(|(left, _)| left.across.abs() > 1e-3));
+    for (left, right) in pairs {
+        assert!(
+            (left.mass - right.mass).abs() < 1e-4 && (left.across + right.across).abs() < 1e-4,
+            "{left:?} {right:?}"
+        );
+    }
+}
+
+/// A refusal of masses beside the axes says how far off the axes counterweights have to be, and that is the least.
+#[test]
+fn the_least_distance_off_the_axes_is_proposed() {
+    let slanted = family_machine("nine-link-bare").set("link.9.com_normal", "0.012").expect("in range");
+    for asked in [weighing(&slanted, Objective::mass()), off_axis(weighing(&slanted, Objective::mass()), 1e-4)] {
+        let asked = CounterweightSpec { max_added_mass: Some(12.0), ..asked };
+        let why = place_weights(&slanted, &asked).expect_err("too near the axes");
+        let (CounterweightError::OffAxis { reliefs, .. } | CounterweightError::Conflict { reliefs, .. }) = &why else {
+            panic!("{why}")
+        };
+        let across = reliefs.iter().find_map(|together| match together[..] {
+            [BoundRelaxation::Across(across)] => Some(across),
+            _ => None,
+        });
+        let across = across.unwrap_or_else(|| panic!("{why}"));
+        assert!(why.to_string().contains(&format!("up to {across:.4} m off the axis")), "{why}");
+        assert!(place_weights(&slanted, &off_axis(asked.clone(), across)).is_ok());
+        assert!(place_weights(&slanted, &off_axis(asked, across - 2e-4)).is_err());
+    }
+}
+
+/// Beside the axes, discs pass pins at any direction, so that room between pins is no bound.
+#[test]
+fn discs_beside_the_axes_stay_clear_of_pins() {
+    let bare = family_machine("two-drive");
+    let slanted = bare.set_all([("link.1.com_normal", "0.01"), ("link.2.com_normal", "-0.02")]).expect("in range");
+    for clearance in [0.0, 0.01, 0.04] {
+        let asked = off_axis(weighing(&slanted, Objective::mass()), 0.2);
+        let free = place_weights(&slanted, &asked).expect("it can be balanced");
+        let asked = CounterweightSpec { clearance: Some(clearance), ..asked };
+        let found = place_weights(&slanted, &asked).expect("it can be balanced");
+        assert!(found.is_certified() && found.added_mass > free.added_mass - 1e-6);
+        let of = Inertia::of(&found.machine);
+        assert!(of.force_residual() < 1e-13 && of.invariance_residual() < 1e-13);
+        for weight in &found.machine.spec().counterweights {
+            let link = found.machine.links().iter().position(|link| link.name == weight.link).expect("a link");
+            for pin in &found.machine.resolved_links()[link].pins {
+                let away = (weight.at - pin).hypot(weight.across) - weight.radius;
+                assert!(away > clearance - 1e-6, "{clearance}: {away}, {weight:?}");
+            }
+        }
+    }
 }
 
 /// What is found is balanced to rounding, within its bounds, and certified.
@@ -288,7 +382,7 @@ fn counterweights_are_set_by_key() {
     }
     assert!(words("counterweight.1.fixed", "2").contains("true or false"));
     assert!(words("counterweight.1.mass", "0").contains("1e-15"), "{}", words("counterweight.1.mass", "0"));
-    assert!(words("counterweight.1.colour", "1").contains("counterweight.NUMBER.(mass|at|radius|fixed)"));
+    assert!(words("counterweight.1.colour", "1").contains("counterweight.NUMBER.(mass|at|across|radius|fixed)"));
 }
 
 /// What balances itself is given nothing.
@@ -609,6 +703,7 @@ fn relieved(asked: &CounterweightSpec, together: &[BoundRelaxation]) -> Counterw
             BoundRelaxation::Mass(_) => asked.max_added_mass = Some(number),
             BoundRelaxation::Inertia(_) => asked.max_inertia = Some(number),
             BoundRelaxation::Clearance(_) => asked.clearance = Some(number),
+            BoundRelaxation::Across(_) => asked.sites.iter_mut().for_each(|site| site.across = number),
         }
     }
     asked

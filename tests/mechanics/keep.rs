@@ -130,7 +130,12 @@ fn within_what_is_asked(machine: &Machine, asked: &RebalanceRequest, kept: &Reba
                 same.counterweights[i].mass = now;
                 same.counterweights[i].radius = disc;
             }
-            (stillbase::mechanics::balance::Body::Counterweight(i), _) => same.counterweights[i].at = now,
+            (stillbase::mechanics::balance::Body::Counterweight(i), BodyQuantity::Along) => {
+                same.counterweights[i].at = now;
+            }
+            (stillbase::mechanics::balance::Body::Counterweight(i), BodyQuantity::Across) => {
+                same.counterweights[i].across = now;
+            }
             _ => panic!("a payload is given"),
         }
     }

@@ -21,7 +21,14 @@ fn with_discs(machine: &Machine) -> Machine {
     for (i, link) in spec.links.iter().enumerate() {
         let mass = 1.0 + i as f64;
         let radius = (mass / (7850.0 * 0.03 * PI)).sqrt();
-        spec.counterweights.push(Counterweight { link: link.name.clone(), mass, at: -0.1, radius, fixed: false });
+        spec.counterweights.push(Counterweight {
+            link: link.name.clone(),
+            mass,
+            at: -0.1,
+            across: 0.0,
+            radius,
+            fixed: false,
+        });
     }
     Machine::new(spec).expect("a machine")
 }

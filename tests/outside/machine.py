@@ -65,7 +65,7 @@ class Machine:
             yield link["mass"], link["inertia"], self.on(j, com), self.of[j]
         for weight in self.weights() if weights is None else weights:
             j, mass = self.names.index(weight["link"]), weight["mass"]
-            yield mass, 0.5 * mass * weight.get("radius", 0.0) ** 2, self.on(j, complex(weight["at"])), self.of[j]
+            yield mass, 0.5 * mass * weight.get("radius", 0.0) ** 2, self.on(j, complex(weight["at"], weight.get("across", 0.0))), self.of[j]
         held = self.spec.get("payload", {})
         mass = held.get("mass", 0.0) if payload is None else payload
         arms = self.tip.astype(complex)

@@ -126,6 +126,7 @@ fn every_machine_weighs_and_pulls_the_same() {
                 link,
                 mass,
                 at,
+                across: 0.5 * at,
                 radius,
                 fixed: false,
             });

@@ -2,7 +2,8 @@
 
 """Bounds of what counterweights come to: from below by HiGHS over tangents of all that is convex, from above by SLSQP.
 
-With clearance, every choice between pins is a program of its own.
+With clearance, every choice between pins is a program of its own. Off the axis a clearance is left out from below, and
+kept from above.
 """
 
 import itertools
@@ -28,19 +29,22 @@ class Asked:
         self.root = [machine.roots[site[0]] for site in self.sites]
         self.sign = [machine.sign[site[0]] for site in self.sites]
         self.most = [np.inf if site[3] is None else site[3] for site in self.sites]
-        # Conditions are linear in mass and first moment of a disc.
-        flat = lambda both: np.concatenate(both).real
+        self.beside = [site[4] for site in self.sites]
+        self.is_beside = any(self.beside)
+        # Conditions are linear in mass and first moments of a disc: real parts first, then imaginary ones.
+        flat = lambda both: (lambda all: np.concatenate([all.real, all.imag]))(np.concatenate(both))
         self.left = flat(machine.conditions(weights=fixed))
-        self.across = max(abs(np.concatenate(machine.conditions(weights=fixed)).imag))
-        self.changes = np.zeros((len(self.left), 2 * self.count))
+        self.changes = np.zeros((len(self.left), 3 * self.count))
         for j, (link, *_) in enumerate(self.sites):
-            with_disc = lambda at: flat(machine.conditions(
-                weights=fixed + [{"link": machine.names[link], "mass": 1.0, "at": at}])) - self.left
-            self.changes[:, 2 * j] = with_disc(0.0)
-            self.changes[:, 2 * j + 1] = with_disc(1.0) - with_disc(0.0)
+            with_disc = lambda at, across: flat(machine.conditions(
+                weights=fixed + [{"link": machine.names[link], "mass": 1.0, "at": at, "across": across}])) - self.left
+            self.changes[:, 3 * j] = with_disc(0.0, 0.0)
+            self.changes[:, 3 * j + 1] = with_disc(1.0, 0.0) - with_disc(0.0, 0.0)
+            self.changes[:, 3 * j + 2] = with_disc(0.0, 1.0) - with_disc(0.0, 0.0)
         self.ends = [self.left] if ends is None else [flat(machine.conditions(end, fixed)) for end in ends]
         reach = abs(machine.tip).sum()
-        self.per = np.array([1.0] * self.n + [reach] * (len(self.left) - self.n))
+        half = [1.0] * self.n + [reach] * (len(self.left) // 2 - self.n)
+        self.per = np.array(half + half)
         self.h, self.d = machine.diagonal(fixed), machine.momenta() - machine.diagonal()
         self.d = self.d + self.h
         self.h = self.h + sum((i * r * r for i, r in machine.rotors()), np.zeros(self.n))
@@ -51,13 +55,16 @@ class Asked:
     def turned(self, drive, ratio):
         return self.machine.turned(drive, ratio)
 
-    def measures(self, w, x, rotors):
+    def moments(self, w, x, y):
+        return np.stack([w, w * x, w * y], 1).ravel()
+
+    def measures(self, w, x, y, rotors):
         """Added mass, H_kk and D_k."""
         turned = np.zeros(self.n)
         for j in range(self.count):
             part = w[j] * self.root[j] ** 2
             k = self.part[j]
-            part[k] = w[j] * (self.root[j][k] + self.sign[j] * x[j]) ** 2 + self.own * w[j] ** 2
+            part[k] = w[j] * abs(self.root[j][k] + self.sign[j] * complex(x[j], y[j])) ** 2 + self.own * w[j] ** 2
             turned = turned + part
         h, d = self.h + turned, self.d + turned
         for rotor, value in zip(self.rotors, rotors):
@@ -67,23 +74,25 @@ class Asked:
             h, d = h + inertia * rates**2, d + inertia * rates
         return w.sum(), h, d
 
-    def value(self, w, x, rotors):
-        mass, h, d = self.measures(w, x, rotors)
+    def value(self, w, x, y, rotors):
+        mass, h, d = self.measures(w, x, y, rotors)
         o = self.objective
         torque = max(a * own for a, own in zip(o["accelerations"], h)) if o["torque"] > 0 else 0.0
         return o["mass"] * mass + o["inertia"] * h.sum() + o["momentum"] * abs(d).sum() + o["torque"] * torque
 
     def rooms(self):
         """For each site the pins between which its disc may be."""
-        if self.clearance is None:
+        if self.clearance is None or self.is_beside:
             return [[(-np.inf, np.inf)]] * self.count
         pins = [[-np.inf, *self.machine.pins(site[0]), np.inf] for site in self.sites]
         return [list(zip(own, own[1:])) for own in pins]
 
-    def residual(self, w, x):
+    def residual(self, w, x, y):
         """The largest residual of (7) and (8), kg m."""
-        both = np.stack([w, w * x], 1).ravel()
-        return max(float((abs(end + self.changes @ both) / self.per).max()) for end in self.ends)
+        def largest(end):
+            left = (end + self.changes @ self.moments(w, x, y)) / self.per
+            return float(np.hypot(*np.split(left, 2)).max())
+        return max(largest(end) for end in self.ends)
 
 
 class Linear:
@@ -91,16 +100,17 @@ class Linear:
 
     def __init__(self, asked):
         self.asked, c, n = asked, asked.count, asked.n
-        sizes = {"w": c, "s": c, "u": c, "v": c, "z": c, "x": len(asked.rotors), "t": len(asked.rotors),
+        sizes = {"w": c, "s": c, "b": c, "u": c, "v": c, "z": c, "x": len(asked.rotors), "t": len(asked.rotors),
                  "d": n, "torque": 1, "worst": 1}
         starts = np.cumsum([0, *sizes.values()])
         self.at = {name: start for name, start in zip(sizes, starts)}
         self.size = starts[-1]
         self.cuts, self.right = [], []
-        for j, (_, low, high, _) in enumerate(asked.sites):
+        for j, (_, low, high, _, beside) in enumerate(asked.sites):
             most = min(asked.most[j], 40.0)
             for x in np.linspace(low, high, 9):
-                self.place(j, x)
+                for y in np.linspace(-beside, beside, 5 if beside else 1):
+                    self.place(j, x, y)
             for w in np.linspace(0.0, most, 9):
                 self.mass(j, w)
         for i, rotor in enumerate(asked.rotors):
@@ -117,9 +127,9 @@ class Linear:
         self.cuts.append(self.row(terms))
         self.right.append(right)
 
-    def place(self, j, x):
-        # u >= s^2 / w
-        self.cut([("s", j, 2 * x), ("w", j, -x * x), ("u", j, -1)], 0.0)
+    def place(self, j, x, y):
+        # u >= (s^2 + b^2) / w
+        self.cut([("s", j, 2 * x), ("b", j, 2 * y), ("w", j, -x * x - y * y), ("u", j, -1)], 0.0)
 
     def mass(self, j, w):
         own, root = self.asked.own, max(w, 0.0) ** 0.5
@@ -180,9 +190,11 @@ class Linear:
             most(total, asked.most_inertia - fixed)
         if asked.most_mass is not None:
             most(self.row([("w", j, 1) for j in range(asked.count)]), asked.most_mass)
-        for j, (_, low, high, _) in enumerate(asked.sites):
+        for j, (_, low, high, _, beside) in enumerate(asked.sites):
             most(self.row([("w", j, low), ("s", j, -1)]), 0.0)
             most(self.row([("s", j, 1), ("w", j, -high)]), 0.0)
+            most(self.row([("b", j, 1), ("w", j, -beside)]), 0.0)
+            most(self.row([("b", j, -1), ("w", j, -beside)]), 0.0)
             low, high = rooms[j]
             gap = asked.clearance or 0.0
             if np.isfinite(low):
@@ -191,7 +203,8 @@ class Linear:
                 most(self.row([("s", j, 1), ("z", j, asked.spread), ("w", j, gap - high)]), 0.0)
         sums = np.zeros((len(asked.left), self.size))
         for j in range(asked.count):
-            sums[:, self.at["w"] + j], sums[:, self.at["s"] + j] = asked.changes[:, 2 * j], asked.changes[:, 2 * j + 1]
+            for i, name in enumerate("wsb"):
+                sums[:, self.at[name] + j] = asked.changes[:, 3 * j + i]
         equal, side = sums, -asked.left
         if asked.is_range:
             equal, side = None, None
@@ -202,7 +215,7 @@ class Linear:
         bounds = [(0, None)] * self.size
         for j in range(asked.count):
             bounds[self.at["w"] + j] = (0, min(asked.most[j], 1e4))
-            bounds[self.at["s"] + j] = (None, None)
+            bounds[self.at["s"] + j] = bounds[self.at["b"] + j] = (None, None)
         for i, rotor in enumerate(asked.rotors):
             bounds[self.at["x"] + i] = tuple(rotor["ends"])
         bounds[self.at["torque"]] = (None, None)
@@ -222,13 +235,13 @@ class Linear:
             get = lambda name, i: found.x[self.at[name] + i]
             off = 0.0
             for j in range(asked.count):
-                w, s = get("w", j), get("s", j)
+                w, s, b = get("w", j), get("s", j), get("b", j)
                 if w > 1e-12:
                     if asked.turns:
-                        off = max(off, s * s / w - get("u", j), asked.own * w * w - get("v", j))
-                    if asked.clearance is not None:
+                        off = max(off, (s * s + b * b) / w - get("u", j), asked.own * w * w - get("v", j))
+                    if asked.clearance is not None and not asked.is_beside:
                         off = max(off, w**1.5 - get("z", j))
-                    self.place(j, s / w)
+                    self.place(j, s / w, b / w)
                     self.mass(j, w)
             for i, rotor in enumerate(asked.rotors):
                 if rotor["free"] == "ratio":
@@ -257,23 +270,23 @@ def tried(asked, random, worst, rooms, starts):
     """The least value of what SLSQP finds from starts, and random ones."""
     c, r, n = asked.count, len(asked.rotors), asked.n
     o = asked.objective
-    sizes = [c, c, r, n, 1]
+    sizes = [c, c, c, r, n, 1]
     cut = np.cumsum(sizes)[:-1]
     scale = lambda i: max(abs(asked.rotors[i]["ends"][0]), abs(asked.rotors[i]["ends"][1]), 1e-12)
     scales = np.array([scale(i) for i in range(r)])
 
     def parts(y):
-        w, x, rotors, d, torque = np.split(y, cut)
-        return w, x, rotors * scales, d, torque[0]
+        w, x, beside, rotors, d, torque = np.split(y, cut)
+        return w, x, beside, rotors * scales, d, torque[0]
 
     def cost(y):
-        w, x, rotors, d, torque = parts(y)
-        _, h, _ = asked.measures(w, x, rotors)
+        w, x, beside, rotors, d, torque = parts(y)
+        _, h, _ = asked.measures(w, x, beside, rotors)
         return o["mass"] * w.sum() + o["inertia"] * h.sum() + o["momentum"] * d.sum() + o["torque"] * torque
 
     def above(y):
-        w, x, rotors, d, torque = parts(y)
-        mass, h, own = asked.measures(w, x, rotors)
+        w, x, beside, rotors, d, torque = parts(y)
+        mass, h, own = asked.measures(w, x, beside, rotors)
         rows = [d - own, d + own]
         if o["torque"] > 0:
             rows.append(torque - np.array(o["accelerations"]) * h)
@@ -282,13 +295,17 @@ def tried(asked, random, worst, rooms, starts):
         if asked.most_inertia is not None:
             rows.append([asked.most_inertia - own.sum()])
         if asked.is_range:
-            both = np.stack([w, w * x], 1).ravel()
+            both = asked.moments(w, x, beside)
             for end in asked.ends:
                 left = (end + asked.changes @ both) / asked.per
                 rows += [worst * (1 + 1e-7) + 1e-10 - left, worst * (1 + 1e-7) + 1e-10 + left]
         if asked.clearance is not None:
             radius = asked.spread * np.sqrt(np.maximum(w, 0) + 1e-14)
             for j, (low, high) in enumerate(rooms):
+                if asked.is_beside:
+                    away = lambda pin: np.hypot(x[j] - pin, beside[j]) - asked.clearance - radius[j]
+                    rows.append([w[j] * away(pin) for pin in asked.machine.pins(asked.sites[j][0])])
+                    continue
                 if np.isfinite(low):
                     rows.append([w[j] * (x[j] - low - asked.clearance - radius[j])])
                 if np.isfinite(high):
@@ -296,36 +313,40 @@ def tried(asked, random, worst, rooms, starts):
         return np.concatenate(rows)
 
     def equal(y):
-        w, x, *_ = parts(y)
-        return asked.left + asked.changes @ np.stack([w, w * x], 1).ravel()
+        w, x, beside, *_ = parts(y)
+        return (asked.left + asked.changes @ asked.moments(w, x, beside))[touched]
 
+    # Rows that nothing changes would leave SLSQP without an answer.
+    touched = abs(asked.changes).max(axis=1, initial=0.0) > 0
     bounds = [(0, min(most, 1e4)) for most in asked.most] + [tuple(site[1:3]) for site in asked.sites]
+    bounds += [(-own, own) for own in asked.beside]
     bounds += [(rotor["ends"][0] / s, rotor["ends"][1] / s) for rotor, s in zip(asked.rotors, scales)]
     bounds += [(0, None)] * n + [(None, None)]
     limits = [{"type": "ineq", "fun": above}]
-    if not asked.is_range:
+    if not asked.is_range and touched.any():
         limits.append({"type": "eq", "fun": equal})
     best = np.inf
     for start in starts + [None] * 6:
         if start is None:
             w = random.uniform(0, 1, c) * random.choice([0.3, 3.0, 10.0])
             x = np.array([random.uniform(*site[1:3]) for site in asked.sites])
+            beside = np.array([random.uniform(-own, own) for own in asked.beside])
             rotors = np.array([random.uniform(*rotor["ends"]) for rotor in asked.rotors])
         else:
-            w, x, rotors = (np.array(part, float) for part in start)
-        _, h, d = asked.measures(w, x, rotors)
+            w, x, beside, rotors = (np.array(part, float) for part in start)
+        _, h, d = asked.measures(w, x, beside, rotors)
         torque = max(np.array(o["accelerations"]) * h) if o["torque"] > 0 else 0.0
-        y = np.concatenate([w, x, rotors / scales, abs(d), [torque]])
+        y = np.concatenate([w, x, beside, rotors / scales, abs(d), [torque]])
         y = np.clip(y, [-np.inf if low is None else low for low, _ in bounds],
                     [np.inf if high is None else high for _, high in bounds])
         found = minimize(cost, y, method="SLSQP", bounds=bounds, constraints=limits,
                          options={"maxiter": 200, "ftol": 1e-12})
         if not np.isfinite(found.x).all():
             continue
-        if above(found.x).min() < -1e-9 or (not asked.is_range and abs(equal(found.x)).max() > 1e-9):
+        if above(found.x).min() < -1e-9 or (not asked.is_range and abs(equal(found.x)).max(initial=0.0) > 1e-9):
             continue
-        w, x, rotors, *_ = parts(found.x)
-        best = min(best, asked.value(w, x, rotors))
+        w, x, beside, rotors, *_ = parts(found.x)
+        best = min(best, asked.value(w, x, beside, rotors))
     return best
 
 
@@ -350,30 +371,32 @@ for line in sys.stdin:
     if found is not None:
         machine = Machine(found)
         own = [weight for weight in machine.weights() if not weight.get("fixed")]
-        w, x, r = np.zeros(asked.count), np.array([0.5 * (site[1] + site[2]) for site in asked.sites]), np.zeros(asked.count)
+        w, y, r = np.zeros((3, asked.count))
+        x = np.array([0.5 * (site[1] + site[2]) for site in asked.sites])
         links = [machine.names[site[0]] for site in asked.sites]
         for weight in own:
             j = links.index(weight["link"])
             w[j], x[j], r[j] = weight["mass"], weight["at"], weight.get("radius", 0.0)
+            y[j] = weight.get("across", 0.0)
         rotors = []
         for rotor in asked.rotors:
             given = machine.spec["drive"][rotor["drive"]].get("rotor", {"inertia": 0.0})
             rotors.append(given["inertia"] if rotor["free"] == "inertia" else given.get("ratio", 1.0))
-        mass, h, d = asked.measures(w, x, rotors)
+        mass, h, d = asked.measures(w, x, y, rotors)
         past = [0.0]
-        for j, (_, low, high, _) in enumerate(asked.sites):
+        for j, (_, low, high, _, beside) in enumerate(asked.sites):
             if w[j] > 0:
-                past += [low - x[j], x[j] - high, w[j] - asked.most[j], abs(r[j] - asked.spread * w[j] ** 0.5)]
+                past += [low - x[j], x[j] - high, abs(y[j]) - beside, w[j] - asked.most[j], abs(r[j] - asked.spread * w[j] ** 0.5)]
                 if asked.clearance is not None:
-                    past.append(max(asked.clearance + r[j] - abs(pin - x[j]) for pin in machine.pins(asked.sites[j][0])))
+                    past.append(max(asked.clearance + r[j] - np.hypot(pin - x[j], y[j]) for pin in machine.pins(asked.sites[j][0])))
         past += [mass - asked.most_mass] if asked.most_mass is not None else []
         past += [d.sum() - asked.most_inertia] if asked.most_inertia is not None else []
         past += [max(rotor["ends"][0] - value, value - rotor["ends"][1]) for rotor, value in zip(asked.rotors, rotors)]
         answer["found"] = {
-            "value": asked.value(w, x, rotors), "past": max(past), "residual": asked.residual(w, x),
+            "value": asked.value(w, x, y, rotors), "past": max(past), "residual": asked.residual(w, x, y),
             "mass": mass, "momenta": (machine.momenta() - d).tolist(), "diagonal": (np.diag(machine.inertia()) - h).tolist(),
         }
-        starts.append((w, x, rotors))
+        starts.append((w, x, y, rotors))
     if answer["low"] is not None:
         high = tried(asked, random, worst, rooms, starts)
         answer["high"] = high if np.isfinite(high) else None

@@ -198,10 +198,7 @@ fn the_cumulative_rms_ends_at_what_stands_beside_it() {
             assert_eq!(off < 1e-9, same, "{window} {axis}: {off}");
         }
         let shown = prints(&["spectrum", "case-1", "--window", window]);
-        assert!(
-            shown.contains("weighted RMS") && shown.contains("The last value is the weighted RMS") != same,
-            "{shown}"
-        );
+        assert!(shown.contains("weighted RMS") && shown.contains("ends at the weighted RMS") != same, "{shown}");
     }
 }
 

@@ -114,7 +114,11 @@ fn what_is_wrong_is_named_by_row_and_column() {
     fails(&["trim", &file, "two-drive", "--accelerations", "3"], 2, &["want 2, one for each drive"]);
     fails(&["trim", &file, "two-drive", "--fix", "7.com"], 2, &["no parameter", "7.com"]);
     fails(&["trim", &file, "two-drive", "--range", "9=0,1"], 2, &["no link 9"]);
-    fails(&["trim", &file, "two-drive", "--fix", "1.com", "--range", "1=0,1"], 2, &["--range is for new"]);
+    fails(
+        &["trim", &file, "two-drive", "--fix", "1.com", "--range", "1=0,1"],
+        2,
+        &["--range and --across are for new"],
+    );
 }
 
 /// A reversed moment is refused, what is said to be right is, and who insists has their way.

@@ -53,7 +53,14 @@ fn with_counterweights(noise: &mut Noise) -> Machine {
     for _ in 0..(noise.between(0.0, 4.0) as usize) {
         let j = noise.between(0.0, spec.links.len() as f64 - 1e-9) as usize;
         let (mass, at, radius) = (noise.between(0.1, 3.0), noise.between(-0.3, 0.3), noise.between(0.0, 0.1));
-        spec.counterweights.push(Counterweight { link: spec.links[j].name.clone(), mass, at, radius, fixed: false });
+        spec.counterweights.push(Counterweight {
+            link: spec.links[j].name.clone(),
+            mass,
+            at,
+            across: noise.between(-0.1, 0.1),
+            radius,
+            fixed: false,
+        });
     }
     Machine::new(spec).expect("still a machine")
 }

@@ -347,9 +347,7 @@ fn what_turns_as_one_is_told_as_one() {
 fn weighed() -> Machine {
     let bare = builtin("nine-link-bare").expect("built in");
     let sites = bare.resolved_links().iter().enumerate();
-    let sites = sites
-        .map(|(link, part)| CounterweightSite { link, from: -0.3, to: part.length, most: f64::INFINITY })
-        .collect();
+    let sites = sites.map(|(link, part)| CounterweightSite::on_axis(link, -0.3, part.length)).collect();
     let asked = CounterweightSpec::least(Objective::inertia(), sites, Disc::STEEL);
     place_weights(bare, &asked).expect("counterweights").machine
 }
@@ -539,8 +537,7 @@ fn new_counterweights_mend_what_has_none() {
     let recording = measured(&hidden, &mut noise, EXACT, &[true; 3]);
     let taken = adopt_parameters(&fitted(machine, &recording, false));
     let sites = machine.resolved_links().iter().enumerate();
-    let sites =
-        sites.map(|(link, p)| CounterweightSite { link, from: -p.length, to: p.length, most: f64::INFINITY }).collect();
+    let sites = sites.map(|(link, p)| CounterweightSite::on_axis(link, -p.length, p.length)).collect();
     let asked = CounterweightSpec::least(Objective::mass(), sites, Disc::STEEL);
     let mended = correct_machine(machine, &taken, &TrimMethod::Add(asked)).expect("new ones");
     let mut after = hidden.spec().clone();

@@ -70,8 +70,8 @@ pub struct ColumnLayout {
 #[derive(Clone, Debug, PartialEq)]
 struct LayoutKey(ByIdentity<()>, Notation, f32, f32);
 
-/// Returns the columns that fit into `width`, points. They are measured again only when the table, the notation or the
-/// display has changed.
+/// Returns the columns that fit into `width`, points. They are measured again only when the table, the notation, the
+/// width or the pixels per point have changed.
 pub fn laid_out(ui: &Ui, comparison: &Comparison, notation: Notation, width: f32) -> Arc<ColumnLayout> {
     let key = LayoutKey(comparison.version(), notation, width, ui.pixels_per_point());
     let id = Id::unique("columns of the table of runs");

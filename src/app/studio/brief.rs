@@ -64,6 +64,10 @@ pub fn show(ui: &mut Ui, scenario: &Scenario, is_balanced: bool, p: &Palette, co
         0.3,
         commands,
     );
+    let mut across = 1e3 * brief.across;
+    let row = millimetres("off the axis", "design.across", 0.0..=1000.0);
+    let response = row.show(ui, p, &mut across);
+    send(commands, &[response], || Edit::set("design.across", 1e-3 * across));
     let row = NumberRow::of("heaviest", "design.heaviest").with(2, 0.02);
     draw_bound(ui, p, &BoundRow { number: row, path: "design.heaviest", scale: 1.0 }, brief.heaviest, 5.0, commands);
     let row = millimetres("clear of pins", "design.clearance", 0.0..=1000.0);

@@ -297,7 +297,7 @@ impl DesignFacts {
         let weights = spec.iter().flat_map(|spec| {
             spec.counterweights.iter().filter_map(|weight| {
                 let link = spec.links.iter().position(|link| link.name == weight.link)?;
-                Some(WeightOption { link, at: weight.at, radius: weight.radius })
+                Some(WeightOption { link, at: [weight.at, weight.across], radius: weight.radius })
             })
         });
         weights.collect()

@@ -27,7 +27,7 @@ use super::measures;
 /// Constraints on the counterweights, and the objective to minimise.
 #[derive(Args)]
 pub struct WeightArguments {
-    /// Balance the machine by counterweights, discs on the axes of the links; existing ones are removed first unless
+    /// Balance the machine by counterweights, discs on the links; existing ones are removed first unless
     /// they have fixed = true
     #[arg(long, conflicts_with_all = ["penalty", "preset", "keep"])]
     pub counterweights: bool,
@@ -35,6 +35,9 @@ pub struct WeightArguments {
     /// every link, from one link length behind the root to the tip
     #[arg(long, value_name = "LINK=LO,HI", requires = "counterweights", value_parser = range, allow_hyphen_values = true)]
     range: Vec<(String, [f64; 2])>,
+    /// Maximum distance of a counterweight from the axis of its link, to either side, m; by default it lies on the axis
+    #[arg(long, value_parser = number, value_name = "METRES", requires = "counterweights", default_value_t = 0.0)]
+    across: f64,
     /// Material of the discs: aluminium, steel, brass, lead, tungsten, or a density, kg/m³
     #[arg(long, value_parser = density, value_name = "MATERIAL", requires = "counterweights", default_value = "steel")]
     material: f64,
@@ -102,7 +105,7 @@ pub struct WeightArguments {
 impl WeightArguments {
     /// Returns the problem that the arguments define.
     pub fn spec(&self, machine: &Machine, motion: Option<&Motion>) -> Result<CounterweightSpec, Failure> {
-        let mut sites = sites(machine, &self.range)?;
+        let mut sites = sites(machine, &self.range, self.across)?;
         for word in &self.max_mass {
             let (name, most) = word.split_once('=').map_or((None, word.as_str()), |(name, most)| (Some(name), most));
             let want = || Failure::wrong_input(format!("--max-mass {word}: want a mass above 0 in kg, or LINK=M"));
@@ -220,7 +223,11 @@ pub fn report_removed(machine: &Machine, of: &str) {
         return;
     }
     let each = taken_off.iter().map(|weight| {
-        format!("{} kg at {} m of link {}", nine_digits(weight.mass), nine_digits(weight.at), weight.link)
+        let beside = match weight.across {
+            0.0 => String::new(),
+            across => format!(", {} m left of its axis", nine_digits(across)),
+        };
+        format!("{} kg at {} m of link {}{beside}", nine_digits(weight.mass), nine_digits(weight.at), weight.link)
     });
     print_message(format!(
         "{of}taken off before others are sought: {}; fixed = true in a [[counterweight]] keeps it",
@@ -298,9 +305,13 @@ pub fn front_cells(point: &FrontPoint) -> [String; 5] {
 
 /// Formats the report as text.
 pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
-    let mut table = TextTable::new(["counterweight on link", "kg", "at m", "radius m"]);
+    let off_axis = report.weights.iter().any(|weight| weight.across != 0.0);
+    let some =
+        |cells: [String; 5]| cells.into_iter().enumerate().filter(move |(i, _)| off_axis || *i != 3).map(|(_, c)| c);
+    let heads = ["counterweight on link", "kg", "at m", "left of axis m", "radius m"].map(String::from);
+    let mut table = TextTable::new(some(heads));
     for w in &report.weights {
-        table.row([w.link.clone(), fixed(w.mass, 6), fixed(w.at, 6), fixed(w.radius, 6)]);
+        table.row(some([w.link.clone(), fixed(w.mass, 6), fixed(w.at, 6), fixed(w.across, 6), fixed(w.radius, 6)]));
     }
     let sure = match report.certified {
         true => format!("within {:.1e} of the best", report.gap),

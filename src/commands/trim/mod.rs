@@ -66,6 +66,9 @@ pub struct TrimArguments {
     /// count from the root towards the tip. Default: every link
     #[arg(long, value_name = "LINK=LO,HI", value_parser = range, allow_hyphen_values = true)]
     range: Vec<(String, [f64; 2])>,
+    /// On a machine without counterweights: how far off the axis of its link a new one may lie, to either side, m
+    #[arg(long, value_name = "METRES", default_value_t = 0.0)]
+    across: f64,
     /// Ignore measured rates and accelerations, and compute them from the angles
     #[arg(long)]
     angles_only: bool,
@@ -171,12 +174,11 @@ impl TrimArguments {
         let weights = machine.spec().counterweights.len();
         let named = !(self.fix.is_empty() && self.free.is_empty() && self.bound.is_empty());
         if weights == 0 && !named {
-            let sites = sites(machine, &self.range)?;
+            let sites = sites(machine, &self.range, self.across)?;
             return Ok(TrimMethod::Add(CounterweightSpec::least(Objective::mass(), sites, Disc::STEEL)));
         }
-        if !self.range.is_empty() {
-            let why =
-                "--range is for new counterweights on a machine that has none: want --fix, --free or --bound alone";
+        if !self.range.is_empty() || self.across != 0.0 {
+            let why = "--range and --across are for new counterweights on a machine that has none: want --fix, --free or --bound alone";
             return Err(Failure::wrong_input(why));
         }
         // Only counterweights and named parameters may change. Without counterweights, if only fixed parameters are

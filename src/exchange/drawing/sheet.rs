@@ -140,8 +140,8 @@ impl Piece {
         let holes = holes(machine, j);
         piece.bar(cut, part.drive, bar_extent(machine, j));
         for weight in weights.iter().filter(|weight| weight.radius > 0.0) {
-            let (at, radius) = ([1e3 * weight.at, 0.0], 1e3 * weight.radius);
-            piece.include([at[0] - radius, -radius, at[0] + radius, radius]);
+            let (at, radius) = ([1e3 * weight.at, 1e3 * weight.across], 1e3 * weight.radius);
+            piece.include([at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius]);
             piece.shapes.push(SheetShape::Disc { at, radius, drive: part.drive });
         }
         for at in &holes {
@@ -256,9 +256,14 @@ fn outline_area(machine: &Machine, cut: &Cut, j: usize) -> f64 {
 
 /// Returns the line of text about a counterweight.
 fn disc(cut: &Cut, weight: &Counterweight) -> String {
-    let (mass, at) = (fixed(weight.mass, 3), signed(weight.at));
+    let mass = fixed(weight.mass, 3);
+    let beside = match weight.across {
+        0.0 => String::new(),
+        across => format!(", {} mm left of the axis", signed(across)),
+    };
+    let at = format!("{} mm{beside}", signed(weight.at));
     let Some(thickness) = cut.thickness_of(weight) else {
-        return format!("counterweight at {at} mm: a point of {mass} kg");
+        return format!("counterweight at {at}: a point of {mass} kg");
     };
     let across = mm(2.0 * weight.radius);
     let own = cut.disc_mass(weight.radius, thickness);
@@ -266,7 +271,7 @@ fn disc(cut: &Cut, weight: &Counterweight) -> String {
         true => String::new(),
         false => format!(", not {mass} kg"),
     };
-    format!("counterweight Ø {across} mm at {at} mm: {} mm thick {} kg{wanted}", mm(thickness), fixed(own, 3))
+    format!("counterweight Ø {across} mm at {at}: {} mm thick {} kg{wanted}", mm(thickness), fixed(own, 3))
 }
 
 /// Arranges the pieces in rows from the top down, with a width that makes the sheet a little wider than high.

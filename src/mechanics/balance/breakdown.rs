@@ -92,7 +92,7 @@ fn masses(machine: &Machine) -> Vec<Mass> {
     });
     let weights = spec.counterweights.iter().enumerate().filter_map(|(i, weight)| {
         let link = spec.links.iter().position(|link| link.name == weight.link)?;
-        Some((CarriedBody { body: Body::Counterweight(i), link }, weight.mass, on(link, weight.at, 0.0)))
+        Some((CarriedBody { body: Body::Counterweight(i), link }, weight.mass, on(link, weight.at, weight.across)))
     });
     let payload = (spec.payload.mass > 0.0).then(|| {
         let source = CarriedBody { body: Body::Payload, link: machine.end_link() };

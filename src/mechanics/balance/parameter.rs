@@ -35,17 +35,12 @@ impl Parameter {
         Self::new(Body::Link(link), BodyQuantity::Along)
     }
 
-    /// Returns all parameters of a machine: mass and both positions of each link, mass and position of each
-    /// counterweight.
+    /// Returns all parameters of a machine: mass and both positions of each link and of each counterweight.
     pub fn all(machine: &Machine) -> Vec<Self> {
-        let links = (0..machine.links().len()).flat_map(|j| {
-            [BodyQuantity::Mass, BodyQuantity::Along, BodyQuantity::Across]
-                .map(|quantity| Self::new(Body::Link(j), quantity))
-        });
-        let weights = (0..machine.spec().counterweights.len()).flat_map(|i| {
-            [BodyQuantity::Mass, BodyQuantity::Along].map(|quantity| Self::new(Body::Counterweight(i), quantity))
-        });
-        links.chain(weights).collect()
+        let links = (0..machine.links().len()).map(Body::Link);
+        let bodies = links.chain((0..machine.spec().counterweights.len()).map(Body::Counterweight));
+        let quantities = [BodyQuantity::Mass, BodyQuantity::Along, BodyQuantity::Across];
+        bodies.flat_map(|body| quantities.map(|quantity| Self::new(body, quantity))).collect()
     }
 
     /// Returns its key, as `--set` names it.
@@ -54,6 +49,7 @@ impl Parameter {
             (BodyQuantity::Mass, _) => "mass",
             (BodyQuantity::Along, Body::Counterweight(_)) => "at",
             (BodyQuantity::Along, _) => "com",
+            (BodyQuantity::Across, Body::Counterweight(_)) => "across",
             (BodyQuantity::Across, _) => "com_normal",
         };
         match self.body {
@@ -77,11 +73,11 @@ impl Parameter {
             }
             Body::Counterweight(i) => {
                 let weight = spec.counterweights.get(i)?;
-                match self.quantity {
-                    BodyQuantity::Mass => Some(weight.mass),
-                    BodyQuantity::Along => Some(weight.at),
-                    BodyQuantity::Across => None,
-                }
+                Some(match self.quantity {
+                    BodyQuantity::Mass => weight.mass,
+                    BodyQuantity::Along => weight.at,
+                    BodyQuantity::Across => weight.across,
+                })
             }
             Body::Payload => None,
         }
@@ -108,7 +104,8 @@ impl Parameter {
                 weight.mass = value;
             }
             (Body::Counterweight(i), BodyQuantity::Along) => spec.counterweights[i].at = value,
-            (Body::Counterweight(_), BodyQuantity::Across) | (Body::Payload, _) => {}
+            (Body::Counterweight(i), BodyQuantity::Across) => spec.counterweights[i].across = value,
+            (Body::Payload, _) => {}
         }
     }
 }

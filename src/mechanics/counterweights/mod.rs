@@ -1,22 +1,22 @@
 //! Counterweights as discs: finds those of least mass or least inertia that balance a machine, with a certificate.
 //!
-//! A disc of mass w on a link, at x along its axis, enters balance (7), (8) linearly through w and s = w x. Bounds lo
-//! and hi of its position are lo w ≤ s ≤ hi w. To the inertia about the root it adds s²/w from its position and w²/(2 π
-//! ρ t) about its centre; both are convex. So the problem is a cone program with one optimum, which the solver
+//! A disc of mass w on a link, at x along its axis and y to the left of it, enters balance (7), (8) linearly: the real
+//! parts through w and s = w x, the imaginary parts through t = w y. Bounds lo and hi of x are lo w ≤ s ≤ hi w. To the
+//! inertia about the root it adds (s² + t²)/w from its position and w²/(2 π ρ d) about its centre; both are convex. So the problem is a cone program with one optimum, which the solver
 //! certifies. A clearance of pins, or Σ |D_k| in the objective, can make it nonconvex; it is then solved by branch
 //! and bound.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
-//! | w, s | mass of a counterweight; w x | kg, kg m |
-//! | ρ, t | density and thickness of the discs | kg/m³, m |
+//! | w, s, t | mass of a counterweight; w x; w y | kg, kg m, kg m |
+//! | ρ, d | density and thickness of the discs | kg/m³, m |
 //! | D_k | coefficient of q̇_k in the angular momentum about B, (6) | kg m² |
 
 mod cell;
-mod free_span;
 mod front;
 mod payload;
+mod pin_sector;
 mod place;
 mod problem;
 mod program;
@@ -36,7 +36,7 @@ pub use payload::{PayloadResidual, over_payloads};
 pub use place::{PlacedCounterweights, place_weights, place_weights_with, unreachable_by_weights};
 pub use refusal::{Bound, BoundRelaxation, CounterweightError};
 pub use spec::{
-    CounterweightSite, CounterweightSpec, DENSITY_RANGE, Disc, FreeRotor, MATERIALS, Objective, RotorFreedom,
-    THICKNESS_RANGE,
+    ACROSS_RANGE, CounterweightSite, CounterweightSpec, DENSITY_RANGE, Disc, FreeRotor, MATERIALS, Objective,
+    RotorFreedom, THICKNESS_RANGE,
 };
 pub use tolerance::{PlacementTolerance, WorstResidual, worst_residual};

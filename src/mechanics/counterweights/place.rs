@@ -3,7 +3,7 @@
 use super::problem::CounterweightProblem;
 use super::program::SOLVER_ROUNDING;
 use super::refusal::CounterweightError;
-use super::relief::sufficient_reliefs;
+use super::relief::{across_relief, sufficient_reliefs};
 use super::search_node::BalanceGoal;
 use super::spec::{CounterweightSite, CounterweightSpec, Objective};
 use super::task::CounterweightTask;
@@ -69,13 +69,13 @@ pub fn place_weights_with(
     beyond: &[Vector],
 ) -> Result<PlacedCounterweights, CounterweightError> {
     let problem = CounterweightProblem::new(machine, spec, beyond)?;
-    problem.check()?;
+    let one = CounterweightTask { problem: &problem, machine, spec, beyond };
+    problem.check().map_err(|why| one.with_reliefs(why))?;
     if problem.needs_nothing(spec) {
         let inertia = Inertia::of(&problem.bare);
         let value = spec.objective.of(0.0, &inertia);
         return Ok(PlacedCounterweights { machine: problem.bare, added_mass: 0.0, value, gap: 0.0 });
     }
-    let one = CounterweightTask { problem: &problem, machine, spec, beyond };
     one.found()?.map_err(|weights| one.refusal(&weights))
 }
 
@@ -190,11 +190,27 @@ impl CounterweightTask<'_> {
         Ok(PlacedCounterweights { machine, added_mass, value, gap: (value - (least.value - least.gap)).max(least.gap) })
     }
 
+    /// Returns whether there are counterweights for another request.
+    fn is_feasible(&self, spec: &CounterweightSpec) -> bool {
+        let found = |problem: &CounterweightProblem| CounterweightTask { problem, spec, ..*self }.found();
+        CounterweightProblem::new(self.machine, spec, self.beyond)
+            .is_ok_and(|problem| problem.check().is_ok() && found(&problem).is_ok_and(|found| found.is_ok()))
+    }
+
+    /// Adds the least sufficient distance from the axes to an error about imbalance across them.
+    fn with_reliefs(&self, why: CounterweightError) -> CounterweightError {
+        match why {
+            CounterweightError::OffAxis { condition, residual, want, .. } => {
+                let reliefs = across_relief(self, &|spec| self.is_feasible(spec));
+                CounterweightError::OffAxis { condition, residual, want, reliefs }
+            }
+            why => why,
+        }
+    }
+
     /// Returns the reason why there are no counterweights; `weights` come from [`found`](Self::found).
     fn refusal(&self, weights: &[f64]) -> CounterweightError {
-        let is_feasible =
-            |spec: &CounterweightSpec| CounterweightTask { spec, ..*self }.found().is_ok_and(|found| found.is_ok());
-        let would = || sufficient_reliefs(self, &is_feasible);
+        let would = || sufficient_reliefs(self, &|spec| self.is_feasible(spec));
         match self.spec.clearance {
             Some(clearance) if weights.is_empty() => CounterweightError::Reaches { clearance, reliefs: would() },
             _ => {

@@ -5,7 +5,7 @@ use super::refusal::CounterweightError;
 use super::residual::{ConditionResidual, conditions};
 use super::spec::CounterweightSpec;
 use crate::balance::{LinearEquation, SolutionSpace};
-use crate::machine::{Inertia, Machine};
+use crate::machine::{Inertia, Machine, ResolvedLink};
 use crate::planar::Vector;
 
 /// A machine without counterweights, except fixed ones, and without the rotors that have a free parameter.
@@ -40,29 +40,32 @@ impl CounterweightProblem {
         Ok(Self { bare, inertia, conditions, reach })
     }
 
-    /// Checks that counterweights on the axes of the sites' links can change every condition that is not satisfied.
+    /// Checks that counterweights at the sites can change every condition that is not satisfied.
     ///
     /// # Errors
     /// If they cannot change one of these conditions.
     pub fn check(&self) -> Result<(), CounterweightError> {
-        for ConditionResidual { condition: of, residual, .. } in &self.conditions {
-            if residual.im.abs() > 1e-9 {
-                let residual = format!("{:.3e} {}", residual.im, of.unit());
-                return Err(CounterweightError::OffAxis { condition: of.name(&self.bare), residual });
-            }
-        }
-        for condition in self.conditions.iter().filter(|condition| !condition.is_touched()) {
-            if condition.residual.re.abs() > 1e-9 {
-                let residual = format!("{:.3e} {}", condition.residual.re, condition.condition.unit());
-                let parts = self.bare.links().iter().zip(self.bare.resolved_links());
-                let of = |part| condition.condition.by_mass(part) != 0.0 || condition.condition.by_moment(part) != 0.0;
-                let would: Vec<&str> = parts.filter(|(_, part)| of(part)).map(|(link, _)| link.name.as_str()).collect();
-                let want = format!("one of {}", would.join(", "));
-                return Err(CounterweightError::Untouched {
-                    condition: condition.condition.name(&self.bare),
-                    residual,
+        let one_of = |changes: &dyn Fn(&ResolvedLink) -> bool| {
+            let parts = self.bare.links().iter().zip(self.bare.resolved_links());
+            let would: Vec<&str> =
+                parts.filter(|(_, part)| changes(part)).map(|(link, _)| link.name.as_str()).collect();
+            format!("one of {}", would.join(", "))
+        };
+        for one in &self.conditions {
+            let (condition, residual) = (one.condition.name(&self.bare), one.residual);
+            let stays = |residual: f64| format!("{residual:.3e} {}", one.condition.unit());
+            if !one.is_touched_across() && residual.im.abs() > 1e-9 {
+                let want = one_of(&|part| one.condition.by_cross_moment(part) != 0.0);
+                return Err(CounterweightError::OffAxis {
+                    condition,
+                    residual: stays(residual.im),
                     want,
+                    reliefs: Vec::new(),
                 });
+            }
+            if !one.is_touched() && residual.re.abs() > 1e-9 {
+                let want = one_of(&|part| one.condition.by_mass(part) != 0.0 || one.condition.by_moment(part) != 0.0);
+                return Err(CounterweightError::Untouched { condition, residual: stays(residual.re), want });
             }
         }
         Ok(())
@@ -71,14 +74,19 @@ impl CounterweightProblem {
     /// Returns the part of each residual, kg m or kg m², that no masses at the sites remove, even negative ones. This
     /// is the residual of the least squares solution, with all equations scaled to unit norm.
     pub fn unreachable(&self, sites: usize) -> Vec<Vector> {
-        let equation = |condition: &ConditionResidual| LinearEquation {
-            a: condition.changes.iter().flatten().copied().collect(),
+        let along = |condition: &ConditionResidual| LinearEquation {
+            a: condition.changes.iter().flat_map(|[by_w, by_s, _]| [*by_w, *by_s]).collect(),
             right: -condition.residual.re,
             tolerance: f64::INFINITY,
         };
-        let equations: Vec<LinearEquation> = self.conditions.iter().map(equation).collect();
-        let along = SolutionSpace::of(&equations, 2 * sites).residuals;
-        along.iter().zip(&self.conditions).map(|(along, of)| Vector::new(*along, of.residual.im)).collect()
+        let across = |condition: &ConditionResidual| LinearEquation {
+            a: condition.changes.iter().map(|[_, _, by_t]| *by_t).collect(),
+            right: -condition.residual.im,
+            tolerance: f64::INFINITY,
+        };
+        let along = SolutionSpace::of(&self.conditions.iter().map(along).collect::<Vec<_>>(), 2 * sites).residuals;
+        let across = SolutionSpace::of(&self.conditions.iter().map(across).collect::<Vec<_>>(), sites).residuals;
+        along.iter().zip(&across).map(|(along, across)| Vector::new(*along, *across)).collect()
     }
 
     /// Returns whether no counterweights are needed. Counterweights only add mass and inertia, so the optimum then has

@@ -1,5 +1,6 @@
 //! The cone program of a [`CounterweightProblem`]: its rows, and its optimum.
 
+use super::pin_sector::PinSector;
 use super::problem::CounterweightProblem;
 use super::refusal::{Bound, BoundKind};
 use super::residual::ConditionResidual;
@@ -8,6 +9,7 @@ use super::spec::{CounterweightSpec, Objective, RotorFreedom};
 use super::unknowns::{AffineForm, UnknownIndices};
 use crate::balance::Condition;
 use crate::machine::Machine;
+use crate::planar::Vector;
 use stillbase_convex::{LinearRow, NoOptimum, Optimum, Program, infeasible_bounds};
 
 /// Relative and absolute amount by which the first of two objectives may exceed its minimum while the second is
@@ -75,8 +77,7 @@ impl CounterweightProblem {
         }
         if unknowns.momentum {
             for (j, cell) in node.cells.iter().enumerate() {
-                let [w, s, u, v] = [unknowns.w(j), unknowns.s(j), unknowns.u(j), unknowns.v(j)];
-                cell.enter(request, [w, s, u, v], &mut program);
+                cell.enter(request, &unknowns, j, &mut program);
             }
         }
         if let Some(most) = node.most {
@@ -88,10 +89,8 @@ impl CounterweightProblem {
             self.cost(machine, &tie_break, &unknowns, &mut program);
         }
         self.enter_balance(&unknowns, node.balance, &mut program);
-        for (j, room) in node.rooms.iter().enumerate() {
-            if let Some(room) = room {
-                room.enter(request, [unknowns.w(j), unknowns.s(j)], &mut program);
-            }
+        for (j, sectors) in node.sectors.iter().enumerate() {
+            PinSector::enter(sectors, request, [unknowns.w(j), unknowns.s(j)], unknowns.t(j), &mut program);
         }
         let firm = bounds.iter().filter(|(bound, _)| !bound.kind().is_some_and(|kind| node.loose.contains(&kind)));
         program.at_most.extend(firm.clone().map(|(_, row)| row.clone()));
@@ -115,11 +114,20 @@ impl CounterweightProblem {
             let both = each.flat_map(|(j, by)| [(unknowns.w(j), sign * by[0]), (unknowns.s(j), sign * by[1])]);
             both.filter(|(_, by)| *by != 0.0).collect::<Vec<_>>()
         };
+        let terms_across = |condition: &ConditionResidual| {
+            let each = condition.changes.iter().enumerate();
+            let all = each.filter_map(|(j, by)| Some((unknowns.t(j)?, by[2])));
+            all.filter(|(_, by)| *by != 0.0).collect::<Vec<_>>()
+        };
         if balance == BalanceGoal::Exact {
             let touched = self.conditions.iter().filter(|condition| condition.is_touched());
             program
                 .equal
                 .extend(touched.map(|condition| LinearRow::new(terms(condition, 1.0), -condition.residual.re)));
+            let touched = self.conditions.iter().filter(|condition| condition.is_touched_across());
+            program
+                .equal
+                .extend(touched.map(|condition| LinearRow::new(terms_across(condition), -condition.residual.im)));
             return;
         }
         let worst = program.linear.len();
@@ -129,10 +137,22 @@ impl CounterweightProblem {
         program.linear.push(if balance == BalanceGoal::Nearest { 1.0 } else { 0.0 });
         for condition in &self.conditions {
             let per = if matches!(condition.condition, Condition::Force(_)) { 1.0 } else { self.reach };
+            if condition.is_touched_across() || condition.ends.iter().any(|end| end.im != 0.0) {
+                let magnitude = |end: Vector| {
+                    let (along, across) = (terms(condition, 1.0), terms_across(condition));
+                    vec![
+                        LinearRow::new([(worst, per)], 0.0),
+                        LinearRow::new(along, end.re),
+                        LinearRow::new(across, end.im),
+                    ]
+                };
+                program.cones.extend(condition.ends.map(magnitude));
+                continue;
+            }
             for (sign, end) in [-1.0, 1.0].into_iter().flat_map(|sign| condition.ends.map(|end| (sign, end))) {
                 let mut terms = terms(condition, sign);
                 terms.push((worst, -per));
-                program.at_most.push(LinearRow::new(terms, -sign * end));
+                program.at_most.push(LinearRow::new(terms, -sign * end.re));
             }
         }
         if let BalanceGoal::Within(most) = balance {
@@ -169,7 +189,8 @@ impl CounterweightProblem {
     fn enter_inertia(&self, request: &CounterweightSpec, unknowns: &UnknownIndices, program: &mut Program) {
         let parts = self.bare.resolved_links();
         for j in 0..request.sites.len() {
-            program.add_rotated_cone(unknowns.u(j), unknowns.w(j), unknowns.s(j));
+            let moments = std::iter::once(unknowns.s(j)).chain(unknowns.t(j));
+            program.add_rotated_cone(unknowns.u(j), unknowns.w(j), moments);
             program.above_square(unknowns.v(j), request.disc.own(), unknowns.w(j));
         }
         for k in 0..self.drives() {
@@ -246,6 +267,10 @@ impl CounterweightProblem {
             let (w, s, link) = (unknowns.w(j), unknowns.s(j), self.bare.links()[site.link].name.clone());
             all.push((Bound::From(link.clone()), LinearRow::new([(w, site.from), (s, -1.0)], 0.0)));
             all.push((Bound::To(link.clone()), LinearRow::new([(s, 1.0), (w, -site.to)], 0.0)));
+            if let Some(t) = unknowns.t(j) {
+                all.push((Bound::Left(link.clone()), LinearRow::new([(t, 1.0), (w, -site.across)], 0.0)));
+                all.push((Bound::Right(link.clone()), LinearRow::new([(t, -1.0), (w, -site.across)], 0.0)));
+            }
             if site.most.is_finite() {
                 all.push((Bound::Most(link), LinearRow::new([(w, 1.0)], site.most)));
             }
@@ -272,7 +297,7 @@ impl Bound {
     /// Returns its kind; `None` for bounds of positions, which may not be relaxed.
     fn kind(&self) -> Option<BoundKind> {
         match self {
-            Self::From(_) | Self::To(_) => None,
+            Self::From(_) | Self::To(_) | Self::Left(_) | Self::Right(_) => None,
             Self::Most(_) => Some(BoundKind::Most),
             Self::Mass => Some(BoundKind::Mass),
             Self::Inertia => Some(BoundKind::Inertia),
@@ -290,7 +315,7 @@ impl CounterweightSpec {
             }
             Bound::Mass => self.max_added_mass.unwrap_or_default(),
             Bound::Inertia => self.max_inertia.unwrap_or_default(),
-            Bound::From(_) | Bound::To(_) => 0.0,
+            Bound::From(_) | Bound::To(_) | Bound::Left(_) | Bound::Right(_) => 0.0,
         }
     }
 }

@@ -13,6 +13,10 @@ pub enum Bound {
     From(String),
     /// Upper bound of the position of a link's counterweight.
     To(String),
+    /// Upper bound of the distance of a link's counterweight to the left of the link's axis.
+    Left(String),
+    /// Upper bound of the distance of a link's counterweight to the right of the link's axis.
+    Right(String),
     /// Upper bound of the mass of a link's counterweight.
     Most(String),
     /// Upper bound of the total mass of the counterweights.
@@ -26,6 +30,8 @@ impl fmt::Display for Bound {
         match self {
             Self::From(link) => write!(f, "link {link}: no further back"),
             Self::To(link) => write!(f, "link {link}: no further out"),
+            Self::Left(link) => write!(f, "link {link}: no further to the left"),
+            Self::Right(link) => write!(f, "link {link}: no further to the right"),
             Self::Most(link) => write!(f, "link {link}: no heavier"),
             Self::Mass => write!(f, "added mass: no more"),
             Self::Inertia => write!(f, "Σ D_k: no more"),
@@ -48,6 +54,8 @@ pub enum BoundKind {
     Inertia,
     /// The clearance of discs from pins.
     Clearance,
+    /// The distance of counterweights from the axes of their links.
+    Across,
 }
 
 /// Relaxed value of the bounds of one kind: the least feasible bound, or the greatest feasible clearance, rounded to
@@ -62,6 +70,8 @@ pub enum BoundRelaxation {
     Inertia(f64),
     /// Clearance of discs from pins, m.
     Clearance(f64),
+    /// Distance of every counterweight from the axis of its link, to either side, m.
+    Across(f64),
 }
 
 impl fmt::Display for BoundRelaxation {
@@ -71,6 +81,7 @@ impl fmt::Display for BoundRelaxation {
             Self::Mass(x) => write!(f, "up to {x:.6} kg in all"),
             Self::Inertia(x) => write!(f, "Σ D_k up to {x:.6} kg m²"),
             Self::Clearance(x) => write!(f, "a clearance of {x:.4} m"),
+            Self::Across(x) => write!(f, "counterweights up to {x:.4} m off the axis of their link"),
         }
     }
 }
@@ -111,12 +122,20 @@ pub enum CounterweightError {
     #[error("drive {0} has no rotor whose ratio could be chosen: want drive.{0}.rotor.inertia above 0")]
     NoRotor(String),
     /// The masses of the links lie off their axes, where no counterweight on an axis balances them.
-    #[error("{condition}, has {residual} that no counterweight on an axis takes away: want com_normal 0")]
+    #[error(
+        "{condition}, has {residual} that no counterweight on an axis takes away: want com_normal 0, or a \
+         counterweight that may lie off the axis of {want}{}",
+        sufficient_relief(.reliefs)
+    )]
     OffAxis {
         /// The condition.
         condition: String,
         /// Its residual, with unit.
         residual: String,
+        /// Links on which a counterweight off the axis would change it.
+        want: String,
+        /// The least distance from the axes that is sufficient; empty if there is none.
+        reliefs: Vec<Vec<BoundRelaxation>>,
     },
     /// A condition is not satisfied, and no counterweight on these links changes it.
     #[error("{condition}, stays at {residual}: want a counterweight on another link, too: {want}")]

@@ -1,6 +1,7 @@
 //! [`sufficient_reliefs`]: relaxed bounds that make a request for counterweights feasible, with all other bounds
 //! unchanged.
 
+use super::problem::CounterweightProblem;
 use super::refusal::{BoundKind, BoundRelaxation};
 use super::search_node::SearchNode;
 use super::spec::CounterweightSpec;
@@ -13,11 +14,11 @@ const FIRST_BOUND_FACTOR: f64 = 1.1;
 /// Fractions by which a relaxed bound is relaxed further, against the solver's rounding, until there is a solution.
 const EXTRA_FRACTIONS: [f64; 6] = [0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
-/// Number of bisection steps for a clearance.
+/// Number of bisection steps for a clearance or a distance from the axes.
 const BISECTIONS: usize = 20;
 
-/// Relaxed clearances are multiples of 1/this, m.
-const CLEARANCE_STEPS_PER_M: f64 = 1e4;
+/// Relaxed clearances and distances from the axes are multiples of 1/this, m.
+const STEPS_PER_M: f64 = 1e4;
 /// Other relaxed bounds are multiples of 1/this, kg or kg m².
 const STEPS_PER_UNIT: f64 = 1e6;
 
@@ -36,6 +37,14 @@ pub(super) fn sufficient_reliefs(
     (1..=kinds.len()).map(of_size).find(|found| !found.is_empty()).unwrap_or_default()
 }
 
+/// Returns the least distance from the axes that is sufficient, with all other bounds unchanged; empty if there is none.
+pub(super) fn across_relief(
+    one: &CounterweightTask,
+    is_feasible: &dyn Fn(&CounterweightSpec) -> bool,
+) -> Vec<Vec<BoundRelaxation>> {
+    together(one, &[BoundKind::Across], is_feasible).into_iter().collect()
+}
+
 /// Returns the values to which these kinds of bounds have to be relaxed together; `None` if that is not enough.
 fn together(
     one: &CounterweightTask,
@@ -45,12 +54,17 @@ fn together(
     let (last, first) = kinds.split_last()?;
     let (mut request, mut reliefs) = (one.spec.clone(), Vec::new());
     for (i, kind) in first.iter().enumerate() {
-        let relief = kind.rounded(FIRST_BOUND_FACTOR * least_bound(one, &request, *kind, &kinds[i + 1..])?);
+        let least = match kind {
+            BoundKind::Across => least_across(one, &loosened(&request, &kinds[i + 1..]))?,
+            _ => least_bound(one, &request, *kind, &kinds[i + 1..])?,
+        };
+        let relief = kind.rounded(FIRST_BOUND_FACTOR * least);
         relief.set(&mut request);
         reliefs.push(relief);
     }
     let least = match last {
         BoundKind::Clearance => greatest_clearance(one, &request)?,
+        BoundKind::Across => least_across(one, &request)?,
         _ => least_bound(one, &request, *last, &[])?,
     };
     let nudged = EXTRA_FRACTIONS
@@ -94,18 +108,58 @@ fn greatest_clearance(one: &CounterweightTask, request: &CounterweightSpec) -> O
     Some((0..BISECTIONS).fold([0.0, request.clearance?], bisected)[0])
 }
 
+/// Returns the request without the bounds of these kinds.
+fn loosened(request: &CounterweightSpec, kinds: &[BoundKind]) -> CounterweightSpec {
+    let mut request = request.clone();
+    for kind in kinds {
+        match kind {
+            BoundKind::Most => request.sites.iter_mut().for_each(|site| site.most = f64::INFINITY),
+            BoundKind::Mass => request.max_added_mass = None,
+            BoundKind::Inertia => request.max_inertia = None,
+            BoundKind::Clearance => request.clearance = None,
+            BoundKind::Across => {}
+        }
+    }
+    request
+}
+
+/// Returns the least sufficient distance of counterweights from the axes of their links, m, by bisection; `None` if even
+/// the reach of the machine is not sufficient.
+fn least_across(one: &CounterweightTask, request: &CounterweightSpec) -> Option<f64> {
+    let is_enough = |across: f64| {
+        let mut request = request.clone();
+        BoundRelaxation::Across(across).set(&mut request);
+        let problem = CounterweightProblem::new(one.machine, &request, one.beyond).ok();
+        let is_possible = |problem: &CounterweightProblem| {
+            problem.check().is_ok() && CounterweightTask { problem, spec: &request, ..*one }.is_possible()
+        };
+        problem.is_some_and(|problem| is_possible(&problem))
+    };
+    let reach = one.problem.reach;
+    if !is_enough(reach) {
+        return None;
+    }
+    let bisected = |[low, high]: [f64; 2], _| {
+        let middle = 0.5 * (low + high);
+        if is_enough(middle) { [low, middle] } else { [middle, high] }
+    };
+    Some((0..BISECTIONS).fold([0.0, reach], bisected)[1])
+}
+
 /// Returns the value of a number printed with `decimals` decimals.
 fn rounded_as_printed(x: f64, decimals: usize) -> f64 {
     format!("{x:.decimals$}").parse().unwrap_or(x)
 }
 
 impl BoundKind {
-    /// Returns the kinds of bounds that are set.
+    /// Returns the kinds of bounds that are set, the clearance last.
     fn of(request: &CounterweightSpec) -> Vec<Self> {
         let set = [
             (Self::Most, request.sites.iter().any(|site| site.most.is_finite())),
             (Self::Mass, request.max_added_mass.is_some()),
             (Self::Inertia, request.max_inertia.is_some()),
+            (Self::Across, request.sites.iter().any(|site| site.across > 0.0)),
+            // The last one: `together` bisects a clearance only after all others are relaxed.
             (Self::Clearance, request.clearance.is_some()),
         ];
         set.into_iter().filter(|(_, set)| *set).map(|(kind, _)| kind).collect()
@@ -118,10 +172,10 @@ impl BoundKind {
             Self::Most => BoundRelaxation::Most(up),
             Self::Mass => BoundRelaxation::Mass(up),
             Self::Inertia => BoundRelaxation::Inertia(up),
-            Self::Clearance => BoundRelaxation::Clearance(rounded_as_printed(
-                (bound * CLEARANCE_STEPS_PER_M).floor() / CLEARANCE_STEPS_PER_M,
-                4,
-            )),
+            Self::Clearance => {
+                BoundRelaxation::Clearance(rounded_as_printed((bound * STEPS_PER_M).floor() / STEPS_PER_M, 4))
+            }
+            Self::Across => BoundRelaxation::Across(rounded_as_printed((bound * STEPS_PER_M).ceil() / STEPS_PER_M, 4)),
         }
     }
 }
@@ -136,6 +190,7 @@ impl BoundRelaxation {
             Self::Mass(most) => request.max_added_mass = Some(most),
             Self::Inertia(most) => request.max_inertia = Some(most),
             Self::Clearance(clearance) => request.clearance = Some(clearance),
+            Self::Across(across) => request.sites.iter_mut().for_each(|site| site.across = site.across.max(across)),
         }
     }
 }

@@ -12,20 +12,26 @@ pub(super) struct ConditionResidual {
     /// Residual of the bare machine with the mean payload, kg m or kg m²: the real part along the axes, the imaginary
     /// part across them.
     pub residual: Vector,
-    /// Residual along the axes with the smallest and with the largest payload.
-    pub ends: [f64; 2],
-    /// Derivatives of the residual with respect to the mass w, kg, and s = w x, kg m, of each site's counterweight.
-    pub changes: Vec<[f64; 2]>,
+    /// Residual with the smallest and with the largest payload.
+    pub ends: [Vector; 2],
+    /// Derivatives with respect to each site's counterweight: of the real part by its mass w, kg, and by s = w x, kg m;
+    /// of the imaginary part by t = w y, kg m, which are 0 where the counterweight must lie on the axis.
+    pub changes: Vec<[f64; 3]>,
 }
 
 impl ConditionResidual {
-    /// Returns whether a counterweight at any site changes it.
+    /// Returns whether a counterweight at any site changes the real part.
     pub fn is_touched(&self) -> bool {
-        self.changes.iter().flatten().any(|by| *by != 0.0)
+        self.changes.iter().any(|[by_w, by_s, _]| *by_w != 0.0 || *by_s != 0.0)
+    }
+
+    /// Returns whether a counterweight at any site changes the imaginary part.
+    pub fn is_touched_across(&self) -> bool {
+        self.changes.iter().any(|[_, _, by_t]| *by_t != 0.0)
     }
 }
 
-/// Returns the residual of each condition, and its derivatives by w and s at each site.
+/// Returns the residual of each condition, and its derivatives by w, s and t at each site.
 pub(super) fn conditions(
     bare: &Machine,
     inertia: &Inertia,
@@ -43,13 +49,16 @@ pub(super) fn conditions(
         None => [inertia.clone(), inertia.clone()],
     };
     let of = |(i, condition): (usize, Condition)| {
-        let change =
-            |site: &CounterweightSite| [condition.by_mass(&parts[site.link]), condition.by_moment(&parts[site.link])];
+        let change = |site: &CounterweightSite| {
+            let part = &parts[site.link];
+            let by_t = if site.across > 0.0 { condition.by_cross_moment(part) } else { 0.0 };
+            [condition.by_mass(part), condition.by_moment(part), by_t]
+        };
         let more = beyond.get(i).copied().unwrap_or_default();
         ConditionResidual {
             condition,
             residual: condition.residual(inertia) + more,
-            ends: [0, 1].map(|i| (condition.residual(&ends[i]) + more).re),
+            ends: [0, 1].map(|i| condition.residual(&ends[i]) + more),
             changes: request.sites.iter().map(change).collect(),
         }
     };

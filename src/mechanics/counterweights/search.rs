@@ -1,10 +1,10 @@
 //! [`search`]: branch and bound over cone programs, for two kinds of problems that are not convex. If discs must stay
-//! clear of the pins of their links, an interval between pins must be chosen for each disc. If D_k is negative, more
-//! inertia reduces |D_k|. The subproblem with the lowest bound is split first, so the first solution whose relaxation
-//! is exact is the optimum.
+//! clear of the pins of their links, directions from the pins must be chosen for each disc. If the objective contains
+//! |D_k|, more inertia reduces it where D_k < 0. The subproblem with the lowest bound is split first, so the first
+//! solution whose relaxation is exact is the optimum.
 
-use super::cell::SearchCell;
-use super::free_span::FreeSpan;
+use super::cell::{CellSide, DiscPlace, SearchCell};
+use super::pin_sector::{PinSector, worst_pin};
 use super::problem::CounterweightProblem;
 use super::refusal::CounterweightError;
 use super::search_node::{BalanceGoal, SearchNode};
@@ -13,7 +13,7 @@ use super::spec::CounterweightSpec;
 use crate::machine::Machine;
 use stillbase_convex::{NoOptimum, Optimum};
 
-/// Maximum number of subproblems from choices of intervals between pins.
+/// Maximum number of subproblems from choices of directions from pins.
 const MAX_CHOICES: usize = 4000;
 
 /// Maximum number of cells, the ranges of mass and position that are searched.
@@ -28,11 +28,11 @@ const VALUE_TOLERANCE: f64 = 2e-7;
 /// Maximum number of linearisations in one descent.
 const MAX_LINEARISATIONS: usize = 25;
 
-/// Finds the optimum over all choices of intervals between pins and over all cells. If the number of cells exceeds its
+/// Finds the optimum over all choices of directions from pins and over all cells. If the number of cells exceeds its
 /// limit, returns the best solution found, with the remaining gap.
 ///
 /// # Errors
-/// If there are too many choices, or a child fails and momentum has no weight. Inner: no solution, or a failed root.
+/// Outer: too many choices, or a subproblem fails and momentum has no weight. Inner: no solution, or the first fails.
 pub(super) fn search(
     problem: &CounterweightProblem,
     machine: &Machine,
@@ -40,8 +40,6 @@ pub(super) fn search(
     node: &SearchNode,
 ) -> Result<Result<Optimum, NoOptimum>, CounterweightError> {
     let search = Search { problem, machine, request };
-    let rooms: Vec<Vec<FreeSpan>> =
-        request.sites.iter().map(|site| FreeSpan::all(&problem.bare.resolved_links()[site.link].pins)).collect();
     // Open subproblems, each with the optimum of its relaxation.
     let mut open = match problem.least(machine, request, node) {
         Ok(least) => vec![(least, node.clone())],
@@ -56,20 +54,24 @@ pub(super) fn search(
         {
             return Ok(Ok(Optimum { gap: best.value - bound, ..best.clone() }));
         }
-        let children = match search.worst_site(&least, &rooms, &node) {
-            Some(j) => {
-                choices += rooms[j].len();
+        let children = match search.worst_site(&least, &node) {
+            Some((j, pin)) => {
+                let sectors = match request.sites[j].across > 0.0 {
+                    true => PinSector::refined(&node.sectors[j], pin),
+                    false => PinSector::intervals(search.pins(j)),
+                };
+                choices += sectors.len();
                 if choices > MAX_CHOICES {
                     return Err(CounterweightError::TooMany(MAX_CHOICES));
                 }
-                let enter = |room: &FreeSpan| {
+                let enter = |sectors: Vec<PinSector>| {
                     let mut next = node.clone();
-                    next.rooms[j] = Some(*room);
+                    next.sectors[j] = sectors;
                     next
                 };
-                rooms[j].iter().map(enter).collect()
+                sectors.into_iter().map(enter).collect()
             }
-            // Only the objective depends on the exact inertias: a residual or a bound that is minimised does not.
+            // Exact inertias matter only to an objective with momentum, not to a minimised residual or bound.
             None if request.objective.momentum == 0.0
                 || node.least.is_some()
                 || node.balance == BalanceGoal::Nearest =>
@@ -81,9 +83,9 @@ pub(super) fn search(
                 if found.value <= least.value + VALUE_TOLERANCE {
                     return Ok(Ok(least));
                 }
-                // A descent may move a disc without a chosen interval onto a pin; such solutions are discarded.
+                // A descent may move a disc without chosen directions onto a pin; such solutions are discarded.
                 let descended = search.descend(&found, &node, cells == 1).into_iter();
-                for found in descended.filter(|found| search.worst_site(found, &rooms, &node).is_none()) {
+                for found in descended.filter(|found| search.worst_site(found, &node).is_none()) {
                     if best.as_ref().is_none_or(|best| found.value < best.value) {
                         best = Some(found);
                     }
@@ -119,20 +121,24 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Returns the site whose disc violates the clearance of a pin most; `None` if all discs are clear or may cover
-    /// pins. A disc whose interval is chosen is clear.
-    fn worst_site(&self, least: &Optimum, rooms: &[Vec<FreeSpan>], node: &SearchNode) -> Option<usize> {
+    /// Returns the pins of the link of site j, m from its root.
+    fn pins(&self, j: usize) -> &[f64] {
+        &self.problem.bare.resolved_links()[self.request.sites[j].link].pins
+    }
+
+    /// Returns the site whose disc violates the clearance of a pin most, and that pin, m from the link's root; `None`
+    /// if all discs are clear or may cover pins. On an axis, a disc whose directions are chosen is clear.
+    fn worst_site(&self, least: &Optimum, node: &SearchNode) -> Option<(usize, f64)> {
         let clearance = self.request.clearance?;
         let missed = |j: usize| {
-            let [w, s] = self.problem.at(self.request, &least.x, j);
-            let (radius, at) = (self.request.disc.radius(w.max(0.0)), s / w);
-            let nearest =
-                rooms[j].iter().map(|room| room.violation(clearance, radius, at)).fold(f64::INFINITY, f64::min);
-            if w > MIN_MASS_KG { nearest } else { 0.0 }
+            let disc = self.problem.disc(self.request, &least.x, j, MIN_MASS_KG)?;
+            let (pin, missed) = worst_pin(self.pins(j), clearance, self.request.disc.radius(disc.mass), disc)?;
+            Some((j, pin, missed))
         };
-        let free = (0..rooms.len()).filter(|j| node.rooms[*j].is_none());
-        let worst = free.map(|j| (j, missed(j))).max_by(|a, b| a.1.total_cmp(&b.1));
-        worst.filter(|(_, missed)| *missed > CLEARANCE_TOLERANCE_M).map(|(j, _)| j)
+        let is_open = |j: &usize| self.request.sites[*j].across > 0.0 || node.sectors[*j].is_empty();
+        let open = (0..self.request.sites.len()).filter(is_open);
+        let worst = open.filter_map(missed).max_by(|a, b| a.2.total_cmp(&b.2));
+        worst.filter(|(_, _, missed)| *missed > CLEARANCE_TOLERANCE_M).map(|(j, pin, _)| (j, pin))
     }
 
     /// Returns a solution with every inertia at its exact value.
@@ -146,22 +152,23 @@ impl Search<'_> {
     /// last.
     fn descend(&self, from: &Optimum, node: &SearchNode, from_bounds: bool) -> Vec<Optimum> {
         let about = |least: &Optimum| {
+            let far = |[from, to]: [f64; 2]| if from.abs() > to.abs() { from } else { to };
             let one = |j: usize| {
-                let ([w, s], [from, to]) = (self.problem.at(self.request, &least.x, j), node.cells[j].at);
-                let far = if from.abs() > to.abs() { from } else { to };
-                if w > MIN_MASS_KG { [w, s / w] } else { [0.0, far] }
+                let none = DiscPlace { at: far(node.cells[j].at), ..DiscPlace::default() };
+                self.problem.disc(self.request, &least.x, j, MIN_MASS_KG).unwrap_or(none)
             };
             (0..self.request.sites.len()).map(one).collect::<Vec<_>>()
         };
-        let mean = |all: &[[f64; 2]]| all.iter().map(|[w, _]| w).sum::<f64>() / all.len().max(1) as f64;
+        let mean = |all: &[DiscPlace]| all.iter().map(|disc| disc.mass).sum::<f64>() / all.len().max(1) as f64;
         let here = about(from);
         let mut starts = vec![here.clone()];
         if from_bounds {
             let heavy = 3.0 * mean(&here) + 1.0;
-            let end = |i: usize, mass: f64| node.cells.iter().map(|cell| [mass, cell.at[i]]).collect::<Vec<_>>();
+            let place = |i: usize, mass: f64, cell: &SearchCell| DiscPlace { mass, at: cell.at[i], across: 0.0 };
+            let end = |i: usize, mass: f64| node.cells.iter().map(|cell| place(i, mass, cell)).collect::<Vec<_>>();
             starts.extend([end(0, 0.0), end(1, 0.0), end(0, heavy), end(1, heavy)]);
         }
-        let down = |mut tangents: Vec<[f64; 2]>| {
+        let down = |mut tangents: Vec<DiscPlace>| {
             let mut best: Option<Optimum> = None;
             for _ in 0..MAX_LINEARISATIONS {
                 let node = SearchNode { tangents: Some(tangents), ..node.clone() };
@@ -184,16 +191,17 @@ impl Search<'_> {
     /// Splits the cell in which an inertia differs most from its exact value; empty if all cells are too narrow.
     fn halves(&self, least: &Optimum, node: &SearchNode, best: Option<&Optimum>) -> Vec<SearchNode> {
         let excess = self.problem.excess(self.machine, self.request, &least.x);
-        let each = excess.iter().enumerate().flat_map(|(j, [place, own])| [(j, true, *place), (j, false, *own)]);
+        let each = excess.iter().enumerate().flat_map(|(j, [place, own])| [(j, false, *place), (j, true, *own)]);
         let mut order: Vec<(usize, bool, f64)> = each.collect();
         order.sort_by(|a, b| b.2.total_cmp(&a.2));
         // No counterweight is heavier than the best objective divided by the coefficient of mass in the objective.
         let heaviest = best.map(|best| best.value / self.request.objective.mass).filter(|mass| mass.is_finite());
-        let halved = order.into_iter().find_map(|(j, by_place, _)| {
-            let [w, s] = self.problem.at(self.request, &least.x, j);
+        let halved = order.into_iter().find_map(|(j, by_mass, _)| {
+            let disc = self.problem.disc(self.request, &least.x, j, MIN_MASS_KG).unwrap_or_default();
             let mut cell = node.cells[j];
             cell.mass[1] = cell.mass[1].min(heaviest.unwrap_or(f64::INFINITY)).max(cell.mass[0]);
-            let halves = cell.halves(by_place, [w.max(0.0), if w > MIN_MASS_KG { s / w } else { 0.0 }])?;
+            let side = if by_mass { CellSide::Mass } else { cell.looser_side(&disc) };
+            let halves = cell.halves(side, &disc)?;
             Some((j, halves))
         });
         let Some((j, halves)) = halved else { return Vec::new() };

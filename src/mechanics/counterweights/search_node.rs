@@ -1,7 +1,7 @@
 //! [`SearchNode`]: one subproblem of the search for counterweights.
 
-use super::cell::SearchCell;
-use super::free_span::FreeSpan;
+use super::cell::{DiscPlace, SearchCell};
+use super::pin_sector::PinSector;
 use super::refusal::BoundKind;
 use super::spec::CounterweightSpec;
 
@@ -19,8 +19,8 @@ pub(super) enum BalanceGoal {
 /// One subproblem of the search for counterweights.
 #[derive(Clone, Debug)]
 pub(super) struct SearchNode {
-    /// Interval between pins in which the disc of each site must stay, if one is chosen.
-    pub rooms: Vec<Option<FreeSpan>>,
+    /// Directions chosen for the disc of each site from pins of its link.
+    pub sectors: Vec<Vec<PinSector>>,
     pub balance: BalanceGoal,
     /// Upper bound of the objective. If set, added mass and Σ H_kk are minimised instead, to choose among optima.
     pub most: Option<f64>,
@@ -30,16 +30,16 @@ pub(super) struct SearchNode {
     pub least: Option<BoundKind>,
     /// Ranges of mass and position of each counterweight; they apply only if the objective contains |D_k|.
     pub cells: Vec<SearchCell>,
-    /// Masses, kg, and positions, m, at which H_kk is linearised in −D_k ≤ |D_k|, so that this bound is convex. The
+    /// Discs at which H_kk is linearised in −D_k ≤ |D_k|, so that this bound is convex. The
     /// linearised inertia is a lower bound, so |D_k| is not underestimated.
-    pub tangents: Option<Vec<[f64; 2]>>,
+    pub tangents: Option<Vec<DiscPlace>>,
 }
 
 impl SearchNode {
     /// Returns the subproblem without choices: no clearance of pins, and cells as wide as the bounds.
     pub fn unconstrained(request: &CounterweightSpec, balance: BalanceGoal) -> Self {
         Self {
-            rooms: vec![None; request.sites.len()],
+            sectors: vec![Vec::new(); request.sites.len()],
             balance,
             most: None,
             loose: Vec::new(),

@@ -1,5 +1,6 @@
 //! Evaluates a solution of the cone program: its objective, and the machine with counterweights and rotors.
 
+use super::cell::DiscPlace;
 use super::problem::CounterweightProblem;
 use super::refusal::CounterweightError;
 use super::residual::ConditionResidual;
@@ -9,8 +10,8 @@ use super::unknowns::{AffineForm, UnknownIndices};
 use crate::balance::{LinearEquation, SolutionSpace};
 use crate::machine::{Counterweight, Machine, Rotor};
 
-/// Mass w, kg, and first moment s = w x, kg m, of the counterweight at each site that carries one.
-type Found = Vec<(CounterweightSite, [f64; 2])>;
+/// Mass w, kg, and first moments s = w x and t = w y, kg m, of the counterweight at each site that carries one.
+type Found = Vec<(CounterweightSite, [f64; 3])>;
 
 /// Smallest mass of a counterweight; lighter ones are omitted.
 pub(super) const MIN_MASS_KG: f64 = 1e-7;
@@ -33,14 +34,11 @@ impl CounterweightProblem {
         if !unknowns.inertia {
             return x;
         }
-        let places = (0..request.sites.len()).map(|j| {
-            let [w, s] = self.at(request, &x, j);
-            if w > 0.0 { [w, s / w] } else { [0.0; 2] }
-        });
-        let places: Vec<[f64; 2]> = places.collect();
-        for (j, [w, at]) in places.iter().enumerate() {
-            x[unknowns.u(j)] = w * at * at;
-            x[unknowns.v(j)] = request.disc.own() * w * w;
+        let places = (0..request.sites.len()).map(|j| self.disc(request, &x, j, 0.0).unwrap_or_default());
+        let places: Vec<DiscPlace> = places.collect();
+        for (j, DiscPlace { mass, at, across }) in places.iter().enumerate() {
+            x[unknowns.u(j)] = mass * (at * at + across * across);
+            x[unknowns.v(j)] = request.disc.own() * mass * mass;
         }
         let of = |sum: &AffineForm, x: &[f64]| sum.constant + sum.terms.iter().map(|(i, by)| by * x[*i]).sum::<f64>();
         let mut torque = 0.0_f64;
@@ -74,10 +72,16 @@ impl CounterweightProblem {
         (0..request.sites.len()).map(|j| [excess(unknowns.u(j)), excess(unknowns.v(j))]).collect()
     }
 
-    /// Returns the mass w, kg, and the first moment s, kg m, at site j.
-    pub fn at(&self, request: &CounterweightSpec, x: &[f64], j: usize) -> [f64; 2] {
+    /// Returns the mass w, kg, and the first moments s and t, kg m, at site j.
+    fn moments(&self, request: &CounterweightSpec, x: &[f64], j: usize) -> [f64; 3] {
         let unknowns = UnknownIndices::of(request, self.drives());
-        [x[unknowns.w(j)], x[unknowns.s(j)]]
+        [x[unknowns.w(j)], x[unknowns.s(j)], unknowns.t(j).map_or(0.0, |t| x[t])]
+    }
+
+    /// Returns the disc at site j; `None` if its mass is at most `min_mass`, kg.
+    pub fn disc(&self, request: &CounterweightSpec, x: &[f64], j: usize, min_mass: f64) -> Option<DiscPlace> {
+        let [w, s, t] = self.moments(request, x, j);
+        (w > min_mass).then(|| DiscPlace { mass: w, at: s / w, across: t / w })
     }
 
     /// Returns the added mass, kg, and the machine with the counterweights and rotors of a solution. With exact balance
@@ -94,18 +98,22 @@ impl CounterweightProblem {
     ) -> Result<(f64, Machine), CounterweightError> {
         let unknowns = UnknownIndices::of(request, self.drives());
         let sites = request.sites.iter().enumerate();
-        let all = sites.map(|(j, site)| (*site, self.at(request, x, j)));
-        let mut found: Found = all.filter(|(_, [w, _])| *w > MIN_MASS_KG).collect();
+        let all = sites.map(|(j, site)| {
+            let [w, s, t] = self.moments(request, x, j);
+            (*site, [w, s, if site.across > 0.0 { t } else { 0.0 }])
+        });
+        let mut found: Found = all.filter(|(_, [w, ..])| *w > MIN_MASS_KG).collect();
         // The residual from the solver's rounding and from omitted counterweights is removed by the least change of the
         // others.
         for _ in 0..if balance == BalanceGoal::Exact { 3 } else { 0 } {
             self.refine(request, &mut found);
         }
         let mut spec = self.bare.spec().clone();
-        let weight = |(site, [w, s]): &(CounterweightSite, [f64; 2])| Counterweight {
+        let weight = |(site, [w, s, t]): &(CounterweightSite, [f64; 3])| Counterweight {
             link: self.bare.links()[site.link].name.clone(),
             mass: *w,
             at: s / w,
+            across: t / w,
             radius: request.disc.radius(*w),
             fixed: false,
         };
@@ -118,7 +126,7 @@ impl CounterweightProblem {
             };
             spec.drives[rotor.drive].rotor = (found.inertia > 0.0).then_some(found);
         }
-        Ok((found.iter().map(|(_, [w, _])| w).sum(), Machine::new(spec)?))
+        Ok((found.iter().map(|(_, [w, ..])| w).sum(), Machine::new(spec)?))
     }
 
     /// Removes the residual of the conditions by the least change of the counterweights.
@@ -131,24 +139,30 @@ impl CounterweightProblem {
             request.sites.iter().position(|other| other.link == site.link).unwrap_or_default()
         };
         let sites: Vec<usize> = found.iter().map(|(site, _)| place(site)).collect();
-        let residual = self.conditions.iter().map(|condition| {
-            let changed = sites.iter().zip(found.iter()).map(|(j, (_, [w, s]))| {
-                let [by_w, by_s] = condition.changes[*j];
-                by_w * w + by_s * s
-            });
-            condition.residual.re + changed.sum::<f64>()
-        });
-        // Changes are measured relative to each mass, so that light counterweights keep their positions.
-        let equation = |(condition, right): (&ConditionResidual, f64)| LinearEquation {
-            a: (0..2 * sites.len()).map(|j| condition.changes[sites[j / 2]][j % 2] * found[j / 2].1[0]).collect(),
-            right,
-            tolerance: f64::INFINITY,
-        };
-        let equations: Vec<LinearEquation> = self.conditions.iter().zip(residual).map(equation).collect();
-        let change = SolutionSpace::of(&equations, 2 * sites.len()).particular;
-        for (j, (_, [w, s])) in found.iter_mut().enumerate() {
-            let by = *w;
-            (*w, *s) = (*w - by * change[2 * j], *s - by * change[2 * j + 1]);
+        // The real parts depend on w and s, the imaginary parts on t alone.
+        for moments in [0..2, 2..3] {
+            let is_real = moments.start == 0;
+            let residual = |condition: &ConditionResidual| {
+                let changed = sites
+                    .iter()
+                    .zip(found.iter())
+                    .map(|(j, (_, of))| moments.clone().map(|i| condition.changes[*j][i] * of[i]).sum::<f64>());
+                let bare = if is_real { condition.residual.re } else { condition.residual.im };
+                bare + changed.sum::<f64>()
+            };
+            // Changes are measured relative to each mass, so that light counterweights keep their positions.
+            let equation = |condition: &ConditionResidual| {
+                let each = sites.iter().zip(found.iter());
+                let a = each.flat_map(|(j, (_, of))| moments.clone().map(|i| condition.changes[*j][i] * of[0]));
+                LinearEquation { a: a.collect(), right: residual(condition), tolerance: f64::INFINITY }
+            };
+            let equations: Vec<LinearEquation> = self.conditions.iter().map(equation).collect();
+            let n = moments.len();
+            let change = SolutionSpace::of(&equations, n * sites.len()).particular;
+            for (j, (_, of)) in found.iter_mut().enumerate() {
+                let by = of[0];
+                moments.clone().enumerate().for_each(|(i, of_i)| of[of_i] -= by * change[n * j + i]);
+            }
         }
     }
 }

@@ -15,15 +15,22 @@ pub struct CounterweightSite {
     pub from: f64,
     /// Upper bound of its position, m.
     pub to: f64,
+    /// Greatest distance of its centre from the link's axis, to either side, m; 0 if it must lie on the axis.
+    pub across: f64,
     /// Upper bound of its mass, kg; infinite for no bound.
     pub most: f64,
 }
 
 impl CounterweightSite {
-    /// Allows a counterweight of any mass on every link, from one link length behind the root to the tip.
+    /// Allows a counterweight of any mass on the axis of every link, from one link length behind the root to the tip.
     pub fn anywhere(machine: &Machine) -> Vec<Self> {
         let parts = machine.resolved_links().iter().enumerate();
-        parts.map(|(link, part)| Self { link, from: -part.length, to: part.length, most: f64::INFINITY }).collect()
+        parts.map(|(link, part)| Self::on_axis(link, -part.length, part.length)).collect()
+    }
+
+    /// Allows a counterweight of any mass on the axis of a link, in a range of positions, m from the root.
+    pub const fn on_axis(link: usize, from: f64, to: f64) -> Self {
+        Self { link, from, to, across: 0.0, most: f64::INFINITY }
     }
 }
 
@@ -32,7 +39,7 @@ impl CounterweightSite {
 pub struct Disc {
     /// Density ρ, kg/m³.
     pub density: f64,
-    /// Thickness t, m.
+    /// Thickness d, m.
     pub thickness: f64,
 }
 
@@ -59,12 +66,12 @@ impl Disc {
         (radius / self.spread()).powi(2)
     }
 
-    /// Returns the ratio of a disc's radius to the square root of its mass, 1/√(π ρ t), m/√kg.
+    /// Returns the ratio of a disc's radius to the square root of its mass, 1/√(π ρ d), m/√kg.
     pub(super) fn spread(&self) -> f64 {
         1.0 / (PI * self.density * self.thickness).sqrt()
     }
 
-    /// Returns the ratio of a disc's own inertia to its squared mass, 1/(2 π ρ t), m²/kg.
+    /// Returns the ratio of a disc's own inertia to its squared mass, 1/(2 π ρ d), m²/kg.
     pub(super) fn own(&self) -> f64 {
         0.5 * self.spread().powi(2)
     }
@@ -143,6 +150,8 @@ pub struct CounterweightSpec {
     pub payload: Option<[f64; 2]>,
 }
 
+/// Range of the distance by which a counterweight may lie off its link's axis.
+pub const ACROSS_RANGE: Range = Range::new(0.0, 1e3, "m");
 const CLEARANCE: Range = Range::new(0.0, 1e3, "m");
 
 impl CounterweightSpec {
@@ -190,6 +199,9 @@ impl CounterweightSpec {
             };
             if let Some(end) = [site.from, site.to].into_iter().find(|x| !x.is_finite()) {
                 return bad("a range that ends at", end, "finite places, m");
+            }
+            if !ACROSS_RANGE.contains(site.across) {
+                return bad("off the axis by up to, m,", site.across, &ACROSS_RANGE.to_string());
             }
             if site.from > site.to {
                 return bad("a range up to", site.to, "an end not below its start");

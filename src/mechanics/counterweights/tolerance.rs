@@ -37,8 +37,10 @@ pub fn worst_residual(machine: &Machine, tolerance: &PlacementTolerance) -> Wors
             let link = machine.links().iter().position(|link| link.name == weight.link)?;
             let part = &machine.resolved_links()[link];
             let (by_mass, by_moment) = (condition.by_mass(part), condition.by_moment(part));
-            let of_mass = tolerance.mass * weight.mass * (by_mass + weight.at * by_moment).abs();
-            Some(of_mass + tolerance.place * weight.mass * by_moment.abs())
+            let by_cross = condition.by_cross_moment(part);
+            let per_mass = (by_mass + weight.at * by_moment).hypot(weight.across * by_cross);
+            // Off the axis, a deviation of the position may point anywhere; `by_cross` has the magnitude of `by_moment`.
+            Some(weight.mass * (tolerance.mass * per_mass + tolerance.place * by_moment.abs()))
         });
         let sum: f64 = each.sum();
         match condition {

@@ -1,12 +1,13 @@
 //! [`UnknownIndices`]: indices of the unknowns of the cone program, and D_k and H_kk as affine functions of them.
 
+use super::cell::DiscPlace;
 use super::problem::CounterweightProblem;
 use super::spec::{CounterweightSpec, RotorFreedom};
 use crate::machine::Machine;
 
 /// Indices of the unknowns, in this order:
 ///
-/// - w and s of each site;
+/// - w and s of each site, and t if a counterweight may lie off its link's axis;
 /// - if the objective or a bound depends on inertia: u and v of each site, and H_kk of each drive without the share
 ///   of free rotors;
 /// - two for each free rotor;
@@ -15,6 +16,8 @@ use crate::machine::Machine;
 #[derive(Clone, Copy)]
 pub(super) struct UnknownIndices {
     sites: usize,
+    /// Whether a counterweight may lie off its link's axis.
+    across: bool,
     /// Whether the objective or a bound depends on inertia.
     pub inertia: bool,
     drives: usize,
@@ -27,34 +30,45 @@ impl UnknownIndices {
     pub fn of(request: &CounterweightSpec, drives: usize) -> Self {
         let inertia = request.objective.depends_on_inertia() || request.max_inertia.is_some();
         let (rotors, momentum) = (request.rotors.len(), request.objective.momentum > 0.0);
-        Self { sites: request.sites.len(), inertia, drives, rotors, momentum }
+        let across = request.sites.iter().any(|site| site.across > 0.0);
+        Self { sites: request.sites.len(), across, inertia, drives, rotors, momentum }
+    }
+
+    /// Number of unknowns of a site that enter the balance conditions.
+    fn per_site(self) -> usize {
+        2 + usize::from(self.across)
     }
 
     pub fn w(self, j: usize) -> usize {
-        2 * j
+        self.per_site() * j
     }
 
     pub fn s(self, j: usize) -> usize {
-        2 * j + 1
+        self.per_site() * j + 1
     }
 
-    /// Index of u ≥ s²/w, the inertia from the position of the disc, kg m².
+    /// Index of t = w y, if a counterweight may lie off its link's axis.
+    pub fn t(self, j: usize) -> Option<usize> {
+        self.across.then(|| self.per_site() * j + 2)
+    }
+
+    /// Index of u ≥ (s² + t²)/w, the inertia from the position of the disc, kg m².
     pub fn u(self, j: usize) -> usize {
-        2 * (self.sites + j)
+        self.per_site() * self.sites + 2 * j
     }
 
     /// Index of v, an upper bound of the disc's own inertia, kg m².
     pub fn v(self, j: usize) -> usize {
-        2 * (self.sites + j) + 1
+        self.u(j) + 1
     }
 
     pub fn h(self, k: usize) -> usize {
-        4 * self.sites + k
+        self.u(self.sites) + k
     }
 
     /// Index of the inertia or ratio of a free rotor.
     pub fn rotor(self, i: usize) -> usize {
-        let before = if self.inertia { 4 * self.sites + self.drives } else { 2 * self.sites };
+        let before = if self.inertia { self.h(self.drives) } else { self.w(self.sites) };
         before + 2 * i
     }
 
@@ -119,24 +133,25 @@ impl CounterweightProblem {
         self.inertia.momentum(k) - self.inertia.diagonal(k)
     }
 
-    /// Returns an affine lower bound of H_kk without free rotors, tangent at the masses, kg, and positions, m, in
-    /// `tangents`.
+    /// Returns an affine lower bound of H_kk without free rotors, tangent at `tangents`.
     pub fn linear_diagonal(
         &self,
         request: &CounterweightSpec,
         unknowns: &UnknownIndices,
         k: usize,
-        tangents: &[[f64; 2]],
+        tangents: &[DiscPlace],
     ) -> AffineForm {
         let parts = self.bare.resolved_links();
         let mut sum = AffineForm { terms: Vec::new(), constant: self.inertia.diagonal(k) };
-        for (j, (site, [mass, at])) in request.sites.iter().zip(tangents).enumerate() {
+        for (j, (site, tangent)) in request.sites.iter().zip(tangents).enumerate() {
+            let DiscPlace { mass, at, across } = *tangent;
             let (part, own) = (&parts[site.link], request.disc.own());
             let (root, (w, s)) = (part.root[k], (unknowns.w(j), unknowns.s(j)));
             sum.terms.push((w, root * root));
             if part.drive == k {
                 sum.terms.push((s, 2.0 * part.sign * root + 2.0 * at));
-                sum.terms.push((w, 2.0 * own * mass - at * at));
+                sum.terms.extend(unknowns.t(j).map(|t| (t, 2.0 * across)));
+                sum.terms.push((w, 2.0 * own * mass - at * at - across * across));
                 sum.constant -= own * mass * mass;
             }
         }

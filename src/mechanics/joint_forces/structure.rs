@@ -48,8 +48,8 @@ pub fn links(machine: &Machine) -> Result<Vec<TreeLink>, JointsError> {
     Ok(order.iter().map(held_by).collect())
 }
 
-/// Returns for each link whether a drive turns it. A drive turns the links at B that follow it. If there are none, it
-/// turns its only follower, or its only follower whose parent follows the drive that carries the motor.
+/// Returns for each link whether a drive turns it. A drive turns those of its links that attach at B. If there are
+/// none, it turns its only link, or the only one whose parent follows the drive that carries the motor.
 fn driven(machine: &Machine) -> Result<Vec<bool>, JointsError> {
     let parts = machine.resolved_links();
     let mut driven: Vec<bool> = parts.iter().map(|p| p.parent.is_none()).collect();
@@ -120,7 +120,7 @@ pub fn closures(machine: &Machine, links: &[TreeLink]) -> Vec<CutClosure> {
                 (at, along) = (links[j].parent, links[j].arm.1);
             }
         }
-        // On links that carry both ends of the closure, the levers cancel.
+        // On links that carry both ends of the closure, the levers cancel, except where its two branches part.
         let kept = |values: Vec<f64>, least: f64| -> Vec<(usize, f64)> {
             values.into_iter().enumerate().filter(|(_, x)| x.abs() > least).collect()
         };

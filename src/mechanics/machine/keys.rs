@@ -49,7 +49,7 @@ const UNLIMITED: &str = "no limit";
 
 /// Every key of a machine that can be set on its own. Keys name links, drives and angles by their names,
 /// counterweights by their numbers, from 1.
-pub(super) const MACHINE_KEYS: [KeyRow; 23] = [
+pub(super) const MACHINE_KEYS: [KeyRow; 24] = [
     row(
         Key::number(
             "link.*.com",
@@ -103,6 +103,15 @@ pub(super) const MACHINE_KEYS: [KeyRow; 23] = [
             "Place of a counterweight along the link that carries it, from that link's root.",
         ),
         at!(Number, |spec, i| spec.counterweights[i].at),
+    ),
+    row(
+        Key::number(
+            "counterweight.*.across",
+            PLACE,
+            "0",
+            "Place of a counterweight off its link's axis, to the left of the direction root to tip.",
+        ),
+        at!(Number, |spec, i| spec.counterweights[i].across),
     ),
     row(
         Key::number("counterweight.*.radius", RADIUS, "0", "Radius of a counterweight, a disc; 0 for a point."),

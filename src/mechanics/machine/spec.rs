@@ -160,7 +160,7 @@ pub struct Link {
     pub axial: f64,
 }
 
-/// A disc on a link's axis, in the plane of the link's own centre of mass. It moves with the link; the mass of the link
+/// A disc on a link, in the plane of the link's own centre of mass. It moves with the link; the mass of the link
 /// excludes it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -171,6 +171,9 @@ pub struct Counterweight {
     pub mass: f64,
     /// Position of its centre along the link, from the root towards the tip, m.
     pub at: f64,
+    /// Distance of its centre from the link's axis, to the left of the direction root to tip, m.
+    #[serde(default, skip_serializing_if = "is_nought")]
+    pub across: f64,
     /// Radius, m; 0 for a point. Its inertia about its own centre is half of mass times radius squared.
     #[serde(default, skip_serializing_if = "is_nought")]
     pub radius: f64,
@@ -203,12 +206,12 @@ impl Link {
     pub(super) fn with(&self, weight: &Counterweight) -> Self {
         let mass = self.mass + weight.mass;
         let com = (self.mass * self.com + weight.mass * weight.at) / mass;
-        let com_normal = self.mass * self.com_normal / mass;
+        let com_normal = (self.mass * self.com_normal + weight.mass * weight.across) / mass;
         let away = |x: f64, y: f64| (x - com).powi(2) + (y - com_normal).powi(2);
         let inertia = self.inertia
             + weight.inertia()
             + self.mass * away(self.com, self.com_normal)
-            + weight.mass * away(weight.at, 0.0);
+            + weight.mass * away(weight.at, weight.across);
         Self { mass, com, com_normal, inertia, ..self.clone() }
     }
 }

@@ -172,10 +172,10 @@ fn lengths(spec: &MachineSpec, notation: Notation) -> String {
 /// Returns the table of counterweights, counted from 1 as in their settings.
 fn counterweights(spec: &MachineSpec, notation: Notation) -> String {
     let heads = ["counterweight", "on link", "mass (kg)"].map(String::from).into_iter();
-    let lengths = ["place along it", "radius"].map(|name| notation.head(name, "m"));
+    let lengths = ["place along it", "left of its axis", "radius"].map(|name| notation.head(name, "m"));
     let mut table = PageTable::new(2, heads.chain(lengths));
     for (i, weight) in spec.counterweights.iter().enumerate() {
-        let lengths = [weight.at, weight.radius].map(|x| notation.nine_digits(x, "m"));
+        let lengths = [weight.at, weight.across, weight.radius].map(|x| notation.nine_digits(x, "m"));
         let names = [(i + 1).to_string(), weight.link.clone(), nine_digits(weight.mass)];
         table.row(names.into_iter().chain(lengths));
     }

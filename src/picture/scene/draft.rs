@@ -46,8 +46,8 @@ struct Link {
 struct Weight {
     /// Index of its link, from 0.
     link: usize,
-    /// Position along the link, m.
-    at: f64,
+    /// Position along the link, and to the left of its axis, m.
+    at: Vector,
     /// Mass, kg.
     mass: f64,
 }
@@ -66,7 +66,7 @@ impl DesignDrawing {
         });
         let weights = spec.counterweights.iter().filter_map(|weight| {
             let link = spec.links.iter().position(|link| link.name == weight.link)?;
-            Some(Weight { link, at: weight.at, mass: weight.mass })
+            Some(Weight { link, at: Vector::new(weight.at, weight.across), mass: weight.mass })
         });
         Self { links: links.collect(), weights: weights.collect() }
     }
@@ -124,7 +124,7 @@ impl DesignDrawing {
         let e = frame.q.units();
         let circle = |WeightOption { link, at, radius }: &WeightOption| {
             let (root, along, _) = linkage.bars().get(*link)?.pose(&e);
-            let middle = frame.base.at + root + along * *at;
+            let middle = frame.base.at + root + along * Vector::new(at[0], at[1]);
             let corner = |i: u32| middle + unit(TAU * f64::from(i) / f64::from(CIRCLE_VERTICES)) * *radius;
             Some((0..=CIRCLE_VERTICES).map(|i| point(corner(i), linkage.top())).collect::<Vec<_>>())
         };
@@ -176,7 +176,7 @@ impl DesignDrawing {
         let on = match handle {
             Handle::Mass(i) => self.links.get(i)?.com,
             Handle::End(i) => Vector::new(self.links.get(i)?.length, 0.0),
-            Handle::Weight(i) => Vector::new(self.weights.get(i)?.at, 0.0),
+            Handle::Weight(i) => self.weights.get(i)?.at,
             _ => return None,
         };
         let (root, along, _) = linkage.bars().get(self.link_of(handle)?)?.pose(&frame.q.units());
@@ -197,15 +197,17 @@ impl DesignDrawing {
         self.handles().filter_map(near).min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick)
     }
 
-    /// Returns the change that dragging a handle to the pointer requests; the handle moves parallel to its link only.
+    /// Returns the change that dragging a handle to the pointer requests. Only counterweights may leave the axis of their
+    /// link.
     pub fn aim(&self, pick: &Pick, linkage: &LinkageModel, frame: &Frame, pointer: &Pointer) -> Option<DragAction> {
         let link = self.link_of(pick.handle)?;
         let [x, y] = pointer.ray()?.at_height(linkage.top())?;
         let (root, along, _) = linkage.bars().get(link)?.pose(&frame.q.units());
-        let to = ((Vector::new(x, y) - frame.base.at - root) * along.conj()).re;
+        let place = (Vector::new(x, y) - frame.base.at - root) * along.conj();
+        let to = place.re;
         match pick.handle {
             Handle::Mass(_) => Some(DragAction::Mass { link, to }),
-            Handle::Weight(weight) => Some(DragAction::Weight { weight, to }),
+            Handle::Weight(weight) => Some(DragAction::Weight { weight, to: [place.re, place.im] }),
             Handle::End(_) => Some(DragAction::Length { link, to: to.max(MIN_LENGTH_M) }),
             _ => None,
         }

@@ -59,8 +59,8 @@ pub struct Bar {
 /// A counterweight of a link, in the mesh of the link.
 #[derive(Clone, Copy, Debug)]
 struct Weight {
-    /// Position along the link, m.
-    at: f64,
+    /// Position along the link, and to the left of its axis, m.
+    at: Vector,
     /// Radius, m.
     radius: f64,
     /// Height of its lower face above that of the link, m; negative, because it is thicker.
@@ -160,22 +160,31 @@ impl LinkageModel {
             let ends = part.pins.iter().copied().chain([part.length]);
             let (from, to) = ends.fold((0.0_f64, 0.0_f64), |(a, b), s| (a.min(s), b.max(s)));
             let weights = machine.spec().counterweights.iter().filter(|weight| weight.link == link.name);
-            let disc = |at: f64, size: f64| Weight {
+            let disc = |at: Vector, size: f64| Weight {
                 at,
                 radius: size.max(1.5 * radius),
                 z: -0.3 * height,
                 height: 1.6 * height,
             };
-            let mut discs: Vec<Weight> = weights.map(|w| disc(w.at, w.radius)).collect();
+            let mut discs: Vec<Weight> = weights.map(|w| disc(Vector::new(w.at, w.across), w.radius)).collect();
             if discs.is_empty() && (link.com < from || link.com > to) {
                 // If the centre of mass is beyond the ends, a disc there suggests a counterweight; area ∝ mass of the
                 // link.
-                discs.push(disc(link.com, reach * WEIGHT_RADIUS * (link.mass / heaviest).sqrt()));
+                discs.push(disc(
+                    Vector::new(link.com, link.com_normal),
+                    reach * WEIGHT_RADIUS * (link.mass / heaviest).sqrt(),
+                ));
             }
-            let span = discs.iter().fold([from, to], |[from, to], disc| [from.min(disc.at), to.max(disc.at)]);
+            let span = discs.iter().fold([from, to], |[from, to], disc| [from.min(disc.at.re), to.max(disc.at.re)]);
             let mut mesh = bar(span[0], span[1], radius, height, 0.2 * height);
             for disc in &discs {
-                append(&mut mesh, &cylinder(disc.radius, disc.height, 0.2 * height), [disc.at, 0.0, disc.z]);
+                let at = [disc.at.re, disc.at.im, disc.z];
+                append(&mut mesh, &cylinder(disc.radius, disc.height, 0.2 * height), at);
+                if disc.at.im.abs() > disc.radius {
+                    // An arm across joins a disc beside the bar to it.
+                    let arm = bar(disc.at.im.min(0.0), disc.at.im.max(0.0), radius, height, 0.2 * height);
+                    append(&mut mesh, &quarter_turned(arm), [disc.at.re, 0.0, 0.0]);
+                }
             }
             bars.push(Bar {
                 name: link.name.clone(),
@@ -491,6 +500,15 @@ fn added(meshes: &mut Vec<Mesh>, mesh: Mesh) -> usize {
 
 fn reach_of(machine: &Machine) -> f64 {
     machine.reach().max(1e-6)
+}
+
+/// Turns a mesh by a quarter turn counter-clockwise about z, x to y.
+fn quarter_turned(mut mesh: Mesh) -> Mesh {
+    for [x, y, _] in mesh.positions.iter_mut().chain(&mut mesh.normals) {
+        (*x, *y) = (-*y, *x);
+    }
+    mesh.coarse = mesh.coarse.map(|coarse| Box::new(quarter_turned(*coarse)));
+    mesh
 }
 
 /// Adds the mesh `other`, shifted by `shift`, m, to the mesh `to`. A coarse mesh of `to` receives that of `other`.

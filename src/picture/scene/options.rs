@@ -159,8 +159,8 @@ impl Handle {
 pub struct WeightOption {
     /// Index of its link, from 0.
     pub link: usize,
-    /// Position along the link, m.
-    pub at: f64,
+    /// Position along the link, and to the left of its axis, m.
+    pub at: [f64; 2],
     /// Radius, m.
     pub radius: f64,
 }

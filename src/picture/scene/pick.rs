@@ -97,7 +97,7 @@ impl DragAction {
             Self::B(b) => Self::B(round(b, B_GRID_RAD)),
             Self::Pull { link, along, at } => Self::Pull { link, along, at: both(at, POSITION_GRID_M) },
             Self::Mass { link, to } => Self::Mass { link, to: round(to, POSITION_GRID_M) },
-            Self::Weight { weight, to } => Self::Weight { weight, to: round(to, POSITION_GRID_M) },
+            Self::Weight { weight, to } => Self::Weight { weight, to: both(to, POSITION_GRID_M) },
             Self::Length { link, to } => Self::Length { link, to: round(to, POSITION_GRID_M).max(POSITION_GRID_M) },
             // Already snapped, if `LinkHold::snaps` is set.
             Self::Angles(a) => Self::Angles(a),
@@ -156,8 +156,8 @@ pub enum DragAction {
     Weight {
         /// Index of the counterweight, from 0.
         weight: usize,
-        /// Distance from the root of its link, m.
-        to: f64,
+        /// Position along its link from the root, and to the left of the link's axis, m.
+        to: [f64; 2],
     },
     /// Length of a link.
     Length {

@@ -21,7 +21,7 @@ use stillbase_settings::number::counted;
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum DriftError {
     /// The machine has fewer than three drives, or the start pose has a different number of angles.
-    #[error("{}: a curve in the plane at zero momentum takes three or more", counted(drives, "drive"))]
+    #[error("{}: zero momentum needs three or more, and one start angle for each", counted(drives, "drive"))]
     Drives {
         /// Drives of the machine.
         drives: usize,

@@ -1,8 +1,8 @@
 //! Search for poses at a given distance from B with b in a gap, an interval between two critical values.
 //!
 //! # Method
-//! A connected set of poses between two critical values of b extends to both of them, and ends or merges at critical
-//! poses beyond. So it is found by climbing from the nearest critical poses below or descending from the nearest ones
+//! A connected set of poses with b in the gap extends over the whole gap. It ends or merges at critical poses
+//! outside it. So it is found by climbing from the nearest critical poses below or descending from the nearest ones
 //! above. A component without an extremum of b has no critical poses. Such components are found on a grid over the last
 //! joints, with the remaining three arms in closed form.
 
@@ -181,7 +181,7 @@ impl PoseSpace {
         }
     }
 
-    /// Whether any pose is at a distance from B, m, that has no critical values. Such poses then exist at every b.
+    /// Whether any pose is at a distance from B, m. If so, and without critical values there, every b has such poses.
     pub(super) fn any_pose(&self, distance: f64, grid: &ReachGrid) -> bool {
         let starts = START_SAMPLES[usize::from(grid.careful)];
         match self.drives() {

@@ -67,12 +67,17 @@ fn residual(largest: f64, is_zero: bool) -> String {
 pub(super) fn links(machine: &Machine) -> String {
     let spec = machine.spec();
     let has_weights = !spec.counterweights.is_empty();
+    let off_axis = spec.counterweights.iter().any(|weight| weight.across != 0.0);
     let mut heads = vec!["link", "drive", "mass kg", "CM m"];
     if spec.links.iter().any(|link| link.com_normal != 0.0) {
         heads.push("across m");
     }
     if has_weights {
-        heads.extend(["disc kg", "at m", "radius m"]);
+        heads.extend(["disc kg", "at m"]);
+        if off_axis {
+            heads.push("left of axis m");
+        }
+        heads.push("radius m");
     }
     let mut rows = Vec::new();
     for (link, part) in spec.links.iter().zip(machine.resolved_links()) {
@@ -95,7 +100,11 @@ pub(super) fn links(machine: &Machine) -> String {
         for (i, weight) in weights.enumerate() {
             // The row of a second counterweight on the same link has empty cells for the link.
             let mut row = if i == 0 { own.clone() } else { vec![String::new(); own.len()] };
-            row.extend([signed(weight.mass, 3), signed(weight.at, 4), signed(weight.radius, 4)]);
+            row.extend([signed(weight.mass, 3), signed(weight.at, 4)]);
+            if off_axis {
+                row.push(signed(weight.across, 4));
+            }
+            row.push(signed(weight.radius, 4));
             rows.push(row);
         }
     }

@@ -20,7 +20,7 @@ pub(super) fn held(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan,
     let task = &scenario.task;
     along_parts(scenario, &|scenario| reactionless(scenario, space, PlanningEffort::Whole)).map_err(|refusal| {
         let Ok(known) = space else { return refusal };
-        // The path does not depend on the time law.
+        // A path on a plane does not depend on the time law; for other paths, the quintic law serves for the trial.
         let own = |task: &Task| Scenario { task: Task { law: TimeLaw::Quintic, ..task.clone() }, ..scenario.clone() };
         let try_path = |task: &Task, effort| match known.planes() {
             // A path found on a plane already keeps the joint limits.

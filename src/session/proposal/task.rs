@@ -77,7 +77,7 @@ pub(super) fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal
     found
 }
 
-/// Returns whether only a simulation shows whether a change leads out of a refusal: the task could be planned already.
+/// Returns whether a change must be simulated to see if it leads out of a refusal: the task itself could be planned.
 pub(super) fn shows_only_in_motion(refusal: &Refusal) -> bool {
     matches!(refusal, Refusal::Edit { .. } | Refusal::Diverged { .. } | Refusal::Untrusted { .. })
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use stillbase_mechanics::balance::{ParameterBounds, Preset};
-use stillbase_mechanics::counterweights::{DENSITY_RANGE, Disc, THICKNESS_RANGE};
+use stillbase_mechanics::counterweights::{ACROSS_RANGE, DENSITY_RANGE, Disc, THICKNESS_RANGE};
 use stillbase_mechanics::machine::{Drive, Machine, ranges};
 use stillbase_settings::change;
 use stillbase_settings::key::{self, HOLD_WORDS, Key, KeyType};
@@ -44,6 +44,8 @@ keyed! {
         /// Maximum distance of a counterweight behind the root of its link.
         behind_root: Option<f64> = Key::NONE, range: Range::new(0.0, 100.0, "m"),
             instead: "as far as the link is long";
+        /// Maximum distance of a counterweight from the axis of its link, to either side.
+        across: f64 = "0", range: ACROSS_RANGE;
         /// Maximum mass of a counterweight.
         heaviest: Option<f64> = Key::NONE, range: Range::new(1e-3, 1e5, "kg"), instead: "any mass";
         /// Minimum distance between the edge of a disc and the centre of every pin of its link.
@@ -73,13 +75,15 @@ keyed! {
 }
 
 /// Keys of the bounds on single numbers.
-pub const BOUND_KEYS: [Key; 5] = [
+pub const BOUND_KEYS: [Key; 6] = [
     held("design.hold.link.*.mass", ranges::LOAD, "How a link's mass is held while the balance is kept.").when(LINK),
     held("design.hold.link.*.com", ranges::PLACE, "How a link's centre of mass along it is held.").when(LINK),
     held("design.hold.link.*.com_normal", ranges::PLACE, "How a link's centre of mass across it is held.").when(LINK),
     held("design.hold.counterweight.*.mass", ranges::LOAD, "How the mass of a counterweight is held.")
         .when(COUNTERWEIGHT),
     held("design.hold.counterweight.*.at", ranges::PLACE, "How the place of a counterweight is held.")
+        .when(COUNTERWEIGHT),
+    held("design.hold.counterweight.*.across", ranges::PLACE, "How the place of a counterweight off its link is held.")
         .when(COUNTERWEIGHT),
 ];
 

@@ -199,7 +199,7 @@ impl Contacts {
     /// Computes the torques of stuck contacts by projected Gauss–Seidel sweeps and adds them to `torques`. Each torque
     /// either satisfies |f| ≤ τ_C with v̇ = 0, or is at its bound, against v̇. `solve` returns accelerations for
     /// generalised forces; `free` are the accelerations without these torques. Returns the dissipated power, W. It
-    /// is zero unless a contact starts to slide in the step. At most 2000 sweeps; one is exact without interaction.
+    /// is zero unless a contact starts to slide in the step. If contacts do not interact, one sweep is exact.
     pub fn solve_stuck(
         &self,
         slip: &SlipDirections,

@@ -142,8 +142,8 @@ impl Simulation {
             }
             reach = to - reached.at;
         }
-        // Too many events: the infinite estimate forces finer substeps. If these fail too, the audits show the energy
-        // that is removed here.
+        // Too many events: the infinite estimate forces finer substeps. If these fail too, reversed contacts are
+        // stopped later, and the audits show the energy that this removes.
         *reached = self.substep(reached, to, segment).end;
         Mismatch::INFINITE
     }

@@ -83,7 +83,7 @@ impl Bodies {
             let symbols =
                 [indexed_symbol("w", &name), indexed_symbol("I", format!("w{name}")), indexed_symbol("x", &name)];
             let origin = Origin::Body(Body::Counterweight(i), j);
-            let figures = [weight.mass, weight.inertia(), weight.at, 0.0];
+            let figures = [weight.mass, weight.inertia(), weight.at, weight.across];
             Some(mass(machine, origin, j, figures, symbols, &walk.root(j)))
         });
         let end = machine.end_link();

@@ -247,7 +247,7 @@ impl MotionEvaluator {
     pub fn why_not_reactionless(&self, proposal: &Proposal, given: Option<&MotionEffects>) -> Advice {
         let most = |a: &MotionEffects| a.peak_torque.iter().fold(0.0, |m: f64, x| m.max(*x));
         if given.is_some_and(|given| most(&proposal.account) < 1e-6 * most(given)) {
-            return "on a plane nothing of the motion is left: all of it turns the arm as a whole".into();
+            return "the motion only turns the arm as a whole, which changes b: with b held, nothing is left".into();
         }
         let what = format!(
             "with b held the machine still transmits up to {:.2e} N m and {:.2e} N",

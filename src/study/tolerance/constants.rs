@@ -81,7 +81,6 @@ pub(super) fn bodies(machine: &Machine, parameters: &[UncertainParameter]) -> Re
     let spec = machine.spec();
     let find = |quantity| parameters.iter().position(|p| p.quantity == quantity);
     let term = |nominal, quantity| UncertainNumber { nominal, parameter: find(quantity) };
-    let zero = UncertainNumber { nominal: 0.0, parameter: None };
     let mut bodies: Vec<LinkConstants> = (spec.links.iter().zip(machine.resolved_links()).enumerate())
         .map(|(j, (link, part))| LinkConstants {
             drive: part.drive,
@@ -119,7 +118,7 @@ pub(super) fn bodies(machine: &Machine, parameters: &[UncertainParameter]) -> Re
             mass: fixed(weight.mass),
             inertia: fixed(weight.inertia()),
             com: fixed(weight.at),
-            com_normal: zero,
+            com_normal: fixed(weight.across),
             root: part.root,
             on: Vec::new(),
             stretch: Vec::new(),

@@ -98,7 +98,9 @@ pub fn correct_machine(
             let placed = place_weights_with(machine, request, &difference(&deviation, &unreachable))?;
             let mut spec = placed.machine.spec().clone();
             for weight in &mut spec.counterweights {
-                (weight.mass, weight.at) = (to_step(weight.mass), to_step(weight.at));
+                for value in [&mut weight.mass, &mut weight.at, &mut weight.across] {
+                    *value = to_step(*value);
+                }
                 weight.radius = request.disc.radius(weight.mass);
             }
             let heaviest = spec.counterweights.iter().map(|weight| weight.mass).fold(0.0, f64::max);
@@ -222,13 +224,24 @@ fn change(
     Some(ParameterChange { key: parameter.key(machine), unit, from, exact: parameter.value(exact)?, to })
 }
 
-/// Returns the mass and position of a new counterweight; `None` if it was omitted as too light.
-fn added(weight: &Counterweight, rounded: &MachineSpec) -> Option<[ParameterChange; 2]> {
+/// Returns the mass and position of a new counterweight, the distance from the axis only if it is not 0; `None` if the
+/// counterweight was omitted as too light.
+fn added(weight: &Counterweight, rounded: &MachineSpec) -> Option<Vec<ParameterChange>> {
     let place = rounded.counterweights.iter().position(|own| own.link == weight.link)?;
     let own = &rounded.counterweights[place];
     let key = |what: &str| format!("counterweight.{}.{what}, new on link {}", place + 1, weight.link);
-    Some([
+    let mut changes = vec![
         ParameterChange { key: key("mass"), unit: "kg", from: 0.0, exact: weight.mass, to: own.mass },
         ParameterChange { key: key("at"), unit: "m", from: 0.0, exact: weight.at, to: own.at },
-    ])
+    ];
+    if weight.across != 0.0 {
+        changes.push(ParameterChange {
+            key: key("across"),
+            unit: "m",
+            from: 0.0,
+            exact: weight.across,
+            to: own.across,
+        });
+    }
+    Some(changes)
 }

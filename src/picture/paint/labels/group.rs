@@ -23,9 +23,9 @@ const WAYS: [(Way, f32); 4] = [
 /// A group moves only to a place that is better by this much, points, and clear of everything by the margin.
 const MIN_GAIN_PT: f32 = 22.0;
 const MARGIN_PT: f32 = 5.0;
-/// Number of pictures of a moving scene for which a place is held while it is free, though there is a better one.
+/// A group stays for this many pictures of a moving scene, if its place is free, even if another one is better.
 const MIN_HELD: u16 = 40;
-/// Labels farther from their point than they would stand at best by more than this have a line to it, points.
+/// A line leads to labels whose distance from their point exceeds that of their best place by this, points.
 const LEADS_BEYOND_PT: f32 = 18.0;
 
 /// On which sides of its point a group stands, compared with where it would stand at best.
@@ -146,8 +146,8 @@ impl<'a> Group<'a> {
         rows.iter().map(move |(.., place)| flip(*place).translate(by))
     }
 
-    /// Returns the cheapest free place, or the previous one if it is nearly as good; `None` if there is none. A place
-    /// with all rows is held for a while, unless `released`.
+    /// Returns the cheapest free place, or the previous one if it is nearly as good; `None` if there is none. The
+    /// previous place is held for a while if it is still free, unless `released`; rows left out come back there.
     pub fn choose(&self, room: &Room, all: &[Choice], before: Option<Choice>, released: bool) -> Option<Choice> {
         let before = before.filter(|choice| choice.rows <= self.rows.len()).and_then(|choice| {
             let missing = (self.rows.len() - choice.rows) as f32 * ROW_COST;

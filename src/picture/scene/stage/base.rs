@@ -279,7 +279,7 @@ fn spring(from: Vector, to: Vector, half: f64, z: f64) -> Vec<[f32; 3]> {
             i if i % 2 == 0 => 1.0,
             _ => -1.0,
         };
-        // The line is straight at both ends.
+        // Only the last piece, from 88 % of the way to `to`, lies straight along the spring.
         let share = if i == 0 { 0.0 } else { 0.12 + 0.76 * f64::from(i) / f64::from(SEGMENTS) };
         point(from + way * share + across * side, z)
     };

@@ -42,8 +42,8 @@ pub struct Blocked {
     /// Reason why it stops there.
     #[serde(rename = "reason")]
     pub stop: SheetEnd,
-    /// Whether no pose of this plane reaches the curve just beyond, so that it leaves the workspace, not only the
-    /// sheet.
+    /// Whether no pose of this plane reaches the curve just beyond this point. The curve then leaves the workspace,
+    /// not only the sheet.
     pub leaves_workspace: bool,
     /// The pose constant nearest to b at which the whole curve can be followed, rad.
     #[serde(skip_serializing_if = "Option::is_none")]

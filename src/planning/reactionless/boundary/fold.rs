@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use super::determinant::upright;
 use super::span::{BoundaryCurve, BoundarySpan, Surface};
 
-/// Maximum size of cells and spans, rad.
+/// Maximum distance of grid lines, rad; only the last cell of each axis may be wider, by the offset of the lines.
 const MAX_STEP_RAD: f64 = 0.35;
 /// Zeros within this distance of a corner of the limits are treated as the corner, rad.
 const CORNER_TOLERANCE_RAD: f64 = 1e-10;

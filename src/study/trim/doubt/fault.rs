@@ -18,7 +18,7 @@ pub(super) struct Fault {
     pub what: String,
     /// Remedy.
     pub want: String,
-    /// Number of independent mistakes that the fault consists of.
+    /// Number of independent mistakes that the fault counts as; a wrong unit of force counts as three.
     pub mistakes: usize,
     /// Correction of the angles; `None` if only force and moment are affected.
     pub angles: Option<Angles>,
