@@ -14,5 +14,7 @@ pub mod number;
 pub mod quantity;
 pub mod range;
 #[doc(hidden)]
+pub mod spelling;
+#[doc(hidden)]
 pub mod text;
 pub mod word;
