@@ -4,14 +4,11 @@ use std::ffi::OsStr;
 use std::io::{Error, ErrorKind};
 use std::path::Path;
 
-use stillbase_files::text::read;
+use stillbase_files::text::{names_in, read};
 use stillbase_mechanics::machine::FileError;
 use stillbase_session::scenario::{FileContent, ScenarioError, content};
 use stillbase_settings::range::shortened;
 use stillbase_settings::spelling::{UnknownName, nearest_words};
-
-/// Maximum number of files of a folder that are looked at.
-const MAX_FILES: usize = 10_000;
 
 /// Endings of files that hold a scenario or a machine.
 const TOML: &[&str] = &["toml"];
@@ -95,15 +92,12 @@ impl Misnamed {
 /// is near, or if no text of theirs is of the kind.
 fn nearest_files(file: &Path, endings: &[&str], of_kind: impl Fn(&str) -> bool) -> Vec<String> {
     let folder = file.parent().unwrap_or(Path::new(""));
-    let listed = std::fs::read_dir(if folder.as_os_str().is_empty() { Path::new(".") } else { folder });
-    let names =
-        listed.into_iter().flatten().take(MAX_FILES).filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let listed = names_in(if folder.as_os_str().is_empty() { Path::new(".") } else { folder });
     let has_ending = |name: &String| {
         let ending = Path::new(name).extension().and_then(OsStr::to_str).unwrap_or_default();
         endings.iter().any(|one| one.eq_ignore_ascii_case(ending))
     };
-    let mut names: Vec<String> = names.filter(has_ending).collect();
-    names.sort();
+    let names: Vec<String> = listed.into_iter().filter(has_ending).collect();
     let stem = |name: &Path| name.file_stem().and_then(OsStr::to_str).unwrap_or_default().to_owned();
     let mut stems: Vec<String> = names.iter().map(|name| stem(Path::new(name))).collect();
     stems.dedup();

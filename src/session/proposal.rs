@@ -8,7 +8,7 @@
 //! | a session is full | it goes on from an earlier instant, which is chosen on the time line |
 //! | too much output | what to leave out, rows or signals, only the user knows |
 //! | a motion would leave new limits | the session applies such limits from the start of the motion |
-//! | an unknown name, of a machine, a file, a key or a part | the message lists the names; which one was meant is open |
+//! | an unknown name of a key or a part, or one that is near no other | the message lists the names; which one was meant is open |
 //! | the length of a link that others share | the message names its own key; a second setting cannot take back the first |
 
 mod floating;

@@ -13,7 +13,6 @@ pub mod number;
 #[doc(hidden)]
 pub mod quantity;
 pub mod range;
-#[doc(hidden)]
 pub mod spelling;
 #[doc(hidden)]
 pub mod text;

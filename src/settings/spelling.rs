@@ -43,6 +43,7 @@ impl std::error::Error for UnknownName {}
 
 /// Returns the words that come nearest to a word, in their order, without regard to capitals; none if no word is near,
 /// or if too many are equally near. A word is near if at most half of the given letters are wrong.
+#[doc(hidden)]
 pub fn nearest_words<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
     let word = word.to_lowercase();
     let most = word.chars().count() / 2;
