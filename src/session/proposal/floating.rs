@@ -52,8 +52,6 @@ pub(super) struct Led {
     pub to: [Decimal; 2],
     /// The pose constant, rad.
     pub b: Decimal,
-    /// Angle by which the base turns, rad.
-    pub turn: f64,
 }
 
 impl BaseMotion {
@@ -116,7 +114,7 @@ impl FloatingBody {
         let mut led = trials.map(|b| {
             let place = self.seen(at, b.value());
             let to = [place.re, place.im].map(|x| Decimal::nearest(x, b.decimals()));
-            Led { to, b, turn: self.angle_at(b.value()) - self.angle }
+            Led { to, b }
         });
         led.find(|led| space.reaches(Vector::new(led.to[0].value(), led.to[1].value()), led.b.value()))
     }

@@ -67,11 +67,8 @@ impl MissedTarget {
         match &self.base {
             BaseMotion::Stays => Some(Proposal::of_edit(format!("go to b = {shown} rad"), Edit::SlideB { b })),
             BaseMotion::Turns(body) => {
-                let Led { to, b, turn } = body.led_to(space, self.at, self.b)?;
-                let text = format!(
-                    "lead it to ({}, {}) m and b = {b} rad: the base turns by {turn:.3} rad, so it meets the target",
-                    to[0], to[1]
-                );
+                let Led { to, b } = body.led_to(space, self.at, self.b)?;
+                let text = format!("go to ({}, {}) m, b = {b} rad", to[0], to[1]);
                 Some(Proposal::of_edits(text, vec![drag(to), Edit::SlideB { b: b.value() }]))
             }
             // How the base would turn cannot be told, so the machine is put there, not led.
@@ -80,7 +77,7 @@ impl MissedTarget {
                 let to = [place.re, place.im].map(|x| Decimal::nearest(x, PLACE_DECIMALS));
                 let set = space.reach(Vector::new(to[0].value(), to[1].value())).ok()?;
                 let b = set.decimal(set.moved_inside(set.nearest(self.b)?, 1e-6), 3)?;
-                let text = format!("put the machine at b = {b} rad, the base as it is");
+                let text = format!("put it at b = {b} rad, base as it is");
                 Some(Proposal::of_edits(text, vec![drag(to), Edit::PoseB { b: b.value() }]))
             }
         }

@@ -67,7 +67,7 @@ fn rows(frame: &Frame, options: &ViewOptions) -> Vec<(String, bool)> {
     match frame.target.reach {
         Reach::Outside { nearest, displayed_b, other_sheet, .. } => {
             let would = match displayed_b {
-                Some(b) if frame.floats => format!("b = {b} rad would reach it, were the base held"),
+                Some(b) if frame.floats => format!("b = {b} rad if the base is held"),
                 Some(b) => format!("b = {b} rad would reach it"),
                 None if other_sheet => "drag it round, or change b".into(),
                 None => "no b reaches it".into(),
@@ -80,9 +80,6 @@ fn rows(frame: &Frame, options: &ViewOptions) -> Vec<(String, bool)> {
             rows.push((title.into(), true));
             rows.push((format!("nearest point {} m", place(nearest)), false));
             rows.push((would, false));
-            if frame.floats && displayed_b.is_some() {
-                rows.push(("the base turns while b changes".into(), false));
-            }
         }
         reach => {
             rows.push((format!("{} m", place(target_handle(frame))), true));
