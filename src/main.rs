@@ -51,15 +51,14 @@ fn main() -> ExitCode {
         stillbase::files::fault::arm_fault(&wanted);
     }
     let words: Vec<_> = commands::words(std::env::args_os()).collect();
+    let parses = |words: &[_]| Arguments::command().try_get_matches_from(words).is_ok();
+    let line = commands::Line { words: &words, parses: &parses };
     let matches = Arguments::command().try_get_matches_from(&words);
     let parsed = matches.and_then(|matches| Ok((Arguments::from_arg_matches(&matches)?, asks_for_json(&matches))));
     let (arguments, as_json) = match parsed {
         Ok(parsed) => parsed,
-        Err(error) => {
-            let parses = |words: &[_]| Arguments::command().try_get_matches_from(words).is_ok();
-            return commands::usage(&error, &words, parses);
-        }
+        Err(error) => return commands::usage(&error, &line),
     };
     let done = arguments.command.map_or_else(|| arguments.open.run(), |command| command.run());
-    commands::exit_code(done, as_json)
+    commands::exit_code(done, as_json, &line)
 }

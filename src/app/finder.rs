@@ -135,7 +135,7 @@ fn entries<'a>(known: Known<'a>, view_state: &ViewState) -> Vec<Entry<'a>> {
         Entry { hides: true, tells: true, ..entry(title, "guide", also, Box::new(read)) }
     });
     let ways = improvements.iter().filter_map(|proposal| {
-        let edit = proposal.edit()?;
+        let [edit] = <[_; 1]>::try_from(proposal.edits()).ok()?;
         let take = move || Command::Session(SessionCommand::Edit(edit));
         Some(entry(format!("Way out: {}", proposal.text), WAYS_PLACE, "improve fix mend why", Box::new(take)))
     });

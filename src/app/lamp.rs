@@ -72,9 +72,9 @@ pub fn proposal(ui: &mut Ui, proposal: &Proposal, refused: Option<&RefusedEdit>,
     let text = notation::sentence(ui.ctx(), &proposal.text);
     let response = ui.button(text).on_hover_text(proposal.how());
     if response.clicked() {
-        let own = || proposal.edit().map(SessionCommand::Edit);
-        let command = refused.map_or_else(own, |refused| refused.command_with(proposal));
-        commands.extend(command.into_iter().chain([SessionCommand::EndGesture]).map(Command::Session));
+        let own = || proposal.edits().into_iter().map(SessionCommand::Edit).collect();
+        let done: Vec<SessionCommand> = refused.map_or_else(own, |refused| refused.commands_with(proposal));
+        commands.extend(done.into_iter().chain([SessionCommand::EndGesture]).map(Command::Session));
     }
 }
 

@@ -136,7 +136,8 @@ fn pose_constant(
     let stops = matches!(edit, Edit::PoseB { b } if b != asked);
     let feasible = session.run().feasible_b();
     if typed && stops {
-        let band = feasible.map_or_else(String::new, |common| common.shifted_near(shown).in_words());
+        let band =
+            feasible.map_or_else(String::new, |common| common.shifted_near(session.in_this_period(shown)).in_words());
         let who = all_points(session);
         let why = format!("b = {shown:.3} rad does not serve {who}, so nothing has changed: want {band}");
         commands.push(WindowCommand::Refuse(why, session.proposals_for_b(asked)).into());

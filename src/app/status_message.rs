@@ -76,14 +76,14 @@ impl RefusedEdit {
         }
     }
 
-    /// Returns the command that does what was refused, with a proposal that makes it feasible; `None` if the proposal
+    /// Returns the commands that do what was refused, with a proposal that makes it feasible; none if the proposal
     /// cannot be combined with it.
-    pub fn command_with(&self, proposal: &Proposal) -> Option<SessionCommand> {
+    pub fn commands_with(&self, proposal: &Proposal) -> Vec<SessionCommand> {
         match &self.attempt {
-            Attempt::Edit(edit) => proposal.edit_after(edit).map(SessionCommand::Edit),
+            Attempt::Edit(edit) => proposal.edits_after(edit).into_iter().map(SessionCommand::Edit).collect(),
             Attempt::Open(scenario) => {
-                let changed = scenario.with_settings(proposal.change()?).ok()?;
-                Some(SessionCommand::Open(Box::new(changed)))
+                let changed = proposal.change().and_then(|change| scenario.with_settings(change).ok());
+                changed.map(|changed| SessionCommand::Open(Box::new(changed))).into_iter().collect()
             }
         }
     }

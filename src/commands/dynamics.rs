@@ -61,7 +61,7 @@ impl DynamicsArguments {
 
 /// Reads states, each as q, q̇, q̈ in rad, rad/s, rad/s².
 fn states(file: &Path, machine: &Machine) -> Result<Vec<[PerDrive; 3]>, Failure> {
-    states_in(&read(file)?, &file.display().to_string(), machine)
+    states_in(&read(file, &["json"])?, &file.display().to_string(), machine)
 }
 
 /// Reads states from text; errors name `file`.

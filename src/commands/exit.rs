@@ -13,6 +13,7 @@ use stillbase_settings::text::{plain, shell_word, shorten_message};
 
 use super::failure::{Failure, RefusedScenario};
 use super::input::WrongNumber;
+use super::misnamed::Misnamed;
 use super::output::Format;
 
 /// Prints a message on standard error, in one line.
@@ -34,14 +35,15 @@ struct FailureReport<'a> {
 
 /// Prints the reason of a failure in one line, and a line for each proposal that leads out of it; returns the exit
 /// status. With `as_json`, also prints the reason and the proposals of a refused scenario on standard output, unless
-/// the answer there already holds them.
-pub fn exit_code(done: Result<(), Failure>, as_json: bool) -> ExitCode {
+/// the answer there already holds them. `line` is the command line that has failed.
+pub fn exit_code(done: Result<(), Failure>, as_json: bool, line: &Line<'_>) -> ExitCode {
     let Err(failure) = done else { return ExitCode::SUCCESS };
     // A failure other than a refusal may follow an answer; it prints no second object.
-    let RefusedScenario { failure, proposals, is_printed } = match failure {
+    let RefusedScenario { failure, mut proposals, misnamed, is_printed } = match failure {
         Failure::Refused(refused) => *refused,
-        failure => RefusedScenario { failure, proposals: Vec::new(), is_printed: true },
+        failure => RefusedScenario { failure, proposals: Vec::new(), misnamed: None, is_printed: true },
     };
+    proposals.extend(misnamed.iter().flat_map(|misnamed| instead(misnamed, line)));
     let (status, why) = match failure {
         Failure::NoAnswer(why) => (1, why),
         Failure::WrongInput(why) => (2, why),
@@ -60,30 +62,72 @@ pub fn exit_code(done: Result<(), Failure>, as_json: bool) -> ExitCode {
                 settings.iter().map(|set| format!("--set {}", shell_word(set))).collect::<Vec<_>>().join(" ")
             }
             WayOut::Command(command) => command.clone(),
-            // No command takes an edit.
-            WayOut::Edit(_) => continue,
+            // No command takes edits.
+            WayOut::Edits(_) => continue,
         };
         print_message(format!("{}: {typed}", proposal.text));
     }
     ExitCode::from(status)
 }
 
+/// A command line.
+pub struct Line<'a> {
+    /// Its words, the name of the program first.
+    pub words: &'a [OsString],
+    /// Returns whether another command line can be parsed.
+    pub parses: &'a dyn Fn(&[OsString]) -> bool,
+}
+
+/// Returns the command lines with a word that names nothing replaced by those that it may have been to name.
+fn instead(misnamed: &Misnamed, line: &Line<'_>) -> Vec<Proposal> {
+    let way = |name: &String| {
+        let words = replaced(line.words, &misnamed.given, name)?;
+        if (line.parses)(&words) {
+            return Some(Proposal::of_command(format!("take {name}"), as_typed(&words)?));
+        }
+        // A command that lacks arguments tells them.
+        let is_command = super::names().contains(name);
+        is_command.then(|| Proposal::of_command(format!("see what {name} takes"), format!("stillbase {name} --help")))
+    };
+    misnamed.nearest.iter().filter_map(way).collect()
+}
+
 /// Prints help, or the error of a command line that cannot be parsed, with the nearest one that can; returns the exit
-/// status. `words` is the command line, and `parses` returns whether another one can be parsed.
-pub fn usage(error: &clap::Error, words: &[OsString], parses: impl Fn(&[OsString]) -> bool) -> ExitCode {
+/// status.
+pub fn usage(error: &clap::Error, line: &Line<'_>) -> ExitCode {
     if !error.use_stderr() {
         let printed = error.print().and_then(|()| io::stdout().flush());
-        return exit_code(printed.map_err(|e| Failure::standard_output(&e)), false);
+        return exit_code(printed.map_err(|e| Failure::standard_output(&e)), false, line);
     }
-    let failure = Failure::WrongInput(in_one_line(&error.render().to_string()));
-    let nearest = nearest_words(error, words).filter(|words| parses(words)).and_then(|words| as_typed(&words));
-    let nearest = nearest.map(|line| Proposal::of_command("take the nearest that is allowed", line));
-    let as_json = words.iter().any(|word| word == "--json");
-    exit_code(Err(failure.with_proposals(nearest.into_iter().collect())), as_json)
+    let as_json = line.words.iter().any(|word| word == "--json");
+    let nearest = nearest_line(error, line.words).filter(|words| (line.parses)(words));
+    let failure = match nearest.and_then(|words| as_typed(&words)) {
+        Some(nearest) => {
+            let nearest = Proposal::of_command("take the nearest that is allowed", nearest);
+            Failure::WrongInput(in_one_line(&error.render().to_string())).with_proposals(vec![nearest])
+        }
+        None => match misspelt_command(error, line) {
+            Some(misnamed) => {
+                let why =
+                    format!("{}: no such command: want {} (nearest)", misnamed.given, misnamed.nearest.join(" or "));
+                Failure::WrongInput(format!("{why}; see --help")).with_misnamed(Some(misnamed))
+            }
+            None => Failure::WrongInput(in_one_line(&error.render().to_string())).with_proposals(Vec::new()),
+        },
+    };
+    exit_code(Err(failure), as_json, line)
+}
+
+/// Returns the first word if it was taken for a scenario, but is near the name of a command.
+fn misspelt_command(error: &clap::Error, line: &Line<'_>) -> Option<Misnamed> {
+    let is_taken = matches!(error.kind(), ErrorKind::ArgumentConflict | ErrorKind::UnknownArgument);
+    let first = line.words.get(1)?.to_str().filter(|first| is_taken && !first.starts_with('-'))?;
+    let names = super::names();
+    Misnamed::command(first, &names).filter(|misnamed| !misnamed.nearest.iter().any(|name| name == first))
 }
 
 /// Returns the command line with the wrong word replaced by the nearest one that is allowed, if one is known.
-fn nearest_words(error: &clap::Error, words: &[OsString]) -> Option<Vec<OsString>> {
+fn nearest_line(error: &clap::Error, words: &[OsString]) -> Option<Vec<OsString>> {
     let said = |kind: ContextKind| match error.get(kind)? {
         ContextValue::String(word) => Some(word.clone()),
         ContextValue::Strings(words) => words.first().cloned(),
@@ -99,13 +143,18 @@ fn nearest_words(error: &clap::Error, words: &[OsString]) -> Option<Vec<OsString
         }
         _ => return None,
     };
+    replaced(words, &wrong, &right)
+}
+
+/// Returns a command line with the first word `wrong` replaced; `None` if no word is.
+fn replaced(words: &[OsString], wrong: &str, right: &str) -> Option<Vec<OsString>> {
     let wrong = wrong.trim();
     // An option may be joined to its value: --b=1e9.
     let replaced = |word: &OsString| {
         let word = word.to_str()?;
         let (option, value) = word.split_once('=').map_or((None, word), |(option, value)| (Some(option), value));
         match (option, word.trim() == wrong, value == wrong) {
-            (_, true, _) => Some(OsString::from(&right)),
+            (_, true, _) => Some(OsString::from(right)),
             (Some(option), _, true) => Some(OsString::from(format!("{option}={right}"))),
             (Some(option), ..) if option == wrong => Some(OsString::from(format!("{right}={value}"))),
             _ => None,

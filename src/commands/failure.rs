@@ -19,6 +19,7 @@ use stillbase_planning::timing::TimeError;
 use stillbase_session::scenario::{Scenario, ScenarioError};
 use stillbase_session::{Proposal, Refusal, proposals};
 
+use super::misnamed::Misnamed;
 use super::remedy::option;
 
 /// Why a command did not finish.
@@ -41,8 +42,16 @@ pub struct RefusedScenario {
     pub failure: Failure,
     /// Changes after which the scenario runs, or the question has an answer.
     pub proposals: Vec<Proposal>,
+    /// A word of the command line that names nothing, with what it may have been to name.
+    pub misnamed: Option<Misnamed>,
     /// Whether the answer on standard output already holds both.
     pub is_printed: bool,
+}
+
+impl RefusedScenario {
+    fn of(failure: Failure, proposals: Vec<Proposal>) -> Self {
+        Self { failure, proposals, misnamed: None, is_printed: false }
+    }
 }
 
 impl Failure {
@@ -73,16 +82,34 @@ impl Failure {
     pub fn refused(scenario: &Scenario, refusal: Refusal) -> Self {
         let proposals = proposals(scenario, &refusal);
         let failure = Self::from(refusal).with_context(&scenario.name);
-        Self::Refused(Box::new(RefusedScenario { failure, proposals, is_printed: false }))
+        Self::Refused(Box::new(RefusedScenario::of(failure, proposals)))
+    }
+
+    /// Returns the failure with a word of the command line that names nothing.
+    #[must_use]
+    pub fn with_misnamed(self, misnamed: Option<Misnamed>) -> Self {
+        match self {
+            Self::ReaderGone => Self::ReaderGone,
+            Self::Refused(refused) => Self::Refused(Box::new(RefusedScenario { misnamed, ..*refused })),
+            failure => {
+                Self::Refused(Box::new(RefusedScenario { misnamed, ..RefusedScenario::of(failure, Vec::new()) }))
+            }
+        }
+    }
+
+    /// Returns the word of the command line that names nothing, if that is why the command failed.
+    pub fn misnamed(&self) -> Option<&Misnamed> {
+        match self {
+            Self::Refused(refused) => refused.misnamed.as_ref(),
+            _ => None,
+        }
     }
 
     /// Returns the failure with ways out of it.
     #[must_use]
     pub fn with_proposals(self, proposals: Vec<Proposal>) -> Self {
         match self {
-            Self::NoAnswer(_) | Self::WrongInput(_) => {
-                Self::Refused(Box::new(RefusedScenario { failure: self, proposals, is_printed: false }))
-            }
+            Self::NoAnswer(_) | Self::WrongInput(_) => Self::Refused(Box::new(RefusedScenario::of(self, proposals))),
             Self::Refused(refused) if refused.proposals.is_empty() => {
                 Self::Refused(Box::new(RefusedScenario { proposals, ..*refused }))
             }
@@ -93,7 +120,7 @@ impl Failure {
     /// Returns the failure with ways out of it that the answer on standard output already holds.
     #[must_use]
     pub fn with_printed_proposals(self, proposals: Vec<Proposal>) -> Self {
-        Self::Refused(Box::new(RefusedScenario { failure: self, proposals, is_printed: true }))
+        Self::Refused(Box::new(RefusedScenario { is_printed: true, ..RefusedScenario::of(self, proposals) }))
     }
 
     /// Returns the failure with `what` before its reason.
@@ -110,8 +137,8 @@ impl Failure {
             Self::NoAnswer(why) => Self::NoAnswer(words(&why)),
             Self::WrongInput(why) => Self::WrongInput(words(&why)),
             Self::Refused(refused) => {
-                let RefusedScenario { failure, proposals, is_printed } = *refused;
-                Self::Refused(Box::new(RefusedScenario { failure: failure.worded(words), proposals, is_printed }))
+                let failure = refused.failure.worded(words);
+                Self::Refused(Box::new(RefusedScenario { failure, ..*refused }))
             }
         }
     }
@@ -120,14 +147,18 @@ impl Failure {
 impl From<FileError> for Failure {
     /// Commands read machines and scenarios before they print. So `--json` prints the reason even without proposals.
     fn from(e: FileError) -> Self {
-        Self::wrong_input(e).with_proposals(Vec::new())
+        let misnamed = Misnamed::machine(&e);
+        let nearest = misnamed.as_ref().map_or_else(String::new, Misnamed::nearest_file);
+        Self::wrong_input(format!("{e}{nearest}")).with_misnamed(misnamed)
     }
 }
 
 impl From<ScenarioError> for Failure {
     /// As for [`FileError`].
     fn from(e: ScenarioError) -> Self {
-        Self::wrong_input(e).with_proposals(Vec::new())
+        let misnamed = Misnamed::scenario(&e);
+        let nearest = misnamed.as_ref().map_or_else(String::new, Misnamed::nearest_file);
+        Self::wrong_input(format!("{e}{nearest}")).with_misnamed(misnamed)
     }
 }
 

@@ -118,7 +118,7 @@ impl ImportArguments {
             Columns::Tip => Coordinates::EndEffector,
         });
         let SampleTable { coordinates, samples, names, unwrapped } =
-            samples(&read(&self.file)?, &name, &machine, wanted, self.gaps)?;
+            samples(&read(&self.file, &["csv"])?, &name, &machine, wanted, self.gaps)?;
         for (column, turns) in names.iter().zip(&unwrapped).filter(|(_, turns)| **turns > 0) {
             print_message(format!("note: {column} was wrapped: a whole turn taken out at {turns} places"));
         }

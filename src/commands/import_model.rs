@@ -92,7 +92,8 @@ impl ImportModelArguments {
             return Err(Failure::wrong_input("-o and --scenario name one file: want two"));
         }
         let name = self.file.display();
-        let found = import(&read(&self.file)?).map_err(|e| Failure::wrong_input(e).with_context(&name))?;
+        let found = import(&read(&self.file, &["urdf", "xml", "mjcf"])?)
+            .map_err(|e| Failure::wrong_input(e).with_context(&name))?;
         let ImportedMachine { machine, pose, base, mut notes } = found;
         let machine = self.settings.apply(machine)?;
         if let Some(base) = base.filter(|_| self.scenario.is_none()) {

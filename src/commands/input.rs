@@ -20,6 +20,7 @@ use stillbase_settings::word::Choice;
 
 use super::exit::print_message;
 use super::failure::Failure;
+use super::misnamed::Misnamed;
 
 /// Default scenario of a command: the paper's reactionless case.
 pub const DEFAULT_SCENARIO: &str = "case-3";
@@ -356,13 +357,15 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
     text.trim().parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite()).ok_or_else(|| "want a number above 0".into())
 }
 
-/// Reads a text file.
+/// Reads a text file, whose name ends in one of `endings`.
 ///
 /// # Errors
-/// If it cannot be read.
-pub fn read(file: &Path) -> Result<String, Failure> {
+/// If it cannot be read; the error names the nearest file if there is no such file.
+pub fn read(file: &Path, endings: &[&str]) -> Result<String, Failure> {
     stillbase_files::text::read(file).map_err(|e| {
-        let why = format!("{e}: want a plain file that can be read, of at most {MAX_TEXT_BYTES} bytes");
-        Failure::wrong_input(why).with_context(file.display())
+        let misnamed = Misnamed::file(file, &e, endings);
+        let nearest = misnamed.as_ref().map_or_else(String::new, Misnamed::nearest_file);
+        let why = format!("{e}: want a plain file that can be read, of at most {MAX_TEXT_BYTES} bytes{nearest}");
+        Failure::wrong_input(why).with_context(file.display()).with_misnamed(misnamed)
     })
 }

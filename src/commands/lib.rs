@@ -27,6 +27,7 @@ mod joints;
 mod keys;
 mod learn;
 mod machines;
+mod misnamed;
 mod open;
 mod output;
 mod plan;
@@ -49,7 +50,7 @@ mod tolerance;
 mod trim;
 mod workspace;
 
-pub use exit::{exit_code, usage};
+pub use exit::{Line, exit_code, usage};
 pub use input::words;
 pub use interrupt::watch;
 pub use open::OpenArguments;
@@ -64,6 +65,12 @@ macro_rules! subcommands {
         #[expect(missing_docs, reason = "a line of documentation would replace the help of the arguments")]
         pub enum Subcommand {
             $($(#[$gate])? $name($file::$command),)*
+        }
+
+        /// Returns the names of the subcommands.
+        fn names() -> Vec<String> {
+            let all = <Subcommand as clap::Subcommand>::augment_subcommands(clap::Command::new("stillbase"));
+            all.get_subcommands().map(|command| command.get_name().to_owned()).collect()
         }
 
         impl Subcommand {

@@ -50,7 +50,9 @@ impl OpenArguments {
         let scenario = overlay_for_study(&self.scenario, &self.settings).map_err(|failure| match failure {
             // The name may be a mistyped command.
             failure if Scenario::builtin(&self.scenario).is_none() && !self.scenario.ends_with(".toml") => {
-                failure.worded(&|why| format!("{why}; `stillbase --help` lists the commands"))
+                let failure = failure.worded(&|why| format!("{why}; `stillbase --help` lists the commands"));
+                let misnamed = failure.misnamed().cloned().map(|misnamed| misnamed.or_command(&super::names()));
+                failure.with_misnamed(misnamed)
             }
             failure => failure,
         })?;

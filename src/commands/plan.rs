@@ -17,7 +17,7 @@ use stillbase_simulation::plant::PlantDifferences;
 use stillbase_study::plan_summary::PlanSummary;
 
 use super::exit::print_message;
-use super::failure::{Failure, RefusedScenario};
+use super::failure::Failure;
 use super::input::{
     DEFAULT_SCENARIO, Settings, above_zero, change_task, choice, no_use, overlay_settings, overlay_unchecked, point,
     pose_constant, pose_space, refuse_ineffective, report_idle, report_tolerance,
@@ -126,7 +126,7 @@ impl PlanArguments {
         if let Err(refusal) = run {
             let refusal = Failure::from(refusal);
             let proposals = answer.obstacle.map(|obstacle| obstacle.proposals).unwrap_or_default();
-            return Err(Failure::Refused(Box::new(RefusedScenario { failure: refusal, proposals, is_printed: true })));
+            return Err(refusal.with_printed_proposals(proposals));
         }
         if let Some(file) = &self.output {
             // The name of the file tells plans apart in a recording or a table.

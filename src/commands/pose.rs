@@ -72,7 +72,7 @@ impl PoseArguments {
         let json = if self.format.json { " --json" } else { "" };
         let another_b = ReachablePoints::at_nearest_b(space, p, self.b);
         let anywhere = || ReachablePoints::at_any_b(space, p, self.b);
-        let nearer = if another_b.is_some() { None } else { anywhere() };
+        let nearer = if another_b.is_empty() { anywhere() } else { None };
         let at_b = ReachablePoints::at_b(space, &[p], 0, self.b);
         let rendered = |way: ReachablePoints| {
             let b = way.b.map_or_else(|| self.b.to_string(), |b| b.to_string());

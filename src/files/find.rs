@@ -10,6 +10,7 @@ use stillbase_session::gentle_motion;
 use stillbase_session::scenario::{FileContent, Scenario, ScenarioError, TaskKind, content};
 use stillbase_settings::number::ShortNumber;
 use stillbase_settings::range::shortened;
+use stillbase_settings::spelling::UnknownName;
 
 const IS_SCENARIO: &str = "this is a scenario, not a machine: want the machine that it names; simulate, headless, \
                            compare, joints, export, tolerance, spectrum and plan take a SCENARIO";
@@ -68,8 +69,8 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
             return match machine::builtin(name) {
                 Some(machine) => scenario_for(name, machine),
                 None => {
-                    let known = Scenario::builtin_names().collect::<Vec<_>>().join(", ");
-                    Err(said(format!("no such scenario: want {known}, or a TOML file")))
+                    let machines: Vec<&str> = machine::builtins().iter().map(Machine::name).collect();
+                    Err(UnknownName::new(name, "scenario", Scenario::builtin_names().collect(), &machines).into())
                 }
             };
         }

@@ -35,6 +35,17 @@ pub fn check(file: &Metadata, most: u64) -> io::Result<()> {
     }
 }
 
+/// Maximum number of entries of a folder that are read.
+const MAX_ENTRIES: usize = 10_000;
+
+/// Returns the names in a folder in order, as far as they are text; none if it cannot be read.
+pub fn names_in(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).into_iter().flatten().take(MAX_ENTRIES);
+    let mut names: Vec<String> = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();
+    names.sort();
+    names
+}
+
 fn too_long(length: u64) -> io::Error {
     io::Error::new(ErrorKind::FileTooLarge, format!("{length} bytes or more, where {MAX_TEXT_BYTES} are the most"))
 }

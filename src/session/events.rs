@@ -394,7 +394,9 @@ impl EventLog {
             Reach::Inside => ("the target is inside the reactionless workspace".into(), EventKind::Within),
             Reach::Carried => ("the target turns with the workspace".into(), EventKind::Within),
             Reach::Outside { displayed_b, .. } => {
-                let mend = displayed_b.map_or("no b reaches it".into(), |b| format!("b = {b} rad would reach it"));
+                let held = if frame.floats { ", were the base held" } else { "" };
+                let mend =
+                    displayed_b.map_or("no b reaches it".into(), |b| format!("b = {b} rad would reach it{held}"));
                 (format!("the target is outside the reactionless workspace: {mend}"), EventKind::Beyond)
             }
         };

@@ -8,15 +8,17 @@
 //! | a session is full | it goes on from an earlier instant, which is chosen on the time line |
 //! | too much output | what to leave out, rows or signals, only the user knows |
 //! | a motion would leave new limits | the session applies such limits from the start of the motion |
-//! | an unknown name, of a machine, a file, a key or a part | the message lists the names; which one was meant is open |
+//! | an unknown name of a key or a part, or one that is near no other | the message lists the names; which one was meant is open |
 //! | the length of a link that others share | the message names its own key; a second setting cannot take back the first |
 
+mod floating;
 mod hand;
 mod improve;
 mod points;
 mod refused;
 mod task;
 mod value;
+mod wider;
 
 use serde::{Serialize, Serializer};
 use toml::Table;
@@ -51,9 +53,9 @@ pub enum WayOut {
     /// By settings, as files and edits state them; serialised as `--set` takes them: `task.b=2.2158`.
     #[serde(rename = "set", serialize_with = "as_typed")]
     Set(Table),
-    /// By an edit of a session that changes no setting, such as a drag.
-    #[serde(rename = "edit")]
-    Edit(Edit),
+    /// By edits of a session that change no setting, such as a drag; one after the other.
+    #[serde(rename = "edits")]
+    Edits(Vec<Edit>),
     /// By another command line in place of the refused one, as a shell takes it.
     #[serde(rename = "command")]
     Command(String),
@@ -75,7 +77,12 @@ impl Proposal {
 
     /// Returns a proposal of an edit that changes no setting.
     fn of_edit(text: impl Into<String>, edit: Edit) -> Self {
-        Self { text: text.into(), way: WayOut::Edit(edit) }
+        Self::of_edits(text, vec![edit])
+    }
+
+    /// Returns a proposal of edits that change no setting.
+    fn of_edits(text: impl Into<String>, edits: Vec<Edit>) -> Self {
+        Self { text: text.into(), way: WayOut::Edits(edits) }
     }
 
     /// Returns a proposal of another command line.
@@ -91,7 +98,7 @@ impl Proposal {
     pub fn change(&self) -> Option<&Table> {
         match &self.way {
             WayOut::Set(change) => Some(change),
-            WayOut::Edit(_) | WayOut::Command(_) => None,
+            WayOut::Edits(_) | WayOut::Command(_) => None,
         }
     }
 
@@ -104,7 +111,7 @@ impl Proposal {
     pub fn how(&self) -> String {
         match &self.way {
             WayOut::Set(_) => self.settings().join("\n"),
-            WayOut::Edit(edit) => edit.title(),
+            WayOut::Edits(edits) => edits.iter().map(Edit::title).collect::<Vec<_>>().join("\n"),
             WayOut::Command(command) => command.clone(),
         }
     }
@@ -114,20 +121,21 @@ impl Proposal {
         self.change().is_some_and(|change| change.keys().any(|key| is_of_machine(key)))
     }
 
-    /// Returns the proposal as one edit; `None` for a command line.
-    pub fn edit(&self) -> Option<Edit> {
+    /// Returns the proposal as edits, to be made one after the other; none for a command line.
+    pub fn edits(&self) -> Vec<Edit> {
         match &self.way {
-            WayOut::Set(change) => Some(Edit::Set { change: change.clone() }),
-            WayOut::Edit(edit) => Some(edit.clone()),
-            WayOut::Command(_) => None,
+            WayOut::Set(change) => vec![Edit::Set { change: change.clone() }],
+            WayOut::Edits(edits) => edits.clone(),
+            WayOut::Command(_) => Vec::new(),
         }
     }
 
-    /// Returns one edit with the settings of an edit and then of the proposal; if either has none, the latter's own.
-    pub fn edit_after(&self, edit: &Edit) -> Option<Edit> {
+    /// Returns the edits of the proposal; if both it and a refused edit consist of settings, one edit with the settings
+    /// of the refused one and then its own.
+    pub fn edits_after(&self, edit: &Edit) -> Vec<Edit> {
         match (edit, self.change()) {
-            (Edit::Set { change }, Some(own)) => Some(Edit::Set { change: join(change.clone(), own) }),
-            _ => self.edit(),
+            (Edit::Set { change }, Some(own)) => vec![Edit::Set { change: join(change.clone(), own) }],
+            _ => self.edits(),
         }
     }
 

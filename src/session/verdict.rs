@@ -8,8 +8,8 @@
 
 mod statements;
 
-pub(crate) use statements::changes_b;
 pub use statements::{Statement, Statements, StatusLight};
+pub(crate) use statements::{changes_b, inertia_of};
 
 use crate::scenario::{Scenario, TaskKind};
 use stillbase_mechanics::planar::{PerDrive, Vector};

@@ -13,6 +13,7 @@ pub mod number;
 #[doc(hidden)]
 pub mod quantity;
 pub mod range;
+pub mod spelling;
 #[doc(hidden)]
 pub mod text;
 pub mod word;

@@ -42,6 +42,8 @@ pub struct Frame {
     pub a: PerDrive,
     /// Pose of the base: position p_B of B, m, and angle θ, rad. A fixed base stays at the origin.
     pub base: Pose2,
+    /// Whether the base floats and turns whenever b changes: it is free, and has no wheel.
+    pub floats: bool,
     /// Velocity ṗ_B of B, m/s.
     pub base_velocity: Vector,
     /// Rate θ̇ of the base, rad/s.

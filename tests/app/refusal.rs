@@ -231,7 +231,9 @@ fn a_scenario_that_cannot_be_planned_is_explained() {
     let refused = app_state.view_state().status.refused.as_ref().expect("refused");
     let proposals = refused.refused.as_ref().expect("a change of settings").proposals();
     assert!(proposals[0].text.starts_with("take b = "), "{proposals:?}");
-    app_state.carry_out(refused.command_with(&proposals[0]).expect("an edit"));
+    let commands = refused.commands_with(&proposals[0]);
+    assert_eq!(commands.len(), 1, "{proposals:?}");
+    commands.into_iter().for_each(|command| app_state.carry_out(command));
     let done = &app_state.session().scenario().task;
     assert_eq!((done.points(), done.shape()), (task.points(), task.shape()));
 }

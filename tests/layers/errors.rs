@@ -64,6 +64,7 @@ errors! {
     study::trim::NoCorrection,
     study::trim::NoTrim,
     study::trim::TrimError,
+    settings::spelling::UnknownName,
     files::WriteError,
     files::video::VideoError,
     #[cfg(feature = "cli")]

@@ -62,7 +62,7 @@ fn a_scenario_file_is_named_with_its_line() {
     refused(&case.replace("time = 1.0", "tiem = 1.0"), &["my.toml:13:", "unknown field `tiem`"]);
     refused(&case.replace("time = 1.0", "time = -1.0"), &["my.toml", "task.time is -1"]);
     refused(&case.replace("nine-link", "ten-link"), &["ten-link", "no such machine"]);
-    fails(&["simulate", "case-9"], 2, &["case-9", "case-1, case-2, case-3"]);
+    fails(&["simulate", "case-9"], 2, &["case-9", "case-1 (nearest), case-2 (nearest), case-3 (nearest), circle"]);
     fails(&["chek"], 2, &["chek", "--help"]);
 }
 

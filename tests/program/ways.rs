@@ -98,6 +98,19 @@ fn what_is_refused_says_what_would_work() {
         "simulate case-3 --set control.kp=-1 --every 1000",
         "simulate case-3 --set base.kind=fre --every 1000",
         "plan case-3 --kin reactionless",
+        "check nine-linc",
+        "check NINE-LINK",
+        "plan case-33",
+        "simulate case-4 --every 1000",
+        "compare case-1 crcle",
+        "design nine-link --task=cse-3",
+        "learn serial-3",
+        "tolerance wheels",
+        "simulat case-3",
+        "chek nine-link",
+        "pose nine-link 0.5,0.5 --b 50",
+        "plan case-3 --set task.b=50",
+        "plan case-1 --set limits.a1=1.5,2.7",
     ] {
         assert!(works(&split(line)) > 0, "{line} has no way out");
     }
@@ -126,4 +139,37 @@ fn poses_and_reach_propose_what_there_is() {
         }
     }
     assert!(found > 10, "only {found}");
+}
+
+/// A file that does not exist: the nearest file of its kind, and no other.
+#[test]
+fn a_misspelt_file_names_the_nearest() {
+    let folder = Folder::new("nearest");
+    let machine = folder.file("mine.toml", NINE_LINK);
+    folder.file("notes.toml", "words = 1\n");
+    folder.file("task.toml", include_str!("../../assets/scenarios/case-3.toml"));
+    let at = |name: &str| machine.with_file_name(name).to_str().expect("a name").to_owned();
+    for (command, wrong, right) in [
+        ("check", "mne.toml", Some("mine.toml")),
+        ("check", "MINE.toml", Some("mine.toml")),
+        ("plan", "taks.toml", Some("task.toml")),
+        ("plan", "tusk", Some("task.toml")),
+        // A scenario is no machine, and what is neither is none.
+        ("check", "tusk.toml", None),
+        ("check", "note.toml", None),
+        ("check", "else.toml", None),
+    ] {
+        let args = [command.to_owned(), at(wrong)];
+        let said = text(&stillbase(&[command, &args[1]]).stderr).to_owned();
+        let ways = ways_out(&args);
+        let want: Vec<Vec<String>> = right.into_iter().map(|right| vec![command.to_owned(), at(right)]).collect();
+        assert_eq!(ways, want, "{said}");
+        assert_eq!(said.contains("the nearest file is"), right.is_some(), "{said}");
+        assert_eq!(works(&args), want.len());
+    }
+    // A machine that a file names is no word of the command line, so the message alone helps.
+    let scenario = include_str!("../../assets/scenarios/case-3.toml").replace("nine-link\"", "nine-linc\"");
+    let file = folder.file("odd.toml", scenario).to_str().expect("a name").to_owned();
+    assert!(ways_out(&["simulate".to_owned(), file.clone()]).is_empty());
+    fails(&["simulate", &file], 2, &["nine-linc: no such machine: want nine-link (nearest), nine-link-table-1"]);
 }

@@ -28,8 +28,14 @@ fn gallery() -> impl Iterator<Item = (Machine, Session)> {
     })
 }
 
-fn edit(proposal: &Proposal) -> Edit {
-    proposal.edit().expect("an edit")
+/// Does what a proposal says, as its button does.
+fn take(session: &mut Session, proposal: &Proposal) {
+    let edits = proposal.edits();
+    assert!(!edits.is_empty(), "{proposal:?}");
+    for edit in edits {
+        session.apply(edit).unwrap_or_else(|why| panic!("{proposal:?}: {why}"));
+    }
+    session.end_gesture();
 }
 
 /// A number out of the range of its key: the nearest allowed number is proposed, and the scenario starts with it.
@@ -105,8 +111,7 @@ fn a_target_out_of_reach_has_ways_out() {
             for proposal in &found {
                 seen += 1;
                 let mut session = session.clone();
-                session.apply(edit(proposal)).unwrap_or_else(|why| panic!("{proposal:?}: {why}"));
-                session.end_gesture();
+                take(&mut session, proposal);
                 session.tick(6000);
                 let target = session.frame().target;
                 let is_off =
@@ -133,11 +138,107 @@ fn a_b_that_does_not_serve_has_ways_out() {
             assert!(!found.is_empty(), "{}: {b}", machine.name());
             for proposal in found {
                 let mut session = session.clone();
-                session.apply(edit(&proposal)).unwrap_or_else(|why| panic!("{}: {proposal:?}: {why}", machine.name()));
+                take(&mut session, &proposal);
                 assert!(session.run().waiting().is_none(), "{}: {proposal:?}", machine.name());
             }
         }
     }
+}
+
+/// A base that floats turns while b changes: what is proposed brings the end effector to the target all the same, as
+/// closely as the printed numbers say.
+#[test]
+fn a_floating_base_is_reckoned_with() {
+    let mut noise = Noise::of(907);
+    let (mut led, mut put) = (0, 0);
+    for (machine, payload) in builtins().iter().flat_map(|machine| [(machine, false), (machine, true)]) {
+        let mut base = "[base]\nkind = \"free\"\nmass = 30.0\ninertia = 2.5\ncom = [0.15, -0.1]".to_owned();
+        if payload {
+            base += "\n[plant.payload]\nmass = 0.3";
+        }
+        let changed = for_machine(&case_3(), machine).with_settings(&base.parse().expect("TOML"));
+        let Ok(session) = Session::open(changed.expect("settings")) else { continue };
+        let Ok(space) = session.run().pose_space().cloned() else { continue };
+        let size = 1.2 * space.farthest();
+        for _ in 0..6 {
+            let mut session = session.clone();
+            let (x, y) = (noise.between(-size, size), noise.between(-size, size));
+            session.apply(Edit::DragTarget { x, y }).expect("any place");
+            session.end_gesture();
+            session.tick(4000);
+            let (Some(missed), target) = (session.missed_target(), session.frame().target) else { continue };
+            let found = TargetProposals::answer(&missed);
+            assert!(found.iter().any(|one| one.text.starts_with("go to the nearest point")), "{found:?}");
+            for proposal in found.iter().filter(|one| !one.text.starts_with("go to the nearest point")) {
+                let mut session = session.clone();
+                take(&mut session, proposal);
+                let is_led = proposal.text.starts_with("go to (");
+                if is_led {
+                    assert!(!payload, "{proposal:?}: only a run tells how the base turns");
+                    session.tick(9000);
+                }
+                let frame = session.frame();
+                let off = (frame.end_effector - target.at).norm();
+                assert!(off < 1e-3, "{}, payload {payload}: {:?}: {off} m: {proposal:?}", machine.name(), target.at);
+                (led, put) = (led + usize::from(is_led), put + usize::from(!is_led));
+            }
+        }
+    }
+    assert!(led > 8 && put > 8, "only {led} led and {put} put");
+}
+
+/// A b typed far away: first the one in the period of the present b, then the nearest one of all.
+#[test]
+fn a_b_far_away_is_brought_back() {
+    for (machine, session) in gallery() {
+        let Ok(space) = session.run().pose_space().cloned() else { continue };
+        let now = session.b_aim();
+        for b in [now + 8.6 * space.period(), now - 5.4 * space.period(), 50.0, -30.0] {
+            let asked = session.in_this_period(b);
+            assert!((asked - now).abs() <= 0.5 * space.period() + 1e-9, "{asked}");
+            let Some(nearest) = session.nearest_feasible_b(asked).filter(|_| session.nearest_feasible_b(b) != Some(b))
+            else {
+                continue;
+            };
+            let found = session.proposals_for_b(b);
+            let mut taken = session.clone();
+            take(&mut taken, &found[0]);
+            assert!((taken.b_aim() - nearest).abs() < 1e-3, "{}: {b}: {found:?}", machine.name());
+            assert_eq!(taken.scenario().task.points(), session.scenario().task.points(), "{found:?}");
+        }
+    }
+    let session = Session::open(case_3()).expect("it opens");
+    let words = |b: f64| session.proposals_for_b(b).into_iter().map(|one| one.text).collect::<Vec<_>>();
+    assert_eq!(words(50.0)[..1], words(50.0 - 7.0 * session.run().pose_space().expect("a space").period())[..1]);
+    // Less than half a period away, the nearest one is what is meant.
+    let near = words(0.3);
+    assert_eq!(near.len(), 2, "{near:?}");
+}
+
+/// Joint limits in the way of a task: they are made as wide as the motion needs.
+#[test]
+fn limits_in_the_way_are_made_wider() {
+    let mut seen = 0;
+    for name in ["case-1", "case-2", "case-3", "least-reaction", "spacecraft", "circle", "serial-3r", "scara"] {
+        let scenario = Scenario::builtin(name).expect("built in");
+        for angle in scenario.machine.angles().iter().map(|angle| angle.name.clone()).collect::<Vec<_>>() {
+            for limits in [[0.4, 1.2], [1.5, 2.7], [0.9, 1.4]] {
+                let wanted = single_change(&format!("limits.{angle}"), limits.to_vec());
+                let Ok(changed) = scenario.with_settings(&wanted) else { continue };
+                let Err(why) = Run::new(&changed) else { continue };
+                let named = why.to_string().contains("limit");
+                let found = proposals(&changed, &why);
+                let wider = found.iter().find(|one| one.text.contains("limits of angle"));
+                if let Some(wider) = wider {
+                    seen += 1;
+                    let whole = changed.with_settings(wider.change().expect("settings")).expect("settings");
+                    Run::new(&whole).unwrap_or_else(|why| panic!("{wider:?}: {why}"));
+                }
+                assert!(wider.is_some() || !named, "{name} {angle} {limits:?}: {why}: {found:?}");
+            }
+        }
+    }
+    assert!(seen > 15, "only {seen}");
 }
 
 /// A joint limit tightened while a hand leads: the limit is put back, or made as tight as the pose lets it.
@@ -170,7 +271,7 @@ fn a_limit_that_leaves_out_the_pose_has_two_ways_out() {
             for proposal in &outside.proposals {
                 seen += 1;
                 let mut session = session.clone();
-                session.apply(edit(proposal)).unwrap_or_else(|why| panic!("{proposal:?}: {why}"));
+                take(&mut session, proposal);
                 assert_eq!(session.outside_limits(), None, "{}: {proposal:?}", machine.name());
             }
         }
@@ -304,5 +405,23 @@ fn agree(session: &Session, what: &str) {
     let off = (frame.b - frame.b_reference).abs();
     if plan.words.starts_with("holds b") {
         assert_eq!(plan.words.contains("the run is off"), off > 5e-4, "{}", all());
+    }
+}
+
+/// Gears change what a turning base takes up, but not b: it is formed from the angles between drives and base.
+#[test]
+fn b_is_that_of_the_plan_on_every_base() {
+    for (machine, session) in gallery() {
+        let at_rest = |kind: &str| {
+            let base = single_change("base.kind", kind);
+            let scenario = session.scenario().without_edits().with_settings(&base).expect("settings");
+            let session = Session::open(scenario).expect("it opens");
+            session.frame().b
+        };
+        let fixed = at_rest("fixed");
+        for kind in ["free", "compliant"] {
+            let b = at_rest(kind);
+            assert!((b - fixed).abs() < 1e-9, "{}, {kind}: {b}, fixed {fixed}", machine.name());
+        }
     }
 }

@@ -118,7 +118,7 @@ impl TrimArguments {
         let method = self.method(&machine)?;
         let mut recording = MeasurementSet::default();
         for file in files {
-            recording.motions.extend(motions(&read(Path::new(file))?, file, &machine)?);
+            recording.motions.extend(motions(&read(Path::new(file), &["csv"])?, file, &machine)?);
         }
         let request = TrimRequest {
             machine: Shared(machine.clone().into()),

@@ -2,10 +2,9 @@
 
 use std::sync::LazyLock;
 
-use super::error::MachineError;
 use super::file::{FileError, parse};
 use super::model::Machine;
-use stillbase_settings::range::shortened;
+use stillbase_settings::spelling::UnknownName;
 
 static BUILTINS: LazyLock<Vec<Machine>> = LazyLock::new(|| {
     [
@@ -45,7 +44,5 @@ pub fn named(name: &str) -> Result<Machine, FileError> {
 
 /// Returns the error for a name that no built-in machine has.
 pub fn unknown(name: &str) -> FileError {
-    let known = builtins().iter().map(Machine::name).collect::<Vec<_>>().join(", ");
-    let error = MachineError::Syntax(format!("no such machine: want {known}, or a TOML file"));
-    FileError::Wrong { file: shortened(name, 300), line: None, error }
+    UnknownName::new(name, "machine", builtins().iter().map(Machine::name).collect(), &[]).into()
 }

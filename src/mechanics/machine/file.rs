@@ -7,6 +7,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::{KeyPath, KeyStep, Machine, MachineError, MachineSpec};
 use stillbase_settings::range::shortened;
+use stillbase_settings::spelling::UnknownName;
 use stillbase_settings::text::MAX_TEXT_BYTES;
 
 /// Error of a machine file, with its place.
@@ -31,6 +32,9 @@ pub enum FileError {
         #[source]
         error: MachineError,
     },
+    /// No built-in machine has the name, and there is no such file.
+    #[error(transparent)]
+    UnknownName(#[from] UnknownName),
 }
 
 /// Returns the path of a file for messages, shortened because a path may be arbitrarily long.

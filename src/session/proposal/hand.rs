@@ -4,17 +4,20 @@
 use toml::Value;
 
 use super::Proposal;
+use super::floating::{BaseMotion, Led};
 use super::value::{numbers, taking};
 use crate::edit::Edit;
 use crate::interactive::Session;
 use crate::scenario::{POSE_CONSTANT_RANGE, name_of};
 use crate::verdict::LIMIT_TOLERANCE;
-use stillbase_mechanics::planar::Vector;
+use stillbase_mechanics::planar::{Vector, unit};
 use stillbase_planning::common::nearest_place;
 use stillbase_planning::pose_space::{PoseSpace, Reach};
 use stillbase_planning::reactionless::Decimal;
 use stillbase_query::{ByIdentity, QuickQuery};
 
+/// Number of decimals of a place to which the machine is led, m.
+const PLACE_DECIMALS: usize = 6;
 /// Number of decimals of a limit that is proposed, rad.
 const LIMIT_DECIMALS: usize = 3;
 
@@ -30,6 +33,7 @@ pub struct MissedTarget {
     /// The present b, rad.
     b: f64,
     reach: Reach,
+    base: BaseMotion,
 }
 
 impl QuickQuery for TargetProposals {
@@ -38,8 +42,7 @@ impl QuickQuery for TargetProposals {
 
     fn answer(missed: &Self::Input) -> Self::Answer {
         let Reach::Outside { nearest, feasible_b, displayed_b, .. } = missed.reach else { return Vec::new() };
-        let slide =
-            |(b, shown): (f64, Decimal)| Proposal::of_edit(format!("go to b = {shown} rad"), Edit::SlideB { b });
+        let at_b = feasible_b.zip(displayed_b).and_then(|found| missed.at_another_b(found));
         // The machine waits on the boundary of what it reaches, so the place proposed is a little inside.
         let space = &*missed.space.0;
         let waits = |to: &[Decimal; 2]| {
@@ -51,7 +54,33 @@ impl QuickQuery for TargetProposals {
         let shown = rounded.unwrap_or_else(|| [x, y].map(|x| Decimal::nearest(x, 3)));
         let text = format!("go to the nearest point, ({}, {}) m", shown[0], shown[1]);
         let to_nearest = Proposal::of_edit(text, Edit::DragTarget { x, y });
-        feasible_b.zip(displayed_b).map(slide).into_iter().chain([to_nearest]).collect()
+        at_b.into_iter().chain([to_nearest]).collect()
+    }
+}
+
+impl MissedTarget {
+    /// Proposes a b at which the end effector comes to the target; `b` reaches it in the axes of the base, in rad and as
+    /// printed.
+    fn at_another_b(&self, (b, shown): (f64, Decimal)) -> Option<Proposal> {
+        let space = &*self.space.0;
+        let drag = |[x, y]: [Decimal; 2]| Edit::DragTarget { x: x.value(), y: y.value() };
+        match &self.base {
+            BaseMotion::Stays => Some(Proposal::of_edit(format!("go to b = {shown} rad"), Edit::SlideB { b })),
+            BaseMotion::Turns(body) => {
+                let Led { to, b } = body.led_to(space, self.at, self.b)?;
+                let text = format!("go to ({}, {}) m, b = {b} rad", to[0], to[1]);
+                Some(Proposal::of_edits(text, vec![drag(to), Edit::SlideB { b: b.value() }]))
+            }
+            // How the base would turn cannot be told, so the machine is put there, not led.
+            BaseMotion::Untold(pose) => {
+                let place = (self.at - pose.at) * unit(-pose.angle);
+                let to = [place.re, place.im].map(|x| Decimal::nearest(x, PLACE_DECIMALS));
+                let set = space.reach(Vector::new(to[0].value(), to[1].value())).ok()?;
+                let b = set.decimal(set.moved_inside(set.nearest(self.b)?, 1e-6), 3)?;
+                let text = format!("put it at b = {b} rad, base as it is");
+                Some(Proposal::of_edits(text, vec![drag(to), Edit::PoseB { b: b.value() }]))
+            }
+        }
     }
 }
 
@@ -74,19 +103,31 @@ impl Session {
             at: target.at,
             b: self.b_aim(),
             reach: target.reach,
+            base: BaseMotion::of(self),
         })
     }
 
-    /// Returns what leads out of a b, rad, that does not serve all points of the task: the nearest b that does, and the
-    /// same b with the points turned.
+    /// Returns a b, rad, less whole periods, so that it is as near as can be to the present b. Every period, the machine
+    /// reaches the same.
+    pub fn in_this_period(&self, b: f64) -> f64 {
+        let Ok(space) = self.run().pose_space() else { return b };
+        b - ((b - self.b_aim()) / space.period()).round() * space.period()
+    }
+
+    /// Returns what leads out of a b, rad, that does not serve all points of the task: the b that does and is nearest in
+    /// the present period, the nearest of all, and the same b with the points turned.
     pub fn proposals_for_b(&self, b: f64) -> Vec<Proposal> {
         let asked = b.clamp(POSE_CONSTANT_RANGE.low(), POSE_CONSTANT_RANGE.high());
         let pose = |text: String, b: f64| Proposal::of_edit(text, Edit::PoseB { b });
-        let nearest = self.nearest_feasible_b(asked).filter(|nearest| *nearest != asked);
-        let shown = nearest.and_then(|b| Some((b, self.run().feasible_b()?.decimal(b, 4)?)));
-        let nearest = shown.map(|(_, shown)| pose(format!("take b = {shown} rad"), shown.value()));
-        let turned = pose(format!("take b = {asked:.4} rad, and turn the points with it"), asked);
-        nearest.into_iter().chain([turned]).collect()
+        let nearest = |wanted: f64| {
+            let b = self.nearest_feasible_b(wanted).filter(|nearest| *nearest != asked)?;
+            let shown = self.run().feasible_b()?.decimal(b, 4)?;
+            Some(pose(format!("take b = {shown} rad"), shown.value()))
+        };
+        let mut found: Vec<Proposal> = [self.in_this_period(asked), asked].into_iter().filter_map(nearest).collect();
+        found.dedup();
+        found.push(pose(format!("take b = {asked:.4} rad, and turn the points with it"), asked));
+        found
     }
 
     /// Returns the joint limits that leave out the present pose of a machine that a hand leads, with ways out: the

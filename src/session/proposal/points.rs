@@ -20,9 +20,12 @@ pub struct ReachablePoints {
 }
 
 impl ReachablePoints {
-    /// Returns the nearest b, rad, at which a point, m, can be reached.
-    pub fn at_nearest_b(space: &PoseSpace, p: Vector, b: f64) -> Option<Self> {
-        nearest_b(space, p, b).map(|b| Self { moved: Vec::new(), b: Some(b) })
+    /// Returns the values of b, rad, at which a point, m, can be reached: the nearest one and, if that is far away, before
+    /// it the same one a number of whole periods nearer to 0.
+    pub fn at_nearest_b(space: &PoseSpace, p: Vector, b: f64) -> Vec<Self> {
+        let nearest = nearest_b(space, p, b);
+        let first = nearest.and_then(|b| in_first_period(space, &[p], b));
+        first.into_iter().chain(nearest).map(|b| Self { moved: Vec::new(), b: Some(b) }).collect()
     }
 
     /// Returns the place nearest to point `i`, m, that can be reached at b, rad.
@@ -34,7 +37,8 @@ impl ReachablePoints {
     /// rad.
     pub fn at_any_b(space: &PoseSpace, p: Vector, b: f64) -> Option<Self> {
         let to = nearest_place(space, p, None)?;
-        Some(Self { moved: vec![(0, to)], b: Some(nearest_b(space, place(&to), b)?) })
+        let nearest = nearest_b(space, place(&to), b)?;
+        Some(Self { moved: vec![(0, to)], b: in_first_period(space, &[place(&to)], nearest).or(Some(nearest)) })
     }
 
     /// Returns the shortest move of point `i`, m, after which it shares a b with all others, and that b.
@@ -82,6 +86,15 @@ impl ReachablePoints {
         let moves: Vec<String> = self.moved.iter().map(|(i, [x, y])| format!("{} to ({x}, {y}) m", name(*i))).collect();
         format!("move {}", moves.join(" and "))
     }
+}
+
+/// Returns a b, rad, at which points, m, can be reached, as a number in the first period, from 0 on, as printed. Returns
+/// `None` if b is within half a period of it.
+pub(super) fn in_first_period(space: &PoseSpace, points: &[Vector], b: Decimal) -> Option<Decimal> {
+    let turns = (b.value() / space.period()).floor();
+    let is_far = (b.value() / space.period() - 0.5).abs() > 1.0;
+    let serves = |b: f64| points.iter().all(|p| space.reaches(*p, b));
+    is_far.then(|| Decimal::shortest_passing(b.value() - turns * space.period(), 4, serves)).flatten()
 }
 
 /// Returns the place as a vector, m.

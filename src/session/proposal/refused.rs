@@ -8,6 +8,7 @@ use super::Proposal;
 use super::improve::improvements_while;
 use super::task::{candidates, made_task, shows_only_in_motion, would_plan};
 use super::value::{nearest_values, taking_back};
+use super::wider::{names_limits, wider_limits};
 use crate::changes::after_start_edit;
 use crate::edit::Edit;
 use crate::refusal::Refusal;
@@ -106,12 +107,13 @@ pub fn proposals(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal> {
 pub fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: ProgressCallback<'_>) -> Option<Vec<Proposal>> {
     let bare = scenario.without_edits();
     let candidates = candidates(&bare, refusal);
-    let count = candidates.len() + 1;
-    // Making a task for the machine takes a search, so this is done only if the loop below gets to it.
+    let count = candidates.len() + 2;
+    // Wider limits and a task made for the machine take a search, so this is done only if the loop gets to it.
     let made = std::iter::once_with(|| would_plan(refusal).then(|| made_task(&bare)).flatten()).flatten();
+    let wider = std::iter::once_with(|| names_limits(refusal).then(|| wider_limits(&bare)).flatten()).flatten();
     let in_motion = shows_only_in_motion(refusal);
     let mut proposals: Vec<Proposal> = Vec::new();
-    for (i, candidate) in candidates.into_iter().chain(made).enumerate() {
+    for (i, candidate) in wider.chain(candidates).chain(made).enumerate() {
         if !goes_on(i as f64 / count as f64) {
             return None;
         }

@@ -1,6 +1,6 @@
 //! Changes of a task that may lead out of a refusal. Whether one does, a trial shows.
 
-use super::points::ReachablePoints;
+use super::points::{ReachablePoints, in_first_period};
 use super::value::taking;
 use super::{Proposal, round_up};
 use crate::design::balancing_change;
@@ -28,7 +28,11 @@ pub(super) fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal
     let kind = |kind: TaskKind, text: &str| Proposal::new(text, single_change("task.kind", kind.words().file));
     let mut found = Vec::new();
     if let Some(b) = refusal.displayed_b() {
-        found.push(Proposal::new(format!("take b = {b} rad"), single_change("task.b", b.value())));
+        let take = |b: Decimal| Proposal::new(format!("take b = {b} rad"), single_change("task.b", b.value()));
+        // Every period, the machine reaches the same: a b far away is proposed as `reach` counts it, too.
+        let points = task.points();
+        found.extend(PoseSpace::of(machine).ok().and_then(|space| in_first_period(&space, &points, b)).map(take));
+        found.push(take(b));
         found.extend(turned_task(scenario, b.value()));
     }
     match refusal {

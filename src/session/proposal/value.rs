@@ -9,6 +9,7 @@ use stillbase_settings::change::{DEFAULT_WORD, join, leaves, number, single_chan
 use stillbase_settings::key::{Key, KeyType};
 use stillbase_settings::number::ShortNumber;
 use stillbase_settings::range::Range;
+use stillbase_settings::spelling::nearest_words;
 
 /// Number of bisections between the present value and the wanted one.
 const BISECTIONS: usize = 40;
@@ -126,8 +127,7 @@ fn within_key(of: &KeyType, value: &Value) -> Option<Value> {
         }
         (KeyType::Bounds(range), Value::Array(all)) => list(range, all).map(Value::Array),
         (KeyType::Choice(words), Value::String(word)) if word != DEFAULT_WORD => {
-            let nearest = words.iter().min_by_key(|known| letters_apart(known, word))?;
-            (letters_apart(nearest, word) <= word.chars().count() / 2).then(|| Value::from(*nearest))
+            nearest_words(word, words.iter().copied()).first().map(|nearest| Value::from(*nearest))
         }
         (KeyType::Switch, Value::String(word)) => match word.to_ascii_lowercase().as_str() {
             "yes" | "on" | "1" => Some(true.into()),
@@ -184,18 +184,4 @@ fn between(from: &[f64], to: &[f64], allowed: &dyn Fn(&[f64]) -> bool) -> Option
         })
     });
     Some(rounded.unwrap_or(exact))
-}
-
-/// Returns the number of letters to insert, delete or replace that turns one word into another.
-fn letters_apart(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, a) in a.chars().enumerate() {
-        let mut before = std::mem::replace(&mut row[0], i + 1);
-        for (j, b) in b.iter().enumerate() {
-            let best = (before + usize::from(a != *b)).min(row[j] + 1).min(row[j + 1] + 1);
-            before = std::mem::replace(&mut row[j + 1], best);
-        }
-    }
-    row[b.len()]
 }

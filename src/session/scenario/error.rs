@@ -5,6 +5,7 @@ use thiserror::Error;
 use super::bounds::ordinal;
 use stillbase_mechanics::machine::{FileError, MachineError};
 use stillbase_settings::range::{Requirement, range_error};
+use stillbase_settings::spelling::UnknownName;
 use stillbase_settings::text::MAX_TEXT_BYTES;
 
 /// Reason why a file is not a valid scenario.
@@ -65,6 +66,9 @@ pub enum ScenarioError {
         /// Description of the error.
         message: String,
     },
+    /// No built-in scenario has the name, and there is no such file.
+    #[error(transparent)]
+    UnknownName(#[from] UnknownName),
     /// The file of the scenario's machine is wrong.
     #[error(transparent)]
     MachineFile(#[from] FileError),

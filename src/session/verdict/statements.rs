@@ -23,7 +23,8 @@ use stillbase_settings::number::significant;
 use stillbase_simulation::Guide;
 use stillbase_simulation::frame::Frame;
 
-use moving::{inertia_of, of_moving_machine};
+pub(crate) use moving::inertia_of;
+use moving::of_moving_machine;
 
 /// b is held if it varies by no more than this, rad.
 const B_TOLERANCE: f64 = 1e-6;

@@ -42,6 +42,11 @@ words! {
 }
 
 impl Base {
+    /// Returns whether the base floats and turns whenever b changes: it is free, and has no wheel.
+    pub fn floats(&self) -> bool {
+        self.kind == BaseKind::Free && self.wheel.is_none()
+    }
+
     /// Returns whether the base can move.
     pub fn moves(&self) -> bool {
         self.kind != BaseKind::Fixed

@@ -6,7 +6,7 @@ use crate::plant::{Base, Friction, Load, MAX_CONTACTS, MovingBody, ReducedState,
 use stillbase_mechanics::dynamics::{self, ExternalLoads, by_drives};
 use stillbase_mechanics::joint_forces::{InternalLoads, PinLoads};
 use stillbase_mechanics::kinematics::{end_effector, least_transmission};
-use stillbase_mechanics::machine::{Machine, MachineError, RelativeAngle};
+use stillbase_mechanics::machine::{Inertia, Machine, MachineError, RelativeAngle};
 use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector, length};
 use stillbase_planning::Reference;
 use stillbase_planning::pose_space::plane_map;
@@ -35,6 +35,8 @@ pub struct Simulation {
     pub(super) angles: Vec<RelativeAngle>,
     pub(super) drives: usize,
     pub(super) dt: f64,
+    /// Whether the base [floats](Base::floats).
+    floats: bool,
     pub(super) step: u64,
     pub(super) guide: Guide,
     pub(super) state: State,
@@ -104,7 +106,8 @@ impl Simulation {
             (false, [empty, with]) => [empty.clone(), with.preloaded_as(&empty)],
         };
         let n = machine.drives();
-        let lambda = models[0].arm().lambda();
+        // Of the model on a fixed base: b is formed from the angles between drives and base.
+        let lambda = Inertia::of(setup.model).lambda();
         let limits = plant
             .torque_limits
             .then(|| PerDrive::from_fn(n, |k| setup.model.spec().drives[k].torque_limit.unwrap_or(f64::INFINITY)));
@@ -126,6 +129,7 @@ impl Simulation {
             angles: setup.model.angles().to_vec(),
             drives: n,
             dt: setup.step,
+            floats: setup.base.floats(),
             step: 0,
             guide,
             state,
@@ -416,6 +420,7 @@ impl Simulation {
                 q[a.to] - q[a.from] + a.offset
             }),
             base: x.base,
+            floats: self.floats,
             base_velocity: x.base_velocity,
             base_rate: x.qd.get(n).copied().unwrap_or(0.0),
             base_angular_acceleration: x.qdd.get(n).copied().unwrap_or(0.0),

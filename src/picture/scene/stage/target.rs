@@ -67,6 +67,7 @@ fn rows(frame: &Frame, options: &ViewOptions) -> Vec<(String, bool)> {
     match frame.target.reach {
         Reach::Outside { nearest, displayed_b, other_sheet, .. } => {
             let would = match displayed_b {
+                Some(b) if frame.floats => format!("b = {b} rad if the base is held"),
                 Some(b) => format!("b = {b} rad would reach it"),
                 None if other_sheet => "drag it round, or change b".into(),
                 None => "no b reaches it".into(),
