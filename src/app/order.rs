@@ -24,10 +24,11 @@ impl Plugin for EventQueue {
     }
 
     fn on_end_pass(&mut self, ui: &mut Ui) {
-        match self.waiting.get(&ui.ctx().viewport_id()) {
+        let window = ui.ctx().viewport_id();
+        match self.waiting.get(&window) {
             Some(waiting) if !waiting.is_empty() => ui.ctx().request_repaint(),
-            // Nothing is kept for a window that may be gone.
-            _ => _ = self.waiting.remove(&ui.ctx().viewport_id()),
+            // A window that closes leaves nothing behind.
+            _ => _ = self.waiting.remove(&window),
         }
     }
 }

@@ -75,7 +75,8 @@ fn panel_id() -> Id {
 
 /// Returns the lines of plots for the width of the panel, points, or of the widest plot window if that is wider.
 pub fn of_width(ctx: &Context, what: &DisplayContext<'_>, plots: &[Plot<'_>], width: f32) -> Arc<Vec<PlotLines>> {
-    ctx.data_mut(|data| data.insert_temp(panel_id(), (width - LEFT_MARGIN) * ctx.pixels_per_point()));
+    let width = (width - LEFT_MARGIN) * ctx.pixels_per_point();
+    ctx.data_mut(|data| data.insert_temp(panel_id(), width));
     of_last_width(ctx, what, plots)
 }
 
