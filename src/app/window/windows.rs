@@ -10,7 +10,7 @@ use winit::window::{Window, WindowId};
 
 use super::error::{WindowError, what_is_missing};
 use super::pane::Pane;
-use super::screen::{Drawing, PaintOutcome, Screen};
+use super::screen::{Canvas, Drawing, PaintOutcome, Screen};
 use super::shell::{Wake, last_clause};
 use stillbase_picture::paint::enable_draft_quality;
 use stillbase_picture::render::offscreen::NoAdapter;
@@ -181,7 +181,7 @@ fn screen(
     window: &Arc<Window>,
     events: &ActiveEventLoop,
     wakes: &EventLoopProxy<Wake>,
-) -> Result<(Screen, super::screen::Canvas), NoAdapter> {
+) -> Result<(Screen, Canvas), NoAdapter> {
     let wake = wakes.clone();
     Screen::new(window, events.owned_display_handle(), move || {
         let _ = wake.send_event(Wake::Lost);
