@@ -1,7 +1,6 @@
 //! Windows of plots beside the main window: they open, move, and close as the state of the interface has it.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use egui::{ViewportBuilder, ViewportId};
 use winit::dpi::PhysicalPosition;
@@ -117,7 +116,7 @@ impl Windows {
         let at = pane.window.outer_position().ok().map(|at| [at.x, at.y]);
         if app.app_state_mut().keep_place(id, at, size) {
             pane.plot = app.app_state().plot_windows().into_iter().find(|plot| plot.id == id);
-            self.main.wants_pass(Instant::now());
+            self.ctx.request_repaint_of(ViewportId::ROOT);
         }
     }
 }
