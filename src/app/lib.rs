@@ -85,6 +85,7 @@ pub use layout::{BottomPanel, Layout, Panel, Panels, WindowArrangement};
 pub use notes::NoteDraft;
 pub use open::{Finder, OpenDialogs};
 pub use pair::{Pair, PairWith};
+pub use plots::{MIN_PLOT_WINDOW_PT, PlotWindow};
 pub use preferences::Preferences;
 pub use resume_point::ResumePoint;
 pub use shot::{PictureOrder, Shot};

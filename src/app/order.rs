@@ -4,12 +4,12 @@
 //! contain a press, a drag, a release and later movements. A widget would then be released at the present position,
 //! not at that of the release. So each frame gets at most one press or release, and no event after it.
 
-use egui::{Context, Event, Plugin, RawInput, Ui};
+use egui::{Context, Event, Plugin, RawInput, Ui, ViewportIdMap};
 
-/// Plugin that keeps the events after a press or a release for the next frame.
+/// Plugin that keeps the events after a press or a release for the next frame of their window.
 #[derive(Debug, Default)]
 pub struct EventQueue {
-    waiting: Vec<Event>,
+    waiting: ViewportIdMap<Vec<Event>>,
 }
 
 impl Plugin for EventQueue {
@@ -18,13 +18,17 @@ impl Plugin for EventQueue {
     }
 
     fn input_hook(&mut self, _: &Context, input: &mut RawInput) {
-        self.waiting.append(&mut input.events);
-        input.events = first_part(&mut self.waiting);
+        let waiting = self.waiting.entry(input.viewport_id).or_default();
+        waiting.append(&mut input.events);
+        input.events = first_part(waiting);
     }
 
     fn on_end_pass(&mut self, ui: &mut Ui) {
-        if !self.waiting.is_empty() {
-            ui.ctx().request_repaint();
+        let window = ui.ctx().viewport_id();
+        match self.waiting.get(&window) {
+            Some(waiting) if !waiting.is_empty() => ui.ctx().request_repaint(),
+            // A window that closes leaves nothing behind.
+            _ => _ = self.waiting.remove(&window),
         }
     }
 }

@@ -10,6 +10,7 @@ mod exporting;
 mod given;
 mod opening;
 mod pass;
+mod plot_window;
 mod time;
 mod writing;
 
@@ -222,8 +223,7 @@ impl AppState {
 
     /// Returns the window title: the file, if there is one, and the scenario, with ` *` if there are unsaved changes.
     pub fn title(&self) -> String {
-        let scenario = self.own_session().scenario();
-        let name = if scenario.title.is_empty() { &scenario.name } else { &scenario.title };
+        let name = run_name(self.own_session().scenario());
         let mark = if self.own_saving().is_unsaved() { " *" } else { "" };
         let file = self.own_saving().own_file(self.own_session().undo_count()).and_then(|file| file.file_name());
         let name = match file {
@@ -345,4 +345,9 @@ impl AppState {
         self.refresh_fronts();
         self.collect();
     }
+}
+
+/// Returns the title of a run, or the name of a run without one.
+fn run_name(scenario: &Scenario) -> &str {
+    if scenario.title.is_empty() { &scenario.name } else { &scenario.title }
 }

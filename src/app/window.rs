@@ -1,15 +1,20 @@
 //! A desktop window around an [`AppState`].
 
 mod app;
+mod beside;
 mod chooser;
 mod error;
 mod keeper;
+mod monitors;
+mod pane;
 mod screen;
 mod shell;
 mod times;
+mod windows;
 
 pub use app::{App, Clock};
 pub use error::WindowError;
+pub use monitors::{MonitorArea, visible_place};
 
 use crate::jobs::Threads;
 use crate::{AppState, Preferences, SessionCommand};

@@ -1,7 +1,8 @@
 //! The places of plots: in the user's order, in columns, and in windows of their own.
 
-use egui::{Key, Rect, pos2, vec2};
+use egui::{Event, Key, RawInput, Rect, ViewportInfo, pos2, vec2};
 use egui_kittest::kittest::Queryable as _;
+use stillbase::app::window::{MonitorArea, visible_place};
 use stillbase::app::{Layout, ResumePoint, ViewChange};
 use stillbase::picture::charts::choice::PlotChange;
 use stillbase::picture::scene::palette::Theme;
@@ -13,6 +14,9 @@ pub const TESTS: &[Test] = tests![
     a_heading_is_dragged_to_another_place,
     a_menu_moves_a_plot_by_keys,
     a_plot_has_a_window_of_its_own_and_goes_back,
+    a_plot_in_a_window_of_the_desktop_is_not_in_the_main_one,
+    a_place_on_the_desktop_is_kept_with_the_session,
+    a_window_comes_back_onto_a_monitor,
     plots_fill_columns_in_compare,
     runs_are_named_above_the_plots,
 ];
@@ -147,6 +151,85 @@ fn a_plot_has_a_window_of_its_own_and_goes_back() {
     h.run_steps(3);
     assert!(at(&h).is_none() && plot(&h, "Turning moment on the base").left() > scene.right() - 2.0);
     assert_eq!(order(&h)[..2], ["Torque", "Turning moment on the base"]);
+}
+
+fn a_plot_in_a_window_of_the_desktop_is_not_in_the_main_one() {
+    let mut h = shown();
+    h.ctx.set_embed_viewports(false);
+    h.state_mut().app_state_mut().carry_out(place("Torque", Some([900.0, 60.0, 460.0, 260.0])));
+    h.run_steps(3);
+    assert!(h.query_by_label_contains("Torque over time").is_none());
+    let [window] = h.state().app_state().plot_windows().try_into().expect("one window");
+    assert_eq!(window.title, format!("Torque – {}", session(&h).scenario().title));
+    // The window shows it with the title above, so the plot has none.
+    let mut pass = |events: Vec<Event>| {
+        let mut input = RawInput { viewport_id: window.id, events, ..RawInput::default() };
+        input.screen_rect = Some(Rect::from_min_size(pos2(0.0, 0.0), vec2(460.0, 260.0)));
+        input.viewports.insert(window.id, ViewportInfo::default());
+        let ctx = h.ctx.clone();
+        let output = ctx.run_ui(input, |ui| h.state_mut().plot_ui(ui, window.id));
+        h.run_steps(2);
+        let app_state = h.state().app_state();
+        (output.shapes.len(), app_state.plot_windows().len(), app_state.view_state().arrangement.theme)
+    };
+    let key = |key| Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: Default::default() };
+    pass(Vec::new());
+    let (shapes, windows, theme) = pass(Vec::new());
+    assert!(shapes > 10 && windows == 1 && theme == Theme::Dark, "{shapes} shapes in {windows} window");
+    // Keys do what they do in the main window, except that Esc puts the plot back.
+    assert_eq!(pass(vec![key(Key::L)]).2, Theme::Light);
+    assert_eq!(pass(vec![key(Key::Escape)]).1, 0);
+    h.run_steps(2);
+    assert!(h.query_by_label_contains("Torque over time").is_some());
+}
+
+fn place(name: &str, window: Option<[f32; 4]>) -> ViewChange {
+    ViewChange::Charts(PlotChange::Window(name.into(), window))
+}
+
+fn a_place_on_the_desktop_is_kept_with_the_session() {
+    let mut h = shown();
+    let app_state = h.state_mut().app_state_mut();
+    app_state.carry_out(place("Torque", Some([900.0, 60.0, 460.0, 260.0])));
+    let id = app_state.plot_windows()[0].id;
+    assert!(app_state.keep_place(id, Some([-1200, 340]), [500.0, 300.0]), "it is new");
+    assert!(!app_state.keep_place(id, Some([-1200, 340]), [500.0, 300.0]), "it is known");
+    let of = |point: &ResumePoint| {
+        let changes = &point.plots.changes["Torque"];
+        (changes.window.expect("out"), changes.desktop)
+    };
+    let text = app_state.left_off().before("# a session\n");
+    let kept = of(&ResumePoint::of(&text).expect("it is there"));
+    assert_eq!(kept, ([900.0, 60.0, 500.0, 300.0], Some([-1200, 340])));
+    // Where the system tells no places, the last one stays; what no window can be is not kept.
+    app_state.keep_place(id, None, [520.0, 300.0]);
+    assert_eq!(of(&app_state.left_off()), ([900.0, 60.0, 520.0, 300.0], Some([-1200, 340])));
+    app_state.keep_place(id, Some([i32::MIN, 0]), [f32::NAN, 1e9]);
+    assert_eq!(of(&app_state.left_off()), ([900.0, 60.0, 520.0, 300.0], Some([-1200, 340])));
+    // Pulled out anew, it stands where it was let go.
+    app_state.carry_out(place("Torque", None));
+    assert!(app_state.plot_windows().is_empty() && !app_state.keep_place(id, Some([0, 0]), [500.0, 300.0]));
+    app_state.carry_out(place("Torque", Some([10.0, 60.0, 460.0, 260.0])));
+    assert_eq!(of(&app_state.left_off()), ([10.0, 60.0, 460.0, 260.0], None));
+}
+
+fn a_window_comes_back_onto_a_monitor() {
+    let left = MonitorArea { at: [0, 0], size: [1920, 1080] };
+    let right = MonitorArea { at: [1920, -200], size: [2560, 1440] };
+    let size = [460, 260];
+    for seen in [[100, 100], [1700, 100], [-300, 50], [2500, -200], [4380, 1200]] {
+        assert_eq!(visible_place(seen, size, &[left, right]), seen);
+    }
+    // The second monitor is gone: to the edge of the first, at the same height.
+    assert_eq!(visible_place([2500, 300], size, &[left]), [1920 - 460, 300]);
+    assert_eq!(visible_place([2500, -150], size, &[left]), [1920 - 460, 0]);
+    // Too far up its title could not be taken; too far down it could not be seen.
+    assert_eq!(visible_place([100, -40], size, &[left]), [100, 0]);
+    assert_eq!(visible_place([100, 1079], size, &[left]), [100, 1080 - 260]);
+    // The nearest monitor takes it, a window that is larger than it begins at its corner.
+    assert_eq!(visible_place([6000, 0], size, &[left, right]), [1920 + 2560 - 460, 0]);
+    assert_eq!(visible_place([i32::MAX, i32::MIN], [9000, 9000], &[left]), [0, 0]);
+    assert_eq!(visible_place([70, -9000], size, &[]), [70, -9000], "nothing is known");
 }
 
 /// In a wide window, the plots of the layout Compare stand in columns; dragged, they move among these.

@@ -154,14 +154,31 @@ impl Display {
         text.chars().for_each(|letter| self.tap(letter as u32));
     }
 
-    /// The program's window, if it is there.
-    pub fn window(&self) -> Option<Window> {
+    /// The window whose title has a part, if it is seen.
+    pub fn titled(&self, part: &str) -> Option<Window> {
         let children = self.conn.query_tree(self.root).ok()?.reply().ok()?.children;
         children.into_iter().find(|window| {
             let seen = self.conn.get_window_attributes(*window).ok().and_then(|asked| asked.reply().ok());
             seen.is_some_and(|about| about.map_state == MapState::VIEWABLE)
-                && self.title_of(*window).is_some_and(|title| title.contains("Stillbase"))
+                && self.title_of(*window).is_some_and(|title| title.contains(part))
         })
+    }
+
+    /// The program's main window, if it is there.
+    pub fn window(&self) -> Option<Window> {
+        self.titled("Stillbase")
+    }
+
+    /// Left, top, width and height of a window.
+    pub fn place(&self, window: Window) -> Option<[i32; 4]> {
+        let at = self.conn.get_geometry(window).ok()?.reply().ok()?;
+        Some([at.x.into(), at.y.into(), at.width.into(), at.height.into()])
+    }
+
+    /// Puts a window elsewhere, as its frame would.
+    pub fn put(&self, window: Window, [left, top]: [i32; 2]) {
+        let wanted = ConfigureWindowAux::new().x(left).y(top);
+        drop(self.conn.configure_window(window, &wanted).expect("sent").check());
     }
 
     fn atom(&self, name: &str) -> Option<u32> {
@@ -178,17 +195,25 @@ impl Display {
         self.window().and_then(|window| self.title_of(window)).unwrap_or_default()
     }
 
-    /// Keys go to the window, as a window manager would have it.
+    /// Keys go to the main window, as a window manager would have it.
     pub fn focus(&self) {
-        let Some(window) = self.window() else { return };
+        self.window().into_iter().for_each(|window| self.focus_on(window));
+    }
+
+    /// Keys go to a window.
+    pub fn focus_on(&self, window: Window) {
         let asked = self.conn.set_input_focus(InputFocus::PARENT, window, x11rb::CURRENT_TIME);
         // The window may be gone by now.
         drop(asked.map(|asked| asked.check()));
     }
 
-    /// Asks the window to close, as its frame would.
+    /// Asks the main window to close, as its frame would.
     pub fn close(&self) {
-        let window = self.window().expect("a window to close");
+        self.close_one(self.window().expect("a window to close"));
+    }
+
+    /// Asks a window to close.
+    pub fn close_one(&self, window: Window) {
         let [protocols, delete] = ["WM_PROTOCOLS", "WM_DELETE_WINDOW"].map(|name| self.atom(name).expect("known"));
         let event = ClientMessageEvent::new(32, window, protocols, [delete, 0, 0, 0, 0]);
         let sent = self.conn.send_event(false, window, EventMask::NO_EVENT, event);
@@ -245,6 +270,17 @@ impl Picture {
     pub fn differs(&self, other: &Self) -> usize {
         let far = |(a, b): (&[u8; 3], &[u8; 3])| (0..3).any(|k| a[k].abs_diff(b[k]) > 24);
         self.pixels.iter().zip(&other.pixels).filter(|pair| far(*pair)).count()
+    }
+
+    /// The column within left, top, width and height where the time cursor, an amber line, stands.
+    pub fn cursor(&self, [left, top, width, height]: [i32; 4]) -> Option<i32> {
+        let amber = |[r, g, b]: [u8; 3]| i32::from(r) - i32::from(b) > 40 && r > g && g > b && r.abs_diff(g) < 70;
+        let count = |x: i32| {
+            let column = (top..top + height).filter_map(|y| self.at(x.into(), y.into()));
+            column.filter(|pixel| amber(*pixel)).count()
+        };
+        let (most, x) = (left..left + width).map(|x| (count(x), x)).max()?;
+        (most > height as usize / 3).then_some(x)
     }
 
     /// Where the white ring of the target is within x, y, width and height.

@@ -1,5 +1,6 @@
 //! What a person needs to use the program, and what is tried with it.
 
+mod beside;
 mod display;
 mod hands;
 mod keyboard;
@@ -25,7 +26,8 @@ macro_rules! tests {
 
 use tests;
 
-pub const TESTS: [&[Test]; 5] = [hands::TESTS, keyboard::TESTS, loss::TESTS, portal::TESTS, tasks::TESTS];
+pub const TESTS: [&[Test]; 6] =
+    [beside::TESTS, hands::TESTS, keyboard::TESTS, loss::TESTS, portal::TESTS, tasks::TESTS];
 
 /// Those that are asked for only.
 pub const LONG: &[Test] = wander::TESTS;

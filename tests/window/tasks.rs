@@ -15,8 +15,8 @@ use crate::Test;
 pub const TESTS: &[Test] = super::tests![a_newcomer_gets_on_by_mouse, a_newcomer_gets_on_by_keyboard];
 
 /// A desk with the usual session at rest, without hints.
-fn desk(of: &'static str) -> Desk {
-    let mut desk = Desk::new(of, [1440, 900]);
+pub fn desk(of: &'static str, size: [u16; 2]) -> Desk {
+    let mut desk = Desk::new(of, size);
     desk.open(&[]);
     desk.reads("Drag the white ring.");
     hold(&desk, |desk| desk.click("Pause"));
@@ -55,7 +55,7 @@ fn recovers(desk: &mut Desk) {
 }
 
 fn a_newcomer_gets_on_by_mouse() {
-    let mut desk = desk("tasks");
+    let mut desk = desk("tasks", [1440, 900]);
     let export = |desk: &Desk, entry: &str| {
         desk.click("File");
         let export = desk.reads("Export").name;
@@ -116,7 +116,7 @@ fn a_newcomer_gets_on_by_mouse() {
 }
 
 fn a_newcomer_gets_on_by_keyboard() {
-    let mut desk = desk("tasks-by-keys");
+    let mut desk = desk("tasks-by-keys", [1440, 900]);
 
     // Draw: a point on the way, typed.
     command(&desk, "task.via=[[0.53,0.68]]");

@@ -1,6 +1,6 @@
 //! The values at the time under the pointer, shown by all plots at once.
 
-use egui::{Grid, Id, RichText, Ui};
+use egui::{Grid, Id, RichText, Ui, ViewportId};
 
 use super::shown::{DisplayContext, nearest};
 use crate::theme::{bold, colour, plain};
@@ -17,19 +17,29 @@ fn id() -> Id {
 
 /// Returns the frame nearest to the time under the pointer in the last pass.
 pub fn instant<'a>(ui: &Ui, session: &'a Session) -> Option<&'a Frame> {
-    let time: f64 = ui.data(|data| data.get_temp(id()))?;
+    let (_, time): Pointed = ui.data(|data| data.get_temp(id()))?;
     Some(nearest(session, time))
 }
 
-/// Stores the time under the pointer for the next pass, in which all plots show it.
+/// The window in which the pointer is over a plot, and the time there, s.
+type Pointed = (ViewportId, f64);
+
+/// Stores the time under the pointer in this window for the next pass, in which the plots of all windows show it.
 pub fn remember(ui: &Ui, over: Option<f64>) {
-    let known: Option<f64> = ui.data(|data| data.get_temp(id()));
-    if known != over {
-        ui.data_mut(|data| match over {
-            Some(time) => _ = data.insert_temp(id(), time),
-            None => data.remove::<f64>(id()),
+    let here = ui.ctx().viewport_id();
+    let known: Option<Pointed> = ui.data(|data| data.get_temp(id()));
+    let now = match (known, over) {
+        // The pointer may be in another window.
+        (Some((window, _)), None) if window != here => return,
+        (_, over) => over.map(|time| (here, time)),
+    };
+    if known != now {
+        ui.data_mut(|data| match now {
+            Some(pointed) => _ = data.insert_temp(id(), pointed),
+            None => data.remove::<Pointed>(id()),
         });
-        ui.ctx().request_repaint();
+        // The other windows are drawn after the main one.
+        ui.ctx().request_repaint_of(ViewportId::ROOT);
     }
 }
 

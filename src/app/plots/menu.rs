@@ -1,7 +1,7 @@
 //! The menu of a plot: opened by a button in its corner, or by the right mouse button.
 
 use egui::accesskit::Role;
-use egui::{Align2, Button, Popup, Rect, Response, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align2, Button, Popup, Rect, Response, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use super::prepared::extent;
 use super::shown::DisplayContext;
@@ -13,6 +13,9 @@ use stillbase_picture::charts::choice::{Plot, PlotChange};
 use stillbase_query::answer_sequence;
 use stillbase_settings::text::capitalised;
 use stillbase_study::samples::SignalSamples;
+
+/// Height of the margins of the menu, points.
+const MENU_MARGINS_PT: f32 = 16.0;
 
 /// Draws the button, and the menu while it is open.
 pub fn show(
@@ -55,7 +58,15 @@ fn places(ui: &mut Ui, shown: &DisplayContext<'_>, plot: &Plot<'_>, rect: Rect, 
     entry(ui, "Into a window of its own", Some(place::pulled_out(&plot.name, rect)));
 }
 
+/// Draws the entries, which scroll in a window that is not as high.
 fn entries(ui: &mut Ui, shown: &DisplayContext<'_>, plot: &Plot<'_>, rect: Rect, commands: &mut Vec<Command>) {
+    let room = ui.ctx().content_rect().height() - MENU_MARGINS_PT;
+    ScrollArea::vertical().max_height(room).min_scrolled_height(room).show(ui, |ui| {
+        all_entries(ui, shown, plot, rect, commands);
+    });
+}
+
+fn all_entries(ui: &mut Ui, shown: &DisplayContext<'_>, plot: &Plot<'_>, rect: Rect, commands: &mut Vec<Command>) {
     let chosen = &shown.view_state.charts;
     let extent = extent(shown.session);
     let range = extent.shown(chosen.range);

@@ -31,6 +31,7 @@ pub use search::focus;
 pub use search::is_looking;
 pub use shown::DisplayContext;
 pub use small::{base_plot, marks, small_axes, spaced};
+pub use window::{MIN_PLOT_WINDOW_PT, PlotWindow, alone};
 pub use written::{figures, written};
 
 /// Default width of the panel: a fraction of the window width, within bounds, points.
@@ -73,7 +74,7 @@ fn columns_in(width: f32) -> usize {
     (width / MIN_COLUMN_PT).floor().clamp(1.0, MAX_COLUMNS) as usize
 }
 
-/// Draws the plots: those with windows of their own, and in the panel the others. Returns the width of the panel set by
+/// Draws the plots of the main window: those with windows in it, and in the panel the others. Returns the width of the panel set by
 /// the user, points, if any.
 pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, has_panel: bool, commands: &mut Vec<Command>) -> Option<f32> {
     let DisplayContext { session, signals, view_state, .. } = *what;
@@ -83,7 +84,7 @@ pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, has_panel: bool, commands: &
     let most = (0.6 * ui.available_width()).max(usual);
     let stored = arrangement.now().plots.width;
     if !has_panel {
-        if plots.iter().any(|plot| plot.window.is_some()) {
+        if ui.ctx().embed_viewports() && plots.iter().any(|plot| plot.window.is_some()) {
             let lines = prepared::of_width(ui.ctx(), what, &plots, 0.0);
             let over = window::show(ui.ctx(), what, &plots, &lines, commands);
             hover::remember(ui, over);

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use egui::Context;
+use egui::{Context, Id};
 
 use super::shown::DisplayContext;
+use super::window;
 use stillbase_picture::charts::choice::{Plot, PlotChoice};
 use stillbase_picture::charts::drawn::PlotLines;
 use stillbase_picture::charts::figure::LEFT_MARGIN;
@@ -67,11 +68,32 @@ pub fn extent(session: &Session) -> TimeExtent {
     }
 }
 
+/// Key under which egui stores the width that a plot had last in the panel, pixels.
+fn panel_id() -> Id {
+    Id::unique("width of plots in the panel")
+}
+
 /// Returns the lines of plots for the width of the panel, points, or of the widest plot window if that is wider.
 pub fn of_width(ctx: &Context, what: &DisplayContext<'_>, plots: &[Plot<'_>], width: f32) -> Arc<Vec<PlotLines>> {
-    let windows = plots.iter().filter_map(|plot| plot.window);
-    let widest = windows.fold(width, |widest, [_, _, width, _]| widest.max(width));
-    let columns = ((widest - LEFT_MARGIN) * ctx.pixels_per_point()).clamp(16.0, 8192.0) as usize;
+    let width = (width - LEFT_MARGIN) * ctx.pixels_per_point();
+    ctx.data_mut(|data| data.insert_temp(panel_id(), width));
+    of_last_width(ctx, what, plots)
+}
+
+/// Returns the lines of plots for the width that the panel had last: all windows draw the same lines.
+pub fn of_last_width(ctx: &Context, what: &DisplayContext<'_>, plots: &[Plot<'_>]) -> Arc<Vec<PlotLines>> {
+    let panel: f32 = ctx.data(|data| data.get_temp(panel_id())).unwrap_or_default();
+    let width = |plot: &Plot<'_>| {
+        let [_, _, width, _] = plot.window?;
+        // Screens differ in their pixels per point.
+        let scale = match ctx.embed_viewports() {
+            true => ctx.pixels_per_point(),
+            false => ctx.input_for(window::viewport(&plot.name), |input| input.pixels_per_point),
+        };
+        Some((width - LEFT_MARGIN) * scale)
+    };
+    let widest = plots.iter().filter_map(width).fold(panel, f32::max);
+    let columns = widest.clamp(16.0, 8192.0) as usize;
     let (lines, is_whole) = drawn(what, plots, columns);
     if !is_whole {
         ctx.request_repaint();

@@ -1,17 +1,20 @@
-//! Plots in windows of their own, over the scene. Their places are saved with the session.
+//! Plots in windows of their own: of the desktop, or where it shows one window only, over the scene. Their places are
+//! saved with the session.
 
-use egui::{Color32, Context, Id, Rect, RichText, Window, pos2, vec2};
+use egui::{CentralPanel, Color32, Context, Frame, Id, Rect, RichText, Ui, ViewportId, Window, pos2, vec2};
 
-use super::cell;
 use super::shown::DisplayContext;
-use crate::theme::bold;
+use super::{cell, hover, prepared};
+use crate::theme::{bold, colour};
 use crate::{Command, ViewChange};
 use stillbase_picture::charts::choice::{Plot, PlotChange};
 use stillbase_picture::charts::drawn::PlotLines;
-use stillbase_settings::text::cut_at_word;
+use stillbase_settings::text::{cut_at_word, shorten_message};
 
 /// Minimum width and height of a window, points.
-const MIN_SIZE_PT: [f32; 2] = [260.0, 160.0];
+pub const MIN_PLOT_WINDOW_PT: [f32; 2] = [260.0, 160.0];
+/// Margin around the plot, points.
+const MARGIN_PT: i8 = 8;
 /// Width beside the title: margins and the button that closes the window, points.
 const TITLE_MARGINS_PT: f32 = 64.0;
 /// Least move of a window that is saved, points.
@@ -26,7 +29,52 @@ struct KnownWindow {
     opened: u32,
 }
 
-/// Draws the plots that have windows of their own; returns the time under the pointer, s, if it is over one of them.
+/// A plot that has a window of the desktop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlotWindow {
+    /// Of the window, for egui.
+    pub id: ViewportId,
+    /// Name of the plot.
+    pub name: String,
+    /// Title of the window: the plot and the run.
+    pub title: String,
+    /// Left and top from the corner of the main window, width and height, points.
+    pub place: [f32; 4],
+    /// Left and top on the desktop, pixels, if it has had a place there.
+    pub desktop: Option<[i32; 2]>,
+}
+
+impl PlotWindow {
+    /// Returns the window of a plot of a run, if it has one.
+    pub fn of(plot: &Plot<'_>, run: &str) -> Option<Self> {
+        let place = plot.window?;
+        let title = shorten_message(&format!("{} – {run}", plot.heading())).into();
+        Some(Self { id: viewport(&plot.name), name: plot.name.clone(), title, place, desktop: plot.desktop })
+    }
+}
+
+/// Returns the identifier of a plot's window of the desktop.
+pub fn viewport(name: &str) -> ViewportId {
+    ViewportId::from_hash_of(("plot in a window", name))
+}
+
+/// Draws the plot of a window of the desktop, which it fills.
+pub fn alone(ui: &mut Ui, what: &DisplayContext<'_>, id: ViewportId, commands: &mut Vec<Command>) {
+    let palette = what.view_state.palette();
+    let plots = what.view_state.plots(what.session.scenario(), what.signals);
+    let lines = prepared::of_last_width(ui.ctx(), what, &plots);
+    let mut over = None;
+    CentralPanel::default().frame(Frame::new().fill(colour(palette.panel)).inner_margin(MARGIN_PT)).show(ui, |ui| {
+        let frames = cell::Frames::of(ui, what);
+        ui.spacing_mut().item_spacing.y = 3.0;
+        for (plot, drawn) in plots.iter().zip(&*lines).filter(|(plot, _)| viewport(&plot.name) == id) {
+            over = cell::show(ui, what, plot, drawn, &frames.look(&palette), None, commands);
+        }
+    });
+    hover::remember(ui, over);
+}
+
+/// Draws the plots that have windows over the scene; returns the time under the pointer, s, if it is over one of them.
 pub fn show(
     ctx: &Context,
     what: &DisplayContext<'_>,
@@ -35,6 +83,9 @@ pub fn show(
     commands: &mut Vec<Command>,
 ) -> Option<f64> {
     let mut over = None;
+    if !ctx.embed_viewports() {
+        return over;
+    }
     for (plot, drawn) in plots.iter().zip(lines) {
         let Some(window) = plot.window else { continue };
         over = one(ctx, what, plot, window, drawn, commands).or(over);
@@ -59,7 +110,7 @@ fn one(
     let [left, top, width, height] = window;
     let (mut open, mut over) = (true, None);
     let heading = fitted_title(ctx, &plot.heading(), width - TITLE_MARGINS_PT);
-    let frame = egui::Frame::window(&ctx.global_style()).inner_margin(8);
+    let frame = Frame::window(&ctx.global_style()).inner_margin(MARGIN_PT);
     let made = Window::new(RichText::new(heading).font(bold(12.5)))
         .id(id.with(known.opened))
         .open(&mut open)
@@ -67,7 +118,7 @@ fn one(
         .frame(frame)
         .title_frame(frame)
         .default_rect(Rect::from_min_size(pos2(left, top), vec2(width, height)))
-        .min_size(MIN_SIZE_PT)
+        .min_size(MIN_PLOT_WINDOW_PT)
         .show(ctx, |ui| {
             let frames = cell::Frames::of(ui, what);
             let palette = what.view_state.palette();

@@ -1,6 +1,9 @@
 //! One pass of the user interface.
 
+use egui::ViewportId;
+
 use super::AppState;
+use super::plot_window::laid_over;
 use crate::export::{self, DisplaySize};
 use crate::facts::ScenarioFacts;
 use crate::finder::FinderContent;
@@ -42,13 +45,13 @@ impl AppState {
             ui.ctx().copy_text(text);
         }
         self.catch_up();
+        self.keep_plot_windows(ui.ctx());
         self.background.count_repaint();
         if let Some(tour) = &mut self.view_state.open.tour {
             tour.follow(&self.session);
         }
         let other = self.view_state.pair.as_ref().and_then(|_| self.beside());
-        let table = other.as_deref().and_then(|other| other.as_ref().ok()).map(|other| &other.table);
-        let beside = table.or(self.comparison.as_ref());
+        let beside = laid_over(other.as_deref(), self.comparison.as_ref());
         let queries = self.queries().clone();
         let marks = Marks::of(&queries, &self.session, beside);
         if !marks.is_whole {
@@ -154,6 +157,16 @@ impl AppState {
             // The cancelled drag is undone before its gesture ends.
             commands.insert(0, Command::Session(SessionCommand::GiveUp));
         }
+        self.carry_out_all(ui.ctx(), commands);
+        if (self.session.is_moving() || self.loops()) && !self.background.is_changing() {
+            ui.ctx().request_repaint();
+        } else if self.background.is_busy() || self.intro.as_ref().is_some_and(Intro::is_resting) {
+            ui.ctx().request_repaint_after_secs(PROGRESS_INTERVAL_S);
+        }
+    }
+
+    /// Carries out the commands of a pass, of whichever window.
+    pub(super) fn carry_out_all(&mut self, ctx: &egui::Context, commands: Vec<Command>) {
         if commands
             .iter()
             .any(|c| !matches!(c, Command::Session(SessionCommand::EndGesture) | Command::View(ViewChange::Preview(_))))
@@ -161,7 +174,7 @@ impl AppState {
             self.view_state.status = StatusMessage::default();
         }
         if !commands.is_empty() {
-            ui.ctx().request_repaint();
+            ctx.request_repaint_of(ViewportId::ROOT);
         }
         for command in commands {
             let seen = self.intro.is_some().then(|| command.clone());
@@ -178,11 +191,6 @@ impl AppState {
             if self.hand_back() {
                 self.announce("the hints are over: your session is as it was");
             }
-        }
-        if (self.session.is_moving() || self.loops()) && !self.background.is_changing() {
-            ui.ctx().request_repaint();
-        } else if self.background.is_busy() || self.intro.as_ref().is_some_and(Intro::is_resting) {
-            ui.ctx().request_repaint_after_secs(PROGRESS_INTERVAL_S);
         }
     }
 

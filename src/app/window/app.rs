@@ -118,10 +118,7 @@ impl App {
         if let Clock::Wall(_) = self.clock {
             self.app_state.record_cost(now.elapsed().as_secs_f64());
         }
-        let dropped: Option<PathBuf> = ui.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
-        if let Some(path) = dropped {
-            self.app_state.carry_out(SessionCommand::OpenFile(path));
-        }
+        self.open_dropped(ui);
         self.app_state.ui(ui);
         let now = Instant::now();
         self.times.end(now);
@@ -145,6 +142,26 @@ impl App {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.title = title;
         }
+    }
+
+    /// Runs one pass of the user interface over the window of a plot.
+    pub fn plot_ui(&mut self, ui: &mut egui::Ui, id: egui::ViewportId) {
+        self.open_dropped(ui);
+        self.app_state.plot_ui(ui, id);
+    }
+
+    /// Opens a file that was dropped on a window.
+    fn open_dropped(&mut self, ui: &egui::Ui) {
+        let dropped: Option<PathBuf> = ui.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
+        if let Some(path) = dropped {
+            self.app_state.carry_out(SessionCommand::OpenFile(path));
+            ui.ctx().request_repaint_of(egui::ViewportId::ROOT);
+        }
+    }
+
+    /// Tells the user why a plot has no window of the desktop.
+    pub(super) fn stays_in_window(&mut self, why: &str) {
+        self.app_state.announce(&format!("the desktop shows no second window: {why}; plots stay over the scene"));
     }
 }
 

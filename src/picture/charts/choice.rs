@@ -19,6 +19,8 @@ const MAX_ADDED: usize = 24;
 const MAX_ORDERED: usize = 200;
 /// Smallest and largest side of the window of a plot, points.
 const WINDOW_SIDE_PT: [f32; 2] = [80.0, 8000.0];
+/// Farthest place of a window from the corner of the desktop, pixels.
+const MAX_DESKTOP_PX: u32 = 65_536;
 
 /// The user's choice of plots and curves.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -50,8 +52,11 @@ pub struct PlotSettings {
     pub values: Option<[f64; 2]>,
     /// Whether the plot is closed.
     pub closed: bool,
-    /// Left, top, width and height of the plot's own window, points; `None` while it is among the others.
+    /// Left, top, width and height of the plot's own window, points; `None` while it is among the others. Left and top
+    /// count from the corner of the main window.
     pub window: Option<[f32; 4]>,
+    /// Left and top of that window on the desktop, pixels; `None` as long as it had no place there.
+    pub desktop: Option<[i32; 2]>,
 }
 
 /// A change of the choice.
@@ -77,6 +82,9 @@ pub enum PlotChange {
     Order(Vec<String>),
     /// Gives a plot a window of its own: left, top, width and height, points. `None` puts it back among the others.
     Window(String, Option<[f32; 4]>),
+    /// Keeps where the desktop shows a plot's own window: left and top, pixels, if the system tells them; width and
+    /// height, points.
+    Desktop(String, Option<[i32; 2]>, [f32; 2]),
     /// Sets the time interval, s; `None` follows the run.
     Range(Option<[f64; 2]>),
     /// Shows or hides the statistics of the curves.
@@ -134,7 +142,17 @@ impl PlotChoice {
             PlotChange::Reopen => self.changes.values_mut().for_each(|changes| changes.closed = false),
             PlotChange::Order(shown) => self.put_in_order(shown),
             PlotChange::Window(plot, window) => {
-                self.changes.entry(plot).or_default().window = window.filter(is_window);
+                let changes = self.changes.entry(plot).or_default();
+                // A new place is one in the main window, from which its place on the desktop follows.
+                (changes.window, changes.desktop) = (window.filter(is_window), None);
+            }
+            PlotChange::Desktop(plot, at, [width, height]) => {
+                if let Some(changes) = self.changes.get_mut(&plot)
+                    && let Some([left, top, ..]) = changes.window
+                {
+                    changes.window = Some([left, top, width, height]).filter(is_window).or(changes.window);
+                    changes.desktop = at.filter(is_on_desktop).or(changes.desktop);
+                }
             }
             PlotChange::Range(range) => {
                 self.range = range.filter(|[from, to]| from.is_finite() && to.is_finite() && from < to)
@@ -233,6 +251,8 @@ pub struct Plot<'a> {
     pub values: Option<[f64; 2]>,
     /// Left, top, width and height of the plot's own window, points; `None` while it is among the others.
     pub window: Option<[f32; 4]>,
+    /// Left and top of that window on the desktop, pixels; `None` as long as it had no place there.
+    pub desktop: Option<[i32; 2]>,
 }
 
 /// A curve of a plot.
@@ -307,7 +327,8 @@ impl<'a> Plot<'a> {
         };
         let names = notation.names;
         let (values, window) = (changes.values, changes.window.filter(is_window));
-        Self { name: name.into(), title, chart: in_units, names, added_by_user, curves, against, values, window }
+        let (chart, desktop) = (in_units, changes.desktop.filter(is_on_desktop));
+        Self { name: name.into(), title, chart, names, added_by_user, curves, against, values, window, desktop }
     }
 
     /// Returns the title, with the symbol of the horizontal axis unless that is time. If symbols come first, that of the
@@ -362,4 +383,9 @@ impl<'a> Plot<'a> {
 fn is_window([left, top, width, height]: &[f32; 4]) -> bool {
     let [least, most] = WINDOW_SIDE_PT;
     [left, top].iter().all(|x| x.abs() <= most) && [width, height].iter().all(|side| (least..=most).contains(*side))
+}
+
+/// Whether left and top (pixels) can be a place on a desktop.
+fn is_on_desktop(place: &[i32; 2]) -> bool {
+    place.iter().all(|x| x.unsigned_abs() <= MAX_DESKTOP_PX)
 }
