@@ -24,6 +24,7 @@ mod run_ahead;
 pub mod scenario;
 mod script;
 pub mod verdict;
+mod waypoints;
 
 pub use command_line::{row_options, session_command, simulate_command};
 #[doc(hidden)]

@@ -12,6 +12,8 @@ use crate::{
     study, theme, top, viewport, widgets,
 };
 use stillbase_picture::scene::views::ViewKind;
+use stillbase_session::Session;
+use stillbase_study::comparison::Comparison;
 
 /// Time between two repaints that show progress, s.
 const PROGRESS_INTERVAL_S: f32 = 0.1;
@@ -49,6 +51,7 @@ impl AppState {
         let other = self.view_state.pair.as_ref().and_then(|_| self.beside());
         let table = other.as_deref().and_then(|other| other.as_ref().ok()).map(|other| &other.table);
         let beside = table.or(self.comparison.as_ref());
+        self.view_state.charts.wheels_differ = wheels_differ(&self.session, beside);
         let queries = self.queries().clone();
         let marks = Marks::of(&queries, &self.session, beside);
         if !marks.is_whole {
@@ -198,4 +201,10 @@ impl AppState {
             self.applied_theme = Some(self.view_state.arrangement.theme);
         }
     }
+}
+
+/// Whether of the session's run and those drawn with it some have a reaction wheel and some have none.
+fn wheels_differ(session: &Session, table: Option<&Comparison>) -> bool {
+    let has_wheel = session.scenario().base.wheel.is_some();
+    table.is_some_and(|table| table.shown().any(|(_, run)| run.scenario.base.wheel.is_some() != has_wheel))
 }
