@@ -120,6 +120,7 @@ impl AppState {
             let width = plots::show(ui, &what, has_panel, &mut commands);
             self.view_state.arrangement.now_mut().plots.width = width;
         }
+        self.view_state.put_away = News::still_put_away(&self.session, &self.view_state.put_away);
         let news = News::of(&self.session, &self.view_state);
         let content = viewport::SceneContent {
             session: &self.session,

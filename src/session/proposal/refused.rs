@@ -5,7 +5,7 @@ use std::sync::Arc;
 use toml::Table;
 
 use super::Proposal;
-use super::improve::improvements_while;
+use super::improve::{improvements_while, within_limits};
 use super::task::{candidates, made_task, shows_only_in_motion, would_plan};
 use super::value::{nearest_values, taking_back};
 use crate::changes::after_start_edit;
@@ -121,12 +121,16 @@ pub fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: Progress
         if !is_new {
             continue;
         }
-        let works = match in_motion {
-            true => runs_without_fault(scenario, &candidate, &mut || goes_on(i as f64 / count as f64))?,
-            false => candidate.tried(&bare).is_some(),
+        let share = i as f64 / count as f64;
+        let working = match in_motion {
+            true => runs_without_fault(scenario, &candidate, &mut || goes_on(share))?.then_some(candidate),
+            false => match candidate.tried(&bare) {
+                Some(run) => Some(within_limits(candidate, &run, &mut |_| goes_on(share))?),
+                None => None,
+            },
         };
-        if works {
-            proposals.push(candidate);
+        if let Some(working) = working {
+            proposals.push(working);
             if proposals.len() == MAX_PROPOSALS {
                 break;
             }
