@@ -253,7 +253,9 @@ fn a_drawing_holds_what_the_plot_shows() {
 fn names_of_limits_lie_where_no_curve_is() {
     let p = palette(Theme::Dark);
     let mut named = 0;
-    for (time, size) in [0.68, 0.72, 0.8, 1.1].into_iter().flat_map(|time| [(time, [300.0, 130.0]), (time, [720.0, 320.0])]) {
+    for (time, size) in
+        [0.68, 0.72, 0.8, 1.1].into_iter().flat_map(|time| [(time, [300.0, 130.0]), (time, [720.0, 320.0])])
+    {
         let case = Scenario::builtin("case-1").expect("built in");
         let case = case.with_settings(&stillbase::settings::change::single_change("task.time", time)).expect("a time");
         let mut session = Session::open(case).expect("it starts");

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use stillbase::mechanics::machine::Inertia;
-use stillbase::session::design::relaxations;
 use stillbase::mechanics::planar::Vector;
+use stillbase::session::design::relaxations;
 use stillbase::session::scenario::{Scenario, Task, TaskKind};
 use stillbase::session::{Proposal, Run, improvements, proposals};
 use stillbase::settings::change::{join, single_change, value};

@@ -1,7 +1,7 @@
 //! Undo and redo: of every kind of edit, at rest and in motion.
 
 use stillbase::mechanics::planar::Vector;
-use stillbase::session::scenario::Scenario;
+use stillbase::session::scenario::{Scenario, Task};
 use stillbase::session::{Edit, TimedEdit};
 
 use super::{coarse, do_it, drag, gains, one_path, open, same, scenario, set, settle, slide, state};
@@ -9,15 +9,15 @@ use super::{coarse, do_it, drag, gains, one_path, open, same, scenario, set, set
 /// History says which points of the path were moved, from where and to where, a drag as one move.
 #[test]
 fn history_says_which_points_moved() {
-    let mut session = open(scenario("case-3"));
+    let mut session = open(scenario());
     let task = |session: &stillbase::session::Session| session.scenario().task.clone();
     let mut said = Vec::new();
     for change in [
-        |task: &stillbase::session::scenario::Task| task.moving(1, Vector::new(0.56, 0.9)),
-        |task| task.adding(Vector::new(0.58, 0.7)),
-        |task| task.advancing(1),
-        |task| task.removing(0),
-        |task| task.moving(0, Vector::new(0.5, 0.52)),
+        |task: &Task| task.moving(1, Vector::new(0.56, 0.9)),
+        |task: &Task| task.adding(Vector::new(0.58, 0.7)),
+        |task: &Task| task.advancing(1),
+        |task: &Task| task.removing(0),
+        |task: &Task| task.moving(0, Vector::new(0.5, 0.52)),
     ] {
         let change = change(&task(&session)).expect("points");
         do_it(&mut session, Edit::of("task", change));

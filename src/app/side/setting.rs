@@ -18,7 +18,7 @@ use stillbase_settings::range::shortened;
 
 /// Least width of the text in a field, and what a field adds to the width of its text, points.
 const MIN_FIELD_PT: f32 = 72.0;
-const FIELD_MARGIN_PT: f32 = 12.0;
+const FIELD_MARGIN_PT: f32 = 20.0;
 /// Width of a unit, points; a long one takes a second line.
 const UNIT_PT: f32 = 44.0;
 /// Number of significant digits of a value in another unit than that of its key.

@@ -110,18 +110,20 @@ pub fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: Progress
     // Making a task for the machine takes a search, so this is done only if the loop below gets to it.
     let made = std::iter::once_with(|| would_plan(refusal).then(|| made_task(&bare)).flatten()).flatten();
     let in_motion = shows_only_in_motion(refusal);
-    let mut proposals: Vec<Proposal> = Vec::new();
+    // What works, as it was tried first: a longer time may have been added to it.
+    let (mut proposals, mut known): (Vec<Proposal>, Vec<Proposal>) = Default::default();
     for (i, candidate) in candidates.into_iter().chain(made).enumerate() {
         if !goes_on(i as f64 / count as f64) {
             return None;
         }
         let candidate = candidate.reduced(&bare);
         let is_new = candidate.change().is_some_and(|change| !change.is_empty())
-            && proposals.iter().all(|known| known.text != candidate.text && known.way != candidate.way);
+            && known.iter().all(|known| known.text != candidate.text && known.way != candidate.way);
         if !is_new {
             continue;
         }
         let share = i as f64 / count as f64;
+        let first = candidate.clone();
         let working = match in_motion {
             true => runs_without_fault(scenario, &candidate, &mut || goes_on(share))?.then_some(candidate),
             false => match candidate.tried(&bare) {
@@ -131,6 +133,7 @@ pub fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: Progress
         };
         if let Some(working) = working {
             proposals.push(working);
+            known.push(first);
             if proposals.len() == MAX_PROPOSALS {
                 break;
             }
