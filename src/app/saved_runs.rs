@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use stillbase_query::ProgressCallback;
+use stillbase_query::{ByIdentity, ProgressCallback};
 use stillbase_session::scenario::Scenario;
 use stillbase_study::comparison::{ComparedRun, Comparison};
 
@@ -32,28 +32,18 @@ pub struct AddedRun {
 }
 
 /// A run of a row; in a file, its scenario as text.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum SavedRun {
     /// It has been made.
-    Made(Arc<ComparedRun>),
+    Made(ByIdentity<ComparedRun>),
     /// It has been read from a file, and is still to be made.
     Text(Arc<str>),
-}
-
-impl PartialEq for SavedRun {
-    fn eq(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Made(a), Self::Made(b)) => Arc::ptr_eq(a, b),
-            (Self::Text(a), Self::Text(b)) => a == b,
-            _ => false,
-        }
-    }
 }
 
 impl Serialize for SavedRun {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
-            Self::Made(run) => serializer.serialize_str(&run.scenario.to_toml()),
+            Self::Made(ByIdentity(run)) => serializer.serialize_str(&run.scenario.to_toml()),
             Self::Text(text) => serializer.serialize_str(text),
         }
     }
@@ -72,7 +62,7 @@ impl SavedRun {
     /// If its text is no scenario, if the scenario cannot be run, or if `watch` stops it.
     pub fn make(&self, watch: ProgressCallback<'_>) -> Result<Arc<ComparedRun>, String> {
         match self {
-            Self::Made(run) => Ok(run.clone()),
+            Self::Made(ByIdentity(run)) => Ok(run.clone()),
             Self::Text(text) => {
                 let scenario = Scenario::parse(text, "a run side by side", None).map_err(|why| why.to_string())?;
                 let name = scenario.name.clone();
@@ -89,7 +79,7 @@ impl SavedRuns {
         let own = table.entries().iter().filter(|entry| entry.added_by_user);
         let added = own.filter_map(|entry| {
             let run = entry.outcome.as_ref().ok()?;
-            Some(AddedRun { shown: entry.shown, run: SavedRun::Made(run.clone()) })
+            Some(AddedRun { shown: entry.shown, run: SavedRun::Made(ByIdentity(run.clone())) })
         });
         let (sorted_by, descending) = table.sorted_key().unwrap_or_default();
         Self { ticked: table.ticked(), sorted_by: sorted_by.into(), descending, added: added.collect() }

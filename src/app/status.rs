@@ -184,10 +184,14 @@ pub fn show(
                     (None, _) => ("Space plays  ·  F1 keys".into(), p.dim),
                 };
                 let text = notation::sentence(ui.ctx(), &text);
-                // A hint loses whole pieces from its end.
+                // A hint loses whole pieces from its end; a sentence alone is shortened.
                 let shown = fitting(ui, text.split(PIECES), ui.available_width());
+                if shown.is_empty() {
+                    fit::label(ui, &text, plain(12.0), colour(tone));
+                    return;
+                }
                 let label = ui.label(RichText::new(&shown).font(plain(12.0)).color(colour(tone)));
-                if shown != text && !shown.is_empty() {
+                if shown != text {
                     fit::say(&label, &text);
                     label.on_hover_text(text.as_ref());
                 }

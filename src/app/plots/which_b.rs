@@ -67,6 +67,9 @@ pub fn show(ui: &mut Ui, chart: WhichB<'_>, commands: &mut Vec<Command>) {
     }
 }
 
+/// Space above the letters of a name, points.
+const ABOVE_LETTERS_PT: f32 = 3.5;
+
 /// Draws Fig. 3 of the paper: q_1 against b, rad, for the points of the task, or for the target.
 fn lines(
     ui: &mut Ui,
@@ -142,7 +145,8 @@ fn lines(
                     let frame = plot.response().rect;
                     let share = [(end[0] - b_low) / (b_high - b_low), (q_high - end[1]) / (q_high - q_low)];
                     let at = frame.lerp_inside(share.map(|share| share as f32));
-                    let (is_left, is_top) = (at.x - size.x < frame.left(), at.y - size.y < frame.top());
+                    let (is_left, is_top) =
+                        (at.x - size.x < frame.left(), at.y - size.y + ABOVE_LETTERS_PT < frame.top());
                     let anchor = [
                         [egui::Align2::RIGHT_BOTTOM, egui::Align2::RIGHT_TOP],
                         [egui::Align2::LEFT_BOTTOM, egui::Align2::LEFT_TOP],

@@ -155,7 +155,7 @@ impl AppState {
         table.sort_by_key(&sorted_by, descending);
         for AddedRun { shown, run } in added {
             match run {
-                SavedRun::Made(run) => table.restore(run, shown),
+                SavedRun::Made(ByIdentity(run)) => table.restore(run, shown),
                 run @ SavedRun::Text(_) => self.runs.added.push(AddedRun { shown, run }),
             }
         }
