@@ -100,7 +100,7 @@ impl Card {
             }
             Handle::Moment => {
                 let rows = vec![format!("largest so far {} N m", signed(frame.peaks.moment, 3))];
-                let name = notation.name("turning moment on the base", "n_B");
+                let name = notation.base_moment(scenario.base.wheel.is_some());
                 let title = format!("{name} = {} N m", signed(frame.net_base_moment(), 3));
                 Self::new(title, rows, "")
             }

@@ -200,6 +200,8 @@ pub enum ViewChange {
     Theme(Theme),
     /// Units and names.
     Notation(Notation),
+    /// Put a problem message away; what holds on, such as a run that waits, comes back when it changes.
+    PutAway(Vec<String>),
     /// Playback rate, simulated seconds per second.
     Speed(f64),
     /// Shade the workspace by this measure of dexterity, or by none.

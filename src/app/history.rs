@@ -14,6 +14,8 @@ use stillbase_session::{Fork, Session};
 
 /// Maximum height of the list, points; above it the list scrolls.
 const MAX_HEIGHT_PT: f32 = 380.0;
+/// Width of an entry, points: that of a point with where it was and where it is.
+const WIDTH_PT: f32 = 340.0;
 /// Height of a branch in its list, points.
 const BRANCH_HEIGHT_PT: f32 = 38.0;
 
@@ -35,7 +37,8 @@ pub fn show(
         commands.push(ViewChange::Switch(Switch::History, !view_state.open.history).into());
     }
     let mut open = view_state.open.history;
-    let popup = Popup::from_response(&button).open_bool(&mut open).align(RectAlign::RIGHT_END).gap(8.0).width(270.0);
+    let popup =
+        Popup::from_response(&button).open_bool(&mut open).align(RectAlign::RIGHT_END).gap(8.0).width(WIDTH_PT + 16.0);
     popup.close_behavior(PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
         ui.label(RichText::new("HISTORY").font(bold(11.0)).color(colour(p.dim)));
         let room = MAX_HEIGHT_PT
@@ -63,9 +66,11 @@ fn list(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
         let tone = if i > present { p.dim } else { p.ink };
         let title = notation::sentence(ui.ctx(), title);
         let words = format!("     {title}");
-        let room = ui.available_width().max(254.0) - 2.0 * ui.spacing().button_padding.x;
-        let words = RichText::new(fit::fitted(ui, &words, &plain(12.5), room)).font(plain(12.5)).color(colour(tone));
-        let line = egui::Button::new(words).frame_when_inactive(false).min_size(egui::vec2(254.0, 22.0));
+        let room = ui.available_width().max(WIDTH_PT) - 2.0 * ui.spacing().button_padding.x;
+        let shown = fit::fitted(ui, &words, &plain(12.5), room);
+        let is_whole = shown == words;
+        let words = RichText::new(shown).font(plain(12.5)).color(colour(tone));
+        let line = egui::Button::new(words).frame_when_inactive(false).min_size(egui::vec2(WIDTH_PT, 22.0));
         let line = ui.add(line.right_text(""));
         if i == present {
             dot(ui, p, &line);
@@ -82,6 +87,7 @@ fn list(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
             line.scroll_to_me(None);
             ui.memory_mut(|m| m.data.insert_temp(seen_id(), present));
         }
+        let line = if is_whole { line } else { line.on_hover_text(title.as_ref()) };
         if line.clicked() && i != present {
             commands.push(SessionCommand::GoTo(i).into());
         }
@@ -96,13 +102,15 @@ fn list_branches(ui: &mut Ui, branches: &[Fork], p: &Palette, commands: &mut Vec
         ui.horizontal(|ui| {
             let when = format!("parts at {:.3} s, to {:.3} s", branch.from, branch.to);
             let dim = colour(p.dim);
-            let line = egui::Button::new("").frame_when_inactive(false).min_size(vec2(196.0, BRANCH_HEIGHT_PT - 2.0));
+            let line = egui::Button::new("")
+                .frame_when_inactive(false)
+                .min_size(vec2(WIDTH_PT - 58.0, BRANCH_HEIGHT_PT - 2.0));
             let line = ui.add(line);
             let (title, when) = (notation::sentence(ui.ctx(), &branch.title), notation::sentence(ui.ctx(), &when));
             let corner = line.rect.left_top() + vec2(8.0, 4.0);
             for (words, font, tone, y) in [(&title, plain(12.5), colour(p.ink), 0.0), (&when, plain(11.0), dim, 16.0)] {
                 let words = egui::WidgetText::from(RichText::new(words.as_ref()).color(tone));
-                let words = words.into_galley(ui, Some(egui::TextWrapMode::Truncate), 182.0, font);
+                let words = words.into_galley(ui, Some(egui::TextWrapMode::Truncate), WIDTH_PT - 72.0, font);
                 ui.painter().galley(corner + vec2(0.0, y), words, tone);
             }
             name(&line, &format!("Branch {}: {title}, {when}", i + 1));

@@ -5,6 +5,7 @@ use egui::{Context, Grid, Key, KeyboardShortcut, Modifiers, RichText, ScrollArea
 use super::actions::{ACTIONS, Action, ActionGroup, FINE_ACTIONS, GESTURES, shortcut_label};
 use super::guide::GuideStep;
 use super::notation;
+use super::status::news::News;
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, Layout, OpenDialogs, SessionCommand, Switch, Tool, ViewChange, ViewState, WindowCommand, search};
@@ -14,7 +15,9 @@ use stillbase_session::Session;
 /// Turns pressed keys into commands. While a text field has the focus, only the keys of `works_while_typing` and
 /// Esc count.
 pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
+    // The card of a note has fields and lists, which take the keys.
     let typing = ctx.egui_wants_keyboard_input()
+        || view_state.open.note.is_some()
         || view_state.open.dialog.is_some()
         || view_state.open.export.is_some()
         || view_state.open.finder.is_some();
@@ -28,7 +31,7 @@ pub fn read(ctx: &Context, session: &Session, view_state: &ViewState, commands: 
         || (view_state.open.finder.is_none() && egui::Popup::is_any_open(ctx))
         || super::plots::is_looking(ctx);
     if !busy && pressed(&KeyboardShortcut::new(Modifiers::NONE, Key::Escape)) {
-        commands.push(escape(view_state));
+        commands.push(escape(session, view_state));
     }
     // The field of the guide's search has no use for these keys either.
     if view_state.open.guide.is_some() {
@@ -75,7 +78,7 @@ fn asks_for_text(key: &KeyboardShortcut) -> bool {
 }
 
 /// Returns the command of Esc.
-fn escape(view_state: &ViewState) -> Command {
+fn escape(session: &Session, view_state: &ViewState) -> Command {
     let ViewState { open, tool, arrangement, pair, .. } = view_state;
     match open {
         OpenDialogs { dialog: Some(_), .. } => ViewChange::Dialog(None).into(),
@@ -84,6 +87,7 @@ fn escape(view_state: &ViewState) -> Command {
         OpenDialogs { settings: true, .. } => ViewChange::Switch(Switch::Settings, false).into(),
         OpenDialogs { help: true, .. } => ViewChange::Switch(Switch::Help, false).into(),
         OpenDialogs { guide: Some(_), .. } => ViewChange::Switch(Switch::Guide, false).into(),
+        _ if let Some(news) = News::of(session, view_state) => news.put_away().into(),
         _ if matches!(tool, Tool::Draw(_)) => ViewChange::Switch(Switch::Drawing, false).into(),
         _ if view_state.mark.is_some() => ViewChange::Mark(None).into(),
         _ if matches!(tool, Tool::Measure(_)) => ViewChange::Switch(Switch::Measuring, false).into(),

@@ -3,7 +3,7 @@
 use egui::{Align2, Area, ComboBox, CursorIcon, DragValue, Frame, Id, Key, Order, Pos2, RichText, Sense, TextEdit, Ui};
 
 use super::theme::{bold, colour, plain};
-use super::widgets::name;
+use super::widgets::{self, name};
 use super::{Command, SessionCommand, Tool, ViewChange, ViewState};
 use stillbase_picture::paint::labels::PlacedLabel;
 use stillbase_picture::scene::views::Views;
@@ -144,12 +144,19 @@ fn point(ui: &mut Ui, note: &mut Note, views: &Views) {
     let all: Vec<(String, Option<SnapPoint>)> = all.map(|point| (title(&point), point)).collect();
     let list = ComboBox::from_id_salt("where").selected_text(title(&note.point));
     let list = list.width(WIDTH_PT - 60.0).height(LIST_HEIGHT_PT);
+    let moved = widgets::steps(ui);
     let shown = list.show_ui(ui, |ui| {
-        for (title, point) in all {
-            ui.selectable_value(&mut note.point, point, title);
+        for (title, point) in &all {
+            let line = ui.selectable_value(&mut note.point, point.clone(), title);
+            if moved && note.point == *point {
+                line.scroll_to_me(None);
+            }
         }
     });
     name(&shown.response, "Where the note sticks");
+    if let Some(next) = widgets::stepped(ui, &shown.response, all.iter().map(|(_, point)| point), &note.point) {
+        note.point = next;
+    }
 }
 
 /// Draws the choice of the time: always, an instant, or an interval.

@@ -178,7 +178,8 @@ impl Other<'_> {
                 let words = self.words(beside);
                 let tone = if is_zero(frame) { p.zero } else { p.reaction };
                 let tone = if self.pair.demonstrates { p.reaction } else { tone };
-                let said = caption(ui, rect, &p, (&title, words), (frame, beside.peak_moment()), (tone, large));
+                let name = moment_name(view_state, beside.scenario().base.wheel.is_some());
+                let said = caption(ui, rect, &p, (&title, words), (frame, beside.peak_moment(), &name), (tone, large));
                 let taken = [said, controls_cover(rect)];
                 draw_labels(ui, 1, &SceneViewport { rect, camera }, &scene, &taken);
             }
@@ -263,7 +264,8 @@ pub fn own_caption(ui: &Ui, rect: Rect, session: &Session, pair: &Pair, view_sta
         (false, own) => format!("{title}: {own}"),
     };
     let tone = if pair.demonstrates || is_zero(frame) { p.zero } else { p.reaction };
-    caption(ui, rect, &p, (&title, words), (frame, peak), (tone, false))
+    let name = moment_name(view_state, scenario.base.wheel.is_some());
+    caption(ui, rect, &p, (&title, words), (frame, peak, &name), (tone, false))
 }
 
 /// Returns the rectangle of a view that the choice of the other run covers.
@@ -275,6 +277,11 @@ fn controls_cover(rect: Rect) -> Rect {
 pub fn caption_covers(rect: Rect) -> Rect {
     let height = if rect.height() < LOW_VIEW_PT { SHORT_CAPTION_HEIGHT_PT } else { CAPTION_HEIGHT_PT };
     Rect::from_min_size(rect.min, vec2(rect.width().min(420.0), height))
+}
+
+/// Returns the names of the moment that both captions show: past a wheel if either run has one.
+fn moment_name(view_state: &ViewState, has_wheel: bool) -> String {
+    view_state.arrangement.notation.base_moment(has_wheel || view_state.charts.wheels_differ)
 }
 
 fn is_zero(frame: &Frame) -> bool {
@@ -290,14 +297,14 @@ fn message(ui: &Ui, rect: Rect, p: &Palette, title: &str, words: &str) {
     painter.galley(pos2(rect.left() + 22.0, rect.top() + 36.0), words, colour(p.dim));
 }
 
-/// Draws a title and a text over the upper left corner of a view; below them the moment on the base and its largest
-/// value, N m. Returns their rectangle.
+/// Draws a title and a text over the upper left corner of a view; below them the moment on the base, its largest
+/// value, N m, and its name. Returns their rectangle.
 fn caption(
     ui: &Ui,
     rect: Rect,
     p: &Palette,
     (title, about): (&str, &str),
-    (frame, peak): (&Frame, f64),
+    (frame, peak, name): (&Frame, f64, &str),
     (tone, large): (Rgba, bool),
 ) -> Rect {
     let painter = ui.painter().with_clip_rect(rect);
@@ -319,7 +326,6 @@ fn caption(
         row(notation::sentence(ui.ctx(), about).into_owned(), plain(12.0 * scale), p.dim, 8.0);
     }
     let shown = signed(frame.net_base_moment() + 0.0, 2);
-    let name = notation::of(ui.ctx()).name("turning moment on the base", "n_B");
     let largest = format!("largest {} N m", signed(peak + 0.0, 2));
     if large {
         row(format!("{shown} N m"), bold(40.0 * scale), tone, 2.0);

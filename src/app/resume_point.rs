@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::layout::{BottomPanel, Layout};
+use super::saved_runs::SavedRuns;
 use super::view_state::{Framing, ViewState};
 use stillbase_files::heading;
 use stillbase_picture::charts::choice::PlotChoice;
@@ -47,6 +48,8 @@ pub struct ResumePoint {
     pub plots: PlotChoice,
     /// Distances and angles that the scene shows.
     pub measurements: Vec<Measurement>,
+    /// The user's part of the table of runs.
+    pub runs: SavedRuns,
     /// Time up to which the run had been simulated, s.
     pub reached: f64,
     /// Cameras that the user has moved; a view without one shows everything.
@@ -79,6 +82,7 @@ impl Default for ResumePoint {
             file: None,
             plots: PlotChoice::default(),
             measurements: Vec::new(),
+            runs: SavedRuns::default(),
             reached: 0.0,
             cameras: Vec::new(),
         }
@@ -86,7 +90,8 @@ impl Default for ResumePoint {
 }
 
 impl ResumePoint {
-    /// Returns what a window shows. The panel of an open table is left out, because the table is a file of its own.
+    /// Returns what a window shows, without file and runs. The panel of an open table is left out, because the table
+    /// is a file of its own.
     pub(super) fn of_view(session: &Session, view_state: &ViewState) -> Self {
         let moved = |view: &ViewKind| matches!(view_state.framing[*view as usize], Framing::Manual);
         let camera = |view: ViewKind| ViewCamera { view, camera: view_state.cameras[view as usize] };
@@ -105,12 +110,13 @@ impl ResumePoint {
             snapshots: view_state.snapshots,
             turn_task: view_state.turn_task,
             file: None,
+            runs: SavedRuns::default(),
             plots: view_state.charts.clone(),
             cameras: ViewKind::ALL.iter().copied().filter(moved).map(camera).collect(),
         }
     }
 
-    /// Shows this state, except a view that the machine lacks, and except the instant, which opening has set already.
+    /// Shows this state, except a view that the machine lacks, and except instant and runs, which opening sets.
     pub(super) fn show(self, view_state: &mut ViewState, run: &Run) {
         if self.layout != view_state.arrangement.layout {
             view_state.lay_out(self.layout);

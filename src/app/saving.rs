@@ -6,7 +6,12 @@ use egui::{Frame, Id, Key, Modal, Modifiers, RichText};
 
 use super::theme::{bold, colour, plain};
 use super::{Command, Recovery, SessionCommand, ViewState, WindowCommand};
+use super::{ResumePoint, notation};
 use stillbase_picture::scene::palette::faded;
+use stillbase_session::ChangesMade;
+use stillbase_session::scenario::Scenario;
+use stillbase_settings::number::counted;
+use stillbase_settings::text::shorten_message;
 
 /// Record of the saved and unsaved changes of a session, and of its files.
 #[derive(Clone, Debug, Default)]
@@ -19,8 +24,8 @@ pub(super) struct Saving {
     pub asks: bool,
     /// Whether the window must close.
     pub leaves: bool,
-    /// The file of a session left by an earlier program run, and the time of its writing in words.
-    pub left_session: Option<(PathBuf, String)>,
+    /// A session left by an earlier program run.
+    pub left_session: Option<LeftSession>,
     /// The file of a recovered or discarded session; it is removed once a journal contains the present session.
     pub recovered: Option<PathBuf>,
     /// The files of this session and of the earlier sessions in its undo history. Each was written by this program,
@@ -31,6 +36,48 @@ pub(super) struct Saving {
     pub recent: Vec<PathBuf>,
     /// The file that the user has agreed to replace.
     pub replaces: Option<PathBuf>,
+}
+
+/// A session left by an earlier program run.
+#[derive(Clone, Debug)]
+pub struct LeftSession {
+    /// Its file.
+    pub file: PathBuf,
+    /// The time of its writing, in words.
+    when: String,
+    /// What it holds, in sentences.
+    holds: String,
+}
+
+impl LeftSession {
+    /// Reads what a file holds that was written `when`, in words.
+    pub fn of(file: PathBuf, when: String) -> Self {
+        let found = stillbase_files::scenario(&file.display().to_string());
+        let holds = found.map_or_else(
+            |why| format!("Its session cannot be read: {}", shorten_message(&why.to_string())),
+            |found| contents(&found.scenario, &file),
+        );
+        Self { file, when, holds }
+    }
+}
+
+/// Says which session a file holds, how many changes, and what the last one was.
+fn contents(scenario: &Scenario, file: &Path) -> String {
+    let title = if scenario.title.is_empty() { &scenario.name } else { &scenario.title };
+    let own = stillbase_files::text::read(file).ok().and_then(|text| ResumePoint::of(&text)?.file);
+    let own = own.and_then(|own| Some(format!(" of {}", own.file_name()?.display()))).unwrap_or_default();
+    let ChangesMade { count, last } = ChangesMade::of(scenario);
+    let changes = match count {
+        0 => "no change of the scenario".to_owned(),
+        n => counted(n, "change"),
+    };
+    let held =
+        format!("It left the session \u{201c}{title}\u{201d}{own}, with {}, {changes}.", scenario.machine.name());
+    let last = last.map(|(words, time)| match time {
+        0.0 => format!("\nThe last: {words}."),
+        time => format!("\nThe last: {words}, at {time:.3} s."),
+    });
+    shorten_message(&(held + &last.unwrap_or_default())).into_owned()
 }
 
 /// The file of a session, valid from a number of undo entries on. Undoing the opening of a file leads back to the
@@ -138,8 +185,8 @@ pub(super) fn show(
                 ("Cancel", vec![Command::Window(WindowCommand::AskToLeave(false))]),
             ],
         );
-    } else if let Some((_, when)) = &saving.left_session {
-        let words = format!("The program did not end properly {when}. What was done then is still there.");
+    } else if let Some(LeftSession { when, holds, .. }) = &saving.left_session {
+        let words = format!("The program did not end properly {when}.\n{}", notation::sentence(ctx, holds));
         card(
             ctx,
             view_state,

@@ -22,7 +22,8 @@ use super::change::SessionChange;
 use super::given::assess::OpenedTable;
 use super::pace::PlaybackRate;
 use super::pair::Pair;
-use super::saving::Saving;
+use super::saved_runs::SavedRuns;
+use super::saving::{LeftSession, Saving};
 use super::{Activity, Framing, Intro, Layout, Message, Preferences, ResumePoint, SessionCommand, ViewState};
 use stillbase_mechanics::machine::Machine;
 use stillbase_picture::scene::exaggeration::exaggeration;
@@ -55,6 +56,8 @@ pub struct AppState {
     saving: Saving,
     /// Runs side by side, while they are on display.
     comparison: Option<Comparison>,
+    /// What the table of runs holds while it is closed, and runs that are still to be made for it.
+    runs: SavedRuns,
     /// Machines whose Pareto fronts are drawn beside that of the machine being designed.
     fronts: Vec<FrontCase>,
     /// Request of the search for link lengths, under way or finished.
@@ -99,6 +102,7 @@ impl AppState {
             hints: true,
             saving: Saving::default(),
             comparison: None,
+            runs: SavedRuns::default(),
             opened_table: None,
             fronts: Vec::new(),
             seeking: None,
@@ -135,10 +139,9 @@ impl AppState {
         self
     }
 
-    /// Offers to recover a session left by an earlier program run; `left` is its file and the time of its writing in
-    /// words.
+    /// Offers to recover a session left by an earlier program run.
     #[must_use]
-    pub fn offering_recovery(mut self, left: Option<(PathBuf, String)>) -> Self {
+    pub fn offering_recovery(mut self, left: Option<LeftSession>) -> Self {
         self.saving.left_session = left;
         self
     }
@@ -218,7 +221,8 @@ impl AppState {
     /// Returns the file of the session, and the state of the display that no edit contains, such as the instant.
     pub fn left_off(&self) -> ResumePoint {
         let file = self.own_saving().own_file(self.own_session().undo_count()).cloned();
-        ResumePoint { file, ..ResumePoint::of_view(self.own_session(), self.own_view_state()) }
+        let runs = self.own_runs();
+        ResumePoint { file, runs, ..ResumePoint::of_view(self.own_session(), self.own_view_state()) }
     }
 
     /// Returns the window title: the file, if there is one, and the scenario, with ` *` if there are unsaved changes.

@@ -52,6 +52,24 @@ fn power(x: f64) -> String {
     if x == 0.0 { "0".into() } else { format!("{x:.1e}").replace("e-", "e−") }
 }
 
+/// What stands between the pieces of a text.
+const PIECES: &str = "  ·  ";
+/// Width of the dots of the audit, points.
+const DOTS_WIDTH_PT: f32 = 120.0;
+
+/// Joins as many of the pieces, the most important first, as have room whole.
+fn fitting<'a>(ui: &Ui, pieces: impl Iterator<Item = &'a str>, room: f32) -> String {
+    let mut text = String::new();
+    for piece in pieces {
+        let longer = if text.is_empty() { piece.to_owned() } else { format!("{text}{PIECES}{piece}") };
+        if fit::width_of(ui, &longer, &plain(12.0)) > room {
+            break;
+        }
+        text = longer;
+    }
+    text
+}
+
 /// Draws this panel.
 pub fn show(
     ui: &mut Ui,
@@ -72,7 +90,9 @@ pub fn show(
             for named in statements.named() {
                 lamp::button(ui, named, 12.5, improvements, &p, commands);
             }
-            audit_dots(ui, f, &p);
+            if ui.available_width() > DOTS_WIDTH_PT {
+                audit_dots(ui, f, &p);
+            }
             let mut facts: Vec<String> = Vec::new();
             let remarks = Verdict::of(session.scenario(), f).so_far();
             facts.extend(remarks.iter().filter(|_| ui.available_width() > 460.0).map(|remark| remark.short.clone()));
@@ -88,8 +108,8 @@ pub fn show(
                     false => many,
                 });
             }
-            let facts = facts.join("  ·  ");
-            let facts = notation::sentence(ui.ctx(), &facts);
+            let facts: Vec<_> = facts.iter().map(|fact| notation::sentence(ui.ctx(), fact)).collect();
+            let facts = fitting(ui, facts.iter().map(|fact| &**fact), ui.available_width());
             let label = ui.label(RichText::new(facts).font(plain(12.0)).color(colour(p.dim)));
             if !remarks.is_empty() {
                 let long: Vec<&str> = remarks.iter().map(|r| r.long.as_str()).collect();
@@ -164,7 +184,17 @@ pub fn show(
                     (None, _) => ("Space plays  ·  F1 keys".into(), p.dim),
                 };
                 let text = notation::sentence(ui.ctx(), &text);
-                fit::label(ui, &text, plain(12.0), colour(tone));
+                // A hint loses whole pieces from its end; a sentence alone is shortened.
+                let shown = fitting(ui, text.split(PIECES), ui.available_width());
+                if shown.is_empty() {
+                    fit::label(ui, &text, plain(12.0), colour(tone));
+                    return;
+                }
+                let label = ui.label(RichText::new(&shown).font(plain(12.0)).color(colour(tone)));
+                if shown != text {
+                    fit::say(&label, &text);
+                    label.on_hover_text(text.as_ref());
+                }
             });
         });
     });

@@ -1,6 +1,9 @@
 //! Application of a [`ViewChange`] to a [`ViewState`].
 
-use super::{BottomPanel, Command, Finder, Framing, GuideStep, GuideView, Layout, Switch, Tool, ViewChange, ViewState};
+use super::{
+    BottomPanel, Command, Finder, Framing, GuideStep, GuideView, Layout, StatusMessage, Switch, Tool, ViewChange,
+    ViewState,
+};
 use stillbase_picture::scene::Measure;
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_session::Session;
@@ -161,6 +164,10 @@ impl ViewState {
                     self.charts.forget_values();
                 }
                 self.arrangement.notation = notation;
+            }
+            ViewChange::PutAway(problems) => {
+                self.status = StatusMessage::default();
+                self.put_away.extend(problems);
             }
             ViewChange::Speed(speed) => self.speed = speed,
             ViewChange::Dexterity(shown) => self.dexterity = shown,

@@ -55,6 +55,8 @@ pub struct ViewState {
     pub open: OpenDialogs,
     /// Messages.
     pub status: StatusMessage,
+    /// Problems that hold on, but that the user has put away.
+    pub put_away: Vec<String>,
     /// Objects under the pointer.
     pub pointed: HoverTarget,
     /// The drag under way.
@@ -112,6 +114,7 @@ impl ViewState {
             arrangement: WindowArrangement::with_theme(theme),
             open: OpenDialogs::default(),
             status: StatusMessage::default(),
+            put_away: Vec::new(),
             pointed: HoverTarget::default(),
             gesture: DragGesture::default(),
             tool: Tool::default(),

@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::ops::RangeInclusive;
 
 use egui::response::Flags;
-use egui::{Align, DragValue, Key, Layout, Response, RichText, Slider, SliderClamping, Ui};
+use egui::{Align, DragValue, EventFilter, Key, Layout, Modifiers, Response, RichText, Slider, SliderClamping, Ui};
 
 use super::theme::{bold, colour, plain};
 use super::{Command, SessionCommand, notation, pointing};
@@ -26,6 +26,36 @@ pub fn name(response: &Response, label: &str) {
     pointing::drawn(response, label);
     let label = label.to_owned();
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(label));
+}
+
+/// Whether a key is pressed that moves through a list: up or down.
+pub(super) fn steps(ui: &Ui) -> bool {
+    ui.input(|i| i.key_pressed(Key::ArrowUp) || i.key_pressed(Key::ArrowDown))
+}
+
+/// Lets the keys up and down move through the choices of a drop-down list that has the keyboard focus, open or not.
+/// Returns the choice that a key has led to.
+pub(super) fn stepped<'a, T: Clone + PartialEq + 'a>(
+    ui: &Ui,
+    list: &Response,
+    all: impl Iterator<Item = &'a T>,
+    now: &T,
+) -> Option<T> {
+    if !list.has_focus() {
+        return None;
+    }
+    // Without this the keys would move the focus.
+    let filter = EventFilter { vertical_arrows: true, ..EventFilter::default() };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(list.id, filter));
+    let keys = [Key::ArrowUp, Key::ArrowDown];
+    let [up, down] = keys.map(|key| ui.input_mut(|i| i.count_and_consume_key(Modifiers::NONE, key)));
+    if up == down {
+        return None;
+    }
+    let all: Vec<&T> = all.collect();
+    let at = all.iter().position(|one| *one == now)?;
+    let to = (at + down).saturating_sub(up).min(all.len() - 1);
+    (to != at).then(|| all[to].clone())
 }
 
 pub(super) fn section(ui: &mut Ui, p: &Palette, title: &str) {

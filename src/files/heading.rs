@@ -6,8 +6,8 @@ use serde::de::DeserializeOwned;
 /// Beginning of each line of a heading.
 const MARK: &str = "#| ";
 
-/// Maximum size of a heading that is read, bytes.
-const MAX_BYTES: usize = 64 * 1024;
+/// Maximum size of a heading that is read, bytes; a heading may hold whole sessions.
+const MAX_BYTES: usize = 16 * 1024 * 1024;
 
 /// Returns a text with a heading before it; a heading that cannot be serialised is omitted.
 pub fn under(heading: &impl Serialize, text: &str) -> String {

@@ -6,6 +6,7 @@ pub mod choice;
 pub mod drawn;
 pub mod figure;
 pub mod legend;
+mod limit_names;
 pub mod range;
 pub mod search;
 pub mod svg;
@@ -74,6 +75,8 @@ const MOMENT: Chart = Chart {
 };
 /// The moment that the machine transmits, and the moment on the base after compensation by its reaction wheel.
 const MOMENT_PAST_WHEEL: Chart = Chart { signals: &["moment/total", "moment/felt"], ..MOMENT };
+/// The moment on the base alone, for runs with and without a wheel beside each other. Without one it is n_B.
+const MOMENT_FELT: Chart = Chart { signals: &["moment/felt"], ..MOMENT };
 const FORCE: Chart = Chart {
     title: "Force on the base",
     unit: "N, from motion",
@@ -128,11 +131,17 @@ const TRANSMISSION: Chart =
 const CHANGE_POINT: Chart =
     Chart { title: "To the nearest change point", unit: "rad", signals: &["change_point/distance"], ..INSIDE };
 
-/// Returns the charts that apply to a scenario, in order of display.
-pub fn charts(scenario: &Scenario) -> Vec<Chart> {
+/// Returns the charts that apply to a scenario, in order of display. `wheels_differ` says that of the runs on display
+/// some have a reaction wheel and some have none.
+pub fn charts(scenario: &Scenario, wheels_differ: bool) -> Vec<Chart> {
     let wheel = scenario.base.wheel.is_some();
     let has_friction = scenario.plant.friction != Default::default();
-    let mut list = vec![TORQUE, if wheel { MOMENT_PAST_WHEEL } else { MOMENT }, FORCE];
+    let moment = match (wheels_differ, wheel) {
+        (true, _) => MOMENT_FELT,
+        (false, true) => MOMENT_PAST_WHEEL,
+        (false, false) => MOMENT,
+    };
+    let mut list = vec![TORQUE, moment, FORCE];
     list.extend(Some(BASE).filter(|_| scenario.base.moves()));
     list.extend(Some(FRICTION).filter(|_| has_friction));
     // The angles of the drives are those of their links in space; on a fixed base both are the same.

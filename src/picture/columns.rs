@@ -28,6 +28,19 @@ impl RunColumn {
         Self { at, head, meaning, format: notation.format(decimals, unit), priority }
     }
 
+    /// Returns a column of runs; `has_wheel` says whether one of them has a reaction wheel.
+    fn past_wheel(at: usize, column: &SummaryColumn, notation: Notation, has_wheel: bool) -> Self {
+        let of = Self::of(at, column, notation);
+        let [head, meaning] = match column.key {
+            "peak_moment" => [["peak moment felt", "peak n felt"], ["largest moment on the base, past a wheel"; 2]],
+            "rms_moment" => [["RMS moment felt", "rms n felt"], ["its root mean square"; 2]],
+            "moment_impulse" => [["moment felt, impulse", "∫|n felt|dt"], ["its impulse"; 2]],
+            _ => return of,
+        };
+        let named = usize::from(notation.names == NameOrder::Symbols);
+        if has_wheel { Self { head: head[named], meaning: meaning[named], ..of } } else { of }
+    }
+
     /// Returns the columns that have a value in any row. Columns of base motion need a base that moves; columns of
     /// designs need different machines.
     pub fn all(comparison: &Comparison, notation: Notation) -> Vec<Self> {
@@ -35,10 +48,13 @@ impl RunColumn {
         let moves = runs().any(|run| run.base_shift > 0.0 || run.base_tilt > 0.0);
         let has_value = |column: &SummaryColumn| runs().any(|run| (column.value)(run).is_some());
         let is_shown = |column: &SummaryColumn| has_value(column) && (moves || !OF_MOVING_BASE.contains(&column.key));
+        // Beside the moment of the arm, that on the base is called what it is: what passes the wheel.
+        let has_wheel = runs().any(|run| run.peak_arm_moment.is_some());
         let of_runs = SUMMARY_COLUMNS.iter().enumerate().filter(|(_, column)| is_shown(column));
+        let of_runs = of_runs.map(|(at, column)| Self::past_wheel(at, column, notation, has_wheel));
         let designs = if comparison.has_designs() { &DESIGN_COLUMNS[..] } else { &[] };
         let of_designs = (SUMMARY_COLUMNS.len()..).zip(designs).map(|(at, column)| Self::of(at, column, notation));
-        of_runs.map(|(at, column)| Self::of(at, column, notation)).chain(of_designs).collect()
+        of_runs.chain(of_designs).collect()
     }
 
     /// Returns its unit as a title states it; empty for a ratio.

@@ -6,6 +6,7 @@ use std::borrow::Cow;
 use serde::{Deserialize, Serialize};
 
 use super::numbers::signed;
+use super::scene::reaction::moment_symbol;
 
 /// Unit in which the window shows angles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -157,6 +158,12 @@ impl Notation {
             (NameOrder::Terms, _) => format!("{term}, {symbol}"),
             (NameOrder::Symbols, _) => format!("{symbol}, {term}"),
         }
+    }
+
+    /// Returns both names of the moment on the base; with a reaction wheel it is what passes the wheel.
+    pub fn base_moment(self, has_wheel: bool) -> String {
+        let term = if has_wheel { "turning moment past the wheel" } else { "turning moment on the base" };
+        self.name(term, moment_symbol(has_wheel))
     }
 
     /// Returns a sentence with its angles and lengths in the user's units. A unit applies to the number before it, and

@@ -62,7 +62,7 @@ impl Preview {
         let none = [f64::INFINITY, f64::NEG_INFINITY];
         let wider = |range: &mut [f64; 2], x: f64| *range = [range[0].min(x), range[1].max(x)];
         let signals = signals(&scenario.machine);
-        let charts = charts(scenario);
+        let charts = charts(scenario, false);
         let topics = Topic::all(signals.clone(), &charts);
         let mut charts: Vec<_> = charts.into_iter().map(|chart| (chart, none)).collect();
         charts.retain(|(chart, _)| signals.iter().any(|signal| chart.contains(signal)));

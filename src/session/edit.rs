@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::older;
+use super::waypoints::{self, POINT_KEYS};
 use crate::scenario::{MAX_STEPS, POINT_RANGE, POSE_CONSTANT_RANGE, effect_in, effect_of, key_of, name_of};
 use stillbase_mechanics::machine::{ANGLE, MACHINE_TABLES, is_of_machine};
 use stillbase_settings::change;
@@ -275,6 +276,11 @@ impl Edit {
 
     /// Describes the edit, for menus and the event log.
     pub fn title(&self) -> String {
+        self.title_after(None)
+    }
+
+    /// Describes the edit; `inverse` undoes it, and tells from where points are moved.
+    pub(super) fn title_after(&self, inverse: Option<&Self>) -> String {
         match self {
             Self::DragTarget { x, y } => format!("drag target to {x:.3}, {y:.3} m"),
             Self::DragAngles { a1, a2 } => {
@@ -285,7 +291,7 @@ impl Edit {
             Self::PoseB { b } => format!("pose at b = {b:.3} rad"),
             Self::Push { x: 0.0, y: 0.0 } => "let go".into(),
             Self::Push { x, y } => format!("push with {x:.2}, {y:.2} N"),
-            Self::Set { change } => title_of(change),
+            Self::Set { change } => title_of(change, inverse.and_then(|inverse| inverse.part("task"))),
         }
     }
 }
@@ -299,13 +305,13 @@ fn counterweights(value: &Value) -> String {
     }
 }
 
-/// Describes a change of settings.
-fn title_of(change: &Table) -> String {
+/// Describes a change of settings; `before` is the task before it, if it is known.
+fn title_of(change: &Table, before: Option<&Table>) -> String {
     let task = change.get("task").and_then(Value::as_table).filter(|_| change.len() == 1);
     match task {
         Some(task) if task.get("samples").is_some_and(Value::is_array) => return "take a given motion".into(),
-        Some(task) if ["from", "via", "to"].iter().any(|key| task.contains_key(*key)) => {
-            return "move waypoints".into();
+        Some(task) if POINT_KEYS.iter().any(|key| task.contains_key(*key)) => {
+            return waypoints::title(task, before);
         }
         Some(task) if task.is_empty() => return "go back to the path".into(),
         _ => {}

@@ -3,6 +3,7 @@
 //! Others reach this crate as `stillbase::session`; `stillbase` alone follows semantic versioning.
 
 mod changes;
+mod changes_made;
 mod command_line;
 pub mod design;
 mod designs;
@@ -24,7 +25,10 @@ mod run_ahead;
 pub mod scenario;
 mod script;
 pub mod verdict;
+mod waypoints;
 
+#[doc(hidden)]
+pub use changes_made::ChangesMade;
 pub use command_line::{row_options, session_command, simulate_command};
 #[doc(hidden)]
 pub use designs::{DesignVersion, designs};

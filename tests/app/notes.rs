@@ -20,6 +20,7 @@ pub const TESTS: &[Test] = tests![
     a_note_is_written_where_the_pointer_is,
     a_note_is_written_on_the_time_line_by_keys,
     a_wrong_note_says_why_and_is_not_written,
+    the_list_of_places_works_by_keys,
     a_note_is_found_by_its_words,
     a_distance_is_measured_by_two_clicks_and_follows,
     a_third_click_measures_the_angle,
@@ -127,6 +128,30 @@ fn a_note_is_written_where_the_pointer_is() {
     assert_eq!(notes(&h)[0].text, "slow here", "undone");
     tell(&mut h, SessionCommand::Seek(0.5));
     assert!(h.query_by_label("Note: slow here").is_none(), "its instant has passed");
+}
+
+/// The list of places is used by keys alone: up and down go through it, while the run stays where it is.
+fn the_list_of_places_works_by_keys() {
+    let mut h = paused("case-3", 0.4);
+    press(&mut h, SHIFT, Key::W);
+    type_text(&mut h, "here");
+    press(&mut h, PLAIN, Key::Tab);
+    let chosen = |h: &Window| h.get_by_label("Where the note sticks").value();
+    let nowhere = chosen(&h);
+    press(&mut h, PLAIN, Key::ArrowDown);
+    let first = chosen(&h);
+    assert_ne!(first, nowhere, "down takes the next place");
+    press(&mut h, PLAIN, Key::Enter);
+    press(&mut h, PLAIN, Key::ArrowDown);
+    let second = chosen(&h);
+    assert!(second != first && second != nowhere, "also with the list open");
+    press(&mut h, PLAIN, Key::ArrowUp);
+    assert_eq!(chosen(&h), first);
+    press(&mut h, PLAIN, Key::Enter);
+    assert!((session(&h).frame().time - 0.4).abs() < 1e-9);
+    h.get_by_label("Write").click();
+    h.run_steps(3);
+    assert!(notes(&h)[0].point.is_some());
 }
 
 /// Shift W writes at the instant shown; its mark goes there, and the right button on it changes the note.

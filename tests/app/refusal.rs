@@ -22,11 +22,37 @@ pub const TESTS: &[Test] = tests![
     a_limit_that_is_passed_proposes_more_time,
     what_is_typed_out_of_range_proposes_the_nearest_number,
     a_number_out_of_view_never_changes_by_itself,
+    a_problem_is_put_away_until_it_changes,
     a_b_that_does_not_serve_proposes_one_that_does,
     a_target_that_no_b_reaches_leads_to_the_nearest_point,
     a_limit_that_leaves_out_the_pose_is_put_back,
     a_run_that_cannot_be_planned_keeps_the_columns_and_has_a_button,
 ];
+
+/// The card of a problem is put away by its button and by Esc, and comes back only with another problem.
+fn a_problem_is_put_away_until_it_changes() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let waits = |h: &Window| h.query_by_label_contains("The run waits:").is_some();
+    type_into(&mut h, "a₁ greatest rad", "150 deg");
+    assert!(waits(&h));
+    h.get_by_label("Put this message away").click();
+    h.run_steps(4);
+    assert!(!waits(&h), "the button puts it away");
+    h.state_mut().app_state_mut().carry_out(WindowCommand::Refuse("no such number".into(), Vec::new()));
+    h.run_steps(3);
+    assert!(h.query_by_label("no such number").is_some() && !waits(&h), "another problem is told, not this one again");
+    h.key_press(Key::Escape);
+    h.run_steps(4);
+    assert!(h.query_by_label("no such number").is_none() && !waits(&h), "Esc puts it away");
+    type_into(&mut h, "a₁ greatest rad", "140 deg");
+    h.run_steps(2);
+    assert!(session(&h).run().waiting().is_some());
+    type_into(&mut h, "a₁ greatest rad", "180 deg");
+    assert!(session(&h).run().waiting().is_none());
+    type_into(&mut h, "a₁ greatest rad", "150 deg");
+    assert!(waits(&h), "it recurs after it had gone");
+}
 
 /// A number past its range: a button takes the nearest one that is allowed.
 fn what_is_typed_out_of_range_proposes_the_nearest_number() {

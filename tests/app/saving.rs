@@ -7,7 +7,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use stillbase::app::window::{App, Clock};
 use stillbase::app::{
-    AppState, CameraMove, Command, Preferences, ResumePoint, SessionCommand, ViewChange, WindowCommand,
+    AppState, CameraMove, Command, LeftSession, Preferences, ResumePoint, SessionCommand, ViewChange, WindowCommand,
 };
 use stillbase::files::journal::{self, Journal};
 use stillbase::picture::charts::choice::PlotChange;
@@ -31,6 +31,7 @@ pub const TESTS: &[Test] = tests![
     files_are_remembered_by_the_whole_of_their_names,
     own_plots_and_the_instant_are_recovered,
     a_recovered_session_has_its_file,
+    runs_side_by_side_are_saved_and_come_back,
 ];
 
 fn tell(h: &mut Window, command: Command) {
@@ -82,7 +83,7 @@ fn programs_beside_each_other_keep_a_journal_each() {
 fn found(file: &std::path::Path) -> Window {
     let scenario = Scenario::builtin("case-3").expect("built in");
     let app_state = AppState::new(scenario, Theme::Dark).expect("it starts");
-    let app_state = app_state.offering_recovery(Some((file.into(), "3 minutes ago".into())));
+    let app_state = app_state.offering_recovery(Some(LeftSession::of(file.into(), "3 minutes ago".into())));
     Harness::builder()
         .with_size([1280.0, 800.0])
         .with_step_dt(0.02)
@@ -101,6 +102,8 @@ fn a_session_that_was_left_behind_is_offered_and_opened() {
     let mut h = found(&file);
     h.run_steps(2);
     assert!(h.query_by_label_contains("3 minutes ago").is_some());
+    let held = "with nine-link, 2 changes.\nThe last: drag target to 0.520, 0.600 m";
+    assert!(h.query_by_label_contains(held).is_some(), "what it holds");
     h.get_by_label("Open that session").click();
     h.run_steps(4);
     assert_eq!(session(&h).to_scenario().edits, kept.edits);
@@ -221,6 +224,52 @@ fn files_are_remembered_by_the_whole_of_their_names() {
     // What an older program remembered by half a name cannot be found any more.
     let liked = Preferences { recent: vec!["mine.toml".into(), file.clone()], ..Preferences::default() };
     assert_eq!(liked.sound().recent, [file]);
+}
+
+/// The rows that a person added to the table of runs, its ticks and its order are saved and come back.
+fn runs_side_by_side_are_saved_and_come_back() {
+    use stillbase::app::{ComparisonCommand, Switch};
+    let folder = Folder::new("runs");
+    let file = folder.path("runs.toml");
+    let table = |h: &Window| -> Vec<(String, bool)> {
+        let comparison = h.state().app_state().comparison().expect("open");
+        comparison.order().into_iter().map(|i| &comparison.entries()[i]).map(|e| (e.title.clone(), e.shown)).collect()
+    };
+    let column = |h: &Window| h.state().app_state().comparison().and_then(|comparison| comparison.sorted());
+    let mut h = window("case-3", Theme::Dark);
+    tell(&mut h, ViewChange::Switch(Switch::Compare, true).into());
+    let case_1 = Scenario::builtin("case-1").expect("built in");
+    for on in [
+        ComparisonCommand::Add(Box::new(case_1.clone())),
+        ComparisonCommand::Add(Box::new(case_1)),
+        ComparisonCommand::Show(1, true),
+        ComparisonCommand::Show(5, false),
+        ComparisonCommand::Sort(1),
+        ComparisonCommand::Sort(1),
+    ] {
+        tell(&mut h, Command::Window(WindowCommand::Comparison(on)));
+    }
+    let (rows, sorted) = (table(&h), column(&h));
+    assert_eq!(rows.iter().filter(|(title, shown)| title.starts_with("case-1") && *shown).count(), 1, "{rows:?}");
+    assert!(rows.contains(&("Straight line".into(), true)) && sorted == Some((1, true)), "{rows:?}");
+    // A table that is closed and opened again is the same.
+    tell(&mut h, ViewChange::Switch(Switch::Compare, false).into());
+    assert!(h.state().app_state().comparison().is_none());
+    tell(&mut h, ViewChange::Switch(Switch::Compare, true).into());
+    assert_eq!((table(&h), column(&h)), (rows.clone(), sorted));
+    tell(&mut h, Command::Session(SessionCommand::SaveFile(file.clone())));
+    let mut h = window("case-2", Theme::Dark);
+    tell(&mut h, Command::Session(SessionCommand::OpenFile(file)));
+    h.run_steps(6);
+    assert_eq!((table(&h), column(&h)), (rows, sorted));
+    // A run that nobody can read is said, and the session opens all the same.
+    let text = "#| below = \"runs\"\n#| [runs]\n#| [[runs.added]]\n#| shown = true\n#| run = \"cheese\"\n";
+    let text = format!("{text}{}", Scenario::builtin("case-3").expect("built in").to_toml());
+    let broken = folder.file("broken.toml", text);
+    tell(&mut h, Command::Session(SessionCommand::OpenFile(broken)));
+    h.run_steps(6);
+    assert_eq!(table(&h).len(), 5);
+    assert!(h.query_by_label_contains("a run side by side").is_some(), "it says why a row is missing");
 }
 
 /// A journal keeps the instant on display and the plots that a person has made.

@@ -248,6 +248,66 @@ fn a_drawing_holds_what_the_plot_shows() {
     }
 }
 
+/// The name of a limit stands beside its line, where no curve is.
+#[test]
+fn names_of_limits_lie_where_no_curve_is() {
+    let p = palette(Theme::Dark);
+    let mut named = 0;
+    for (time, size) in
+        [0.68, 0.72, 0.8, 1.1].into_iter().flat_map(|time| [(time, [300.0, 130.0]), (time, [720.0, 320.0])])
+    {
+        let case = Scenario::builtin("case-1").expect("built in");
+        let case = case.with_settings(&stillbase::settings::change::single_change("task.time", time)).expect("a time");
+        let mut session = Session::open(case).expect("it starts");
+        session.seek(time);
+        let table = signals(&session.scenario().machine);
+        let plots = PlotChoice::default().plots(session.scenario(), &table, false, Notation::default());
+        let wanted: Vec<Signal> = plots[0].curves.iter().map(|curve| curve.signal.clone()).collect();
+        let samples: SignalSamples = stillbase::query::answer_sequence(&wanted, session.frames());
+        let look =
+            PlotContext { palette: &p, peaks: &session.frame().peaks, now: session.frame(), mark: None, hover: None };
+        let drawn = PlotLines::of(&plots[0], &samples, &[], [0.0, time], 600, false);
+        let figure = Figure::of(&plots[0], &drawn, size, &look, &[]);
+        for item in &figure.items {
+            let FigureItem::Text { at, anchor, words } = item else { continue };
+            let text: String = words.iter().map(|piece| piece.text.as_str()).collect();
+            if !text.starts_with("limit of") {
+                continue;
+            }
+            named += 1;
+            assert_eq!(*anchor, [0.0, 0.0]);
+            let right = at[0] + 0.5 * words[0].size * text.chars().count() as f32;
+            let inside = |[x, y]: &[f32; 2]| (at[0]..right).contains(x) && (at[1]..at[1] + words[0].size).contains(y);
+            for curve in &figure.items {
+                if let FigureItem::Line { points, inside: true, .. } = curve {
+                    let middles = points.windows(2).map(|ends| [0, 1].map(|k| 0.5 * (ends[0][k] + ends[1][k])));
+                    let covered = points.iter().copied().chain(middles).filter(inside).count();
+                    assert!(points.len() <= 2 || covered == 0, "{text} in {size:?} at {time} s covers a curve");
+                }
+            }
+        }
+    }
+    assert!(named >= 6, "{named} names");
+}
+
+/// Runs with and without a wheel show one quantity: what passes the wheel. A run alone shows what the arm transmits too.
+#[test]
+fn runs_with_and_without_a_wheel_show_one_moment() {
+    let table = table();
+    let mut choice = PlotChoice::default();
+    let curves = |choice: &PlotChoice, case: &str| -> Vec<String> {
+        let scenario = Scenario::builtin(case).expect("built in");
+        let plots = choice.plots(&scenario, &table, false, Notation::default());
+        let moment = plots.iter().find(|plot| plot.name == "Turning moment on the base").expect("a plot");
+        moment.curves.iter().map(|curve| curve.signal.path.clone()).collect()
+    };
+    assert_eq!(curves(&choice, "case-1"), ["moment/total"]);
+    assert_eq!(curves(&choice, "wheel"), ["moment/total", "moment/felt"]);
+    choice.wheels_differ = true;
+    assert_eq!(curves(&choice, "case-1"), ["moment/felt"]);
+    assert_eq!(curves(&choice, "wheel"), ["moment/felt"]);
+}
+
 fn away([x, y]: [f32; 2], [from, to]: [[f32; 2]; 2]) -> f32 {
     let way = [to[0] - from[0], to[1] - from[1]];
     let length = way[0] * way[0] + way[1] * way[1];

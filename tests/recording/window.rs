@@ -185,7 +185,7 @@ fn all_that_the_window_plots_is_in_the_layout() {
         };
         let run = replay(&scenario, |_, _| {}).expect("it runs");
         let table = signals(&scenario.machine);
-        for chart in charts(&scenario).iter().filter(|chart| chart.in_window(true)) {
+        for chart in charts(&scenario, false).iter().filter(|chart| chart.in_window(true)) {
             let view = chunks.iter().find(|chunk| {
                 let name = text(chunk, "ViewBlueprint:display_name");
                 name.iter().any(|name| *name == chart.title || name.starts_with(&format!("{}  ", chart.title)))

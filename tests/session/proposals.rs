@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use stillbase::mechanics::machine::Inertia;
+use stillbase::mechanics::planar::Vector;
 use stillbase::session::design::relaxations;
-use stillbase::session::scenario::{Scenario, TaskKind};
+use stillbase::session::scenario::{Scenario, Task, TaskKind};
 use stillbase::session::{Proposal, Run, improvements, proposals};
 use stillbase::settings::change::{join, single_change, value};
 use stillbase::settings::word::Choice as _;
@@ -34,6 +35,28 @@ fn proven(scenario: &Scenario) -> Vec<Proposal> {
 fn set(name: &str, settings: &[(&str, &str)]) -> Scenario {
     let change = settings.iter().fold(Table::new(), |all, (key, text)| join(all, &single_change(key, value(text))));
     Scenario::builtin(name).expect("built in").with_settings(&change).expect("settings")
+}
+
+/// A way out of a path drawn by hand keeps the limits of the drives, or says which it exceeds.
+#[test]
+fn ways_out_of_a_drawn_path_keep_the_limits_or_say_so() {
+    let mut seen = 0;
+    for time in ["0.2", "0.4", "1"] {
+        let case = set("case-3", &[("task.time", time)]);
+        let points = (0..=40).map(|i| {
+            let share = f64::from(i) / 40.0;
+            Vector::new(0.2 + 0.5 * share, 0.55 + 0.25 * (9.0 * share).sin())
+        });
+        let change = Task::drawing(&points.collect::<Vec<_>>()).expect("points");
+        let drawn = case.with_settings(&Table::from_iter([("task".to_owned(), change.into())])).expect("a task");
+        for proposal in proven(&drawn) {
+            let run = Run::new(&drawn.with_settings(&typed(&proposal)).expect("settings")).expect("proven");
+            let exceeded = run.plan().forecast.exceeded_limit;
+            assert_eq!(exceeded.is_some(), proposal.text.contains("times its limit"), "{time} s: {proposal:?}");
+            seen += usize::from(exceeded.is_some() || proposal.text.contains("times as long"));
+        }
+    }
+    assert!(seen > 0, "no proposal met a limit");
 }
 
 fn texts(proposals: &[Proposal]) -> Vec<&str> {

@@ -1,10 +1,45 @@
 //! Undo and redo: of every kind of edit, at rest and in motion.
 
 use stillbase::mechanics::planar::Vector;
-use stillbase::session::scenario::Scenario;
+use stillbase::session::scenario::{Scenario, Task};
 use stillbase::session::{Edit, TimedEdit};
 
 use super::{coarse, do_it, drag, gains, one_path, open, same, scenario, set, settle, slide, state};
+
+/// History says which points of the path were moved, from where and to where, a drag as one move.
+#[test]
+fn history_says_which_points_moved() {
+    let mut session = open(scenario());
+    let task = |session: &stillbase::session::Session| session.scenario().task.clone();
+    let mut said = Vec::new();
+    for change in [
+        |task: &Task| task.moving(1, Vector::new(0.56, 0.9)),
+        |task: &Task| task.adding(Vector::new(0.58, 0.7)),
+        |task: &Task| task.advancing(1),
+        |task: &Task| task.removing(0),
+        |task: &Task| task.moving(0, Vector::new(0.5, 0.52)),
+    ] {
+        let change = change(&task(&session)).expect("points");
+        do_it(&mut session, Edit::of("task", change));
+        session.end_gesture();
+        said.push(session.undo_title().expect("done").to_owned());
+    }
+    assert_eq!(
+        said,
+        [
+            "move B from 0.550, 0.900 to 0.560, 0.900 m",
+            "add point 1 at 0.580, 0.700 m",
+            "visit 1 before A",
+            "leave out point A at 0.580, 0.700 m",
+            "move A from 0.500, 0.500 to 0.500, 0.520 m",
+        ]
+    );
+    for x in [0.51, 0.52, 0.53] {
+        let change = task(&session).moving(0, Vector::new(x, 0.52)).expect("points");
+        do_it(&mut session, Edit::of("task", change));
+    }
+    assert_eq!(session.undo_title(), Some("move A from 0.500, 0.520 to 0.530, 0.520 m"));
+}
 
 /// Frames that are not there yet do not appear, those that are stay: undo and redo at rest are inverse to each other.
 #[test]

@@ -166,6 +166,8 @@ fn text(ui: &mut Ui, p: &Palette, spans: &[Span], size: f32, commands: &mut Vec<
     });
 }
 
+/// Height that the scroll bar of a block of code takes, points.
+const BAR_PT: f32 = 8.0;
 /// Width of the button that copies a block of code, points.
 const COPY_WIDTH_PT: f32 = 48.0;
 
@@ -178,10 +180,15 @@ fn block_of_code(ui: &mut Ui, p: &Palette, kind: &str, text: &str, (indent, i): 
             ui.set_width(ui.available_width());
             let corner = ui.max_rect().right_top();
             // The button covers no code.
-            ui.set_max_width(ui.available_width() - COPY_WIDTH_PT);
-            ScrollArea::horizontal().id_salt(("code", i)).auto_shrink([false, true]).show(ui, |ui| {
+            let room = ui.available_width() - COPY_WIDTH_PT;
+            let area = ScrollArea::horizontal().id_salt(("code", i)).auto_shrink([false, true]).max_width(room);
+            area.show(ui, |ui| {
                 let words = RichText::new(text.trim_end()).font(code(CODE_PT)).color(colour(p.ink));
-                ui.add(Label::new(words).extend());
+                let words = ui.add(Label::new(words).extend());
+                if words.rect.width() > room {
+                    // The scroll bar covers no line.
+                    ui.add_space(BAR_PT);
+                }
             });
             let at = egui::Rect::from_min_size(corner + vec2(2.0 - COPY_WIDTH_PT, -2.0), vec2(COPY_WIDTH_PT, 18.0));
             let words = RichText::new("Copy").font(plain(11.0)).color(colour(p.dim));

@@ -44,7 +44,7 @@ pub fn bars(
     let b_now = now.b_reference;
     let half = 0.5 * space.period();
     let count = points.len() as f64;
-    let axis = SmallAxis::of_angle(ui);
+    let axis = SmallAxis::of_angle(ui).between(b_now - half, b_now + half);
     small_axes(ui);
     let response = base_plot("which b of points", p, height - 16.0)
         .show_axes([true, false])

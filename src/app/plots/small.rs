@@ -11,6 +11,9 @@ use stillbase_picture::scene::palette::{Palette, faded};
 /// Font size of the axis numbers, points.
 const AXIS_FONT_PT: f32 = 10.5;
 
+/// Maximum number of decimals of a mark.
+const MAX_DECIMALS: f64 = 9.0;
+
 /// Draws the title of the chart *Which b?*.
 pub fn which_b_title(ui: &mut Ui, p: &Palette, words: &str) {
     ui.horizontal(|ui| {
@@ -62,6 +65,13 @@ impl SmallAxis {
         }
     }
 
+    /// Returns the axis with as many decimals as tell the marks between two bounds apart.
+    pub fn between(self, low: f64, high: f64) -> Self {
+        let step = step(self.factor * low, self.factor * high);
+        let needed = (-step.log10() - 1e-9).ceil().clamp(0.0, MAX_DECIMALS) as usize;
+        Self { decimals: self.decimals.max(needed), ..self }
+    }
+
     /// Returns marks at values that are round in the user's unit.
     pub fn marks(self, low: f64, high: f64) -> Vec<GridMark> {
         let round: Vec<f64> =
@@ -80,9 +90,14 @@ pub fn marks(values: &[f64], step: f64) -> Vec<GridMark> {
     values.iter().map(|v| GridMark { value: *v, step_size: step }).collect()
 }
 
+/// Returns the distance of the values of [`spaced`].
+fn step(low: f64, high: f64) -> f64 {
+    round_up((high - low) / 5.0)
+}
+
 /// Returns about three to five round, evenly spaced values between two bounds.
 pub fn spaced(low: f64, high: f64) -> Vec<f64> {
-    let step = round_up((high - low) / 5.0);
+    let step = step(low, high);
     let first = (low / step).ceil() as i64;
     (first..first + 12).map(|i| i as f64 * step).take_while(|v| *v <= high).collect()
 }

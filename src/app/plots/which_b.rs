@@ -67,6 +67,9 @@ pub fn show(ui: &mut Ui, chart: WhichB<'_>, commands: &mut Vec<Command>) {
     }
 }
 
+/// Space above the letters of a name, points.
+const ABOVE_LETTERS_PT: f32 = 3.5;
+
 /// Draws Fig. 3 of the paper: q_1 against b, rad, for the points of the task, or for the target.
 fn lines(
     ui: &mut Ui,
@@ -113,13 +116,14 @@ fn lines(
     let room = 0.18 * (bounds[3] - bounds[2]).max(0.5);
     let [q_low, q_high] = [bounds[2] - room, bounds[3] + room];
     let axis = SmallAxis::of_angle(ui);
+    let (across, up) = (axis.between(b_low, b_high), axis.between(q_low, q_high));
     small_axes(ui);
     let response = base_plot("which b", p, height - 16.0)
         .show_axes([true, true])
-        .y_grid_spacer(move |_| axis.marks(q_low, q_high))
-        .x_grid_spacer(move |_| axis.marks(b_low, b_high))
-        .x_axis_formatter(move |mark, _| axis.write(mark.value))
-        .y_axis_formatter(move |mark, _| axis.write(mark.value))
+        .y_grid_spacer(move |_| up.marks(q_low, q_high))
+        .x_grid_spacer(move |_| across.marks(b_low, b_high))
+        .x_axis_formatter(move |mark, _| across.write(mark.value))
+        .y_axis_formatter(move |mark, _| up.write(mark.value))
         .show(ui, |plot| {
             plot.set_plot_bounds_x(b_low..=b_high);
             plot.set_plot_bounds_y(q_low..=q_high);
@@ -133,10 +137,23 @@ fn lines(
                 // Of more than four points, only the first and the last are named.
                 let named = points.len() <= 4 || name == points[0].0 || name == points[last].0;
                 if let Some(end) = line.last().filter(|_| named) {
-                    let text = RichText::new(name).font(plain(11.5));
                     let place = PlotPoint::new(end[0], end[1]);
+                    let size = plot
+                        .ctx()
+                        .fonts_mut(|fonts| fonts.layout_no_wrap(name.to_owned(), plain(11.5), colour(p.ink)).size());
+                    // The name stands on the other side where it would leave the chart.
+                    let frame = plot.response().rect;
+                    let share = [(end[0] - b_low) / (b_high - b_low), (q_high - end[1]) / (q_high - q_low)];
+                    let at = frame.lerp_inside(share.map(|share| share as f32));
+                    let (is_left, is_top) =
+                        (at.x - size.x < frame.left(), at.y - size.y + ABOVE_LETTERS_PT < frame.top());
+                    let anchor = [
+                        [egui::Align2::RIGHT_BOTTOM, egui::Align2::RIGHT_TOP],
+                        [egui::Align2::LEFT_BOTTOM, egui::Align2::LEFT_TOP],
+                    ][usize::from(is_left)][usize::from(is_top)];
+                    let text = RichText::new(name).font(plain(11.5));
                     let text = egui_plot::Text::new("name", place, text).color(colour(p.ink));
-                    plot.text(text.anchor(egui::Align2::RIGHT_BOTTOM).allow_hover(false));
+                    plot.text(text.anchor(anchor).allow_hover(false));
                 }
                 let line = Line::new(name.to_owned(), PlotPoints::from(line)).width(1.8);
                 let line = line.color(colour(if named { p.ink } else { faded(p.dim, 0.6) }));

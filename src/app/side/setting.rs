@@ -4,7 +4,6 @@ use egui::{Align, Label, Layout, RichText, TextEdit, Ui};
 
 use super::fold::undo;
 use crate::facts::Setting;
-use crate::fit::label;
 use crate::theme::{colour, plain};
 use crate::widgets::{name, undoable_edit};
 use crate::{Command, WindowCommand, fit, notation};
@@ -17,8 +16,11 @@ use stillbase_settings::key::{Key, KeyType};
 use stillbase_settings::quantity::{self, QuantityError};
 use stillbase_settings::range::shortened;
 
-/// Least width of the text in a field, points.
+/// Least width of the text in a field, and what a field adds to the width of its text, points.
 const MIN_FIELD_PT: f32 = 72.0;
+const FIELD_MARGIN_PT: f32 = 20.0;
+/// Width of a unit, points; a long one takes a second line.
+const UNIT_PT: f32 = 44.0;
 /// Number of significant digits of a value in another unit than that of its key.
 const DIGITS: i32 = 9;
 
@@ -93,15 +95,14 @@ pub fn row(ui: &mut Ui, p: &Palette, setting: &Setting, commands: &mut Vec<Comma
     let tip = format!("{called}\n{path}\n{}\n{}.{instead}{wants}", key.meaning, key.value_type);
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let words = fit::fitted(ui, in_words, &plain(10.5), 40.0);
-            let words = RichText::new(words).font(plain(10.5)).color(colour(p.dim));
-            ui.add_sized([40.0, 18.0], Label::new(words).halign(Align::LEFT).truncate()).on_hover_text(in_words);
+            let words = RichText::new(in_words).font(plain(10.5)).color(colour(p.dim));
+            ui.add_sized([UNIT_PT, 18.0], Label::new(words).halign(Align::LEFT).wrap());
             let id = ui.scope_id().with(path);
             let kept = ui.data(|d| d.get_temp::<String>(id));
             let mut text = kept.clone().unwrap_or_else(|| shown.clone());
             // A long word gets more room, as long as the name keeps half of the row.
             let most = (0.5 * ui.available_width()).max(MIN_FIELD_PT);
-            let width = (fit::width_of(ui, &text, &plain(11.5)) + 4.0).clamp(MIN_FIELD_PT, most);
+            let width = (fit::width_of(ui, &text, &plain(11.5)) + FIELD_MARGIN_PT).clamp(MIN_FIELD_PT, most);
             let field = TextEdit::singleline(&mut text).id(id.with("field")).hint_text(&default).desired_width(width);
             let response = ui.add(field.font(plain(11.5))).on_hover_text(&tip);
             name(&response, path);
@@ -129,8 +130,12 @@ pub fn row(ui: &mut Ui, p: &Palette, setting: &Setting, commands: &mut Vec<Comma
             ui.with_layout(Layout::top_down(Align::LEFT), |ui| {
                 ui.spacing_mut().item_spacing.y = 0.0;
                 let ink = colour(if wants.is_empty() { p.ink } else { p.dim });
-                label(ui, &called, plain(12.0), ink).on_hover_text(&tip);
-                let small = label(ui, path, plain(9.5), colour(p.dim));
+                // A long name takes a second line.
+                let line = |ui: &mut Ui, text: &str, font, tone| {
+                    ui.add(Label::new(RichText::new(text).font(font).color(tone)).wrap())
+                };
+                line(ui, &called, plain(12.0), ink).on_hover_text(&tip);
+                let small = line(ui, path, plain(9.5), colour(p.dim));
                 fit::say(&small, &format!("key {path}"));
                 small.on_hover_text(&tip);
             });

@@ -8,6 +8,7 @@ use crate::change::SessionSource;
 use crate::given::assess::OpenedTable;
 use crate::intro::Intro;
 use crate::pair::Pair;
+use crate::saved_runs::SavedRuns;
 use crate::saving::Saving;
 use crate::tour::Tour;
 use crate::{Activity, Command, Layout, SessionCommand, Switch, ViewChange, ViewState, WindowCommand};
@@ -26,6 +27,7 @@ pub(super) struct SetAside {
     pub saving: Saving,
     views: Arc<Views>,
     comparison: Option<Comparison>,
+    runs: SavedRuns,
     fronts: Vec<FrontCase>,
     seeking: Option<<LengthsQuery as Query>::Input>,
     opened_table: Option<OpenedTable>,
@@ -50,6 +52,14 @@ impl AppState {
         self.aside.as_ref().map_or(&self.saving, |aside| &aside.saving)
     }
 
+    /// The user's part of the table of runs of the person's own session.
+    pub(super) fn own_runs(&self) -> SavedRuns {
+        match &self.aside {
+            Some(aside) => SavedRuns::all(aside.comparison.as_ref(), &aside.runs),
+            None => SavedRuns::all(self.comparison.as_ref(), &self.runs),
+        }
+    }
+
     /// Sets the person's own session aside; what is done from now on does not touch it.
     ///
     /// # Errors
@@ -70,6 +80,7 @@ impl AppState {
             saving: std::mem::replace(&mut self.saving, saving),
             views: self.views.clone(),
             comparison: self.comparison.take(),
+            runs: std::mem::take(&mut self.runs),
             fronts: std::mem::take(&mut self.fronts),
             seeking: self.seeking.take(),
             opened_table: self.opened_table.take(),
@@ -105,7 +116,7 @@ impl AppState {
         let leaves = self.saving.leaves;
         self.saving = Saving { leaves, ..aside.saving };
         (self.views, self.comparison, self.fronts) = (aside.views, aside.comparison, aside.fronts);
-        (self.seeking, self.opened_table) = (aside.seeking, aside.opened_table);
+        (self.seeking, self.opened_table, self.runs) = (aside.seeking, aside.opened_table, aside.runs);
         (self.designed_from, self.branch_message, self.due_s) = (None, None, 0.0);
         self.run_ahead();
         self.refresh();

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::AppState;
 use crate::background::{Background, Opening};
 use crate::change::SessionSource;
+use crate::saved_runs::{AddedRun, SavedRun, SavedRuns};
 use crate::{Activity, BottomPanel, ComparisonCommand};
 use stillbase_picture::scene::beside::{Beside, BesideQuery};
 use stillbase_picture::scene::stage::OutlineQuery;
@@ -123,7 +124,7 @@ impl AppState {
     /// only a new table requests them. While its panel is closed, there is no table.
     pub(super) fn refresh_comparison(&mut self) {
         if self.view_state.below != Some(BottomPanel::Runs) {
-            self.comparison = None;
+            self.runs = SavedRuns::all(self.comparison.take().as_ref(), &self.runs);
             self.queries().forget::<AlternativeRuns>();
             self.background.stop(Activity::ExtraRun);
             return;
@@ -141,6 +142,50 @@ impl AppState {
         if wanted && (first || self.view_state.gesture.grabbed.is_none()) {
             let _ = self.queries().ask_in_background::<AlternativeRuns>(&self.session.run().shared_scenario());
         }
+        if first {
+            self.restore_runs();
+        }
+    }
+
+    /// Gives a table of runs what it held when it was closed or saved. Runs that were read are made in the background.
+    fn restore_runs(&mut self) {
+        let SavedRuns { ticked, sorted_by, descending, added } = std::mem::take(&mut self.runs);
+        let Some(table) = &mut self.comparison else { return };
+        table.tick(ticked);
+        table.sort_by_key(&sorted_by, descending);
+        for AddedRun { shown, run } in added {
+            match run {
+                SavedRun::Made(ByIdentity(run)) => table.restore(run, shown),
+                run @ SavedRun::Text(_) => self.runs.added.push(AddedRun { shown, run }),
+            }
+        }
+        if self.runs.added.is_empty() {
+            return;
+        }
+        let wanted = self.runs.added.clone();
+        let work = move |ticket: &Ticket| {
+            let count = wanted.len() as f64;
+            let make = |(i, one): (usize, &AddedRun)| {
+                let run = one.run.make(&mut |done| ticket.goes_on((i as f64 + done) / count));
+                run.map(|run| (run, one.shown))
+            };
+            wanted.iter().enumerate().map(make).collect::<Vec<_>>()
+        };
+        self.background.run(Activity::ExtraRun, work, move |app_state, made| {
+            app_state.runs.added.clear();
+            let mut failed = if made.is_none() { vec![fault("the runs side by side")] } else { Vec::new() };
+            for run in made.into_iter().flatten() {
+                match (run, &mut app_state.comparison) {
+                    (Ok((run, shown)), Some(table)) => table.restore(run, shown),
+                    (Ok(_), None) => {}
+                    (Err(why), _) => failed.push(why),
+                }
+            }
+            if !failed.is_empty() {
+                app_state.show_outcome(Err(failed.join("\n")));
+            }
+        });
+        self.collect();
     }
 
     /// Requests the run to be shown beside that on display, if there is a pair; during a drag the last one stays.

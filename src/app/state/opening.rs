@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::AppState;
 use crate::background::{Opening, SessionFile};
 use crate::change::{NotOpened, Opened, OpenedSession, SessionSource};
+use crate::saving::LeftSession;
 use crate::{Activity, Framing, Recovery};
 use stillbase_mechanics::machine::Machine;
 use stillbase_query::{Shared, Ticket};
@@ -39,7 +40,13 @@ impl AppState {
                 if let Some(file) = own {
                     self.saving.keep_file(self.session.undo_count(), file);
                 }
-                if let Some(left_off) = left_off {
+                if let Some(mut left_off) = left_off {
+                    // Without runs of its own, a file leaves the table what the user has added.
+                    let runs = std::mem::take(&mut left_off.runs);
+                    if !runs.is_empty() {
+                        self.background.stop(Activity::ExtraRun);
+                        (self.comparison, self.runs) = (None, runs);
+                    }
                     left_off.show(&mut self.view_state, self.session.run());
                 }
             }
@@ -128,7 +135,7 @@ impl AppState {
     }
 
     pub(super) fn recover(&mut self, what: Recovery) {
-        let Some((file, _)) = self.saving.left_session.take() else { return };
+        let Some(LeftSession { file, .. }) = self.saving.left_session.take() else { return };
         match what {
             Recovery::Open => {
                 let (from, message) =

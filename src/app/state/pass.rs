@@ -15,6 +15,8 @@ use crate::{
     study, theme, top, viewport, widgets,
 };
 use stillbase_picture::scene::views::ViewKind;
+use stillbase_session::Session;
+use stillbase_study::comparison::Comparison;
 
 /// Time between two repaints that show progress, s.
 const PROGRESS_INTERVAL_S: f32 = 0.1;
@@ -52,6 +54,7 @@ impl AppState {
         }
         let other = self.view_state.pair.as_ref().and_then(|_| self.beside());
         let beside = laid_over(other.as_deref(), self.comparison.as_ref());
+        self.view_state.charts.wheels_differ = wheels_differ(&self.session, beside);
         let queries = self.queries().clone();
         let marks = Marks::of(&queries, &self.session, beside);
         if !marks.is_whole {
@@ -120,6 +123,7 @@ impl AppState {
             let width = plots::show(ui, &what, has_panel, &mut commands);
             self.view_state.arrangement.now_mut().plots.width = width;
         }
+        self.view_state.put_away = News::still_put_away(&self.session, &self.view_state.put_away);
         let news = News::of(&self.session, &self.view_state);
         let content = viewport::SceneContent {
             session: &self.session,
@@ -206,4 +210,10 @@ impl AppState {
             self.applied_theme = Some(self.view_state.arrangement.theme);
         }
     }
+}
+
+/// Whether of the session's run and those drawn with it some have a reaction wheel and some have none.
+fn wheels_differ(session: &Session, table: Option<&Comparison>) -> bool {
+    let has_wheel = session.scenario().base.wheel.is_some();
+    table.is_some_and(|table| table.shown().any(|(_, run)| run.scenario.base.wheel.is_some() != has_wheel))
 }

@@ -1,12 +1,16 @@
 //! The problem message over the lower edge of the scene, with a button for each way out.
 
-use egui::{Align2, Area, Context, Frame, Id, Label, Rect, RichText, vec2};
+use egui::{Align2, Area, Button, Context, Frame, Id, Label, Rect, RichText, vec2};
 
 use super::power;
 use crate::theme::{colour, plain};
-use crate::{Command, ViewState, lamp, notation};
+use crate::widgets::name;
+use crate::{Command, ViewChange, ViewState, lamp, notation};
 use stillbase_session::{OutsideLimits, Proposal, Session};
 use stillbase_simulation::frame::Frame as RunFrame;
+
+/// Width that the button beside the text takes, points.
+const CLOSE_WIDTH_PT: f32 = 26.0;
 
 /// Why a problem message is shown.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,27 +31,54 @@ pub struct News {
     reason: Reason,
     /// Why the run waits, in a sentence, if the reason is another.
     also: Option<String>,
+    /// What holds on of all this, by what tells it from another problem.
+    holds_on: Vec<String>,
 }
 
 impl News {
-    /// Returns the most urgent problem; `None` if there is none, or while a dialog is open.
+    /// Returns the most urgent problem that the user has not put away; `None` if there is none, or while a dialog is
+    /// open.
     pub fn of(session: &Session, view_state: &ViewState) -> Option<Self> {
         if view_state.open.dialog.is_some() {
             return None;
         }
         let waits = session.run().waiting().map(|waits| waits.why.to_string());
-        let said = waits.as_ref().map(|why| format!("The run waits: {why}"));
         // A refusal for which the run waits is told once.
         let message = view_state.status.problem().filter(|problem| waits.as_ref() != Some(problem));
+        let is_new = |problem: &String| !view_state.put_away.contains(problem);
+        let said = waits.as_ref().map(|why| format!("The run waits: {why}")).filter(is_new);
+        let of_wait: Vec<String> = said.iter().cloned().collect();
         // While the run waits, a refused edit hides neither the reason for the wait nor the remedy.
         if let Some(problem) = message {
-            return Some(Self { reason: Reason::Message(problem.clone()), also: said });
+            return Some(Self { reason: Reason::Message(problem.clone()), also: said, holds_on: of_wait });
         }
-        if let Some(fault) = fault(session.frame()).filter(|_| view_state.status.problem().is_none()) {
-            return Some(Self { reason: Reason::Fault(fault), also: said });
+        let fault = fault(session.frame()).filter(|(kind, _)| is_new(kind) && view_state.status.problem().is_none());
+        if let Some((kind, fault)) = fault {
+            let holds_on = [of_wait, vec![kind]].concat();
+            return Some(Self { reason: Reason::Fault(fault), also: said, holds_on });
         }
-        let reason = said.map(Reason::Waits).or_else(|| session.outside_limits().map(Reason::OutsideLimits))?;
-        Some(Self { reason, also: None })
+        if let Some(said) = said {
+            return Some(Self { reason: Reason::Waits(said), also: None, holds_on: of_wait });
+        }
+        let outside = session.outside_limits().filter(|outside| waits.is_none() && is_new(&outside.why))?;
+        let holds_on = vec![outside.why.clone()];
+        Some(Self { reason: Reason::OutsideLimits(outside), also: None, holds_on })
+    }
+
+    /// Returns the problems that were put away and still hold on as they were; the others come back when they recur.
+    pub fn still_put_away(session: &Session, put_away: &[String]) -> Vec<String> {
+        if put_away.is_empty() {
+            return Vec::new();
+        }
+        let waits = session.run().waiting().map(|waits| format!("The run waits: {}", waits.why));
+        let outside = session.outside_limits().map(|outside| outside.why);
+        let now = [waits, fault(session.frame()).map(|(kind, _)| kind), outside];
+        put_away.iter().filter(|problem| now.iter().flatten().any(|one| one == *problem)).cloned().collect()
+    }
+
+    /// Returns the change of the display that puts it away.
+    pub fn put_away(self) -> ViewChange {
+        ViewChange::PutAway(self.holds_on)
     }
 
     /// Returns what is wrong, in a sentence.
@@ -69,18 +100,19 @@ impl News {
     }
 }
 
-/// Returns the warning about a failed audit.
-fn fault(frame: &RunFrame) -> Option<String> {
+/// Returns which audit has failed, and the warning about it, whose numbers change while the run goes on.
+fn fault(frame: &RunFrame) -> Option<(String, String)> {
     let figure = frame.first_violation()?;
     let limit = figure.limit.unwrap_or_default();
-    Some(format!(
+    let warning = format!(
         "This run cannot be trusted: {} ({}) is off by {} {}, at most {} is right. A smaller step or softer gains help.",
         figure.name,
         figure.meaning,
         power(figure.value),
         figure.unit,
         power(limit)
-    ))
+    );
+    Some((format!("audit {}", figure.name), warning))
 }
 
 /// Returns the rectangle of the problem message in the last pass.
@@ -107,11 +139,22 @@ pub fn show(
     area.fixed_pos(scene.center_bottom() - vec2(0.0, 34.0)).show(ctx, |ui| {
         frame.show(ui, |ui| {
             ui.set_max_width(width);
-            let lines = [(Some(news.text()), p.ink), (news.also.as_deref(), p.dim)];
-            for (text, tone) in lines.into_iter().filter_map(|(text, tone)| Some((text?, tone))) {
-                let text = notation::sentence(ui.ctx(), text);
-                ui.add(Label::new(RichText::new(text).font(plain(12.0)).color(colour(tone))).wrap());
-            }
+            ui.horizontal_top(|ui| {
+                ui.vertical(|ui| {
+                    ui.set_max_width(width - CLOSE_WIDTH_PT);
+                    let lines = [(Some(news.text()), p.ink), (news.also.as_deref(), p.dim)];
+                    for (text, tone) in lines.into_iter().filter_map(|(text, tone)| Some((text?, tone))) {
+                        let text = notation::sentence(ui.ctx(), text);
+                        ui.add(Label::new(RichText::new(text).font(plain(12.0)).color(colour(tone))).wrap());
+                    }
+                });
+                let close = ui.add(Button::new("×").frame(false).min_size(vec2(16.0, 16.0)));
+                name(&close, "Put this message away");
+                let close = close.on_hover_text("Put away (Esc); it comes back when something changes about it");
+                if close.clicked() {
+                    commands.push(news.clone().put_away().into());
+                }
+            });
             if proposals.is_empty() && status.entry.is_none() {
                 return;
             }

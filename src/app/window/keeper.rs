@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use crate::jobs::Threads;
-use crate::{AppState, Preferences, ResumePoint};
+use crate::{AppState, LeftSession, Preferences, ResumePoint};
 use stillbase_files::journal::{self, Journal, LeftoverJournal};
 use stillbase_files::preferences;
 use stillbase_query::{Job, Poll};
@@ -164,8 +164,8 @@ impl Keeper {
     }
 }
 
-/// Returns the file of the newest session that an earlier program run left, and its age in words.
-pub fn find_left_session() -> Option<(PathBuf, String)> {
+/// Returns the newest session that an earlier program run left.
+pub fn find_left_session() -> Option<LeftSession> {
     let LeftoverJournal { file, when } = journal::leftover_journals(&journal::folder()?).into_iter().next()?;
     let ago = when.elapsed().unwrap_or_default().as_secs();
     let words = match ago {
@@ -174,5 +174,5 @@ pub fn find_left_session() -> Option<(PathBuf, String)> {
         7200..=172_799 => format!("{} hours ago", ago / 3600),
         _ => format!("{} days ago", ago / 86_400),
     };
-    Some((file, words))
+    Some(LeftSession::of(file, words))
 }

@@ -36,6 +36,9 @@ pub struct PlotChoice {
     pub order: Vec<String>,
     /// Changes of plots, by name of the plot.
     pub changes: BTreeMap<String, PlotSettings>,
+    /// Whether of the runs on display some have a reaction wheel and some have none; follows from the runs.
+    #[serde(skip)]
+    pub wheels_differ: bool,
 }
 
 /// The user's changes of one plot.
@@ -205,7 +208,7 @@ impl PlotChoice {
     ) -> Vec<Plot<'a>> {
         let none = PlotSettings::default();
         let of = |name: &str| self.changes.get(name).unwrap_or(&none);
-        let table = charts(scenario).into_iter().filter(|chart| chart.in_window(pins));
+        let table = charts(scenario, self.wheels_differ).into_iter().filter(|chart| chart.in_window(pins));
         let open = table.filter(|chart| !of(chart.title).closed);
         let known = open.map(|chart| Plot::of(chart.title, chart, false, of(chart.title), (signals, notation)));
         let own = self.own.iter().map(|name| {

@@ -3,8 +3,9 @@
 
 use super::choice::Plot;
 use super::colour;
-use super::drawn::PlotLines;
+use super::drawn::{PlotLine, PlotLines};
 use super::legend::{self, RunName};
+use super::limit_names;
 use crate::numbers::{at_step, round_ticks, ticks};
 use crate::scene::Rgba;
 use crate::scene::palette::{Palette, faded};
@@ -145,7 +146,7 @@ pub fn dashes(run: usize) -> (Option<[f32; 2]>, f32) {
 }
 
 /// Font size of tick labels, points.
-const TICK_SIZE_PT: f32 = 10.0;
+pub(super) const TICK_SIZE_PT: f32 = 10.0;
 /// Tolerance of the simplification of curves, points.
 const THINNING_TOLERANCE_PT: f32 = 0.1;
 
@@ -185,28 +186,19 @@ pub fn body(plot: &Plot<'_>, drawn: &PlotLines, axes: &Axes, look: &PlotContext<
         let at = [if anchor == 1.0 { right + 2.0 } else { x }, bottom + 3.0];
         words.push(FigureItem::Text { at, anchor: [anchor, 0.0], words: small(text) });
     }
-    for (i, (curve, limit)) in drawn.limits.iter().enumerate() {
-        let tone = faded(pen(plot, *curve, look).0, 0.7);
+    for (curve, limit) in &drawn.limits {
+        let tone = faded(pen(plot, *curve, look).0, limit_names::OPACITY);
         for y in [-limit, *limit].map(|y| axes.place([axes.x[0], y])[1]) {
             items.push(line(vec![[left, y], [right, y]], 1.0, tone, Some([2.0, 3.0])));
         }
-        // Equal limits share one label, beside the line of the first.
-        let is_equal = |other: &(usize, f64)| other.1 == *limit;
-        if drawn.limits[..i].iter().any(is_equal) {
-            continue;
-        }
-        let of = |(curve, _): &(usize, f64)| plot.curves[*curve].signal.symbol.as_str();
-        let symbols: Vec<&str> = drawn.limits.iter().filter(|other| is_equal(other)).map(of).collect();
-        let text = format!("limit of {}", symbols.join(", "));
-        let text = vec![FigureText { text, size: TICK_SIZE_PT, bold: false, colour: tone }];
-        // Labels alternate between right and left, so that those of two limits close together need not overlap.
-        let (x, anchor) = if i % 2 == 0 { (right - 4.0, 1.0) } else { (left + 4.0, 0.0) };
-        let at = [x, axes.place([axes.x[0], *limit])[1] + 2.0];
-        words.push(FigureItem::Text { at, anchor: [anchor, 0.0], words: text });
     }
-    for run in &drawn.lines {
+    let on_screen = |run: &PlotLine| {
         let points: Vec<[f32; 2]> = run.points.iter().map(|point| axes.place(*point)).collect();
-        let points = simplify_line(&points, THINNING_TOLERANCE_PT);
+        simplify_line(&points, THINNING_TOLERANCE_PT)
+    };
+    let curves: Vec<Vec<[f32; 2]>> = drawn.lines.iter().map(on_screen).collect();
+    words.extend(limit_names::items(plot, drawn, axes, look, &curves));
+    for (run, points) in drawn.lines.iter().zip(curves) {
         let (tone, dash) = pen(plot, run.curve, look);
         items.push(match run.run {
             None => line(points, 1.8, tone, dash),
@@ -235,7 +227,7 @@ const NUMBER_DISTANCE_PT: f32 = 10.0;
 /// Returns the numbers of overlaid runs, counted from 1 as in the table of runs, beside the ends of their lines.
 fn run_numbers(plot: &Plot<'_>, drawn: &PlotLines, axes: &Axes, p: &Palette) -> Vec<FigureItem> {
     let [_, top, right, bottom] = axes.sides;
-    let end = |line: &super::drawn::PlotLine| {
+    let end = |line: &PlotLine| {
         let (run, last) = (line.run?, line.points.last()?);
         let y = axes.place(*last)[1].clamp(top, bottom);
         Some((y, run, colour_in_run(plot, line.curve, run, p)))

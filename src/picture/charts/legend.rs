@@ -20,7 +20,7 @@ const MIN_NAME_PT: f32 = 190.0;
 const SAMPLE_PT: f32 = 24.0;
 /// Size of the font, points, and usual width of a letter as a share of it.
 const SIZE_PT: f32 = 11.5;
-const LETTER_SHARE: f32 = 0.56;
+pub(super) const LETTER_SHARE: f32 = 0.56;
 /// Name of the run of the session, which has no number.
 const OWN_RUN: &str = "the run on display";
 

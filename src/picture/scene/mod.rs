@@ -42,6 +42,7 @@ pub mod pick;
 #[doc(hidden)]
 pub mod pointer;
 pub mod reaction;
+pub(crate) mod segment;
 #[doc(hidden)]
 pub mod stage;
 #[doc(hidden)]

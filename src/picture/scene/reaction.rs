@@ -92,8 +92,9 @@ impl ReactionGlyph {
     }
 
     /// Returns the texts of f_B and n_B with their colours. A reaction is red; zero is green if the machine has moved
-    /// without any reaction so far. Before the first motion, and after an earlier reaction, zero is dim.
-    pub fn readings(&self, palette: &Palette) -> [(String, Rgba); 2] {
+    /// without any reaction so far. Before the first motion, and after an earlier reaction, zero is dim. `has_wheel`
+    /// says whether a reaction wheel takes up a part of n_B.
+    pub fn readings(&self, palette: &Palette, has_wheel: bool) -> [(String, Rgba); 2] {
         let tone = |real: bool, stays_zero: bool| match (real, stays_zero && self.has_moved) {
             (true, _) => palette.reaction,
             (false, true) => palette.zero,
@@ -102,7 +103,7 @@ impl ReactionGlyph {
         let [force, moment] = [tone(self.has_force, !self.had_force), tone(self.has_moment, !self.had_moment)];
         [
             (format!("f_B {} N", reading(self.force.norm(), self.has_force)), force),
-            (format!("n_B {} N m", reading(self.moment, self.has_moment)), moment),
+            (format!("{} {} N m", moment_symbol(has_wheel), reading(self.moment, self.has_moment)), moment),
         ]
     }
 
@@ -110,6 +111,11 @@ impl ReactionGlyph {
     pub fn static_force_text(&self, name: &str) -> Option<String> {
         (self.static_force > 0.0).then(|| format!("and {name}, {:.1} N", self.static_force))
     }
+}
+
+/// Returns the symbol of the moment on the base: with a reaction wheel it is what passes the wheel, not n_B.
+pub fn moment_symbol(has_wheel: bool) -> &'static str {
+    if has_wheel { "n felt" } else { "n_B" }
 }
 
 /// Formats with three decimals, or with a power of ten if a nonzero value would be rounded to zero.

@@ -365,7 +365,14 @@ impl Stage {
         snapshots::others(&mut scene, linkage, &palette, options);
         let blocked = self.plan.as_ref().and_then(PlannedPath::blocked);
         path::draw_user_curves(&mut scene, &palette, options, blocked, z);
-        reaction::draw(&mut scene, linkage, &palette, shown, options, self.base.static_force_name(options));
+        reaction::draw(
+            &mut scene,
+            linkage,
+            &palette,
+            shown,
+            options,
+            (self.base.static_force_name(options), self.base.has_wheel()),
+        );
         if options.pin_forces {
             self.pins.draw(&mut scene, linkage, &palette, shown);
         }

@@ -19,11 +19,11 @@ impl Session {
         match self.undo.last_mut() {
             Some(last) if joins => {
                 let last = Arc::make_mut(last);
-                last.title = timed.edit.title();
+                last.title = timed.edit.title_after(last.inverse.as_ref());
                 last.edit = Some(timed);
             }
             _ => {
-                let title = timed.edit.title();
+                let title = timed.edit.title_after(inverse.as_ref());
                 self.undo.push(Arc::new(HistoryStep { before, edit: Some(timed), inverse, title, annotation: None }));
             }
         }

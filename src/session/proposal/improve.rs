@@ -9,7 +9,7 @@ use crate::verdict::changes_b;
 use stillbase_mechanics::machine::Inertia;
 use stillbase_planning::timing::TimeLaw;
 use stillbase_query::ProgressCallback;
-use stillbase_settings::change::single_change;
+use stillbase_settings::change::{join, single_change};
 use stillbase_settings::word::Choice;
 
 /// Largest factor by which a motion is made longer to keep the limits of the drives.
@@ -53,6 +53,20 @@ pub fn is_improvable(run: &Run) -> bool {
 
 fn keeps_limits(run: &Run) -> bool {
     run.plan().forecast.exceeded_limit.is_none()
+}
+
+/// Returns a proposal whose plan, `run`, has been tried, in a form that keeps the limits of the drives: with a longer
+/// time where that helps. Otherwise its text says which limit it exceeds, and how far. `None` if the search was
+/// cancelled.
+pub(super) fn within_limits(proposal: Proposal, run: &Run, goes_on: ProgressCallback<'_>) -> Option<Proposal> {
+    let Some((limit, factor)) = run.plan().forecast.exceeded_limit else { return Some(proposal) };
+    let longer = long_enough(run.scenario(), goes_on)?;
+    if let Some((own, longer)) = longer.and_then(|longer| Some((proposal.change()?.clone(), longer)))
+        && let Some(time) = longer.change()
+    {
+        return Some(Proposal::new(format!("{}, and {}", proposal.text, longer.text), join(own, time)));
+    }
+    Some(Proposal { text: format!("{} ({limit}: {factor:.2} times its limit)", proposal.text), ..proposal })
 }
 
 /// Proposes the shortest duration found, to 2 %, at which the planned motion keeps all limits of the drives. The outer

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use toml::Table;
 
 use super::Proposal;
-use super::improve::improvements_while;
+use super::improve::{improvements_while, within_limits};
 use super::task::{candidates, made_task, shows_only_in_motion, would_plan};
 use super::value::{nearest_values, taking_back};
 use super::wider::{names_limits, wider_limits};
@@ -112,23 +112,30 @@ pub fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: Progress
     let made = std::iter::once_with(|| would_plan(refusal).then(|| made_task(&bare)).flatten()).flatten();
     let wider = std::iter::once_with(|| names_limits(refusal).then(|| wider_limits(&bare)).flatten()).flatten();
     let in_motion = shows_only_in_motion(refusal);
-    let mut proposals: Vec<Proposal> = Vec::new();
+    // What works, as it was tried first: a longer time may have been added to it.
+    let (mut proposals, mut known): (Vec<Proposal>, Vec<Proposal>) = Default::default();
     for (i, candidate) in wider.chain(candidates).chain(made).enumerate() {
         if !goes_on(i as f64 / count as f64) {
             return None;
         }
         let candidate = candidate.reduced(&bare);
         let is_new = candidate.change().is_some_and(|change| !change.is_empty())
-            && proposals.iter().all(|known| known.text != candidate.text && known.way != candidate.way);
+            && known.iter().all(|known| known.text != candidate.text && known.way != candidate.way);
         if !is_new {
             continue;
         }
-        let works = match in_motion {
-            true => runs_without_fault(scenario, &candidate, &mut || goes_on(i as f64 / count as f64))?,
-            false => candidate.tried(&bare).is_some(),
+        let share = i as f64 / count as f64;
+        let first = candidate.clone();
+        let working = match in_motion {
+            true => runs_without_fault(scenario, &candidate, &mut || goes_on(share))?.then_some(candidate),
+            false => match candidate.tried(&bare) {
+                Some(run) => Some(within_limits(candidate, &run, &mut |_| goes_on(share))?),
+                None => None,
+            },
         };
-        if works {
-            proposals.push(candidate);
+        if let Some(working) = working {
+            proposals.push(working);
+            known.push(first);
             if proposals.len() == MAX_PROPOSALS {
                 break;
             }

@@ -33,6 +33,7 @@ pub use keys::{KEYS, key_of, keys, part_of};
 pub(crate) use keys::{effect_in, effect_of};
 pub use names::{name_of, search_words};
 pub use note::{MAX_NOTE, MAX_NOTES, Note, NoteTime};
+pub(crate) use points::name_of_point;
 pub use settings::SettingError;
 pub use snap_point::{PathPoint, SnapPoint};
 pub use task::{MAX_POINTS, MOTION_TIME_RANGE, POINT_RANGE, POSE_CONSTANT_RANGE, Task, TaskChange, Value};

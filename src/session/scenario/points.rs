@@ -3,6 +3,15 @@
 use super::task::{Task, TaskChange};
 use stillbase_mechanics::planar::Vector;
 
+/// Returns the name of a point of a path of `count` points: A, 1, 2 … B.
+pub(crate) fn name_of_point(point: usize, count: usize) -> String {
+    match point {
+        0 => "A".into(),
+        i if i + 1 >= count => "B".into(),
+        i => i.to_string(),
+    }
+}
+
 impl Task {
     /// Returns all points in order, A first and B last, m.
     pub fn points(&self) -> Vec<Vector> {
@@ -12,11 +21,7 @@ impl Task {
 
     /// Returns the name of a point: A, 1, 2 … B.
     pub fn name_of(&self, point: usize) -> String {
-        match point {
-            0 => "A".into(),
-            i if i > self.via.len() => "B".into(),
-            i => i.to_string(),
-        }
+        name_of_point(point, self.via.len() + 2)
     }
 
     /// Returns the change that sets these points, m; `None` for fewer than two.

@@ -51,8 +51,15 @@ pub struct Comparison {
     baseline: BaselineMachines,
     /// Replaced at each change of rows or of their order.
     version: Arc<()>,
+    /// Titles of alternatives that are laid over as soon as they are there.
+    awaited: Vec<String>,
     /// The alternatives that the table shows.
     ways: Option<Arc<<AlternativeRuns as Query>::Answer>>,
+}
+
+/// Keys of all columns: of runs, then of designs.
+fn column_keys() -> impl Iterator<Item = &'static str> {
+    SUMMARY_COLUMNS.iter().map(|column| column.key).chain(DESIGN_COLUMNS.iter().map(|column| column.key))
 }
 
 /// Title of an alternative, and its run or why there is none.
@@ -148,6 +155,7 @@ impl Comparison {
             sort: None,
             baseline: BaselineMachines::default(),
             version: Arc::default(),
+            awaited: Vec::new(),
             ways: None,
         }
     }
@@ -161,7 +169,8 @@ impl Comparison {
         self.ways = Some(found.clone());
         let (Shared(scenario), ways) = &**found;
         self.task = Scenario::clone(scenario);
-        let shown: Vec<String> = self.entries.iter().filter(|e| e.shown).map(|e| e.title.clone()).collect();
+        let shown = self.ticked();
+        self.awaited.clear();
         let kept: Vec<ComparisonEntry> = self.entries.drain(..).filter(|e| e.added_by_user).collect();
         let own = ways.iter().cloned().map(|(title, outcome)| {
             let shown = outcome.is_ok() && shown.contains(&title);
@@ -199,14 +208,25 @@ impl Comparison {
         }
         run.scenario.name.clone_from(&title);
         run.summary.name.clone_from(&title);
-        self.entries.push(ComparisonEntry {
-            title,
-            outcome: Ok(Arc::new(run)),
-            shown: true,
-            added_by_user: true,
-            design: None,
-        });
+        self.restore(Arc::new(run), true);
+    }
+
+    /// Adds a run that was in a table before, under its own name; `shown` says whether it is overlaid.
+    pub fn restore(&mut self, run: Arc<ComparedRun>, shown: bool) {
+        let title = run.scenario.name.clone();
+        self.entries.push(ComparisonEntry { title, outcome: Ok(run), shown, added_by_user: true, design: None });
         self.compare_with_baseline();
+    }
+
+    /// Overlays the alternatives with these titles, as soon as they are there.
+    pub fn tick(&mut self, titles: Vec<String>) {
+        self.awaited = titles;
+    }
+
+    /// Returns the titles of the alternatives that are overlaid, or will be as soon as they are there.
+    pub fn ticked(&self) -> Vec<String> {
+        let own = self.entries.iter().filter(|e| e.shown && !e.added_by_user).map(|e| e.title.clone());
+        own.chain(self.awaited.iter().cloned()).collect()
     }
 
     /// Compares every machine with that of the first run.
@@ -246,6 +266,18 @@ impl Comparison {
             Some((c, true)) if c == column => None,
             _ => Some((column, false)),
         };
+    }
+
+    /// Sorts by the column with a key; the greatest value comes first if `descending`. An unknown key sorts by none.
+    pub fn sort_by_key(&mut self, key: &str, descending: bool) {
+        self.version = Arc::default();
+        self.sort = column_keys().position(|known| known == key).map(|column| (column, descending));
+    }
+
+    /// Returns the key of the sort column, and whether the order is descending.
+    pub fn sorted_key(&self) -> Option<(&'static str, bool)> {
+        let (column, descending) = self.sort?;
+        column_keys().nth(column).map(|key| (key, descending))
     }
 
     /// Returns what identifies rows and order of the table: another one after each change of them.

@@ -3,7 +3,7 @@
 use egui::{Pos2, Rect, Vec2, pos2};
 
 use crate::paint::SceneViewport;
-use crate::scene::{Body, Scene};
+use crate::scene::{Body, Scene, segment};
 
 /// Radius, px, up to which a disc is a dot, which labels may cover.
 const MIN_DISC_PX: f32 = 2.9;
@@ -118,23 +118,8 @@ fn distance([a, b]: [Pos2; 2], at: Pos2) -> f32 {
 }
 
 /// Whether a segment meets a rectangle.
-fn crosses([a, b]: [Pos2; 2], place: Rect) -> bool {
-    // Interval of the segment, from 0 to 1, that lies between both pairs of sides.
-    let along = b - a;
-    let mut within = [0.0_f32, 1.0];
-    for (from, by, low, high) in
-        [(a.x, along.x, place.left(), place.right()), (a.y, along.y, place.top(), place.bottom())]
-    {
-        if by.abs() < 1e-6 {
-            if from < low || from > high {
-                return false;
-            }
-            continue;
-        }
-        let ends = [(low - from) / by, (high - from) / by];
-        within = [within[0].max(ends[0].min(ends[1])), within[1].min(ends[0].max(ends[1]))];
-    }
-    within[0] <= within[1]
+fn crosses(ends: [Pos2; 2], place: Rect) -> bool {
+    segment::crosses(ends.map(Into::into), [place.left(), place.top(), place.right(), place.bottom()])
 }
 
 /// Returns the nearest point of a rectangle to a point.

@@ -61,6 +61,11 @@ impl BaseStage {
         self.base.moves()
     }
 
+    /// Whether the base has a reaction wheel.
+    pub fn has_wheel(&self) -> bool {
+        self.base.wheel.is_some()
+    }
+
     /// Returns the name of the constant force on the base.
     pub fn static_force_name(&self, options: &ViewOptions) -> &'static str {
         match options.external_force {
@@ -117,7 +122,7 @@ impl BaseStage {
             let disc = Marker::disc("base_com", at, 4.5, faded(palette.background, 0.6));
             scene.markers.push(disc.edged(palette.dim, 1.8));
         }
-        if self.base.wheel.is_some() {
+        if self.has_wheel() {
             self.wheel(scene, linkage, palette, shown);
         }
     }

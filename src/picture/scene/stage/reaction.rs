@@ -14,14 +14,15 @@ use stillbase_mechanics::planar::{Vector, unit};
 use stillbase_settings::number::ShortNumber;
 use stillbase_simulation::frame::Frame;
 
-/// Draws the reaction on the base and the centre of mass; `static_force_name` is the name of the constant force.
+/// Draws the reaction on the base and the centre of mass. The words name the constant force, and the moment by whether
+/// the base has a reaction wheel.
 pub fn draw(
     scene: &mut Scene,
     linkage: &LinkageModel,
     palette: &Palette,
     shown: &DrawnFrame<'_>,
     options: &ViewOptions,
-    static_force_name: &str,
+    (static_force_name, has_wheel): (&str, bool),
 ) {
     let (z, reach, frame) = (linkage.top(), linkage.reach(), shown.frame);
     let (b, felt) = (shown.base.at, ReactionGlyph::of(frame));
@@ -66,7 +67,7 @@ pub fn draw(
     .into_iter()
     .flatten()
     .collect();
-    let [force, moment] = felt.readings(palette).map(|(text, tone)| (text, tone, 13.0));
+    let [force, moment] = felt.readings(palette, has_wheel).map(|(text, tone)| (text, tone, 13.0));
     let rows = [
         force,
         moment,

@@ -56,7 +56,7 @@ pub fn base(linkage: &LinkageModel, moves: bool, shown: &DrawnFrame<'_>, pointer
 pub fn reaction(linkage: &LinkageModel, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<Handle> {
     let palette = palette(Theme::Dark);
     let mut drawn = Scene::new(palette.background, linkage.model.clone());
-    reaction::draw(&mut drawn, linkage, &palette, shown, &ViewOptions::default(), "");
+    reaction::draw(&mut drawn, linkage, &palette, shown, &ViewOptions::default(), ("", false));
     let hit = |name: &str| drawn.lines.iter().any(|l| l.name == name && line(l, pointer));
     let all = [("reaction/force", Handle::Force), ("reaction/moment", Handle::Moment)];
     all.into_iter().find(|(name, _)| hit(name)).map(|(_, handle)| handle)
