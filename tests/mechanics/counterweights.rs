@@ -98,7 +98,8 @@ fn mirrored_masses_have_mirrored_counterweights() {
     }
 }
 
-/// A refusal of masses beside the axes says how far off the axes counterweights have to be, and that is the least.
+/// A refusal of masses beside the axes says how far off the axes counterweights may be: as far as the masses are, or, where
+/// a distance was given, the least that serves.
 #[test]
 fn the_least_distance_off_the_axes_is_proposed() {
     let slanted = family_machine("nine-link-bare").set("link.9.com_normal", "0.012").expect("in range");
@@ -115,7 +116,10 @@ fn the_least_distance_off_the_axes_is_proposed() {
         let across = across.unwrap_or_else(|| panic!("{why}"));
         assert!(why.to_string().contains(&format!("up to {across:.4} m off the axis")), "{why}");
         assert!(place_weights(&slanted, &off_axis(asked.clone(), across)).is_ok());
-        assert!(place_weights(&slanted, &off_axis(asked, across - 2e-4)).is_err());
+        match why {
+            CounterweightError::OffAxis { .. } => assert!(across >= 0.012, "{across}"),
+            _ => assert!(place_weights(&slanted, &off_axis(asked, across - 2e-4)).is_err()),
+        }
     }
 }
 

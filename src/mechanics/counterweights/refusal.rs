@@ -134,7 +134,7 @@ pub enum CounterweightError {
         residual: String,
         /// Links on which a counterweight off the axis would change it.
         want: String,
-        /// The least distance from the axes that is sufficient; empty if there is none.
+        /// A distance from the axes that is sufficient; empty if there is none.
         reliefs: Vec<Vec<BoundRelaxation>>,
     },
     /// A condition is not satisfied, and no counterweight on these links changes it.

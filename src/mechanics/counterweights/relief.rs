@@ -37,12 +37,24 @@ pub(super) fn sufficient_reliefs(
     (1..=kinds.len()).map(of_size).find(|found| !found.is_empty()).unwrap_or_default()
 }
 
-/// Returns the least distance from the axes that is sufficient, with all other bounds unchanged; empty if there is none.
+/// Returns a distance from the axes that is sufficient, with all other bounds unchanged; empty if there is none. It is at
+/// least the greatest distance of a mass from its axis: counterweights nearer to the axes than that grow heavy.
 pub(super) fn across_relief(
     one: &CounterweightTask,
     is_feasible: &dyn Fn(&CounterweightSpec) -> bool,
 ) -> Vec<Vec<BoundRelaxation>> {
-    together(one, &[BoundKind::Across], is_feasible).into_iter().collect()
+    let Some(least) = together(one, &[BoundKind::Across], is_feasible) else { return Vec::new() };
+    let (links, payload) = (one.problem.bare.links(), one.problem.bare.spec().payload);
+    let held = if payload.mass > 0.0 { payload.offset[1].abs() } else { 0.0 };
+    let masses = links.iter().map(|link| link.com_normal.abs()).fold(held, f64::max);
+    let ample = BoundKind::Across.rounded(masses);
+    let enough = |one: BoundRelaxation| match (one, ample) {
+        (BoundRelaxation::Across(least), BoundRelaxation::Across(ample)) if ample > least => {
+            BoundRelaxation::Across(ample)
+        }
+        (one, _) => one,
+    };
+    vec![least.into_iter().map(enough).collect()]
 }
 
 /// Returns the values to which these kinds of bounds have to be relaxed together; `None` if that is not enough.
