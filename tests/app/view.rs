@@ -187,7 +187,7 @@ fn runs_stand_side_by_side() {
     h.get_by_label("Lay over: Reactionless").click();
     h.run_steps(2);
     assert_eq!(comparison(&h).expect("on display").shown().count(), 1);
-    h.get_by_label("Sort by largest moment that the base feels").click();
+    h.get_by_label("Sort by largest moment on the base, past a wheel").click();
     h.run_steps(2);
     assert_eq!(comparison(&h).expect("on display").sorted(), Some((1, false)));
     h.get_by_label("Keep this run").click();

@@ -114,7 +114,7 @@ pub fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: Progress
     let in_motion = shows_only_in_motion(refusal);
     // What works, as it was tried first: a longer time may have been added to it.
     let (mut proposals, mut known): (Vec<Proposal>, Vec<Proposal>) = Default::default();
-    for (i, candidate) in wider.chain(candidates).chain(made).enumerate() {
+    for (i, candidate) in candidates.into_iter().chain(wider).chain(made).enumerate() {
         if !goes_on(i as f64 / count as f64) {
             return None;
         }
