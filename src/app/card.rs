@@ -113,7 +113,11 @@ impl Card {
                 let weight = scenario.machine.spec().counterweights.get(i)?;
                 let rows = vec![
                     format!("{} kg, {} m from its root", three_digits(weight.mass), signed(weight.at, 4)),
-                    format!("{} m left of its link's axis", signed(weight.across, 4)),
+                    match weight.across {
+                        0.0 => "on its link's axis".into(),
+                        across if across > 0.0 => format!("{} m left of its link's axis", signed(across, 4)),
+                        across => format!("{} m right of its link's axis", signed(-across, 4)),
+                    },
                     format!("radius {} m", signed(weight.radius, 4)),
                 ];
                 let way = if scenario.design.across > 0.0 || weight.across != 0.0 {

@@ -16,17 +16,20 @@ pub use app::{App, Clock};
 pub use error::WindowError;
 pub use monitors::{MonitorArea, visible_place};
 
+use std::path::PathBuf;
+
 use crate::jobs::Threads;
-use crate::{AppState, Preferences, SessionCommand};
+use crate::{AppState, Preferences, ResumePoint, SessionCommand};
 use stillbase_files::preferences;
 use stillbase_picture::scene::palette::Theme;
 use stillbase_session::scenario::Scenario;
 
-/// Opens a window on a scenario and returns when it is closed.
+/// Opens a window on a scenario and returns when it is closed. If `file` is a session that a window wrote, it is shown as
+/// it was left.
 ///
 /// # Errors
 /// If there is no display, library or adapter, or the scenario cannot start.
-pub fn run(scenario: Scenario, theme: Option<Theme>) -> Result<(), WindowError> {
+pub fn run(scenario: Scenario, file: Option<PathBuf>, theme: Option<Theme>) -> Result<(), WindowError> {
     error::check_libraries()?;
     let liked: Preferences = preferences::load();
     let liked = Preferences { theme: theme.unwrap_or(liked.theme), ..liked }.sound();
@@ -34,7 +37,10 @@ pub fn run(scenario: Scenario, theme: Option<Theme>) -> Result<(), WindowError> 
         .with_workers(Threads::Background)
         .with_preferences(&liked)
         .offering_recovery(keeper::find_left_session());
-    if app_state.view_state().status.message.is_none() && app_state.session().run().waiting().is_none() {
+    let left = file.filter(|file| ResumePoint::of(&stillbase_files::text::read(file).unwrap_or_default()).is_some());
+    if let Some(file) = left {
+        app_state.carry_out(SessionCommand::OpenFile(file));
+    } else if app_state.view_state().status.message.is_none() && app_state.session().run().waiting().is_none() {
         app_state.carry_out(SessionCommand::TogglePlay);
     }
     let place = egui::ViewportBuilder::default()

@@ -55,6 +55,11 @@ fn setting(text: &str) -> Result<(String, String), String> {
 }
 
 impl Settings {
+    /// Returns whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.pairs.is_empty()
+    }
+
     /// Returns the machine with all settings changed together.
     ///
     /// # Errors

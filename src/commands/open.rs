@@ -1,5 +1,8 @@
 //! `stillbase [SCENARIO]`: the window, or a recording where there is no display.
 
+#[cfg(feature = "window")]
+use std::path::PathBuf;
+
 use clap::Args;
 #[cfg(feature = "window")]
 use stillbase_app::window::WindowError;
@@ -45,6 +48,14 @@ impl From<ThemeName> for Theme {
 }
 
 impl OpenArguments {
+    /// Returns the file of the scenario, if it is opened as it is: the window then shows it as it was left.
+    #[cfg(feature = "window")]
+    fn file(&self) -> Option<PathBuf> {
+        let file = PathBuf::from(&self.scenario);
+        let is_file = Scenario::builtin(&self.scenario).is_none() && file.is_file();
+        (is_file && self.settings.is_empty()).then_some(file)
+    }
+
     /// Shows the scenario in a window, or records it if there is no window.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = overlay_for_study(&self.scenario, &self.settings).map_err(|failure| match failure {
@@ -57,7 +68,7 @@ impl OpenArguments {
             failure => failure,
         })?;
         #[cfg(feature = "window")]
-        let why = match stillbase_app::window::run(scenario.clone(), self.theme.map(Theme::from)) {
+        let why = match stillbase_app::window::run(scenario.clone(), self.file(), self.theme.map(Theme::from)) {
             Ok(()) => return Ok(()),
             Err(WindowError::Refused(refusal)) => return Err(Failure::refused(&scenario, refusal)),
             Err(lost @ WindowError::DeviceLost { .. }) => return Err(Failure::no_answer(lost)),

@@ -50,7 +50,7 @@ fn places(ui: &mut Ui, shown: &DisplayContext<'_>, plot: &Plot<'_>, rect: Rect, 
         }
     };
     if plot.window.is_some() {
-        return entry(ui, "Put back among the plots", Some(PlotChange::Window(plot.name.clone(), None)));
+        return;
     }
     let all = shown.view_state.plots(shown.session.scenario(), shown.signals);
     entry(ui, "Move up", place::moved(&all, &plot.name, false));
@@ -71,6 +71,14 @@ fn all_entries(ui: &mut Ui, shown: &DisplayContext<'_>, plot: &Plot<'_>, rect: R
     let extent = extent(shown.session);
     let range = extent.shown(chosen.range);
     ui.set_min_width(210.0);
+    // First in a window of its own, which may be too low for the whole menu.
+    if plot.window.is_some() {
+        if ui.button("Put back among the plots").clicked() {
+            commands.push(ViewChange::Charts(PlotChange::Window(plot.name.clone(), None)).into());
+            ui.close();
+        }
+        ui.separator();
+    }
     if ui.button("Copy the values shown").clicked() {
         let samples: SignalSamples = answer_sequence(&columns(plot), shown.session.frames());
         ui.ctx().copy_text(samples.csv(range));

@@ -3,6 +3,7 @@
 use super::AppState;
 use crate::background::SessionResult;
 use crate::change::SessionChange;
+use crate::status::news::News;
 use crate::{Activity, RefusedEdit};
 use stillbase_query::Ticket;
 use stillbase_session::scenario::MAX_BRANCHES;
@@ -63,6 +64,10 @@ impl AppState {
 
     /// Updates the state after a change of the session or its refusal.
     pub(super) fn changed(&mut self, change: &SessionChange, done: Result<Option<String>, Refusal>) {
+        if matches!(change, SessionChange::Edit(_)) {
+            // What the run waits for is told again after each edit, with its remedies.
+            self.view_state.put_away.retain(|problem| !News::is_wait(problem));
+        }
         if let (SessionChange::Edit(edit), Err(refusal)) = (change, &done) {
             self.view_state.status.refused = Some(RefusedEdit::of(self.session.scenario(), edit, refusal));
         }

@@ -9,6 +9,9 @@ use crate::{Command, ViewChange, ViewState, lamp, notation};
 use stillbase_session::{OutsideLimits, Proposal, Session};
 use stillbase_simulation::frame::Frame as RunFrame;
 
+/// Beginning of the sentence that says why the run waits.
+const WAITS: &str = "The run waits: ";
+
 /// Width that the button beside the text takes, points.
 const CLOSE_WIDTH_PT: f32 = 26.0;
 
@@ -46,7 +49,7 @@ impl News {
         // A refusal for which the run waits is told once.
         let message = view_state.status.problem().filter(|problem| waits.as_ref() != Some(problem));
         let is_new = |problem: &String| !view_state.put_away.contains(problem);
-        let said = waits.as_ref().map(|why| format!("The run waits: {why}")).filter(is_new);
+        let said = waits.as_ref().map(|why| format!("{WAITS}{why}")).filter(is_new);
         let of_wait: Vec<String> = said.iter().cloned().collect();
         // While the run waits, a refused edit hides neither the reason for the wait nor the remedy.
         if let Some(problem) = message {
@@ -70,10 +73,15 @@ impl News {
         if put_away.is_empty() {
             return Vec::new();
         }
-        let waits = session.run().waiting().map(|waits| format!("The run waits: {}", waits.why));
+        let waits = session.run().waiting().map(|waits| format!("{WAITS}{}", waits.why));
         let outside = session.outside_limits().map(|outside| outside.why);
         let now = [waits, fault(session.frame()).map(|(kind, _)| kind), outside];
         put_away.iter().filter(|problem| now.iter().flatten().any(|one| one == *problem)).cloned().collect()
+    }
+
+    /// Returns whether a problem that was put away is a reason why the run waits.
+    pub fn is_wait(problem: &str) -> bool {
+        problem.starts_with(WAITS)
     }
 
     /// Returns the change of the display that puts it away.

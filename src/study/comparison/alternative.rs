@@ -80,6 +80,10 @@ impl Alternative {
         let mut other = start.clone();
         other.name = format!("{}-{}", scenario.name, self.name());
         other.title = format!("{} · {}", scenario.title, self.title());
+        if !start.edits.is_empty() {
+            // The duration of a run with later edits, as of a machine led by hand, is that of these edits.
+            other.duration = None;
+        }
         other.edits.clear();
         let word = |word: &str| Value::from(word);
         let mut change = TaskChange::new();
