@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::Chain;
 use super::motors::Motors;
-use super::parts::PartBody;
+use super::parts::{PartBody, PlaneBody, sum_of};
 use super::spec::{Link, MachineSpec};
 use crate::planar::{MAX_DRIVES, Vector};
 
@@ -145,6 +145,11 @@ impl Machine {
     /// Returns what every part and lump brings, parts first, in the order of the file.
     pub fn part_bodies(&self) -> &[PartBody] {
         &self.0.part_bodies
+    }
+
+    /// Returns all parts and lumps of a link combined; `None` if it has none. Typed numbers of the link overrule it.
+    pub fn parts_of_link(&self, link: usize) -> Option<PlaneBody> {
+        sum_of(&self.0.part_bodies, link)
     }
 
     /// Returns the index of the link that carries the end effector.

@@ -33,6 +33,16 @@ impl LinkNumber {
         }
     }
 
+    /// Returns its name in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Mass => "mass",
+            Self::Inertia => "inertia",
+            Self::Along => "centre of mass along",
+            Self::Across => "centre of mass across",
+        }
+    }
+
     fn of(self, body: &PlaneBody) -> f64 {
         match self {
             Self::Mass => body.mass,

@@ -20,6 +20,8 @@ pub struct PartBody {
     pub source: PartSource,
     /// Its mass, centre of mass and inertia.
     pub body: PlaneBody,
+    /// Where a bar begins and ends along the link, m from the root; the place of a lump twice.
+    pub ends: [f64; 2],
 }
 
 /// A part or a lump of a machine.
@@ -48,13 +50,15 @@ pub fn weigh(spec: &mut MachineSpec) -> Result<Vec<PartBody>, MachineError> {
     } else {
         bodies(spec)?
     };
-    let mut sums: Vec<Option<PlaneBody>> = vec![None; if bodies.is_empty() { 0 } else { spec.links.len() }];
-    for part in &bodies {
-        let sum = &mut sums[part.link];
-        *sum = Some(sum.map_or(part.body, |sum| sum.and(part.body)));
-    }
+    let links = if bodies.is_empty() { 0 } else { spec.links.len() };
+    let sums: Vec<Option<PlaneBody>> = (0..links).map(|link| sum_of(&bodies, link)).collect();
     derived::settle(spec, &sums)?;
     Ok(bodies)
+}
+
+/// Returns all parts of a link combined; `None` if it has none.
+pub fn sum_of(bodies: &[PartBody], link: usize) -> Option<PlaneBody> {
+    bodies.iter().filter(|part| part.link == link).map(|part| part.body).reduce(PlaneBody::and)
 }
 
 fn bodies(spec: &MachineSpec) -> Result<Vec<PartBody>, MachineError> {
@@ -73,7 +77,7 @@ fn bodies(spec: &MachineSpec) -> Result<Vec<PartBody>, MachineError> {
         let link = names.link(&lump.link, || place("link"))?;
         let at = place_on_link(spec, link, &lump.at, || place("at"))?;
         let body = PlaneBody { mass: lump.mass, at, across: lump.across, inertia: lump.inertia };
-        Ok(PartBody { link, source: PartSource::Lump(i), body })
+        Ok(PartBody { link, source: PartSource::Lump(i), body, ends: [at; 2] })
     });
     parts.chain(lumps).collect()
 }
@@ -84,7 +88,8 @@ fn part_body(spec: &MachineSpec, names: &Names, i: usize, part: &Part) -> Result
     let density = material::density(spec, &part.material, || place("material"))?;
     let [from, to] = [(&part.from, "from"), (&part.to, "to")]
         .map(|(at, key)| place_on_link(spec, link, at, || place(key)));
-    let section = Section { part, from: from?, to: to?, place: &place };
+    let ends = [from?, to?];
+    let section = Section { part, from: ends[0], to: ends[1], place: &place };
     for (k, corner) in part.polygon.iter().enumerate() {
         corner.iter().try_for_each(|x| within(PLACE, *x, || KeyPath::new(&[&"part", &i, &"polygon", &k])))?;
     }
@@ -104,5 +109,5 @@ fn part_body(spec: &MachineSpec, names: &Names, i: usize, part: &Part) -> Result
     hole::check(&section, &holes, &|k| hole_place(k, None))?;
     let thickness = part.thickness.unwrap_or_default();
     let body = holes.iter().fold(whole, |body, hole| body.without(hole.body(part.across).times(thickness)));
-    Ok(PartBody { link, source: PartSource::Part(i), body: body.times(density) })
+    Ok(PartBody { link, source: PartSource::Part(i), body: body.times(density), ends })
 }
