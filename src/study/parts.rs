@@ -57,7 +57,11 @@ impl LinkPart {
         let (kind, i, words, material) = match part.source {
             PartSource::Part(i) => {
                 let own = &spec.parts[i];
-                let places = if own.shape == Shape::Plate { Vec::new() } else { vec![("from", part.ends[0]), ("to", part.ends[1])] };
+                let places = if own.shape == Shape::Plate {
+                    Vec::new()
+                } else {
+                    vec![("from", part.ends[0]), ("to", part.ends[1])]
+                };
                 let lengths = own.lengths().into_iter().filter_map(|(word, length)| Some((word, length?)));
                 let words: Vec<_> = lengths.chain(places).chain([("across", own.across)]).collect();
                 ("part", i, words, own.material.clone())

@@ -42,7 +42,7 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 29] = [
+pub const TESTS: [&[Test]; 30] = [
     saving::TESTS,
     family::TESTS,
     files::TESTS,

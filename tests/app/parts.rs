@@ -4,8 +4,8 @@ use egui::Key;
 use egui_kittest::kittest::Queryable as _;
 use stillbase::mechanics::machine::{Machine, parse};
 use stillbase::picture::scene::palette::Theme;
-use stillbase::session::scenario::Scenario;
 use stillbase::session::gentle_motion;
+use stillbase::session::scenario::Scenario;
 
 use super::{Window, session, type_into, window_of};
 use crate::Test;

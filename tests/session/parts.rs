@@ -17,7 +17,7 @@ fn changes_of_parts_are_undone_done_again_and_saved() {
     let mut states = vec![machine(&session)];
     let edits: [&dyn Fn(&Machine) -> Edit; 12] = [
         &|_| Edit::set("part.1.width", 0.05),
-        &|_| Edit::set("part.1.to", 0.2),
+        &|_| Edit::set("part.1.from", -0.02),
         &|_| Edit::set("lump.1.mass", 0.3),
         &|_| Edit::set("link.upper.mass", 2.0),
         &|machine| parts::add_part(machine, 0, Shape::Tube),
@@ -66,7 +66,9 @@ fn a_link_that_loses_its_last_part_keeps_its_numbers() {
         assert_eq!((is_empty, is_empty && link(&session).mass == was.mass), (own == 0, own == 0));
     }
     let bare = link(&session);
-    assert!(LinkNumber::ALL.iter().filter(|number| **number != LinkNumber::Across).all(|number| !bare.follows(*number)));
+    assert!(
+        LinkNumber::ALL.iter().filter(|number| **number != LinkNumber::Across).all(|number| !bare.follows(*number))
+    );
     for _ in 0..3 {
         session.undo().expect("undone");
     }

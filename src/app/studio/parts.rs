@@ -41,8 +41,12 @@ pub fn show(ui: &mut Ui, machine: &Machine, link: usize, p: &Palette, commands: 
     }
     ui.horizontal(|ui| {
         let menu = ui.menu_button(RichText::new("+ part").font(plain(12.0)).color(colour(p.amber)), |ui| {
-            let shapes =
-                [("flat bar", Shape::Flat), ("tube", Shape::Tube), ("profile", Shape::Profile), ("plate", Shape::Plate)];
+            let shapes = [
+                ("flat bar", Shape::Flat),
+                ("tube", Shape::Tube),
+                ("profile", Shape::Profile),
+                ("plate", Shape::Plate),
+            ];
             for (words, shape) in shapes {
                 if ui.button(words).clicked() {
                     undoable_edit(commands, parts::add_part(machine, link, shape));

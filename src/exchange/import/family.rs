@@ -11,8 +11,9 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::linkage::{ImportedLinkage, ImportedMotor, ImportedPart, JointLimit, common_axis, owners, plane};
 use super::refusal::ImportError;
-use stillbase_mechanics::machine::{DerivedNumbers, 
-    Angle, Attach, Closure, Drive, Length, Link, LinkPoint, MAX_LINKS, Machine, MachineSpec, PlaceOnLink, Rotor,
+use stillbase_mechanics::machine::{
+    Angle, Attach, Closure, DerivedNumbers, Drive, Length, Link, LinkPoint, MAX_LINKS, Machine, MachineSpec,
+    PlaceOnLink, Rotor,
 };
 use stillbase_mechanics::planar::{MAX_DRIVES, Vector};
 use stillbase_settings::number::ShortNumber;

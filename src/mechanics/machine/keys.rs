@@ -7,8 +7,8 @@ use super::lengths::{length_at, link_length, set_length, set_link_length};
 use super::model::Machine;
 use super::parts::LinkNumber;
 use super::ranges::{
-    ACCELERATION_LIMIT, ANGLE, DENSITY, GRAVITY, INERTIA, JERK_LIMIT, LENGTH, LOAD, MASS, PLACE, RADIUS, RATIO, SPEED_LIMIT,
-    TORQUE_LIMIT, within,
+    ACCELERATION_LIMIT, ANGLE, DENSITY, GRAVITY, INERTIA, JERK_LIMIT, LENGTH, LOAD, MASS, PLACE, RADIUS, RATIO,
+    SPEED_LIMIT, TORQUE_LIMIT, within,
 };
 use super::spec::{MachineSpec, PlaceOnLink};
 use stillbase_settings::change::DEFAULT_WORD;
@@ -112,7 +112,12 @@ pub(super) const MACHINE_KEYS: [KeyRow; 37] = [
         at!(Number, |spec, i| spec.materials[i].density),
     ),
     row(
-        Key::number("part.*.from", PLACE, "root", "Place along its link where a bar begins; parts are numbered from 1."),
+        Key::number(
+            "part.*.from",
+            PLACE,
+            "root",
+            "Place along its link where a bar begins; parts are numbered from 1.",
+        ),
         at!(Place, |spec, i| spec.parts[i].from),
     ),
     row(

@@ -28,7 +28,8 @@ pub(super) fn check(
     holes: &[PlacedHole],
     place: &dyn Fn(usize) -> KeyPath,
 ) -> Result<(), MachineError> {
-    let mm = |length: f64| ShortNumber((1e6 * length).ceil() / 1e3).to_string();
+    // Rounded up to a thousandth, but not by rounding errors.
+    let mm = |length: f64| ShortNumber((1e6 * length - 1e-3).ceil() / 1e3).to_string();
     for (i, hole) in holes.iter().enumerate() {
         let beyond = 0.5 * hole.diameter - section.depth(hole.centre);
         if beyond > TOLERANCE * hole.diameter {

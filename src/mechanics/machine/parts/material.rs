@@ -35,11 +35,7 @@ pub(super) fn check(spec: &MachineSpec) -> Result<(), MachineError> {
 }
 
 /// Returns the density of a material, kg/m³.
-pub(super) fn density(
-    spec: &MachineSpec,
-    name: &str,
-    place: impl Fn() -> KeyPath,
-) -> Result<f64, MachineError> {
+pub(super) fn density(spec: &MachineSpec, name: &str, place: impl Fn() -> KeyPath) -> Result<f64, MachineError> {
     let own = spec.materials.iter().map(|material| (material.name.as_str(), material.density));
     let known = MATERIALS.into_iter().chain(own);
     let found = known.clone().find(|(known, _)| *known == name);

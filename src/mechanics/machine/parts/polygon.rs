@@ -78,8 +78,7 @@ fn meet(a: Point, b: Point, c: Point, d: Point) -> bool {
 pub(super) fn depth(corners: &[Point], point: Point) -> f64 {
     let nearest = sides(corners).map(|(a, b)| distance(a, b, point)).fold(f64::INFINITY, f64::min);
     let crosses = |&(a, b): &(Point, Point)| {
-        (a[1] > point[1]) != (b[1] > point[1])
-            && point[0] < a[0] + (point[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+        (a[1] > point[1]) != (b[1] > point[1]) && point[0] < a[0] + (point[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
     };
     if sides(corners).filter(crosses).count() % 2 == 1 { nearest } else { -nearest }
 }

@@ -102,7 +102,7 @@ impl Section<'_> {
             ends.clone().fold(f64::NEG_INFINITY, f64::max) - ends.fold(f64::INFINITY, f64::min)
         });
         // Corners on one line, or so near to it that the formulas lose all digits.
-        if !(body.mass > LEAST_FILLED * extent[0] * extent[1]) {
+        if body.mass <= LEAST_FILLED * extent[0] * extent[1] {
             return self.refuse("polygon", "its corners lie on one line: want a plate with an area");
         }
         Ok(body)

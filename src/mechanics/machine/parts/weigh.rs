@@ -86,8 +86,8 @@ fn part_body(spec: &MachineSpec, names: &Names, i: usize, part: &Part) -> Result
     let place = |key: &str| KeyPath::new(&[&"part", &i, &key]);
     let link = names.link(&part.link, || place("link"))?;
     let density = material::density(spec, &part.material, || place("material"))?;
-    let [from, to] = [(&part.from, "from"), (&part.to, "to")]
-        .map(|(at, key)| place_on_link(spec, link, at, || place(key)));
+    let [from, to] =
+        [(&part.from, "from"), (&part.to, "to")].map(|(at, key)| place_on_link(spec, link, at, || place(key)));
     let ends = [from?, to?];
     let section = Section { part, from: ends[0], to: ends[1], place: &place };
     for (k, corner) in part.polygon.iter().enumerate() {
