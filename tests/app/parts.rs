@@ -52,8 +52,7 @@ fn parts_are_added_and_removed() {
     let mut h = design(Scenario::builtin("nine-link-bare").expect("built in"));
     let bare = machine(&h).clone();
     press(&mut h, "add a lump to link 1");
-    press(&mut h, "add a part to link 1");
-    press(&mut h, "tube");
+    press(&mut h, "add a tube to link 1");
     let spec = machine(&h).spec();
     assert_eq!((spec.lumps.len(), spec.parts.len(), spec.links[0].mass), (1, 1, bare.spec().links[0].mass));
     press(&mut h, "link 1 follows its parts");

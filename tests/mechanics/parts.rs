@@ -367,7 +367,7 @@ fn what_is_wrong_with_a_part_is_told_with_its_line() {
         ("[0.16, 0.015], [0.13, 0.05]", "[0.16, 0.05], [0.16, 0.015], [0.1, 0.05]", "polygon =", "sides 1 and 3 meet"),
         ("[0.13, 0.05]", "[0.2, 0.015]", "polygon =", "meet"),
         (", [0.13, 0.05]", "", "polygon =", "at least three corners"),
-        ("across = 0.025, diameter", "across = 0.045, diameter", "holes = [{ at = 0.13", "beyond the part"),
+        ("across = 0.025, diameter", "across = 0.048, diameter", "holes = [{ at = 0.13", "beyond the part"),
         ("material = \"pom\"", "material = \"wood\"", "material = \"wood\"", "or a [[material]] of this name"),
         (flat, "width = 0.03\n", "[[part]]", "a flat bar has a thickness: want width, thickness, in m"),
         (flat, "width = 0.03\nthickness = 0.006\nwall = 0.001\n", "wall = 0.001", "a flat bar has no wall"),

@@ -13,8 +13,15 @@ use stillbase_session::{Edit, parts};
 use stillbase_study::parts::{LinkPart, LinkParts, PartNumber, PartRow};
 
 /// Widths of the column of names and of a column of numbers, points.
-const NAME_WIDTH_PT: f32 = 116.0;
-const NUMBER_WIDTH_PT: f32 = 46.0;
+const NAME_WIDTH_PT: f32 = 126.0;
+const NUMBER_WIDTH_PT: f32 = 49.0;
+/// Widths of the name of a number and of the number, points.
+const WORD_WIDTH_PT: f32 = 72.0;
+const VALUE_WIDTH_PT: f32 = 62.0;
+
+/// Shapes of parts, by the words of their buttons.
+const SHAPES: [(&str, Shape); 4] =
+    [("bar", Shape::Flat), ("tube", Shape::Tube), ("profile", Shape::Profile), ("plate", Shape::Plate)];
 
 /// Draws the table of the parts of a link, counted from 0, with what overrules them.
 pub fn show(ui: &mut Ui, machine: &Machine, link: usize, p: &Palette, commands: &mut Vec<Command>) {
@@ -39,21 +46,13 @@ pub fn show(ui: &mut Ui, machine: &Machine, link: usize, p: &Palette, commands: 
         row(ui, &all.sum, p.dim, |_| ());
         overruled(ui, machine, &all, p, commands);
     }
-    ui.horizontal(|ui| {
-        let menu = ui.menu_button(RichText::new("+ part").font(plain(12.0)).color(colour(p.amber)), |ui| {
-            let shapes = [
-                ("flat bar", Shape::Flat),
-                ("tube", Shape::Tube),
-                ("profile", Shape::Profile),
-                ("plate", Shape::Plate),
-            ];
-            for (words, shape) in shapes {
-                if ui.button(words).clicked() {
-                    undoable_edit(commands, parts::add_part(machine, link, shape));
-                }
+    ui.horizontal_wrapped(|ui| {
+        for (word, shape) in SHAPES {
+            let part = small(ui, &format!("+ {word}"), &format!("add a {word} to link {own}"), p);
+            if part.on_hover_text("Add it from the root to the tip").clicked() {
+                undoable_edit(commands, parts::add_part(machine, link, shape));
             }
-        });
-        name(&menu.response, &format!("add a part to link {own}"));
+        }
         let lump = small(ui, "+ lump", &format!("add a lump to link {own}"), p);
         if lump.on_hover_text("A motor, a bearing, screws: a mass that no design takes off").clicked() {
             undoable_edit(commands, parts::add_lump(machine, link));
@@ -79,33 +78,41 @@ fn row(ui: &mut Ui, row: &PartRow, tone: [f32; 4], button: impl FnOnce(&mut Ui))
     });
 }
 
-/// Draws the numbers of a part that can be set, and the choice of its material.
+/// Draws the numbers of a part that can be set, two in a line, and the choice of its material.
 fn numbers(ui: &mut Ui, machine: &Machine, part: &LinkPart, p: &Palette, commands: &mut Vec<Command>) {
-    ui.horizontal_wrapped(|ui| {
-        for PartNumber { path, word, value } in &part.numbers {
-            let label = format!("{word} of {}", label_of(part));
-            let row = NumberRow::of(&label, path).with(if *word == "inertia" { 6 } else { 4 }, 0.001);
-            let mut value = *value;
-            // The word and its number stay in one line.
-            ui.horizontal(|ui| {
-                head(ui, p, &format!("{word} {}", row.unit));
-                let response = row.number(ui, &mut value);
+    for pair in part.numbers.chunks(2) {
+        ui.horizontal(|ui| {
+            for PartNumber { path, word, value } in pair {
+                let label = format!("{word} of {}", label_of(part));
+                let row = NumberRow::of(&label, path).with(if *word == "inertia" { 6 } else { 4 }, 0.001);
+                let mut value = *value;
+                cell(ui, WORD_WIDTH_PT, Align::Min, |ui| head(ui, p, &format!("{word} {}", row.unit)));
+                let response = cell(ui, VALUE_WIDTH_PT, Align::Max, |ui| row.number(ui, &mut value));
                 send(commands, &[response], || Edit::set(path, value));
-            });
-        }
-        if let PartSource::Part(i) = part.source {
-            let list = egui::ComboBox::from_id_salt(("material", i)).selected_text(&part.material).width(84.0);
-            let list = list.show_ui(ui, |ui| {
-                for material in parts::materials(machine) {
-                    if ui.selectable_label(material == part.material, material).clicked() && material != part.material {
-                        undoable_edit(commands, parts::set_material(machine, i, material));
-                    }
-                }
-            });
-            name(&list.response, &format!("material of {}", label_of(part)));
+            }
+            if pair.len() == 1 {
+                material(ui, machine, part, commands);
+            }
+        });
+    }
+    if part.numbers.len() % 2 == 0 {
+        material(ui, machine, part, commands);
+    }
+    ui.add_space(4.0);
+}
+
+/// Draws the choice of the material of a part; a lump has none.
+fn material(ui: &mut Ui, machine: &Machine, part: &LinkPart, commands: &mut Vec<Command>) {
+    let PartSource::Part(i) = part.source else { return };
+    let list = egui::ComboBox::from_id_salt(("material", i)).selected_text(&part.material).width(96.0);
+    let list = list.show_ui(ui, |ui| {
+        for material in parts::materials(machine) {
+            if ui.selectable_label(material == part.material, material).clicked() && material != part.material {
+                undoable_edit(commands, parts::set_material(machine, i, material));
+            }
         }
     });
-    ui.add_space(3.0);
+    name(&list.response, &format!("material of {}", label_of(part)));
 }
 
 /// Draws which typed numbers overrule the parts, and the button that lets them follow again.

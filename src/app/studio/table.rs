@@ -155,7 +155,7 @@ fn fixed(ui: &mut Ui, link: &str, brief: &DesignBrief, commands: &mut Vec<Comman
     }
 }
 
-pub(super) fn cell<R>(ui: &mut Ui, width: f32, align: Align, add: impl FnOnce(&mut Ui) -> R) {
+pub(super) fn cell<R>(ui: &mut Ui, width: f32, align: Align, add: impl FnOnce(&mut Ui) -> R) -> R {
     let layout = match align {
         Align::Max => Layout::right_to_left(Align::Center),
         _ => Layout::left_to_right(Align::Center),
@@ -163,7 +163,8 @@ pub(super) fn cell<R>(ui: &mut Ui, width: f32, align: Align, add: impl FnOnce(&m
     ui.allocate_ui_with_layout(vec2(width, ROW_HEIGHT_PT), layout, |ui| {
         ui.set_min_width(width);
         add(ui)
-    });
+    })
+    .inner
 }
 
 /// Draws a name, a unit, or a name followed by a unit; an SI unit is shown as the user's unit.

@@ -150,7 +150,7 @@ impl Default for Rotor {
 
 /// A rigid bar, always parallel to the arm of one drive. Those of its mass, centre of mass and inertia that nobody
 /// types follow from its parts.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(from = "LinkInFile", into = "LinkInFile")]
 pub struct Link {
     /// Its name.

@@ -55,8 +55,20 @@ impl LinkNumber {
 
 /// Which numbers of a link follow from its parts. Each such number is kept as it was when the machine was checked last:
 /// where the link has another value since, someone typed it, and it overrules the parts.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct DerivedNumbers([Option<f64>; 4]);
+
+/// Two links are equal if a file states them alike: the values that numbers had before they were typed do not count.
+impl PartialEq for Link {
+    fn eq(&self, other: &Self) -> bool {
+        let stated = |link: &Self| (link.direction, link.axial, LinkNumber::ALL.map(|number| link.follows(number)));
+        let numbers = |link: &Self| LinkNumber::ALL.map(|number| link.number(number));
+        (&self.name, &self.drive, &self.attach, &self.length)
+            == (&other.name, &other.drive, &other.attach, &other.length)
+            && stated(self) == stated(other)
+            && numbers(self) == numbers(other)
+    }
+}
 
 impl Link {
     /// Returns one of its numbers, in SI units.
