@@ -121,7 +121,8 @@ impl Key {
     /// Returns the default in words: that the key must be given, the value, or what applies instead.
     pub fn default_in_words(&self) -> String {
         match (self.default, self.instead) {
-            (Self::REQUIRED, _) => "has to be given".into(),
+            (Self::REQUIRED, "") => "has to be given".into(),
+            (Self::REQUIRED, instead) => format!("has to be given; without it {instead}"),
             (default, "") => format!("`{default}`"),
             (default, instead) => format!("`{default}`: {instead}"),
         }

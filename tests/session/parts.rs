@@ -31,6 +31,7 @@ fn changes_of_parts_are_undone_done_again_and_saved() {
     ];
     for edit in edits {
         session.apply(edit(states.last().expect("a state"))).expect("it is applied");
+        session.end_gesture();
         states.push(machine(&session));
         let [.., was, is] = &states[..] else { panic!("two states") };
         assert_ne!(was, is);
@@ -61,6 +62,7 @@ fn a_link_that_loses_its_last_part_keeps_its_numbers() {
         let was = link(&session);
         let edit = parts::remove(&session.scenario().machine, all.parts[0].source);
         session.apply(edit).expect("it is applied");
+        session.end_gesture();
         own -= 1;
         let is_empty = LinkParts::of(&session.scenario().machine, 1).is_none();
         assert_eq!((is_empty, is_empty && link(&session).mass == was.mass), (own == 0, own == 0));

@@ -54,8 +54,8 @@ const fn row(key: Key, at: FieldAccess) -> KeyRow {
 }
 
 const UNLIMITED: &str = "no limit";
-const OF_PARTS: &str = "that of the link's parts; without parts it has to be given";
-const NOT_OF_THE_SHAPE: &str = "a part of another shape has none";
+const OF_PARTS: &str = "the link's parts give it, if it has some";
+const NOT_OF_THE_SHAPE: &str = "the part has a shape that has none";
 
 /// Every key of a machine that can be set on its own. Keys name links, drives and angles by their names,
 /// counterweights, parts and lumps by their numbers, from 1.
@@ -64,7 +64,7 @@ pub(super) const MACHINE_KEYS: [KeyRow; 37] = [
         Key::number(
             "link.*.com",
             PLACE,
-            Key::NONE,
+            Key::REQUIRED,
             "Place l_c of a link's centre of mass along the link, from its root.",
         )
         .instead(OF_PARTS),
@@ -74,18 +74,18 @@ pub(super) const MACHINE_KEYS: [KeyRow; 37] = [
         Key::number(
             "link.*.com_normal",
             PLACE,
-            Key::NONE,
+            "0",
             "Place of a link's centre of mass off the link's axis, to the left of the direction root to tip.",
         )
-        .instead("that of the link's parts; 0 without parts"),
+        .instead("that of the link's parts, if it has some"),
         FieldAccess::LinkNumber(LinkNumber::Across),
     ),
     row(
-        Key::number("link.*.mass", MASS, Key::NONE, "Mass of a link.").instead(OF_PARTS),
+        Key::number("link.*.mass", MASS, Key::REQUIRED, "Mass of a link.").instead(OF_PARTS),
         FieldAccess::LinkNumber(LinkNumber::Mass),
     ),
     row(
-        Key::number("link.*.inertia", INERTIA, Key::NONE, "Inertia of a link about its own centre of mass.")
+        Key::number("link.*.inertia", INERTIA, Key::REQUIRED, "Inertia of a link about its own centre of mass.")
             .instead(OF_PARTS),
         FieldAccess::LinkNumber(LinkNumber::Inertia),
     ),
@@ -134,26 +134,31 @@ pub(super) const MACHINE_KEYS: [KeyRow; 37] = [
         at!(Number, |spec, i| spec.parts[i].across),
     ),
     row(
-        Key::number("part.*.width", LENGTH, Key::NONE, "Width of a flat bar or a profile, in the plane of the motion.")
-            .instead(NOT_OF_THE_SHAPE),
+        Key::number(
+            "part.*.width",
+            LENGTH,
+            Key::REQUIRED,
+            "Width of a flat bar or a profile, in the plane of the motion.",
+        )
+        .instead(NOT_OF_THE_SHAPE),
         at!(Limit, |spec, i| spec.parts[i].width),
     ),
     row(
-        Key::number("part.*.thickness", LENGTH, Key::NONE, "Thickness of a flat bar or a plate.")
+        Key::number("part.*.thickness", LENGTH, Key::REQUIRED, "Thickness of a flat bar or a plate.")
             .instead(NOT_OF_THE_SHAPE),
         at!(Limit, |spec, i| spec.parts[i].thickness),
     ),
     row(
-        Key::number("part.*.diameter", LENGTH, Key::NONE, "Outer diameter of a tube.").instead(NOT_OF_THE_SHAPE),
+        Key::number("part.*.diameter", LENGTH, Key::REQUIRED, "Outer diameter of a tube.").instead(NOT_OF_THE_SHAPE),
         at!(Limit, |spec, i| spec.parts[i].diameter),
     ),
     row(
-        Key::number("part.*.height", LENGTH, Key::NONE, "Height of a profile, normal to the plane of the motion.")
+        Key::number("part.*.height", LENGTH, Key::REQUIRED, "Height of a profile, normal to the plane of the motion.")
             .instead(NOT_OF_THE_SHAPE),
         at!(Limit, |spec, i| spec.parts[i].height),
     ),
     row(
-        Key::number("part.*.wall", LENGTH, Key::NONE, "Thickness of the wall of a tube or a profile.")
+        Key::number("part.*.wall", LENGTH, Key::REQUIRED, "Thickness of the wall of a tube or a profile.")
             .instead(NOT_OF_THE_SHAPE),
         at!(Limit, |spec, i| spec.parts[i].wall),
     ),

@@ -146,11 +146,12 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), Machin
     // A required key has no default value.
     let default =
         Some(row.key.default).filter(|default| is_default(value) && *default != Key::REQUIRED).map(change::value);
-    let value = default.as_ref().unwrap_or(value);
+    let (given, value) = (value, default.as_ref().unwrap_or(value));
     match row.at {
         FieldAccess::Number(_, of) => *of(spec, i) = number(key, value)?,
         FieldAccess::LinkNumber(of) => {
-            let typed = if is_none(value) { None } else { Some(number(key, value)?) };
+            // Its default is what the parts of the link give.
+            let typed = if is_none(given) { None } else { Some(number(key, given)?) };
             spec.links[i].type_number(of, typed);
         }
         FieldAccess::Place(_, of) => *of(spec, i) = place(key, value)?,
