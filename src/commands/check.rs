@@ -7,6 +7,7 @@ use stillbase_planning::off_plane::null_space::is_integrable;
 use stillbase_planning::pose_constant::PoseConstant;
 use stillbase_session::verdict::Statement;
 use stillbase_study::balance_constants::BalanceConstants;
+use stillbase_study::parts::{LinkParts, PartRow};
 
 use super::failure::Failure;
 use super::input::MachineArgument;
@@ -47,6 +48,23 @@ pub fn balance_tables(balance: &BalanceConstants, machine: &Machine) -> String {
     format!("{by_drive}\n{by_pair}")
 }
 
+/// Formats what the parts of each link bring, with a sum for each link, and which typed numbers overrule them.
+fn parts_table(links: &[LinkParts]) -> String {
+    if links.is_empty() {
+        return String::new();
+    }
+    let mut table = TextTable::new(["link", "part", "kg", "at mm", "across mm", "inertia kg m²"]).with_words(1);
+    for link in links {
+        for row in link.parts.iter().map(|part| &part.row).chain([&link.sum]) {
+            let [at, across] = [row.at, row.across].map(|metres| fixed(1e3 * metres, 3));
+            let inertia = fixed(row.inertia, 9);
+            table.row([row.link.clone(), row.name.clone(), fixed(row.mass, 6), at, across, inertia]);
+        }
+    }
+    let overruled: String = links.iter().filter_map(LinkParts::overruled).map(|words| words + "\n").collect();
+    format!("\n{table}{overruled}")
+}
+
 #[derive(Serialize)]
 struct Answer {
     mass: f64,
@@ -60,6 +78,9 @@ struct Answer {
     integrable: bool,
     /// How well a constant b = Σ λ_k q_k keeps moments from the base: `exact`, `nearly`, `unneeded` or `none`.
     pose_constant: &'static str,
+    /// What each part and lump of the links brings.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    parts: Vec<PartRow>,
 }
 
 impl CheckArguments {
@@ -67,6 +88,7 @@ impl CheckArguments {
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
         let (inertia, constant) = (Inertia::of(&machine), PoseConstant::of(&machine));
+        let parts = LinkParts::all(&machine);
         let answer = Answer {
             mass: inertia.mass(),
             balance: BalanceConstants::of(&inertia),
@@ -75,13 +97,14 @@ impl CheckArguments {
             machine: Statement::of_machine(&inertia),
             integrable: is_integrable(&inertia),
             pose_constant: constant.word(),
+            parts: parts.iter().flat_map(|link| &link.parts).map(|part| part.row.clone()).collect(),
         };
         self.format.print(&answer, |answer| {
             let (force, coupling) = (inertia.force_residual(), inertia.invariance_residual());
             format!(
                 "{} · {}\n\nmachine          {}\nmass             {} kg\nforce balanced   {}, largest |g_k| {force:.1e} kg m\n\
                  invariant        {}, largest |C_kl| {coupling:.1e} kg m²\n\
-                 pose constant    {}\n\n{}",
+                 pose constant    {}\n\n{}{}",
                 machine.name(),
                 machine.spec().summary,
                 answer.machine.words,
@@ -90,6 +113,7 @@ impl CheckArguments {
                 yes(answer.invariant),
                 constant,
                 balance_tables(&answer.balance, &machine),
+                parts_table(&parts),
             )
         })
     }

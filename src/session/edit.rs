@@ -305,6 +305,15 @@ fn counterweights(value: &Value) -> String {
     }
 }
 
+/// Describes a change of the whole list of parts, lumps or materials.
+fn list_of(kind: &str, value: &Value) -> String {
+    match value.as_array().map_or(0, Vec::len) {
+        0 => format!("no {kind}s"),
+        1 => format!("one {kind}"),
+        many => format!("{many} {kind}s"),
+    }
+}
+
 /// Describes a change of settings; `before` is the task before it, if it is known.
 fn title_of(change: &Table, before: Option<&Table>) -> String {
     let task = change.get("task").and_then(Value::as_table).filter(|_| change.len() == 1);
@@ -323,6 +332,9 @@ fn title_of(change: &Table, before: Option<&Table>) -> String {
     let one = |(path, value): (String, &Value)| {
         if path == "counterweight" {
             return counterweights(value);
+        }
+        if ["part", "lump", "material"].contains(&path.as_str()) {
+            return list_of(&path, value);
         }
         let words = name_of(&path);
         if value.as_str() == Some(change::DEFAULT_WORD) {

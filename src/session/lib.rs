@@ -16,6 +16,7 @@ mod gentle_motion;
 mod interactive;
 mod machines;
 mod older;
+pub mod parts;
 mod planner;
 mod proposal;
 mod refusal;

@@ -11,7 +11,8 @@ use super::range::{Range, RangeCheck};
 /// One setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Key {
-    /// Parts of the key joined by dots; `*` is the name of a link, length, drive or angle, or a counterweight number.
+    /// Parts of the key joined by dots; `*` is the name of a link, length, drive, angle or material, or the
+    /// number of a counterweight, part or lump.
     pub path: &'static str,
     /// Type and range of the value.
     pub value_type: KeyType,
@@ -120,7 +121,8 @@ impl Key {
     /// Returns the default in words: that the key must be given, the value, or what applies instead.
     pub fn default_in_words(&self) -> String {
         match (self.default, self.instead) {
-            (Self::REQUIRED, _) => "has to be given".into(),
+            (Self::REQUIRED, "") => "has to be given".into(),
+            (Self::REQUIRED, instead) => format!("has to be given; without it {instead}"),
             (default, "") => format!("`{default}`"),
             (default, instead) => format!("`{default}`: {instead}"),
         }
@@ -281,7 +283,7 @@ pub fn in_words(paths: impl IntoIterator<Item = &'static str>) -> Vec<String> {
 
 fn group(head: &str, fields: &[&str]) -> String {
     let name = match head.split('.').next() {
-        Some("counterweight") => "NUMBER",
+        Some("counterweight" | "part" | "lump") => "NUMBER",
         Some("limits") => "ANGLE",
         _ => "NAME",
     };

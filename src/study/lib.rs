@@ -20,6 +20,7 @@ pub mod import;
 pub mod joint_extremes;
 pub mod lengths;
 pub mod measures;
+pub mod parts;
 pub mod plan_summary;
 pub mod pose_measures;
 #[doc(hidden)]

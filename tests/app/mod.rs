@@ -16,6 +16,7 @@ mod notation;
 mod notes;
 mod pair;
 mod panel;
+mod parts;
 mod plot_places;
 mod plots;
 mod pointer;
@@ -41,7 +42,7 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 29] = [
+pub const TESTS: [&[Test]; 30] = [
     saving::TESTS,
     family::TESTS,
     files::TESTS,
@@ -59,6 +60,7 @@ pub const TESTS: [&[Test]; 29] = [
     pair::TESTS,
     notes::TESTS,
     panel::TESTS,
+    parts::TESTS,
     plot_places::TESTS,
     plots::TESTS,
     pointer::TESTS,

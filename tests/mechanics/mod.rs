@@ -11,5 +11,6 @@ mod joint_forces;
 mod keep;
 mod machine_file;
 pub mod nine_body;
+mod parts;
 mod pin_friction;
 mod sincos;

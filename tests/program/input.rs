@@ -114,13 +114,13 @@ fn what_is_shown_as_a_default_is_taken() {
         let name = |part: &str| path.starts_with(part);
         let own = match path {
             _ if name("plant.length") => path.replace('*', "l1"),
-            _ if name("plant.link") || name("drive") => path.replace('*', "1"),
+            _ if name("plant.link") || name("link") || name("drive") => path.replace('*', "1"),
             _ if name("limits") => path.replace('*', "a1"),
             _ => path.to_owned(),
         };
         let pair = format!("{own}=none");
         prints(&["simulate", case, "--every", "1000", "--set", &pair]);
-        if name("drive") || name("limits") {
+        if name("drive") || name("limits") || name("link") {
             prints(&["check", "nine-link", "--set", &pair]);
         }
     }

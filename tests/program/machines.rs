@@ -589,3 +589,28 @@ fn a_machine_goes_elsewhere_by_the_ending_of_the_file() {
     }
     assert!(!folder.path("b.svg").exists());
 }
+
+#[test]
+fn check_lists_what_parts_bring() {
+    let folder = Folder::new("check-parts");
+    let arm = word(folder.file("arm.toml", include_str!("../mechanics/parts.toml")));
+    let answer = object(&["check", &arm]);
+    let parts = answer["parts"].as_array().expect("a list");
+    assert_eq!((parts.len(), keys(&parts[0])), (7, vec!["across", "at", "inertia", "link", "mass", "name"]));
+    assert_eq!((&parts[3]["name"], &parts[3]["mass"]), (&json!("elbow motor"), &json!(0.42)));
+    let sum: f64 = parts.iter().filter_map(|part| part["mass"].as_f64()).sum();
+    near(&answer["mass"], &json!(sum), 1e-14, "mass");
+    let table = prints(&["check", &arm]);
+    for words in
+        ["flat bar 30 × 6 mm, aluminium   0.155623", "tube Ø 20 × 2 mm", "profile 30 × 20 × 2 mm, steel", "together"]
+    {
+        assert!(table.contains(words), "{words} in {table}");
+    }
+    assert!(!table.contains("overrule"), "{table}");
+    let typed = prints(&["check", &arm, "--set", "link.upper.mass=2", "--set", "link.upper.com=0.1"]);
+    assert!(typed.contains("link upper: mass and centre of mass along are typed and overrule its parts"), "{typed}");
+    // A machine without parts has no such table.
+    assert!(
+        !prints(&["check", "two-drive"]).contains("together") && object(&["check", "two-drive"])["parts"].is_null()
+    );
+}

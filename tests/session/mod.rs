@@ -11,6 +11,7 @@ mod events;
 mod hand;
 mod limits;
 mod notes;
+mod parts;
 mod proposals;
 mod replay;
 mod settings;

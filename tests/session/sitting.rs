@@ -116,8 +116,20 @@ fn any_machine() -> impl Strategy<Value = Edit> {
         1 => Just(set("limits.a1", "3,1")),
         1 => (0.05..2.0, -0.3..0.3).prop_map(|(mass, at)| weight(mass, at)),
         1 => Just(Edit::set("counterweight", "default")),
+        1 => (0.01..0.06).prop_map(|width: f64| list("part", &format!("shape = 'flat', width = {width}, thickness = 0.01"))),
+        1 => (0.01..0.06).prop_map(|width: f64| Edit::set("part.1.width", width)),
+        1 => Just(Edit::set("part", "default")),
+        1 => (0.1..2.0).prop_map(|mass: f64| list("lump", &format!("mass = {mass}, at = 'tip'"))),
+        1 => prop::sample::select(vec!["mass", "com", "com_normal", "inertia"])
+            .prop_map(|number| Edit::set(&format!("link.1.{number}"), "default")),
+        1 => (500.0..2e4).prop_map(|density: f64| set("material", &format!("[{{ name = 'pom', density = {density} }}]"))),
         1 => (-0.3..0.3).prop_map(|at| Edit::set("counterweight.1.at", at)),
     ]
+}
+
+/// One part or lump, on link 1.
+fn list(kind: &str, keys: &str) -> Edit {
+    set(kind, &format!("[{{ link = '1', {keys} }}]"))
 }
 
 /// One counterweight, on link 1.

@@ -10,6 +10,7 @@ mod lengths;
 mod lesson;
 mod measures;
 mod other_fronts;
+mod parts;
 mod payload;
 mod table;
 mod tabs;

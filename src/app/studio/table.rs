@@ -14,11 +14,13 @@ use stillbase_session::scenario::{TaskChange, Value, to_value};
 use stillbase_session::{Edit, Session};
 use stillbase_settings::change::DEFAULT_WORD;
 
+use super::parts;
+
 /// Width of the column of names, width of a column of numbers, gap between columns, and height of a row, points.
 const NAME_WIDTH_PT: f32 = 34.0;
-const NUMBER_WIDTH_PT: f32 = 58.0;
+pub(super) const NUMBER_WIDTH_PT: f32 = 58.0;
 const GAP_PT: f32 = 4.0;
-const ROW_HEIGHT_PT: f32 = 24.0;
+pub(super) const ROW_HEIGHT_PT: f32 = 24.0;
 
 /// Draws the table.
 pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {
@@ -139,6 +141,7 @@ fn details(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comma
         });
     });
     ui.data_mut(|data| data.insert_temp(id, at));
+    parts::show(ui, &session.scenario().machine, at, p, commands);
 }
 
 /// Draws the checkbox that keeps a link unchanged, both when the balance is kept and when counterweights are placed.
@@ -152,7 +155,7 @@ fn fixed(ui: &mut Ui, link: &str, brief: &DesignBrief, commands: &mut Vec<Comman
     }
 }
 
-fn cell<R>(ui: &mut Ui, width: f32, align: Align, add: impl FnOnce(&mut Ui) -> R) {
+pub(super) fn cell<R>(ui: &mut Ui, width: f32, align: Align, add: impl FnOnce(&mut Ui) -> R) -> R {
     let layout = match align {
         Align::Max => Layout::right_to_left(Align::Center),
         _ => Layout::left_to_right(Align::Center),
@@ -160,11 +163,12 @@ fn cell<R>(ui: &mut Ui, width: f32, align: Align, add: impl FnOnce(&mut Ui) -> R
     ui.allocate_ui_with_layout(vec2(width, ROW_HEIGHT_PT), layout, |ui| {
         ui.set_min_width(width);
         add(ui)
-    });
+    })
+    .inner
 }
 
 /// Draws a name, a unit, or a name followed by a unit; an SI unit is shown as the user's unit.
-fn head(ui: &mut Ui, p: &Palette, words: &str) {
+pub(super) fn head(ui: &mut Ui, p: &Palette, words: &str) {
     let (what, unit) = words.rsplit_once(' ').map_or(("", words), |(what, unit)| (what, unit));
     let unit = notation::of(ui.ctx()).unit_name(unit);
     ui.label(RichText::new(format!("{what} {unit}").trim_start()).font(plain(11.0)).color(colour(p.dim)));

@@ -12,7 +12,8 @@ use nalgebra::{Matrix3, Vector3};
 use super::linkage::{ImportedLinkage, ImportedMotor, ImportedPart, JointLimit, common_axis, owners, plane};
 use super::refusal::ImportError;
 use stillbase_mechanics::machine::{
-    Angle, Attach, Closure, Drive, Length, Link, LinkPoint, MAX_LINKS, Machine, MachineSpec, PlaceOnLink, Rotor,
+    Angle, Attach, Closure, DerivedNumbers, Drive, Length, Link, LinkPoint, MAX_LINKS, Machine, MachineSpec,
+    PlaceOnLink, Rotor,
 };
 use stillbase_mechanics::planar::{MAX_DRIVES, Vector};
 use stillbase_settings::number::ShortNumber;
@@ -328,6 +329,9 @@ impl Builder<'_> {
             payload: stillbase_mechanics::machine::Payload::default(),
             drives,
             links,
+            materials: Vec::new(),
+            parts: Vec::new(),
+            lumps: Vec::new(),
             counterweights: Vec::new(),
             closures,
             end_effector,
@@ -413,6 +417,7 @@ impl Builder<'_> {
             com: rounded(com.re),
             com_normal: rounded(com.im),
             axial: rounded(body.height),
+            derived: DerivedNumbers::default(),
         })
     }
 

@@ -31,12 +31,13 @@ mod task;
 mod tolerance;
 mod unknowns;
 
+pub use crate::machine::MATERIALS;
+pub use crate::machine::ranges::DENSITY as DENSITY_RANGE;
 pub use front::{Front, FrontSearch, front};
 pub use payload::{PayloadResidual, over_payloads};
 pub use place::{PlacedCounterweights, place_weights, place_weights_with, unreachable_by_weights};
 pub use refusal::{Bound, BoundRelaxation, CounterweightError};
 pub use spec::{
-    ACROSS_RANGE, CounterweightSite, CounterweightSpec, DENSITY_RANGE, Disc, FreeRotor, MATERIALS, Objective,
-    RotorFreedom, THICKNESS_RANGE,
+    ACROSS_RANGE, CounterweightSite, CounterweightSpec, Disc, FreeRotor, Objective, RotorFreedom, THICKNESS_RANGE,
 };
 pub use tolerance::{PlacementTolerance, WorstResidual, worst_residual};

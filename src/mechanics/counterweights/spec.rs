@@ -43,12 +43,6 @@ pub struct Disc {
     pub thickness: f64,
 }
 
-/// Densities of common materials, kg/m³.
-pub const MATERIALS: [(&str, f64); 5] =
-    [("aluminium", 2700.0), ("steel", 7850.0), ("brass", 8500.0), ("lead", 11_340.0), ("tungsten", 19_300.0)];
-
-/// Range of the density of a plate.
-pub const DENSITY_RANGE: Range = Range::new(1.0, 1e5, "kg/m³");
 /// Range of the thickness of a plate.
 pub const THICKNESS_RANGE: Range = Range::new(1e-4, 1.0, "m");
 
@@ -173,7 +167,7 @@ impl CounterweightSpec {
             }
             _ => Ok(()),
         };
-        within("density", self.disc.density, DENSITY_RANGE)?;
+        within("density", self.disc.density, ranges::DENSITY)?;
         within("thickness", self.disc.thickness, THICKNESS_RANGE)?;
         positive("the most Σ D_k may be, kg m²,", self.max_inertia)?;
         positive("the most that may be added, kg,", self.max_added_mass)?;

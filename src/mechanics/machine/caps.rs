@@ -17,6 +17,12 @@ const MAX_CLOSURES: usize = 200;
 const MAX_ANGLES: usize = 64;
 /// Maximum number of named lengths: one for each link.
 const MAX_LENGTHS: usize = MAX_LINKS;
+/// Maximum number of materials beside the built-in ones.
+const MAX_MATERIALS: usize = 100;
+/// Maximum number of parts, and of lumps: some on each link.
+const MAX_PARTS: usize = 1000;
+/// Maximum number of holes of a part, and of corners of a plate. Each is compared with all others.
+const MAX_PER_PART: usize = 100;
 /// Maximum number of characters of a name.
 const MAX_NAME: usize = 100;
 /// Maximum number of characters of a summary.
@@ -25,9 +31,12 @@ const MAX_SUMMARY: usize = 1000;
 /// Bounds of a list: its name, its length in a specification, and the minimum and maximum length.
 type Cap = (&'static str, fn(&MachineSpec) -> usize, usize, usize);
 
-const CAPS: [Cap; 6] = [
+const CAPS: [Cap; 9] = [
     ("drives", |spec| spec.drives.len(), 1, MAX_DRIVES),
     ("links", |spec| spec.links.len(), 1, MAX_LINKS),
+    ("materials", |spec| spec.materials.len(), 0, MAX_MATERIALS),
+    ("parts", |spec| spec.parts.len(), 0, MAX_PARTS),
+    ("lumps", |spec| spec.lumps.len(), 0, MAX_PARTS),
     ("counterweights", |spec| spec.counterweights.len(), 0, MAX_COUNTERWEIGHTS),
     ("closures", |spec| spec.closures.len(), 0, MAX_CLOSURES),
     ("angles", |spec| spec.angles.len(), 0, MAX_ANGLES),
@@ -48,6 +57,20 @@ pub(super) fn check_counts(spec: &MachineSpec) -> Result<(), MachineError> {
     }
     for (i, link) in spec.links.iter().enumerate() {
         brief(&link.name, MAX_NAME, || KeyPath::new(&[&"link", &i, &"name"]))?;
+    }
+    for (i, part) in spec.parts.iter().enumerate() {
+        brief(&part.name, MAX_NAME, || KeyPath::new(&[&"part", &i, &"name"]))?;
+        for (what, count) in [("holes in a part", part.holes.len()), ("corners of a plate", part.polygon.len())] {
+            if count > MAX_PER_PART {
+                return Err(MachineError::Count { what, count, want: format!("at most {MAX_PER_PART}") });
+            }
+        }
+    }
+    for (i, lump) in spec.lumps.iter().enumerate() {
+        brief(&lump.name, MAX_NAME, || KeyPath::new(&[&"lump", &i, &"name"]))?;
+    }
+    for (i, material) in spec.materials.iter().enumerate() {
+        brief(&material.name, MAX_NAME, || KeyPath::new(&[&"material", &i, &"name"]))?;
     }
     for (i, angle) in spec.angles.iter().enumerate() {
         brief(&angle.name, MAX_NAME, || KeyPath::new(&[&"angle", &i, &"name"]))?;

@@ -7,6 +7,7 @@ use super::inertia::Inertia;
 use super::model::{Machine, MachineData, RelativeAngle, ResolvedClosure, ResolvedLink};
 use super::motors::Motors;
 use super::numbers::check_numbers;
+use super::parts::weigh;
 use super::ranges::{LENGTH, PLACE, within};
 use super::spec::{Angle, Attach, Closure, Length, Link, LinkPoint, MachineSpec, PlaceOnLink, Rotor};
 use crate::planar::MAX_DRIVES;
@@ -27,10 +28,20 @@ impl Machine {
         for drive in &mut spec.drives {
             drive.rotor = drive.rotor.filter(|rotor| *rotor != Rotor::default());
         }
-        let Parts { links, bodies, end_effector, end_link, angles, loops, motors } =
-            Parts::of(&spec).map_err(|error| error.named(&spec))?;
-        let machine =
-            Self::from(MachineData { spec, bodies, parts: links, end_effector, end_link, angles, loops, motors });
+        let parts = check_counts(&spec).and_then(|()| weigh(&mut spec)).map_err(|error| error.named(&spec))?;
+        let resolved = Resolved::of(&spec).map_err(|error| error.named(&spec))?;
+        let Resolved { links, bodies, end_effector, end_link, angles, loops, motors } = resolved;
+        let machine = Self::from(MachineData {
+            spec,
+            bodies,
+            part_bodies: parts,
+            parts: links,
+            end_effector,
+            end_link,
+            angles,
+            loops,
+            motors,
+        });
         machine.check_inertia()?;
         Ok(machine)
     }
@@ -45,7 +56,7 @@ impl Machine {
 }
 
 /// The resolved parts of a specification.
-struct Parts {
+struct Resolved {
     links: Vec<ResolvedLink>,
     bodies: Vec<Link>,
     end_effector: Chain,
@@ -55,9 +66,8 @@ struct Parts {
     motors: Motors,
 }
 
-impl Parts {
+impl Resolved {
     fn of(spec: &MachineSpec) -> Result<Self, MachineError> {
-        check_counts(spec)?;
         let names = Names::of(spec)?;
         check_numbers(spec)?;
         let mut links = resolve(spec, &names)?;
@@ -74,18 +84,25 @@ impl Parts {
     }
 }
 
-struct Names<'a> {
+pub(super) struct Names<'a> {
     drives: Vec<&'a str>,
     links: Vec<&'a str>,
 }
 
 impl<'a> Names<'a> {
-    fn of(spec: &'a MachineSpec) -> Result<Self, MachineError> {
+    pub fn of(spec: &'a MachineSpec) -> Result<Self, MachineError> {
         printable(&spec.name, || KeyPath::new(&[&"name"]))?;
         printable(&spec.summary, || KeyPath::new(&[&"summary"]))?;
         spec.lengths.keys().try_for_each(|name| printable(name, || KeyPath::new(&[&"lengths"])))?;
         let drives = unique("drive", spec.drives.iter().map(|d| d.name.as_str()))?;
         let links = unique("link", spec.links.iter().map(|l| l.name.as_str()))?;
+        let named = |what: &'static str, names: Vec<&str>| {
+            let mut all = names.into_iter().enumerate();
+            all.try_for_each(|(i, name)| printable(name, || KeyPath::new(&[&what, &i, &"name"])))
+        };
+        named("material", spec.materials.iter().map(|material| material.name.as_str()).collect())?;
+        named("part", spec.parts.iter().map(|part| part.name.as_str()).collect())?;
+        named("lump", spec.lumps.iter().map(|lump| lump.name.as_str()).collect())?;
         unique("angle", spec.angles.iter().map(|a| a.name.as_str()))?;
         Ok(Self { drives, links })
     }
@@ -94,7 +111,7 @@ impl<'a> Names<'a> {
         look_up("drive", &self.drives, name, place)
     }
 
-    fn link(&self, name: &str, place: impl Fn() -> KeyPath) -> Result<usize, MachineError> {
+    pub fn link(&self, name: &str, place: impl Fn() -> KeyPath) -> Result<usize, MachineError> {
         look_up("link", &self.links, name, place)
     }
 }
@@ -157,18 +174,27 @@ fn locate(
         p
     };
     let link = names.link(&point.link, || under("link"))?;
-    let s = match &point.at {
-        PlaceOnLink::Metres(s) => within(PLACE, *s, || under("at")).map(|()| *s)?,
+    Ok((link, place_on_link(spec, link, &point.at, || under("at"))?))
+}
+
+/// Returns the distance of a place on a link, counted from 0, from the link's root, m.
+pub(super) fn place_on_link(
+    spec: &MachineSpec,
+    link: usize,
+    at: &PlaceOnLink,
+    place: impl Fn() -> KeyPath,
+) -> Result<f64, MachineError> {
+    match at {
+        PlaceOnLink::Metres(s) => within(PLACE, *s, place).map(|()| *s),
         PlaceOnLink::Named(name) => match name.as_str() {
-            "tip" => length_of(spec, link)?,
-            "root" => 0.0,
+            "tip" => length_of(spec, link),
+            "root" => Ok(0.0),
             name => match name.strip_prefix('-') {
-                Some(name) => -named_length(spec, name, || under("at"))?,
-                None => named_length(spec, name, || under("at"))?,
+                Some(name) => Ok(-named_length(spec, name, place)?),
+                None => named_length(spec, name, place),
             },
         },
-    };
-    Ok((link, s))
+    }
 }
 
 fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<ResolvedLink>, MachineError> {

@@ -209,6 +209,27 @@ pub enum MachineError {
         /// The drives from this one into the cycle, in order, up to the first that repeats.
         chain: String,
     },
+    /// A part of a link that cannot be as it is stated.
+    #[error("{place}: {why}")]
+    Part {
+        /// Place in the machine file.
+        place: KeyPath,
+        /// Description of the error, and of what would do.
+        why: String,
+    },
+    /// A number of a link that is neither stated nor follows from parts.
+    #[error(
+        "{place}: missing field `{key}`: want a number, or a [[part]] or [[lump]] of link {:?} from which it follows",
+        quote_clipped(link)
+    )]
+    NoParts {
+        /// Place in the machine file.
+        place: KeyPath,
+        /// The key of the number.
+        key: &'static str,
+        /// The link.
+        link: String,
+    },
     /// More than one end effector.
     #[error("{count} end effectors: want one, [end_effector]; several are not supported")]
     SeveralEndEffectors {
@@ -266,6 +287,7 @@ impl MachineError {
         let (Self::NotFinite { place, .. }
         | Self::OutOfRange { place, .. }
         | Self::Unknown { place, .. }
+        | Self::NoParts { place, .. }
         | Self::Cycle { place, .. }) = &mut self
         else {
             return self;
@@ -298,7 +320,9 @@ impl MachineError {
             | Self::TooLong { place, .. }
             | Self::Cycle { place, .. }
             | Self::StatorCycle { place, .. }
-            | Self::OpenLoop { place, .. } => Some(place),
+            | Self::OpenLoop { place, .. }
+            | Self::Part { place, .. }
+            | Self::NoParts { place, .. } => Some(place),
             _ => None,
         }
     }

@@ -5,11 +5,12 @@ use toml::Value;
 use super::error::{KeyPath, KeyStep, MachineError};
 use super::lengths::{length_at, link_length, set_length, set_link_length};
 use super::model::Machine;
+use super::parts::LinkNumber;
 use super::ranges::{
-    ACCELERATION_LIMIT, ANGLE, GRAVITY, INERTIA, JERK_LIMIT, LENGTH, LOAD, MASS, PLACE, RADIUS, RATIO, SPEED_LIMIT,
-    TORQUE_LIMIT, within,
+    ACCELERATION_LIMIT, ANGLE, DENSITY, GRAVITY, INERTIA, JERK_LIMIT, LENGTH, LOAD, MASS, PLACE, RADIUS, RATIO,
+    SPEED_LIMIT, TORQUE_LIMIT, within,
 };
-use super::spec::MachineSpec;
+use super::spec::{MachineSpec, PlaceOnLink};
 use stillbase_settings::change::DEFAULT_WORD;
 use stillbase_settings::key::{Key, KeyType};
 
@@ -28,6 +29,10 @@ pub(super) enum FieldAccess {
     Limit(fn(&MachineSpec, usize) -> Option<f64>, fn(&mut MachineSpec, usize) -> &mut Option<f64>),
     Pair(fn(&MachineSpec, usize) -> [f64; 2], fn(&mut MachineSpec, usize) -> &mut [f64; 2]),
     Switch(fn(&MachineSpec, usize) -> bool, fn(&mut MachineSpec, usize) -> &mut bool),
+    /// A number of a link, which may follow from its parts.
+    LinkNumber(LinkNumber),
+    /// A place along a link.
+    Place(fn(&MachineSpec, usize) -> &PlaceOnLink, fn(&mut MachineSpec, usize) -> &mut PlaceOnLink),
     /// Lower and upper limit of an angle, rad.
     Bounds(fn(&MachineSpec, usize) -> [Option<f64>; 2], fn(&mut MachineSpec, usize) -> [&mut Option<f64>; 2]),
     /// A length, m, which several links may share.
@@ -36,6 +41,9 @@ pub(super) enum FieldAccess {
 
 /// Makes both functions of a [`FieldAccess`] from one place expression.
 macro_rules! at {
+    (Place, |$spec:ident, $i:tt| $place:expr) => {
+        FieldAccess::Place(|$spec, $i| &$place, |$spec, $i| &mut $place)
+    };
     ($kind:ident, |$spec:ident, $i:tt| $place:expr) => {
         FieldAccess::$kind(|$spec, $i| $place, |$spec, $i| &mut $place)
     };
@@ -46,18 +54,21 @@ const fn row(key: Key, at: FieldAccess) -> KeyRow {
 }
 
 const UNLIMITED: &str = "no limit";
+const OF_PARTS: &str = "the link's parts give it, if it has some";
+const NOT_OF_THE_SHAPE: &str = "the part has a shape that has none";
 
 /// Every key of a machine that can be set on its own. Keys name links, drives and angles by their names,
-/// counterweights by their numbers, from 1.
-pub(super) const MACHINE_KEYS: [KeyRow; 24] = [
+/// counterweights, parts and lumps by their numbers, from 1.
+pub(super) const MACHINE_KEYS: [KeyRow; 37] = [
     row(
         Key::number(
             "link.*.com",
             PLACE,
             Key::REQUIRED,
             "Place l_c of a link's centre of mass along the link, from its root.",
-        ),
-        at!(Number, |spec, i| spec.links[i].com),
+        )
+        .instead(OF_PARTS),
+        FieldAccess::LinkNumber(LinkNumber::Along),
     ),
     row(
         Key::number(
@@ -65,13 +76,18 @@ pub(super) const MACHINE_KEYS: [KeyRow; 24] = [
             PLACE,
             "0",
             "Place of a link's centre of mass off the link's axis, to the left of the direction root to tip.",
-        ),
-        at!(Number, |spec, i| spec.links[i].com_normal),
+        )
+        .instead("that of the link's parts, if it has some"),
+        FieldAccess::LinkNumber(LinkNumber::Across),
     ),
-    row(Key::number("link.*.mass", MASS, Key::REQUIRED, "Mass of a link."), at!(Number, |spec, i| spec.links[i].mass)),
     row(
-        Key::number("link.*.inertia", INERTIA, Key::REQUIRED, "Inertia of a link about its own centre of mass."),
-        at!(Number, |spec, i| spec.links[i].inertia),
+        Key::number("link.*.mass", MASS, Key::REQUIRED, "Mass of a link.").instead(OF_PARTS),
+        FieldAccess::LinkNumber(LinkNumber::Mass),
+    ),
+    row(
+        Key::number("link.*.inertia", INERTIA, Key::REQUIRED, "Inertia of a link about its own centre of mass.")
+            .instead(OF_PARTS),
+        FieldAccess::LinkNumber(LinkNumber::Inertia),
     ),
     row(
         Key::number("link.*.length", LENGTH, Key::REQUIRED, "Length of a link that shares it with no other."),
@@ -85,6 +101,92 @@ pub(super) const MACHINE_KEYS: [KeyRow; 24] = [
             "Height of a link's centre of mass along the drives' axis; it decides which moments tilt the base.",
         ),
         at!(Number, |spec, i| spec.links[i].axial),
+    ),
+    row(
+        Key::number(
+            "material.*.density",
+            DENSITY,
+            Key::REQUIRED,
+            "Density of a material that the machine adds to the built-in ones.",
+        ),
+        at!(Number, |spec, i| spec.materials[i].density),
+    ),
+    row(
+        Key::number(
+            "part.*.from",
+            PLACE,
+            "root",
+            "Place along its link where a bar begins; parts are numbered from 1.",
+        ),
+        at!(Place, |spec, i| spec.parts[i].from),
+    ),
+    row(
+        Key::number("part.*.to", PLACE, "tip", "Place along its link where a bar ends."),
+        at!(Place, |spec, i| spec.parts[i].to),
+    ),
+    row(
+        Key::number(
+            "part.*.across",
+            PLACE,
+            "0",
+            "Distance of a part's line from its link's axis, to the left of the direction root to tip.",
+        ),
+        at!(Number, |spec, i| spec.parts[i].across),
+    ),
+    row(
+        Key::number(
+            "part.*.width",
+            LENGTH,
+            Key::REQUIRED,
+            "Width of a flat bar or a profile, in the plane of the motion.",
+        )
+        .instead(NOT_OF_THE_SHAPE),
+        at!(Limit, |spec, i| spec.parts[i].width),
+    ),
+    row(
+        Key::number("part.*.thickness", LENGTH, Key::REQUIRED, "Thickness of a flat bar or a plate.")
+            .instead(NOT_OF_THE_SHAPE),
+        at!(Limit, |spec, i| spec.parts[i].thickness),
+    ),
+    row(
+        Key::number("part.*.diameter", LENGTH, Key::REQUIRED, "Outer diameter of a tube.").instead(NOT_OF_THE_SHAPE),
+        at!(Limit, |spec, i| spec.parts[i].diameter),
+    ),
+    row(
+        Key::number("part.*.height", LENGTH, Key::REQUIRED, "Height of a profile, normal to the plane of the motion.")
+            .instead(NOT_OF_THE_SHAPE),
+        at!(Limit, |spec, i| spec.parts[i].height),
+    ),
+    row(
+        Key::number("part.*.wall", LENGTH, Key::REQUIRED, "Thickness of the wall of a tube or a profile.")
+            .instead(NOT_OF_THE_SHAPE),
+        at!(Limit, |spec, i| spec.parts[i].wall),
+    ),
+    row(
+        Key::number(
+            "lump.*.mass",
+            MASS,
+            Key::REQUIRED,
+            "Mass of a lump, such as a motor on a link; lumps are numbered from 1.",
+        ),
+        at!(Number, |spec, i| spec.lumps[i].mass),
+    ),
+    row(
+        Key::number("lump.*.at", PLACE, Key::REQUIRED, "Place of a lump along the link that carries it."),
+        at!(Place, |spec, i| spec.lumps[i].at),
+    ),
+    row(
+        Key::number(
+            "lump.*.across",
+            PLACE,
+            "0",
+            "Place of a lump off its link's axis, to the left of the direction root to tip.",
+        ),
+        at!(Number, |spec, i| spec.lumps[i].across),
+    ),
+    row(
+        Key::number("lump.*.inertia", INERTIA, "0", "Inertia of a lump about its own centre of mass; 0 for a point."),
+        at!(Number, |spec, i| spec.lumps[i].inertia),
     ),
     row(
         Key::number(
@@ -259,6 +361,15 @@ impl KeyRow {
         let or_default = |value: Option<Value>| value.unwrap_or_else(|| DEFAULT_WORD.into());
         match self.at {
             FieldAccess::Number(of, _) => of(spec, i).into(),
+            FieldAccess::LinkNumber(number) => {
+                let link = &spec.links[i];
+                let derived = link.follows(number) && spec.has_parts(&link.name);
+                or_default((!derived).then(|| link.number(number).into()))
+            }
+            FieldAccess::Place(of, _) => match of(spec, i) {
+                PlaceOnLink::Metres(metres) => (*metres).into(),
+                PlaceOnLink::Named(name) => name.as_str().into(),
+            },
             FieldAccess::Limit(of, _) => or_default(of(spec, i).map(Value::from)),
             FieldAccess::Pair(of, _) => of(spec, i).to_vec().into(),
             FieldAccess::Switch(of, _) => of(spec, i).into(),
@@ -280,6 +391,11 @@ impl KeyRow {
         };
         match self.at {
             FieldAccess::Number(of, _) => within(range, of(spec, i), || place(None)),
+            FieldAccess::LinkNumber(number) => within(range, spec.links[i].number(number), || place(None)),
+            FieldAccess::Place(of, _) => match of(spec, i) {
+                PlaceOnLink::Metres(metres) => within(range, *metres, || place(None)),
+                PlaceOnLink::Named(_) => Ok(()),
+            },
             FieldAccess::Limit(of, _) => of(spec, i).map_or(Ok(()), |value| within(range, value, || place(None))),
             FieldAccess::Pair(of, _) => {
                 of(spec, i).into_iter().enumerate().try_for_each(|(k, value)| within(range, value, || place(Some(k))))

@@ -24,6 +24,7 @@ mod lengths;
 mod model;
 mod motors;
 mod numbers;
+mod parts;
 pub mod ranges;
 mod set;
 mod spec;
@@ -40,6 +41,9 @@ pub use inertia::{BALANCE_TOLERANCE, Inertia};
 pub use keys::KEYS;
 pub use model::{Machine, RelativeAngle, ResolvedClosure, ResolvedLink};
 pub use motors::Motors;
+pub use parts::{
+    DerivedNumbers, Ends, Hole, LinkNumber, Lump, MATERIALS, Material, Part, PartBody, PartSource, PlaneBody, Shape,
+};
 pub use ranges::{ANGLE, MAX_ANGLE};
 pub use set::{MACHINE_TABLES, is_of_machine};
 pub use spec::{

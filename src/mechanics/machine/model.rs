@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::Chain;
 use super::motors::Motors;
+use super::parts::{PartBody, PlaneBody, sum_of};
 use super::spec::{Link, MachineSpec};
 use crate::planar::{MAX_DRIVES, Vector};
 
@@ -17,6 +18,7 @@ pub struct Machine(Arc<MachineData>);
 pub(super) struct MachineData {
     pub(super) spec: MachineSpec,
     pub(super) bodies: Vec<Link>,
+    pub(super) part_bodies: Vec<PartBody>,
     pub(super) parts: Vec<ResolvedLink>,
     pub(super) end_effector: Chain,
     pub(super) end_link: usize,
@@ -138,6 +140,16 @@ impl Machine {
     /// Returns an upper bound of the end effector's distance from B, m: the sum of the magnitudes of its weights.
     pub fn reach(&self) -> f64 {
         self.0.end_effector.iter().map(|length| length.abs()).sum()
+    }
+
+    /// Returns what every part and lump brings, parts first, in the order of the file.
+    pub fn part_bodies(&self) -> &[PartBody] {
+        &self.0.part_bodies
+    }
+
+    /// Returns all parts and lumps of a link combined; `None` if it has none. Typed numbers of the link overrule it.
+    pub fn parts_of_link(&self, link: usize) -> Option<PlaneBody> {
+        sum_of(&self.0.part_bodies, link)
     }
 
     /// Returns the index of the link that carries the end effector.

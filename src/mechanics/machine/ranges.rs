@@ -20,6 +20,8 @@ pub const LOAD: Range = Range::new(0.0, MAX_NUMBER, "kg");
 pub(super) const RADIUS: Range = Range::new(0.0, MAX_NUMBER, "m");
 /// Range of a moment of inertia.
 pub const INERTIA: Range = Range::new(0.0, MAX_NUMBER, "kg m²");
+/// Range of the density of a material.
+pub const DENSITY: Range = Range::new(1.0, 1e5, "kg/m³");
 pub(super) const TORQUE_LIMIT: Range = Range::new(MIN_POSITIVE, MAX_NUMBER, "N m");
 /// Range of a gear ratio; a separate check rejects a ratio of 0.
 pub const RATIO: Range = Range::either_way(1e4, "");

@@ -4,12 +4,13 @@ use toml::{Table, Value};
 
 use super::error::quoted;
 use super::keys::{FieldAccess, KEYS, KeyRow, MACHINE_KEYS};
-use super::{KeyPath, Machine, MachineError, MachineSpec};
+use super::{KeyPath, Machine, MachineError, MachineSpec, PlaceOnLink};
 use stillbase_settings::change::{self, DEFAULT_WORD};
 use stillbase_settings::key::{self, Key};
 
 /// The tables and keys of a scenario that set its machine.
-pub const MACHINE_TABLES: [&str; 7] = ["link", "counterweight", "length", "payload", "gravity", "limits", "drive"];
+pub const MACHINE_TABLES: [&str; 10] =
+    ["link", "material", "part", "lump", "counterweight", "length", "payload", "gravity", "limits", "drive"];
 
 /// Returns whether a setting, such as `link.5.com`, belongs to the machine.
 pub fn is_of_machine(path: &str) -> bool {
@@ -75,25 +76,64 @@ impl Machine {
 
     /// Returns the value of a setting; the word `default` if it is not given, `None` if there is no such key.
     pub fn value(&self, key: &str) -> Option<Value> {
-        let weights = &self.spec().counterweights;
-        match key {
-            "counterweight" if weights.is_empty() => Some(DEFAULT_WORD.into()),
-            "counterweight" => Some(Value::Array(weights.iter().map(Value::try_from).collect::<Result<_, _>>().ok()?)),
-            _ => {
-                let row = KeyRow::of(key)?;
-                Some(row.value(self, body_of(self.spec(), key).ok()?))
-            }
+        if let Some(list) = BodyList::of(key) {
+            return list.value(self.spec());
         }
+        let row = KeyRow::of(key)?;
+        Some(row.value(self, body_of(self.spec(), key).ok()?))
+    }
+}
+
+/// A list of bodies that a single key sets as a whole, as in a file.
+struct BodyList {
+    key: &'static str,
+    want: &'static str,
+    get: fn(&MachineSpec) -> Result<Vec<Value>, toml::ser::Error>,
+    set: fn(&mut MachineSpec, Value) -> Result<(), toml::de::Error>,
+}
+
+macro_rules! body_list {
+    ($key:literal, $field:ident, $want:literal) => {
+        BodyList {
+            key: $key,
+            want: $want,
+            get: |spec| spec.$field.iter().map(Value::try_from).collect(),
+            set: |spec, list| list.try_into().map(|list| spec.$field = list),
+        }
+    };
+}
+
+const BODY_LISTS: [BodyList; 4] = [
+    body_list!(
+        "counterweight",
+        counterweights,
+        "a list of { link, mass, at, across, radius, fixed }, or the word default for none"
+    ),
+    body_list!("material", materials, "a list of { name, density }, or the word default for none"),
+    body_list!("part", parts, "a list of parts, each { link, shape, … } as in a file, or the word default for none"),
+    body_list!("lump", lumps, "a list of { link, name, mass, at, across, inertia }, or the word default for none"),
+];
+
+impl BodyList {
+    fn of(key: &str) -> Option<&'static Self> {
+        BODY_LISTS.iter().find(|list| list.key == key)
+    }
+
+    /// Returns the list; the word `default` if it is empty.
+    fn value(&self, spec: &MachineSpec) -> Option<Value> {
+        let all = (self.get)(spec).ok()?;
+        Some(if all.is_empty() { DEFAULT_WORD.into() } else { Value::Array(all) })
+    }
+
+    fn assign(&self, spec: &mut MachineSpec, value: &Value) -> Result<(), MachineError> {
+        let all = if is_default(value) { Value::Array(Vec::new()) } else { value.clone() };
+        (self.set)(spec, all).map_err(|_| bad(self.key, value, self.want))
     }
 }
 
 fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), MachineError> {
-    // This key sets the whole list, as in a file.
-    if key == "counterweight" {
-        let want = "a list of { link, mass, at, radius, fixed }, or the word default for none";
-        let all = || value.clone().try_into().map_err(|_| bad(key, value, want));
-        spec.counterweights = if is_default(value) { Vec::new() } else { all()? };
-        return Ok(());
+    if let Some(list) = BodyList::of(key) {
+        return list.assign(spec, value);
     }
     let unknown =
         || MachineError::UnknownKey { key: key.into(), known: key::in_words(KEYS.map(|key| key.path)).join(", ") };
@@ -106,9 +146,15 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), Machin
     // A required key has no default value.
     let default =
         Some(row.key.default).filter(|default| is_default(value) && *default != Key::REQUIRED).map(change::value);
-    let value = default.as_ref().unwrap_or(value);
+    let (given, value) = (value, default.as_ref().unwrap_or(value));
     match row.at {
         FieldAccess::Number(_, of) => *of(spec, i) = number(key, value)?,
+        FieldAccess::LinkNumber(of) => {
+            // Its default is what the parts of the link give.
+            let typed = if is_none(given) { None } else { Some(number(key, given)?) };
+            spec.links[i].type_number(of, typed);
+        }
+        FieldAccess::Place(_, of) => *of(spec, i) = place(key, value)?,
         FieldAccess::Limit(_, of) => *of(spec, i) = if is_none(value) { None } else { Some(number(key, value)?) },
         FieldAccess::Pair(_, of) => *of(spec, i) = pair(key, value)?,
         FieldAccess::Switch(_, of) => *of(spec, i) = switch(key, value)?,
@@ -132,12 +178,22 @@ fn body_of(spec: &MachineSpec, key: &str) -> Result<usize, MachineError> {
     let mut parts = key.split('.');
     let (part, name) = (parts.next().unwrap_or_default(), parts.next().unwrap_or_default());
     let numbers: Vec<String>;
+    let count = |count: usize| (1..=count).map(|number| number.to_string()).collect();
     let (what, names): (_, Vec<&str>) = match part {
         "link" => ("link", spec.links.iter().map(|link| link.name.as_str()).collect()),
         "counterweight" => {
-            numbers = (1..=spec.counterweights.len()).map(|number| number.to_string()).collect();
+            numbers = count(spec.counterweights.len());
             ("counterweight", numbers.iter().map(String::as_str).collect())
         }
+        "part" => {
+            numbers = count(spec.parts.len());
+            ("part", numbers.iter().map(String::as_str).collect())
+        }
+        "lump" => {
+            numbers = count(spec.lumps.len());
+            ("lump", numbers.iter().map(String::as_str).collect())
+        }
+        "material" => ("material", spec.materials.iter().map(|material| material.name.as_str()).collect()),
         "length" => ("length", spec.lengths.keys().map(String::as_str).collect()),
         "limits" => ("angle", spec.angles.iter().map(|angle| angle.name.as_str()).collect()),
         "drive" => ("drive", spec.drives.iter().map(|drive| drive.name.as_str()).collect()),
@@ -168,6 +224,12 @@ fn bad(key: &str, value: &Value, want: &'static str) -> MachineError {
 fn number(key: &str, value: &Value) -> Result<f64, MachineError> {
     let want = if is_default(value) { "one number: there is no default" } else { "one number" };
     change::number(value).ok_or_else(|| bad(key, value, want))
+}
+
+fn place(key: &str, value: &Value) -> Result<PlaceOnLink, MachineError> {
+    let named = value.as_str().filter(|_| !is_default(value)).map(|name| PlaceOnLink::Named(name.into()));
+    let place = || named.or_else(|| change::number(value).map(PlaceOnLink::Metres));
+    place().ok_or_else(|| bad(key, value, "a place along the link: root, tip, a number in m, or a named length"))
 }
 
 fn switch(key: &str, value: &Value) -> Result<bool, MachineError> {

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::parts::{DerivedNumbers, LinkInFile, Lump, Material, Part};
+
 /// The content of a machine file. [`Machine::new`](super::Machine::new) checks it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -26,6 +28,15 @@ pub struct MachineSpec {
     /// The links, rigid bars.
     #[serde(default, rename = "link")]
     pub links: Vec<Link>,
+    /// Materials beside the built-in ones.
+    #[serde(default, rename = "material", skip_serializing_if = "Vec::is_empty")]
+    pub materials: Vec<Material>,
+    /// Bars and plates of which links are made.
+    #[serde(default, rename = "part", skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<Part>,
+    /// Bodies on links whose mass is known, such as motors.
+    #[serde(default, rename = "lump", skip_serializing_if = "Vec::is_empty")]
+    pub lumps: Vec<Lump>,
     /// Discs on links, which balance the machine.
     #[serde(default, rename = "counterweight", skip_serializing_if = "Vec::is_empty")]
     pub counterweights: Vec<Counterweight>,
@@ -37,6 +48,13 @@ pub struct MachineSpec {
     /// Relative joint angles, which carry the joint limits.
     #[serde(default, rename = "angle", skip_serializing_if = "Vec::is_empty")]
     pub angles: Vec<Angle>,
+}
+
+impl MachineSpec {
+    /// Returns whether a link has parts or lumps, from which its mass, centre of mass and inertia can follow.
+    pub fn has_parts(&self, link: &str) -> bool {
+        self.parts.iter().any(|part| part.link == link) || self.lumps.iter().any(|lump| lump.link == link)
+    }
 }
 
 fn is_zero(v: &[f64; 2]) -> bool {
@@ -130,9 +148,10 @@ impl Default for Rotor {
     }
 }
 
-/// A rigid bar, always parallel to the arm of one drive.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+/// A rigid bar, always parallel to the arm of one drive. Those of its mass, centre of mass and inertia that nobody
+/// types follow from its parts.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(from = "LinkInFile", into = "LinkInFile")]
 pub struct Link {
     /// Its name.
     pub name: String,
@@ -141,7 +160,6 @@ pub struct Link {
     /// The point to which its root is pinned.
     pub attach: Attach,
     /// Direction of the link: 1 along e(q), −1 along −e(q).
-    #[serde(default = "forwards", skip_serializing_if = "is_forwards")]
     pub direction: i8,
     /// Length from root to tip, m.
     pub length: Length,
@@ -152,12 +170,12 @@ pub struct Link {
     /// Position l_c of its centre of mass along the link, from the root towards the tip, m.
     pub com: f64,
     /// Distance of its centre of mass from the link's axis, to the left of the direction root to tip, m.
-    #[serde(default, skip_serializing_if = "is_nought")]
     pub com_normal: f64,
     /// Height of its centre of mass above the reference plane through B, m. The motion stays planar; the heights
     /// determine the moments that tilt the base.
-    #[serde(default, skip_serializing_if = "is_nought")]
     pub axial: f64,
+    /// Which of its numbers follow from its parts.
+    pub derived: DerivedNumbers,
 }
 
 /// A disc on a link, in the plane of the link's own centre of mass. It moves with the link; the mass of the link
@@ -216,15 +234,15 @@ impl Link {
     }
 }
 
-fn forwards() -> i8 {
+pub(super) fn forwards() -> i8 {
     1
 }
 
-fn is_forwards(d: &i8) -> bool {
+pub(super) fn is_forwards(d: &i8) -> bool {
     *d == 1
 }
 
-fn is_nought(x: &f64) -> bool {
+pub(super) fn is_nought(x: &f64) -> bool {
     *x == 0.0
 }
 

@@ -227,6 +227,9 @@ impl Scenario {
                 "counterweight" | "design.hold.counterweight" => {
                     (1..=spec.counterweights.len()).map(|number| number.to_string()).collect()
                 }
+                "part" => (1..=spec.parts.len()).map(|number| number.to_string()).collect(),
+                "lump" => (1..=spec.lumps.len()).map(|number| number.to_string()).collect(),
+                "material" => spec.materials.iter().map(|material| material.name.clone()).collect(),
                 "length" | "plant.length" => spec.lengths.keys().cloned().collect(),
                 "limits" => spec.angles.iter().map(|angle| angle.name.clone()).collect(),
                 "design.length" => spec.own_lengths().map(|(name, _)| name.to_owned()).collect(),

@@ -1,0 +1,78 @@
+//! Parts of links in a session: every change is undone, done again, saved and replayed.
+
+use stillbase::mechanics::machine::{LinkNumber, Machine, PartSource, Shape, parse, to_toml};
+use stillbase::session::scenario::Scenario;
+use stillbase::session::{Edit, Session, gentle_motion, parts};
+use stillbase::study::parts::LinkParts;
+
+fn session() -> Session {
+    let machine = parse(include_str!("../mechanics/parts.toml"), "parts.toml").expect("an arm");
+    Session::open(gentle_motion(&machine).expect("a gentle motion")).expect("it opens")
+}
+
+#[test]
+fn changes_of_parts_are_undone_done_again_and_saved() {
+    let mut session = session();
+    let machine = |session: &Session| -> Machine { session.scenario().machine.clone() };
+    let mut states = vec![machine(&session)];
+    let edits: [&dyn Fn(&Machine) -> Edit; 12] = [
+        &|_| Edit::set("part.1.width", 0.05),
+        &|_| Edit::set("part.1.from", -0.02),
+        &|_| Edit::set("lump.1.mass", 0.3),
+        &|_| Edit::set("link.upper.mass", 2.0),
+        &|machine| parts::add_part(machine, 0, Shape::Tube),
+        &|machine| parts::add_part(machine, 1, Shape::Plate),
+        &|machine| parts::add_lump(machine, 0),
+        &|machine| parts::set_material(machine, 1, "lead"),
+        &|machine| parts::follow_parts(machine, 0, &LinkNumber::ALL),
+        &|machine| parts::remove(machine, PartSource::Part(0)),
+        &|machine| parts::remove(machine, PartSource::Lump(1)),
+        &|_| Edit::set("material.pom.density", 1500.0),
+    ];
+    for edit in edits {
+        session.apply(edit(states.last().expect("a state"))).expect("it is applied");
+        session.end_gesture();
+        states.push(machine(&session));
+        let [.., was, is] = &states[..] else { panic!("two states") };
+        assert_ne!(was, is);
+        // Saved and read again, it is the same machine, in the file of a machine too.
+        let saved = session.to_scenario().to_toml();
+        let again = Scenario::parse(&saved, "again.toml", None).expect("its own file");
+        assert_eq!(machine(&Session::open(again).expect("it opens")), *is);
+        assert_eq!(parse(&to_toml(is), "again.toml").expect("its own file"), *is);
+    }
+    for state in states.iter().rev().skip(1) {
+        session.undo().expect("undone");
+        assert_eq!(machine(&session), *state);
+    }
+    for state in &states[1..] {
+        session.redo().expect("done again");
+        assert_eq!(machine(&session), *state);
+    }
+}
+
+#[test]
+fn a_link_that_loses_its_last_part_keeps_its_numbers() {
+    let mut session = session();
+    let before = session.scenario().machine.clone();
+    let link = |session: &Session| session.scenario().machine.spec().links[1].clone();
+    let mut own = LinkParts::of(&before, 1).expect("parts").parts.len();
+    assert_eq!(own, 3);
+    while let Some(all) = LinkParts::of(&session.scenario().machine, 1) {
+        let was = link(&session);
+        let edit = parts::remove(&session.scenario().machine, all.parts[0].source);
+        session.apply(edit).expect("it is applied");
+        session.end_gesture();
+        own -= 1;
+        let is_empty = LinkParts::of(&session.scenario().machine, 1).is_none();
+        assert_eq!((is_empty, is_empty && link(&session).mass == was.mass), (own == 0, own == 0));
+    }
+    let bare = link(&session);
+    assert!(
+        LinkNumber::ALL.iter().filter(|number| **number != LinkNumber::Across).all(|number| !bare.follows(*number))
+    );
+    for _ in 0..3 {
+        session.undo().expect("undone");
+    }
+    assert_eq!(session.scenario().machine, before);
+}
