@@ -95,7 +95,7 @@ fn numbers(ui: &mut Ui, machine: &Machine, part: &LinkPart, p: &Palette, command
             }
         });
     }
-    if part.numbers.len() % 2 == 0 {
+    if part.numbers.len().is_multiple_of(2) {
         material(ui, machine, part, commands);
     }
     ui.add_space(4.0);

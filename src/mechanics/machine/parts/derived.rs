@@ -53,8 +53,8 @@ impl LinkNumber {
     }
 }
 
-/// Which numbers of a link follow from its parts. Each such number is kept as it was when the machine was checked last:
-/// where the link has another value since, someone typed it, and it overrules the parts.
+/// Which numbers of a link follow from its parts. Each such number is kept as it was when the machine was last checked.
+/// If the link has another value since then, someone typed it, and it overrules the parts.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DerivedNumbers([Option<f64>; 4]);
 
@@ -90,8 +90,8 @@ impl Link {
         }
     }
 
-    /// Returns whether a number follows from the parts of the link. The distance off the axis follows on a link without
-    /// parts, too: it is 0.
+    /// Returns whether a number follows from the parts of the link. Without parts, the distance off the axis follows,
+    /// too: it is 0.
     pub fn follows(&self, number: LinkNumber) -> bool {
         self.derived.0[number as usize].is_some_and(|value| value.to_bits() == self.number(number).to_bits())
     }

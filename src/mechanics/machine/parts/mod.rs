@@ -1,5 +1,5 @@
-//! Parts of links: bars and plates of a material, and lumps such as motors, from which mass, centre of mass and inertia
-//! of a link follow.
+//! Parts of links: bars and plates of a material, and lumps such as motors. From them follow mass, centre of mass and
+//! inertia of a link.
 //!
 //! # Symbols
 //! | letter | meaning | unit |

@@ -47,7 +47,8 @@ pub struct Part {
     /// Ends of a flat bar; `None` for round ones.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ends: Option<Ends>,
-    /// Corners of a plate in the order around it: along the link from its root, and to the left of the part's line, m.
+    /// Corners of a plate in the order around it, m: along the link from its root, and to the left of the part's
+    /// line.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub polygon: Vec<[f64; 2]>,
     /// Round holes through a flat bar or a plate.

@@ -108,8 +108,8 @@ impl Section<'_> {
         Ok(body)
     }
 
-    /// Returns how far inside the outline of a flat bar or a plate a point lies, m; below 0 outside. The point is given
-    /// along the link and to the left of the part's line, m.
+    /// Returns how far inside the outline of a flat bar or a plate a point lies, m; below 0 outside. The point is
+    /// given along the link and to the left of the part's line, m.
     pub fn depth(&self, point: [f64; 2]) -> f64 {
         let (low, high) = (self.from.min(self.to), self.from.max(self.to));
         let half = 0.5 * self.part.width.unwrap_or_default();
