@@ -139,7 +139,7 @@ fn within_what_is_asked(machine: &Machine, asked: &RebalanceRequest, kept: &Reba
             _ => panic!("a payload is given"),
         }
     }
-    assert_eq!(kept.machine.spec(), &same);
+    assert_eq!(kept.machine, Machine::new(same).expect("a machine"));
     // What it takes by key makes the same machine.
     let settings = kept.settings(machine);
     let typed: Vec<(String, String)> = settings.iter().map(|(key, value)| (key.clone(), value.to_string())).collect();
