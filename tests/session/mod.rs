@@ -15,6 +15,7 @@ mod proposals;
 mod replay;
 mod settings;
 mod sitting;
+mod sketch;
 mod smooth;
 mod undo;
 mod verdict;

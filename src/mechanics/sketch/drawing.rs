@@ -57,6 +57,9 @@ pub struct Bar {
     /// More pins on its axis: between root and tip, or beyond them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pins: Vec<PinId>,
+    /// Name of its length under `[lengths]`; by default that of the first bar which shares it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub length: Option<String>,
     /// The drive that it follows, by name; `None` if it follows from loops, or is not known yet.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive: Option<String>,

@@ -38,6 +38,7 @@ impl Sketch {
             root,
             tip,
             pins: Vec::new(),
+            length: None,
             drive: None,
             against: false,
             per_metre: 1.0,

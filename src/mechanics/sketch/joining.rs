@@ -24,9 +24,10 @@ impl Sketch {
         let second = Bar { id: BarId(next.next_id()), name: next.free_bar_name(), root: pin, pins: outer, ..bar.clone() };
         // A body of its own is spread evenly over both.
         let per_metre = if bar.body.is_some() { body.mass / length } else { bar.per_metre };
-        let second = Bar { body: None, per_metre, ..second };
+        let second = Bar { body: None, length: None, per_metre, ..second };
         if let Some(first) = next.bar_mut(id) {
             (first.tip, first.pins, first.body, first.per_metre) = (pin, inner, None, per_metre);
+            first.length = None;
         }
         for motor in next.motors.iter_mut().filter(|motor| motor.stator == Some(id)) {
             if motor.pin != pin && second.has(motor.pin) {
@@ -75,6 +76,7 @@ impl Sketch {
             own.pins = pins.into_iter().filter(|pin| *pin != own.root && *pin != own.tip).collect();
             own.per_metre = 0.5 * (first.per_metre + second.per_metre);
             own.body = None;
+            own.length = None;
         }
         next.measure_from(id, root, tip, self.along(&first, root), false);
         next.bars.retain(|bar| bar.id != with);

@@ -29,13 +29,17 @@ impl Lengths {
                 }
             }
         }
+        for (bar, own) in sketch.bars.iter().enumerate().filter(|(_, own)| own.length.is_some()) {
+            unite(&mut shared, &[(bar, own.tip)]);
+        }
         let is_length = |(bar, pin): &Distance| sketch.bars[*bar].tip == *pin;
         shared.iter_mut().for_each(|all| all.sort_by_key(|one| (!is_length(one), *one)));
         shared.sort();
         let (mut named, mut names) = (BTreeMap::new(), HashMap::new());
         for all in &shared {
             let Some(&(bar, pin)) = all.first() else { continue };
-            let stem = format!("l{}", sketch.bars[bar].name);
+            let stated = all.iter().filter(|one| is_length(one)).find_map(|(bar, _)| sketch.bars[*bar].length.clone());
+            let stem = stated.unwrap_or_else(|| format!("l{}", sketch.bars[bar].name));
             let mut name = stem.clone();
             let mut count = 1;
             while named.contains_key(&name) {

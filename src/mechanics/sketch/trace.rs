@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_4;
 
 use super::body::Body;
 use super::drawing::{Bar, BarId, EndEffector, Motor, PinId, Sketch};
-use crate::machine::{Drive, Machine, RelativeAngle, place_of};
+use crate::machine::{Drive, Length, Machine, RelativeAngle, place_of};
 use crate::planar::{DriveAngles, PerDrive, Vector};
 
 /// Distance along a link below which two points are one, m.
@@ -87,6 +87,10 @@ impl Sketch {
                 root,
                 tip,
                 pins: others,
+                length: match &link.length {
+                    Length::Named(name) => Some(name.clone()),
+                    Length::Metres(_) => None,
+                },
                 drive: Some(link.drive.clone()),
                 against: link.direction < 0,
                 per_metre: 1.0,

@@ -71,6 +71,14 @@ impl Sketch {
                 return Err(SketchRefusal::new(place, what, "a name of its own"));
             }
         }
+        let wrong = |name: &&String| {
+            let is_word = ["tip", "root"].contains(&name.as_str()) || name.starts_with('-') || name.trim().is_empty();
+            is_word || name.chars().count() > MAX_NAME || control_character(name).is_some()
+        };
+        if let Some(name) = self.bars.iter().filter_map(|bar| bar.length.as_ref()).find(wrong) {
+            let what = format!("{:?} cannot name a length", quote_clipped(name));
+            return whole(what, "printable characters, neither tip nor root, without - before them");
+        }
         match self.summary.chars().count() > MAX_SUMMARY || control_character(&self.summary).is_some() {
             true => whole("the summary cannot be printed in a line", format!("{MAX_SUMMARY} printable characters at most")),
             false => Ok(()),
