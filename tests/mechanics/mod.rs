@@ -12,6 +12,6 @@ mod keep;
 mod machine_file;
 pub mod nine_body;
 mod pin_friction;
+mod sincos;
 mod sketch;
 mod sketch_steps;
-mod sincos;

@@ -58,7 +58,10 @@ fn same_machine(name: &str, got: &Machine, want: &Machine, masses: bool) {
         let (l, m) = (&got.links()[i], &want.links()[i]);
         assert_eq!((&l.name, &l.drive), (&m.name, &m.drive), "{name}");
         if masses {
-            assert_eq!((l.mass, l.inertia, l.com, l.com_normal, l.axial), (m.mass, m.inertia, m.com, m.com_normal, m.axial));
+            assert_eq!(
+                (l.mass, l.inertia, l.com, l.com_normal, l.axial),
+                (m.mass, m.inertia, m.com, m.com_normal, m.axial)
+            );
         }
     }
     near(name, got.end_effector(), want.end_effector());
@@ -141,12 +144,14 @@ fn the_nine_links_of_the_template_are_those_of_the_paper() {
     let machine = complete(&resolved);
     same_machine("nine links", machine, paper, true);
     let text = to_toml(machine);
-    for line in ["l1 = 0.5\n", "l2 = 0.18\n", "l3 = 0.2\n", "l5 = 0.46\n", "at = \"-l2\"", "at = \"-l3\"", "length = 0.3\n"] {
+    for line in ["l1 = 0.5\n", "l2 = 0.18\n", "l3 = 0.2\n", "l5 = 0.46\n", "at = \"-l2\"", "at = \"-l3\"", "l9 = 0.3\n"]
+    {
         assert!(text.contains(line), "{line} in\n{text}");
     }
     let mut noise = Noise::of(3);
     for _ in 0..100 {
-        let e = DriveAngles::from([noise.between(-3.0, 3.0), noise.between(-3.0, 3.0), noise.between(-3.0, 3.0)]).units();
+        let e =
+            DriveAngles::from([noise.between(-3.0, 3.0), noise.between(-3.0, 3.0), noise.between(-3.0, 3.0)]).units();
         let places = |machine: &Machine| end_effector(machine.end_effector(), &e);
         assert!((places(machine) - places(paper)).norm() < 1e-12);
     }
@@ -157,11 +162,7 @@ fn nearly(off: Vector) -> Result<Sketch, stillbase::mechanics::sketch::SketchRef
     let blank = Sketch::blank();
     let (a, b) = (unit(1.9).scale(0.4), unit(0.4).scale(0.3));
     let corner = a + b + off;
-    let steps = [
-        bar(pin(0), at(a.re, a.im)),
-        bar(pin(0), at(b.re, b.im)),
-        bar(pin(1), at(corner.re, corner.im)),
-    ];
+    let steps = [bar(pin(0), at(a.re, a.im)), bar(pin(0), at(b.re, b.im)), bar(pin(1), at(corner.re, corner.im))];
     let sketch = draw(&blank, steps);
     sketch.with(&bar(pin(3), pin(5)))
 }
@@ -177,7 +178,11 @@ fn parallelograms_that_nearly_close_are_mended() {
         let LoopShape::Nearly { off: said } = found.shape else { panic!("{off}: {:?}", found.shape) };
         assert!((said - off.norm()).abs() < 1e-9);
         let missing = resolved.missing.iter().find(|one| matches!(one.lack, Lack::LoopOff { .. })).expect("said");
-        assert!(missing.text.starts_with("loop ") && missing.text.ends_with(" mm off a parallelogram"), "{}", missing.text);
+        assert!(
+            missing.text.starts_with("loop ") && missing.text.ends_with(" mm off a parallelogram"),
+            "{}",
+            missing.text
+        );
         let mend = missing.mends.first().expect("a step");
         assert!(mend.label.contains("becomes") || off.norm() < 1e-3, "{}", mend.label);
         let mended = draw(&sketch, [mend.step.clone()]);
@@ -266,7 +271,8 @@ fn loops_outside_the_family_are_refused_with_the_reason() {
     assert!(five.to_string().contains("a loop of 5"), "{five}");
     assert_eq!(five.place, stillbase::mechanics::sketch::Place::Pin(PinId(7)));
     // The same in a drawing that a pin has been moved in is listed, not refused.
-    let square = draw(&Sketch::blank(), [bar(pin(0), at(0.3, 0.0)), bar(pin(0), at(0.0, 0.3)), bar(pin(1), at(0.3, 0.3))]);
+    let square =
+        draw(&Sketch::blank(), [bar(pin(0), at(0.3, 0.0)), bar(pin(0), at(0.0, 0.3)), bar(pin(1), at(0.3, 0.3))]);
     let square = draw(&square, [bar(pin(3), pin(5)), SketchStep::MovePin { pin: PinId(5), to: [0.5, 0.6] }]);
     let resolved = resolve(&square);
     let outside = resolved.missing.iter().find(|one| matches!(one.lack, Lack::LoopOutside { .. })).expect("said");

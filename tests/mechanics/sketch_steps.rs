@@ -41,9 +41,14 @@ fn corners_are_refused_with_what_would_do() {
     // A name that is taken, a motor that sits on itself.
     let two = draw(&one, [bar(pin(1), at(0.5, 0.2))]);
     assert!(two.with(&SketchStep::NameBar { bar: BarId(4), name: "1".into() }).is_err());
-    let own = draw(&two, [motor(0, None, 2), motor(1, Some(4), 4), SketchStep::EndEffector { pin: PinId(3), bar: None }]);
+    let own =
+        draw(&two, [motor(0, None, 2), motor(1, Some(4), 4), SketchStep::EndEffector { pin: PinId(3), bar: None }]);
     let resolved = resolve(&own);
-    assert!(resolved.machine.is_none() && resolved.missing[0].text.contains("sits on itself"), "{:?}", resolved.missing);
+    assert!(
+        resolved.machine.is_none() && resolved.missing[0].text.contains("sits on itself"),
+        "{:?}",
+        resolved.missing
+    );
 }
 
 /// A chain of bars, each with a motor in its joint.

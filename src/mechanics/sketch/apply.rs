@@ -83,13 +83,7 @@ impl Sketch {
         Ok(Self { end_effector: Some(EndEffector { pin, bar }), ..self.clone() })
     }
 
-    fn with_limits(
-        &self,
-        to: &str,
-        from: &str,
-        offset: f64,
-        range: Option<[f64; 2]>,
-    ) -> Result<Self, SketchRefusal> {
+    fn with_limits(&self, to: &str, from: &str, offset: f64, range: Option<[f64; 2]>) -> Result<Self, SketchRefusal> {
         self.known_drive(to)?;
         self.known_drive(from)?;
         if to == from {

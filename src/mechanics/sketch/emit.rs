@@ -10,7 +10,7 @@ use super::loops::Recognised;
 use crate::machine::{Attach, Closure, Drive, Link, LinkPoint, MachineSpec};
 
 /// The bar to which the roots of others are pinned at a pin, by index; `None` for the base.
-type Owners = HashMap<PinId, Option<usize>>;
+pub(super) type Owners = HashMap<PinId, Option<usize>>;
 
 impl Sketch {
     /// Returns the specification of the machine. Its lists keep the order of the drawing.
@@ -18,10 +18,8 @@ impl Sketch {
         let (own, owners) = self.rooted();
         let loops: Vec<Recognised> = own.recognised(&Graph::of(&own));
         let (classes, lengths) = (Classes::of(&own, &loops), Lengths::of(&own, &loops));
-        let point = |bar: usize, pin: PinId| LinkPoint {
-            link: own.bars[bar].name.clone(),
-            at: lengths.place(&own, bar, pin),
-        };
+        let point =
+            |bar: usize, pin: PinId| LinkPoint { link: own.bars[bar].name.clone(), at: lengths.place(&own, bar, pin) };
         let links = own.bars.iter().enumerate().map(|(i, bar)| {
             let drive = classes.drive(&own, i).unwrap_or_default();
             let body = own.body(bar);
@@ -77,7 +75,7 @@ impl Sketch {
 
     /// Returns the drawing with the root of each bar on a bar nearer to the base, and for each pin the bar that the
     /// others are attached to.
-    fn rooted(&self) -> (Self, Owners) {
+    pub(super) fn rooted(&self) -> (Self, Owners) {
         let mut own = self.clone();
         let mut owners: Owners = HashMap::from([(own.base, None)]);
         let mut placed = vec![false; own.bars.len()];

@@ -20,8 +20,10 @@ impl Sketch {
         let mut next = self.clone();
         let pin = next.pin_on(id, along)?;
         let beyond = |own: &PinId| self.along(&bar, *own) > along + 0.5 * MIN_DISTANCE;
-        let (outer, inner): (Vec<PinId>, Vec<PinId>) = bar.pins.iter().copied().filter(|own| *own != pin).partition(beyond);
-        let second = Bar { id: BarId(next.next_id()), name: next.free_bar_name(), root: pin, pins: outer, ..bar.clone() };
+        let (outer, inner): (Vec<PinId>, Vec<PinId>) =
+            bar.pins.iter().copied().filter(|own| *own != pin).partition(beyond);
+        let second =
+            Bar { id: BarId(next.next_id()), name: next.free_bar_name(), root: pin, pins: outer, ..bar.clone() };
         // A body of its own is spread evenly over both.
         let per_metre = if bar.body.is_some() { body.mass / length } else { bar.per_metre };
         let second = Bar { body: None, length: None, per_metre, ..second };
@@ -62,10 +64,12 @@ impl Sketch {
         pins.sort_by(|a, b| self.along(&first, *a).total_cmp(&self.along(&first, *b)));
         let (Some(root), Some(tip)) = (pins.first().copied(), pins.last().copied()) else { return Ok(self.clone()) };
         let mut next = self.clone();
-        let (from, sense) = (self.along(&first, second.root), self.along(&first, second.tip) - self.along(&first, second.root));
+        let (from, sense) =
+            (self.along(&first, second.root), self.along(&first, second.tip) - self.along(&first, second.root));
         let sense = sense.signum();
         for weight in next.counterweights.iter_mut().filter(|weight| weight.link == second.name) {
-            (weight.link, weight.at, weight.across) = (first.name.clone(), from + sense * weight.at, sense * weight.across);
+            (weight.link, weight.at, weight.across) =
+                (first.name.clone(), from + sense * weight.at, sense * weight.across);
         }
         next.motors.iter_mut().filter(|motor| motor.stator == Some(with)).for_each(|motor| motor.stator = Some(id));
         for end in next.end_effector.iter_mut().filter(|end| end.bar == with) {

@@ -10,7 +10,7 @@ use crate::machine::{Length, PlaceOnLink};
 const PARTS: f64 = 1e12;
 
 /// The distance of a pin from the root of a bar, by the index of the bar.
-type Distance = (usize, PinId);
+pub(super) type Distance = (usize, PinId);
 
 /// Names of the lengths that several bars share.
 pub(super) struct Lengths {
@@ -20,15 +20,7 @@ pub(super) struct Lengths {
 
 impl Lengths {
     pub fn of(sketch: &Sketch, loops: &[Recognised]) -> Self {
-        let mut shared: Vec<Vec<Distance>> = Vec::new();
-        for found in loops {
-            for pair in found.groups.iter().filter(|group| group.len() == 2) {
-                let sides: Vec<Distance> = pair.iter().filter_map(|i| side(sketch, found, *i)).collect();
-                if sides.len() == 2 {
-                    unite(&mut shared, &sides);
-                }
-            }
-        }
+        let mut shared = shared(sketch, loops);
         for (bar, own) in sketch.bars.iter().enumerate().filter(|(_, own)| own.length.is_some()) {
             unite(&mut shared, &[(bar, own.tip)]);
         }
@@ -72,6 +64,20 @@ impl Lengths {
             None => PlaceOnLink::Metres(rounded(along)),
         }
     }
+}
+
+/// Returns distances along bars that loops force to be equal, in groups.
+pub(super) fn shared(sketch: &Sketch, loops: &[Recognised]) -> Vec<Vec<Distance>> {
+    let mut shared: Vec<Vec<Distance>> = Vec::new();
+    for found in loops {
+        for pair in found.groups.iter().filter(|group| group.len() == 2) {
+            let sides: Vec<Distance> = pair.iter().filter_map(|i| side(sketch, found, *i)).collect();
+            if sides.len() == 2 {
+                unite(&mut shared, &sides);
+            }
+        }
+    }
+    shared
 }
 
 /// Returns the side of a loop as the distance of a pin from the root of its bar, if it begins there.

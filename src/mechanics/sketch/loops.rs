@@ -92,8 +92,7 @@ impl Sketch {
 
     /// Returns why a loop lies outside the family.
     pub(super) fn outside_reason(&self, state: &LoopState) -> String {
-        let names: Vec<&str> =
-            state.bars.iter().filter_map(|id| self.bar(*id)).map(|bar| bar.name.as_str()).collect();
+        let names: Vec<&str> = state.bars.iter().filter_map(|id| self.bar(*id)).map(|bar| bar.name.as_str()).collect();
         let names = match names.split_last() {
             Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
             _ => names.join(", "),

@@ -150,7 +150,8 @@ impl Sketch {
         if !matches!(step, SketchStep::Parallelogram { .. }) {
             return step.title_in(self);
         }
-        let changed = |bar: &&Bar| next.bar(bar.id).is_some_and(|now| (next.length(now) - self.length(bar)).abs() > UNSEEN);
+        let changed =
+            |bar: &&Bar| next.bar(bar.id).is_some_and(|now| (next.length(now) - self.length(bar)).abs() > UNSEEN);
         let says = |bar: &Bar| format!("bar {} becomes {}", bar.name, mm(next.length(bar)));
         let all: Vec<String> = next.bars.iter().filter(|now| self.bar(now.id).iter().any(changed)).map(says).collect();
         match all.is_empty() {

@@ -22,6 +22,7 @@ mod mends;
 mod missing;
 mod motors;
 mod moving;
+mod posing;
 mod refusal;
 mod removal;
 mod resolve;

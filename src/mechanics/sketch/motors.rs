@@ -12,8 +12,11 @@ impl Sketch {
     pub(super) fn known_drive(&self, name: &str) -> Result<&Motor, SketchRefusal> {
         self.motor(name).ok_or_else(|| {
             let names: Vec<&str> = self.motors.iter().map(|motor| motor.drive.name.as_str()).collect();
-            let want =
-                if names.is_empty() { "a motor hung on a pin first".into() } else { format!("one of {}", names.join(", ")) };
+            let want = if names.is_empty() {
+                "a motor hung on a pin first".into()
+            } else {
+                format!("one of {}", names.join(", "))
+            };
             SketchRefusal::new(Place::Whole, format!("there is no drive {name:?}"), want)
         })
     }
@@ -83,12 +86,7 @@ impl Sketch {
         }
     }
 
-    pub(super) fn with_motor_at(
-        &self,
-        drive: &str,
-        pin: PinId,
-        stator: Option<BarId>,
-    ) -> Result<Self, SketchRefusal> {
+    pub(super) fn with_motor_at(&self, drive: &str, pin: PinId, stator: Option<BarId>) -> Result<Self, SketchRefusal> {
         self.known_drive(drive)?;
         self.check_stator(pin, stator)?;
         let mut next = self.clone();

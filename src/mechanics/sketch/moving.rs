@@ -1,9 +1,12 @@
 //! Moving a pin, and what hangs on it.
 //!
-//! The pin goes to its new place. A bar that hangs on a pin that moves, with its pin next to the base, moves along
-//! without turning. A bar of which another pin moves turns about its pin next to the base; its other pins keep their
-//! distances from that. So parallelograms stay parallelograms. A bar that would bend afterwards is straightened, and
-//! where this does not succeed the move is refused.
+//! The pin goes to its new place: the bar that carries it turns and grows. While all loops are closed, bars that must
+//! stay parallel turn with it, lengths that must stay equal grow with it, and everything else moves along without
+//! turning.
+//!
+//! Where a loop is open, a bar that hangs on a pin that moves, with its pin next to the base, moves along without
+//! turning. A bar of which another pin moves turns about its pin next to the base; its other pins keep their distances
+//! from that. A bar that would bend afterwards is straightened, and where this does not succeed the move is refused.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -31,9 +34,17 @@ impl Sketch {
 
     /// Returns the drawing with a pin moved, and what hangs on it.
     pub(super) fn moved(&self, pin: PinId, to: Vector) -> Result<Self, SketchRefusal> {
+        self.moved_with(pin, to, None)
+    }
+
+    /// Does the same as [`moved`](Self::moved) by turning and lengthening a certain bar.
+    fn moved_with(&self, pin: PinId, to: Vector, carrier: Option<BarId>) -> Result<Self, SketchRefusal> {
         if pin == self.base {
             let want = "a pin other than that on the base moved";
             return Err(SketchRefusal::new(Place::Pin(pin), "B is where the machine stands", want));
+        }
+        if let Some(posed) = self.posed(pin, to, carrier) {
+            return posed;
         }
         let inner = self.inner_pins();
         let mut places: BTreeMap<PinId, Vector> = BTreeMap::from([(pin, to)]);
@@ -129,8 +140,8 @@ impl Sketch {
         }
         let along = self.direction(bar).scale(metres);
         match inner == bar.tip {
-            true => self.moved(bar.root, self.at(bar.tip) - along),
-            false => self.moved(bar.tip, self.at(bar.root) + along),
+            true => self.moved_with(bar.root, self.at(bar.tip) - along, Some(id)),
+            false => self.moved_with(bar.tip, self.at(bar.root) + along, Some(id)),
         }
     }
 
@@ -144,7 +155,7 @@ impl Sketch {
     pub(super) fn turned(&self, bar: &Bar, inner: PinId, along: Vector) -> Result<Self, SketchRefusal> {
         let outer = if inner == bar.tip { bar.root } else { bar.tip };
         let far = self.along(bar, outer) - self.along(bar, inner);
-        self.moved(outer, self.at(inner) + along.scale(far))
+        self.moved_with(outer, self.at(inner) + along.scale(far), Some(bar.id))
     }
 
     fn bar_and_inner(&self, id: BarId) -> Result<(&Bar, PinId), SketchRefusal> {

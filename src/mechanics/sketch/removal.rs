@@ -74,8 +74,7 @@ impl Sketch {
         let pins: Vec<PinId> = self.pins.iter().map(|pin| pin.id).collect();
         let bars = &self.bars;
         let carries = |bar: BarId, pin: PinId| bars.iter().any(|own| own.id == bar && own.has(pin));
-        self.motors
-            .retain(|motor| pins.contains(&motor.pin) && motor.stator.is_none_or(|bar| carries(bar, motor.pin)));
+        self.motors.retain(|motor| pins.contains(&motor.pin) && motor.stator.is_none_or(|bar| carries(bar, motor.pin)));
         self.end_effector = self.end_effector.filter(|end| carries(end.bar, end.pin));
         let names: Vec<String> = self.motors.iter().map(|motor| motor.drive.name.clone()).collect();
         for bar in &mut self.bars {

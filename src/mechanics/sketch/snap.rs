@@ -125,13 +125,7 @@ fn ray(sketch: &Sketch, start: Vector, pointer: Vector, options: &SnapOptions) -
 
 /// Returns the point of a bar's axis at the pointer: where the ray meets it if that is near, or the nearest point
 /// between its outermost pins, at a whole step of the grid or of a millimetre from its root.
-fn on_axis(
-    sketch: &Sketch,
-    bar: &Bar,
-    ray: Option<(Vector, Vector)>,
-    pointer: Vector,
-    radius: f64,
-) -> Option<Vector> {
+fn on_axis(sketch: &Sketch, bar: &Bar, ray: Option<(Vector, Vector)>, pointer: Vector, radius: f64) -> Option<Vector> {
     let (root, along) = (sketch.at(bar.root), sketch.direction(bar));
     let places = || bar.all_pins().map(|pin| sketch.along(bar, pin));
     let (low, high) = (places().fold(0.0, f64::min), places().fold(0.0, f64::max));

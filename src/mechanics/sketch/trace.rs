@@ -76,9 +76,11 @@ impl Sketch {
             links.iter().enumerate().map(|(i, link)| (id_of((i, 0.0)), id_of((i, link.length)))).collect();
         let end_pin = id_of(end);
         for (i, (link, (root, tip))) in spec.links.iter().zip(ends).enumerate() {
-            let others = pins.groups.iter().zip(&ids).filter(|(group, id)| {
-                **id != root && **id != tip && group.iter().any(|(of, _)| *of == i)
-            });
+            let others = pins
+                .groups
+                .iter()
+                .zip(&ids)
+                .filter(|(group, id)| **id != root && **id != tip && group.iter().any(|(of, _)| *of == i));
             let others = others.map(|(_, id)| *id).collect();
             let id = BarId(sketch.next_id());
             sketch.bars.push(Bar {

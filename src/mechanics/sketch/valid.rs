@@ -80,7 +80,9 @@ impl Sketch {
             return whole(what, "printable characters, neither tip nor root, without - before them");
         }
         match self.summary.chars().count() > MAX_SUMMARY || control_character(&self.summary).is_some() {
-            true => whole("the summary cannot be printed in a line", format!("{MAX_SUMMARY} printable characters at most")),
+            true => {
+                whole("the summary cannot be printed in a line", format!("{MAX_SUMMARY} printable characters at most"))
+            }
             false => Ok(()),
         }
     }
@@ -89,7 +91,10 @@ impl Sketch {
         let mut ids: BTreeSet<u32> = BTreeSet::new();
         for id in self.pins.iter().map(|pin| pin.id.0).chain(self.bars.iter().map(|bar| bar.id.0)) {
             if !ids.insert(id) || id >= self.next {
-                return whole(format!("the number {id} of a pin or bar is not its own"), "numbers below `next`, each once");
+                return whole(
+                    format!("the number {id} of a pin or bar is not its own"),
+                    "numbers below `next`, each once",
+                );
             }
         }
         if self.next > u32::MAX / 2 {
@@ -130,7 +135,11 @@ impl Sketch {
             self.check_stator(motor.pin, motor.stator)?;
             if motor.drive.on.is_some() {
                 let what = format!("drive {} says what carries it", motor.drive.name);
-                return Err(SketchRefusal::new(Place::Pin(motor.pin), what, "`stator` with the number of a bar instead"));
+                return Err(SketchRefusal::new(
+                    Place::Pin(motor.pin),
+                    what,
+                    "`stator` with the number of a bar instead",
+                ));
             }
         }
         for name in self.angles.iter().flat_map(|angle| [&angle.to, &angle.from]) {
