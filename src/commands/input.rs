@@ -133,11 +133,11 @@ impl MachineArgument {
         let scenario = with_start_edits(&scenario).map_or(scenario, |(start, _)| start);
         let missing = resolve(scenario.sketch.as_ref()?).missing;
         let says = |one: Missing| match one.mends.into_iter().next() {
-            Some(mend) => format!("\n  {} · {}", one.text, mend.label),
-            None => format!("\n  {}", one.text),
+            Some(mend) => format!("{} ({})", one.text, mend.label),
+            None => one.text,
         };
-        let list: String = missing.into_iter().map(says).collect();
-        (!list.is_empty()).then(|| Failure::no_answer(format!("the drawing is no machine yet; still missing:{list}")))
+        let list = missing.into_iter().map(says).collect::<Vec<_>>().join("; ");
+        (!list.is_empty()).then(|| Failure::no_answer(format!("the drawing is no machine yet; still missing: {list}")))
     }
 
     /// Returns the argument as a shell takes it, with its settings.
