@@ -264,6 +264,7 @@ impl From<Refusal> for Failure {
             | Refusal::TooLarge { .. }
             | Refusal::LeavesLimits { .. }
             | Refusal::Curve(_)
+            | Refusal::Sketch(_)
             | Refusal::Task(_) => Self::wrong_input(e),
         }
     }

@@ -10,3 +10,4 @@ pub mod kinematics;
 pub mod loads;
 pub mod machine;
 pub mod planar;
+pub mod sketch;

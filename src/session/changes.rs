@@ -18,6 +18,7 @@ pub(super) fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refu
             scenario.plant.force = [*x, *y];
         }
         Edit::Set { change } => scenario = scenario.with_settings(change)?,
+        Edit::Sketch(step) => scenario = scenario.sketched(step)?,
         Edit::PoseB { .. }
         | Edit::DragTarget { .. }
         | Edit::DragAngles { .. }
@@ -30,7 +31,7 @@ pub(super) fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refu
 /// Returns the scenario if it is valid after an edit of its settings or of the push.
 pub(super) fn checked(scenario: Scenario, edit: &Edit) -> Result<Scenario, Refusal> {
     match edit {
-        Edit::Push { .. } | Edit::Set { .. } => check_fit(scenario, edit.name()),
+        Edit::Push { .. } | Edit::Set { .. } | Edit::Sketch(_) => check_fit(scenario, edit.name()),
         _ => Ok(scenario),
     }
 }

@@ -2,7 +2,7 @@
 
 use toml::Table;
 
-use super::changes::in_order;
+use super::changes::{changed, in_order};
 use super::edit::{Edit, TimedEdit};
 use super::events::GESTURE_PAUSE;
 use super::refusal::Refusal;
@@ -46,7 +46,18 @@ pub fn designs(scenario: &Scenario) -> Result<Vec<DesignVersion>, Refusal> {
         in_order(&scenario.edits).into_iter().filter(|e| e.edit.sets_machine() || e.edit.sets_design()).collect();
     let mut changes = 0;
     for (i, timed) in edits.iter().enumerate() {
-        let Edit::Set { change } = &timed.edit else { continue };
+        let Edit::Set { change } = &timed.edit else {
+            let before = now.machine.clone();
+            now = changed(&now, &timed.edit)?;
+            if now.machine != before {
+                changes += 1;
+                all.push(version(changes, timed.step, timed.edit.title(), &now));
+                if all.len() > MAX_STATES {
+                    all.remove(1);
+                }
+            }
+            continue;
+        };
         let part = |is_part: &dyn Fn(&str) -> bool| -> Table {
             change.clone().into_iter().filter(|(key, _)| is_part(key)).collect()
         };

@@ -9,6 +9,7 @@ use super::older;
 use super::waypoints::{self, POINT_KEYS};
 use crate::scenario::{MAX_STEPS, POINT_RANGE, POSE_CONSTANT_RANGE, effect_in, effect_of, key_of, name_of};
 use stillbase_mechanics::machine::{ANGLE, MACHINE_TABLES, is_of_machine};
+use stillbase_mechanics::sketch::SketchStep;
 use stillbase_settings::change;
 use stillbase_settings::key::{Effect, Key};
 use stillbase_settings::range::{RangeCheck, shortened};
@@ -65,6 +66,8 @@ pub enum Edit {
         /// Such as `{ task = { shape = "spline" }, link = { 5 = { com = -0.02 } } }`.
         change: Table,
     },
+    /// A step of drawing the machine. A scenario without a drawing begins with that of its machine.
+    Sketch(SketchStep),
 }
 
 /// An edit and the step at which it applies.
@@ -159,15 +162,20 @@ impl Edit {
         self.settings().is_some_and(|change| change.keys().any(|key| parts.contains(&key.as_str())))
     }
 
-    /// Returns whether the edit changes any setting of the task except its time. Such an edit changes the path, or
-    /// sends a dragged machine back to it.
+    /// Returns whether the edit changes any setting of the task except its time, or the drawing. Such an edit changes
+    /// the path, or sends a dragged machine back to it.
     pub fn sets_path(&self) -> bool {
-        self.part("task").is_some_and(|task| task.is_empty() || task.keys().any(|key| key != "time"))
+        let of_task = |task: &Table| task.is_empty() || task.keys().any(|key| key != "time");
+        matches!(self, Self::Sketch(_)) || self.part("task").is_some_and(of_task)
     }
 
-    /// Returns the largest effect of the edit's keys, or `Motion` for an edit other than of settings.
+    /// Returns the largest effect of the edit's keys, `Plan` for a step of drawing, or `Motion` for any other edit.
     pub fn effect(&self) -> Effect {
-        self.settings().map_or(Effect::Motion, effect_of)
+        match self {
+            Self::Set { change } => effect_of(change),
+            Self::Sketch(_) => Effect::Plan,
+            _ => Effect::Motion,
+        }
     }
 
     /// Returns whether no frame depends on the edit's settings, so that they apply to the whole run.
@@ -185,7 +193,7 @@ impl Edit {
 
     /// Returns whether the edit changes the machine.
     pub fn sets_machine(&self) -> bool {
-        self.sets(&MACHINE_TABLES)
+        self.sets(&MACHINE_TABLES) || matches!(self, Self::Sketch(_))
     }
 
     /// Returns whether the edit changes the bounds on the design.
@@ -218,7 +226,7 @@ impl Edit {
 
     /// Reason for refusing, after the first step, an edit that [changes the plan](Self::changes_plan).
     pub(super) const START_ONLY_REASON: &str =
-        "task, time, base and step can change only before the first step: want step = 0";
+        "task, time, base, step and drawing can change only before the first step: want step = 0";
 
     /// Returns whether the edit changes the plan of the motion, so that it is allowed only before the first step.
     pub(super) fn changes_plan(&self) -> bool {
@@ -230,6 +238,8 @@ impl Edit {
     pub fn is_replaced_by(&self, later: &Self) -> bool {
         match (self, later) {
             (Self::Set { change: earlier }, Self::Set { change: later }) => change::covers(later, earlier),
+            // Each step of a drawing builds on those before.
+            (Self::Sketch(_), Self::Sketch(_)) => false,
             _ => std::mem::discriminant(self) == std::mem::discriminant(later),
         }
     }
@@ -247,6 +257,7 @@ impl Edit {
                 Some(part) => part,
                 None => "settings",
             },
+            Self::Sketch(_) => "drawing",
         }
     }
 
@@ -292,6 +303,7 @@ impl Edit {
             Self::Push { x: 0.0, y: 0.0 } => "let go".into(),
             Self::Push { x, y } => format!("push with {x:.2}, {y:.2} N"),
             Self::Set { change } => title_of(change, inverse.and_then(|inverse| inverse.part("task"))),
+            Self::Sketch(step) => step.title(),
         }
     }
 }

@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use crate::scenario::{MAX_FRAMES, MAX_STEPS, MAX_TIME, SettingError, ordinal};
 use stillbase_mechanics::machine::MachineError;
+use stillbase_mechanics::sketch::SketchRefusal;
 use stillbase_planning::curves::{CurveError, PathError};
 use stillbase_planning::following::Blocked;
 use stillbase_planning::off_plane::drift::DriftError;
@@ -72,6 +73,9 @@ pub enum Refusal {
     /// The machine would not be valid.
     #[error(transparent)]
     Machine(#[from] MachineError),
+    /// A step of drawing does not fit the drawing.
+    #[error(transparent)]
+    Sketch(#[from] SketchRefusal),
     /// The simulation diverges.
     #[error(
         "the simulation diverges at {time:.3} s: want smaller gains, a smaller step, a lighter payload, or softer springs, dampers and \

@@ -256,7 +256,7 @@ impl Run {
             edit if edit.effect() == Effect::Picture => {
                 self.scenario = Arc::new(checked(changed(&self.scenario, edit)?, edit)?)
             }
-            Edit::Push { .. } | Edit::Set { .. } => self.set(edit)?,
+            Edit::Push { .. } | Edit::Set { .. } | Edit::Sketch(_) => self.set(edit)?,
         }
         Ok(())
     }
@@ -373,6 +373,7 @@ impl Run {
             Edit::PoseB { .. } => Edit::PoseB { b: b_aim() },
             Edit::Push { .. } => Edit::Push { x: scenario.plant.force[0], y: scenario.plant.force[1] },
             Edit::Set { change } => Edit::Set { change: scenario.present_values(change)? },
+            Edit::Sketch(_) => return None,
         })
     }
 }

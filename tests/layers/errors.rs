@@ -29,6 +29,7 @@ errors! {
     mechanics::balance::RebalanceError,
     mechanics::counterweights::CounterweightError,
     mechanics::joint_forces::JointsError,
+    mechanics::sketch::SketchRefusal,
     exchange::cut::CutError,
     exchange::form::ExchangeError,
     exchange::import::ImportError,

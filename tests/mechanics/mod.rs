@@ -14,3 +14,5 @@ pub mod nine_body;
 mod parts;
 mod pin_friction;
 mod sincos;
+mod sketch;
+mod sketch_steps;

@@ -16,6 +16,7 @@ mod proposals;
 mod replay;
 mod settings;
 mod sitting;
+mod sketch;
 mod smooth;
 mod undo;
 mod verdict;

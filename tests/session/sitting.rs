@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
 use proptest::test_runner::TestRunner;
 use stillbase::mechanics::planar::PerDrive;
+use stillbase::mechanics::sketch::{BarEnd, BarId, PinId, SketchStep, Template};
 use stillbase::session::scenario::{Note, NoteTime, Scenario, keys};
 use stillbase::session::{Edit, Session, TimedEdit};
 use stillbase::settings::key::Key;
@@ -43,6 +44,7 @@ fn name(edit: &Edit) -> String {
         Edit::PoseB { .. } => "pose-b".into(),
         Edit::Push { .. } => "push".into(),
         Edit::Set { change } => change.keys().next().cloned().unwrap_or_default(),
+        Edit::Sketch(_) => "sketch".into(),
     }
 }
 
@@ -159,6 +161,38 @@ fn any_brief() -> impl Strategy<Value = Edit> {
     ]
 }
 
+/// Steps of drawing: the pins of the nine-link machine are 0 to 8, its bars the next nine numbers.
+pub fn any_sketch() -> impl Strategy<Value = Edit> {
+    let pin = || (0..10u32).prop_map(PinId);
+    let bar_id = || (8..20u32).prop_map(BarId);
+    let place = || (-0.6..0.6, -0.2..1.2);
+    prop_oneof![
+        3 => (pin(), place()).prop_map(|(pin, (x, y))| SketchStep::MovePin { pin, to: [x, y] }),
+        2 => (pin(), place()).prop_map(|(pin, (x, y))| SketchStep::Bar {
+            from: BarEnd::pin(pin),
+            to: BarEnd::At([x, y]),
+            name: None
+        }),
+        1 => (pin(), pin()).prop_map(|(from, to)| SketchStep::Bar {
+            from: BarEnd::pin(from),
+            to: BarEnd::pin(to),
+            name: None
+        }),
+        1 => (bar_id(), 0.02..0.3).prop_map(|(bar, along)| SketchStep::Split { bar, along }),
+        1 => bar_id().prop_map(|bar| SketchStep::DeleteBar { bar }),
+        1 => pin().prop_map(|pin| SketchStep::DeletePin { pin }),
+        1 => (pin(), pin()).prop_map(|(pin, onto)| SketchStep::Weld { pin, onto }),
+        2 => (bar_id(), 0.1..0.6).prop_map(|(bar, metres)| SketchStep::Length { bar, metres }),
+        1 => (bar_id(), 1..4u32).prop_map(|(bar, k)| SketchStep::Follow { bar, drive: Some(k.to_string()) }),
+        1 => (1..4u32, 0.0..1e-4, 1.0..50.0)
+            .prop_map(|(k, inertia, ratio)| SketchStep::Gear { drive: k.to_string(), inertia, ratio }),
+        1 => pin().prop_map(|pin| SketchStep::EndEffector { pin, bar: None }),
+        1 => Just(SketchStep::New { template: Template::NineLinks }),
+        1 => Just(SketchStep::New { template: Template::Blank }),
+    ]
+    .prop_map(Edit::Sketch)
+}
+
 fn any_edit() -> impl Strategy<Value = Edit> {
     let spread = |key: &str, value: toml::Value| Edit::at(&["tolerance", key], value);
     prop_oneof![
@@ -174,6 +208,7 @@ fn any_edit() -> impl Strategy<Value = Edit> {
         3 => any_control(),
         3 => any_machine(),
         3 => any_task(),
+        2 => any_sketch(),
         1 => (0.001..0.1).prop_map(move |most: f64| spread("moment_limit", most.into())),
         1 => Just(spread("link.*.com", toml::Value::Table(toml::Table::from_iter([("normal".into(), 0.001.into())])))),
         2 => any_brief(),
@@ -347,7 +382,7 @@ fn every_kind_of_edit_is_drawn() {
     let entry = toml::Table::from_iter([("step".to_owned(), 0.into()), ("do".to_owned(), "nothing".into())]);
     let known = TimedEdit::from_table(entry).expect_err("there is no such edit");
     let kinds: BTreeSet<String> = known.split('`').skip(3).step_by(2).map(str::to_owned).collect();
-    assert_eq!(kinds.len(), 7, "{kinds:?}");
+    assert_eq!(kinds.len(), 8, "{kinds:?}");
     // Settings by the parts of the table of keys.
     let part = |key: &Key| key.path.split('.').next().map(str::to_owned);
     let known: BTreeSet<String> =

@@ -8,6 +8,7 @@ use super::task::Task;
 use super::tolerance::Tolerance;
 use crate::TimedEdit;
 use stillbase_mechanics::machine::{Machine, MachineError};
+use stillbase_mechanics::sketch::Sketch;
 use stillbase_settings::range::RangeCheck;
 use stillbase_simulation::Setup;
 use stillbase_simulation::control::Control;
@@ -44,6 +45,8 @@ pub struct Scenario {
     pub tolerance: Tolerance,
     /// Requirements on the machine in the design view.
     pub design: DesignBrief,
+    /// The drawing of the machine, if it is drawn by hand. While it is incomplete, the machine is the last complete one.
+    pub sketch: Option<Sketch>,
     /// Edits by the user.
     pub edits: Vec<TimedEdit>,
     /// Bookmarks; no motion depends on them.
@@ -79,7 +82,7 @@ impl Scenario {
     /// Returns the scenario without edits, bookmarks, notes and branches.
     pub fn without_edits(&self) -> Self {
         let Self { name, title, summary, machine, plant, base, task, control, step, .. } = self;
-        let Self { pose_acceleration, compare_b, duration, tolerance, design, .. } = self;
+        let Self { pose_acceleration, compare_b, duration, tolerance, design, sketch, .. } = self;
         Self {
             name: name.clone(),
             title: title.clone(),
@@ -95,6 +98,7 @@ impl Scenario {
             duration: *duration,
             tolerance: tolerance.clone(),
             design: design.clone(),
+            sketch: sketch.clone(),
             edits: Vec::new(),
             bookmarks: Vec::new(),
             notes: Vec::new(),

@@ -14,6 +14,7 @@ use super::task::Task;
 use super::tolerance::Tolerance;
 use crate::{TimedEdit, check_edits};
 use stillbase_mechanics::machine::{self, FileError, KeyPath, KeyStep, Machine, MachineSpec};
+use stillbase_mechanics::sketch::{Sketch, SketchRefusal};
 use stillbase_settings::change;
 use stillbase_settings::range::{quote_clipped, shortened};
 use stillbase_settings::text::{control_character, plain};
@@ -49,6 +50,7 @@ struct File {
     tolerance: Tolerance,
     #[serde(default, skip_serializing_if = "is_default")]
     design: DesignBrief,
+    sketch: Option<Sketch>,
     /// Edits as unparsed tables, so that an error can name the wrong one.
     #[serde(default, rename = "edit", skip_serializing_if = "Vec::is_empty")]
     edits: Vec<toml::Table>,
@@ -158,6 +160,18 @@ impl Scenario {
             line: line_of("task"),
             message: format!("missing field `{key}`"),
         })?;
+        let sketch = match file.sketch {
+            Some(sketch) => {
+                let bent = |why: SketchRefusal| ScenarioError::Syntax {
+                    file: label.into(),
+                    line: line_of("sketch"),
+                    message: format!("sketch: {}", shortened(&why.to_string(), MAX_MESSAGE_CHARS)),
+                };
+                sketch.check().map_err(bent)?;
+                Some(if file.set.is_empty() { sketch } else { sketch.following_machine(&machine) })
+            }
+            None => None,
+        };
         let mut edits = Vec::with_capacity(file.edits.len());
         let wrong_edit = |(i, message): (usize, String)| {
             let place = KeyPath::new(&[&"edit", &i]);
@@ -182,6 +196,7 @@ impl Scenario {
             task,
             tolerance: file.tolerance,
             design: file.design,
+            sketch,
             edits,
             bookmarks: file.bookmarks,
             notes: Vec::new(),
@@ -255,6 +270,7 @@ impl Scenario {
             duration,
             tolerance,
             design,
+            sketch,
             edits,
             bookmarks,
             notes,
@@ -276,6 +292,7 @@ impl Scenario {
             base,
             tolerance,
             design,
+            sketch,
             edits: edits.iter().map(TimedEdit::to_table).collect(),
             bookmarks,
             notes: notes.into_iter().map(StatedNote::from).collect(),

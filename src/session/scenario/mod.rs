@@ -17,6 +17,7 @@ mod note;
 mod own;
 mod points;
 mod settings;
+mod sketched;
 mod snap_point;
 mod task;
 mod tolerance;

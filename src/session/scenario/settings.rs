@@ -73,6 +73,7 @@ impl Scenario {
         let (of_machine, own): (Table, Table) = change.clone().into_iter().partition(|(key, _)| is_of_machine(key));
         if !of_machine.is_empty() {
             self.machine = self.machine.with_settings(&of_machine)?;
+            self.sketch = self.sketch.as_ref().map(|sketch| sketch.following_machine(&self.machine));
         }
         for (part, value) in &own {
             let wrong = |why: String| {

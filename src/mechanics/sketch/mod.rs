@@ -1,0 +1,44 @@
+//! Drawings of machines: bars from pin to pin in one reference pose, motors on pins, and what makes them a machine.
+//!
+//! A [`Sketch`] is plain data and may be incomplete. [`Sketch::with`] applies one [`SketchStep`], everything that a
+//! person does to a drawing; [`resolve`] recognises parallelograms, lists what is missing with steps that mend it, and
+//! makes the [`Machine`](crate::machine::Machine) once nothing is. [`Sketch::of`] draws a machine, and [`snap`] helps
+//! the hand.
+//!
+//! # The family
+//! Every bar stays parallel to the arm of one drive. So loops are parallelograms, or sums of parallelograms.
+
+mod apply;
+mod body;
+mod classes;
+mod drawing;
+mod emit;
+mod ends;
+mod graph;
+mod joining;
+mod lengths;
+mod loops;
+mod mends;
+mod missing;
+mod motors;
+mod moving;
+mod posing;
+mod refusal;
+mod removal;
+mod resolve;
+mod snap;
+mod step;
+mod template;
+mod trace;
+mod valid;
+
+pub use body::Body;
+pub use drawing::{Bar, BarId, EndEffector, Motor, Pin, PinId, Place, Sketch};
+pub use loops::{LoopShape, LoopState};
+pub use mends::Mend;
+pub use missing::{Lack, Missing};
+pub use refusal::SketchRefusal;
+pub use resolve::{Follow, Resolved, resolve};
+pub use snap::{Onto, Snap, SnapOptions, snap};
+pub use step::{BarEnd, SketchStep};
+pub use template::Template;
