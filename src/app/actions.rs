@@ -10,6 +10,7 @@ use super::{
     BottomPanel, Command, FileDialog, FilePurpose, Layout, NoteDraft, PlotFile, SessionCommand, Switch, ViewChange,
     ViewState, WindowCommand, set_b,
 };
+use stillbase_mechanics::sketch::Template;
 use stillbase_picture::charts::choice::PlotChange;
 use stillbase_picture::notation::Notation;
 use stillbase_picture::scene::Measure;
@@ -276,6 +277,7 @@ pub const ACTIONS: &[Action] = actions![
         Some(Command::View(ViewChange::Kind(if v.view == ViewKind::Design { ViewKind::Flat } else { ViewKind::Design })))
     };
     View, "Equations of the paper with today's numbers, beside the design view" = "learn formulas theory math mathematics", [on(PLAIN, Key::E)], "design view, tab" turns Equations;
+    View, "Draw the machine: bars, motors, end effector" = "sketch edit new link pin", [on(SHIFT, Key::D)], "design view, Draw" turns Sketching;
     View, "Show everything" = "fit frame zoom home centre center reset camera view lost find", [on(PLAIN, Key::F)], "tool bar", |_, _| Some(Command::View(ViewChange::Fit));
     View, "Zoom in" = "bigger nearer magnify", [on(PLAIN, Key::Plus), on(PLAIN, Key::Equals)], "scene, wheel", |_, _| {
         Some(Command::View(ViewChange::Look(CameraMove::Zoom(ZOOM_FACTOR))))
@@ -345,6 +347,13 @@ pub const ACTIONS: &[Action] = actions![
     Help, "Undo" = "back revert", [on(CTRL, Key::Z)], "keyboard", |s, _| s.undo_title().map(|_| Command::Session(SessionCommand::Undo));
     Help, "Redo" = "again forward repeat", [on(CTRL, Key::Y), on(CTRL_SHIFT, Key::Z)], "keyboard", |s, _| s.redo_title().map(|_| Command::Session(SessionCommand::Redo));
     Help, "History: what was done, to go back and forth in" = "log changes branches undo", [on(PLAIN, Key::H)], "tool bar" turns History;
+    Open, "New machine: blank" = "draw sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::Blank)));
+    Open, "New machine: serial arm of two bars" = "draw sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::SerialOfTwo)));
+    Open, "New machine: serial arm of three bars" = "draw sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::SerialOfThree)));
+    Open, "New machine: parallelogram arm" = "draw sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::ParallelogramArm)));
+    Open, "New machine: pantograph" = "draw sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::Pantograph)));
+    Open, "New machine: SCARA with belts" = "draw sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::ScaraWithBelts)));
+    Open, "New machine: nine links of the paper" = "draw sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::NineLinks)));
     Open, "New session: this machine and its task, nothing done yet" = "start over fresh clear reset blank", [],
         "top bar, File", |s, _| new_session(s);
     Open, "Open: a session, scenario, machine, model or table" = "load file import machine model urdf mjcf xml toml csv recent", [on(CTRL, Key::O)], "top bar, File", |s, _| dialog(s, FilePurpose::Open);

@@ -8,6 +8,7 @@ use egui::{Align, ComboBox, Frame, Layout, Margin, Panel, RichText, Ui};
 
 use super::actions::SPEEDS;
 use super::facts::ScenarioFacts;
+use super::gallery::Choosable;
 use super::icon::{Icon, IconButton};
 use super::marks::Marks;
 use super::theme::{bold, colour, plain};
@@ -71,10 +72,12 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewStat
         .selected_text(chosen_text(ui, present.name(), changed, width))
         .width(width)
         .height(gallery::room(ui));
-    let response = combo.show_ui(ui, |ui| {
-        if let Some(machine) = gallery::machines(ui, present, &view_state.palette()) {
+    let response = combo.show_ui(ui, |ui| match gallery::machines(ui, present, &view_state.palette()) {
+        Some(Choosable::Machine(machine)) => {
             commands.push(SessionCommand::Open(Box::new(with_machine(session, machine))).into());
         }
+        Some(Choosable::New(template)) => commands.push(SessionCommand::NewDrawing(template).into()),
+        None => {}
     });
     name(&response.response.on_hover_text(format!("{current}\n{tip}")), "Machine");
 }

@@ -43,6 +43,8 @@ pub mod pick;
 pub mod pointer;
 pub mod reaction;
 #[doc(hidden)]
+pub mod sketching;
+#[doc(hidden)]
 pub mod stage;
 #[doc(hidden)]
 pub mod thin;
