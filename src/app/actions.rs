@@ -376,6 +376,9 @@ pub const ACTIONS: &[Action] = actions![
     Export, "Report as HTML: machine, task, verdicts and plots" = "print page document pdf summary export save", [on(CTRL, Key::P)], "top bar, File", |s, _| {
         dialog(s, FilePurpose::Export(Export::Report))
     };
+    Export, "Save the machine as a file of its own" = "toml own write drawn", [], "design", |s, _| {
+        Some(Command::View(ViewChange::Dialog(Some(FileDialog::of_machine(s)))))
+    };
     Export, "Take the machine elsewhere: MJCF, URDF, DXF…" = "export cad mujoco ros robot svg csv parts list write", [], "design", |s, _| dialog(s, FilePurpose::Machine);
     Save, "Record for the Rerun viewer" = "rrd video capture export movie", [on(PLAIN, Key::R)], "top bar", |s, _| dialog(s, FilePurpose::Record);
     Help, "Find a command" = "palette search help how menu", [on(CTRL, Key::K)], "top bar" turns Finder;

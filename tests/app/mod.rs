@@ -27,6 +27,7 @@ mod saving;
 mod screen;
 mod settings;
 mod sizes;
+mod sketching;
 mod studio;
 mod time;
 mod view;
@@ -41,7 +42,7 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 29] = [
+pub const TESTS: [&[Test]; 30] = [
     saving::TESTS,
     family::TESTS,
     files::TESTS,
@@ -68,6 +69,7 @@ pub const TESTS: [&[Test]; 29] = [
     run::TESTS,
     settings::TESTS,
     sizes::TESTS,
+    sketching::TESTS,
     studio::TESTS,
     time::TESTS,
     view::TESTS,

@@ -30,8 +30,9 @@ pub struct Hand<'a> {
 }
 
 impl Hand<'_> {
-    /// Handles hovering, clicks, drags and typed numbers. Returns the bar under way.
-    pub fn points(&self, pen: &mut Pen, commands: &mut Vec<Command>) -> Option<Rubber> {
+    /// Handles hovering, clicks, drags and typed numbers. Returns the bar under way,
+    /// with its length and angle in words.
+    pub fn points(&self, pen: &mut Pen, commands: &mut Vec<Command>) -> Option<(Rubber, String)> {
         let pos = self.response.interact_pointer_pos().or(self.response.hover_pos());
         pen.hot = pos.and_then(|pos| pick(&self.facts.sketch, &self.spot.pointer(pos)));
         if self.response.clicked() || self.response.drag_started() {
@@ -93,7 +94,7 @@ impl Hand<'_> {
     }
 
     /// Draws a bar: from press to release, or from click to click.
-    fn draws(&self, pen: &mut Pen, pos: Option<Pos2>, commands: &mut Vec<Command>) -> Option<Rubber> {
+    fn draws(&self, pen: &mut Pen, pos: Option<Pos2>, commands: &mut Vec<Command>) -> Option<(Rubber, String)> {
         self.ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
         let clicked = self.response.clicked_by(PointerButton::Primary);
         let begins = self.response.drag_started_by(PointerButton::Primary);
@@ -127,11 +128,8 @@ impl Hand<'_> {
             return None;
         }
         let text = pen.typed.words(end.length, end.angle);
-        Some(Rubber {
-            ends: [start.at, end.point],
-            text,
-            is_caught: matches!(end.onto, Onto::Pin(_) | Onto::Bar { .. }),
-        })
+        let is_caught = matches!(end.onto, Onto::Pin(_) | Onto::Bar { .. });
+        Some((Rubber { ends: [start.at, end.point], is_caught }, text))
     }
 
     /// Returns the end of the bar under way: at the pointer, with the numbers that are typed.

@@ -1,6 +1,7 @@
 //! Drawing a machine in the design view: tools of the pointer, the card of a bar, and what is still missing.
 
 mod bubble;
+mod by_numbers;
 mod card;
 mod facts;
 mod hand;

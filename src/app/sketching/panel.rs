@@ -3,10 +3,10 @@
 use egui::{Button, RichText, Ui};
 
 use super::card::renamed;
-use super::{Pen, SketchFacts, card, draw, missing, motors};
+use super::{Pen, SketchFacts, by_numbers, card, draw, missing, motors};
 use crate::theme::{bold, colour, plain};
 use crate::widgets::{heading, name, note, section};
-use crate::{Command, SessionCommand, Switch, ViewChange, ViewState};
+use crate::{Command, FileDialog, SessionCommand, Switch, ViewChange, ViewState};
 use stillbase_mechanics::sketch::SketchStep;
 use stillbase_session::{Session, with_own_task};
 
@@ -49,7 +49,15 @@ pub fn show(
     }
     missing::show(ui, facts, p, commands);
     task(ui, session, facts, view_state, commands);
+    by_numbers::show(ui, facts, pen, p, commands);
     motors::show(ui, facts, p, commands);
+    if facts.is_complete() {
+        ui.add_space(8.0);
+        let save = ui.link(RichText::new("save the machine as a file →").font(plain(12.5)).color(colour(p.amber)));
+        if save.on_hover_text("A machine file, which --machine and Open read").clicked() {
+            commands.push(ViewChange::Dialog(Some(FileDialog::of_machine(session))).into());
+        }
+    }
 }
 
 /// Offers a task for a machine whose present task it cannot do.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{Align2, CentralPanel, Frame, PointerButton, Rect, Sense, Ui, pos2};
+use egui::{Align2, CentralPanel, Frame, PointerButton, Pos2, Rect, Sense, Ui, pos2, vec2};
 
 use super::hand::Hand;
 use super::pen::{Pen, PenTool};
@@ -14,7 +14,7 @@ use crate::{Command, ViewState, corner, framing};
 use stillbase_mechanics::sketch::{SketchStep, resolve};
 use stillbase_picture::paint::labels::draw_labels;
 use stillbase_picture::paint::{SceneViewport, paint};
-use stillbase_picture::scene::sketching::{SketchOptions, content};
+use stillbase_picture::scene::sketching::{Rubber, SketchOptions, content};
 use stillbase_picture::scene::views::Views;
 
 /// What the scene of a drawing needs.
@@ -34,14 +34,21 @@ pub fn show(ui: &mut Ui, scene: SketchScene<'_>, view_state: &mut ViewState, com
         let strip = corner::strip(rect);
         framing::keep_framed(rect, &[strip], scene.views, |_| content(&scene.facts.sketch), view_state);
         let spot = SceneViewport { rect, camera: *view_state.camera() };
-        let rubber = Hand { ui, response: &response, spot: &spot, facts: scene.facts }.points(&mut pen, commands);
+        let under_way = Hand { ui, response: &response, spot: &spot, facts: scene.facts }.points(&mut pen, commands);
         let holds = pen.from.is_some() || pen.moving.is_some() || pen.tool == PenTool::Bar;
         if !(holds && response.dragged_by(PointerButton::Primary)) {
             move_camera(ui, &response, rect, view_state);
         }
+        let (rubber, words) = under_way.unzip();
+        let end = rubber.as_ref().map(|rubber| rubber.ends[1]);
         draw_scene(ui, rect, scene, &pen, rubber, view_state);
         let spot = SceneViewport { rect, camera: *view_state.camera() };
         bubble::show(ui, &spot, scene.facts, &pen, &view_state.palette(), commands);
+        if let Some((words, [x, y])) = words.zip(end)
+            && let Some(at) = spot.screen([x, y, 0.0])
+        {
+            numbers(ui, rect, at, words, view_state);
+        }
         hint(ui, rect, &pen, view_state);
         rect
     });
@@ -55,7 +62,7 @@ fn draw_scene(
     rect: Rect,
     scene: SketchScene<'_>,
     pen: &Pen,
-    rubber: Option<stillbase_picture::scene::sketching::Rubber>,
+    rubber: Option<Rubber>,
     view_state: &ViewState,
 ) {
     let SketchScene { facts, views } = scene;
@@ -69,6 +76,19 @@ fn draw_scene(
     paint(ui, 0, rect, &drawn, view_state.camera());
     let spot = SceneViewport { rect, camera: *view_state.camera() };
     draw_labels(ui, 0, &spot, &drawn, &[corner::strip(rect)]);
+}
+
+/// Writes length and angle of the bar under way in a box beside its end.
+fn numbers(ui: &Ui, rect: Rect, at: Pos2, words: String, view_state: &ViewState) {
+    let p = view_state.palette();
+    let galley = ui.painter().layout_no_wrap(words, plain(13.0), colour(p.ink));
+    let size = galley.size() + vec2(20.0, 12.0);
+    let room = rect.shrink(8.0);
+    let left = (at.x + 16.0).min(room.right() - size.x).max(room.left());
+    let top = if at.y + 18.0 + size.y > room.bottom() { at.y - 18.0 - size.y } else { at.y + 18.0 };
+    let place = Rect::from_min_size(pos2(left, top), size);
+    ui.painter().rect(place, 6.0, colour(p.panel), (1.2, colour(p.amber)), egui::StrokeKind::Inside);
+    ui.painter().galley(place.min + vec2(10.0, 6.0), galley, colour(p.ink));
 }
 
 /// Writes what can be done in the lower corners.

@@ -40,8 +40,6 @@ pub enum SketchItem {
 pub struct Rubber {
     /// Its ends, m.
     pub ends: [[f64; 2]; 2],
-    /// Its length and angle in words.
-    pub text: String,
     /// Whether its end lies on a pin or a bar.
     pub is_caught: bool,
 }
@@ -202,17 +200,14 @@ impl Drawing<'_> {
         scene.labels.push(label);
     }
 
-    /// Draws the bar under way, dashed, with its length and angle.
+    /// Draws the bar under way, dashed.
     fn rubber(&self, scene: &mut Scene) {
-        let Some(Rubber { ends, text, is_caught }) = &self.options.rubber else { return };
+        let Some(Rubber { ends, is_caught }) = &self.options.rubber else { return };
         let [from, to] = ends.map(|[x, y]| point(Vector::new(x, y), 0.0));
         let tone = self.palette.amber;
         scene.lines.push(Polyline::new("sketch/rubber", [vec![from, to]], BAR_PX, faded(tone, 0.35)).on_top());
         scene.lines.push(Polyline::new("sketch/rubber/axis", [vec![from, to]], 1.2, tone).dashed(4.0, 4.0).on_top());
         let radius = if *is_caught { 9.0 } else { PIN_PX };
         scene.markers.push(Marker::disc("sketch/rubber/end", to, radius, self.palette.background).edged(tone, 2.0));
-        let offset = [14.0, 22.0];
-        let words = Label::new("sketch/rubber/text", to, offset, text.clone(), tone, 13.0, Anchor::Left);
-        scene.labels.push(words);
     }
 }
