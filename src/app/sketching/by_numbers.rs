@@ -1,5 +1,6 @@
 //! A bar by numbers: the pin where it begins, its length and its angle, without the pointer.
 
+use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 
 use egui::{Align, ComboBox, Layout, RichText, Ui};
@@ -31,7 +32,7 @@ pub fn show(ui: &mut Ui, facts: &SketchFacts, pen: &Pen, p: &Palette, commands: 
     section(ui, p, "A bar by numbers");
     let id = egui::Id::unique("bar by numbers");
     let known = ui.data(|data| data.get_temp::<Numbers>(id));
-    let mut numbers = known.unwrap_or(Numbers { from: sketch.base, metres: 0.3, radians: 0.0 });
+    let mut numbers = known.unwrap_or(Numbers { from: sketch.base, metres: 0.3, radians: FRAC_PI_2 });
     if let Some(SketchItem::Pin(pin)) = pen.chosen {
         numbers.from = pin;
     }

@@ -55,7 +55,7 @@ impl Typed {
     pub fn words(&self, metres: f64, radians: f64) -> String {
         let shown = |typed: &str, value: f64, is_here: bool| match (typed, is_here) {
             ("", _) => format!("{value:.1}").replace('-', "−"),
-            (typed, true) => format!("{}▏", typed.replace('-', "−")),
+            (typed, true) => format!("{}|", typed.replace('-', "−")),
             (typed, false) => typed.replace('-', "−"),
         };
         let length = shown(&self.length, 1e3 * metres, !self.is_at_angle);

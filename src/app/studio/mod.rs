@@ -70,7 +70,7 @@ pub fn show(
     if view_state.arrangement.now().plots.shown {
         other.exact_size(balance).frame(frame).show(ui, |ui| {
             if let Some(drawing) = drawing.filter(|drawing| !drawing.is_complete()) {
-                sketching::balance_waits(ui, drawing, view_state);
+                scrolled(ui, |ui| sketching::balance_waits(ui, drawing, view_state));
                 return;
             }
             tabs::show(ui, view_state, commands);
