@@ -65,7 +65,7 @@ struct Answer {
 impl CheckArguments {
     /// Prints the verdict; a machine that is not balanced is no failure.
     pub fn run(&self) -> Result<(), Failure> {
-        let machine = self.machine.load()?;
+        let machine = self.machine.load().map_err(|why| self.machine.incomplete_drawing().unwrap_or(why))?;
         let (inertia, constant) = (Inertia::of(&machine), PoseConstant::of(&machine));
         let answer = Answer {
             mass: inertia.mass(),

@@ -8,10 +8,13 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
+use stillbase_mechanics::sketch::{Missing, resolve};
 use stillbase_planning::pose_constant::PoseConstant;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_session::scenario::{POINT_RANGE, POSE_CONSTANT_RANGE, Scenario, TaskChange, key_of};
-use stillbase_session::{ReachablePoints, proposals_for_machine, proposals_for_settings, proposals_for_values};
+use stillbase_session::{
+    ReachablePoints, proposals_for_machine, proposals_for_settings, proposals_for_values, with_start_edits,
+};
 use stillbase_settings::change;
 use stillbase_settings::key::Key;
 use stillbase_settings::range::Range;
@@ -122,6 +125,19 @@ impl MachineArgument {
     /// If there is no such machine or it is not valid, or as [`Settings::apply`].
     pub fn load(&self) -> Result<Machine, Failure> {
         self.settings.apply(stillbase_files::machine(&self.name, None)?)
+    }
+
+    /// Returns what the drawing lacks to be a machine, if the argument is a scenario with an incomplete drawing.
+    pub fn incomplete_drawing(&self) -> Option<Failure> {
+        let scenario = stillbase_files::scenario(&self.name).ok()?.scenario;
+        let scenario = with_start_edits(&scenario).map_or(scenario, |(start, _)| start);
+        let missing = resolve(scenario.sketch.as_ref()?).missing;
+        let says = |one: Missing| match one.mends.into_iter().next() {
+            Some(mend) => format!("{} ({})", one.text, mend.label),
+            None => one.text,
+        };
+        let list = missing.into_iter().map(says).collect::<Vec<_>>().join("; ");
+        (!list.is_empty()).then(|| Failure::no_answer(format!("the drawing is no machine yet; still missing: {list}")))
     }
 
     /// Returns the argument as a shell takes it, with its settings.

@@ -68,7 +68,7 @@ pub fn for_machine(present: &Scenario, machine: &Machine) -> Scenario {
     if let Some(own) = Scenario::builtin(machine.name()) {
         return own;
     }
-    let alike = Scenario { machine: machine.clone(), ..present.without_edits() };
+    let alike = Scenario { machine: machine.clone(), sketch: None, ..present.without_edits() };
     if Run::new(&alike).is_ok() {
         return alike;
     }

@@ -79,6 +79,23 @@ fn eight_drives_are_a_machine_and_nine_are_refused() {
     draw(&longer, [refusal.proposals[0].clone()]);
 }
 
+/// Another bar of a class may state the drive; angles and limits stay what they are.
+#[test]
+fn a_bar_says_the_drive_for_all_that_must_follow_it() {
+    let machine = stillbase::mechanics::machine::builtin("four-drive").expect("built in");
+    let sketch = Sketch::of(machine, None);
+    for own in &sketch.bars {
+        let drive = own.drive.clone();
+        let said = draw(&sketch, [SketchStep::Follow { bar: own.id, drive }]);
+        let again = complete(&resolve(&said)).clone();
+        assert_eq!(again.end_effector(), machine.end_effector(), "bar {}", own.name);
+        assert_eq!(again.resolved_links()[4].sign, -1.0);
+        let other = if own.drive.as_deref() == Some("1") { "2" } else { "1" };
+        let other = draw(&sketch, [follow(own.id.0, other)]);
+        assert!(resolve(&other).machine.is_none(), "bar {} is not parallel to that arm", own.name);
+    }
+}
+
 #[test]
 fn moving_a_pin_takes_along_what_hangs_on_it() {
     let sketch = Template::NineLinks.sketch();

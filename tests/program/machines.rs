@@ -159,6 +159,25 @@ fn a_damaged_machine_file_is_named_with_its_line() {
     check("\u{0}", &["arm.toml:1:"]);
 }
 
+/// A scenario whose machine is being drawn says what is missing, and what would mend it.
+#[test]
+fn an_incomplete_drawing_lists_what_is_missing() {
+    let folder = Folder::new("cli");
+    let scenario = "machine = \"nine-link\"\n[task]\nkind = \"reactionless\"\nfrom = [0.50, 0.50]\nto = [0.55, 0.90]\n\
+                    b = 2.4\ntime = 1.0\n";
+    let blank = "[[edit]]\nstep = 0\ndo = \"sketch\"\ndraw = \"new\"\ntemplate = \"blank\"\n\
+                 [[edit]]\nstep = 0\ndo = \"sketch\"\ndraw = \"bar\"\nfrom = { pin = 0 }\nto = [0.3, 0.1]\n";
+    let drawn = word(folder.file("drawn.toml", format!("{scenario}{blank}")));
+    let words = [
+        "the drawing is no machine yet; still missing: no motor yet (hang a motor that turns bar 1)",
+        "bar 1 follows no drive (hang",
+        "no end effector yet (place",
+    ];
+    fails(&["check", &drawn], 1, &words);
+    // One that is complete is a scenario like any other.
+    fails(&["check", &word(folder.file("whole.toml", scenario))], 2, &["this is a scenario, not a machine"]);
+}
+
 /// Two drives have no plane of (a1, a2): the questions about planes have no answer, the others do.
 #[test]
 fn a_machine_of_two_drives_has_a_curve_once_it_is_balanced() {

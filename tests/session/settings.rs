@@ -43,7 +43,7 @@ fn every_key_of_a_file_is_in_the_table() {
     let text = format!("{}\nnonsense = 1", "name = \"x\"");
     let message = Scenario::parse(&text, "a.toml", None).expect_err("there is no such key").to_string();
     let mut known = expected(&message);
-    for other in ["name", "title", "summary", "machine", "set", "edit", "bookmark", "note", "branch"] {
+    for other in ["name", "title", "summary", "machine", "set", "sketch", "edit", "bookmark", "note", "branch"] {
         assert!(known.remove(other), "{other}: {message}");
     }
     let machine = ["link", "counterweight", "length", "payload", "gravity", "limits", "drive"];

@@ -136,7 +136,8 @@ impl Sketch {
         for bar in classes.bars(classes.class(own)) {
             (next.bars[bar].drive, next.bars[bar].against) = (None, false);
         }
-        let against = drive.is_some_and(|drive| next.is_against(&self.bars[own], drive));
+        // By the arms as they were, so that the drive's angle stays what it is.
+        let against = drive.is_some_and(|drive| self.is_against(&self.bars[own], drive));
         (next.bars[own].drive, next.bars[own].against) = (drive.map(Into::into), against);
         Ok(next)
     }

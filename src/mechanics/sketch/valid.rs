@@ -12,6 +12,8 @@ use stillbase_settings::text::control_character;
 
 /// Largest number of pins, and of places of pins on bars.
 const MAX_PLACES: usize = 1000;
+/// Largest number of loops, as many as a machine closes.
+const MAX_LOOPS: usize = 200;
 /// Largest number of relative angles.
 const MAX_ANGLES: usize = 64;
 /// Largest number of characters of a name.
@@ -40,6 +42,7 @@ impl Sketch {
         let counts = [
             ("pins", self.pins.len(), MAX_PLACES),
             ("places of pins on bars", places, MAX_PLACES),
+            ("loops", usize::saturating_sub(places, self.bars.len() + self.pins.len()), MAX_LOOPS),
             ("bars", self.bars.len(), MAX_LINKS),
             ("drives", self.motors.len(), MAX_DRIVES),
             ("angles", self.angles.len(), MAX_ANGLES),

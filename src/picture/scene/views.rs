@@ -136,6 +136,8 @@ impl ViewSubject {
             && one.compare_b == other.compare_b
             && one.plant.length == other.plant.length
             && one.plant.link == other.plant.link
+            // Angles in joint space are relative to a base that moves.
+            && one.base.moves() == other.base.moves()
             && self.run.motion().is_some() == run.motion().is_some()
             && self.run.waiting() == run.waiting()
     }
