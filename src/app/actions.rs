@@ -10,6 +10,7 @@ use super::{
     BottomPanel, Command, FileDialog, FilePurpose, Layout, NoteDraft, PlotFile, SessionCommand, Switch, ViewChange,
     ViewState, WindowCommand, set_b,
 };
+use stillbase_mechanics::sketch::Template;
 use stillbase_picture::charts::choice::PlotChange;
 use stillbase_picture::notation::Notation;
 use stillbase_picture::scene::Measure;
@@ -276,6 +277,7 @@ pub const ACTIONS: &[Action] = actions![
         Some(Command::View(ViewChange::Kind(if v.view == ViewKind::Design { ViewKind::Flat } else { ViewKind::Design })))
     };
     View, "Equations of the paper with today's numbers, beside the design view" = "learn formulas theory math mathematics", [on(PLAIN, Key::E)], "design view, tab" turns Equations;
+    View, "Draw the machine: bars, motors, end effector" = "sketch edit new link pin", [on(SHIFT, Key::D)], "design view, Draw" turns Sketching;
     View, "Show everything" = "fit frame zoom home centre center reset camera view lost find", [on(PLAIN, Key::F)], "tool bar", |_, _| Some(Command::View(ViewChange::Fit));
     View, "Zoom in" = "bigger nearer magnify", [on(PLAIN, Key::Plus), on(PLAIN, Key::Equals)], "scene, wheel", |_, _| {
         Some(Command::View(ViewChange::Look(CameraMove::Zoom(ZOOM_FACTOR))))
@@ -345,6 +347,13 @@ pub const ACTIONS: &[Action] = actions![
     Help, "Undo" = "back revert", [on(CTRL, Key::Z)], "keyboard", |s, _| s.undo_title().map(|_| Command::Session(SessionCommand::Undo));
     Help, "Redo" = "again forward repeat", [on(CTRL, Key::Y), on(CTRL_SHIFT, Key::Z)], "keyboard", |s, _| s.redo_title().map(|_| Command::Session(SessionCommand::Redo));
     Help, "History: what was done, to go back and forth in" = "log changes branches undo", [on(PLAIN, Key::H)], "tool bar" turns History;
+    Open, "Draw a machine: blank" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::Blank)));
+    Open, "Draw a machine: serial arm of two bars" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::SerialOfTwo)));
+    Open, "Draw a machine: serial arm of three bars" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::SerialOfThree)));
+    Open, "Draw a machine: parallelogram arm" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::ParallelogramArm)));
+    Open, "Draw a machine: pantograph" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::Pantograph)));
+    Open, "Draw a machine: SCARA with belts" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::ScaraWithBelts)));
+    Open, "Draw a machine: nine links of the paper" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::NineLinks)));
     Open, "New session: this machine and its task, nothing done yet" = "start over fresh clear reset blank", [],
         "top bar, File", |s, _| new_session(s);
     Open, "Open: a session, scenario, machine, model or table" = "load file import machine model urdf mjcf xml toml csv recent", [on(CTRL, Key::O)], "top bar, File", |s, _| dialog(s, FilePurpose::Open);
@@ -366,6 +375,9 @@ pub const ACTIONS: &[Action] = actions![
     Export, "Values of signals as CSV or Parquet" = "export table data numbers spreadsheet excel columns save", [], "top bar, File", |_, _| export(Export::values());
     Export, "Report as HTML: machine, task, verdicts and plots" = "print page document pdf summary export save", [on(CTRL, Key::P)], "top bar, File", |s, _| {
         dialog(s, FilePurpose::Export(Export::Report))
+    };
+    Export, "Save the machine as a file of its own" = "toml own write drawn", [], "design", |s, _| {
+        Some(Command::View(ViewChange::Dialog(Some(FileDialog::of_machine(s)))))
     };
     Export, "Take the machine elsewhere: MJCF, URDF, DXF…" = "export cad mujoco ros robot svg csv parts list write", [], "design", |s, _| dialog(s, FilePurpose::Machine);
     Save, "Record for the Rerun viewer" = "rrd video capture export movie", [on(PLAIN, Key::R)], "top bar", |s, _| dialog(s, FilePurpose::Record);

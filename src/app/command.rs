@@ -10,9 +10,11 @@ use super::guide::GuideStep;
 use super::layout::Layout;
 use super::notes::NoteDraft;
 use super::pair::Pair;
+use super::sketching::PenChange;
 use super::widgets::RefusedEntry;
 use stillbase_mechanics::counterweights::Objective;
 use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::sketch::Template;
 use stillbase_picture::charts::choice::PlotChange;
 use stillbase_picture::notation::Notation;
 use stillbase_picture::scene::Measure;
@@ -83,6 +85,8 @@ pub enum SessionCommand {
     Step(i64),
     /// Open another scenario in place of the session.
     Open(Box<Scenario>),
+    /// Open a new drawing of a machine.
+    NewDrawing(Template),
     /// Open one of the paper's cases, by name.
     Case(&'static str),
     /// Open a saved session or scenario.
@@ -167,6 +171,8 @@ pub enum Switch {
     Finder,
     /// The equations beside the machine being designed, in place of its balance.
     Equations,
+    /// Draw the machine: bars, motors, end effector.
+    Sketching,
     /// Play in a loop.
     Loop,
     /// Enlarge the drawn motion of the base so that it can be seen.
@@ -206,6 +212,8 @@ pub enum ViewChange {
     Speed(f64),
     /// Shade the workspace by this measure of dexterity, or by none.
     Dexterity(Option<Measure>),
+    /// Change the state of drawing.
+    Pen(PenChange),
     /// Frame the camera to show everything.
     Fit,
     /// Move the camera.

@@ -74,7 +74,7 @@ impl FilePurpose {
     pub(super) fn title(&self) -> String {
         let [title, ..] = self.words();
         match self {
-            Self::Machine => format!("{title}: .{}", form::endings().join(" .")),
+            Self::Machine => format!("{title}: .toml .{}", form::endings().join(" .")),
             Self::Export(wanted) => match &wanted.naming().1[..] {
                 [] => format!("{title}: a folder"),
                 endings => format!("{title}: .{}", endings.join(" .")),
@@ -84,10 +84,19 @@ impl FilePurpose {
     }
 }
 
+/// Ending of machine files of this program.
+pub(super) const MACHINE_EXTENSION: &str = "toml";
+
 impl FileDialog {
     /// Returns a dialog to open a file.
     pub fn opening() -> Self {
         Self { purpose: FilePurpose::Open, path: String::new() }
+    }
+
+    /// Returns a dialog to save the machine as a file of this program.
+    pub fn of_machine(session: &Session) -> Self {
+        let name = stillbase_files::free_name(session.scenario().machine.name(), MACHINE_EXTENSION);
+        Self { purpose: FilePurpose::Machine, path: name.display().to_string() }
     }
 
     /// Returns a dialog that suggests an unused file name; a dialog to open a file suggests none.

@@ -6,19 +6,16 @@ use std::sync::Arc;
 use egui::Rect;
 
 use super::{Framing, ViewState};
-use stillbase_mechanics::planar::DriveAngles;
-use stillbase_picture::scene::framing::PictureArea;
-use stillbase_picture::scene::views::Views;
-use stillbase_session::Session;
+use stillbase_picture::scene::framing::{PictureArea, ViewContent};
+use stillbase_picture::scene::views::{ViewKind, Views};
 
 /// Frames the camera of the present view, if the view must show everything. `rect` is the scene on the screen,
 /// `covered` its covered parts.
 pub fn keep_framed(
     rect: Rect,
     covered: &[Rect],
-    session: &Session,
     views: &Views,
-    poses: impl FnOnce() -> Vec<DriveAngles>,
+    content: impl FnOnce(ViewKind) -> ViewContent,
     view_state: &mut ViewState,
 ) {
     let view = view_state.view;
@@ -29,7 +26,7 @@ pub fn keep_framed(
         Framing::Framed(content, _) => content.clone(),
         // During a drag the view stays still; it is framed after the release.
         Framing::Pending if view_state.gesture.grabbed.is_some() => return,
-        Framing::Pending => Arc::new(views.content(view, session.frame(), &poses())),
+        Framing::Pending => Arc::new(content(view)),
     };
     let part = |part: &Rect| {
         let part = part.intersect(rect).translate(-rect.min.to_vec2());

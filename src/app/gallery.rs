@@ -7,7 +7,9 @@ use egui::{Align2, Key, RichText, Sense, Stroke, TextStyle, TextWrapMode, Ui, Wi
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use stillbase_mechanics::machine::{self, Machine};
+use stillbase_mechanics::sketch::Template;
 use stillbase_picture::paint::portrait::Portrait;
+use stillbase_picture::paint::thumbnail::Thumbnail;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_query::{Queries, QuickQuery, QuickWork};
 use stillbase_session::Run;
@@ -30,8 +32,82 @@ pub struct Choice<'a> {
 /// Pictures of the built-in machines, in their order; drawn when the list is first opened.
 static MACHINES: LazyLock<Vec<Portrait>> = LazyLock::new(|| machine::builtins().iter().map(Portrait::of).collect());
 
+/// A choice of the list of machines.
+pub enum Choosable {
+    /// A built-in machine.
+    Machine(&'static Machine),
+    /// A new drawing.
+    New(Template),
+}
+
+/// Pictures of the drawings from which a person starts.
+static TEMPLATES: LazyLock<Vec<Thumbnail>> =
+    LazyLock::new(|| Template::ALL.into_iter().map(|template| Thumbnail::of(template.sketch())).collect());
+
+/// Draws the drawings from which a person starts, and the built-in machines; returns the choice of the user.
+pub fn machines(ui: &mut Ui, present: &Machine, p: &Palette) -> Option<Choosable> {
+    let new = templates(ui, p).map(Choosable::New);
+    new.or(builtins(ui, present, p).map(Choosable::Machine))
+}
+
+/// Draws a row of drawings from which a person starts; returns the one that the user has chosen.
+fn templates(ui: &mut Ui, p: &Palette) -> Option<Template> {
+    let mut chosen = None;
+    ui.label(RichText::new("NEW").font(bold(11.0)).color(colour(p.dim)));
+    let width = columns(ui) as f32 * (CARD_SIZE.x + GAP) - GAP;
+    let per_row = (((width + GAP) / (LEAST_NEW_WIDTH + GAP)).floor() as usize).clamp(1, Template::ALL.len());
+    let size = vec2(((width + GAP) / per_row as f32 - GAP).floor(), NEW_HEIGHT);
+    ui.spacing_mut().item_spacing = vec2(GAP, GAP);
+    let all: Vec<(Template, &Thumbnail)> = Template::ALL.into_iter().zip(TEMPLATES.iter()).collect();
+    for row in all.chunks(per_row) {
+        ui.horizontal(|ui| {
+            for (template, picture) in row {
+                if template_card(ui, p, *template, picture, size).clicked() {
+                    chosen = Some(*template);
+                    ui.close();
+                }
+            }
+        });
+    }
+    ui.label(RichText::new("BUILT IN").font(bold(11.0)).color(colour(p.dim)));
+    chosen
+}
+
+fn template_card(
+    ui: &mut Ui,
+    p: &Palette,
+    template: Template,
+    picture: &Thumbnail,
+    size: egui::Vec2,
+) -> egui::Response {
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    name(&response, &format!("new machine: {}. {}", template.title(), template.summary()));
+    if !ui.is_rect_visible(rect) {
+        return response;
+    }
+    let edge = match (response.has_focus(), response.hovered()) {
+        (true, _) => Stroke::new(2.0, colour(p.ink)),
+        (_, true) => Stroke::new(1.0, colour(p.dim)),
+        _ => Stroke::new(1.0, colour(p.line)),
+    };
+    ui.painter().rect(rect, 8.0, colour(p.background), edge, egui::StrokeKind::Inside);
+    let inner = rect.shrink(10.0);
+    let above = egui::Rect::from_min_size(inner.min, vec2(inner.width(), NEW_PICTURE_HEIGHT));
+    picture.paint(ui.painter(), above.shrink(8.0), p);
+    let write = |ui: &Ui, text: &str, font, tone, top: f32| {
+        let text = WidgetText::from(RichText::new(text).font(font).color(colour(tone)));
+        let text = text.into_galley(ui, Some(TextWrapMode::Wrap), inner.width(), TextStyle::Small);
+        let height = text.size().y;
+        ui.painter().galley(egui::pos2(inner.left(), top), text, colour(tone));
+        top + height + 2.0
+    };
+    let top = write(ui, template.title(), bold(12.5), p.ink, above.bottom() + 4.0);
+    write(ui, template.summary(), plain(11.0), p.dim, top);
+    response
+}
+
 /// Draws the built-in machines; returns the machine that the user has chosen, if it differs from the present one.
-pub fn machines(ui: &mut Ui, present: &Machine, p: &Palette) -> Option<&'static Machine> {
+fn builtins(ui: &mut Ui, present: &Machine, p: &Palette) -> Option<&'static Machine> {
     let choice = |(machine, portrait): (&'static Machine, &'static Portrait)| Choice {
         title: machine.name(),
         second: format!("{} {}", machine.drives(), if machine.drives() == 1 { "drive" } else { "drives" }),
@@ -82,6 +158,10 @@ pub fn scenarios(ui: &mut Ui, present: &Scenario, queries: &Queries, p: &Palette
 
 const CARD_SIZE: egui::Vec2 = vec2(282.0, 222.0);
 const PICTURE_HEIGHT: f32 = 112.0;
+/// Height of a card of a new drawing and of its picture, and the least width of a card.
+const NEW_HEIGHT: f32 = 146.0;
+const NEW_PICTURE_HEIGHT: f32 = 66.0;
+const LEAST_NEW_WIDTH: f32 = 150.0;
 const GAP: f32 = 8.0;
 const MARGIN: f32 = 12.0;
 /// Maximum number of columns.
@@ -92,10 +172,15 @@ pub fn room(ui: &Ui) -> f32 {
     (ui.ctx().content_rect().height() - 76.0).clamp(160.0, 3.0 * (CARD_SIZE.y + GAP))
 }
 
+/// Returns the number of columns that the window has room for.
+fn columns(ui: &Ui) -> usize {
+    let wide = ui.ctx().content_rect().width() - 60.0;
+    ((wide + GAP) / (CARD_SIZE.x + GAP)).floor().clamp(1.0, MAX_COLUMNS) as usize
+}
+
 /// Draws the choices as cards; returns the index of the one that the user has chosen.
 fn show(ui: &mut Ui, choices: &[Choice<'_>], p: &Palette) -> Option<usize> {
-    let wide = ui.ctx().content_rect().width() - 60.0;
-    let columns = ((wide + GAP) / (CARD_SIZE.x + GAP)).floor().clamp(1.0, MAX_COLUMNS) as usize;
+    let columns = columns(ui);
     ui.set_width(columns as f32 * (CARD_SIZE.x + GAP) - GAP);
     ui.spacing_mut().item_spacing = vec2(GAP, GAP);
     let opened = ui.ctx().memory(|memory| memory.focused()).is_none();

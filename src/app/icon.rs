@@ -52,6 +52,12 @@ pub enum Icon {
     Cross,
     /// Record.
     Record,
+    /// A bar with its two pins.
+    Bar,
+    /// A motor about a pin.
+    Motor,
+    /// The end effector at the end of a bar.
+    Tip,
 }
 
 /// Half the width of the square in which an icon is drawn, points.
@@ -163,6 +169,21 @@ impl Icon {
                 pen.line(&[[-4.0, 4.0], [4.0, -4.0]]);
             }
             Self::Record => pen.dot([0.0, 0.0], 5.0),
+            Self::Bar => {
+                pen.line(&[[-4.0, 4.0], [4.0, -4.0]]);
+                pen.ring([-5.5, 5.5], 2.0);
+                pen.ring([5.5, -5.5], 2.0);
+            }
+            Self::Motor => {
+                pen.ring([0.0, 0.0], 6.5);
+                pen.ring([0.0, 0.0], 3.4);
+                pen.dot([0.0, 0.0], 1.4);
+            }
+            Self::Tip => {
+                pen.line(&[[-7.0, 6.0], [0.5, -0.5]]);
+                pen.ring([3.0, -3.0], 3.6);
+                pen.dot([3.0, -3.0], 1.4);
+            }
         }
     }
 }

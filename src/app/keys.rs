@@ -8,7 +8,10 @@ use super::notation;
 use super::status::news::News;
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
-use super::{Command, Layout, OpenDialogs, SessionCommand, Switch, Tool, ViewChange, ViewState, WindowCommand, search};
+use super::{
+    Command, Layout, OpenDialogs, Pen, PenChange, SessionCommand, Switch, Tool, ViewChange, ViewState, WindowCommand,
+    search,
+};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Session;
 
@@ -87,6 +90,7 @@ fn escape(session: &Session, view_state: &ViewState) -> Command {
         OpenDialogs { settings: true, .. } => ViewChange::Switch(Switch::Settings, false).into(),
         OpenDialogs { help: true, .. } => ViewChange::Switch(Switch::Help, false).into(),
         OpenDialogs { guide: Some(_), .. } => ViewChange::Switch(Switch::Guide, false).into(),
+        _ if view_state.drawing_pen().is_some_and(Pen::is_busy) => ViewChange::Pen(PenChange::GiveUp).into(),
         _ if let Some(news) = News::of(session, view_state) => news.put_away().into(),
         _ if matches!(tool, Tool::Draw(_)) => ViewChange::Switch(Switch::Drawing, false).into(),
         _ if view_state.mark.is_some() => ViewChange::Mark(None).into(),

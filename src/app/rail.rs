@@ -5,7 +5,7 @@ use egui::{Frame, Margin, Panel, ScrollArea, Ui, vec2};
 
 use super::actions::{key_of, key_of_switch};
 use super::icon::{Icon, IconButton, SEPARATOR_HEIGHT, disabled_word_button, rule, word_button};
-use super::{Command, Switch, ViewChange, ViewState, arrangement, history};
+use super::{Command, Switch, ViewChange, ViewState, arrangement, history, sketching};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_picture::scene::views::{ViewKind, Views};
 use stillbase_session::{Fork, Session};
@@ -99,7 +99,12 @@ pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &View
                     commands.push(ViewChange::Kind(view).into());
                 }
             }
-            for group in [POINTER_TOOLS.as_slice(), &LAYERS, &ANALYSES] {
+            if let Some(pen) = view_state.drawing_pen() {
+                rule(ui, &p, BUTTON_SIZE_PT.x);
+                sketching::rail(ui, &p, pen, size, commands);
+            }
+            let groups = if view_state.drawing_pen().is_some() { 0 } else { 3 };
+            for group in [POINTER_TOOLS.as_slice(), &LAYERS, &ANALYSES].into_iter().take(groups) {
                 rule(ui, &p, BUTTON_SIZE_PT.x);
                 for tool in group {
                     toggle(ui, &p, tool, size, view_state, commands);

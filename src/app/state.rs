@@ -331,7 +331,10 @@ impl AppState {
         // A camera that the user has not moved continues to show everything. The view stays still while a joint limit
         // is dragged.
         let is_outlined = self.views.unoutlined().is_some() && views.unoutlined().is_none();
-        if !views.looks_like(&self.views) || (is_outlined && self.view_state.gesture.grabbed.is_none()) {
+        let draws = self.view_state.drawing_pen().is_some();
+        if draws {
+            // The view of a drawing stays still while its machine changes.
+        } else if !views.looks_like(&self.views) || (is_outlined && self.view_state.gesture.grabbed.is_none()) {
             self.view_state.framing.iter_mut().for_each(Framing::renew);
         }
         self.views = views;

@@ -8,6 +8,7 @@ use egui::{Align, ComboBox, Frame, Layout, Margin, Panel, RichText, Ui};
 
 use super::actions::SPEEDS;
 use super::facts::ScenarioFacts;
+use super::gallery::Choosable;
 use super::icon::{Icon, IconButton};
 use super::marks::Marks;
 use super::theme::{bold, colour, plain};
@@ -60,7 +61,10 @@ fn is_narrow(ui: &Ui) -> bool {
 
 fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewState, commands: &mut Vec<Command>) {
     let present = &session.scenario().machine;
-    let current = edited(present.name(), changed);
+    // While a drawing is incomplete, the machine is another one.
+    let drawn = session.scenario().sketch.as_ref().map(|sketch| sketch.name.as_str());
+    let shown = drawn.unwrap_or(present.name());
+    let current = edited(shown, changed);
     let tip = if changed {
         "The machine; it differs from the built-in one of this name"
     } else {
@@ -68,13 +72,15 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewStat
     };
     let width = list_width(ui, &current, if is_narrow(ui) { [104.0, 150.0] } else { [136.0, 190.0] });
     let combo = ComboBox::from_id_salt("machine")
-        .selected_text(chosen_text(ui, present.name(), changed, width))
+        .selected_text(chosen_text(ui, shown, changed, width))
         .width(width)
         .height(gallery::room(ui));
-    let response = combo.show_ui(ui, |ui| {
-        if let Some(machine) = gallery::machines(ui, present, &view_state.palette()) {
+    let response = combo.show_ui(ui, |ui| match gallery::machines(ui, present, &view_state.palette()) {
+        Some(Choosable::Machine(machine)) => {
             commands.push(SessionCommand::Open(Box::new(with_machine(session, machine))).into());
         }
+        Some(Choosable::New(template)) => commands.push(SessionCommand::NewDrawing(template).into()),
+        None => {}
     });
     name(&response.response.on_hover_text(format!("{current}\n{tip}")), "Machine");
 }

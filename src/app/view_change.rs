@@ -1,8 +1,8 @@
 //! Application of a [`ViewChange`] to a [`ViewState`].
 
 use super::{
-    BottomPanel, Command, Finder, Framing, GuideStep, GuideView, Layout, StatusMessage, Switch, Tool, ViewChange,
-    ViewState,
+    BottomPanel, Command, Finder, Framing, GuideStep, GuideView, Layout, PenTool, StatusMessage, Switch, Tool,
+    ViewChange, ViewState,
 };
 use stillbase_picture::scene::Measure;
 use stillbase_picture::scene::views::ViewKind;
@@ -49,6 +49,7 @@ impl ViewState {
             Switch::Equations => {
                 self.view == ViewKind::Design && self.arrangement.now().plots.shown && self.arrangement.shows_equations
             }
+            Switch::Sketching => self.drawing_pen().is_some(),
             Switch::Loop => self.loops,
             Switch::Exaggeration => self.exaggerates_base,
             Switch::TurnTask => self.turn_task,
@@ -64,7 +65,7 @@ impl ViewState {
     pub fn has(&self, switch: Switch, session: &Session) -> bool {
         match switch {
             Switch::Exaggeration => session.scenario().base.moves(),
-            Switch::History => self.arrangement.layout != Layout::Present,
+            Switch::History | Switch::Sketching => self.arrangement.layout != Layout::Present,
             _ => !switch.is_of_machine() || self.view.shows_machine(),
         }
     }
@@ -112,6 +113,11 @@ impl ViewState {
                     self.arrangement.now_mut().plots.shown = true;
                     self.view = ViewKind::Design;
                 }
+            }
+            Switch::Sketching if on => self.begin_drawing(PenTool::Move),
+            Switch::Sketching => {
+                self.pen = None;
+                self.framing[ViewKind::Design as usize] = Framing::Pending;
             }
             Switch::Loop => self.loops = on,
             Switch::Exaggeration => self.exaggerates_base = on,
@@ -169,6 +175,7 @@ impl ViewState {
                 self.status = StatusMessage::default();
                 self.put_away.extend(problems);
             }
+            ViewChange::Pen(change) => self.pen.iter_mut().for_each(|pen| pen.apply(change.clone())),
             ViewChange::Speed(speed) => self.speed = speed,
             ViewChange::Dexterity(shown) => self.dexterity = shown,
             ViewChange::Fit => self.framing[self.view as usize] = Framing::Pending,

@@ -8,6 +8,7 @@ use super::gesture::{DragGesture, HoverTarget, Tool};
 use super::layout::{BottomPanel, Layout, WindowArrangement};
 use super::open::OpenDialogs;
 use super::pair::Pair;
+use super::sketching::{Pen, PenTool};
 use super::status_message::StatusMessage;
 use stillbase_picture::charts::choice::{Plot, PlotChoice};
 use stillbase_picture::scene::Measure;
@@ -105,6 +106,8 @@ pub struct ViewState {
     pub ghost: Option<usize>,
     /// The measure that colours the points of the Pareto front.
     pub front_by: Option<FrontMeasure>,
+    /// The state of drawing, while the design view draws the machine.
+    pub pen: Option<Pen>,
 }
 
 impl ViewState {
@@ -139,12 +142,27 @@ impl ViewState {
             displayed: DisplaySize::default(),
             ghost: None,
             front_by: None,
+            pen: None,
         }
     }
 
     /// Returns the colours of the theme.
     pub fn palette(&self) -> Palette {
         palette(self.arrangement.theme)
+    }
+
+    /// Returns the state of drawing, if the view on display draws the machine.
+    pub fn drawing_pen(&self) -> Option<&Pen> {
+        self.pen.as_ref().filter(|_| self.view == ViewKind::Design && self.arrangement.layout != Layout::Present)
+    }
+
+    /// Begins to draw the machine with a tool.
+    pub(super) fn begin_drawing(&mut self, tool: PenTool) {
+        self.view = ViewKind::Design;
+        self.arrangement.now_mut().side.shown = true;
+        self.ghost = None;
+        self.pen = Some(Pen { tool, ..Pen::default() });
+        self.framing[ViewKind::Design as usize] = Framing::Pending;
     }
 
     /// Whether a press of the play key pauses: the run moves, is led by hand, or starts over by itself. At the end of a

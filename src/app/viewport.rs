@@ -78,7 +78,13 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
         covered.extend(presents.then(|| present::covers(rect)));
         covered.extend(both.filter(|_| !presents).map(|_| pair::caption_covers(rect)));
         covered.extend(view_state.open.tour.as_ref().map(|_| Tour::covers(ui.ctx(), rect)));
-        framing::keep_framed(rect, &covered, session, views, || motion(session), view_state);
+        framing::keep_framed(
+            rect,
+            &covered,
+            views,
+            |view| views.content(view, session.frame(), &motion(session)),
+            view_state,
+        );
         name(&response, "Scene: the machine, its reactionless workspace and its target");
         // The pointer acts on the machine as drawn, including the enlarged motion of the base.
         let shown = DrawnFrame::of(session.frame(), exaggeration);
@@ -170,7 +176,7 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
 pub fn still(content: SceneContent<'_>, size: [f32; 2], view_state: &mut ViewState) -> (Scene, Camera) {
     let SceneContent { session, views, .. } = content;
     let rect = Rect::from_min_size(egui::Pos2::ZERO, size.into());
-    framing::keep_framed(rect, &[], session, views, || motion(session), view_state);
+    framing::keep_framed(rect, &[], views, |view| views.content(view, session.frame(), &motion(session)), view_state);
     let options = ViewOptions { show_hints: false, ..options(content, view_state) };
     let camera = *view_state.camera();
     (views.scene(view_state.view, session.frame(), &options, &camera), camera)
@@ -350,7 +356,8 @@ fn draw(
     }
 }
 
-fn move_camera(ui: &Ui, response: &egui::Response, rect: Rect, view_state: &mut ViewState) {
+/// Moves the camera with drags and the wheel.
+pub(super) fn move_camera(ui: &Ui, response: &egui::Response, rect: Rect, view_state: &mut ViewState) {
     let height = f64::from(rect.height().max(1.0));
     let delta = response.drag_delta();
     if view_state.gesture.grabbed.is_none() && delta != Vec2::ZERO {

@@ -3,6 +3,7 @@
 pub mod figure;
 pub mod labels;
 pub mod portrait;
+pub mod thumbnail;
 
 use std::sync::Arc;
 

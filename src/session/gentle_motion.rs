@@ -7,6 +7,7 @@ use super::scenario::{Scenario, ScenarioError};
 use stillbase_mechanics::kinematics::end_effector;
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, unit};
+use stillbase_mechanics::sketch::Template;
 
 /// Each relative angle in the middle of the motion, as a fraction of the range between its limits. At a fraction of one
 /// half, parallelograms go flat.
@@ -73,6 +74,27 @@ pub fn for_machine(present: &Scenario, machine: &Machine) -> Scenario {
     }
     let known = Scenario::builtins().find(|scenario| scenario.machine == *machine).cloned();
     known.or_else(|| gentle_motion(machine).ok()).unwrap_or(alike)
+}
+
+/// Returns the scenario to open for a new drawing. A template that is a machine gets a task made for it; until a drawing
+/// is complete, the machine and the task are those of the present scenario.
+pub fn for_template(present: &Scenario, template: Template) -> Scenario {
+    let sketch = template.sketch();
+    let made = sketch.machine().and_then(|machine| gentle_motion(&machine).ok());
+    let name = sketch.name.clone();
+    let scenario = made.unwrap_or_else(|| Scenario {
+        name: name.clone(),
+        title: name,
+        summary: template.summary().to_owned(),
+        ..present.without_edits()
+    });
+    Scenario { sketch: Some(sketch), ..scenario }
+}
+
+/// Returns the scenario with a task made for its machine, if one can be stated.
+pub fn with_own_task(present: &Scenario) -> Option<Scenario> {
+    let made = gentle_motion(&present.machine).ok()?;
+    Some(Scenario { sketch: present.sketch.clone(), design: present.design.clone(), ..made })
 }
 
 /// Returns a motion of the drives over time, as TOML. It needs no inverse kinematics and no path between points.

@@ -28,6 +28,7 @@ mod saving;
 mod screen;
 mod settings;
 mod sizes;
+mod sketching;
 mod studio;
 mod time;
 mod view;
@@ -42,7 +43,7 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 30] = [
+pub const TESTS: [&[Test]; 31] = [
     saving::TESTS,
     family::TESTS,
     files::TESTS,
@@ -70,6 +71,7 @@ pub const TESTS: [&[Test]; 30] = [
     run::TESTS,
     settings::TESTS,
     sizes::TESTS,
+    sketching::TESTS,
     studio::TESTS,
     time::TESTS,
     view::TESTS,

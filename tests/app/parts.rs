@@ -24,7 +24,8 @@ fn machine(h: &Window) -> &Machine {
 }
 
 fn press(h: &mut Window, label: &str) {
-    h.get_by_label(label).click();
+    // The panel scrolls, so that a button may lie below its lower edge.
+    h.get_by_label(label).click_accesskit();
     h.run_steps(4);
 }
 

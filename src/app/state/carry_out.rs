@@ -7,10 +7,11 @@ use crate::given::TableView;
 use crate::guide::{GuidePlace, GuideStep};
 use crate::marks;
 use crate::pair::Pair;
-use crate::{Command, FileDialog, FilePurpose, SessionCommand, Switch, ViewChange, WindowCommand};
+use crate::{Command, FileDialog, FilePurpose, PenTool, SessionCommand, Switch, ViewChange, WindowCommand};
+use stillbase_mechanics::sketch::Template;
 use stillbase_picture::scene::beside::BesideQuery;
 use stillbase_picture::scene::views::ViewKind;
-use stillbase_session::session_command;
+use stillbase_session::{for_template, session_command};
 
 /// Message at the end of the tour.
 const HANDED_BACK: &str = "the tour is over: your session is as it was";
@@ -80,8 +81,11 @@ impl AppState {
                     // Until the new run is made, no earlier run may be shown under its title.
                     self.queries().forget::<BesideQuery>();
                 }
-                let designs =
-                    matches!(change, ViewChange::Kind(ViewKind::Design) | ViewChange::Switch(Switch::Equations, true));
+                let designs = matches!(
+                    change,
+                    ViewChange::Kind(ViewKind::Design)
+                        | ViewChange::Switch(Switch::Equations | Switch::Sketching, true)
+                );
                 self.view_state.apply(change);
                 // The run pauses while its machine is designed.
                 if designs {
@@ -143,6 +147,12 @@ impl AppState {
             SessionCommand::Step(steps) => self.session.step_by(steps),
             SessionCommand::Open(scenario) => {
                 self.open(SessionSource::Scenario(scenario), Opening { plays: true, ..Opening::default() });
+            }
+            SessionCommand::NewDrawing(template) => {
+                let scenario = for_template(self.session.scenario(), template);
+                self.open(SessionSource::Scenario(Box::new(scenario)), Opening::default());
+                let tool = if template == Template::Blank { PenTool::Bar } else { PenTool::Move };
+                self.view_state.begin_drawing(tool);
             }
             SessionCommand::Case(name) => self.open_case(name),
             SessionCommand::OpenFile(path) => self.open_file(path),

@@ -82,6 +82,8 @@ impl AppState {
         self.session.take_over(next);
         self.saving.begin_file(self.session.undo_count());
         self.view_state.open.note = None;
+        // A scenario without a drawing is not drawn on.
+        self.view_state.pen = self.view_state.pen.take().filter(|_| self.session.scenario().sketch.is_some());
         // Points of another machine may not exist.
         if old.scenario().machine != self.session.scenario().machine {
             self.view_state.measurements.clear();

@@ -8,11 +8,12 @@ use crate::export::{self, DisplaySize};
 use crate::facts::ScenarioFacts;
 use crate::finder::FinderContent;
 use crate::marks::Marks;
+use crate::sketching::{SketchFacts, SketchScene};
 use crate::status::news::News;
 use crate::{
     BottomPanel, Command, DrawingGuard, Intro, Layout, SessionCommand, StatusMessage, ViewChange, WindowCommand,
-    compare, finder, given, guide, keys, notation, notes, order, place, plots, rail, saving, side, status, studio,
-    study, theme, top, viewport, widgets,
+    compare, finder, given, guide, keys, notation, notes, order, place, plots, rail, saving, side, sketching, status,
+    studio, study, theme, top, viewport, widgets,
 };
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_session::Session;
@@ -92,13 +93,15 @@ impl AppState {
         let width = ui.ctx().content_rect().width();
         let contrasts = self.view_state.pair.as_ref().is_some_and(|pair| pair.hides_settings(width));
         let designs = self.view_state.view == ViewKind::Design && !presents;
+        let draws = self.view_state.drawing_pen().is_some();
+        let drawing = draws.then(|| SketchFacts::of(&queries, &self.session));
         let mut chosen = Vec::new();
         if designs {
             let found = match self.view_state.arrangement.shows_equations {
                 true => studio::DesignFacts::learned(&queries, &self.session),
                 false => studio::DesignFacts::weighed(&queries, &self.session, self.view_state.front_by, &self.fronts),
             };
-            studio::show(ui, &self.session, &found, &self.view_state, &mut commands);
+            studio::show(ui, &self.session, (&found, drawing.as_ref()), &self.view_state, &mut commands);
             chosen = self.view_state.ghost.map_or_else(Vec::new, |i| found.weights(i));
         }
         if !contrasts && self.view_state.arrangement.now().side.shown && !designs {
@@ -124,7 +127,8 @@ impl AppState {
             self.view_state.arrangement.now_mut().plots.width = width;
         }
         self.view_state.put_away = News::still_put_away(&self.session, &self.view_state.put_away);
-        let news = News::of(&self.session, &self.view_state);
+        // While a machine is drawn, the panel says what its task needs.
+        let news = News::of(&self.session, &self.view_state).filter(|news| !(draws && news.is_of_run()));
         let content = viewport::SceneContent {
             session: &self.session,
             views: &self.views,
@@ -135,7 +139,13 @@ impl AppState {
             weights: &chosen,
             has_news: news.is_some(),
         };
-        let scene = viewport::show(ui, content, &mut self.view_state, &mut commands);
+        let scene = match &drawing {
+            Some(facts) => {
+                let scene = SketchScene { facts, views: &self.views };
+                sketching::show(ui, scene, &mut self.view_state, &mut commands)
+            }
+            None => viewport::show(ui, content, &mut self.view_state, &mut commands),
+        };
         let window = ui.ctx().content_rect().size();
         self.view_state.displayed =
             DisplaySize { window: window.into(), scene: scene.size().into(), scale: ui.ctx().pixels_per_point() };

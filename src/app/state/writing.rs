@@ -4,9 +4,11 @@ use std::path::{Path, PathBuf};
 
 use super::AppState;
 use super::background::fault;
+use crate::file_dialog::MACHINE_EXTENSION;
 use crate::{Activity, PlotFile, ResumePoint, plots};
 use stillbase_exchange::cut::Cut;
 use stillbase_exchange::form::Form;
+use stillbase_mechanics::machine::to_toml;
 use stillbase_query::Ticket;
 
 /// Computes the content of a file, in the background.
@@ -98,6 +100,12 @@ impl AppState {
     /// Writes the machine for another program, in the pose on display.
     pub(super) fn take_elsewhere(&mut self, path: &Path) -> Result<(), String> {
         let ending = path.extension().unwrap_or_default().to_string_lossy();
+        if ending.eq_ignore_ascii_case(MACHINE_EXTENSION) {
+            return self.write_content(path, FILE_BEING_SAVED, None, |app_state| {
+                let text = to_toml(&app_state.session.scenario().machine);
+                Ok(Box::new(move || Ok(text.into_bytes())))
+            });
+        }
         let form = Form::of(&ending).map_err(|e| format!("{}: {e}", path.display()))?;
         self.write_content(path, FILE_BEING_SAVED, None, |app_state| {
             let scenario = app_state.session.scenario();

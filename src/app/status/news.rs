@@ -89,6 +89,11 @@ impl News {
         ViewChange::PutAway(self.holds_on)
     }
 
+    /// Whether it is about the run, not about what the user has just done.
+    pub fn is_of_run(&self) -> bool {
+        !matches!(self.reason, Reason::Message(_))
+    }
+
     /// Returns what is wrong, in a sentence.
     fn text(&self) -> &str {
         match &self.reason {

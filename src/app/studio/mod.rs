@@ -20,8 +20,11 @@ mod typeset;
 use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
 use super::side::SCROLL_BAR_WIDTH;
+use super::sketching::{self, SketchFacts};
 use super::theme::{colour, plain};
-use super::{Command, FileDialog, FilePurpose, ViewChange, ViewState};
+use super::widgets::name;
+use super::{Command, FileDialog, FilePurpose, Switch, ViewChange, ViewState};
+use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Session;
 
 pub use facts::{DesignFacts, leave, of_front};
@@ -34,7 +37,13 @@ const MIN_SCENE_WIDTH_PT: f32 = 250.0;
 const MIN_BALANCE_WIDTH_PT: f32 = 280.0;
 
 /// Draws both panels.
-pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, view_state: &ViewState, commands: &mut Vec<Command>) {
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    (facts, drawing): (&DesignFacts, Option<&SketchFacts>),
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) {
     let p = view_state.palette();
     let balance =
         (ui.available_width() - TABLE_WIDTH_PT - MIN_SCENE_WIDTH_PT).clamp(MIN_BALANCE_WIDTH_PT, BALANCE_WIDTH_PT);
@@ -46,6 +55,11 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, view_state: &Vi
     if view_state.arrangement.now().side.shown {
         one.exact_size(TABLE_WIDTH_PT).frame(frame).show(ui, |ui| {
             scrolled(ui, |ui| {
+                if let Some((drawing, pen)) = drawing.zip(view_state.drawing_pen()) {
+                    sketching::panel(ui, session, drawing, pen, view_state, commands);
+                    return;
+                }
+                draw_button(ui, &p, commands);
                 table::show(ui, session, view_state, commands);
                 let is_balanced = facts.terms.iter().all(|term| term.is_balanced);
                 brief::show(ui, session.scenario(), is_balanced, &p, commands);
@@ -56,6 +70,10 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, view_state: &Vi
     }
     if view_state.arrangement.now().plots.shown {
         other.exact_size(balance).frame(frame).show(ui, |ui| {
+            if let Some(drawing) = drawing.filter(|drawing| !drawing.is_complete()) {
+                scrolled(ui, |ui| sketching::balance_waits(ui, drawing, view_state));
+                return;
+            }
             tabs::show(ui, view_state, commands);
             if let Some(lesson) = &facts.lesson {
                 equations::show(ui, session, lesson, view_state);
@@ -69,6 +87,22 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, view_state: &Vi
             }
         });
     }
+}
+
+/// Draws the button that begins to draw the machine.
+fn draw_button(ui: &mut Ui, p: &Palette, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        let words = RichText::new("bars, motors, pins").font(plain(12.0)).color(colour(p.dim));
+        ui.label(words);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let button = ui.button("Draw").on_hover_text("Draw the machine: bars from pin to pin, motors on pins");
+            name(&button, "Draw the machine");
+            if button.clicked() {
+                commands.push(ViewChange::Switch(Switch::Sketching, true).into());
+            }
+        });
+    });
+    ui.add_space(4.0);
 }
 
 /// Draws the hyperlink that exports the machine.

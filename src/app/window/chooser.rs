@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use rfd::{AsyncFileDialog, FileHandle};
 use winit::window::Window;
 
+use crate::file_dialog::MACHINE_EXTENSION;
 use crate::jobs::Threads;
 use crate::{AppState, FileDialog, FilePurpose, PlotFile, SessionCommand, ViewChange};
 use stillbase_exchange::form;
@@ -89,7 +90,7 @@ fn endings(purpose: &FilePurpose) -> Vec<&'static str> {
         FilePurpose::Plot(_, PlotFile::Png) => vec!["png"],
         FilePurpose::Export(wanted) => wanted.naming().1,
         FilePurpose::Machine => {
-            let mut endings = form::endings().to_vec();
+            let mut endings = [&[MACHINE_EXTENSION], form::endings().as_slice()].concat();
             endings.sort_by_key(|ending| *ending != form::DEFAULT_EXTENSION);
             endings
         }

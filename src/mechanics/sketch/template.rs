@@ -59,6 +59,19 @@ impl Template {
         }
     }
 
+    /// Says in a sentence what it is.
+    pub fn summary(self) -> &'static str {
+        match self {
+            Self::Blank => "The pin B on the base, and nothing else yet.",
+            Self::SerialOfTwo => "Two bars in a row, a motor in each joint.",
+            Self::SerialOfThree => "Three bars in a row, a motor in each joint.",
+            Self::ParallelogramArm => "Both motors on the base; a parallelogram turns the forearm.",
+            Self::Pantograph => "A parallelogram repeats the motion of a pin, larger.",
+            Self::ScaraWithBelts => "Both motors on the base; a belt turns the forearm.",
+            Self::NineLinks => "The machine of the paper, as a person draws it.",
+        }
+    }
+
     /// Returns the drawing.
     pub fn sketch(self) -> Sketch {
         let mut pen = Pen { sketch: Sketch { name: self.title().into(), ..Sketch::blank() } };

@@ -44,6 +44,8 @@ pub mod pointer;
 pub mod reaction;
 pub(crate) mod segment;
 #[doc(hidden)]
+pub mod sketching;
+#[doc(hidden)]
 pub mod stage;
 #[doc(hidden)]
 pub mod thin;

@@ -12,10 +12,12 @@ use super::joints::JointSpace;
 use super::options::{Handle, ViewOptions};
 use super::pick::{DragAction, Grip, PICK_RADIUS, Pick};
 use super::pointer::Pointer;
+use super::sketching::{self, SketchOptions};
 use super::stage::{OutlineQuery, PULL_STIFFNESS, Stage, Workspace};
 use super::tower::Tower;
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::DriveAngles;
+use stillbase_mechanics::sketch::{Resolved, Sketch};
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork, Shared, WeakQueries};
 use stillbase_session::Run;
@@ -384,6 +386,12 @@ impl Views {
             _ => self.stage.scene(frame, options),
         };
         Scene { notation: options.notation, ..scene }
+    }
+
+    /// Returns the scene of a drawing.
+    #[doc(hidden)]
+    pub fn sketched(&self, sketch: &Sketch, resolved: &Resolved, options: &SketchOptions) -> Scene {
+        sketching::scene(self.stage.linkage().model.clone(), sketch, resolved, options)
     }
 
     /// Picks the end effector, if it is under the pointer.

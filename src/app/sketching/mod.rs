@@ -1,0 +1,33 @@
+//! Drawing a machine in the design view: tools of the pointer, the card of a bar, and what is still missing.
+
+mod bubble;
+mod by_numbers;
+mod card;
+mod facts;
+mod hand;
+mod missing;
+mod motors;
+mod panel;
+mod pen;
+mod rail;
+mod scene;
+mod typed;
+
+pub use facts::SketchFacts;
+pub use panel::{balance_waits, show as panel};
+pub use pen::{Pen, PenChange, PenTool};
+pub use rail::show as rail;
+pub use scene::{SketchScene, show};
+
+use super::widgets::undoable_edit;
+use super::{Command, ViewChange};
+use stillbase_mechanics::sketch::{Sketch, SketchStep};
+use stillbase_session::Edit;
+
+/// Sends a step of drawing; a step that does not fit is told where it does not.
+fn draw(sketch: &Sketch, step: SketchStep, commands: &mut Vec<Command>) {
+    match sketch.with(&step) {
+        Ok(_) => undoable_edit(commands, Edit::Sketch(step)),
+        Err(refusal) => commands.push(ViewChange::Pen(PenChange::Refuse(refusal)).into()),
+    }
+}

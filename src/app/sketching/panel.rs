@@ -1,0 +1,87 @@
+//! The panel on the left while a machine is drawn, and what stands for its balance until it is complete.
+
+use egui::{Button, RichText, Ui};
+
+use super::card::renamed;
+use super::{Pen, SketchFacts, by_numbers, card, draw, missing, motors};
+use crate::theme::{bold, colour, plain};
+use crate::widgets::{heading, name, note, section};
+use crate::{Command, FileDialog, SessionCommand, Switch, ViewChange, ViewState};
+use stillbase_mechanics::sketch::SketchStep;
+use stillbase_session::{Session, with_own_task};
+
+/// Draws the panel.
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    facts: &SketchFacts,
+    pen: &Pen,
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) {
+    let p = &view_state.palette();
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("Drawing").font(bold(14.0)));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let done = ui.button("Done").on_hover_text("Leave the drawing: masses and counterweights of the machine");
+            name(&done, "Done drawing");
+            if done.clicked() {
+                commands.push(ViewChange::Switch(Switch::Sketching, false).into());
+            }
+        });
+    });
+    let sketch = &facts.sketch;
+    renamed(ui, "name of the machine", &sketch.name, p, |name| draw(sketch, SketchStep::Name { name }, commands));
+    if let Some(refused) = &pen.refused {
+        ui.add_space(4.0);
+        let words = RichText::new(refused.to_string()).font(plain(12.0)).color(colour(p.reaction));
+        ui.add(egui::Label::new(words).wrap());
+        for step in &refused.proposals {
+            if ui.button(step.title_in(sketch)).clicked() {
+                draw(sketch, step.clone(), commands);
+            }
+        }
+    }
+    ui.add_space(6.0);
+    match pen.chosen {
+        Some(chosen) => card::show(ui, facts, chosen, p, commands),
+        None => note(ui, p, "Click a bar for its drive, its length and its angle; click a pin for its place."),
+    }
+    missing::show(ui, facts, p, commands);
+    task(ui, session, facts, view_state, commands);
+    by_numbers::show(ui, facts, pen, p, commands);
+    motors::show(ui, facts, p, commands);
+    if facts.is_complete() {
+        ui.add_space(8.0);
+        let save = ui.link(RichText::new("save the machine as a file →").font(plain(12.5)).color(colour(p.amber)));
+        if save.on_hover_text("A machine file, which --machine and Open read").clicked() {
+            commands.push(ViewChange::Dialog(Some(FileDialog::of_machine(session))).into());
+        }
+    }
+}
+
+/// Offers a task for a machine whose present task it cannot do.
+fn task(ui: &mut Ui, session: &Session, facts: &SketchFacts, view_state: &ViewState, commands: &mut Vec<Command>) {
+    let Some(waits) = session.run().waiting().filter(|_| facts.is_complete()) else { return };
+    let p = &view_state.palette();
+    section(ui, p, "Its task");
+    note(ui, p, &format!("The machine cannot do the present task: {}", waits.why));
+    let words = RichText::new("give it a task of its own").font(plain(12.0)).color(colour(p.amber));
+    let button = ui.add(Button::new(words));
+    if button.on_hover_text("A small motion near the middle of its joint limits").clicked()
+        && let Some(scenario) = with_own_task(session.scenario())
+    {
+        commands.push(SessionCommand::Open(Box::new(scenario)).into());
+    }
+}
+
+/// Says that the balance stands here once the drawing is a machine.
+pub fn balance_waits(ui: &mut Ui, facts: &SketchFacts, view_state: &ViewState) {
+    let p = &view_state.palette();
+    heading(ui, p, "What is out of balance", "once it is a machine");
+    let n = facts.resolved.missing.len();
+    let things = if n == 1 { "1 thing is".to_owned() } else { format!("{n} things are") };
+    let words =
+        "Balance, counterweights and the Pareto front of what you draw stand here as soon as nothing is missing.";
+    note(ui, p, &format!("{words} {things} missing: see the list on the other side."));
+}

@@ -1,0 +1,112 @@
+//! [`Pen`]: the state of drawing.
+
+use super::typed::Typed;
+use crate::icon::Icon;
+use stillbase_mechanics::sketch::{BarEnd, PinId, SketchRefusal};
+use stillbase_picture::scene::sketching::SketchItem;
+
+/// What a click or drag in a drawing does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PenTool {
+    /// Chooses things and moves pins.
+    #[default]
+    Move,
+    /// Draws bars.
+    Bar,
+    /// Hangs motors on pins.
+    Motor,
+    /// Puts the end effector on a pin.
+    EndEffector,
+    /// Deletes pins and bars.
+    Delete,
+}
+
+impl PenTool {
+    /// All of them, in the order of the tool bar.
+    pub const ALL: [Self; 5] = [Self::Bar, Self::Move, Self::Motor, Self::EndEffector, Self::Delete];
+
+    /// Returns its icon, its name, and what it does.
+    pub fn words(self) -> (Icon, &'static str, &'static str) {
+        match self {
+            Self::Bar => (Icon::Bar, "bar", "Draw a bar from pin to pin: drag, or click both ends"),
+            Self::Move => (Icon::Pointer, "move", "Click a bar or pin for its card; drag a pin to move it"),
+            Self::Motor => (Icon::Motor, "motor", "Click a pin: a motor there turns the bar that follows no drive yet"),
+            Self::EndEffector => (Icon::Tip, "end effector", "Click the pin that does the work"),
+            Self::Delete => (Icon::Cross, "delete", "Click a bar or a pin to delete it"),
+        }
+    }
+
+    /// Says what can be done in the drawing.
+    pub fn invitation(self) -> &'static str {
+        match self {
+            Self::Bar => {
+                "drag from pin to pin · type length, Tab, angle · click a bar: its drive · Shift fine, Ctrl 10 mm and 15°"
+            }
+            Self::Move => "drag a pin; onto another pin joins both · click a bar: which drive it follows · Delete",
+            Self::Motor => "click a pin to hang a motor on it",
+            Self::EndEffector => "click the pin that does the work",
+            Self::Delete => "click a bar or a pin to delete it · Ctrl Z brings it back",
+        }
+    }
+}
+
+/// The start of a bar under way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Start {
+    /// As an end of the bar.
+    pub end: BarEnd,
+    /// Where it is, m.
+    pub at: [f64; 2],
+}
+
+/// The state of drawing, while a machine is drawn.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pen {
+    /// The tool.
+    pub tool: PenTool,
+    /// The thing whose card is shown.
+    pub chosen: Option<SketchItem>,
+    /// The thing under the pointer.
+    pub hot: Option<SketchItem>,
+    /// The start of the bar under way.
+    pub from: Option<Start>,
+    /// What is typed about it.
+    pub typed: Typed,
+    /// The pin that is dragged, and where to, m.
+    pub moving: Option<(PinId, [f64; 2])>,
+    /// Why the last step was refused.
+    pub refused: Option<SketchRefusal>,
+}
+
+/// A change of the [`Pen`].
+#[derive(Clone, Debug)]
+pub enum PenChange {
+    /// Take a tool.
+    Tool(PenTool),
+    /// Show the card of a thing, or of none.
+    Choose(Option<SketchItem>),
+    /// Say why a step is refused.
+    Refuse(SketchRefusal),
+    /// Give up what is under way.
+    GiveUp,
+}
+
+impl Pen {
+    /// Whether Esc has something to give up.
+    pub fn is_busy(&self) -> bool {
+        self.from.is_some() || self.moving.is_some() || self.refused.is_some() || self.chosen.is_some()
+    }
+
+    /// Applies a change.
+    pub fn apply(&mut self, change: PenChange) {
+        match change {
+            PenChange::Tool(tool) => *self = Self { tool, chosen: self.chosen, ..Self::default() },
+            PenChange::Choose(chosen) => self.chosen = chosen,
+            PenChange::Refuse(refusal) => self.refused = Some(refusal),
+            PenChange::GiveUp if self.from.is_some() || self.moving.is_some() || self.refused.is_some() => {
+                *self = Self { tool: self.tool, chosen: self.chosen, ..Self::default() };
+            }
+            PenChange::GiveUp => self.chosen = None,
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! What the pointer is on in a drawing.
+
+use super::SketchItem;
+use crate::scene::pointer::Pointer;
+use stillbase_mechanics::sketch::{PinId, Sketch};
+
+/// Distance within which the pointer is on a pin, and on the axis of a bar, px.
+const PIN_PICK_PX: f64 = 11.0;
+const BAR_PICK_PX: f64 = 8.0;
+
+/// Returns the thing of a drawing under the pointer: a pin comes before a bar, and of several the nearest.
+pub fn pick(sketch: &Sketch, pointer: &Pointer) -> Option<SketchItem> {
+    let at = |pin: PinId| {
+        let at = sketch.at(pin);
+        [at.re, at.im, 0.0]
+    };
+    let pins = sketch.pins.iter().filter_map(|pin| Some((SketchItem::Pin(pin.id), pointer.distance(at(pin.id))?)));
+    let near = pins.filter(|(_, far)| *far < PIN_PICK_PX).min_by(|a, b| a.1.total_cmp(&b.1));
+    let bars = || {
+        sketch.bars.iter().filter_map(|bar| {
+            let sides = bar.all_pins().map(|pin| [at(bar.root), at(pin)]);
+            let far = sides.filter_map(|side| pointer.distance_to_segment(side)).min_by(f64::total_cmp)?;
+            Some((SketchItem::Bar(bar.id), far))
+        })
+    };
+    let on = || bars().filter(|(_, far)| *far < BAR_PICK_PX).min_by(|a, b| a.1.total_cmp(&b.1));
+    near.or_else(on).map(|(item, _)| item)
+}
+
+/// Returns the size of a pixel in the plane of the drawing, m; 0 if the pointer does not see the plane.
+pub fn metres_per_px(pointer: &Pointer) -> f64 {
+    let place = |pointer: &Pointer| pointer.ray()?.at_height(0.0);
+    let [x, y] = pointer.at;
+    let both = place(pointer).zip(place(&Pointer { at: [x + 1.0, y], ..*pointer }));
+    both.map_or(0.0, |(one, other)| (other[0] - one[0]).hypot(other[1] - one[1]))
+}
