@@ -161,6 +161,8 @@ const PICTURE_HEIGHT: f32 = 112.0;
 /// Height of a card of a new drawing and of its picture, and the least width of a card.
 const NEW_HEIGHT: f32 = 146.0;
 const NEW_PICTURE_HEIGHT: f32 = 66.0;
+/// Height of the headings above new and above built-in machines, points.
+const HEADINGS: f32 = 48.0;
 const LEAST_NEW_WIDTH: f32 = 150.0;
 const GAP: f32 = 8.0;
 const MARGIN: f32 = 12.0;
@@ -169,7 +171,7 @@ const MAX_COLUMNS: f32 = 4.0;
 
 /// Returns the maximum height of the list, points.
 pub fn room(ui: &Ui) -> f32 {
-    (ui.ctx().content_rect().height() - 76.0).clamp(160.0, 3.0 * (CARD_SIZE.y + GAP))
+    (ui.ctx().content_rect().height() - 76.0).clamp(160.0, NEW_HEIGHT + HEADINGS + 3.0 * (CARD_SIZE.y + GAP))
 }
 
 /// Returns the number of columns that the window has room for.
