@@ -1,29 +1,11 @@
 //! What each part of a machine brings to (7) and (8): against sums by hand, and against what a change of it does.
 
 use stillbase::mechanics::balance::{BalanceTerm, Body, Breakdown, Condition};
-use stillbase::mechanics::machine::{Counterweight, Inertia, Machine, builtin};
+use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::Vector;
 
-use crate::support::{Noise, random};
-
-/// A machine of the family at random, with up to three counterweights.
-pub fn with_counterweights(noise: &mut Noise) -> Machine {
-    let machine = random::a_machine(noise);
-    let mut spec = machine.spec().clone();
-    for _ in 0..(noise.between(0.0, 4.0) as usize) {
-        let j = noise.between(0.0, spec.links.len() as f64 - 1e-9) as usize;
-        let (mass, at, radius) = (noise.between(0.1, 3.0), noise.between(-0.3, 0.3), noise.between(0.0, 0.1));
-        spec.counterweights.push(Counterweight {
-            link: spec.links[j].name.clone(),
-            mass,
-            at,
-            across: noise.between(-0.1, 0.1),
-            radius,
-            fixed: false,
-        });
-    }
-    Machine::new(spec).expect("still a machine")
-}
+use crate::support::Noise;
+use crate::support::random::with_counterweights;
 
 fn size(term: &BalanceTerm) -> f64 {
     term.gross().max(1e-3)

@@ -7,7 +7,7 @@ use stillbase::mechanics::balance::{
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse, to_toml};
 use stillbase::settings::word::Choice;
 
-use super::breakdown::with_counterweights;
+use crate::support::random::with_counterweights;
 use crate::support::{Noise, family_machine};
 
 fn nine_link() -> &'static Machine {

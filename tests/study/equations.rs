@@ -3,7 +3,7 @@
 
 use stillbase::mechanics::balance::{Condition, Preset};
 use stillbase::mechanics::dynamics::mass_matrix;
-use stillbase::mechanics::machine::{Counterweight, Inertia, Machine, builtin};
+use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
 use stillbase::planning::Reference;
 use stillbase::session::scenario::Scenario;
@@ -13,7 +13,8 @@ use stillbase::study::equations::{
     plain,
 };
 
-use crate::support::{Noise, close, random};
+use crate::support::random::{self, with_counterweights};
+use crate::support::{Noise, close};
 
 fn a_state(noise: &mut Noise, n: usize) -> DriveState {
     let mut some = |size: f64| PerDrive::from_fn(n, |_| noise.between(-size, size));
@@ -46,23 +47,6 @@ fn written(terms: &[Term]) -> String {
         (_, true) => " − ",
     };
     terms.iter().enumerate().map(|one| format!("{}{}", sign(one), plain(&one.1.symbol))).collect()
-}
-
-fn with_counterweights(noise: &mut Noise) -> Machine {
-    let mut spec = random::a_machine(noise).spec().clone();
-    for _ in 0..(noise.between(0.0, 4.0) as usize) {
-        let j = noise.between(0.0, spec.links.len() as f64 - 1e-9) as usize;
-        let (mass, at, radius) = (noise.between(0.1, 3.0), noise.between(-0.3, 0.3), noise.between(0.0, 0.1));
-        spec.counterweights.push(Counterweight {
-            link: spec.links[j].name.clone(),
-            mass,
-            at,
-            across: noise.between(-0.1, 0.1),
-            radius,
-            fixed: false,
-        });
-    }
-    Machine::new(spec).expect("still a machine")
 }
 
 #[test]

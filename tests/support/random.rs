@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use stillbase::mechanics::balance::design;
-use stillbase::mechanics::machine::{Machine, parse};
+use stillbase::mechanics::machine::{Counterweight, Machine, parse};
 use stillbase::mechanics::planar::{PerDrive, Vector, unit};
 use stillbase::planning::pose_space::{NoPoseSpace, PoseSpace};
 
@@ -158,4 +158,23 @@ pub fn a_case(noise: &mut Noise, n: usize) -> Case {
             return Case { machine, space, b, ends: [from, to] };
         }
     }
+}
+
+/// A machine of the family at random, with up to three counterweights.
+pub fn with_counterweights(noise: &mut Noise) -> Machine {
+    let machine = a_machine(noise);
+    let mut spec = machine.spec().clone();
+    for _ in 0..(noise.between(0.0, 4.0) as usize) {
+        let j = noise.between(0.0, spec.links.len() as f64 - 1e-9) as usize;
+        let (mass, at, radius) = (noise.between(0.1, 3.0), noise.between(-0.3, 0.3), noise.between(0.0, 0.1));
+        spec.counterweights.push(Counterweight {
+            link: spec.links[j].name.clone(),
+            mass,
+            at,
+            across: noise.between(-0.1, 0.1),
+            radius,
+            fixed: false,
+        });
+    }
+    Machine::new(spec).expect("still a machine")
 }
