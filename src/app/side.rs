@@ -135,7 +135,10 @@ fn pose_constant(
     let typed = responses[0].changed() && !responses[0].dragged();
     let stops = matches!(edit, Edit::PoseB { b } if b != asked);
     let feasible = session.run().feasible_b();
-    if typed && stops {
+    let turns = matches!(edit, Edit::SlideB { .. }).then(|| session.question_of_turns(asked)).flatten();
+    if let (true, Some((why, answers))) = (typed, turns) {
+        commands.push(WindowCommand::Refuse(why, answers).into());
+    } else if typed && stops {
         let band =
             feasible.map_or_else(String::new, |common| common.shifted_near(session.in_this_period(shown)).in_words());
         let who = all_points(session);

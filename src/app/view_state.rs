@@ -210,13 +210,7 @@ impl ViewState {
     }
 }
 
-/// Returns the edit for a new b, rad. While the newest frame plays, the machine moves to the plane b; else it is put
-/// there. A dragged machine takes any b, and so does a task whose points may rotate with the plane. Otherwise the
-/// edit takes the nearest b that is feasible for the points.
+/// Returns the edit for a new b, rad, as the view says whether the task turns with it.
 pub(super) fn set_b(session: &Session, view_state: &ViewState, b: f64) -> Edit {
-    if session.is_playing() && session.is_at_end() {
-        return Edit::SlideB { b };
-    }
-    let stays = |b: f64| session.nearest_feasible_b(b).unwrap_or(b);
-    Edit::PoseB { b: if session.is_dragged() || view_state.turn_task { b } else { stays(b) } }
+    session.edit_of_b(b, view_state.turn_task)
 }

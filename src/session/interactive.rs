@@ -18,7 +18,7 @@ use std::sync::Arc;
 use change::HistoryStep;
 
 use super::document::Document;
-use super::edit::TimedEdit;
+use super::edit::{Edit, TimedEdit};
 use super::events::{EventLog, Gestures};
 use super::machines::Machines;
 use super::run::Run;
@@ -136,6 +136,25 @@ impl Session {
         match self.run.simulation().guide() {
             stillbase_simulation::Guide::Follow(follower) if self.is_at_end() => follower.b_aim(),
             _ => self.frame().b_reference,
+        }
+    }
+
+    /// Returns the edit for a new b, rad. While the newest frame plays, the machine moves to the plane b; else it is put
+    /// there. A dragged machine takes any b, and so does a task whose points may turn with the plane. Otherwise the
+    /// edit takes the nearest b that is feasible for the points, which stay in any case.
+    pub fn edit_of_b(&self, b: f64, turns_task: bool) -> Edit {
+        if self.is_playing() && self.is_at_end() {
+            return Edit::SlideB { b };
+        }
+        if self.is_dragged() || turns_task {
+            return Edit::PoseB { b };
+        }
+        let stay = self.run.pose_space().is_ok_and(|space| space.reaches_area());
+        match self.nearest_feasible_b(b) {
+            Some(b) => Edit::PoseB { b },
+            // No b serves all points yet: the run waits, and will go on waiting.
+            None if stay => Edit::set("task.b", b),
+            None => Edit::PoseB { b },
         }
     }
 

@@ -221,8 +221,10 @@ impl Run {
         edit.check()?;
         match edit {
             Edit::DragTarget { x, y } => {
+                let frame = self.frame();
                 let mut follower = self.follower()?;
-                follower.set_target(Vector::new(*x, *y));
+                let at = Vector::new(*x, *y);
+                follower.set_target(if frame.floats { frame.in_base(at) } else { at });
                 self.simulation.set_guide(Guide::Follow(follower));
             }
             Edit::DragAngles { a1, a2 } => {

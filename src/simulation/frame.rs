@@ -6,7 +6,7 @@ use super::audit::AuditFigure;
 use crate::plant::WheelState;
 use stillbase_mechanics::dynamics::BaseWrench;
 use stillbase_mechanics::joint_forces::InternalLoads;
-use stillbase_mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector, unit};
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector};
 
 pub use crate::audit::Audit;
 pub use crate::peaks::{Peaks, REACTIONLESS_SHARE};
@@ -63,8 +63,10 @@ pub struct Frame {
     pub com: Vector,
     /// Position of the end effector, m.
     pub end_effector: Vector,
-    /// Target of the end effector, in the axes of the base at the start.
+    /// Target of the end effector. That of a plan is in the axes of the base at the start.
     pub target: Target,
+    /// Whether the target moves with the base: a hand leads the machine, and its base [floats](Self::floats).
+    pub target_rides: bool,
     /// Whether the payload that the model lacks is held.
     pub loaded: bool,
     /// Kinetic energy, J.
@@ -131,7 +133,17 @@ impl Frame {
 
     /// Converts a point to the axes of the base, m.
     pub fn in_base(&self, point: Vector) -> Vector {
-        (point - self.base.at) * unit(-self.base.angle)
+        self.base.seen(point)
+    }
+
+    /// Converts a point in the axes of the base, m, to one in space.
+    pub fn in_space(&self, point: Vector) -> Vector {
+        self.base.place(point)
+    }
+
+    /// Returns the target in the axes in which the machine is planned and led, m.
+    pub fn target_in_base(&self) -> Vector {
+        if self.target_rides { self.in_base(self.target.at) } else { self.target.at }
     }
 
     /// Returns the angle of a drive relative to the base, q_k − θ, rad.

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use stillbase::mechanics::machine::{Machine, builtins};
+use stillbase::mechanics::planar::Vector;
 use stillbase::planning::pose_space::Reach;
 use stillbase::session::scenario::{Scenario, Value};
-use stillbase::session::verdict::{Statements, StatusLight};
+use stillbase::session::verdict::{Statements, StatusLight, Verdict};
 use stillbase::session::{
     Edit, Proposal, Run, Session, TargetProposals, for_machine, proposals, proposals_for_settings, replay,
 };
@@ -178,6 +179,8 @@ fn a_floating_base_is_reckoned_with() {
                     session.tick(9000);
                 }
                 let frame = session.frame();
+                let verdict = Verdict::of(session.scenario(), frame);
+                assert!(verdict.target_distance < 1e-4, "{proposal:?}: {} m", verdict.target_distance);
                 let off = (frame.end_effector - target.at).norm();
                 assert!(off < 1e-3, "{}, payload {payload}: {:?}: {off} m: {proposal:?}", machine.name(), target.at);
                 (led, put) = (led + usize::from(is_led), put + usize::from(!is_led));
@@ -185,6 +188,70 @@ fn a_floating_base_is_reckoned_with() {
         }
     }
     assert!(led > 8 && put > 8, "only {led} led and {put} put");
+}
+
+/// The base has turned with b: the end effector goes to the place in space at which the target is put, which the base
+/// then carries along.
+#[test]
+fn a_target_rides_on_a_base_that_has_turned() {
+    let base = "[base]\nkind = \"free\"\nmass = 20.0\ninertia = 1.0".parse().expect("TOML");
+    let mut session = Session::open(case_3().with_settings(&base).expect("settings")).expect("it opens");
+    let lead = |session: &mut Session, edit: Edit| {
+        session.apply(edit).expect("the machine is led");
+        session.end_gesture();
+        session.tick(4000);
+    };
+    lead(&mut session, Edit::SlideB { b: 3.2 });
+    assert!(session.frame().base.angle < -0.3, "the base turns: {}", session.frame().base.angle);
+    let end = session.frame().end_effector;
+    let put = end + Vector::new(-0.03, 0.02);
+    lead(&mut session, Edit::DragTarget { x: put.re, y: put.im });
+    let frame = session.frame();
+    assert!((frame.end_effector - put).norm() < 1e-4, "{} is not at {put}", frame.end_effector);
+    assert!((frame.target.at - put).norm() < 1e-12 && frame.target_rides);
+    let angle = frame.base.angle;
+    lead(&mut session, Edit::SlideB { b: 3.1 });
+    let frame = session.frame();
+    assert!(frame.base.angle > angle + 0.01);
+    assert!((frame.target.at - put).norm() > 1e-3, "the base carries the target along");
+    assert!((frame.end_effector - frame.target.at).norm() < 1e-4);
+}
+
+/// A run that waits has no b that serves A and B: a new b leaves them where they are, unless they may turn with it.
+#[test]
+fn a_new_b_leaves_the_points_of_a_waiting_run() {
+    let off = "[task]\nb = 5.0".parse().expect("TOML");
+    let mut session = Session::open_waiting(case_3().with_settings(&off).expect("settings")).expect("it opens");
+    assert!(session.run().waiting().is_some());
+    let points = session.scenario().task.points();
+    session.apply(session.edit_of_b(50.0, false)).expect("the nearest b");
+    assert_eq!(session.scenario().task.points(), points);
+    let mut turned = session.clone();
+    turned.apply(turned.edit_of_b(2.0, true)).expect("the points turn");
+    assert_ne!(turned.scenario().task.points(), points);
+    session.apply(session.edit_of_b(2.5, false)).expect("a b that serves them");
+    assert!(session.run().waiting().is_none());
+    assert_eq!(session.scenario().task.points(), points);
+}
+
+/// At the end of a run a b far away would turn the whole arm round: a question says how often, and its first answer
+/// reaches the same without.
+#[test]
+fn whole_turns_are_asked_about() {
+    let mut session = Session::open(case_3()).expect("it opens");
+    session.tick(4000);
+    let now = session.b_aim();
+    let period = session.run().pose_space().expect("a space").period();
+    for (turns, words) in [(1, "once"), (6, "6 times"), (-3, "3 times")] {
+        let b = now + 0.3 + f64::from(turns) * period;
+        let (why, answers) = session.question_of_turns(b).expect("whole turns");
+        assert!(why.contains(words), "{why}");
+        let mut led = session.clone();
+        take(&mut led, &answers[0]);
+        assert!((led.b_aim() - now - 0.3).abs() < 1e-3, "{answers:?}");
+        take(&mut session.clone(), &answers[1]);
+    }
+    assert_eq!(session.question_of_turns(now + 0.4 * period), None);
 }
 
 /// A b typed far away: first the one in the period of the present b, then the nearest one of all.

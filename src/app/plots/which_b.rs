@@ -52,7 +52,7 @@ pub struct WhichB<'a> {
 pub fn show(ui: &mut Ui, chart: WhichB<'_>, commands: &mut Vec<Command>) {
     let WhichB { session, height, .. } = chart;
     let Ok(space) = session.run().pose_space() else { return };
-    let (task, at) = (&session.scenario().task, session.frame().target.at);
+    let (task, at) = (&session.scenario().task, session.frame().target_in_base());
     let points: Vec<(String, Vector)> = match session.is_dragged() {
         true => vec![("target".to_owned(), at)],
         false => task.points().into_iter().enumerate().map(|(i, at)| (task.name_of(i), at)).collect(),

@@ -1,5 +1,6 @@
 //! Vectors of the plane, wrenches and poses.
 
+use super::sincos::unit;
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
@@ -38,4 +39,18 @@ pub struct Pose2 {
     pub at: Vector,
     /// Angle, rad, positive counter-clockwise.
     pub angle: f64,
+}
+
+impl Pose2 {
+    /// Converts a point in the axes of the body, m, to one in space.
+    #[must_use]
+    pub fn place(self, point: Vector) -> Vector {
+        self.at + point * unit(self.angle)
+    }
+
+    /// Converts a point in space, m, to the axes of the body.
+    #[must_use]
+    pub fn seen(self, point: Vector) -> Vector {
+        (point - self.at) * unit(-self.angle)
+    }
 }

@@ -88,10 +88,11 @@ impl<'a> DrawnFrame<'a> {
             let (q, end_effector, com) = (frame.q, frame.end_effector, frame.com);
             return Self { frame, base, q, end_effector, com, target: target_handle(frame) };
         }
-        let moved = |p| base.at + frame.in_base(p) * unit(base.angle);
+        let moved = |p| base.place(frame.in_base(p));
         let mut q = frame.q;
         q.0.iter_mut().for_each(|q| *q += more);
         let target = match exaggeration {
+            Exaggeration::Times(_) if frame.target_rides => moved(target_handle(frame)),
             // The target stays where it was set, however far the base moves.
             Exaggeration::Times(_) => target_handle(frame),
             // The base itself is at rest; the whole picture is rotated.
@@ -102,7 +103,7 @@ impl<'a> DrawnFrame<'a> {
 
     /// Converts a drawn position, m, to the axes of the drawn base.
     pub fn in_base(&self, place: Vector) -> Vector {
-        (place - self.base.at) * unit(-self.base.angle)
+        self.base.seen(place)
     }
 }
 

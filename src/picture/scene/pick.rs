@@ -1,6 +1,8 @@
 //! Picked items, and the changes that dragging them requests.
 
 use super::options::Handle;
+use stillbase_mechanics::planar::Vector;
+use stillbase_simulation::frame::Frame;
 
 /// Distance within which the pointer picks a handle, px.
 pub const PICK_RADIUS: f64 = 20.0;
@@ -77,6 +79,18 @@ const FORCE_GRID_N: f64 = 0.5;
 pub const ANGLE_SNAP: f64 = 5.0 * std::f64::consts::PI / 180.0;
 
 impl DragAction {
+    /// Converts a target in the axes of the base, in which joint space and tower show it, to one in space.
+    #[must_use]
+    pub fn in_space(self, frame: &Frame) -> Self {
+        match self {
+            Self::Target([x, y]) if frame.floats => {
+                let at = frame.in_space(Vector::new(x, y));
+                Self::Target([at.re, at.im])
+            }
+            aim => aim,
+        }
+    }
+
     /// Returns the change rounded to the grids for snapping.
     #[must_use]
     pub fn snapped(self) -> Self {

@@ -393,7 +393,8 @@ impl Stage {
         }
         if let (Some(b), Some(planes)) = (options.preview_b, self.planes()) {
             let map = planes.map();
-            let p = self.plan.as_ref().and_then(|plan| plan.start_point).unwrap_or(shown.frame.target.at);
+            let p =
+                self.plan.as_ref().and_then(|plan| plan.start_point).unwrap_or_else(|| shown.frame.target_in_base());
             for pose in map.poses(p, b).iter() {
                 let q = DriveAngles::from(map.lift(*pose));
                 scene.solids.extend(self.linkage.ghost("preview", &q.units(), palette, 0.34));

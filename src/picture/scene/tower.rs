@@ -174,7 +174,7 @@ impl Tower {
         if let Some(ends) = &self.ends {
             return ends.iter().map(|post| barred(post, window)).collect();
         }
-        let at = frame.target.at;
+        let at = frame.target_in_base();
         vec![barred(&TowerPost { name: "target".into(), at, reach: self.space.reach(at).ok() }, window)]
     }
 
@@ -182,7 +182,7 @@ impl Tower {
     pub fn pick(&self, frame: &Frame, pointer: &Pointer) -> Option<Pick> {
         let [low, _] = self.window(frame.b_reference);
         let height = |b: f64| (b - low) * self.rise();
-        let tip = target_handle(frame);
+        let tip = self::tip(frame);
         let dot = [tip.re, tip.im, height(frame.b_reference)];
         if pointer.distance(dot).is_some_and(|d| d < PICK_RADIUS) {
             return Some(Pick::of(Handle::Target, dot));
@@ -363,15 +363,15 @@ impl Tower {
     fn target(&self, scene: &mut Scene, palette: &Palette, frame: &Frame, options: &ViewOptions, z: f64) {
         let outside = matches!(frame.target.reach, Reach::Outside { .. });
         let held = options.drag_position.filter(|_| outside).map(|[x, y]| Vector::new(x, y));
-        let at = held.unwrap_or_else(|| target_handle(frame));
-        let tip = point(frame.in_base(frame.end_effector), z);
+        let at = held.unwrap_or_else(|| tip(frame));
+        let end = point(frame.in_base(frame.end_effector), z);
         if outside {
-            let gap = Polyline::new("target/gap", [vec![tip, point(at, z)]], 1.4, palette.dim);
+            let gap = Polyline::new("target/gap", [vec![end, point(at, z)]], 1.4, palette.dim);
             scene.lines.push(gap.dashed(4.0, 4.0).on_top());
         }
         let hot = options.highlighted == Some(Handle::Target);
         let inside = faded(palette.ink, if hot && !outside { 0.12 } else { 0.0 });
-        scene.markers.push(Marker::disc("end_effector", tip, 4.0, palette.ink));
+        scene.markers.push(Marker::disc("end_effector", end, 4.0, palette.ink));
         let ring = Marker::disc("target", point(at, z), if hot { 12.0 } else { 10.0 }, inside);
         scene.markers.push(ring.edged(palette.ink, 2.0));
     }
@@ -392,6 +392,11 @@ fn sheet(map: &PlaneMap, cells: u32) -> Mesh {
         mesh.triangles.extend([[a, b, b + 1], [a, b + 1, a + 1]]);
     }
     mesh
+}
+
+/// Returns the position of the target's handle in the axes of the base, m.
+fn tip(frame: &Frame) -> Vector {
+    if frame.target_rides { frame.in_base(target_handle(frame)) } else { target_handle(frame) }
 }
 
 /// Returns a post with its intervals of b within a window, rad.

@@ -488,8 +488,8 @@ impl Views {
             return self.stage.pulled(i, hook, shown, pointer);
         }
         match (kind, &self.joints, &self.tower) {
-            (ViewKind::Joints, Some(joints), _) => joints.aim(pick, frame, pointer),
-            (ViewKind::Tower, _, Some(tower)) => tower.aim(pick, frame, pointer),
+            (ViewKind::Joints, Some(joints), _) => joints.aim(pick, frame, pointer).map(|aim| aim.in_space(frame)),
+            (ViewKind::Tower, _, Some(tower)) => tower.aim(pick, frame, pointer).map(|aim| aim.in_space(frame)),
             (ViewKind::Design, ..) => self.draft.aim(pick, self.stage.linkage(), frame, pointer),
             _ => {
                 let at = pointer.ray()?.at_height(self.stage.handle_height())?;

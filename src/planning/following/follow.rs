@@ -10,7 +10,7 @@ use super::braking::{LAG_TIME, approach, greatest_feasible_fraction, norm};
 use super::held::{HeldReference, Pull};
 use crate::Reference;
 use crate::pose_space::{PoseSpace, Reach};
-use stillbase_mechanics::planar::{PerDrive, Vector};
+use stillbase_mechanics::planar::{PerDrive, Pose2, Vector};
 
 /// Target position of the end effector, and whether it can be reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +19,20 @@ pub struct Target {
     pub at: Vector,
     /// Whether it can be reached.
     pub reach: Reach,
+}
+
+impl Target {
+    /// Converts a target in the axes of a base to one in space.
+    #[must_use]
+    pub fn on(self, base: Pose2) -> Self {
+        let reach = match self.reach {
+            Reach::Outside { nearest, feasible_b, displayed_b, other_sheet } => {
+                Reach::Outside { nearest: base.place(nearest), feasible_b, displayed_b, other_sheet }
+            }
+            reach => reach,
+        };
+        Self { at: base.place(self.at), reach }
+    }
 }
 
 /// Bounds on the accelerations of the reference.
@@ -158,7 +172,7 @@ impl Follower {
         }
     }
 
-    /// Sets the target of the end effector, m.
+    /// Sets the target of the end effector in the axes of the base, m.
     pub fn set_target(&mut self, at: Vector) {
         self.let_go();
         self.target.at = at;
@@ -189,7 +203,7 @@ impl Follower {
         self.steer();
     }
 
-    /// Returns the target of the end effector.
+    /// Returns the target of the end effector in the axes of the base.
     pub fn target(&self) -> Target {
         self.target
     }

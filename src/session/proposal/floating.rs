@@ -29,8 +29,8 @@ pub(super) enum BaseMotion {
     Stays,
     /// It turns in proportion to b.
     Turns(FloatingBody),
-    /// It floats, but only a run tells how it turns. Its present pose.
-    Untold(Pose2),
+    /// It floats, but only a run tells how it turns.
+    Untold,
 }
 
 /// A floating base without momentum.
@@ -48,7 +48,7 @@ pub(super) struct FloatingBody {
 
 /// A place and a b that bring the end effector to a point.
 pub(super) struct Led {
-    /// The place in the axes of the base, m.
+    /// The place in space, m, at which the target is put before b changes.
     pub to: [Decimal; 2],
     /// The pose constant, rad.
     pub b: Decimal,
@@ -61,7 +61,7 @@ impl BaseMotion {
         if !frame.floats {
             return Self::Stays;
         }
-        FloatingBody::of(session).map_or(Self::Untold(frame.base), Self::Turns)
+        FloatingBody::of(session).map_or(Self::Untold, Self::Turns)
     }
 }
 
@@ -96,7 +96,8 @@ impl FloatingBody {
         (at - centre) * unit(-self.angle_at(b)) + inside
     }
 
-    /// Returns where the machine has to be led so that the end effector comes to a point, m, at a b near `b`, rad.
+    /// Returns where the machine has to be led so that the end effector comes to a point in space, m, at a b near `b`,
+    /// rad.
     pub fn led_to(&self, space: &PoseSpace, at: Vector, b: f64) -> Option<Led> {
         // The base turns more slowly than the workspace, so each step comes nearer.
         let mut near = b;
@@ -109,13 +110,16 @@ impl FloatingBody {
             }
         }
         let set = space.reach(self.seen(at, near)).ok()?;
+        let [centre, inside] = self.centre;
         let inner = INWARDS.map(|share| set.moved_inside(near, share));
         let trials = DECIMALS.flat_map(|decimals| inner.map(|b| Decimal::nearest(b, decimals)));
         let mut led = trials.map(|b| {
+            // The target moves with the base, so it is put where it will be carried from.
             let place = self.seen(at, b.value());
-            let to = [place.re, place.im].map(|x| Decimal::nearest(x, b.decimals()));
+            let now = centre + (place - inside) * unit(self.angle);
+            let to = [now.re, now.im].map(|x| Decimal::nearest(x, b.decimals()));
             Led { to, b }
         });
-        led.find(|led| space.reaches(Vector::new(led.to[0].value(), led.to[1].value()), led.b.value()))
+        led.find(|Led { to: [x, y], b }| space.reaches(self.seen(Vector::new(x.value(), y.value()), self.b), b.value()))
     }
 }

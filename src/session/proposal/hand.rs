@@ -10,7 +10,7 @@ use crate::edit::Edit;
 use crate::interactive::Session;
 use crate::scenario::{POSE_CONSTANT_RANGE, name_of};
 use crate::verdict::LIMIT_TOLERANCE;
-use stillbase_mechanics::planar::{Vector, unit};
+use stillbase_mechanics::planar::{Pose2, Vector};
 use stillbase_planning::common::nearest_place;
 use stillbase_planning::pose_space::{PoseSpace, Reach};
 use stillbase_planning::reactionless::Decimal;
@@ -28,8 +28,10 @@ pub struct TargetProposals;
 #[derive(Clone, Debug, PartialEq)]
 pub struct MissedTarget {
     space: ByIdentity<PoseSpace>,
-    /// The target, m.
+    /// The target, m, in the axes of the base, as is the nearest point in `reach`.
     at: Vector,
+    /// The pose of a base that floats; otherwise at the origin.
+    pose: Pose2,
     /// The present b, rad.
     b: f64,
     reach: Reach,
@@ -49,8 +51,10 @@ impl QuickQuery for TargetProposals {
             let off = (Vector::new(to[0].value(), to[1].value()) - nearest).norm();
             off <= 1e-2 * space.farthest()
         };
-        let rounded = nearest_place(space, missed.at, Some(missed.b)).filter(waits);
-        let [x, y] = rounded.map_or([nearest.re, nearest.im], |to| to.map(|x| x.value()));
+        let inside = nearest_place(space, missed.at, Some(missed.b)).filter(waits);
+        let rounded = inside.and_then(|[x, y]| missed.in_space(Vector::new(x.value(), y.value())));
+        let there = missed.pose.place(nearest);
+        let [x, y] = rounded.map_or([there.re, there.im], |to| to.map(|x| x.value()));
         let shown = rounded.unwrap_or_else(|| [x, y].map(|x| Decimal::nearest(x, 3)));
         let text = format!("go to the nearest point, ({}, {}) m", shown[0], shown[1]);
         let to_nearest = Proposal::of_edit(text, Edit::DragTarget { x, y });
@@ -64,23 +68,31 @@ impl MissedTarget {
     fn at_another_b(&self, (b, shown): (f64, Decimal)) -> Option<Proposal> {
         let space = &*self.space.0;
         let drag = |[x, y]: [Decimal; 2]| Edit::DragTarget { x: x.value(), y: y.value() };
+        let at = self.pose.place(self.at);
         match &self.base {
             BaseMotion::Stays => Some(Proposal::of_edit(format!("go to b = {shown} rad"), Edit::SlideB { b })),
             BaseMotion::Turns(body) => {
-                let Led { to, b } = body.led_to(space, self.at, self.b)?;
+                let Led { to, b } = body.led_to(space, at, self.b)?;
                 let text = format!("go to ({}, {}) m, b = {b} rad", to[0], to[1]);
                 Some(Proposal::of_edits(text, vec![drag(to), Edit::SlideB { b: b.value() }]))
             }
             // How the base would turn cannot be told, so the machine is put there, not led.
-            BaseMotion::Untold(pose) => {
-                let place = (self.at - pose.at) * unit(-pose.angle);
-                let to = [place.re, place.im].map(|x| Decimal::nearest(x, PLACE_DECIMALS));
-                let set = space.reach(Vector::new(to[0].value(), to[1].value())).ok()?;
+            BaseMotion::Untold => {
+                let to = [at.re, at.im].map(|x| Decimal::nearest(x, PLACE_DECIMALS));
+                let set = space.reach(self.pose.seen(Vector::new(to[0].value(), to[1].value()))).ok()?;
                 let b = set.decimal(set.moved_inside(set.nearest(self.b)?, 1e-6), 3)?;
                 let text = format!("put it at b = {b} rad, base as it is");
                 Some(Proposal::of_edits(text, vec![drag(to), Edit::PoseB { b: b.value() }]))
             }
         }
+    }
+
+    /// Returns a place in the axes of the base, m, in space, with the fewest decimals at which the machine reaches it.
+    fn in_space(&self, place: Vector) -> Option<[Decimal; 2]> {
+        let at = self.pose.place(place);
+        (3..=12)
+            .map(|decimals| [at.re, at.im].map(|x| Decimal::nearest(x, decimals)))
+            .find(|[x, y]| self.space.0.reaches(self.pose.seen(Vector::new(x.value(), y.value())), self.b))
     }
 }
 
@@ -96,13 +108,15 @@ pub struct OutsideLimits {
 impl Session {
     /// Returns the target on display for [`TargetProposals`]; `None` if it is reached or there is no pose space.
     pub fn missed_target(&self) -> Option<MissedTarget> {
-        let target = &self.frame().target;
-        let space = ByIdentity(self.run().pose_space().ok()?.clone());
-        matches!(target.reach, Reach::Outside { .. }).then(|| MissedTarget {
-            space,
-            at: target.at,
+        let frame = self.frame();
+        let Reach::Outside { nearest, feasible_b, displayed_b, other_sheet } = frame.target.reach else { return None };
+        let pose = if frame.target_rides { frame.base } else { Pose2::default() };
+        Some(MissedTarget {
+            space: ByIdentity(self.run().pose_space().ok()?.clone()),
+            at: pose.seen(frame.target.at),
+            pose,
             b: self.b_aim(),
-            reach: target.reach,
+            reach: Reach::Outside { nearest: pose.seen(nearest), feasible_b, displayed_b, other_sheet },
             base: BaseMotion::of(self),
         })
     }
@@ -128,6 +142,24 @@ impl Session {
         found.dedup();
         found.push(pose(format!("take b = {asked:.4} rad, and turn the points with it"), asked));
         found
+    }
+
+    /// Returns a question about a b, rad, to which the machine would move through whole turns, with its answers; `None`
+    /// if it is in the present period.
+    pub fn question_of_turns(&self, b: f64) -> Option<(String, Vec<Proposal>)> {
+        let near = self.in_this_period(b);
+        let period = self.run().pose_space().ok()?.period();
+        let turns = ((b - near) / period).round().abs();
+        let to = |text: String, b: f64| Proposal::of_edit(text, Edit::SlideB { b });
+        let times = if turns == 1.0 { "once".into() } else { format!("{turns} times") };
+        let why = format!(
+            "on the way to b = {b:.3} rad the whole arm turns round {times}, so it waits: b = {near:.3} rad reaches the \
+             same"
+        );
+        let shown = (near * 1e3).round() / 1e3;
+        let answers =
+            vec![to(format!("go to b = {shown:.3} rad"), shown), to(format!("turn to b = {b:.3} rad all the same"), b)];
+        (turns > 0.0).then_some((why, answers))
     }
 
     /// Returns the joint limits that leave out the present pose of a machine that a hand leads, with ways out: the

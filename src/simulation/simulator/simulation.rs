@@ -391,6 +391,7 @@ impl Simulation {
         let arm = self.body().arm();
         let q = self.state.drives(n);
         let relative = PerDrive::from_fn(n, |k| self.relative(k));
+        let target_rides = self.floats && matches!(self.guide, Guide::Follow(_));
         let (phase, target, b_reference) = match &self.guide {
             Guide::Motion { motion, .. } => {
                 let end = end_effector(&arm.end_effector, &motion.path.at(1.0).q.units());
@@ -399,7 +400,8 @@ impl Simulation {
             }
             Guide::Follow(follower) => {
                 let phase = if follower.is_at_rest() { Phase::Rest } else { Phase::Follow };
-                (phase, follower.target(), follower.b())
+                let target = follower.target();
+                (phase, if target_rides { target.on(x.base) } else { target }, follower.b())
             }
         };
         let (momentum, angular_momentum) = self.body().momentum(x);
@@ -431,6 +433,7 @@ impl Simulation {
             com: x.base.at + dynamics::centre_of_mass(arm, &x.e),
             end_effector: x.base.at + end_effector(&arm.end_effector, &x.e),
             target,
+            target_rides,
             loaded: self.loaded,
             kinetic: x.kinetic,
             dexterity: self.map.map_or_else(Default::default, |map| map.dexterity_at(&x.e)),

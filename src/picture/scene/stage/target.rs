@@ -36,6 +36,7 @@ pub fn draw(scene: &mut Scene, palette: &Palette, shown: &DrawnFrame<'_>, option
     };
     let (first, anchor) = match frame.target.reach {
         Reach::Outside { nearest, .. } => {
+            let nearest = if frame.target_rides { shown.base.place(frame.in_base(nearest)) } else { nearest };
             scene.lines.push(between("target/gap", nearest));
             let disc = Marker::disc("target/nearest", point(nearest, z), 4.5, palette.background);
             scene.markers.push(disc.edged(palette.amber, 2.0));
