@@ -42,6 +42,8 @@ mod random;
 mod trim;
 #[path = "outside/weights.rs"]
 mod weights;
+#[path = "outside/workshop.rs"]
+mod workshop;
 
 use noise::Noise;
 
@@ -52,7 +54,7 @@ fn count(word: &str, usual: u64) -> u64 {
 }
 
 fn main() -> ExitCode {
-    let packages: [(&str, &[Test]); 8] = [
+    let packages: [(&str, &[Test]); 9] = [
         ("ezdxf", ezdxf::TESTS),
         ("mujoco", mujoco::TESTS),
         ("mujoco", planar::TESTS),
@@ -61,6 +63,7 @@ fn main() -> ExitCode {
         ("scipy", postures::TESTS),
         ("scipy", trim::TESTS),
         ("scipy", weights::TESTS),
+        ("ezdxf", workshop::TESTS),
     ];
     let trials = packages.into_iter().flat_map(|(package, tests)| {
         let missing = python::missing(package);

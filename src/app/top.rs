@@ -64,13 +64,14 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewStat
     // While a drawing is incomplete, the machine is another one.
     let drawn = session.scenario().sketch.as_ref().map(|sketch| sketch.name.as_str());
     let shown = drawn.unwrap_or(present.name());
-    let current = edited(shown, changed);
+    let (current, widest) = (edited(shown, changed), edited(shown, true));
     let tip = if changed {
         "The machine; it differs from the built-in one of this name"
     } else {
         "The machine; choosing another one opens a task that shows its purpose"
     };
-    let width = list_width(ui, &current, if is_narrow(ui) { [104.0, 150.0] } else { [136.0, 190.0] });
+    // The width stays when the machine is edited, so that nothing beside moves.
+    let width = list_width(ui, &widest, if is_narrow(ui) { [104.0, 150.0] } else { [136.0, 190.0] });
     let combo = ComboBox::from_id_salt("machine")
         .selected_text(chosen_text(ui, shown, changed, width))
         .width(width)
@@ -127,7 +128,7 @@ fn scenarios(
     let current = session.scenario();
     let shown = if current.title.is_empty() { &current.name } else { &current.title };
     let current_text = edited(shown, changed);
-    let width = list_width(ui, &current_text, if is_narrow(ui) { [150.0, 150.0] } else { [196.0, 250.0] });
+    let width = list_width(ui, &edited(shown, true), if is_narrow(ui) { [150.0, 150.0] } else { [196.0, 250.0] });
     let combo = ComboBox::from_id_salt("scenario")
         .selected_text(chosen_text(ui, shown, changed, width))
         .width(width)

@@ -132,6 +132,11 @@ impl MachineArgument {
         self.settings.apply(stillbase_files::machine(&self.name, None)?)
     }
 
+    /// Returns the machine as it was named.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
     /// Returns what the drawing lacks to be a machine, if the argument is a scenario with an incomplete drawing.
     pub fn incomplete_drawing(&self) -> Option<Failure> {
         let scenario = stillbase_files::scenario(&self.name).ok()?.scenario;

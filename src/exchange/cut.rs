@@ -87,7 +87,11 @@ impl Cut {
         if diameter >= width {
             return Err(CutError::Narrow { width, diameter });
         }
-        for (link, part) in machine.links().iter().zip(machine.resolved_links()) {
+        for (j, (link, part)) in machine.links().iter().zip(machine.resolved_links()).enumerate() {
+            // Parts have holes of their own, which the machine has checked.
+            if machine.parts_of_link(j).is_some() {
+                continue;
+            }
             let apart = part.pins.windows(2).map(|pins| pins[1] - pins[0]);
             // Several positions of one pin differ by rounding.
             if let Some(apart) = apart.filter(|apart| *apart > SAME_PIN_DISTANCE).find(|apart| *apart <= diameter) {
@@ -135,6 +139,19 @@ pub fn holes(machine: &Machine, j: usize) -> Vec<f64> {
     let mut holes = machine.resolved_links()[j].pins.clone();
     holes.dedup_by(|b, a| *b - *a <= SAME_PIN_DISTANCE);
     holes
+}
+
+/// Returns the greatest length by which drawn bars reach beyond the pins of their links, m, although the masses of these
+/// links do not count it: links that are made of parts do.
+pub fn unweighed_tail(machine: &Machine) -> f64 {
+    let bare = (0..machine.links().len()).filter(|j| machine.parts_of_link(*j).is_none());
+    let beyond = bare.map(|j| {
+        let link = &machine.resolved_links()[j];
+        let ends = link.pins.iter().fold([0.0, link.length], |[from, to], at| [from.min(*at), to.max(*at)]);
+        let [from, to] = bar_extent(machine, j);
+        (ends[0] - from).max(to - ends[1])
+    });
+    beyond.fold(0.0, f64::max)
 }
 
 /// Returns the interval that a bar covers, m from its root: its length, all its pins, and the centres of its discs.

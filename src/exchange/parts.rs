@@ -1,7 +1,7 @@
 //! [`PartsList`]: the parts list of a machine, as CSV for a spreadsheet or as Markdown to read.
 
 use super::cut::{Cut, CutError, SAME_PIN_DISTANCE};
-use stillbase_mechanics::machine::{Chain, Counterweight, Drive, Link, Machine};
+use stillbase_mechanics::machine::{Chain, Counterweight, Drive, Link, Machine, PartBody, PartSource, Shape};
 use stillbase_settings::number::fixed;
 use stillbase_settings::text::sheet_cell;
 
@@ -47,6 +47,8 @@ impl PartsList {
         cut.check_discs()?;
         let tables = [
             Some(links(machine)),
+            Some(parts(machine)),
+            Some(lumps(machine)),
             Some(counterweights(machine, cut)),
             payload(machine),
             Some(motors(machine)),
@@ -186,6 +188,66 @@ fn links(machine: &Machine) -> PartTable {
             "root pinned to",
         ],
         rows: machine.spec().links.iter().enumerate().map(row).collect(),
+    }
+}
+
+/// Lists bars and plates.
+fn parts(machine: &Machine) -> PartTable {
+    let row = |body: &PartBody| {
+        let PartSource::Part(i) = body.source else { return None };
+        let part = &machine.spec().parts[i];
+        let length = match part.shape {
+            Shape::Plate => None,
+            _ => machine.part_ends(i).map(|[from, to]| to - from),
+        };
+        Some(vec![
+            PartCell::words(part.title()),
+            PartCell::words(&part.link),
+            PartCell::words(&part.material),
+            PartCell::some(part.thickness, 4),
+            PartCell::some(length, 4),
+            PartCell::Number(body.body.mass, 3),
+            PartCell::Number(body.body.at, 4),
+            PartCell::Number(body.body.across, 4),
+            PartCell::Number(body.body.inertia, 6),
+        ])
+    };
+    PartTable {
+        kind: "part",
+        title: "Parts of links",
+        head: vec![
+            "name",
+            "on link",
+            "material",
+            "thickness m",
+            "length m",
+            "mass kg",
+            "centre of mass m",
+            "left of axis m",
+            "inertia kg m²",
+        ],
+        rows: machine.part_bodies().iter().filter_map(row).collect(),
+    }
+}
+
+/// Lists motors, bearings, screws and sensors on links.
+fn lumps(machine: &Machine) -> PartTable {
+    let row = |body: &PartBody| match body.source {
+        PartSource::Part(_) => None,
+        PartSource::Lump(_) => Some(vec![
+            PartCell::words(body.title(machine.spec())),
+            PartCell::words(&machine.links()[body.link].name),
+            PartCell::Number(body.body.mass, 3),
+            PartCell::Number(body.body.at, 4),
+            PartCell::Number(body.body.across, 4),
+            PartCell::Number(body.body.inertia, 6),
+        ]),
+    };
+    PartTable {
+        kind: "lump",
+        title: "Lumps",
+        head: vec!["name", "on link", "mass kg", "centre of mass m", "left of axis m", "inertia kg m²"],
+        rows: machine.part_bodies().iter().filter_map(row).collect(),
     }
 }
 

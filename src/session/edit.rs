@@ -12,6 +12,7 @@ use stillbase_mechanics::machine::{ANGLE, MACHINE_TABLES, is_of_machine};
 use stillbase_mechanics::sketch::SketchStep;
 use stillbase_settings::change;
 use stillbase_settings::key::{Effect, Key};
+use stillbase_settings::number::at_most_digits;
 use stillbase_settings::range::{RangeCheck, shortened};
 
 /// One change. It can be saved, replayed and undone.
@@ -327,6 +328,9 @@ fn list_of(kind: &str, value: &Value) -> String {
     }
 }
 
+/// Maximum number of significant digits of a number in the description of a change.
+const TITLE_DIGITS: usize = 5;
+
 /// Describes a change of settings; `before` is the task before it, if it is known.
 fn title_of(change: &Table, before: Option<&Table>) -> String {
     let task = change.get("task").and_then(Value::as_table).filter(|_| change.len() == 1);
@@ -354,7 +358,7 @@ fn title_of(change: &Table, before: Option<&Table>) -> String {
             return format!("{words} back to normal");
         }
         let typed = match change::number(value) {
-            Some(x) => ((x * 1e6).round() / 1e6).to_string(),
+            Some(x) => at_most_digits(x, TITLE_DIGITS),
             None => shortened(&change::typed(value), 60),
         };
         let has_numbers = typed.starts_with(|c: char| c.is_ascii_digit() || c == '-');

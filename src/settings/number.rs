@@ -58,10 +58,16 @@ pub fn counted(count: impl fmt::Display, one: &str) -> String {
 
 /// Formats a number with at most nine significant digits; below 1e-12 it is treated as zero.
 pub fn nine_digits(x: f64) -> String {
+    at_most_digits(x, 9)
+}
+
+/// Formats a number with at most so many significant digits; below 1e-12 it is treated as zero.
+pub fn at_most_digits(x: f64, digits: usize) -> String {
     if x.abs() < 1e-12 {
         return "0".into();
     }
-    let rounded = format!("{x:.8e}").parse().unwrap_or(x);
+    let decimals = digits.saturating_sub(1);
+    let rounded = format!("{x:.decimals$e}").parse().unwrap_or(x);
     ShortNumber(rounded).to_string()
 }
 

@@ -8,6 +8,7 @@ use super::balance_constants::BalanceConstants;
 use super::front_point::FrontPoint;
 use super::lengths::{FoundLengths, LengthSearch, NoLengths, SearchProgress, search, stretched};
 use super::measures::Measures;
+use super::workshop::{BarsReport, CutRequest, NoCut};
 use stillbase_mechanics::counterweights::{
     CounterweightError, CounterweightSpec, FreeRotor, PayloadResidual, PlacedCounterweights, front, over_payloads,
     place_weights,
@@ -27,6 +28,8 @@ pub struct CounterweightRequest {
     pub lengths: Option<LengthSearch>,
     /// Number of machines on the Pareto front from the least mass to the least inertia.
     pub front: Option<usize>,
+    /// Bars of which the links are cut. Neither lengths nor a front are found with these.
+    pub bars: Option<CutRequest>,
 }
 
 /// Reason that there are no counterweights.
@@ -41,6 +44,9 @@ pub enum NoCounterweights {
     /// There is no Pareto front.
     #[error(transparent)]
     Front(CounterweightError),
+    /// No machine can be cut so that it is balanced.
+    #[error(transparent)]
+    Cut(NoCut),
     /// The result is no valid machine.
     #[error(transparent)]
     Machine(#[from] MachineError),
@@ -74,6 +80,9 @@ pub struct CounterweightReport {
     /// Lengths that were optimised.
     #[serde(rename = "sought", skip_serializing_if = "Option::is_none")]
     pub optimised_lengths: Option<LengthsReport>,
+    /// The bars as they are cut.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bars: Option<BarsReport>,
     /// Rotors that were chosen.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rotors: Vec<ChosenRotor>,
@@ -151,7 +160,13 @@ pub fn balance_by_weights(
     go_on: &mut dyn FnMut(SearchProgress) -> bool,
 ) -> Result<(Machine, CounterweightReport), NoCounterweights> {
     let mut weighing = request.spec.clone();
+    let mut bars = None;
     let (placed, sought) = match &request.lengths {
+        None if let Some(cut) = &request.bars => {
+            let found = cut.balance(machine, &weighing).map_err(NoCounterweights::Cut)?;
+            bars = Some(BarsReport::of(&found));
+            (found.placed, None)
+        }
         None => (place_weights(machine, &weighing).map_err(NoCounterweights::Weights)?, None),
         Some(lengths) => {
             let found = search(machine, lengths, go_on).map_err(NoCounterweights::Lengths)?;
@@ -170,7 +185,7 @@ pub fn balance_by_weights(
     };
     let front = front.iter().map(|placed| FrontPoint::of(placed, motion, true)).collect();
     let mut report = CounterweightReport::of(&placed, front, motion, &weighing)?;
-    report.optimised_lengths = sought;
+    (report.optimised_lengths, report.bars) = (sought, bars);
     report.taken_off = removed_weights(machine);
     Ok((placed.machine, report))
 }
@@ -217,6 +232,7 @@ impl CounterweightReport {
             front: front_points.iter().map(FrontPoint::measures).collect(),
             front_points,
             optimised_lengths: None,
+            bars: None,
             rotors: request.rotors.iter().map(chosen).collect(),
             payload: payload.unwrap_or_default(),
             is_balanced: inertia.is_balanced(),

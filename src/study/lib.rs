@@ -30,4 +30,5 @@ pub mod series;
 pub mod spectrum;
 pub mod tolerance;
 pub mod trim;
+pub mod workshop;
 pub mod workspace;

@@ -29,7 +29,7 @@ fn lengths(starts: usize) -> LengthSearch {
 #[test]
 fn the_report_is_of_the_machine_that_comes_out() {
     let bare = family_machine("nine-link-bare");
-    let asked = CounterweightRequest { spec: weighing(), lengths: None, front: Some(3) };
+    let asked = CounterweightRequest { spec: weighing(), lengths: None, front: Some(3), bars: None };
     let (machine, report) = balance_by_weights(&bare, &asked, None, &mut |_| true).expect("it can be balanced");
     let placed = place_weights(&bare, &asked.spec).expect("it can be balanced");
     let inertia = Inertia::of(&machine);
@@ -48,7 +48,7 @@ fn the_report_is_of_the_machine_that_comes_out() {
 #[test]
 fn what_it_had_is_taken_off_and_lengths_are_sought() {
     let bare = family_machine("nine-link-bare");
-    let asked = CounterweightRequest { spec: weighing(), lengths: None, front: None };
+    let asked = CounterweightRequest { spec: weighing(), lengths: None, front: None, bars: None };
     let (weighed, first) = balance_by_weights(&bare, &asked, None, &mut |_| true).expect("it can be balanced");
     let (_, again) = balance_by_weights(&weighed, &asked, None, &mut |_| true).expect("it can be balanced");
     assert_eq!(again.taken_off, first.weights);

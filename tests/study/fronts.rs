@@ -46,7 +46,7 @@ fn each_front_is_that_of_its_machine_alone() {
         assert_eq!(told.front, front(&of.machine, &of.spec, COUNT).expect("it can be balanced"));
         // A motion of three drives says nothing of a machine of two.
         let own = (of.machine.drives() == 3).then_some(&*motion.0);
-        let alone = CounterweightRequest { spec: of.spec.clone(), lengths: None, front: Some(COUNT) };
+        let alone = CounterweightRequest { spec: of.spec.clone(), lengths: None, front: Some(COUNT), bars: None };
         let (_, report) = balance_by_weights(&of.machine, &alone, own, &mut |_| true).expect("it can be balanced");
         assert_eq!((&told.points, told.measures()), (&report.front_points, report.front));
         assert!(told.points.iter().all(|point| point.torque.is_some() == own.is_some()));

@@ -57,6 +57,8 @@ struct Sums {
     lambda: Vec<f64>,
     /// Total mass of the counterweights, kg, and Σ D_k, kg m².
     now: [f64; 2],
+    /// Whether Eqs. (7) and (8) hold.
+    balanced: bool,
     /// The machine without its counterweights, except fixed ones; `None` if it would not be valid.
     bare: Option<Machine>,
 }
@@ -71,6 +73,7 @@ impl QuickQuery for Sums {
         Self {
             lambda: inertia.lambda().to_vec(),
             now: [added, inertia.total_momentum()],
+            balanced: inertia.is_balanced(),
             bare: machine.without_counterweights().ok(),
         }
     }
@@ -258,6 +261,11 @@ impl DesignFacts {
     /// Returns the total mass of the counterweights, kg, and Σ D_k, kg m².
     pub(super) fn now(&self) -> [f64; 2] {
         self.sums.now
+    }
+
+    /// Returns whether the machine is balanced, as are all machines of the front.
+    pub(super) fn is_balanced(&self) -> bool {
+        self.sums.balanced
     }
 
     /// Returns the points of the front, by increasing mass; empty before the first front is found.

@@ -98,7 +98,9 @@ pub fn show(ui: &mut Ui, facts: &DesignFacts, view_state: &ViewState, commands: 
             }
             if shown {
                 let at = PlotPoints::from(vec![facts.now()]);
-                plot.points(Points::new("now", at).radius(6.0).color(colour(p.amber)).allow_hover(false));
+                // A machine that is not balanced is beside the curve, even where mass and inertia agree.
+                let dot = Points::new("now", at).radius(6.0).filled(facts.is_balanced()).color(colour(p.amber));
+                plot.points(dot.allow_hover(false));
             }
         });
     let near = response.response.hover_pos().and_then(|pos| {
@@ -233,6 +235,9 @@ fn summary(
         true => "no counterweights yet".to_owned(),
         false => format!("{} kg added, Σ D {} kg m²", signed(mass, 2), signed(inertia, 3)),
     };
+    if at.is_none() && !facts.is_balanced() {
+        text.push_str(": not balanced, beside the curve");
+    }
     if let Some((colours, value)) = colours.zip(at).and_then(|(colours, i)| Some((colours, (*colours.values.get(i)?)?)))
     {
         text.push_str(&format!(", {}", colours.words(value)));

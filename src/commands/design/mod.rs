@@ -54,6 +54,7 @@ Examples:
   stillbase design nine-link-bare --counterweights --clearance 0.01 --max-radius 0.12
   stillbase design nine-link-bare --counterweights --payload 0,0.2
   stillbase design nine-link-bare --counterweights --length l5=0.3,0.6 --length l9=0.2,0.5 --min-reach 1.26
+  stillbase design nine-link-bare --counterweights --bars 0.03,0.006 --thickness 0.02 -o cut.toml
   stillbase design counter-rotating --counterweights --rotor-ratio 1=-40,0 --objective momentum")]
 pub struct DesignArguments {
     #[command(flatten)]

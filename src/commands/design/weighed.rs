@@ -6,15 +6,16 @@ use clap::Args;
 use stillbase_mechanics::counterweights::{
     BoundRelaxation, CounterweightError, CounterweightSpec, Disc, FreeRotor, MATERIALS, Objective, RotorFreedom,
 };
-use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::machine::{BarStock, Machine};
 use stillbase_planning::Motion;
-use stillbase_settings::number::{fixed, nine_digits, significant};
+use stillbase_settings::number::{counted, fixed, nine_digits, significant};
 use stillbase_study::counterweights::{
     CounterweightReport, CounterweightRequest, LengthsReport, NoCounterweights, balance_by_weights, removed_weights,
 };
 use stillbase_study::front_point::FrontPoint;
 use stillbase_study::lengths::{FreeLength, LengthSearch, NoLengths};
 use stillbase_study::measures::greatest_accelerations;
+use stillbase_study::workshop::{CutRequest, NoCut};
 
 use super::super::check::balance_tables;
 use super::super::ends::parse_bounds;
@@ -100,6 +101,17 @@ pub struct WeightArguments {
     /// gives torque (with --task), workspace, and the maximum |g_k| if masses are 1 % and places 0.5 mm off
     #[arg(long, value_name = "N", requires = "counterweights", value_parser = clap::value_parser!(u16).range(2..=1000))]
     front: Option<u16>,
+    /// Cut the links from flat bars of this width and thickness, m, of a material; default: aluminium. Tails, arms and
+    /// holes are weighed, and the design repeated until bars and discs agree. A link with parts keeps them
+    #[arg(long, value_name = "WIDTH,THICKNESS[,MATERIAL]", requires = "counterweights", value_parser = bars, conflicts_with_all = ["length", "front"])]
+    bars: Option<BarStock>,
+    /// Diameter of the hole for each pin of these bars, m; default: 0.008
+    #[arg(long, value_name = "D", requires = "bars", value_parser = number)]
+    pin_diameter: Option<f64>,
+    /// Take discs as they are bought, with radii and places in steps of 0.1 mm; the answer says what is left of Eqs (7)
+    /// and (8)
+    #[arg(long, requires = "bars")]
+    bought: bool,
 }
 
 impl WeightArguments {
@@ -204,13 +216,20 @@ impl WeightArguments {
             seconds => seconds.unwrap_or(f64::INFINITY),
         };
         let disc = spec.disc;
-        let request = CounterweightRequest { spec, lengths, front: self.front.map(usize::from) };
+        let bars = self.bars.clone().map(|stock| CutRequest {
+            stock: BarStock { pin_diameter: self.pin_diameter.unwrap_or(stock.pin_diameter), ..stock },
+            bought: self.bought,
+        });
+        let request = CounterweightRequest { spec, lengths, front: self.front.map(usize::from), bars };
         let begun = Instant::now();
         let mut go_on = |_| begun.elapsed().as_secs_f64() < within;
         balance_by_weights(machine, &request, motion, &mut go_on).map_err(|why| match why {
             NoCounterweights::Lengths(why) => lengths_failure(why),
             NoCounterweights::Weights(why) => self.refusal(why, &disc),
             NoCounterweights::Front(why) => request_failure(why),
+            NoCounterweights::Cut(NoCut::Weights(why)) => self.refusal(why, &disc),
+            NoCounterweights::Cut(NoCut::Bars(why)) => Failure::wrong_input(why),
+            NoCounterweights::Cut(why) => Failure::no_answer(why),
             NoCounterweights::Machine(why) => why.into(),
         })
     }
@@ -266,6 +285,20 @@ fn density(text: &str) -> Result<f64, String> {
 /// Parses a number; its range is checked where it is used.
 fn number(text: &str) -> Result<f64, String> {
     text.trim().parse().map_err(|_| "want a number, as 0.05".to_owned())
+}
+
+/// Parses WIDTH,THICKNESS[,MATERIAL], m.
+fn bars(text: &str) -> Result<BarStock, String> {
+    let want = || "want a width and a thickness in m, and a material, as 0.03,0.006,steel".to_owned();
+    let words: Vec<&str> = text.split(',').map(str::trim).collect();
+    let (lengths, material) = match words[..] {
+        [width, thickness] => ([width, thickness], BarStock::default().material),
+        [width, thickness, material] => ([width, thickness], material.to_lowercase()),
+        _ => return Err(want()),
+    };
+    let [width, thickness] = lengths.map(|word| word.parse().ok().filter(|x: &f64| x.is_finite() && *x > 0.0));
+    let (width, thickness) = width.zip(thickness).ok_or_else(want)?;
+    Ok(BarStock { width, thickness, material, ..BarStock::default() })
 }
 
 /// Parses LO,HI, kg.
@@ -335,6 +368,16 @@ pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
         text.push_str(&format!(
             "\nlengths, not certified: the best of {machines} machines; {agreeing} of {starts} starts ended there\n\n{table}\nreach {} m{workspace}\n",
             fixed(*reach, 6)
+        ));
+    }
+    if let Some(bars) = &report.bars {
+        text.push_str(&format!(
+            "\nas cut: bars {} kg, longest tail {} mm, the best of {}; left of (7) {:.1e} kg m, of (8) {:.1e} kg m²\n",
+            fixed(bars.mass, 3),
+            fixed(1e3 * bars.tail, 1),
+            counted(bars.tried, "cut"),
+            bars.force_residual,
+            bars.coupling_residual
         ));
     }
     if !report.rotors.is_empty() {

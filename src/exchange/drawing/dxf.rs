@@ -3,6 +3,7 @@
 
 use std::fmt::Write as _;
 
+use super::outline::Corner;
 use super::sheet::{Sheet, SheetShape, TextAlign};
 use stillbase_settings::number::fixed;
 
@@ -114,15 +115,20 @@ impl Tags {
 
     /// Writes a closed outline of two straight sides and two half circles.
     fn bar(&mut self, [x, y]: [f64; 2], length: f64, radius: f64) {
+        let (right, low, high) = (x + length, y - radius, y + radius);
+        let corners = [([x, low], 0.0), ([right, low], 1.0), ([right, high], 0.0), ([x, high], 1.0)];
+        self.outline(&corners.map(|(at, bulge)| Corner { at, bulge }));
+    }
+
+    fn outline(&mut self, corners: &[Corner]) {
         self.entity("POLYLINE", "OUTLINE");
         self.count(66, 1);
         self.point(10, [0.0; 2]);
         self.count(70, 1);
-        let (right, low, high) = (x + length, y - radius, y + radius);
-        for (corner, bulge) in [([x, low], 0.0), ([right, low], 1.0), ([right, high], 0.0), ([x, high], 1.0)] {
+        for corner in corners {
             self.entity("VERTEX", "OUTLINE");
-            self.point(10, corner);
-            self.number(42, bulge);
+            self.point(10, corner.at);
+            self.number(42, corner.bulge);
         }
         self.entity("SEQEND", "OUTLINE");
     }
@@ -130,6 +136,7 @@ impl Tags {
     fn shape(&mut self, shape: &SheetShape) {
         match shape {
             SheetShape::Bar { from, length, radius, .. } => self.bar(*from, *length, *radius),
+            SheetShape::Outline { corners, .. } => self.outline(corners),
             SheetShape::Hole { at, radius } => self.circle("HOLES", *at, *radius),
             SheetShape::Disc { at, radius, .. } => self.circle("COUNTERWEIGHT", *at, *radius),
             SheetShape::Line(ends) => self.line(*ends),

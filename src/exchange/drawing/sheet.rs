@@ -5,8 +5,9 @@
 
 use std::f64::consts::PI;
 
+use super::outline::{Corner, PieceOutline, pieces_of};
 use crate::cut::{Cut, CutError, SAME_PIN_DISTANCE, bar_extent, holes};
-use stillbase_mechanics::machine::{Counterweight, Machine};
+use stillbase_mechanics::machine::{Counterweight, Machine, PartSource, Shape};
 use stillbase_settings::number::{counted, fixed};
 
 /// A drawing as plain shapes.
@@ -34,7 +35,14 @@ pub enum SheetShape {
         /// The drive that it follows, counted from 0.
         drive: usize,
     },
-    /// A hole for a pin.
+    /// The outline of a part.
+    Outline {
+        /// Its corners, counter-clockwise.
+        corners: Vec<Corner>,
+        /// The drive that it follows, counted from 0.
+        drive: usize,
+    },
+    /// A hole.
     Hole {
         /// Its centre.
         at: [f64; 2],
@@ -106,7 +114,16 @@ impl Sheet {
         cut.check(machine)?;
         let longest = machine.resolved_links().iter().map(|part| part.length).fold(0.0, f64::max);
         let height = (1e3 * longest / 140.0).clamp(3.5, 10.0);
-        let pieces = (0..machine.links().len()).map(|j| Piece::of(machine, cut, j, height)).collect();
+        let links = 0..machine.links().len();
+        let pieces = links.flat_map(|j| match pieces_of(machine, j) {
+            outlines if outlines.is_empty() => vec![Piece::of(machine, cut, j, height)],
+            outlines => {
+                let of =
+                    |(k, outline): (usize, &PieceOutline)| Piece::of_part(machine, cut, j, outline, k == 0, height);
+                outlines.iter().enumerate().map(of).collect()
+            }
+        });
+        let pieces = pieces.collect();
         Ok(laid_out(machine, cut, pieces, height))
     }
 }
@@ -134,30 +151,72 @@ struct Piece {
 impl Piece {
     fn of(machine: &Machine, cut: &Cut, j: usize, height: f64) -> Self {
         let mut piece = Self { shapes: Vec::new(), reach: [0.0; 4] };
-        let (link, part) = (&machine.links()[j], &machine.resolved_links()[j]);
-        let weights = machine.spec().counterweights.iter().filter(|weight| weight.link == link.name);
-        let weights: Vec<&Counterweight> = weights.collect();
+        let part = &machine.resolved_links()[j];
         let holes = holes(machine, j);
         piece.bar(cut, part.drive, bar_extent(machine, j));
-        for weight in weights.iter().filter(|weight| weight.radius > 0.0) {
-            let (at, radius) = ([1e3 * weight.at, 1e3 * weight.across], 1e3 * weight.radius);
-            piece.include([at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius]);
-            piece.shapes.push(SheetShape::Disc { at, radius, drive: part.drive });
-        }
+        piece.discs(machine, j);
         for at in &holes {
             piece.shapes.push(SheetShape::Hole { at: [1e3 * at, 0.0], radius: 500.0 * cut.pin_diameter });
         }
+        piece.centre_of_mass(machine, j, height);
+        piece.stations(&holes, part.length, height);
+        piece.annotate(machine, j, "", below(machine, cut, j), height);
+        piece
+    }
+
+    /// Draws one part of a link; the first one shows what belongs to the whole link.
+    fn of_part(machine: &Machine, cut: &Cut, j: usize, outline: &PieceOutline, first: bool, height: f64) -> Self {
+        let mut piece = Self { shapes: Vec::new(), reach: [0.0; 4] };
+        let link = &machine.resolved_links()[j];
+        let in_mm = |at: [f64; 2]| at.map(|x| 1e3 * x);
+        let corners: Vec<Corner> =
+            outline.corners.iter().map(|corner| Corner { at: in_mm(corner.at), ..*corner }).collect();
+        for (corner, next) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+            let [x, y] = corner.at;
+            // A half circle reaches as far beyond its ends as its radius.
+            let round = 0.5 * corner.bulge.abs() * (next.at[0] - x).hypot(next.at[1] - y);
+            piece.include([x - round, y, x + round, y]);
+        }
+        piece.shapes.push(SheetShape::Outline { corners, drive: link.drive });
+        if first {
+            piece.discs(machine, j);
+        }
+        for (at, diameter) in &outline.holes {
+            piece.shapes.push(SheetShape::Hole { at: in_mm(*at), radius: 500.0 * diameter });
+        }
+        if first {
+            piece.centre_of_mass(machine, j, height);
+        }
+        let places: Vec<f64> = outline.holes.iter().map(|([at, _], _)| *at).collect();
+        piece.stations(&sorted(places), link.length, height);
+        let part = &machine.spec().parts[outline.part];
+        let mut lines = below_part(machine, outline);
+        if first {
+            lines.extend(below_link(machine, cut, j));
+        }
+        piece.annotate(machine, j, &format!(" · {}", part.title()), lines, height);
+        piece
+    }
+
+    fn discs(&mut self, machine: &Machine, j: usize) {
+        let drive = machine.resolved_links()[j].drive;
+        for weight in weights_of(machine, j).filter(|weight| weight.radius > 0.0) {
+            let (at, radius) = ([1e3 * weight.at, 1e3 * weight.across], 1e3 * weight.radius);
+            self.include([at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius]);
+            self.shapes.push(SheetShape::Disc { at, radius, drive });
+        }
+    }
+
+    fn centre_of_mass(&mut self, machine: &Machine, j: usize, height: f64) {
+        let link = &machine.links()[j];
         let com = [1e3 * link.com, 1e3 * link.com_normal];
         let radius = 0.55 * height;
-        piece.include([com[0] - radius, com[1] - radius, com[0] + radius, com[1] + radius]);
-        if piece.shapes.first().is_some_and(|bar| !bar.is_around(com)) {
+        self.include([com[0] - radius, com[1] - radius, com[0] + radius, com[1] + radius]);
+        if self.shapes.first().is_some_and(|bar| !bar.is_around(com)) {
             // A line shows to which link the mark belongs.
-            piece.shapes.push(SheetShape::Line([[0.0, 0.0], com]));
+            self.shapes.push(SheetShape::Line([[0.0, 0.0], com]));
         }
-        piece.shapes.push(SheetShape::Mark { at: com, radius });
-        piece.stations(&holes, part.length, height);
-        piece.annotate(machine, cut, j, &weights, height);
-        piece
+        self.shapes.push(SheetShape::Mark { at: com, radius });
     }
 
     fn include(&mut self, [left, down, right, up]: [f64; 4]) {
@@ -204,18 +263,18 @@ impl Piece {
         self.shapes.push(SheetShape::Words { at, height, anchor, paint, text });
     }
 
-    /// Writes the link's name above the bar, and its data below.
-    fn annotate(&mut self, machine: &Machine, cut: &Cut, j: usize, weights: &[&Counterweight], height: f64) {
+    /// Writes the link's name above the piece, with `what` it is, and lines of data below.
+    fn annotate(&mut self, machine: &Machine, j: usize, what: &str, lines: Vec<String>, height: f64) {
         let (link, part) = (&machine.spec().links[j], &machine.resolved_links()[j]);
         let drive = &machine.spec().drives[part.drive].name;
         let (left, top) = (self.reach[0], self.reach[3] + 1.1 * height);
-        let name = format!("link {}", link.name);
+        let name = format!("link {}{what}", link.name);
         let about = format!("follows drive {drive} · {} kg · {} kg m²", fixed(link.mass, 3), fixed(link.inertia, 6));
         let shift = width_of(&name, 1.3 * height) + height;
         self.words([left, top], 1.3 * height, TextAlign::Start, TextEmphasis::Strong, name);
         self.words([left + shift, top], height, TextAlign::Start, TextEmphasis::Plain, about.clone());
         self.include([left, 0.0, left + shift + width_of(&about, height), top + 1.3 * height]);
-        for line in below(machine, cut, j, weights) {
+        for line in lines {
             let at = [left, self.reach[1] - LINE_SPACING * height];
             self.include([left, at[1] - 0.3 * height, left + width_of(&line, height), 0.0]);
             self.words(at, height, TextAlign::Start, TextEmphasis::Plain, line);
@@ -223,14 +282,63 @@ impl Piece {
     }
 }
 
-/// Returns the lines of text below a link.
-fn below(machine: &Machine, cut: &Cut, j: usize, weights: &[&Counterweight]) -> Vec<String> {
-    let (link, part) = (&machine.links()[j], &machine.resolved_links()[j]);
-    let holes = holes(machine, j);
-    let mut lines = Vec::new();
+fn sorted(mut places: Vec<f64>) -> Vec<f64> {
+    places.sort_by(f64::total_cmp);
+    places.dedup_by(|b, a| *b - *a <= SAME_PIN_DISTANCE);
+    places
+}
+
+fn weights_of(machine: &Machine, j: usize) -> impl Iterator<Item = &Counterweight> {
+    let name = &machine.links()[j].name;
+    machine.spec().counterweights.iter().filter(move |weight| weight.link == *name)
+}
+
+/// Returns the line of text about holes, m from the root.
+fn hole_line(holes: &[f64]) -> String {
     let places: Vec<String> =
         holes.iter().map(|at| if at.abs() <= SAME_PIN_DISTANCE { "0 (root)".into() } else { signed(*at) }).collect();
-    lines.push(format!("holes at {} mm", places.join(", ")));
+    if places.is_empty() { "no holes".into() } else { format!("holes at {} mm", places.join(", ")) }
+}
+
+/// Returns the lines of text below a link without parts.
+fn below(machine: &Machine, cut: &Cut, j: usize) -> Vec<String> {
+    let mut lines = vec![hole_line(&holes(machine, j))];
+    let mut link = below_link(machine, cut, j);
+    let discs = link.split_off(link.len() - weights_of(machine, j).count());
+    let area = outline_area(machine, cut, j);
+    lines.extend(link);
+    lines.push(format!("area {} cm²", fixed(1e4 * area, 2)));
+    lines.extend(discs);
+    lines
+}
+
+/// Returns the lines of text about one part of a link.
+fn below_part(machine: &Machine, outline: &PieceOutline) -> Vec<String> {
+    let spec = machine.spec();
+    let mass_of = |part: usize| {
+        let body = machine.part_bodies().iter().find(|body| body.source == PartSource::Part(part));
+        body.map_or(0.0, |body| body.body.mass)
+    };
+    let mass: f64 = mass_of(outline.part) + outline.arms.iter().map(|arm| mass_of(*arm)).sum::<f64>();
+    let part = &spec.parts[outline.part];
+    let along: Vec<f64> = outline.holes.iter().map(|([at, _], _)| *at).collect();
+    let mut about = format!("{} kg", fixed(mass, 3));
+    if matches!(part.shape, Shape::Tube | Shape::Profile)
+        && let Some([from, to]) = machine.part_ends(outline.part)
+    {
+        about.push_str(&format!(", {} mm long", mm(to - from)));
+    }
+    let arms: Vec<&str> = outline.arms.iter().map(|arm| spec.parts[*arm].name.as_str()).collect();
+    if !arms.is_empty() {
+        about.push_str(&format!(", with its {}", arms.join(", ")));
+    }
+    vec![format!("{about} · {}", hole_line(&sorted(along)))]
+}
+
+/// Returns the lines of text about a whole link: end effector, centre of mass, lumps and counterweights; these last.
+fn below_link(machine: &Machine, cut: &Cut, j: usize) -> Vec<String> {
+    let (link, part) = (&machine.links()[j], &machine.resolved_links()[j]);
+    let mut lines = Vec::new();
     if machine.end_link() == j {
         let at = part.sign * (machine.end_effector()[part.drive] - part.root[part.drive]);
         lines.push(format!("end effector at {} mm", signed(at)));
@@ -239,11 +347,15 @@ fn below(machine: &Machine, cut: &Cut, j: usize, weights: &[&Counterweight]) -> 
         0.0 => String::new(),
         y => format!(", {} mm to the left of the axis", signed(y)),
     };
-    let with = if weights.is_empty() { "" } else { " with its counterweights" };
+    let with = if weights_of(machine, j).next().is_none() { "" } else { " with its counterweights" };
     lines.push(format!("centre of mass{with} at {} mm{off}", signed(link.com)));
-    let area = outline_area(machine, cut, j);
-    lines.push(format!("area {} cm²", fixed(1e4 * area, 2)));
-    lines.extend(weights.iter().map(|weight| disc(cut, weight)));
+    for body in machine.part_bodies().iter().filter(|body| body.link == j) {
+        if let PartSource::Lump(_) = body.source {
+            let (name, at) = (body.title(machine.spec()), signed(body.body.at));
+            lines.push(format!("carries {name}, {} kg at {at} mm", fixed(body.body.mass, 3)));
+        }
+    }
+    lines.extend(weights_of(machine, j).map(|weight| disc(cut, weight)));
     lines
 }
 
@@ -327,12 +439,15 @@ fn title(machine: &Machine, cut: &Cut) -> [String; 3] {
         }
     };
     let (bars, pins) = (mm(cut.bar_width), mm(cut.pin_diameter));
+    let is_of_parts = |j: usize| !pieces_of(machine, j).is_empty();
+    let outlines = match (0..machine.links().len()).all(is_of_parts) {
+        true => "outlines and holes as they are weighed".into(),
+        false => format!("bars {bars} wide with round ends · holes Ø {pins}"),
+    };
     [
         machine.name().into(),
         format!("{links}{discs} · scale 1 : 1 · all lengths in mm"),
-        format!(
-            "bars {bars} wide with round ends · holes Ø {pins} · places along a link from its root towards its tip"
-        ),
+        format!("{outlines} · places along a link from its root towards its tip"),
     ]
 }
 
@@ -352,11 +467,18 @@ fn put(shapes: &mut Vec<SheetShape>, row: Vec<(f64, Piece)>, top: f64) -> f64 {
 }
 
 impl SheetShape {
-    /// Returns whether the shape is a bar whose straight part contains a point.
+    /// Returns whether the shape is a bar or an outline that contains a point, apart from its round ends.
     fn is_around(&self, [x, y]: [f64; 2]) -> bool {
         match self {
             Self::Bar { from, length, radius, .. } => {
                 (from[0]..=from[0] + length).contains(&x) && (y - from[1]).abs() <= *radius
+            }
+            Self::Outline { corners, .. } => {
+                let sides = corners.iter().zip(corners.iter().cycle().skip(1)).map(|(a, b)| (a.at, b.at));
+                // Even and odd numbers of sides to the right of the point.
+                let crossed = sides
+                    .filter(|(a, b)| (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
+                crossed.count() % 2 == 1
             }
             _ => false,
         }
@@ -366,6 +488,7 @@ impl SheetShape {
         let move_it = |p: &mut [f64; 2]| *p = [p[0] + x, p[1] + y];
         match self {
             Self::Bar { from, .. } => move_it(from),
+            Self::Outline { corners, .. } => corners.iter_mut().for_each(|corner| move_it(&mut corner.at)),
             Self::Hole { at, .. } | Self::Disc { at, .. } | Self::Mark { at, .. } | Self::Words { at, .. } => {
                 move_it(at)
             }

@@ -1,5 +1,6 @@
 //! A sheet as SVG at scale 1 : 1: a unit of the drawing is a millimetre.
 
+use super::outline::Corner;
 use super::sheet::{Sheet, SheetShape, TextAlign, TextEmphasis};
 use crate::xml::{XmlWriter, quoted};
 use stillbase_settings::number::fixed;
@@ -47,6 +48,17 @@ fn element(lines: &mut XmlWriter, shape: &SheetShape, top: f64) {
                 format_args!(
                     "<rect class=\"outline\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"{r}\" \
                      fill=\"{colour}\" fill-opacity=\"0.14\" stroke=\"{colour}\" stroke-width=\"0.5\"/>"
+                ),
+            );
+        }
+        SheetShape::Outline { corners, drive } => {
+            let colour = COLOURS[drive % COLOURS.len()];
+            let path = path(corners, top);
+            lines.add(
+                1,
+                format_args!(
+                    "<path class=\"outline\" d=\"{path}\" fill=\"{colour}\" fill-opacity=\"0.14\" \
+                     stroke=\"{colour}\" stroke-width=\"0.5\"/>"
                 ),
             );
         }
@@ -101,6 +113,26 @@ fn element(lines: &mut XmlWriter, shape: &SheetShape, top: f64) {
             );
         }
     }
+}
+
+/// Returns a closed outline as data of a path; its curves are half circles.
+fn path(corners: &[Corner], top: f64) -> String {
+    let next = corners.iter().cycle().skip(1);
+    let mut path = String::new();
+    for (i, (corner, next)) in corners.iter().zip(next).enumerate() {
+        let [x, y] = [n(corner.at[0]), n(top - corner.at[1])];
+        if i == 0 {
+            path.push_str(&format!("M{x} {y}"));
+        }
+        let [x, y] = [n(next.at[0]), n(top - next.at[1])];
+        if corner.bulge == 0.0 {
+            path.push_str(&format!("L{x} {y}"));
+        } else {
+            let radius = n(0.5 * (next.at[0] - corner.at[0]).hypot(next.at[1] - corner.at[1]));
+            path.push_str(&format!("A{radius} {radius} 0 0 0 {x} {y}"));
+        }
+    }
+    path + "Z"
 }
 
 /// Draws the symbol of a centre of mass: a circle with two filled quadrants.

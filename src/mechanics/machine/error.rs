@@ -5,7 +5,7 @@ use std::fmt;
 use thiserror::Error;
 
 use super::spec::MachineSpec;
-use stillbase_settings::number::ShortNumber;
+use stillbase_settings::number::{ShortNumber, fixed};
 use stillbase_settings::range::{Requirement, quote_clipped};
 
 /// A place in a machine file: a path of keys and positions. It is printed in the syntax of `--set`, such as
@@ -229,6 +229,22 @@ pub enum MachineError {
         key: &'static str,
         /// The link.
         link: String,
+    },
+    /// A counterweight lies beyond the parts of its link.
+    #[error(
+        "counterweight {weight} lies at {} mm along link {:?} and {} mm to the left of its axis, beyond all its parts: \
+         want a bar from root to tip, which is cut as long as needed, or a plate that reaches there",
+        fixed(1e3 * at[0], 1),
+        quote_clipped(link),
+        fixed(1e3 * at[1], 1)
+    )]
+    NotCarried {
+        /// The counterweight, counted from 1.
+        weight: usize,
+        /// The link.
+        link: String,
+        /// Its place along the link and to the left of its axis, m.
+        at: [f64; 2],
     },
     /// More than one end effector.
     #[error("{count} end effectors: want one, [end_effector]; several are not supported")]

@@ -42,7 +42,8 @@ pub use keys::KEYS;
 pub use model::{Machine, RelativeAngle, ResolvedClosure, ResolvedLink};
 pub use motors::Motors;
 pub use parts::{
-    DerivedNumbers, Ends, Hole, LinkNumber, Lump, MATERIALS, Material, Part, PartBody, PartSource, PlaneBody, Shape,
+    BarStock, DerivedNumbers, Ends, Hole, LinkNumber, Lump, MATERIALS, Material, Part, PartBody, PartSource, PlaneBody,
+    Shape,
 };
 pub use ranges::{ANGLE, MAX_ANGLE};
 pub use set::{MACHINE_TABLES, is_of_machine};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::Chain;
 use super::motors::Motors;
-use super::parts::{PartBody, PlaneBody, sum_of};
+use super::parts::{PartBody, PartSource, PlaneBody, sum_of};
 use super::spec::{Link, MachineSpec};
 use crate::planar::{MAX_DRIVES, Vector};
 
@@ -145,6 +145,13 @@ impl Machine {
     /// Returns what every part and lump brings, parts first, in the order of the file.
     pub fn part_bodies(&self) -> &[PartBody] {
         &self.0.part_bodies
+    }
+
+    /// Returns where a part begins and ends along its link, m from the root, in ascending order; `None` if there is no
+    /// such part.
+    pub fn part_ends(&self, part: usize) -> Option<[f64; 2]> {
+        let body = self.0.part_bodies.iter().find(|body| body.source == PartSource::Part(part))?;
+        Some([body.ends[0].min(body.ends[1]), body.ends[0].max(body.ends[1])])
     }
 
     /// Returns all parts and lumps of a link combined; `None` if it has none. Typed numbers of the link overrule it.

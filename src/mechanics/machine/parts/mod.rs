@@ -8,6 +8,7 @@
 //! | d | distance between two centres of mass | m |
 //! | I | inertia about the body's own centre of mass; two bodies have I₁ + I₂ + d² m₁ m₂ / (m₁ + m₂) | kg m² |
 
+mod bars;
 mod body;
 mod derived;
 mod hole;
@@ -17,6 +18,7 @@ mod polygon;
 mod section;
 mod weigh;
 
+pub use bars::BarStock;
 pub use body::PlaneBody;
 pub use derived::{DerivedNumbers, LinkNumber};
 pub use material::{MATERIALS, Material};

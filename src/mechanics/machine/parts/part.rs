@@ -116,6 +116,27 @@ pub struct Lump {
 }
 
 impl Part {
+    /// Returns a flat bar from root to tip of a link with a thickness, m; its width is still to be given.
+    pub fn flat(link: &str, thickness: f64) -> Self {
+        Self {
+            link: link.into(),
+            name: String::new(),
+            shape: Shape::Flat,
+            from: root(),
+            to: PlaceOnLink::default(),
+            across: 0.0,
+            material: usual(),
+            width: None,
+            thickness: Some(thickness),
+            diameter: None,
+            height: None,
+            wall: None,
+            ends: None,
+            polygon: Vec::new(),
+            holes: Vec::new(),
+        }
+    }
+
     /// Returns its name, or else its shape, section in mm and material.
     pub fn title(&self) -> String {
         if !self.name.is_empty() {

@@ -108,15 +108,23 @@ impl Section<'_> {
         Ok(body)
     }
 
-    /// Returns how far inside the outline of a flat bar or a plate a point lies, m; below 0 outside. The point is
-    /// given along the link and to the left of the part's line, m.
+    /// Returns how far inside the outline a point lies, m; below 0 outside. The point is given along the link and to
+    /// the left of the part's line, m.
     pub fn depth(&self, point: [f64; 2]) -> f64 {
-        let (low, high) = (self.from.min(self.to), self.from.max(self.to));
-        let half = 0.5 * self.part.width.unwrap_or_default();
-        match (self.part.shape, self.part.ends.unwrap_or_default()) {
-            (Shape::Plate, _) => polygon::depth(&self.part.polygon, point),
-            (_, Ends::Round) => half - polygon::distance([low, 0.0], [high, 0.0], point),
-            (_, Ends::Square) => (half - point[1].abs()).min(point[0] - low).min(high - point[0]),
+        self.part.depth(point, [self.from, self.to])
+    }
+}
+
+impl Part {
+    /// Returns how far inside its outline a point lies, m; below 0 outside. The point is given along the link and to
+    /// the left of the part's line, m; `ends` are the places where a bar begins and ends, m.
+    pub(super) fn depth(&self, point: [f64; 2], ends: [f64; 2]) -> f64 {
+        let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+        let half = 0.5 * self.width.or(self.diameter).unwrap_or_default();
+        match (self.shape, self.ends.unwrap_or_default()) {
+            (Shape::Plate, _) => polygon::depth(&self.polygon, point),
+            (Shape::Flat, Ends::Round) => half - polygon::distance([low, 0.0], [high, 0.0], point),
+            _ => (half - point[1].abs()).min(point[0] - low).min(high - point[0]),
         }
     }
 }

@@ -3,11 +3,12 @@
 use super::super::check::{Names, place_on_link};
 use super::super::error::{KeyPath, KeyStep, MachineError};
 use super::super::keys::rows_of;
+use super::super::model::Machine;
 use super::super::ranges::{LENGTH, PLACE, within};
 use super::super::spec::MachineSpec;
 use super::body::PlaneBody;
 use super::hole::{self, PlacedHole};
-use super::part::Part;
+use super::part::{Hole, Part};
 use super::section::Section;
 use super::{derived, material};
 
@@ -54,6 +55,21 @@ pub fn weigh(spec: &mut MachineSpec) -> Result<Vec<PartBody>, MachineError> {
     let sums: Vec<Option<PlaneBody>> = (0..links).map(|link| sum_of(&bodies, link)).collect();
     derived::settle(spec, &sums)?;
     Ok(bodies)
+}
+
+impl Machine {
+    /// Returns the centre of each hole of a part, m along the link from its root and to the left of the part's line,
+    /// and its diameter, m.
+    pub fn part_holes(&self, part: usize) -> Vec<([f64; 2], f64)> {
+        let spec = self.spec();
+        let Some(part) = spec.parts.get(part) else { return Vec::new() };
+        let Some(link) = spec.links.iter().position(|link| link.name == part.link) else { return Vec::new() };
+        let place = |hole: &Hole| {
+            let at = place_on_link(spec, link, &hole.at, KeyPath::default).ok()?;
+            Some(([at, hole.across], hole.diameter))
+        };
+        part.holes.iter().filter_map(place).collect()
+    }
 }
 
 /// Returns all parts of a link combined; `None` if it has none.
