@@ -125,6 +125,8 @@ pub enum SessionCommand {
     Take(usize),
     /// Apply the link lengths found, with their counterweights.
     TakeLengths,
+    /// Cut the links from bars, with the counterweights that balance what is cut.
+    TakeCut,
     /// Apply the counterweights and rotor ratios with the least Σ |D_k|, kg m², from which the angular momentum
     /// Σ D_k q̇_k of the arm follows.
     TakeStillest,

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use serde::Serialize;
 use toml::{Table, Value};
 
 use super::edit::Edit;
@@ -15,9 +16,12 @@ use stillbase_mechanics::counterweights::{
     BoundRelaxation, CounterweightError, CounterweightSite, CounterweightSpec, FreeRotor, Front, Objective,
     PlacedCounterweights, RotorFreedom, front, place_weights,
 };
-use stillbase_mechanics::machine::{Counterweight, Drive, Inertia, Length, Link, Machine, MachineSpec};
+use stillbase_mechanics::machine::{
+    BarStock, Counterweight, Drive, Inertia, Length, Link, MATERIALS, Machine, MachineError, MachineSpec, Material,
+};
 use stillbase_planning::reactionless::Decimal;
 use stillbase_settings::change::{DEFAULT_WORD, at, join, leaves, single_change};
+use stillbase_settings::number::ShortNumber;
 
 /// Penalty on a change of the mass of a counterweight, 1/kg.
 const MASS_PENALTY_PER_KG: f64 = 1.0;
@@ -178,6 +182,32 @@ impl DesignBrief {
         )
     }
 
+    /// Returns the bars from which links are cut, and a machine that knows their material.
+    ///
+    /// # Errors
+    /// If the machine is not valid with one more material.
+    pub fn stock(&self, machine: &Machine) -> Result<(Machine, BarStock), MachineError> {
+        let known = MATERIALS.iter().map(|(name, density)| (*name, *density));
+        let own = machine.spec().materials.iter().map(|material| (material.name.as_str(), material.density));
+        let name = known.chain(own).find(|(_, density)| *density == self.bar_density).map(|(name, _)| name.to_owned());
+        let (machine, material) = match name {
+            Some(name) => (machine.clone(), name),
+            None => {
+                let name = format!("{} kg/m³", ShortNumber(self.bar_density));
+                let mut spec = machine.spec().clone();
+                spec.materials.push(Material { name: name.clone(), density: self.bar_density });
+                (Machine::new(spec)?, name)
+            }
+        };
+        let stock = BarStock {
+            width: self.bar_width,
+            thickness: self.bar_thickness,
+            material,
+            pin_diameter: self.pin_diameter,
+        };
+        Ok((machine, stock))
+    }
+
     /// Returns the optimisation problem of the lightest counterweights for a machine, within the bounds of the brief.
     pub fn lightest_problem(&self, machine: &Machine) -> CounterweightSpec {
         let spec = machine.spec();
@@ -256,7 +286,7 @@ pub(super) fn balancing_change(scenario: &Scenario) -> Option<Table> {
 }
 
 /// Returns the edit that turns the machine into another one with the same links. It sets the properties of links, the
-/// lengths, the counterweights, the payload mass and the rotor ratios. Returns `None` if nothing differs.
+/// lengths, the parts, the counterweights, the payload mass and the rotor ratios. Returns `None` if nothing differs.
 pub fn machine_edit(scenario: &Scenario, of: &Machine) -> Option<Edit> {
     let (was, is) = (scenario.machine.spec(), of.spec());
     let links = was.links.iter().zip(&is.links).flat_map(|(was, is)| {
@@ -277,7 +307,20 @@ pub fn machine_edit(scenario: &Scenario, of: &Machine) -> Option<Edit> {
         Edit::Set { change: weights } if carries(was) != carries(is) => join(change, &weights),
         _ => change,
     };
+    let lists =
+        [("material", lists_of(was, is, |spec| &spec.materials)), ("part", lists_of(was, is, |spec| &spec.parts))];
+    let lists = lists.into_iter().filter_map(|(key, list)| Some(Table::from_iter([(key.to_owned(), list?)])));
+    let change = lists.fold(change, |all, one| join(all, &one));
     (!change.is_empty()).then_some(Edit::Set { change })
+}
+
+/// Returns a list of a machine as a value if it differs from that of another.
+fn lists_of<T: Serialize + PartialEq>(
+    was: &MachineSpec,
+    is: &MachineSpec,
+    list: impl Fn(&MachineSpec) -> &Vec<T>,
+) -> Option<Value> {
+    (list(was) != list(is)).then(|| Value::try_from(list(is)).ok()).flatten()
 }
 
 /// Returns the edit that gives a machine the counterweights, the payload mass and the rotor ratios of another. If

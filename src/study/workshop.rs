@@ -11,6 +11,7 @@ use stillbase_mechanics::counterweights::{
     CounterweightError, CounterweightSpec, Disc, PlacedCounterweights, place_weights,
 };
 use stillbase_mechanics::machine::{BarStock, Inertia, Machine, MachineError};
+use stillbase_query::QuickQuery;
 
 /// Shares of the greatest tails that are tried first, for all links alike.
 const SHARES: [f64; 8] = [1.0, 0.75, 0.55, 0.4, 0.25, 0.12, 0.05, 0.0];
@@ -102,6 +103,18 @@ impl CutRequest {
     pub fn balance(&self, machine: &Machine, request: &CounterweightSpec) -> Result<CutMachine, NoCut> {
         let exact = balance_as_cut(machine, request, &self.stock)?;
         if self.bought { Ok(as_bought(&exact, &request.disc, &self.stock)?) } else { Ok(exact) }
+    }
+}
+
+/// Query for the machine that is balanced as it is cut, with discs of the given request.
+pub struct CutQuery;
+
+impl QuickQuery for CutQuery {
+    type Input = (Machine, CounterweightSpec, CutRequest);
+    type Answer = Result<CutMachine, NoCut>;
+
+    fn answer((machine, request, cut): &Self::Input) -> Self::Answer {
+        cut.balance(machine, request)
     }
 }
 

@@ -63,6 +63,7 @@ errors! {
     study::spectrum::SpectrumError,
     study::tolerance::ToleranceError,
     study::trim::NoCorrection,
+    study::workshop::NoCut,
     study::trim::NoTrim,
     study::trim::TrimError,
     settings::spelling::UnknownName,

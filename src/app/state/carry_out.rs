@@ -184,6 +184,7 @@ impl AppState {
             SessionCommand::TakeGiven(taking) => self.take_given(taking)?,
             SessionCommand::Take(i) => self.take_of_front(i),
             SessionCommand::TakeLengths => self.take_lengths()?,
+            SessionCommand::TakeCut => self.take_cut()?,
             SessionCommand::TakeStillest => self.take_stillest()?,
             SessionCommand::KeepRun => self.keep_run(),
             SessionCommand::OpenRun(entry) => self.open_run(entry),

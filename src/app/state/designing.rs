@@ -90,6 +90,16 @@ impl AppState {
         Ok(())
     }
 
+    /// Makes the machine of the bars that are weighed, with their counterweights.
+    pub(super) fn take_cut(&mut self) -> Result<(), String> {
+        let found = studio::as_cut(self.queries(), &self.session).ok_or("the machine is not weighed as it is cut")?;
+        let found = found.as_ref().as_ref().map_err(ToString::to_string)?;
+        let edit =
+            machine_edit(self.session.scenario(), &found.placed.machine).ok_or("the machine is cut like this")?;
+        self.change(SessionChange::Edit(edit));
+        Ok(())
+    }
+
     /// Applies the counterweights of point `i` of the Pareto front.
     pub(super) fn take_of_front(&mut self, i: usize) {
         if let Some(machine) = studio::of_front(self.queries(), &self.session, i) {

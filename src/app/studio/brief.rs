@@ -30,17 +30,8 @@ pub fn show(ui: &mut Ui, scenario: &Scenario, is_balanced: bool, p: &Palette, co
     ui.horizontal(|ui| {
         ui.label("material").on_hover_text(tip_of("design.density"));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let words = |name: &str, density: f64| format!("{name}, {density} kg/m³");
-            let known = MATERIALS.iter().find(|(_, density)| *density == brief.density);
-            let shown = known.map_or_else(|| "another".to_owned(), |(name, density)| words(name, *density));
-            let list = egui::ComboBox::from_id_salt("material").selected_text(shown).width(172.0).show_ui(ui, |ui| {
-                for (name, density) in MATERIALS {
-                    if ui.selectable_label(density == brief.density, words(name, density)).clicked() {
-                        undoable_edit(commands, Edit::set("design.density", density));
-                    }
-                }
-            });
-            name(&list.response, "material of the counterweights");
+            let none = std::iter::empty();
+            materials(ui, "material of the counterweights", "design.density", brief.density, none, commands);
         });
     });
     let millimetres = |label, path, range: std::ops::RangeInclusive<f64>| NumberRow {
@@ -74,6 +65,29 @@ pub fn show(ui: &mut Ui, scenario: &Scenario, is_balanced: bool, p: &Palette, co
     draw_bound(ui, p, &BoundRow { number: row, path: "design.clearance", scale: 1e-3 }, brief.clearance, 5.0, commands);
     payloads(ui, p, brief.payload, spec.payload.mass, commands);
     rotors(ui, p, &spec.drives, brief, commands);
+}
+
+/// Draws the list of materials, from which a density, kg/m³, is chosen; `own` are those that the machine adds.
+pub(super) fn materials<'a>(
+    ui: &mut Ui,
+    label: &str,
+    path: &str,
+    density: f64,
+    own: impl Iterator<Item = (&'a str, f64)>,
+    commands: &mut Vec<Command>,
+) {
+    let words = |name: &str, density: f64| format!("{name}, {density} kg/m³");
+    let all: Vec<(&str, f64)> = MATERIALS.into_iter().chain(own).collect();
+    let known = all.iter().find(|(_, known)| *known == density);
+    let shown = known.map_or_else(|| "another".to_owned(), |(name, density)| words(name, *density));
+    let list = egui::ComboBox::from_id_salt(label).selected_text(shown).width(172.0).show_ui(ui, |ui| {
+        for (name, known) in all {
+            if ui.selectable_label(known == density, words(name, known)).clicked() {
+                undoable_edit(commands, Edit::set(path, known));
+            }
+        }
+    });
+    name(&list.response, label);
 }
 
 /// Draws the intervals for gear ratios of rotors: a rotor that turns in reverse can compensate a drive's momentum.

@@ -21,6 +21,7 @@ use stillbase_study::front_point::FrontMeasure;
 use stillbase_study::fronts::{FrontCase, Fronts, FrontsRequest, MachineFront};
 use stillbase_study::lengths::LengthsQuery;
 use stillbase_study::measures::Measures;
+use stillbase_study::workshop::{CutMachine, CutQuery, CutRequest, NoCut};
 
 /// Number of points of a Pareto front.
 const FRONT_POINTS: usize = 25;
@@ -40,6 +41,8 @@ pub struct DesignFacts {
     front: Option<QueryResult<Points>>,
     /// The search for lengths of this machine, if there is one.
     pub(super) length_search: Option<LengthsResult>,
+    /// The machine as it is cut; `None` if that is not asked for.
+    pub(super) cut: Option<QueryResult<Result<CutMachine, NoCut>>>,
     /// Pareto fronts of other machines; `None` without such machines, or while the equations are on display.
     other_fronts: Option<QueryResult<Vec<MachineFront>>>,
     /// The measure that colours the points of the front.
@@ -247,6 +250,7 @@ impl DesignFacts {
             sums,
             front: None,
             length_search: queries.newest::<LengthsQuery>(),
+            cut: cut_request(session).map(|request| queries.ask_in_background::<QuickWork<CutQuery>>(&request)),
             other_fronts: None,
             front_measure: None,
             lesson: None,
@@ -317,6 +321,22 @@ pub fn of_front(queries: &Queries, session: &Session, i: usize) -> Option<Machin
     let sums = queries.ask::<QuickWork<Sums>>(&session.scenario().machine);
     let front = queries.ask::<FrontSearch>(&front_request(sums.bare.as_ref()?, &session.scenario().design));
     Some(front.as_ref().as_ref().ok()?.points.get(i)?.machine.clone())
+}
+
+/// Returns the machine of a session as it is cut, found now if it is not known; `None` if that is not asked for.
+pub fn as_cut(queries: &Queries, session: &Session) -> Option<Arc<Result<CutMachine, NoCut>>> {
+    Some(queries.ask::<QuickWork<CutQuery>>(&cut_request(session)?))
+}
+
+/// Returns the question for the machine as it is cut, if its design asks for it.
+fn cut_request(session: &Session) -> Option<<CutQuery as QuickQuery>::Input> {
+    let (machine, brief) = (&session.scenario().machine, &session.scenario().design);
+    if !brief.as_cut {
+        return None;
+    }
+    let (machine, stock) = brief.stock(machine).ok()?;
+    let request = brief.lightest_problem(&machine);
+    Some((machine, request, CutRequest { stock, bought: false }))
 }
 
 /// Stops the unfinished queries of the design view.

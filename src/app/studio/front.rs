@@ -235,7 +235,7 @@ fn summary(
         true => "no counterweights yet".to_owned(),
         false => format!("{} kg added, Σ D {} kg m²", signed(mass, 2), signed(inertia, 3)),
     };
-    if at.is_none() && !facts.is_balanced() {
+    if at.is_none() && mass >= MIN_ADDED_MASS_KG && !facts.is_balanced() {
         text.push_str(": not balanced, beside the curve");
     }
     if let Some((colours, value)) = colours.zip(at).and_then(|(colours, i)| Some((colours, (*colours.values.get(i)?)?)))

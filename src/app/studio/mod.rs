@@ -3,6 +3,7 @@
 
 mod bars;
 mod brief;
+mod cut;
 mod equations;
 mod facts;
 mod front;
@@ -27,7 +28,7 @@ use super::{Command, FileDialog, FilePurpose, Switch, ViewChange, ViewState};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Session;
 
-pub use facts::{DesignFacts, leave, of_front};
+pub use facts::{DesignFacts, as_cut, leave, of_front};
 
 /// Default widths of the panels, points.
 const TABLE_WIDTH_PT: f32 = 336.0;
@@ -64,6 +65,7 @@ pub fn show(
                 let is_balanced = facts.terms.iter().all(|term| term.is_balanced);
                 brief::show(ui, session.scenario(), is_balanced, &p, commands);
                 lengths::show(ui, session.scenario(), facts.length_search.as_ref(), &p, commands);
+                cut::show(ui, session, facts, &p, commands);
                 measures::show(ui, session, facts, &p);
             });
         });

@@ -17,6 +17,9 @@ use stillbase_settings::range::{Range, RangeCheck, quote_clipped};
 
 const LINK: &str = "a link of this name";
 const SOUGHT: &str = "a length that is sought";
+const AS_CUT: &str = "bars are weighed as they are cut";
+/// Range of the dimensions of bars and holes.
+const BAR_RANGE: Range = Range::new(1e-4, 10.0, "m");
 const COUNTERWEIGHT: &str = "a counterweight of this number";
 
 keyed! {
@@ -50,6 +53,18 @@ keyed! {
         heaviest: Option<f64> = Key::NONE, range: Range::new(1e-3, 1e5, "kg"), instead: "any mass";
         /// Minimum distance between the edge of a disc and the centre of every pin of its link.
         clearance: Option<f64> = Key::NONE, range: Range::new(0.0, 1.0, "m"), instead: "discs may cover pins";
+        /// Whether links are cut from flat bars: tails, arms and holes are weighed with the counterweights that they
+        /// carry. Links with parts of their own keep these.
+        as_cut: bool = "false";
+        // The defaults are those of `BarStock`.
+        /// Width of the bars.
+        bar_width: f64 = "0.03", range: BAR_RANGE, when: AS_CUT;
+        /// Thickness of the bars.
+        bar_thickness: f64 = "0.006", range: BAR_RANGE, when: AS_CUT;
+        /// Density of the bars.
+        bar_density: f64 = "2700", range: DENSITY_RANGE, when: AS_CUT;
+        /// Diameter of the holes for pins.
+        pin_diameter: f64 = "0.008", range: BAR_RANGE, when: AS_CUT;
         /// Counterweights minimise the largest residual over all payloads from the first to the second mass; to balance
         /// one payload exactly, set `payload.mass` and omit this key.
         payload: Option<[f64; 2]> = Key::NONE, range: ranges::LOAD, instead: "what the end effector holds";

@@ -9,6 +9,8 @@ use super::weigh::{PartBody, PartSource};
 
 /// Places closer than this are one, m.
 const SAME_PLACE: f64 = 1e-9;
+/// Name of a bar that is cut anew with every design.
+const CUT_BAR: &str = "cut bar";
 /// How the name of an arm begins, which carries a counterweight off the axis of its link.
 const ARM: &str = "arm to counterweight";
 
@@ -37,35 +39,42 @@ impl Part {
     pub fn is_arm(&self) -> bool {
         self.name.starts_with(ARM)
     }
+
+    /// Returns whether it has a name of its own; a bar that is cut anew is named after its section.
+    pub(super) fn has_own_name(&self) -> bool {
+        !(self.name.is_empty() || self.name == CUT_BAR)
+    }
 }
 
 impl Machine {
     /// Returns the machine with its links as they are cut: a bar of every link reaches from `reach[j][0]` to
     /// `reach[j][1]`, m from its root, and at least over root, tip, pins and fixed counterweights. A link without parts
-    /// becomes a bar of the stock, whose numbers replace those of the link. Lumps and other parts stay; arms go.
+    /// becomes a bar of the stock, whose numbers replace those of the link; so does one whose bar was cut before. Lumps
+    /// and parts of other names stay; arms go.
     ///
     /// # Errors
     /// If the stock does not fit the machine.
     pub fn with_bars(&self, stock: &BarStock, reach: &[[f64; 2]]) -> Result<Self, MachineError> {
         let mut spec = self.spec().clone();
-        spec.parts.retain(|part| !part.is_arm());
-        let spines: Vec<Option<usize>> = {
-            let bare = Self::new(spec.clone())?;
-            (0..spec.links.len()).map(|j| bare.spine(j)).collect()
-        };
-        for (j, spine) in spines.into_iter().enumerate() {
+        let spines: Vec<Option<usize>> = (0..spec.links.len()).map(|j| self.spine(j)).collect();
+        let ends = |j: usize| {
             let [from, to] = self.least_extent(j);
             let [low, high] = reach.get(j).copied().unwrap_or([from, to]);
-            let length = self.resolved_links()[j].length;
-            let ends = [place(from.min(low), length), place(to.max(high), length)];
-            match spine {
-                Some(i) => [spec.parts[i].from, spec.parts[i].to] = ends,
-                // Other parts carry what lies on them.
-                None if spec.parts.iter().any(|part| part.link == spec.links[j].name) => {}
-                None => {
-                    spec.parts.push(self.bar(j, stock, ends));
-                    LinkNumber::ALL.iter().for_each(|number| spec.links[j].type_number(*number, None));
-                }
+            [from.min(low), to.max(high)].map(|at| place(at, self.resolved_links()[j].length))
+        };
+        let kept = self.spec().parts.iter().enumerate().filter(|(_, part)| !part.is_arm() && part.name != CUT_BAR);
+        let kept = kept.map(|(i, part)| match spines.iter().position(|spine| *spine == Some(i)) {
+            Some(j) => {
+                let [from, to] = ends(j);
+                Part { from, to, ..part.clone() }
+            }
+            None => part.clone(),
+        });
+        spec.parts = kept.collect();
+        for j in 0..spec.links.len() {
+            if spec.parts.iter().all(|part| part.link != spec.links[j].name) {
+                spec.parts.push(self.bar(j, stock, ends(j)));
+                LinkNumber::ALL.iter().for_each(|number| spec.links[j].type_number(*number, None));
             }
         }
         Self::new(spec)
@@ -87,6 +96,7 @@ impl Machine {
         pins.dedup_by(|b, a| *b - *a <= SAME_PLACE);
         let hole = |at: f64| Hole { at: place(at, length), across: 0.0, diameter: stock.pin_diameter };
         Part {
+            name: CUT_BAR.into(),
             from,
             to,
             holes: pins.into_iter().map(hole).collect(),

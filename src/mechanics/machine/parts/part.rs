@@ -139,7 +139,7 @@ impl Part {
 
     /// Returns its name, or else its shape, section in mm and material.
     pub fn title(&self) -> String {
-        if !self.name.is_empty() {
+        if self.has_own_name() {
             return self.name.clone();
         }
         let mm = |length: Option<f64>| ShortNumber((1e9 * length.unwrap_or_default()).round() / 1e6).to_string();
