@@ -14,4 +14,5 @@ mod series;
 mod spectrum;
 mod tolerance;
 mod trim;
+mod workshop;
 mod workspace;

@@ -50,7 +50,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, p: &Palette, co
         }
         match facts.cut.as_ref().and_then(|cut| cut.known()).map(|found| &**found) {
             None => note(ui, p, "weighing …"),
-            Some(Ok(found)) => result(ui, found, p, commands),
+            Some(Ok(found)) => result(ui, session, found, p, commands),
             Some(Err(why)) => {
                 ui.label(RichText::new(why.to_string()).font(plain(12.0)).color(colour(p.reaction)));
                 if let NoCut::Weights(why) = why {
@@ -62,7 +62,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, p: &Palette, co
 }
 
 /// Draws the masses and what is left of the balance, with the button that makes the machine so.
-fn result(ui: &mut Ui, found: &CutMachine, p: &Palette, commands: &mut Vec<Command>) {
+fn result(ui: &mut Ui, session: &Session, found: &CutMachine, p: &Palette, commands: &mut Vec<Command>) {
     let BarsReport { mass, tail, tried, force_residual, coupling_residual } = BarsReport::of(found);
     let added = signed(found.placed.added_mass, 3);
     let text =
@@ -73,6 +73,10 @@ fn result(ui: &mut Ui, found: &CutMachine, p: &Palette, commands: &mut Vec<Comma
          Lengths of bars: the best of {tried} tried; the counterweights on them are the lightest."
     );
     note(ui, p, &proof);
+    let [is, of] = [&session.scenario().machine, &found.placed.machine].map(|machine| machine.spec());
+    if (&is.parts, &is.counterweights) == (&of.parts, &of.counterweights) {
+        return note(ui, p, "The machine is cut like this.");
+    }
     let tip = "Makes the links of these bars, with these counterweights: one step to undo";
     let button = ui.button(RichText::new("make it so").font(plain(12.0))).on_hover_text(tip);
     name(&button, "Make the links of these bars");
