@@ -223,16 +223,11 @@ impl TailSearch<'_> {
             (site.from, site.to) = (site.from.max(*from), site.to.min(*to));
             site.from <= site.to
         });
-        // An arm is as wide as a bar, half of it on either side of its disc.
-        let is_beside = |link: usize| self.request.sites.iter().any(|site| site.link == link && site.across > 0.0);
-        let room = |link: usize| if is_beside(link) { 0.5 * self.stock.width } else { 0.0 };
-        let cut: Vec<[f64; 2]> =
-            reach.iter().enumerate().map(|(link, [from, to])| [from - room(link), to + room(link)]).collect();
-        let mut bars = self.bare.with_bars(self.stock, &cut)?;
+        let mut bars = self.bare.with_bars(self.stock, reach)?;
         let mut off = f64::INFINITY;
         for _ in 0..MAX_ROUNDS {
             let placed = place_weights(&bars, &request)?;
-            let cut = placed.machine.with_arms(self.stock)?;
+            let cut = with_arms(&placed.machine, self.stock, reach)?;
             let [force, coupling] = residual(&cut);
             if force.max(coupling) <= RESIDUAL {
                 return Ok(PlacedCounterweights { machine: cut, ..placed });
@@ -246,7 +241,7 @@ impl TailSearch<'_> {
     fn trim(&mut self, best: &mut Attempt) {
         for _ in 0..MAX_ROUNDS {
             let needed = |(link, reach): (usize, &[f64; 2])| {
-                let [from, to] = on_bar(&best.placed.machine, link, 0.0);
+                let [from, to] = on_bar(&best.placed.machine, link);
                 [from.max(reach[0]), to.min(reach[1])]
             };
             let shorter: Vec<[f64; 2]> = best.reach.iter().enumerate().map(needed).collect();
@@ -265,15 +260,24 @@ pub fn residual(machine: &Machine) -> [f64; 2] {
     [inertia.force_residual(), inertia.invariance_residual()]
 }
 
-/// Returns the interval that the bar of a link needs to cover for pins and discs, m from its root; a disc beside the bar
-/// takes `beside` on either side of its place.
-fn on_bar(machine: &Machine, link: usize, beside: f64) -> [f64; 2] {
+/// Returns a machine with arms for the discs beside its bars, which reach over `reach`, m, and the feet of their arms.
+fn with_arms(machine: &Machine, stock: &BarStock, reach: &[[f64; 2]]) -> Result<Machine, MachineError> {
+    let armed = machine.with_bars(stock, reach)?.with_arms(stock)?;
+    let mut feet = reach.to_vec();
+    for arm in armed.spec().parts.iter().filter(|part| part.is_arm()) {
+        let Some(link) = armed.links().iter().position(|link| link.name == arm.link) else { continue };
+        for [at, _] in &arm.polygon {
+            feet[link] = [feet[link][0].min(*at), feet[link][1].max(*at)];
+        }
+    }
+    if feet == reach { Ok(armed) } else { machine.with_bars(stock, &feet)?.with_arms(stock) }
+}
+
+/// Returns the interval that the bar of a link needs to cover for pins and discs, m from its root.
+fn on_bar(machine: &Machine, link: usize) -> [f64; 2] {
     let name = &machine.links()[link].name;
     let discs = machine.spec().counterweights.iter().filter(|weight| weight.link == *name);
-    discs.fold(machine.least_extent(link), |[from, to], weight| {
-        let room = if weight.across == 0.0 { 0.0 } else { beside };
-        [from.min(weight.at - room), to.max(weight.at + room)]
-    })
+    discs.fold(machine.least_extent(link), |[from, to], weight| [from.min(weight.at), to.max(weight.at)])
 }
 
 /// Returns the greatest length by which a bar reaches beyond root, tip and pins of its link, m.
@@ -302,9 +306,8 @@ pub fn as_bought(machine: &CutMachine, disc: &Disc, stock: &BarStock) -> Result<
         (weight.at, weight.across) = (round(weight.at), round(weight.across));
     }
     let rounded = Machine::new(spec)?;
-    let reach: Vec<[f64; 2]> =
-        (0..rounded.links().len()).map(|link| on_bar(&rounded, link, 0.5 * stock.width)).collect();
-    let cut = rounded.with_bars(stock, &reach)?.with_arms(stock)?;
+    let reach: Vec<[f64; 2]> = (0..rounded.links().len()).map(|link| on_bar(&rounded, link)).collect();
+    let cut = with_arms(&rounded, stock, &reach)?;
     let (residual, tail) = (residual(&cut), longest_tail(&cut));
     let added_mass = cut.spec().counterweights.iter().filter(|weight| !weight.fixed).map(|weight| weight.mass).sum();
     let placed = PlacedCounterweights { machine: cut, added_mass, ..machine.placed.clone() };
