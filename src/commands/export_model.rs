@@ -13,6 +13,7 @@ use stillbase_files::write_new;
 use stillbase_mechanics::machine::Machine;
 use stillbase_settings::number::{counted, fixed};
 
+use super::dimensions::Dimensions;
 use super::exit::print_message;
 use super::failure::Failure;
 use super::input::MachineArgument;
@@ -39,18 +40,8 @@ pub struct ExportModelArguments {
     /// Angles of the drives in the keyframe of .xml, rad; default: the middle of the limits
     #[arg(long, value_name = "Q1,Q2,…", value_delimiter = ',', allow_hyphen_values = true)]
     pose: Vec<f64>,
-    /// Width of the bars, m, in .svg and .dxf; default: 0.03
-    #[arg(long, value_name = "W")]
-    bar_width: Option<f64>,
-    /// Diameter of the holes for pins, m, in .svg and .dxf; default: 0.008
-    #[arg(long, value_name = "D")]
-    pin_diameter: Option<f64>,
-    /// Density of the counterweights, kg/m³; default: that of steel, 7850
-    #[arg(long, value_name = "DENSITY")]
-    material: Option<f64>,
-    /// Thickness of the counterweights, m; default: the thickness that gives each its mass
-    #[arg(long, value_name = "T")]
-    thickness: Option<f64>,
+    #[command(flatten)]
+    dimensions: Dimensions,
     #[arg(short, long, value_name = "FILE", help = format!("Write it to this file; its ending chooses what is written: {}", form::endings().join(", ")))]
     output: PathBuf,
     /// Replace the file if it exists
@@ -104,7 +95,7 @@ impl ExportModelArguments {
             return Err(Failure::wrong_input(format!("--pose {bad}: want finite angles in rad")));
         }
         let pose = if self.pose.is_empty() { middle(&machine) } else { self.pose.clone() };
-        let cut = self.cut();
+        let cut = self.dimensions.cut();
         let text = form.written(&machine, &pose, &cut).map_err(Failure::wrong_input)?;
         let of = described(&machine, form, pose, &cut)?;
         write_new(&self.output, text.as_bytes(), self.force)?;
@@ -113,22 +104,12 @@ impl ExportModelArguments {
         self.format.print(&answer, |answer| answer.of.words(&machine))
     }
 
-    fn cut(&self) -> Cut {
-        let usual = Cut::default();
-        Cut {
-            bar_width: self.bar_width.unwrap_or(usual.bar_width),
-            pin_diameter: self.pin_diameter.unwrap_or(usual.pin_diameter),
-            density: self.material.unwrap_or(usual.density),
-            thickness: self.thickness,
-        }
-    }
-
     /// Refuses options that have no effect on the file.
     fn check_options(&self, form: Form) -> Result<(), Failure> {
         let all: [OptionScope; 3] = [
             ("--pose", self.pose.is_empty(), |shows| shows == ModelContent::Pose),
-            ("--bar-width", self.bar_width.is_none(), |shows| shows == ModelContent::Links),
-            ("--pin-diameter", self.pin_diameter.is_none(), |shows| shows == ModelContent::Links),
+            ("--bar-width", self.dimensions.bar_width.is_none(), |shows| shows == ModelContent::Links),
+            ("--pin-diameter", self.dimensions.pin_diameter.is_none(), |shows| shows == ModelContent::Links),
         ];
         match all.into_iter().find(|(_, is_left_out, counts)| !is_left_out && !counts(form.shows)) {
             Some((option, _, counts)) => {

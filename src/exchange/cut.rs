@@ -15,6 +15,10 @@ pub struct Cut {
     pub density: f64,
     /// Thickness of the discs, m; `None`: the thickness that gives each disc its mass.
     pub thickness: Option<f64>,
+    /// Thickness of the bars, m.
+    pub plate_thickness: f64,
+    /// Gap between the bars of neighbouring layers, m, which spacers on the pins keep.
+    pub spacer: f64,
 }
 
 /// Error of dimensions with which parts cannot be cut.
@@ -59,9 +63,16 @@ pub enum CutError {
 }
 
 impl Default for Cut {
-    /// Bars of 30 mm, pins of 8 mm, discs of steel.
+    /// Bars of 30 mm × 6 mm, pins of 8 mm, spacers of 1 mm, discs of steel.
     fn default() -> Self {
-        Self { bar_width: 0.030, pin_diameter: 0.008, density: 7850.0, thickness: None }
+        Self {
+            bar_width: 0.030,
+            pin_diameter: 0.008,
+            density: 7850.0,
+            thickness: None,
+            plate_thickness: 0.006,
+            spacer: 0.001,
+        }
     }
 }
 
@@ -95,6 +106,21 @@ impl Cut {
             }
         }
         Ok(())
+    }
+
+    /// Checks that the links of a machine can be cut and stacked in layers.
+    ///
+    /// # Errors
+    /// If a dimension is out of range, or if holes overlap or are too wide.
+    pub fn check_stack(&self, machine: &Machine) -> Result<(), CutError> {
+        self.check(machine)?;
+        measure("plate thickness", Some(self.plate_thickness), "m")?;
+        measure("spacer", Some(self.spacer), "m")
+    }
+
+    /// Returns the distance between the middles of neighbouring layers, m.
+    pub fn layer_pitch(&self) -> f64 {
+        self.plate_thickness + self.spacer
     }
 
     /// Returns the thickness of a counterweight, m; `None` for a point. Drawings, lists and models have it from here.

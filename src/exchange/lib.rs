@@ -10,6 +10,7 @@ pub mod import;
 mod look;
 pub mod mjcf;
 pub mod parts;
+pub mod solids;
 mod tree;
 mod turn;
 pub mod urdf;
