@@ -21,5 +21,5 @@ pub use clearance::Clearance;
 pub use contact::{Between, Contact};
 pub use overlap::TOLERANCE;
 pub use report::{Change, LayersReport, LinkLayer};
-pub use request::{LayersQuery, LayersRequest, NoLayers, find_layers};
+pub use request::{Conflict, LayersQuery, LayersRequest, NoLayers, find_contacts, find_layers};
 pub use stack::MAX_LAYERS;

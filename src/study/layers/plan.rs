@@ -4,6 +4,9 @@ use stillbase_exchange::solids::{Axle, LinkSolid};
 use stillbase_mechanics::machine::{Chain, Machine, place_of};
 use stillbase_mechanics::planar::{UnitVectors, Vector, cross, dot, length};
 
+/// Sine of the angle between segments that count as parallel.
+const PARALLEL: f64 = 1e-12;
+
 /// A solid seen from above: all points within a radius of a segment, which moves with a link.
 #[derive(Clone, Debug)]
 pub struct PlanSolid {
@@ -85,6 +88,10 @@ fn foot([from, to]: [Vector; 2], p: Vector) -> Vector {
 fn crossing(a: [Vector; 2], b: [Vector; 2]) -> Option<Vector> {
     let (u, v, w) = (a[1] - a[0], b[1] - b[0], b[0] - a[0]);
     let turn = cross(u, v);
+    // Where two segments are parallel but for rounding, one of their ends is as near as any other point.
+    if turn.abs() <= PARALLEL * length(u) * length(v) {
+        return None;
+    }
     let (s, t) = (cross(w, v) / turn, cross(w, u) / turn);
     let within = |x: f64| (0.0..=1.0).contains(&x);
     (within(s) && within(t)).then(|| a[0] + u * s)

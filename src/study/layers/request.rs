@@ -84,7 +84,7 @@ impl fmt::Display for Conflict {
                 write!(f, ", {} s", fixed(time, 3))?;
             }
         }
-        Ok(())
+        f.write_str("; want narrower limits, or narrower bars; along one task an order may exist")
     }
 }
 
@@ -95,24 +95,46 @@ fn listed(names: &[String]) -> String {
     }
 }
 
+impl LayersRequest {
+    /// Returns the poses of the task, if there is one.
+    fn task(&self) -> Result<Option<TaskPoses>, NoLayers> {
+        match &self.motion {
+            Some(motion) if motion.0.at(0.0).q.len() == self.machine.drives() => Ok(Some(TaskPoses::of(&motion.0))),
+            None if !self.along_task => Ok(None),
+            _ => Err(NoLayers::Motion(self.machine.drives())),
+        }
+    }
+
+    fn contacts(&self, task: Option<&TaskPoses>) -> Result<(Solids, Vec<Contact>), NoLayers> {
+        let (machine, cut) = (&self.machine, &self.cut);
+        cut.check_stack(machine)?;
+        let solids = Solids::of(machine, cut);
+        let way = match task.filter(|_| self.along_task) {
+            Some(task) => Way::Task(task),
+            None => Way::Limits(PoseRange::of(machine)),
+        };
+        let contacts = solids.contacts(machine, cut, &way);
+        Ok((solids, contacts))
+    }
+}
+
+/// Finds the solids of a machine that overlap in plan.
+///
+/// # Errors
+/// If the parts cannot be cut, or the motion is of another machine.
+pub fn find_contacts(request: &LayersRequest) -> Result<Vec<Contact>, NoLayers> {
+    let task = request.task()?;
+    Ok(request.contacts(task.as_ref())?.1)
+}
+
 /// Finds layers for the links of a machine.
 ///
 /// # Errors
 /// If the parts cannot be cut, the motion is of another machine, or no order exists or is found.
 pub fn find_layers(request: &LayersRequest) -> Result<LayersReport, NoLayers> {
-    let LayersRequest { machine, cut, motion, along_task } = request;
-    cut.check_stack(machine)?;
-    let task = match motion {
-        Some(motion) if motion.0.at(0.0).q.len() == machine.drives() => Some(TaskPoses::of(&motion.0)),
-        None if !along_task => None,
-        _ => return Err(NoLayers::Motion(machine.drives())),
-    };
-    let solids = Solids::of(machine, cut);
-    let way = match task.as_ref().filter(|_| *along_task) {
-        Some(task) => Way::Task(task),
-        None => Way::Limits(PoseRange::of(machine)),
-    };
-    let meetings = solids.contacts(machine, cut, &way);
+    let LayersRequest { machine, cut, .. } = request;
+    let task = request.task()?;
+    let (solids, meetings) = request.contacts(task.as_ref())?;
     let links = machine.links().len();
     let stack = Stack::of(links, &solids, cut, &meetings);
     let mut budget = ORDERS;

@@ -120,9 +120,7 @@ impl Stack {
 
     /// Returns the most layers that a least order can need.
     fn most_layers(&self) -> usize {
-        let steps = self.apart.iter().flatten().copied().chain(self.over.iter().map(|(_, _, apart)| *apart));
-        let (widest, floor) = (steps.max().unwrap_or(0).max(1), self.floor.iter().copied().max().unwrap_or(0));
-        floor + (self.links() - 1) * widest + 1
+        self.lowest_floor() + (self.links() - 1) * self.widest_step() + 1
     }
 
     /// Returns the fewest layers that an order could have.
@@ -137,8 +135,7 @@ impl Stack {
                 group.push(link);
             }
         }
-        let floor = self.floor.iter().copied().max().unwrap_or(0) + 1;
-        group.len().max(floor).max(1)
+        group.len().max(self.lowest_floor() + 1)
     }
 
     /// Returns whether some order exists; `None` if the work was cut short.
@@ -160,7 +157,7 @@ impl Stack {
         for count in self.fewest_layers()..=most {
             let mut first = First::default();
             // Each number of layers has its share of the work, so that an order is found where a proof is not.
-            let mut share = (*budget / 2).max(1);
+            let mut share = *budget / 2;
             let given = share;
             let ended = self.search(count, &mut first, &mut share);
             *budget -= given - share;
@@ -169,7 +166,30 @@ impl Stack {
                 return Some((layers, count, proven));
             }
         }
-        None
+        self.spread(budget).map(|layers| {
+            let count = layers.iter().copied().max().unwrap_or(0) + 1;
+            (layers, count, false)
+        })
+    }
+
+    /// Returns an order with layers far enough apart for any two solids; `None` if it was not found, or needs more than
+    /// [`MAX_LAYERS`].
+    fn spread(&self, budget: &mut usize) -> Option<Vec<usize>> {
+        let mut first = First::default();
+        self.flat().search(self.links().min(MAX_LAYERS), &mut first, budget);
+        let layers: Vec<usize> =
+            first.0?.iter().map(|layer| self.lowest_floor() + layer * self.widest_step()).collect();
+        layers.iter().all(|layer| *layer < MAX_LAYERS).then_some(layers)
+    }
+
+    fn widest_step(&self) -> usize {
+        let steps = self.apart.iter().flatten().copied().chain(self.over.iter().map(|(_, _, apart)| *apart));
+        steps.max().unwrap_or(0).max(1)
+    }
+
+    /// Returns the least layer that all links may have.
+    fn lowest_floor(&self) -> usize {
+        self.floor.iter().copied().max().unwrap_or(0)
     }
 
     /// Returns the fewest links that have no order among themselves, if all have none.
@@ -201,7 +221,7 @@ impl Stack {
         left
     }
 
-    /// Examines all orders with fewer than `count` layers above the lowest, each layer below `count`.
+    /// Examines all orders whose layers lie below `count`.
     pub fn search(&self, count: usize, visitor: &mut dyn Visitor, budget: &mut usize) -> Ended {
         let all = if count >= MAX_LAYERS { u128::MAX } else { (1 << count) - 1 };
         let mut sets: Vec<u128> = self.floor.iter().map(|floor| all & above(*floor)).collect();
