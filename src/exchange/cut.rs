@@ -123,6 +123,24 @@ impl Cut {
         self.plate_thickness + self.spacer
     }
 
+    /// Returns the radius of the spacers on a pin, m: rings whose wall is a quarter of the pin, but no wider than a bar.
+    pub fn spacer_radius(&self) -> f64 {
+        (0.75 * self.pin_diameter).min(0.5 * self.bar_width)
+    }
+
+    /// Returns the layer of each link, counted from 0 for the lowest; `None` if the links do not lie in layers of these
+    /// dimensions, as in a machine without heights.
+    pub fn layers_of(&self, machine: &Machine) -> Option<Vec<usize>> {
+        let heights = machine.spec().links.iter().map(|link| link.axial);
+        let lowest = heights.clone().fold(f64::INFINITY, f64::min);
+        let layer = |height: f64| {
+            let layers = (height - lowest) / self.layer_pitch();
+            ((layers - layers.round()).abs() < LAYER_TOLERANCE && layers < MAX_LAYER).then_some(layers.round() as usize)
+        };
+        let layers: Vec<usize> = heights.map(layer).collect::<Option<_>>()?;
+        layers.iter().any(|layer| *layer > 0).then_some(layers)
+    }
+
     /// Returns the thickness of a counterweight, m; `None` for a point. Drawings, lists and models have it from here.
     pub fn thickness_of(&self, weight: &Counterweight) -> Option<f64> {
         weight.thickness(self.density).map(|own| self.thickness.unwrap_or(own))
@@ -142,6 +160,10 @@ impl Cut {
 
 /// Range of dimensions and densities, in SI units.
 const MEASURES: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
+/// A height this far from a layer, as a fraction of the distance between layers, lies in it.
+const LAYER_TOLERANCE: f64 = 1e-3;
+/// Greatest number of a layer.
+const MAX_LAYER: f64 = 1e4;
 /// Pins closer than this are treated as one, m.
 pub const SAME_PIN_DISTANCE: f64 = 1e-9;
 

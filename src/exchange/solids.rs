@@ -57,6 +57,21 @@ impl Axle {
         self.at == [0.0; MAX_DRIVES]
     }
 
+    /// Returns whether it joins a link to another or to the base; else it is a hole that nothing passes.
+    pub fn is_pin(&self) -> bool {
+        self.links.len() > 1 || self.is_on_base()
+    }
+
+    /// Returns the heights of its lower and upper end, m; `None` if it joins links of one height.
+    pub fn faces(&self, machine: &Machine, cut: &Cut) -> Option<[f64; 2]> {
+        let heights = self.links.iter().map(|(j, _)| machine.spec().links[*j].axial);
+        let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), z| (l.min(z), h.max(z)));
+        let half = 0.5 * cut.plate_thickness;
+        let faces =
+            if self.is_on_base() { [base_height(machine, cut), high + half] } else { [low - half, high + half] };
+        (high > low || self.links.len() == 1).then_some(faces)
+    }
+
     /// Returns whether it passes through a link.
     pub fn joins(&self, link: usize) -> bool {
         self.links.iter().any(|(own, _)| *own == link)
@@ -74,6 +89,12 @@ impl Axle {
             [] => "pin".into(),
         }
     }
+}
+
+/// Returns the height of the base plate, m: a spacer below the lowest solid.
+pub fn base_height(machine: &Machine, cut: &Cut) -> f64 {
+    let low = |solid: LinkSolid| machine.spec().links[solid.link].axial - 0.5 * solid.thickness;
+    link_solids(machine, cut).into_iter().map(low).fold(f64::INFINITY, f64::min) - cut.spacer
 }
 
 /// Returns the solids of all links, in the order of the links: the bar first, then its discs. A counterweight that is

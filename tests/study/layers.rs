@@ -83,7 +83,9 @@ fn bodies(machine: &Machine, cut: &Cut, q: &[f64]) -> Vec<Body> {
             (false, Some((last, first))) => format!("pin of links {} and {last}", first.join(", ")),
             _ => "axis of the base".into(),
         };
-        all.push(Body { name, link: None, ends: [place_of(&chain, &e); 2], radius: 0.5 * cut.pin_diameter, faces, joins });
+        // Spacers around it are wider.
+        let radius = (0.75 * cut.pin_diameter).min(0.5 * cut.bar_width);
+        all.push(Body { name, link: None, ends: [place_of(&chain, &e); 2], radius, faces, joins });
     }
     all
 }
@@ -185,7 +187,14 @@ fn contacts_are_those_of_sampled_poses() {
             let (a, b) = (of(&contact.a), of(&contact.b));
             let nearest = gap(a, b, 4000).min(gap(b, a, 4000));
             assert!(nearest < 1e-5, "{}: {contact:?} {nearest}", machine.name());
-            let at = Body { name: String::new(), link: None, ends: [Vector::new(contact.at[0], contact.at[1]); 2], radius: 0.0, faces: [0.0; 2], joins: vec![] };
+            let at = Body {
+                name: String::new(),
+                link: None,
+                ends: [Vector::new(contact.at[0], contact.at[1]); 2],
+                radius: 0.0,
+                faces: [0.0; 2],
+                joins: vec![],
+            };
             assert!(gap(&at, a, 1) < 1e-9 && gap(&at, b, 1) < 1e-9, "{}: a point of both, {contact:?}", machine.name());
         }
         for _ in 0..400 {
@@ -195,7 +204,13 @@ fn contacts_are_those_of_sampled_poses() {
                 for b in all[i + 1..].iter().filter(|b| is_pair(a, b)) {
                     if gap(a, b, 30).min(gap(b, a, 30)) < -1e-9 {
                         seen += 1;
-                        assert!(known.contains(&pair_name(&a.name, &b.name)), "{}: {}, {}", machine.name(), a.name, b.name);
+                        assert!(
+                            known.contains(&pair_name(&a.name, &b.name)),
+                            "{}: {}, {}",
+                            machine.name(),
+                            a.name,
+                            b.name
+                        );
                     }
                 }
             }
@@ -230,7 +245,8 @@ fn no_solid_meets_another_at_the_heights_found() {
         match find_layers(&request(&machine, cut)) {
             Ok(report) => {
                 found += 1;
-                keeps_apart(noise, &report.machine, &cut, 300).unwrap_or_else(|why| panic!("{}: {why}", machine.name()));
+                keeps_apart(noise, &report.machine, &cut, 300)
+                    .unwrap_or_else(|why| panic!("{}: {why}", machine.name()));
                 let lowest = bodies(&report.machine, &cut, &vec![0.0; machine.drives()]);
                 let face = lowest.iter().filter(|b| b.link.is_some()).map(|b| b.faces[0]).fold(f64::INFINITY, f64::min);
                 assert!(face > -0.5 * cut.plate_thickness - 1e-9, "{}: the base plate is free", machine.name());

@@ -6,6 +6,7 @@ mod brief;
 mod equations;
 mod facts;
 mod front;
+mod layers;
 mod lengths;
 mod lesson;
 mod measures;
@@ -28,6 +29,7 @@ use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Session;
 
 pub use facts::{DesignFacts, leave, of_front};
+pub use layers::cut;
 
 /// Default widths of the panels, points.
 const TABLE_WIDTH_PT: f32 = 336.0;
@@ -57,6 +59,9 @@ pub fn show(
             scrolled(ui, |ui| {
                 if let Some((drawing, pen)) = drawing.zip(view_state.drawing_pen()) {
                     sketching::panel(ui, session, drawing, pen, view_state, commands);
+                    if drawing.is_complete() {
+                        layers::show(ui, session, &facts.layers, &p, commands);
+                    }
                     return;
                 }
                 draw_button(ui, &p, commands);
@@ -65,6 +70,7 @@ pub fn show(
                 brief::show(ui, session.scenario(), is_balanced, &p, commands);
                 lengths::show(ui, session.scenario(), facts.length_search.as_ref(), &p, commands);
                 measures::show(ui, session, facts, &p);
+                layers::show(ui, session, &facts.layers, &p, commands);
             });
         });
     }

@@ -33,6 +33,8 @@ pub enum SheetShape {
         radius: f64,
         /// The drive that it follows, counted from 0.
         drive: usize,
+        /// The layer of its link; `None` if links lie in no layers.
+        layer: Option<usize>,
     },
     /// A hole for a pin.
     Hole {
@@ -40,6 +42,8 @@ pub enum SheetShape {
         at: [f64; 2],
         /// Its radius.
         radius: f64,
+        /// The layer of its link; `None` if links lie in no layers.
+        layer: Option<usize>,
     },
     /// The outline of a counterweight.
     Disc {
@@ -49,6 +53,8 @@ pub enum SheetShape {
         radius: f64,
         /// The drive that it follows, counted from 0.
         drive: usize,
+        /// The layer of its link; `None` if links lie in no layers.
+        layer: Option<usize>,
     },
     /// A thin line.
     Line([[f64; 2]; 2]),
@@ -106,7 +112,9 @@ impl Sheet {
         cut.check(machine)?;
         let longest = machine.resolved_links().iter().map(|part| part.length).fold(0.0, f64::max);
         let height = (1e3 * longest / 140.0).clamp(3.5, 10.0);
-        let pieces = (0..machine.links().len()).map(|j| Piece::of(machine, cut, j, height)).collect();
+        let layers = cut.layers_of(machine);
+        let layer = |j: usize| layers.as_ref().map(|layers| layers[j]);
+        let pieces = (0..machine.links().len()).map(|j| Piece::of(machine, cut, (j, layer(j)), height)).collect();
         Ok(laid_out(machine, cut, pieces, height))
     }
 }
@@ -132,20 +140,20 @@ struct Piece {
 }
 
 impl Piece {
-    fn of(machine: &Machine, cut: &Cut, j: usize, height: f64) -> Self {
+    fn of(machine: &Machine, cut: &Cut, (j, layer): (usize, Option<usize>), height: f64) -> Self {
         let mut piece = Self { shapes: Vec::new(), reach: [0.0; 4] };
         let (link, part) = (&machine.links()[j], &machine.resolved_links()[j]);
         let weights = machine.spec().counterweights.iter().filter(|weight| weight.link == link.name);
         let weights: Vec<&Counterweight> = weights.collect();
         let holes = holes(machine, j);
-        piece.bar(cut, part.drive, bar_extent(machine, j));
+        piece.bar(cut, (part.drive, layer), bar_extent(machine, j));
         for weight in weights.iter().filter(|weight| weight.radius > 0.0) {
             let (at, radius) = ([1e3 * weight.at, 1e3 * weight.across], 1e3 * weight.radius);
             piece.include([at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius]);
-            piece.shapes.push(SheetShape::Disc { at, radius, drive: part.drive });
+            piece.shapes.push(SheetShape::Disc { at, radius, drive: part.drive, layer });
         }
         for at in &holes {
-            piece.shapes.push(SheetShape::Hole { at: [1e3 * at, 0.0], radius: 500.0 * cut.pin_diameter });
+            piece.shapes.push(SheetShape::Hole { at: [1e3 * at, 0.0], radius: 500.0 * cut.pin_diameter, layer });
         }
         let com = [1e3 * link.com, 1e3 * link.com_normal];
         let radius = 0.55 * height;
@@ -156,7 +164,7 @@ impl Piece {
         }
         piece.shapes.push(SheetShape::Mark { at: com, radius });
         piece.stations(&holes, part.length, height);
-        piece.annotate(machine, cut, j, &weights, height);
+        piece.annotate(machine, cut, (j, layer), &weights, height);
         piece
     }
 
@@ -165,10 +173,10 @@ impl Piece {
         self.reach = [l.min(left), d.min(down), r.max(right), u.max(up)];
     }
 
-    fn bar(&mut self, cut: &Cut, drive: usize, [from, to]: [f64; 2]) {
+    fn bar(&mut self, cut: &Cut, (drive, layer): (usize, Option<usize>), [from, to]: [f64; 2]) {
         let radius = 500.0 * cut.bar_width;
         self.include([1e3 * from - radius, -radius, 1e3 * to + radius, radius]);
-        self.shapes.push(SheetShape::Bar { from: [1e3 * from, 0.0], length: 1e3 * (to - from), radius, drive });
+        self.shapes.push(SheetShape::Bar { from: [1e3 * from, 0.0], length: 1e3 * (to - from), radius, drive, layer });
     }
 
     /// Draws the dimension line with the distances between neighbouring holes, and to the tip.
@@ -205,7 +213,14 @@ impl Piece {
     }
 
     /// Writes the link's name above the bar, and its data below.
-    fn annotate(&mut self, machine: &Machine, cut: &Cut, j: usize, weights: &[&Counterweight], height: f64) {
+    fn annotate(
+        &mut self,
+        machine: &Machine,
+        cut: &Cut,
+        (j, layer): (usize, Option<usize>),
+        weights: &[&Counterweight],
+        height: f64,
+    ) {
         let (link, part) = (&machine.spec().links[j], &machine.resolved_links()[j]);
         let drive = &machine.spec().drives[part.drive].name;
         let (left, top) = (self.reach[0], self.reach[3] + 1.1 * height);
@@ -215,7 +230,8 @@ impl Piece {
         self.words([left, top], 1.3 * height, TextAlign::Start, TextEmphasis::Strong, name);
         self.words([left + shift, top], height, TextAlign::Start, TextEmphasis::Plain, about.clone());
         self.include([left, 0.0, left + shift + width_of(&about, height), top + 1.3 * height]);
-        for line in below(machine, cut, j, weights) {
+        let stacked = layer.map(|layer| format!("layer {layer}, {} mm high", signed(link.axial)));
+        for line in stacked.into_iter().chain(below(machine, cut, j, weights)) {
             let at = [left, self.reach[1] - LINE_SPACING * height];
             self.include([left, at[1] - 0.3 * height, left + width_of(&line, height), 0.0]);
             self.words(at, height, TextAlign::Start, TextEmphasis::Plain, line);

@@ -50,7 +50,9 @@ impl Clearance {
                     include(&pair, &|| [a.name(machine), b.name(machine)]);
                 }
             }
-            for (axle, plan) in solids.axles.iter().zip(&solids.pins).filter(|(axle, _)| !axle.joins(a.link)) {
+            for (axle, plan) in
+                solids.axles.iter().zip(&solids.pins).filter(|(axle, _)| axle.is_pin() && !axle.joins(a.link))
+            {
                 let ends = axle.links.iter().map(|(j, _)| height(*j));
                 let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), z| (l.min(z), h.max(z)));
                 let low = if axle.is_on_base() { f64::NEG_INFINITY } else { low };

@@ -59,7 +59,7 @@ pub struct Solids {
 /// The poses in which solids must not meet.
 pub enum Way<'a> {
     /// All within the joint limits.
-    Limits(PoseRange),
+    Limits(&'a PoseRange),
     /// Those of a task.
     Task(&'a TaskPoses),
 }
@@ -69,7 +69,7 @@ impl Solids {
     pub fn of(machine: &Machine, cut: &Cut) -> Self {
         let (links, axles) = (link_solids(machine, cut), axles(machine));
         let plans = links.iter().map(|solid| PlanSolid::of(machine, solid)).collect();
-        let pins = axles.iter().map(|axle| PlanSolid::of_pin(axle, cut.pin_diameter)).collect();
+        let pins = axles.iter().map(|axle| PlanSolid::of_pin(axle, cut.spacer_radius())).collect();
         Self { links, axles, plans, pins }
     }
 
@@ -81,24 +81,19 @@ impl Solids {
             for (j, b) in self.links.iter().enumerate().skip(i + 1).filter(|(_, b)| b.link != a.link) {
                 let apart = layers_between(cut, a.thickness, b.thickness);
                 let contact = meeting(&Pair::of(&self.plans[i], &self.plans[j]), way, &mut left);
-                contacts.extend(contact.map(|met| met.contact(
-                    [a.name(machine), b.name(machine)],
-                    apart,
-                    Between::Links(a.link, b.link),
-                )));
+                contacts.extend(
+                    contact.map(|met| {
+                        met.contact([a.name(machine), b.name(machine)], apart, Between::Links(a.link, b.link))
+                    }),
+                );
             }
-            for (j, axle) in self.axles.iter().enumerate().filter(|(_, axle)| !axle.joins(a.link)) {
-                // A pin of one link alone ends within it.
-                if axle.links.len() < 2 && !axle.is_on_base() {
-                    continue;
-                }
+            for (j, axle) in self.axles.iter().enumerate().filter(|(_, axle)| axle.is_pin() && !axle.joins(a.link)) {
                 let apart = layers_between(cut, a.thickness, cut.plate_thickness);
                 let contact = meeting(&Pair::of(&self.plans[i], &self.pins[j]), way, &mut left);
-                contacts.extend(contact.map(|met| met.contact(
-                    [a.name(machine), axle.name(machine)],
-                    apart,
-                    Between::Pin(a.link, j),
-                )));
+                contacts.extend(
+                    contact
+                        .map(|met| met.contact([a.name(machine), axle.name(machine)], apart, Between::Pin(a.link, j))),
+                );
             }
         }
         contacts

@@ -144,13 +144,7 @@ impl<'a> Pair<'a> {
         }
     }
 
-    fn found(
-        &self,
-        range: &PoseRange,
-        cell: &Cell,
-        held: usize,
-        result: fn(Vec<f64>, Nearness) -> Overlap,
-    ) -> Overlap {
+    fn found(&self, range: &PoseRange, cell: &Cell, held: usize, result: fn(Vec<f64>, Nearness) -> Overlap) -> Overlap {
         let turned = self.others().iter().map(|&k| (k, cell.middle[k]));
         let start = range.completed(&[])[held];
         let known: Vec<(usize, f64)> =
@@ -178,7 +172,6 @@ impl<'a> Pair<'a> {
         })
     }
 }
-
 
 /// Returns the unit vectors of all drives in the middle of a cell, with the held drive along x.
 fn units(cell: &Cell, held: usize) -> UnitVectors {

@@ -37,9 +37,9 @@ impl PlanSolid {
         Self { root: part.root, drive: part.drive, ends, radius: solid.radius }
     }
 
-    /// Returns a pin of a diameter, m.
-    pub fn of_pin(axle: &Axle, diameter: f64) -> Self {
-        Self { root: axle.at, drive: 0, ends: [Vector::default(); 2], radius: 0.5 * diameter }
+    /// Returns a pin with spacers of a radius, m.
+    pub fn of_pin(axle: &Axle, radius: f64) -> Self {
+        Self { root: axle.at, drive: 0, ends: [Vector::default(); 2], radius }
     }
 
     /// Returns the largest distance of its ends from its origin, m.

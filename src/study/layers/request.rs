@@ -109,9 +109,10 @@ impl LayersRequest {
         let (machine, cut) = (&self.machine, &self.cut);
         cut.check_stack(machine)?;
         let solids = Solids::of(machine, cut);
+        let range = PoseRange::of(machine);
         let way = match task.filter(|_| self.along_task) {
             Some(task) => Way::Task(task),
-            None => Way::Limits(PoseRange::of(machine)),
+            None => Way::Limits(&range),
         };
         let contacts = solids.contacts(machine, cut, &way);
         Ok((solids, contacts))
@@ -212,14 +213,38 @@ fn conflict(machine: &Machine, cut: &Cut, solids: &Solids, stack: &Stack, contac
     Conflict { links: names.collect(), contacts: left }
 }
 
+/// Layers of a machine within its joint limits, and else along its task.
+#[derive(Clone, Debug)]
+pub struct LayersAnswer {
+    /// Layers in which nothing meets within the joint limits.
+    pub within_limits: Result<LayersReport, NoLayers>,
+    /// Layers in which nothing meets along the task, if there are none within the limits but a task.
+    pub along_task: Option<Result<LayersReport, NoLayers>>,
+}
+
+impl LayersAnswer {
+    /// Returns the layers of the first kind that exists.
+    pub fn report(&self) -> Option<&LayersReport> {
+        let along_task = self.along_task.as_ref().and_then(|report| report.as_ref().ok());
+        self.within_limits.as_ref().ok().or(along_task)
+    }
+}
+
 /// Query for the layers of a machine.
 pub struct LayersQuery;
 
 impl QuickQuery for LayersQuery {
-    type Input = LayersRequest;
-    type Answer = Result<LayersReport, NoLayers>;
+    /// The machine, the dimensions of its parts, and the motion of its task.
+    type Input = (Machine, Cut, Option<ByIdentity<Motion>>);
+    type Answer = LayersAnswer;
 
-    fn answer(request: &LayersRequest) -> Self::Answer {
-        find_layers(request)
+    fn answer((machine, cut, motion): &Self::Input) -> LayersAnswer {
+        let (machine, motion) = (machine.clone(), motion.clone());
+        let request = LayersRequest { machine, cut: *cut, motion, along_task: false };
+        let within_limits = find_layers(&request);
+        let lacks = matches!(within_limits, Err(NoLayers::NoOrder(_) | NoLayers::NotFound));
+        let has_task = request.motion.is_some();
+        let along_task = (lacks && has_task).then(|| find_layers(&LayersRequest { along_task: true, ..request }));
+        LayersAnswer { within_limits, along_task }
     }
 }

@@ -80,9 +80,8 @@ impl Stack {
                 },
             }
         }
-        let pins = solids.axles.iter().map(|axle| {
-            (axle.links.iter().map(|(link, _)| *link).collect(), axle.is_on_base())
-        });
+        let pins =
+            solids.axles.iter().map(|axle| (axle.links.iter().map(|(link, _)| *link).collect(), axle.is_on_base()));
         let mut floor = vec![0; links];
         for solid in solids.links.iter().filter(|solid| matches!(solid.kind, SolidKind::Disc(_))) {
             // The base plate lies below layer 0 as another layer would.

@@ -63,7 +63,8 @@ impl TaskPoses {
                 return Some((*pose, near, true));
             }
             let before = &self.poses[i.saturating_sub(1)];
-            let moved = pair.motion(|k| pose.q.get(k).copied().unwrap_or_default() - before.q.get(k).copied().unwrap_or_default());
+            let moved = pair
+                .motion(|k| pose.q.get(k).copied().unwrap_or_default() - before.q.get(k).copied().unwrap_or_default());
             if doubtful.is_none() && near.gap < moved.max(TOLERANCE) {
                 doubtful = Some((*pose, near, false));
             }
