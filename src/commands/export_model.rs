@@ -8,24 +8,27 @@ use stillbase_exchange::cut::{Cut, unweighed_tail};
 use stillbase_exchange::drawing::Sheet;
 use stillbase_exchange::form::{self, Form, ModelContent};
 use stillbase_exchange::mjcf::{hinges, middle};
+use stillbase_exchange::stl;
 use stillbase_exchange::urdf::joint;
 use stillbase_files::write_new;
 use stillbase_mechanics::machine::Machine;
 use stillbase_settings::number::{counted, fixed};
 use stillbase_settings::text::shell_word;
 
+use super::dimensions::Dimensions;
 use super::exit::print_message;
 use super::failure::Failure;
 use super::input::MachineArgument;
 use super::output::{Format, TextTable, check_output};
 
-/// Export a machine: a model for MuJoCo (.xml) or for ROS and Pinocchio (.urdf), drawings for cutting (.svg, .dxf), or
-/// a parts list (.csv, .md)
+/// Export a machine: a model for MuJoCo (.xml) or for ROS and Pinocchio (.urdf), drawings for cutting (.svg, .dxf),
+/// solids (.stl), or a parts list (.csv, .md)
 ///
 /// MJCF: sensors at the base read the force and moment that hold the machine; the reaction has the opposite sign. The
 /// pose is the keyframe "start". URDF: the joints drive_… are the motors, and all other joints follow them; the element
 /// `<stillbase>` contains what URDF cannot express. Both: data that plane motion does not need, such as inertias
-/// about other axes, are made up.
+/// about other axes, are made up. Solids: bars, discs, pins and spacers at their heights, in mm; `stillbase layers`
+/// finds the heights.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -37,21 +40,11 @@ Examples:
 pub struct ExportModelArguments {
     #[command(flatten)]
     machine: MachineArgument,
-    /// Angles of the drives in the keyframe of .xml, rad; default: the middle of the limits
+    /// Angles of the drives in the keyframe of .xml and in .stl, rad; default: the middle of the limits
     #[arg(long, value_name = "Q1,Q2,…", value_delimiter = ',', allow_hyphen_values = true)]
     pose: Vec<f64>,
-    /// Width of the bars, m, in .svg and .dxf; default: 0.03
-    #[arg(long, value_name = "W")]
-    bar_width: Option<f64>,
-    /// Diameter of the holes for pins, m, in .svg and .dxf; default: 0.008
-    #[arg(long, value_name = "D")]
-    pin_diameter: Option<f64>,
-    /// Density of the counterweights, kg/m³; default: that of steel, 7850
-    #[arg(long, value_name = "DENSITY")]
-    material: Option<f64>,
-    /// Thickness of the counterweights, m; default: the thickness that gives each its mass
-    #[arg(long, value_name = "T")]
-    thickness: Option<f64>,
+    #[command(flatten)]
+    dimensions: Dimensions,
     #[arg(short, long, value_name = "FILE", help = format!("Write it to this file; its ending chooses what is written: {}", form::endings().join(", ")))]
     output: PathBuf,
     /// Replace the file if it exists
@@ -87,6 +80,13 @@ enum Written {
         size: [f64; 2],
         links: usize,
     },
+    Solids {
+        /// Angles of the drives, rad.
+        pose: Vec<f64>,
+        solids: usize,
+        /// Their volumes together, m³.
+        volume: f64,
+    },
     List {
         links: usize,
         counterweights: usize,
@@ -105,7 +105,7 @@ impl ExportModelArguments {
             return Err(Failure::wrong_input(format!("--pose {bad}: want finite angles in rad")));
         }
         let pose = if self.pose.is_empty() { middle(&machine) } else { self.pose.clone() };
-        let cut = self.cut();
+        let cut = self.dimensions.cut();
         let text = form.written(&machine, &pose, &cut).map_err(Failure::wrong_input)?;
         let of = described(&machine, form, pose, &cut)?;
         write_new(&self.output, text.as_bytes(), self.force)?;
@@ -124,22 +124,17 @@ impl ExportModelArguments {
         self.format.print(&answer, |answer| answer.of.words(&machine))
     }
 
-    fn cut(&self) -> Cut {
-        let usual = Cut::default();
-        Cut {
-            bar_width: self.bar_width.unwrap_or(usual.bar_width),
-            pin_diameter: self.pin_diameter.unwrap_or(usual.pin_diameter),
-            density: self.material.unwrap_or(usual.density),
-            thickness: self.thickness,
-        }
-    }
-
     /// Refuses options that have no effect on the file.
     fn check_options(&self, form: Form) -> Result<(), Failure> {
-        let all: [OptionScope; 3] = [
-            ("--pose", self.pose.is_empty(), |shows| shows == ModelContent::Pose),
-            ("--bar-width", self.bar_width.is_none(), |shows| shows == ModelContent::Links),
-            ("--pin-diameter", self.pin_diameter.is_none(), |shows| shows == ModelContent::Links),
+        let dimensions = &self.dimensions;
+        let is_cut = |shows| matches!(shows, ModelContent::Links | ModelContent::Solids);
+        let has_layers = |shows| matches!(shows, ModelContent::Links | ModelContent::Solids | ModelContent::Parts);
+        let all: [OptionScope; 5] = [
+            ("--pose", self.pose.is_empty(), |shows| matches!(shows, ModelContent::Pose | ModelContent::Solids)),
+            ("--bar-width", dimensions.bar_width.is_none(), is_cut),
+            ("--pin-diameter", dimensions.pin_diameter.is_none(), is_cut),
+            ("--plate-thickness", dimensions.plate_thickness.is_none(), has_layers),
+            ("--spacer", dimensions.spacer.is_none(), has_layers),
         ];
         match all.into_iter().find(|(_, is_left_out, counts)| !is_left_out && !counts(form.shows)) {
             Some((option, _, counts)) => {
@@ -167,6 +162,11 @@ fn described(machine: &Machine, form: Form, pose: Vec<f64>, cut: &Cut) -> Result
         ModelContent::Links => {
             let size = Sheet::of(machine, cut).map_err(Failure::wrong_input)?.size;
             Written::Drawing { size: size.map(|mm| 1e-3 * mm), links }
+        }
+        ModelContent::Solids => {
+            let solids = stl::solids(machine, &pose, cut).map_err(Failure::wrong_input)?;
+            let volume = solids.iter().map(|solid| solid.volume()).sum();
+            Written::Solids { pose, solids: solids.len(), volume }
         }
         ModelContent::Parts => {
             Written::List { links, counterweights: machine.spec().counterweights.len(), mass: machine.mass() }
@@ -196,6 +196,9 @@ impl Written {
             Self::Drawing { size: [width, height], links } => {
                 let [width, height] = [width, height].map(|x| fixed(1e3 * x, 0));
                 format!("{name} · {} on a sheet of {width} x {height} mm, scale 1 : 1\n", counted(links, "link"))
+            }
+            Self::Solids { solids, volume, .. } => {
+                format!("{name} · {} · {} cm³ in all\n", counted(solids, "solid"), fixed(1e6 * volume, 1))
             }
             Self::List { links, counterweights, mass } => {
                 let [links, discs] = [counted(links, "link"), counted(counterweights, "counterweight")];

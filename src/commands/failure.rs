@@ -19,6 +19,8 @@ use stillbase_planning::timing::TimeError;
 use stillbase_session::scenario::{Scenario, ScenarioError};
 use stillbase_session::{Proposal, Refusal, proposals};
 
+use stillbase_study::layers::NoLayers;
+
 use super::misnamed::Misnamed;
 use super::remedy::option;
 
@@ -218,6 +220,15 @@ impl From<Unreachable> for Failure {
 impl From<JointsError> for Failure {
     fn from(e: JointsError) -> Self {
         Self::no_answer(e)
+    }
+}
+
+impl From<NoLayers> for Failure {
+    fn from(e: NoLayers) -> Self {
+        match e {
+            NoLayers::NoOrder(_) | NoLayers::NotFound => Self::no_answer(e),
+            NoLayers::Cut(_) | NoLayers::Machine(_) | NoLayers::Motion(_) => Self::wrong_input(e),
+        }
     }
 }
 

@@ -13,10 +13,11 @@ use stillbase_planning::pose_constant::PoseConstant;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_session::scenario::{POINT_RANGE, POSE_CONSTANT_RANGE, Scenario, TaskChange, key_of};
 use stillbase_session::{
-    ReachablePoints, proposals_for_machine, proposals_for_settings, proposals_for_values, with_start_edits,
+    ReachablePoints, Run, proposals_for_machine, proposals_for_settings, proposals_for_values, with_start_edits,
 };
 use stillbase_settings::change;
 use stillbase_settings::key::Key;
+use stillbase_settings::number::counted;
 use stillbase_settings::range::Range;
 use stillbase_settings::text::{MAX_TEXT_BYTES, shell_word};
 use stillbase_settings::word::Choice;
@@ -190,6 +191,25 @@ pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     settings.refuse_tolerances()?;
     report_tolerance(&scenario);
     Ok(scenario)
+}
+
+/// Returns a run of a scenario, whose motion serves other machines as a task.
+///
+/// # Errors
+/// If the scenario has no plan, or if none of the machines has as many drives as its own.
+pub fn task_run(name: &str, machines: &[&Machine]) -> Result<Run, Failure> {
+    let run = Run::new(&with_start_edits(&scenario(name, &Settings::default())?)?.0)?;
+    let has = run.scenario().machine.drives();
+    let mut want: Vec<String> = machines.iter().map(|machine| machine.drives().to_string()).collect();
+    want.dedup();
+    match machines.iter().any(|machine| machine.drives() == has) {
+        true => Ok(run),
+        false => Err(Failure::wrong_input(format!(
+            "--task {name}: its machine has {}: want one of {}",
+            counted(has, "drive"),
+            want.join(" or ")
+        ))),
+    }
 }
 
 /// Prints a note if a scenario has tolerances, which have no effect in a command that samples no machines.

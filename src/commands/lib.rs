@@ -8,6 +8,7 @@
 mod check;
 mod compare;
 mod design;
+mod dimensions;
 pub mod dynamics;
 mod ends;
 mod exit;
@@ -25,6 +26,7 @@ pub mod input;
 mod interrupt;
 mod joints;
 mod keys;
+mod layers;
 mod learn;
 mod machines;
 mod misnamed;
@@ -96,6 +98,7 @@ subcommands! {
     Check: check::CheckArguments,
     Learn: learn::LearnArguments,
     Design: design::DesignArguments,
+    Layers: layers::LayersArguments,
     Dynamics: dynamics::DynamicsArguments,
     Reach: reach::ReachArguments,
     Pose: pose::PoseArguments,

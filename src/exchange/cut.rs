@@ -15,6 +15,10 @@ pub struct Cut {
     pub density: f64,
     /// Thickness of the discs, m; `None`: the thickness that gives each disc its mass.
     pub thickness: Option<f64>,
+    /// Thickness of the bars, m.
+    pub plate_thickness: f64,
+    /// Gap between the bars of neighbouring layers, m, which spacers on the pins keep.
+    pub spacer: f64,
 }
 
 /// Error of dimensions with which parts cannot be cut.
@@ -59,9 +63,16 @@ pub enum CutError {
 }
 
 impl Default for Cut {
-    /// Bars of 30 mm, pins of 8 mm, discs of steel.
+    /// Bars of 30 mm × 6 mm, pins of 8 mm, spacers of 1 mm, discs of steel.
     fn default() -> Self {
-        Self { bar_width: 0.030, pin_diameter: 0.008, density: 7850.0, thickness: None }
+        Self {
+            bar_width: 0.030,
+            pin_diameter: 0.008,
+            density: 7850.0,
+            thickness: None,
+            plate_thickness: 0.006,
+            spacer: 0.001,
+        }
     }
 }
 
@@ -101,6 +112,39 @@ impl Cut {
         Ok(())
     }
 
+    /// Checks that the links of a machine can be cut and stacked in layers.
+    ///
+    /// # Errors
+    /// If a dimension is out of range, or if holes overlap or are too wide.
+    pub fn check_stack(&self, machine: &Machine) -> Result<(), CutError> {
+        self.check(machine)?;
+        measure("plate thickness", Some(self.plate_thickness), "m")?;
+        measure("spacer", Some(self.spacer), "m")
+    }
+
+    /// Returns the distance between the middles of neighbouring layers, m.
+    pub fn layer_pitch(&self) -> f64 {
+        self.plate_thickness + self.spacer
+    }
+
+    /// Returns the radius of the spacers on a pin, m: rings whose wall is a quarter of the pin, but no wider than a bar.
+    pub fn spacer_radius(&self) -> f64 {
+        (0.75 * self.pin_diameter).min(0.5 * self.bar_width)
+    }
+
+    /// Returns the layer of each link, counted from 0 for the lowest; `None` if the links do not lie in layers of these
+    /// dimensions, as in a machine without heights.
+    pub fn layers_of(&self, machine: &Machine) -> Option<Vec<usize>> {
+        let heights = machine.spec().links.iter().map(|link| link.axial);
+        let lowest = heights.clone().fold(f64::INFINITY, f64::min);
+        let layer = |height: f64| {
+            let layers = (height - lowest) / self.layer_pitch();
+            ((layers - layers.round()).abs() < LAYER_TOLERANCE && layers < MAX_LAYER).then_some(layers.round() as usize)
+        };
+        let layers: Vec<usize> = heights.map(layer).collect::<Option<_>>()?;
+        layers.iter().any(|layer| *layer > 0).then_some(layers)
+    }
+
     /// Returns the thickness of a counterweight, m; `None` for a point. Drawings, lists and models have it from here.
     pub fn thickness_of(&self, weight: &Counterweight) -> Option<f64> {
         weight.thickness(self.density).map(|own| self.thickness.unwrap_or(own))
@@ -120,6 +164,10 @@ impl Cut {
 
 /// Range of dimensions and densities, in SI units.
 const MEASURES: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
+/// A height this far from a layer, as a fraction of the distance between layers, lies in it.
+const LAYER_TOLERANCE: f64 = 1e-3;
+/// Greatest number of a layer.
+const MAX_LAYER: f64 = 1e4;
 /// Pins closer than this are treated as one, m.
 pub const SAME_PIN_DISTANCE: f64 = 1e-9;
 
@@ -154,9 +202,13 @@ pub fn unweighed_tail(machine: &Machine) -> f64 {
     beyond.fold(0.0, f64::max)
 }
 
-/// Returns the interval that a bar covers, m from its root: its length, all its pins, and the centres of its discs.
+/// Returns the interval that a bar covers, m from its root: that of its part, or else its length, all its pins, and the
+/// centres of its discs.
 pub fn bar_extent(machine: &Machine, j: usize) -> [f64; 2] {
     let (link, part) = (&machine.links()[j], &machine.resolved_links()[j]);
+    if let Some(ends) = machine.spine(j).and_then(|bar| machine.part_ends(bar)) {
+        return ends;
+    }
     let discs = machine.spec().counterweights.iter().filter(|weight| weight.link == link.name).map(|weight| weight.at);
     let all = part.pins.iter().copied().chain(discs);
     all.fold([0.0, part.length], |[from, to], at| [at.min(from), at.max(to)])

@@ -4,6 +4,7 @@ use super::cut::{Cut, CutError};
 use super::drawing::{Sheet, dxf, svg};
 use super::mjcf::{MjcfError, mjcf};
 use super::parts::PartsList;
+use super::stl::{SolidsError, stl};
 use super::urdf::urdf;
 use stillbase_mechanics::machine::Machine;
 
@@ -26,12 +27,14 @@ pub enum ModelContent {
     Joints,
     /// A drawing of its links for cutting.
     Links,
+    /// Its links, pins and spacers as solids in a pose.
+    Solids,
     /// Its parts list.
     Parts,
 }
 
 /// All export formats.
-pub const FORMS: [Form; 6] = [
+pub const FORMS: [Form; 7] = [
     // For MuJoCo.
     Form { ending: "xml", shows: ModelContent::Pose, write: |machine, pose, cut| Ok(mjcf(machine, pose, cut)?) },
     // For ROS, Pinocchio and others.
@@ -40,6 +43,8 @@ pub const FORMS: [Form; 6] = [
     Form { ending: "svg", shows: ModelContent::Links, write: |machine, _, cut| Ok(svg(&Sheet::of(machine, cut)?)) },
     // For cutting.
     Form { ending: "dxf", shows: ModelContent::Links, write: |machine, _, cut| Ok(dxf(&Sheet::of(machine, cut)?)) },
+    // For a printer or a program for solids.
+    Form { ending: "stl", shows: ModelContent::Solids, write: |machine, pose, cut| Ok(stl(machine, pose, cut)?) },
     // For a spreadsheet.
     Form { ending: "csv", shows: ModelContent::Parts, write: |machine, _, cut| Ok(PartsList::of(machine, cut)?.csv()) },
     // For reading.
@@ -62,6 +67,9 @@ pub enum ExchangeError {
     /// The links cannot be cut with these dimensions.
     #[error(transparent)]
     Cut(#[from] CutError),
+    /// The links make no solids.
+    #[error(transparent)]
+    Solids(#[from] SolidsError),
     /// No format has this ending.
     #[error("a name that ends in {ending:?}: want one that ends in {}", listed(|_| true))]
     Ending {

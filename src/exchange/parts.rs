@@ -1,7 +1,8 @@
 //! [`PartsList`]: the parts list of a machine, as CSV for a spreadsheet or as Markdown to read.
 
-use super::cut::{Cut, CutError, SAME_PIN_DISTANCE};
-use stillbase_mechanics::machine::{Chain, Counterweight, Drive, Link, Machine, PartBody, PartSource, Shape};
+use super::cut::{Cut, CutError};
+use super::solids::{Axle, axles};
+use stillbase_mechanics::machine::{Counterweight, Drive, Link, Machine, PartBody, PartSource, Shape};
 use stillbase_settings::number::fixed;
 use stillbase_settings::text::sheet_cell;
 
@@ -46,13 +47,13 @@ impl PartsList {
     pub fn of(machine: &Machine, cut: &Cut) -> Result<Self, CutError> {
         cut.check_discs()?;
         let tables = [
-            Some(links(machine)),
+            Some(links(machine, cut)),
             Some(parts(machine)),
             Some(lumps(machine)),
             Some(counterweights(machine, cut)),
             payload(machine),
             Some(motors(machine)),
-            Some(pins(machine)),
+            Some(pins(machine, cut)),
             Some(totals(machine)),
         ];
         let tables = tables.into_iter().flatten().filter(|table| !table.rows.is_empty()).collect();
@@ -159,11 +160,15 @@ fn plain(text: &str) -> String {
     text.replace('\\', "\\\\").replace('|', "\\|").replace('<', "&lt;")
 }
 
-fn links(machine: &Machine) -> PartTable {
+/// Lists the links, with their layers and heights if they have some.
+fn links(machine: &Machine, cut: &Cut) -> PartTable {
     let parts = machine.resolved_links();
+    let (layers, has_heights) = (cut.layers_of(machine), has_heights(machine));
     let row = |(j, link): (usize, &Link)| {
         let pinned = parts[j].parent.map_or("base".into(), |p| on(machine, p, parts[j].at));
-        vec![
+        let layer = layers.as_ref().map(|layers| layers[j] as f64);
+        let stacked = [PartCell::some(layer, 0), PartCell::Number(link.axial, 4)];
+        let cells = vec![
             PartCell::words(&link.name),
             PartCell::words(&link.drive),
             PartCell::Number(parts[j].length, 4),
@@ -172,12 +177,14 @@ fn links(machine: &Machine) -> PartTable {
             PartCell::Number(link.com_normal, 4),
             PartCell::Number(link.inertia, 6),
             PartCell::words(pinned),
-        ]
+        ];
+        cells.into_iter().chain(stacked.into_iter().filter(|_| has_heights)).collect()
     };
+    let stacked = ["layer", "height m"].into_iter().filter(|_| has_heights);
     PartTable {
         kind: "link",
         title: "Links",
-        head: vec![
+        head: [
             "name",
             "drive",
             "length m",
@@ -186,7 +193,10 @@ fn links(machine: &Machine) -> PartTable {
             "left of axis m",
             "inertia kg m²",
             "root pinned to",
-        ],
+        ]
+        .into_iter()
+        .chain(stacked)
+        .collect(),
         rows: machine.spec().links.iter().enumerate().map(row).collect(),
     }
 }
@@ -249,6 +259,10 @@ fn lumps(machine: &Machine) -> PartTable {
         head: vec!["name", "on link", "mass kg", "centre of mass m", "left of axis m", "inertia kg m²"],
         rows: machine.part_bodies().iter().filter_map(row).collect(),
     }
+}
+
+fn has_heights(machine: &Machine) -> bool {
+    machine.spec().links.iter().any(|link| link.axial != 0.0)
 }
 
 fn counterweights(machine: &Machine, cut: &Cut) -> PartTable {
@@ -326,35 +340,22 @@ fn on(machine: &Machine, j: usize, at: f64) -> String {
     format!("link {} at {} m", machine.links()[j].name, fixed(at, 4))
 }
 
-/// Lists the pins. Points of links that coincide in every pose share one pin.
-fn pins(machine: &Machine) -> PartTable {
-    let mut pins: Vec<(Chain, Vec<String>)> = Vec::new();
-    let mut join = |point: Chain, words: String| {
-        let is_there = |pin: &Chain| pin.iter().zip(&point).all(|(a, b)| (a - b).abs() <= SAME_PIN_DISTANCE);
-        match pins.iter_mut().find(|(pin, _)| is_there(pin)) {
-            Some((_, joined)) if joined.contains(&words) => {}
-            Some((_, joined)) => joined.push(words),
-            None => pins.push((point, vec![words])),
-        }
-    };
-    let parts = machine.resolved_links();
-    for (j, part) in parts.iter().enumerate() {
-        let carrier = part.parent.map_or("base".into(), |parent| on(machine, parent, part.at));
-        join(part.root, carrier);
-        join(part.root, on(machine, j, 0.0));
-    }
-    for closing in machine.loops() {
-        join(parts[closing.a].point(closing.at_a), on(machine, closing.a, closing.at_a));
-        join(parts[closing.b].point(closing.at_b), on(machine, closing.b, closing.at_b));
-    }
-    let row = |(i, (_, joined)): (usize, (Chain, Vec<String>))| {
-        vec![PartCell::words((i + 1).to_string()), PartCell::words(joined.join(" · "))]
+/// Lists the pins, with their lengths if the links have heights. Points of links that coincide in every pose share one
+/// pin.
+fn pins(machine: &Machine, cut: &Cut) -> PartTable {
+    let has_heights = has_heights(machine);
+    let row = |(i, axle): (usize, Axle)| {
+        let places = axle.links.iter().map(|(j, at)| on(machine, *j, *at));
+        let joined: Vec<String> = axle.is_on_base().then(|| "base".to_owned()).into_iter().chain(places).collect();
+        let length = axle.faces(machine, cut).map(|[low, high]| high - low);
+        let cells = [PartCell::words((i + 1).to_string()), PartCell::words(joined.join(" · "))];
+        cells.into_iter().chain(has_heights.then(|| PartCell::some(length, 4))).collect()
     };
     PartTable {
         kind: "pin",
         title: "Pins",
-        head: vec!["name", "connects"],
-        rows: pins.into_iter().enumerate().map(row).collect(),
+        head: ["name", "connects"].into_iter().chain(has_heights.then_some("pin length m")).collect(),
+        rows: axles(machine).into_iter().filter(Axle::is_pin).enumerate().map(row).collect(),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use stillbase_mechanics::machine::{LinkNumber, Lump, MATERIALS, Machine, MachineSpec, Part, PartSource};
 use stillbase_mechanics::machine::{PlaceOnLink, Shape};
-use stillbase_settings::change::{DEFAULT_WORD, join};
+use stillbase_settings::change::{DEFAULT_WORD, join, single_change};
 use toml::{Table, Value};
 
 use super::Edit;
@@ -95,6 +95,21 @@ pub fn set_material(machine: &Machine, part: usize, material: &str) -> Edit {
 pub fn follow_parts(machine: &Machine, link: usize, numbers: &[LinkNumber]) -> Edit {
     let default = |number: &LinkNumber| (number.key().to_owned(), Value::from(DEFAULT_WORD));
     Edit::Set { change: of_link(&machine.spec().links[link].name, numbers.iter().map(default).collect()) }
+}
+
+/// Returns the edit that puts the links of a machine at the heights of another with the same links, and its payload.
+pub fn set_heights(machine: &Machine, heights: &Machine) -> Edit {
+    let links = heights.spec().links.iter().zip(&machine.spec().links);
+    let changed = links.filter(|(now, before)| now.axial != before.axial);
+    let mut change = Table::new();
+    for (link, _) in changed {
+        change = join(change, &of_link(&link.name, Table::from_iter([("axial".to_owned(), link.axial.into())])));
+    }
+    let payload = heights.spec().payload.axial;
+    if payload != machine.spec().payload.axial {
+        change = join(change, &single_change("payload.axial", payload));
+    }
+    Edit::Set { change }
 }
 
 /// Returns the names of all materials of a machine, the built-in ones first.

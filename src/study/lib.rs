@@ -18,6 +18,7 @@ pub mod front_point;
 pub mod fronts;
 pub mod import;
 pub mod joint_extremes;
+pub mod layers;
 pub mod lengths;
 pub mod measures;
 pub mod parts;

@@ -10,6 +10,7 @@ mod hands;
 mod intro;
 mod jobs;
 mod labels;
+mod layers;
 mod layout;
 mod lessons;
 mod notation;
@@ -43,7 +44,7 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 31] = [
+pub const TESTS: [&[Test]; 32] = [
     saving::TESTS,
     family::TESTS,
     files::TESTS,
@@ -61,6 +62,7 @@ pub const TESTS: [&[Test]; 31] = [
     pair::TESTS,
     notes::TESTS,
     panel::TESTS,
+    layers::TESTS,
     parts::TESTS,
     plot_places::TESTS,
     plots::TESTS,

@@ -180,7 +180,7 @@ fn dxf_has_what_is_on_the_sheet() {
             circles.map(|(_, of)| (layer(of), ["10", "20", "40"].map(|code| number(of, code)))).collect::<Vec<_>>();
         for shape in &sheet.shapes {
             let (on, want) = match shape {
-                SheetShape::Hole { at, radius } => ("HOLES", [at[0], at[1], *radius]),
+                SheetShape::Hole { at, radius, .. } => ("HOLES", [at[0], at[1], *radius]),
                 SheetShape::Disc { at, radius, .. } => ("COUNTERWEIGHT", [at[0], at[1], *radius]),
                 _ => continue,
             };

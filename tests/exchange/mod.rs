@@ -6,4 +6,5 @@ mod import;
 mod mjcf;
 pub mod ordinary;
 mod parts;
+mod solids;
 mod urdf;

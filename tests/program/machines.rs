@@ -633,3 +633,48 @@ fn check_lists_what_parts_bring() {
         !prints(&["check", "two-drive"]).contains("together") && object(&["check", "two-drive"])["parts"].is_null()
     );
 }
+
+#[test]
+fn layers_are_told_written_and_refused() {
+    let folder = Folder::new("layers");
+    let file = |name: &str| word(folder.path(name));
+    let answer = object(&["layers", "two-drive", "-o", &file("stacked.toml")]);
+    let wanted = ["count", "height", "layers", "least_tilt", "meetings", "minimal", "tilt_coefficient"];
+    assert_eq!(keys(&answer), wanted);
+    assert_eq!((answer["count"].as_u64(), answer["minimal"].as_bool()), (Some(3), Some(true)));
+    assert_eq!(keys(&answer["layers"][0]), ["height", "layer", "link"]);
+    assert_eq!(keys(&answer["meetings"][0]), ["a", "apart", "b", "decided", "q", "where"]);
+    // What is written has these heights, and makes solids.
+    let again = object(&["layers", &file("stacked.toml")]);
+    let coefficient = &answer["tilt_coefficient"]["after"];
+    assert_eq!((&again["layers"], &again["tilt_coefficient"]["before"]), (&answer["layers"], coefficient));
+    let solids = object(&["export-model", &file("stacked.toml"), "-o", &file("arm.stl")]);
+    assert_eq!(keys(&solids), ["file", "pose", "solids", "volume"]);
+    fails(&["export-model", "two-drive", "-o", &file("flat.stl")], 2, &["share a pin and a height", "layers"]);
+    fails(&["layers", "two-drive", "-o", &file("stacked.toml")], 2, &["stacked.toml", "--force"]);
+    fails(&["layers", "nine-link"], 1, &["no order of links 2, 3, 4 and 6", "link 4 meets axis of the base at"]);
+    let task = ["--task", "case-3", "--along-task"];
+    let answer = object(&[&["layers", "nine-link"], &task[..]].concat());
+    assert_eq!(keys(&answer["clearance"]), ["a", "b", "distance", "time", "where"]);
+    assert!(answer["clearance"]["distance"].as_f64().expect("a distance") > 0.0);
+    assert_eq!((keys(&answer["tilt"]), answer["count"].as_u64()), (vec!["after", "before"], Some(4)));
+    fails(&["layers", "two-drive", "--task", "case-3"], 2, &["--task case-3", "3 drives"]);
+    fails(&["layers", "two-drive", "--along-task"], 2, &["--task"]);
+    fails(&["layers", "two-drive", "--spacer", "0"], 2, &["spacer 0 m"]);
+}
+
+/// The tilting moment of a stacked machine is what `joints` finds in a run of the task.
+#[test]
+fn the_tilting_moment_of_layers_is_that_of_the_run() {
+    let stacked = object(&["layers", "nine-link", "--task", "case-3", "--along-task"]);
+    let heights = stacked["layers"].as_array().expect("links");
+    let mut command = vec!["joints".to_owned(), "case-3".to_owned()];
+    for link in heights {
+        let height = link["height"].as_f64().expect("a height");
+        command.extend(["--set".to_owned(), format!("link.{}.axial={height}", link["link"].as_str().expect("a name"))]);
+    }
+    let command: Vec<&str> = command.iter().map(String::as_str).collect();
+    let run = object(&command)["tilt"]["motion"]["value"].as_f64().expect("a moment");
+    let own = stacked["tilt"]["after"].as_f64().expect("a moment");
+    assert!((run - own).abs() < 1e-3 * own, "{run} {own}");
+}

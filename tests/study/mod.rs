@@ -7,6 +7,7 @@ mod equations;
 mod fronts;
 mod import;
 mod joint_extremes;
+mod layers;
 mod lengths;
 mod plan_summary;
 mod samples;

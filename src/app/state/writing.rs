@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use super::AppState;
 use super::background::fault;
 use crate::file_dialog::MACHINE_EXTENSION;
-use crate::{Activity, PlotFile, ResumePoint, plots};
-use stillbase_exchange::cut::Cut;
+use crate::{Activity, PlotFile, ResumePoint, plots, studio};
 use stillbase_exchange::form::Form;
 use stillbase_mechanics::machine::to_toml;
 use stillbase_query::Ticket;
@@ -110,8 +109,7 @@ impl AppState {
         self.write_content(path, FILE_BEING_SAVED, None, |app_state| {
             let scenario = app_state.session.scenario();
             let pose = &app_state.session.frame().q.0[..scenario.machine.drives()];
-            // The material is that of the counterweights in the design view.
-            let cut = Cut { density: scenario.design.density, ..Cut::default() };
+            let cut = studio::cut(&app_state.session);
             let text = form.written(&scenario.machine, pose, &cut).map_err(|e| e.to_string())?;
             Ok(Box::new(move || Ok(text.into_bytes())))
         })

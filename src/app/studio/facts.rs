@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::layers;
 use super::lengths::LengthsResult;
 use super::lesson::MachineEquations;
 use stillbase_mechanics::balance::{Breakdown, Condition};
@@ -19,6 +20,7 @@ use stillbase_session::design::DesignBrief;
 use stillbase_settings::number::subscript;
 use stillbase_study::front_point::FrontMeasure;
 use stillbase_study::fronts::{FrontCase, Fronts, FrontsRequest, MachineFront};
+use stillbase_study::layers::{LayersAnswer, LayersQuery};
 use stillbase_study::lengths::LengthsQuery;
 use stillbase_study::measures::Measures;
 use stillbase_study::workshop::{CutMachine, CutQuery, CutRequest, NoCut};
@@ -47,6 +49,8 @@ pub struct DesignFacts {
     other_fronts: Option<QueryResult<Vec<MachineFront>>>,
     /// The measure that colours the points of the front.
     pub(super) front_measure: Option<Arc<MeasureValues>>,
+    /// Layers of the links, or the reason why there are none.
+    pub(super) layers: QueryResult<LayersAnswer>,
     /// Equations of the machine; `None` while the front is on display.
     pub(super) lesson: Option<Arc<MachineEquations>>,
 }
@@ -243,8 +247,13 @@ impl DesignFacts {
             queries.ask_in_background::<QuickWork<Cost>>(&(bare.clone(), machine.clone(), run.shared_motion())).last
         };
         let over = |ends| queries.ask_in_background::<QuickWork<OverPayloads>>(&(machine.clone(), ends)).last;
+        // A run that waits has no motion.
+        let motion = run.shared_motion().filter(|_| run.waiting().is_none());
+        let layers =
+            queries.ask_in_background::<QuickWork<LayersQuery>>(&(machine.clone(), layers::cut(session), motion));
         Self {
             terms: queries.ask::<QuickWork<Terms>>(machine),
+            layers,
             measures: sums.bare.as_ref().and_then(cost),
             payloads: session.scenario().design.payload.and_then(over),
             sums,

@@ -3,16 +3,17 @@
 
 mod bars;
 mod brief;
-mod cut;
 mod equations;
 mod facts;
 mod front;
+mod layers;
 mod lengths;
 mod lesson;
 mod measures;
 mod other_fronts;
 mod parts;
 mod payload;
+mod stock;
 mod table;
 mod tabs;
 mod terms;
@@ -29,6 +30,7 @@ use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Session;
 
 pub use facts::{DesignFacts, as_cut, leave, of_front};
+pub use layers::cut;
 
 /// Default widths of the panels, points.
 const TABLE_WIDTH_PT: f32 = 336.0;
@@ -58,6 +60,9 @@ pub fn show(
             scrolled(ui, |ui| {
                 if let Some((drawing, pen)) = drawing.zip(view_state.drawing_pen()) {
                     sketching::panel(ui, session, drawing, pen, view_state, commands);
+                    if drawing.is_complete() {
+                        layers::show(ui, session, &facts.layers, &p, commands);
+                    }
                     return;
                 }
                 draw_button(ui, &p, commands);
@@ -65,8 +70,9 @@ pub fn show(
                 let is_balanced = facts.terms.iter().all(|term| term.is_balanced);
                 brief::show(ui, session.scenario(), is_balanced, &p, commands);
                 lengths::show(ui, session.scenario(), facts.length_search.as_ref(), &p, commands);
-                cut::show(ui, session, facts, &p, commands);
+                stock::show(ui, session, facts, &p, commands);
                 measures::show(ui, session, facts, &p);
+                layers::show(ui, session, &facts.layers, &p, commands);
             });
         });
     }

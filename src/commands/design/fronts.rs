@@ -3,10 +3,12 @@
 use std::fmt::Write as _;
 
 use serde::Serialize;
+use stillbase_mechanics::machine::Machine;
 use stillbase_query::answer_now;
 use stillbase_study::fronts::{FrontCase, Fronts, FrontsRequest, MachineFront};
 
 use super::super::failure::Failure;
+use super::super::input::task_run;
 use super::super::output::TextTable;
 use super::DesignArguments;
 use super::weighed::{FRONT_HEADINGS, front_cells, report_removed, request_failure};
@@ -20,7 +22,8 @@ impl DesignArguments {
     /// Prints the Pareto front of each machine, or the reason why it has none.
     pub fn fronts(&self) -> Result<(), Failure> {
         let machines = self.machine.load_with(&self.other_machines)?;
-        let task = self.task(&machines.iter().map(|(_, machine)| machine).collect::<Vec<_>>())?;
+        let all: Vec<&Machine> = machines.iter().map(|(_, machine)| machine).collect();
+        let task = self.task.as_ref().map(|name| task_run(name, &all)).transpose()?;
         let of = |(name, machine)| {
             // The Pareto front trades mass against inertia, neither of which depends on a motion.
             let spec = self.weighing.spec(&machine, None).map_err(|why| why.with_context(&name))?;

@@ -17,12 +17,11 @@ use stillbase_study::centres::design_centres;
 use super::check::balance_tables;
 use super::exit::print_message;
 use super::failure::Failure;
-use super::input::{MachineArgument, Settings, choice, scenario};
+use super::input::{MachineArgument, choice, task_run};
 use super::output::{Format, TextTable, check_output};
 use kept::RebalanceArguments;
 use stillbase_planning::Motion;
-use stillbase_session::{Run, with_start_edits};
-use stillbase_settings::number::{counted, fixed};
+use stillbase_settings::number::fixed;
 use stillbase_settings::word::Choice;
 use weighed::WeightArguments;
 
@@ -99,7 +98,7 @@ impl DesignArguments {
             return self.fronts();
         }
         let machine = self.machine.load()?;
-        let task = self.task(&[&machine])?;
+        let task = self.task.as_ref().map(|name| task_run(name, &[&machine])).transpose()?;
         let motion = task.as_ref().map(|run| &*run.plan().motion);
         if self.weighing.counterweights {
             return self.weigh(&machine, motion);
@@ -137,24 +136,6 @@ impl DesignArguments {
         self.format.print(&answer, |answer| kept::text(answer, machine, by))
     }
 
-    /// Returns a run of the scenario of `--task`, if one is given. Fails unless at least one of the machines has as
-    /// many drives as that scenario.
-    fn task(&self, machines: &[&Machine]) -> Result<Option<Run>, Failure> {
-        let Some(name) = &self.task else { return Ok(None) };
-        let run = Run::new(&with_start_edits(&scenario(name, &Settings::default())?)?.0)?;
-        let has = run.scenario().machine.drives();
-        let mut want: Vec<String> = machines.iter().map(|machine| machine.drives().to_string()).collect();
-        want.dedup();
-        match machines.iter().any(|machine| machine.drives() == has) {
-            true => Ok(Some(run)),
-            false => Err(Failure::wrong_input(format!(
-                "--task {name}: its machine has {}: want one of {}",
-                counted(has, "drive"),
-                want.join(" or ")
-            ))),
-        }
-    }
-
     /// Prints counterweights and their measures, and writes the machine that carries them.
     fn weigh(&self, machine: &Machine, motion: Option<&Motion>) -> Result<(), Failure> {
         if let Some(file) = &self.output {
@@ -178,7 +159,7 @@ impl DesignArguments {
 }
 
 /// Writes a machine, named after its file because it differs from the original machine.
-fn save(machine: &Machine, file: &Path, force: bool, summary: String) -> Result<(), Failure> {
+pub(super) fn save(machine: &Machine, file: &Path, force: bool, summary: String) -> Result<(), Failure> {
     let mut spec = machine.spec().clone();
     spec.name = file.file_stem().unwrap_or(OsStr::new("machine")).to_string_lossy().into_owned();
     spec.summary = summary;

@@ -1,20 +1,47 @@
 //! A sheet as DXF of release 12, which every program for cutting reads: lines, circles, closed polylines and text, on
 //! one layer for each purpose. A unit of the drawing is a millimetre.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use super::outline::Corner;
 use super::sheet::{Sheet, SheetShape, TextAlign};
 use stillbase_settings::number::fixed;
 
-/// Layers with their colour numbers: outlines to cut, holes to drill, discs, and annotations.
-const LAYERS: [(&str, u8); 4] = [("OUTLINE", 7), ("HOLES", 5), ("COUNTERWEIGHT", 1), ("TEXT", 8)];
+/// Layers of the drawing with their colour numbers: outlines to cut, holes to drill, discs, and annotations.
+const OUTLINE: (&str, u8) = ("OUTLINE", 7);
+const HOLES: (&str, u8) = ("HOLES", 5);
+const COUNTERWEIGHT: (&str, u8) = ("COUNTERWEIGHT", 1);
+const TEXT: (&str, u8) = ("TEXT", 8);
+
+/// Returns the name of a layer of the drawing for links in a layer of the machine: `OUTLINE_2`.
+fn named((name, _): (&str, u8), layer: Option<usize>) -> String {
+    layer.map_or_else(|| name.to_owned(), |layer| format!("{name}_{layer}"))
+}
+
+/// Returns the layers of a drawing with their colour numbers. In a machine whose links lie in layers, each of these has
+/// its own.
+fn layers(sheet: &Sheet) -> Vec<(String, u8)> {
+    let layer = |shape: &SheetShape| match shape {
+        SheetShape::Bar { layer, .. } | SheetShape::Hole { layer, .. } | SheetShape::Disc { layer, .. } => *layer,
+        _ => None,
+    };
+    let stacked: BTreeSet<usize> = sheet.shapes.iter().filter_map(layer).collect();
+    let own = match stacked.is_empty() {
+        true => vec![None],
+        false => stacked.into_iter().map(Some).collect(),
+    };
+    let of_links = own
+        .into_iter()
+        .flat_map(|layer| [OUTLINE, HOLES, COUNTERWEIGHT].map(|purpose| (named(purpose, layer), purpose.1)));
+    of_links.chain([(named(TEXT, None), TEXT.1)]).collect()
+}
 
 /// Returns the text of the file, in ASCII.
 pub fn dxf(sheet: &Sheet) -> String {
     let mut out = Tags::default();
     out.header(sheet.size);
-    out.tables();
+    out.tables(&layers(sheet));
     out.text(0, "SECTION");
     out.text(2, "ENTITIES");
     for shape in &sheet.shapes {
@@ -66,7 +93,7 @@ impl Tags {
         self.text(0, "ENDSEC");
     }
 
-    fn tables(&mut self) {
+    fn tables(&mut self, layers: &[(String, u8)]) {
         self.text(0, "SECTION");
         self.text(2, "TABLES");
         self.table("LTYPE", 1);
@@ -78,22 +105,22 @@ impl Tags {
         self.count(73, 0);
         self.number(40, 0.0);
         self.text(0, "ENDTAB");
-        self.table("LAYER", LAYERS.len() as u8);
-        for (name, colour) in LAYERS {
+        self.table("LAYER", layers.len());
+        for (name, colour) in layers {
             self.text(0, "LAYER");
             self.text(2, name);
             self.count(70, 0);
-            self.count(62, colour);
+            self.count(62, *colour);
             self.text(6, "CONTINUOUS");
         }
         self.text(0, "ENDTAB");
         self.text(0, "ENDSEC");
     }
 
-    fn table(&mut self, name: &str, count: u8) {
+    fn table(&mut self, name: &str, count: usize) {
         self.text(0, "TABLE");
         self.text(2, name);
-        self.count(70, count);
+        self.text(70, &count.to_string());
     }
 
     fn entity(&mut self, kind: &str, layer: &str) {
@@ -114,31 +141,33 @@ impl Tags {
     }
 
     /// Writes a closed outline of two straight sides and two half circles.
-    fn bar(&mut self, [x, y]: [f64; 2], length: f64, radius: f64) {
+    fn bar(&mut self, on: &str, [x, y]: [f64; 2], length: f64, radius: f64) {
         let (right, low, high) = (x + length, y - radius, y + radius);
         let corners = [([x, low], 0.0), ([right, low], 1.0), ([right, high], 0.0), ([x, high], 1.0)];
-        self.outline(&corners.map(|(at, bulge)| Corner { at, bulge }));
+        self.outline(on, &corners.map(|(at, bulge)| Corner { at, bulge }));
     }
 
-    fn outline(&mut self, corners: &[Corner]) {
-        self.entity("POLYLINE", "OUTLINE");
+    fn outline(&mut self, on: &str, corners: &[Corner]) {
+        self.entity("POLYLINE", on);
         self.count(66, 1);
         self.point(10, [0.0; 2]);
         self.count(70, 1);
         for corner in corners {
-            self.entity("VERTEX", "OUTLINE");
+            self.entity("VERTEX", on);
             self.point(10, corner.at);
             self.number(42, corner.bulge);
         }
-        self.entity("SEQEND", "OUTLINE");
+        self.entity("SEQEND", on);
     }
 
     fn shape(&mut self, shape: &SheetShape) {
         match shape {
-            SheetShape::Bar { from, length, radius, .. } => self.bar(*from, *length, *radius),
-            SheetShape::Outline { corners, .. } => self.outline(corners),
-            SheetShape::Hole { at, radius } => self.circle("HOLES", *at, *radius),
-            SheetShape::Disc { at, radius, .. } => self.circle("COUNTERWEIGHT", *at, *radius),
+            SheetShape::Bar { from, length, radius, layer, .. } => {
+                self.bar(&named(OUTLINE, *layer), *from, *length, *radius);
+            }
+            SheetShape::Outline { corners, layer, .. } => self.outline(&named(OUTLINE, *layer), corners),
+            SheetShape::Hole { at, radius, layer } => self.circle(&named(HOLES, *layer), *at, *radius),
+            SheetShape::Disc { at, radius, layer, .. } => self.circle(&named(COUNTERWEIGHT, *layer), *at, *radius),
             SheetShape::Line(ends) => self.line(*ends),
             SheetShape::Mark { at: [x, y], radius: r } => {
                 self.line([[x - r, *y], [x + r, *y]]);

@@ -34,6 +34,8 @@ pub enum SheetShape {
         radius: f64,
         /// The drive that it follows, counted from 0.
         drive: usize,
+        /// The layer of its link; `None` if links lie in no layers.
+        layer: Option<usize>,
     },
     /// The outline of a part.
     Outline {
@@ -41,6 +43,8 @@ pub enum SheetShape {
         corners: Vec<Corner>,
         /// The drive that it follows, counted from 0.
         drive: usize,
+        /// The layer of its link; `None` if links lie in no layers.
+        layer: Option<usize>,
     },
     /// A hole.
     Hole {
@@ -48,6 +52,8 @@ pub enum SheetShape {
         at: [f64; 2],
         /// Its radius.
         radius: f64,
+        /// The layer of its link; `None` if links lie in no layers.
+        layer: Option<usize>,
     },
     /// The outline of a counterweight.
     Disc {
@@ -57,6 +63,8 @@ pub enum SheetShape {
         radius: f64,
         /// The drive that it follows, counted from 0.
         drive: usize,
+        /// The layer of its link; `None` if links lie in no layers.
+        layer: Option<usize>,
     },
     /// A thin line.
     Line([[f64; 2]; 2]),
@@ -114,13 +122,18 @@ impl Sheet {
         cut.check(machine)?;
         let longest = machine.resolved_links().iter().map(|part| part.length).fold(0.0, f64::max);
         let height = (1e3 * longest / 140.0).clamp(3.5, 10.0);
+        let layers = cut.layers_of(machine);
         let links = 0..machine.links().len();
-        let pieces = links.flat_map(|j| match pieces_of(machine, j) {
-            outlines if outlines.is_empty() => vec![Piece::of(machine, cut, j, height)],
-            outlines => {
-                let of =
-                    |(k, outline): (usize, &PieceOutline)| Piece::of_part(machine, cut, j, outline, k == 0, height);
-                outlines.iter().enumerate().map(of).collect()
+        let pieces = links.flat_map(|j| {
+            let layer = layers.as_ref().map(|layers| layers[j]);
+            match pieces_of(machine, j) {
+                outlines if outlines.is_empty() => vec![Piece::of(machine, cut, (j, layer), height)],
+                outlines => {
+                    let of = |(k, outline): (usize, &PieceOutline)| {
+                        Piece::of_part(machine, cut, (j, layer), outline, k == 0, height)
+                    };
+                    outlines.iter().enumerate().map(of).collect()
+                }
             }
         });
         let pieces = pieces.collect();
@@ -146,17 +159,19 @@ struct Piece {
     shapes: Vec<SheetShape>,
     /// Its extent: left, bottom, right and top, mm.
     reach: [f64; 4],
+    /// The layer of its link.
+    layer: Option<usize>,
 }
 
 impl Piece {
-    fn of(machine: &Machine, cut: &Cut, j: usize, height: f64) -> Self {
-        let mut piece = Self { shapes: Vec::new(), reach: [0.0; 4] };
+    fn of(machine: &Machine, cut: &Cut, (j, layer): (usize, Option<usize>), height: f64) -> Self {
+        let mut piece = Self { shapes: Vec::new(), reach: [0.0; 4], layer };
         let part = &machine.resolved_links()[j];
         let holes = holes(machine, j);
         piece.bar(cut, part.drive, bar_extent(machine, j));
         piece.discs(machine, j);
         for at in &holes {
-            piece.shapes.push(SheetShape::Hole { at: [1e3 * at, 0.0], radius: 500.0 * cut.pin_diameter });
+            piece.shapes.push(SheetShape::Hole { at: [1e3 * at, 0.0], radius: 500.0 * cut.pin_diameter, layer });
         }
         piece.centre_of_mass(machine, j, height);
         piece.stations(&holes, part.length, height);
@@ -165,8 +180,15 @@ impl Piece {
     }
 
     /// Draws one part of a link; the first one shows what belongs to the whole link.
-    fn of_part(machine: &Machine, cut: &Cut, j: usize, outline: &PieceOutline, first: bool, height: f64) -> Self {
-        let mut piece = Self { shapes: Vec::new(), reach: [0.0; 4] };
+    fn of_part(
+        machine: &Machine,
+        cut: &Cut,
+        (j, layer): (usize, Option<usize>),
+        outline: &PieceOutline,
+        first: bool,
+        height: f64,
+    ) -> Self {
+        let mut piece = Self { shapes: Vec::new(), reach: [0.0; 4], layer };
         let link = &machine.resolved_links()[j];
         let in_mm = |at: [f64; 2]| at.map(|x| 1e3 * x);
         let corners: Vec<Corner> =
@@ -177,12 +199,12 @@ impl Piece {
             let round = 0.5 * corner.bulge.abs() * (next.at[0] - x).hypot(next.at[1] - y);
             piece.include([x - round, y, x + round, y]);
         }
-        piece.shapes.push(SheetShape::Outline { corners, drive: link.drive });
+        piece.shapes.push(SheetShape::Outline { corners, drive: link.drive, layer });
         if first {
             piece.discs(machine, j);
         }
         for (at, diameter) in &outline.holes {
-            piece.shapes.push(SheetShape::Hole { at: in_mm(*at), radius: 500.0 * diameter });
+            piece.shapes.push(SheetShape::Hole { at: in_mm(*at), radius: 500.0 * diameter, layer });
         }
         if first {
             piece.centre_of_mass(machine, j, height);
@@ -203,7 +225,7 @@ impl Piece {
         for weight in weights_of(machine, j).filter(|weight| weight.radius > 0.0) {
             let (at, radius) = ([1e3 * weight.at, 1e3 * weight.across], 1e3 * weight.radius);
             self.include([at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius]);
-            self.shapes.push(SheetShape::Disc { at, radius, drive });
+            self.shapes.push(SheetShape::Disc { at, radius, drive, layer: self.layer });
         }
     }
 
@@ -225,9 +247,9 @@ impl Piece {
     }
 
     fn bar(&mut self, cut: &Cut, drive: usize, [from, to]: [f64; 2]) {
-        let radius = 500.0 * cut.bar_width;
+        let (radius, layer) = (500.0 * cut.bar_width, self.layer);
         self.include([1e3 * from - radius, -radius, 1e3 * to + radius, radius]);
-        self.shapes.push(SheetShape::Bar { from: [1e3 * from, 0.0], length: 1e3 * (to - from), radius, drive });
+        self.shapes.push(SheetShape::Bar { from: [1e3 * from, 0.0], length: 1e3 * (to - from), radius, drive, layer });
     }
 
     /// Draws the dimension line with the distances between neighbouring holes, and to the tip.
@@ -274,7 +296,8 @@ impl Piece {
         self.words([left, top], 1.3 * height, TextAlign::Start, TextEmphasis::Strong, name);
         self.words([left + shift, top], height, TextAlign::Start, TextEmphasis::Plain, about.clone());
         self.include([left, 0.0, left + shift + width_of(&about, height), top + 1.3 * height]);
-        for line in lines {
+        let stacked = self.layer.map(|layer| format!("layer {layer}, {} mm high", signed(link.axial)));
+        for line in stacked.into_iter().chain(lines) {
             let at = [left, self.reach[1] - LINE_SPACING * height];
             self.include([left, at[1] - 0.3 * height, left + width_of(&line, height), 0.0]);
             self.words(at, height, TextAlign::Start, TextEmphasis::Plain, line);

@@ -39,7 +39,7 @@ fn n(x: f64) -> String {
 fn element(lines: &mut XmlWriter, shape: &SheetShape, top: f64) {
     let at = |[x, y]: [f64; 2]| [n(x), n(top - y)];
     match shape {
-        SheetShape::Bar { from, length, radius, drive } => {
+        SheetShape::Bar { from, length, radius, drive, .. } => {
             let [x, y] = at([from[0] - radius, from[1] + radius]);
             let (width, height, r, colour) =
                 (n(length + 2.0 * radius), n(2.0 * radius), n(*radius), COLOURS[drive % COLOURS.len()]);
@@ -51,7 +51,7 @@ fn element(lines: &mut XmlWriter, shape: &SheetShape, top: f64) {
                 ),
             );
         }
-        SheetShape::Outline { corners, drive } => {
+        SheetShape::Outline { corners, drive, .. } => {
             let colour = COLOURS[drive % COLOURS.len()];
             let path = path(corners, top);
             lines.add(
@@ -62,7 +62,7 @@ fn element(lines: &mut XmlWriter, shape: &SheetShape, top: f64) {
                 ),
             );
         }
-        SheetShape::Hole { at: centre, radius } => {
+        SheetShape::Hole { at: centre, radius, .. } => {
             let ([x, y], r) = (at(*centre), n(*radius));
             let round = format!("cx=\"{x}\" cy=\"{y}\" r=\"{r}\"");
             lines.add(
@@ -72,7 +72,7 @@ fn element(lines: &mut XmlWriter, shape: &SheetShape, top: f64) {
                 ),
             );
         }
-        SheetShape::Disc { at: centre, radius, drive } => {
+        SheetShape::Disc { at: centre, radius, drive, .. } => {
             let ([x, y], r, colour) = (at(*centre), n(*radius), COLOURS[drive % COLOURS.len()]);
             let round = format!("cx=\"{x}\" cy=\"{y}\" r=\"{r}\"");
             lines.add(

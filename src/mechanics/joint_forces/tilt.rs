@@ -95,6 +95,11 @@ impl AxialMoments {
         self.couple[..self.drives].iter().fold(0.0, |m, s| m.max(s.norm()))
     }
 
+    /// Returns Σ_k |s_k − z̄ g_k|, kg m², by which orders of the links are compared where no motion is given.
+    pub fn sum(&self) -> f64 {
+        self.couple[..self.drives].iter().map(|s| s.norm()).sum()
+    }
+
     /// Returns the tilting moment about B in the reference plane, N m.
     #[inline]
     pub fn tilt(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, around: &ExternalLoads) -> TiltMoment {

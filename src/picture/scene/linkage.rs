@@ -1,10 +1,14 @@
 //! The body of a machine: bars, pins, counterweights and drives, as meshes that do not change while it moves.
 //!
-//! Links that share a pin follow different drives, so each drive has its own layer and links do not intersect.
+//! Links that share a pin follow different drives, so each drive has its own layer and links do not intersect. A machine
+//! with heights shows its links at these.
 
 mod bodies;
+mod heights;
 
 use std::sync::Arc;
+
+use heights::Heights;
 
 use super::mesh::{bar, cylinder};
 use super::palette::{Palette, faded, mix};
@@ -136,8 +140,6 @@ pub const PLATE_HALF_SIZE: [f64; 2] = [0.2, 0.105];
 /// Dimensions as fractions of the reach of the machine.
 const BAR_RADIUS: f64 = 0.0135;
 const THIN_BAR_RADIUS: f64 = 0.0085;
-const BAR_HEIGHT: f64 = 0.016;
-const GAP: f64 = 0.004;
 const WEIGHT_RADIUS: f64 = 0.05;
 const DRIVE_RADIUS: f64 = 0.042;
 
@@ -149,8 +151,8 @@ impl LinkageModel {
     /// Builds the body of a machine.
     pub fn of(machine: &Machine) -> Self {
         let reach = reach_of(machine);
-        let (height, gap) = (BAR_HEIGHT * reach, GAP * reach);
-        let layer = |drive: usize| drive as f64 * (height + gap);
+        let heights = Heights::of(machine, reach);
+        let Heights { height, gap, .. } = heights;
         let carries = carriers(machine);
         let heaviest = machine.links().iter().fold(0.0_f64, |m, l| m.max(l.mass));
         let mut meshes = Vec::new();
@@ -160,19 +162,23 @@ impl LinkageModel {
             let ends = part.pins.iter().copied().chain([part.length]);
             let (from, to) = ends.fold((0.0_f64, 0.0_f64), |(a, b), s| (a.min(s), b.max(s)));
             let weights = machine.spec().counterweights.iter().filter(|weight| weight.link == link.name);
-            let disc = |at: Vector, size: f64| Weight {
+            let disc = |at: Vector, size: f64, thickness: f64| Weight {
                 at,
                 radius: size.max(1.5 * radius),
-                z: -0.3 * height,
-                height: 1.6 * height,
+                z: 0.5 * (height - thickness),
+                height: thickness,
             };
-            let mut discs: Vec<Weight> = weights.map(|w| disc(Vector::new(w.at, w.across), w.radius)).collect();
+            let usual = 1.6 * height;
+            let mut discs: Vec<Weight> = weights
+                .map(|w| disc(Vector::new(w.at, w.across), w.radius, heights.thickness(w).unwrap_or(usual)))
+                .collect();
             if discs.is_empty() && (link.com < from || link.com > to) {
                 // If the centre of mass is beyond the ends, a disc there suggests a counterweight; area ∝ mass of the
                 // link.
                 discs.push(disc(
                     Vector::new(link.com, link.com_normal),
                     reach * WEIGHT_RADIUS * (link.mass / heaviest).sqrt(),
+                    usual,
                 ));
             }
             let span = discs.iter().fold([from, to], |[from, to], disc| [from.min(disc.at.re), to.max(disc.at.re)]);
@@ -199,7 +205,7 @@ impl LinkageModel {
                 radius,
                 height,
                 weights: discs,
-                z: layer(part.drive),
+                z: heights.z[j],
             });
         }
         let mut pins = Vec::new();
@@ -208,9 +214,9 @@ impl LinkageModel {
         let pin = added(&mut meshes, cylinder(1.25 * radius, shortest, 0.15 * radius));
         let hole = added(&mut meshes, cylinder(0.7 * radius, 0.2 * gap, 0.0));
         for (at, links) in joints(machine) {
-            let drives = links.iter().map(|j| machine.resolved_links()[*j].drive);
-            let (low, high) = drives.fold((usize::MAX, 0), |(low, high), k| (low.min(k), high.max(k)));
-            let z = [layer(low) - gap, layer(high) + height + gap];
+            let faces = links.iter().map(|j| heights.z[*j]);
+            let (low, high) = faces.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), z| (l.min(z), h.max(z)));
+            let z = [low - gap, high + height + gap];
             pins.push(Pin { at, links, z, stretch: (z[1] - z[0]) / shortest });
         }
         let n = machine.drives();
@@ -224,7 +230,7 @@ impl LinkageModel {
             };
             let below = match at {
                 // The motor is below the link that carries it.
-                Some(_) => machine.motors().on(k).map_or(0.0, layer) - 0.92 * drive_height,
+                Some(_) => heights.carrier(machine, k) - 0.92 * drive_height,
                 None => {
                     on_base += 1;
                     -f64::from(on_base) * drive_height
@@ -241,7 +247,7 @@ impl LinkageModel {
         let half_length = length - width;
         let mesh = added(&mut meshes, bar(-half_length, half_length, width, plate_height, plate_bevel));
         let body = Slab { mesh, half_length, radius: width, height: plate_height };
-        let top = layer(n - 1) + height;
+        let top = heights.top;
         let cap = Disc::of(&mut meshes, 0.6 * drive_radius, top + 2.0 * gap, 0.2 * gap);
         Self { model: Arc::new(MeshSet { meshes }), bars, pins, pin, hole, motors, plate, body, cap, reach }
     }
@@ -253,7 +259,7 @@ impl LinkageModel {
 
     /// Height of the plane just below the lowest links, m.
     pub fn floor(&self) -> f64 {
-        -GAP * self.reach
+        -heights::GAP * self.reach
     }
 
     /// Height above every link, m.

@@ -1,0 +1,42 @@
+//! [`Dimensions`]: options for the dimensions of parts, which commands share.
+
+use clap::Args;
+use stillbase_exchange::cut::Cut;
+
+/// Dimensions of bars, pins and discs.
+#[derive(Args)]
+pub struct Dimensions {
+    /// Width of the bars, m; default: 0.03
+    #[arg(long, value_name = "W")]
+    pub bar_width: Option<f64>,
+    /// Diameter of the pins and their holes, m; default: 0.008
+    #[arg(long, value_name = "D")]
+    pub pin_diameter: Option<f64>,
+    /// Density of the counterweights, kg/m³; default: that of steel, 7850
+    #[arg(long, value_name = "DENSITY")]
+    pub material: Option<f64>,
+    /// Thickness of the counterweights, m; default: the thickness that gives each its mass
+    #[arg(long, value_name = "T")]
+    pub thickness: Option<f64>,
+    /// Thickness of the bars, m; default: 0.006
+    #[arg(long, value_name = "T")]
+    pub plate_thickness: Option<f64>,
+    /// Gap between bars of neighbouring layers, m; default: 0.001
+    #[arg(long, value_name = "M")]
+    pub spacer: Option<f64>,
+}
+
+impl Dimensions {
+    /// Returns the dimensions, with the usual ones where none are given.
+    pub fn cut(&self) -> Cut {
+        let usual = Cut::default();
+        Cut {
+            bar_width: self.bar_width.unwrap_or(usual.bar_width),
+            pin_diameter: self.pin_diameter.unwrap_or(usual.pin_diameter),
+            density: self.material.unwrap_or(usual.density),
+            thickness: self.thickness,
+            plate_thickness: self.plate_thickness.unwrap_or(usual.plate_thickness),
+            spacer: self.spacer.unwrap_or(usual.spacer),
+        }
+    }
+}
