@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::activity::Activity;
 use super::export::Export;
 use super::file_dialog::{FileDialog, FilePurpose, PlotFile};
+use super::file_report::FileReport;
 use super::given::assess::{TableAction, TableOptions};
 use super::guide::GuideStep;
 use super::layout::Layout;
@@ -248,6 +249,8 @@ pub enum ViewChange {
     DropMeasurement(Option<usize>),
     /// Open or close the file dialog.
     Dialog(Option<FileDialog>),
+    /// Open or close the list about a file.
+    Report(Option<FileReport>),
     /// Open, change or close the card of options for an export to a file.
     Export(Option<Export>),
 }

@@ -208,6 +208,7 @@ impl ViewState {
                 self.open.finder = self.open.finder.take().filter(|_| dialog.is_none());
                 self.open.dialog = dialog;
             }
+            ViewChange::Report(report) => self.open.report = report,
             ViewChange::Export(export) => self.open.export = export,
             ViewChange::WriteNote(draft) => self.open.note = draft,
             ViewChange::DropMeasurement(Some(i)) if i < self.measurements.len() => {

@@ -66,6 +66,8 @@ struct Answer {
     file: String,
     #[serde(flatten)]
     of: Written,
+    /// What the model leaves out.
+    left_out: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -109,7 +111,11 @@ impl ExportModelArguments {
         let of = described(&machine, form, pose, &cut)?;
         write_new(&self.output, text.as_bytes(), self.force)?;
         print_message(format!("wrote {}", self.output.display()));
-        let answer = Answer { file: self.output.display().to_string(), of };
+        let left_out = form.left_out(&machine);
+        for what in &left_out {
+            print_message(format!("note: {}: left out: {what}", self.output.display()));
+        }
+        let answer = Answer { file: self.output.display().to_string(), of, left_out };
         self.format.print(&answer, |answer| answer.of.words(&machine))
     }
 

@@ -23,11 +23,11 @@ impl AppState {
     }
 
     fn take_opened(&mut self, opening: Opening, opened: Option<Result<Opened, NotOpened>>) {
-        let broken = || NotOpened { why: "opening broke off: this is a fault of the program".into(), refused: None };
+        let broken = || NotOpened { why: "opening broke off: this is a fault of the program".into(), refused: None, report: None };
         match opened.unwrap_or_else(|| Err(broken())) {
             Ok(Opened::Table(file, table)) => self.take_up(file, table),
             Ok(Opened::Session(opened)) => {
-                let OpenedSession { session, note, left_off } = *opened;
+                let OpenedSession { session, note, left_out, left_off } = *opened;
                 let message = note.or_else(|| opening.message.clone());
                 // Only a file that the window wrote says where the session was left.
                 let own = match &opening.file {
@@ -37,6 +37,7 @@ impl AppState {
                     _ => None,
                 };
                 self.take_over(session, Opening { message, ..opening });
+                self.view_state.open.report = left_out;
                 if let Some(file) = own {
                     self.saving.keep_file(self.session.undo_count(), file);
                 }
@@ -56,11 +57,12 @@ impl AppState {
                     self.open(SessionSource::Scenario(Box::new(scenario)), opening);
                 }
             }
-            Err(NotOpened { why, refused }) => {
+            Err(NotOpened { why, refused, report }) => {
                 if let Some(SessionFile::Own(file)) = &opening.file {
                     self.saving.misses(file);
                 }
                 self.view_state.status.refused = refused;
+                self.view_state.open.report = report;
                 self.show_outcome(Err(why));
             }
         }
