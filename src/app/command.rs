@@ -270,6 +270,8 @@ pub enum WindowCommand {
     LookFor,
     /// Copy the command that runs the scenario on display.
     CopyCommand,
+    /// Take up the file of the session that another program has changed, or keep the session as it is.
+    ChangedFile(bool),
     /// Copy a text, and say so.
     Copy(String),
     /// Show why what was typed is refused, with ways out that are known.

@@ -71,6 +71,7 @@ mod view_change;
 mod view_state;
 mod viewport;
 mod waiting;
+mod watched_file;
 mod widgets;
 #[cfg(feature = "window")]
 pub mod window;

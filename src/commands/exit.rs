@@ -34,8 +34,9 @@ fn print_faults(why: &str, file: &str, faults: &Faults) {
         if !fault.example.is_empty() {
             print_message("for example:");
             // An example is printed as it may be pasted.
-            let lines: String = fault.example.lines().map(|line| format!("    {line}\n")).collect();
-            let _ = io::stderr().write_all(plain_lines(&lines).as_bytes());
+            for line in fault.example.lines() {
+                let _ = writeln!(io::stderr(), "{}", plain(format!("    {line}").trim_end()));
+            }
         }
     };
     if let [only] = &faults.list[..] {
@@ -49,11 +50,6 @@ fn print_faults(why: &str, file: &str, faults: &Faults) {
         example(fault);
     }
     faults.rest().into_iter().for_each(print_message);
-}
-
-/// Returns lines without characters that control a terminal.
-fn plain_lines(lines: &str) -> String {
-    lines.split_inclusive('\n').map(|line| format!("{}\n", plain(line.trim_end_matches('\n')))).collect()
 }
 
 /// Maximum length of the name of a file in messages, characters.

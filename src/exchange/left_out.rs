@@ -54,6 +54,12 @@ fn drives(spec: &MachineSpec, of: impl Fn(usize) -> bool) -> Option<String> {
 pub fn of_urdf(machine: &Machine) -> Vec<String> {
     let spec = machine.spec();
     let mut list = of_both(machine);
+    let parts = machine.resolved_links();
+    let fixed = |j: &usize| parts[*j].parent.is_some_and(|parent| parts[parent].drive == parts[*j].drive);
+    let merged: Vec<&str> = (0..parts.len()).filter(fixed).map(|j| spec.links[j].name.as_str()).collect();
+    if !merged.is_empty() {
+        list.push(format!("pin of link {}: read again, such a link is one with the link that carries it", merged.join(", ")));
+    }
     let mut own = Vec::new();
     let limited = |k: usize| spec.drives[k].acceleration_limit.is_some() || spec.drives[k].jerk_limit.is_some();
     own.extend((spec.gravity != [0.0; 2]).then_some("gravity"));

@@ -42,6 +42,16 @@ impl KeyPath {
         Self(std::iter::once(KeyStep::Key(key.into())).chain(self.0).collect())
     }
 
+    /// Returns the place with elements of lists by their positions, not by names.
+    #[must_use]
+    pub fn by_position(&self) -> Self {
+        let step = |step: &KeyStep| match step {
+            KeyStep::Named(i, _) => KeyStep::At(*i),
+            step => step.clone(),
+        };
+        Self(self.0.iter().map(step).collect())
+    }
+
     /// Returns the place of a key in the table at this place.
     #[must_use]
     pub fn key(&self, key: &str) -> Self {

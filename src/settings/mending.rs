@@ -246,6 +246,7 @@ impl Mending<'_> {
         let mut before = None;
         for _ in 0..rounds {
             let Err(problem) = read(&self.file) else { return Faults::of(self.found, false) };
+            let problem = Problem { path: problem.path.by_position(), ..problem };
             // What no mending changes ends the search, and what follows from made up numbers does not count.
             let follows = matches!(problem.wrong, Wrong::Follows(_)) && !self.made_up.is_empty();
             let here = Some((problem.clone(), self.file.span(&problem.path)));
@@ -287,7 +288,10 @@ impl Mending<'_> {
             self.stated.named(&found.unwrap_or_else(|| path.clone()))
         };
         let said = Problem { path: stated(&problem.path), wrong: problem.wrong.clone() };
-        let place = self.file.place(&problem.path);
+        let place = match problem.wrong {
+            Wrong::Missing(_) => self.file.place(&problem.path),
+            _ => self.file.key_place(&problem.path).or_else(|| self.file.place(&problem.path)),
+        };
         Fault {
             line: place.map(|place| place.line),
             column: place.map(|place| place.column),

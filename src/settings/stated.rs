@@ -11,7 +11,7 @@ use toml::de::{DeArray, DeTable, DeValue, Deserializer, Error};
 use super::key_path::{KeyPath, KeyStep};
 
 /// What a TOML file states.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct StatedFile<'a> {
     text: &'a str,
     table: Spanned<DeTable<'a>>,
@@ -125,6 +125,17 @@ impl<'a> StatedFile<'a> {
         span
     }
 
+    /// Returns where the key is that is the last step of a path, if it stands in the file.
+    pub fn key_place(&self, path: &KeyPath) -> Option<TextPlace> {
+        let key = path.last_key()?;
+        let outer = path.parent()?;
+        let table = match outer.0.is_empty() {
+            true => self.table.get_ref(),
+            false => self.at(&outer)?.as_table()?,
+        };
+        Some(TextPlace::of(self.text, table.get_key_value(key)?.0.span().start))
+    }
+
     /// Returns where the innermost part of a path is that exists; `None` if not even its first step does.
     pub fn place(&self, path: &KeyPath) -> Option<TextPlace> {
         self.span(path).map(|span| TextPlace::of(self.text, span.start))
@@ -236,19 +247,28 @@ fn path_in_table(table: &DeTable, span: &Range<usize>, path: &mut Vec<KeyStep>) 
 }
 
 fn path_in(value: &Spanned<DeValue>, span: &Range<usize>, path: &mut Vec<KeyStep>) -> bool {
+    // A list of tables has the place of its first table, which is meant.
+    let of_tables = value.get_ref().as_array().filter(|list| list.iter().all(|one| one.get_ref().is_table()));
+    if let Some(list) = of_tables {
+        return path_in_list(list, span, path);
+    }
     value.span() == *span
         || match value.get_ref() {
             DeValue::Table(table) => path_in_table(table, span, path),
-            DeValue::Array(list) => list.iter().enumerate().any(|(i, one)| {
-                path.push(KeyStep::At(i));
-                let found = path_in(one, span, path);
-                if !found {
-                    path.pop();
-                }
-                found
-            }),
+            DeValue::Array(list) => path_in_list(list, span, path),
             _ => false,
         }
+}
+
+fn path_in_list(list: &DeArray, span: &Range<usize>, path: &mut Vec<KeyStep>) -> bool {
+    list.iter().enumerate().any(|(i, one)| {
+        path.push(KeyStep::At(i));
+        let found = path_in(one, span, path);
+        if !found {
+            path.pop();
+        }
+        found
+    })
 }
 
 /// Gives all parts of a value the same place.

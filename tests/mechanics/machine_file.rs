@@ -63,7 +63,7 @@ proptest! {
 /// The error and the line it names.
 fn wrong(text: &str) -> (MachineError, Option<usize>) {
     match parse(text, "arm.toml") {
-        Err(FileError::Wrong { file, line, error }) => {
+        Err(FileError::Wrong { file, line, error, .. }) => {
             assert_eq!(file, "arm.toml");
             (error, line)
         }

@@ -28,7 +28,13 @@ impl AppState {
             Ok(Opened::Table(file, table)) => self.take_up(file, table),
             Ok(Opened::Session(opened)) => {
                 let OpenedSession { session, note, left_out, left_off } = *opened;
-                let message = note.or_else(|| opening.message.clone());
+                // A file that is taken up again says so.
+                let message = if opening.title.is_some() { None } else { note };
+                let message = message.or_else(|| opening.message.clone());
+                let watched = match &opening.file {
+                    Some(SessionFile::Own(file)) => Some(file.clone()),
+                    _ => None,
+                };
                 // Only a file that the window wrote says where the session was left.
                 let own = match &opening.file {
                     Some(SessionFile::Own(file)) if left_off.is_some() => Some(file.clone()),
@@ -38,6 +44,7 @@ impl AppState {
                 };
                 self.take_over(session, Opening { message, ..opening });
                 self.view_state.open.report = left_out;
+                self.watch(watched);
                 if let Some(file) = own {
                     self.saving.keep_file(self.session.undo_count(), file);
                 }
@@ -69,7 +76,7 @@ impl AppState {
         self.refresh();
     }
 
-    pub(super) fn take_over(&mut self, next: Session, Opening { plays, closes, message: news, file, .. }: Opening) {
+    pub(super) fn take_over(&mut self, next: Session, Opening { plays, closes, message: news, title, file, .. }: Opening) {
         self.saving.opened();
         match file {
             Some(SessionFile::Own(file)) => self.saving.uses(&file),
@@ -81,7 +88,10 @@ impl AppState {
             None => {}
         }
         let old = self.session.clone();
-        self.session.take_over(next);
+        match title {
+            Some(title) => self.session.take_over_as(next, title.into()),
+            None => self.session.take_over(next),
+        }
         self.saving.begin_file(self.session.undo_count());
         self.view_state.open.note = None;
         // A scenario without a drawing is not drawn on.

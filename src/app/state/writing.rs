@@ -59,6 +59,7 @@ impl AppState {
                 (Ok(_), AfterWriting::Saved(changes, file)) => {
                     app_state.saving.saved = changes;
                     app_state.saving.uses(&file);
+                    app_state.watch(Some(file.clone()));
                     app_state.saving.keep_file(app_state.own_session().undo_count(), file);
                 }
                 (Ok(_), AfterWriting::List(report)) => app_state.view_state.open.report = report,

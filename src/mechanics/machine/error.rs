@@ -33,10 +33,10 @@ pub enum MachineError {
     },
     /// A name that does not exist.
     #[error(
-        "{} names the {what} {:?}, which does not exist: want {}{more}",
+        "{} names the {what} {:?}, which does not exist: want {}",
         named(place),
         quote_clipped(name),
-        one_of(known)
+        one_of(known, more)
     )]
     Unknown {
         /// Place in the machine file.
@@ -259,10 +259,10 @@ impl MachineError {
 }
 
 /// Returns the names that exist, for messages that say what would be right.
-fn one_of(known: &[String]) -> String {
+fn one_of(known: &[String], more: &str) -> String {
     match known {
-        [] => "a name that exists; there is none yet".into(),
-        known => format!("one of {}", quoted(known.iter().map(String::as_str))),
+        [] => more.strip_prefix(", or ").unwrap_or("one that exists; there is none yet").into(),
+        known => format!("one of {}{more}", quoted(known.iter().map(String::as_str))),
     }
 }
 

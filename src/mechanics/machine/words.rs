@@ -143,9 +143,8 @@ com = 0.25
 link = \"1\"
 at = \"tip\"";
 
-const BELT: &str = "a belt or gear train is no part of its own: a belt from the base makes a drive of its own, a \
-                    [[drive]] without \"on\", which the link at its end names in drive; its ratio is the motor's, \
-                    rotor = { inertia = …, ratio = … } of that [[drive]]";
+const BELT: &str = "a belt from the base is a drive of its own: want a [[drive]] without \"on\", named in drive by the \
+                    link that the belt turns; its ratio is the motor's, rotor = { inertia = 1e-4, ratio = 3 } there";
 
 /// Words that people write, with what they mean in a table: the table, the words, and the meaning.
 const MEANT: &[(&str, &[&str], Meant)] = &[
