@@ -101,6 +101,11 @@ pub(super) const MACHINE_FORMATS: [(&str, &str); 7] = [
 ];
 
 impl FileDialog {
+    /// Returns whether it asks for a file to open.
+    pub(super) fn opens(&self) -> bool {
+        self.purpose == FilePurpose::Open
+    }
+
     /// Returns the ending of the name typed so far; empty if it has none.
     pub(super) fn ending(&self) -> String {
         Path::new(self.path.trim()).extension().unwrap_or_default().to_string_lossy().into_owned()

@@ -60,7 +60,9 @@ impl FileReport {
         let file = Path::new(&self.file).file_name().map_or_else(|| self.file.clone(), |n| n.display().to_string());
         match &self.content {
             ReportContent::Faults(faults) => format!("{file}: {}", faults.counted()),
-            ReportContent::NotRead(list) => format!("{file}: {} left out when it was read", counted(list.len(), "thing")),
+            ReportContent::NotRead(list) => {
+                format!("{file}: {} left out when it was read", counted(list.len(), "thing"))
+            }
             ReportContent::NotWritten(list) => {
                 format!("{file}: {} left out when it was written", counted(list.len(), "thing"))
             }
@@ -98,7 +100,10 @@ pub fn show(ctx: &egui::Context, view_state: &ViewState, commands: &mut Vec<Comm
     window.show(ctx, |ui| {
         ui.set_width(WIDTH_PT.min(room.x - 60.0));
         let height = HEIGHT_PT.min(0.6 * room.y);
-        ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| list(ui, &p, report, commands));
+        ScrollArea::vertical()
+            .max_height(height)
+            .auto_shrink([false, true])
+            .show(ui, |ui| list(ui, &p, report, commands));
         ui.add_space(6.0);
         ui.horizontal(|ui| {
             let copy = ui.button("Copy the list").on_hover_text("for a text editor, with lines and examples");

@@ -32,8 +32,8 @@ pub fn print_message(message: impl Display) {
 fn print_faults(why: &str, file: &str, faults: &Faults) {
     let example = |fault: &Fault| {
         if !fault.example.is_empty() {
+            // Examples are printed as they may be pasted.
             print_message("for example:");
-            // An example is printed as it may be pasted.
             for line in fault.example.lines() {
                 let _ = writeln!(io::stderr(), "{}", plain(format!("    {line}").trim_end()));
             }

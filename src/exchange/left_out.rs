@@ -23,13 +23,16 @@ fn of_both(machine: &Machine) -> Vec<String> {
     }
     if !spec.counterweights.is_empty() {
         let count = counted(spec.counterweights.len(), "counterweight");
-        list.push(format!("{count}: mass and inertia became those of the links that carry them; shapes are drawn only"));
+        list.push(format!(
+            "{count}: mass and inertia became those of the links that carry them; shapes are drawn only"
+        ));
     }
     if spec.payload.mass > 0.0 || spec.payload.inertia > 0.0 {
         let link = &spec.links[machine.end_link()].name;
         list.push(format!("payload as such: read again, it is part of link {link}"));
     }
-    let bare: Vec<&str> = (0..spec.links.len()).filter(|j| is_unbounded(machine, *j)).map(|j| spec.links[j].name.as_str()).collect();
+    let bare: Vec<&str> =
+        (0..spec.links.len()).filter(|j| is_unbounded(machine, *j)).map(|j| spec.links[j].name.as_str()).collect();
     if !bare.is_empty() {
         list.push(format!("length of link {}: a model has lengths only where pins are", bare.join(", ")));
     }
@@ -58,7 +61,10 @@ pub fn of_urdf(machine: &Machine) -> Vec<String> {
     let fixed = |j: &usize| parts[*j].parent.is_some_and(|parent| parts[parent].drive == parts[*j].drive);
     let merged: Vec<&str> = (0..parts.len()).filter(fixed).map(|j| spec.links[j].name.as_str()).collect();
     if !merged.is_empty() {
-        list.push(format!("pin of link {}: read again, such a link is one with the link that carries it", merged.join(", ")));
+        list.push(format!(
+            "pin of link {}: read again, such a link is one with the link that carries it",
+            merged.join(", ")
+        ));
     }
     let mut own = Vec::new();
     let limited = |k: usize| spec.drives[k].acceleration_limit.is_some() || spec.drives[k].jerk_limit.is_some();

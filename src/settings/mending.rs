@@ -203,11 +203,7 @@ fn values(count: &str) -> String {
 }
 
 /// Returns the faults of a text. `read` reads it as far as it goes; it is asked again with each fault mended.
-pub fn faults_of(
-    text: &str,
-    words: &dyn Vocabulary,
-    read: &dyn Fn(&StatedFile) -> Result<(), Problem>,
-) -> Faults {
+pub fn faults_of(text: &str, words: &dyn Vocabulary, read: &dyn Fn(&StatedFile) -> Result<(), Problem>) -> Faults {
     match StatedFile::parse(text) {
         Ok(file) => Mending { stated: file.clone(), file, words, made_up: Vec::new(), found: Vec::new() }.faults(read),
         Err(errors) => {
@@ -276,7 +272,12 @@ impl Mending<'_> {
     fn is_made_up(&self, problem: &Problem) -> bool {
         let key = Self::key(problem);
         let span = key.parent().and_then(|table| self.file.span(&table));
-        self.made_up.iter().any(|(at, path)| *path == key && *at == span)
+        self.made_up.iter().any(|(at, path)| match key.0.strip_prefix(&path.0[..]) {
+            Some([]) => *at == span,
+            // What stands within something that was made up was made up, too.
+            Some(_) => self.file.at(path).is_some(),
+            None => false,
+        })
     }
 
     /// Returns the fault of a problem, with its place in the file as stated.
@@ -394,7 +395,8 @@ fn in_a_table(key: &str, value: &str) -> String {
     let whole: Result<toml::Table, _> = format!("{key} = {value}").parse();
     let is_of_tables = whole.as_ref().is_ok_and(|whole| {
         whole.values().all(|value| {
-            let is_list = value.as_array().is_some_and(|list| !list.is_empty() && list.iter().all(toml::Value::is_table));
+            let is_list =
+                value.as_array().is_some_and(|list| !list.is_empty() && list.iter().all(toml::Value::is_table));
             value.is_table() || is_list
         })
     });

@@ -23,7 +23,11 @@ impl AppState {
     }
 
     fn take_opened(&mut self, opening: Opening, opened: Option<Result<Opened, NotOpened>>) {
-        let broken = || NotOpened { why: "opening broke off: this is a fault of the program".into(), refused: None, report: None };
+        let broken = || NotOpened {
+            why: "opening broke off: this is a fault of the program".into(),
+            refused: None,
+            report: None,
+        };
         match opened.unwrap_or_else(|| Err(broken())) {
             Ok(Opened::Table(file, table)) => self.take_up(file, table),
             Ok(Opened::Session(opened)) => {
@@ -76,7 +80,11 @@ impl AppState {
         self.refresh();
     }
 
-    pub(super) fn take_over(&mut self, next: Session, Opening { plays, closes, message: news, title, file, .. }: Opening) {
+    pub(super) fn take_over(
+        &mut self,
+        next: Session,
+        Opening { plays, closes, message: news, title, file, .. }: Opening,
+    ) {
         self.saving.opened();
         match file {
             Some(SessionFile::Own(file)) => self.saving.uses(&file),

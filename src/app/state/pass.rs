@@ -12,8 +12,8 @@ use crate::sketching::{SketchFacts, SketchScene};
 use crate::status::news::News;
 use crate::{
     BottomPanel, Command, DrawingGuard, Intro, Layout, SessionCommand, StatusMessage, ViewChange, WindowCommand,
-    compare, file_report, finder, given, guide, keys, notation, notes, order, place, plots, rail, saving, side, sketching, status,
-    studio, study, theme, top, viewport, watched_file, widgets,
+    compare, file_report, finder, given, guide, keys, notation, notes, order, place, plots, rail, saving, side,
+    sketching, status, studio, study, theme, top, viewport, watched_file, widgets,
 };
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_session::Session;

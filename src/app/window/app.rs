@@ -51,7 +51,19 @@ impl App {
     pub fn new(app_state: AppState, clock: Clock) -> Self {
         let (title, times, window) = (String::new(), Times::default(), None);
         let (may_break, breaks, is_cut_off) = (false, false, false);
-        Self { app_state, clock, title, times, window, may_break, breaks, is_cut_off, keeper: None, waker: None, chooser: None }
+        Self {
+            app_state,
+            clock,
+            title,
+            times,
+            window,
+            may_break,
+            breaks,
+            is_cut_off,
+            keeper: None,
+            waker: None,
+            chooser: None,
+        }
     }
 
     /// Enables preferences, journal and the system's file dialogs; `may_break` says whether a key simulates the loss of

@@ -462,7 +462,7 @@ fn turning(
             let all: Vec<String> = rates[i].iter().map(|x| fixed(*x, 3)).collect();
             let what = format!("it turns by {} times the driven joints", shortened(&all.join(", "), 100));
             let want = "links that each turn as one motor's drive does; a belt from the base keeps its link at the \
-                        angle of a joint that moves by itself, as mimic with multiplier 1 or -1 does";
+                        angle of a joint that moves by itself, by mimic with multiplier 1 or -1";
             return Err(part.wrong(what, want));
         }
     }

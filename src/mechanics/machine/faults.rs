@@ -1,9 +1,9 @@
 //! Faults of machine files: what [`MachineError`] means for the text that states the machine.
 
+use super::Machine;
 use super::error::{KeyPath, MachineError};
 use super::spec::MachineSpec;
 use super::words::SMALLEST;
-use super::Machine;
 use stillbase_settings::mending::{Problem, Wrong};
 use stillbase_settings::stated::StatedFile;
 
@@ -60,8 +60,8 @@ fn problem(file: &StatedFile, error: &MachineError) -> Problem {
         MachineError::OpenLoop { .. } | MachineError::Massless { .. } => Problem { path, wrong: Wrong::Follows(said) },
         _ if path.0.is_empty() => Problem { path, wrong: Wrong::Whole(said, String::new()) },
         MachineError::HalfLimited { .. } => {
-            let given = ["min", "max"].map(|key| path.key(key)).into_iter().find(|key| file.at(key).is_some());
-            Problem { path: given.unwrap_or(path), wrong: Wrong::Said(said) }
+            let lacks = ["min", "max"].into_iter().find(|key| file.at(&path.key(key)).is_none());
+            Problem { wrong: Wrong::Missing(lacks.unwrap_or("max").into()), path }
         }
         _ => Problem { path, wrong: Wrong::Said(said) },
     }

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::bounds::ordinal;
+use super::names::with_name;
 use stillbase_mechanics::machine::{FileError, MachineError};
 use stillbase_settings::fault::Faults;
 use stillbase_settings::range::{Requirement, range_error};
@@ -31,7 +32,7 @@ pub enum ScenarioError {
         message: String,
     },
     /// A number out of range.
-    #[error("{file}{}: {}", at(*line), range_error(key, *value, want))]
+    #[error("{file}{}: {}", at(*line), range_error(&with_name(key), *value, want))]
     OutOfRange {
         /// The file.
         file: String,

@@ -186,14 +186,18 @@ impl Reading<'_> {
         machine.set_all(settings).map_err(|error| {
             let path = KeyPath::new(&[&"set"]);
             let (file, line) = (self.label.into(), self.line(&path));
-            Box::new((Problem { path, wrong: Wrong::Value(error.to_string()) }, ScenarioError::Machine { file, line, error }))
+            Box::new((
+                Problem { path, wrong: Wrong::Value(error.to_string()) },
+                ScenarioError::Machine { file, line, error },
+            ))
         })
     }
 
     fn scenario(&self) -> Result<Scenario, FirstProblem> {
         let label = self.label;
         if !self.file.keys().any(|key| OWN_TABLES.contains(&key)) {
-            let what = if self.file.keys().next().is_none() { "the file states nothing" } else { "this is no file of ours" };
+            let what =
+                if self.file.keys().next().is_none() { "the file states nothing" } else { "this is no file of ours" };
             let said = format!("{what}: want a machine, as in the example, or a scenario, with machine and [task]");
             let wrong = Wrong::Whole(said.clone(), machine::SMALLEST.into());
             let error = ScenarioError::Syntax { file: label.into(), line: None, message: said };

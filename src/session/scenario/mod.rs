@@ -33,6 +33,7 @@ pub use file::{FileContent, FindMachine, content};
 pub use kept::{Bookmark, Branch, MAX_BOOKMARKS, MAX_BRANCHES, MAX_NAME};
 pub use keys::{KEYS, key_of, keys, part_of};
 pub(crate) use keys::{effect_in, effect_of};
+pub(crate) use names::with_name;
 pub use names::{name_of, search_words};
 pub use note::{MAX_NOTE, MAX_NOTES, Note, NoteTime};
 pub(crate) use points::name_of_point;

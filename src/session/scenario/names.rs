@@ -1,5 +1,6 @@
 //! Plain names of settings.
 
+use super::keys::key_of;
 use stillbase_mechanics::machine::pattern_of;
 use stillbase_settings::key::names;
 
@@ -118,6 +119,12 @@ pub fn name_of(path: &str) -> String {
         Some(which) => name.replace('*', which),
         None => name.to_owned(),
     }
+}
+
+/// Returns a setting with its plain name first: `mass of link 5 (link.5.mass)`; what is no setting stays as it is.
+pub(crate) fn with_name(key: &str) -> String {
+    let bare = key.split('[').next().unwrap_or(key);
+    if key_of(bare).is_some() { format!("{} ({key})", name_of(bare)) } else { key.to_owned() }
 }
 
 /// Returns further words by which people look for a setting.

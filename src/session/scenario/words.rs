@@ -18,11 +18,7 @@ const STATED: &[(&str, &str, &str)] = &[
     ("machine", "machine", "\"nine-link\""),
     ("set", "settings of the machine", "[\"payload.mass=0.5\"]"),
     ("set.*", "setting of the machine", ""),
-    (
-        "task",
-        "task",
-        "{ kind = \"reactionless\", from = [0.5, 0.5], to = [0.55, 0.9], b = 2.4, time = 1.0 }",
-    ),
+    ("task", "task", "{ kind = \"reactionless\", from = [0.5, 0.5], to = [0.55, 0.9], b = 2.4, time = 1.0 }"),
     ("task.kind", "kind of motion", "\"reactionless\""),
     ("task.from", "point A", "[0.5, 0.5]"),
     ("task.to", "point B", "[0.55, 0.9]"),

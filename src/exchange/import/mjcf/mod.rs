@@ -63,7 +63,9 @@ impl CoupledBodies<'_> {
             notes.push("meshes are left out: a machine here is made of bars".to_owned());
         }
         if model.descendants().any(|node| node.has_tag_name("spatial")) {
-            notes.push("spatial tendons are left out: of belts and cables, fixed tendons and equalities are read".into());
+            notes.push(
+                "spatial tendons are left out: of belts and cables, fixed tendons and equalities are read".into(),
+            );
         }
         for (name, what) in [("damping", "damping"), ("frictionloss", "friction"), ("stiffness", "stiffness")] {
             let hinges = (0..self.base).filter_map(|i| self.bodies.hinge(i));
