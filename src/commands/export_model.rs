@@ -66,7 +66,8 @@ struct Answer {
     file: String,
     #[serde(flatten)]
     of: Written,
-    /// What the model leaves out.
+    /// What a model leaves out; absent for a model that leaves out nothing, and for what is no model.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     left_out: Vec<String>,
 }
 

@@ -8,7 +8,7 @@ use toml::de::Error;
 use super::fault::{Fault, Faults};
 use super::key_path::{KeyPath, KeyStep};
 use super::range::{quote_clipped, shortened};
-use super::spelling::nearest_words;
+use super::spelling::{nearest_keys, nearest_words};
 use super::stated::{MendValue, StatedFile, TextPlace};
 
 /// Maximum number of times that a file is read, and of bytes that are read in all: more faults are not counted.
@@ -147,7 +147,7 @@ impl Problem {
 
     fn nearest(&self, known: &[String]) -> Vec<String> {
         let key = self.path.last_key().unwrap_or_default();
-        nearest_words(key, known.iter().map(String::as_str)).into_iter().map(Into::into).collect()
+        nearest_keys(key, known.iter().map(String::as_str)).into_iter().map(Into::into).collect()
     }
 
     /// Returns the key that an unknown key was to be, if there is one candidate.
@@ -162,7 +162,14 @@ impl Problem {
 
 /// Returns the plain name of a key with the key: `mass of link 2 (link.2.mass)`.
 pub fn called(path: &KeyPath, words: &dyn Vocabulary) -> String {
-    words.name(path).map_or_else(|| path.to_string(), |name| format!("{name} ({path})"))
+    words.name(path).map_or_else(|| path.to_string(), |name| with_key(&name, &path.to_string()))
+}
+
+/// Returns a plain name with its key: `mass of link 2 (link.2.mass)`; the name alone if it is the key.
+pub fn with_key(name: &str, key: &str) -> String {
+    // The ends of limits stand in parentheses.
+    let key = key.trim_end_matches(')').replace(" (", ", ");
+    if name == key { key } else { format!("{name} ({key})") }
 }
 
 /// Returns the message of the TOML reader on a value in plain words: what the value is.
@@ -356,7 +363,11 @@ impl Mending<'_> {
             Wrong::Whole(..) | Wrong::Follows(_) | Wrong::Last(_) => false,
             Wrong::Missing(_) => self.make_up(&key),
             Wrong::UnknownKey(known) => match problem.meant(known, words) {
-                Some(meant) if self.file.rename(&key, &meant) => true,
+                Some(meant) if self.file.rename(&key, &meant) => {
+                    // Whether its value is right there is another matter.
+                    self.mark(&key.parent().unwrap_or_default().key(&meant));
+                    true
+                }
                 _ => self.file.remove(&key),
             },
             Wrong::Name(_, known) => match known.first() {

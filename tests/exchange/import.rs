@@ -177,7 +177,7 @@ fn what_is_not_listed_comes_back() {
             let (own, other, of) = (machine.spec(), back.spec(), format!("{} as {ending}: {list:?}", machine.name()));
             assert!(other.name == own.name && other.gravity == own.gravity, "{of}");
             assert_eq!(other.summary == own.summary, !lists("summary"), "{of}");
-            assert_eq!(other.parts == own.parts && other.lumps == own.lumps, !lists("part"), "{of}");
+            assert_eq!(other.parts == own.parts && other.lumps == own.lumps, !lists("lump"), "{of}");
             assert_eq!(other.counterweights == own.counterweights, !lists("counterweight"), "{of}");
             assert_eq!(other.payload == own.payload, !lists("payload"), "{of}");
             if !lists("named lengths") {

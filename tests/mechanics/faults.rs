@@ -140,9 +140,11 @@ fn examples_mend_what_they_are_of() {
         let found = faults(&without);
         assert!(!found.list.is_empty());
         let mut lines: Vec<String> = without.lines().map(Into::into).collect();
-        for fault in found.list.iter().rev().filter(|fault| !fault.example.is_empty()) {
-            let at = fault.line.filter(|_| fault.key.contains('.')).unwrap_or(0);
-            lines.insert(at, fault.example.clone());
+        // From the last line on, so that those above stay where they are; keys of the whole file come first of all.
+        let mut faults = found.list.clone();
+        faults.sort_by_key(|fault| std::cmp::Reverse(fault.line.unwrap_or(0)));
+        for fault in faults.iter().filter(|fault| !fault.example.is_empty()) {
+            lines.insert(fault.line.unwrap_or(0), fault.example.clone());
         }
         let mended = lines.join("\n");
         parse(&mended, "mended.toml").unwrap_or_else(|why| panic!("{key}: {why}\n{mended}"));

@@ -290,9 +290,9 @@ fn every_key_of_a_part_is_read_back_as_it_was_set() {
         ("part.9.width", "0.1", "want one of \"1\", \"2\""),
         ("part.1.wall", "0.001", "a flat bar has no wall: want width, thickness"),
         ("part.4.wall", "none", "a tube has a wall: want diameter, wall"),
-        ("part.1.width", "0", "part[1].width is 0: want 1e-6 to 1000000 m"),
+        ("part.1.width", "0", "part[1].width) is 0: want 1e-6 to 1000000 m"),
         ("part.1.to", "elbow", "names the length \"elbow\""),
-        ("lump.1.mass", "0", "lump[1].mass is 0"),
+        ("lump.1.mass", "0", "lump[1].mass) is 0"),
         ("lump.1.at", "default", "a place along the link"),
         ("material.pom.density", "-1", "want 1 to 100000 kg/m³"),
         ("material.wood.density", "700", "want one of \"pom\""),
@@ -398,7 +398,7 @@ fn what_is_wrong_with_a_part_is_told_with_its_line() {
         ("density = 1410.0", "density = 0.0", "density = 0.0", "want 1 to 100000 kg/m³"),
         ("mass = 0.42", "mass = -0.42", "mass = -0.42", "want 1e-15"),
         ("at = 0.02\n", "at = \"elbow\"\n", "at = \"elbow\"", "names the length \"elbow\""),
-        ("mass = 0.012\n", "", "[[lump]]\nlink = \"fore\"", "(lump.hand.mass) is missing"),
+        ("mass = 0.012\n", "", "[[lump]]\nlink = \"fore\"", "(lump[2].mass) is missing"),
     ] {
         let error = refused(from, to, line);
         assert!(error.contains(words), "{to}: {error}");

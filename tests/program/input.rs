@@ -82,7 +82,7 @@ fn lists_say_how_long_they_are() {
     for key in ["plant.friction.coulomb", "plant.friction.viscous", "control.kp", "control.kd"] {
         let (two, one) = (format!("{key}=1,2"), format!("{key}=[1]"));
         let want = "want one for all drives, or 3, one for each";
-        fails(&["simulate", "--set", &two], 2, &[&format!("{key} has 2 numbers: {want}")]);
+        fails(&["simulate", "--set", &two], 2, &[&format!("{key}) has 2 numbers: {want}")]);
         fails(&["simulate", "--set", &one], 2, &[&format!("{key} has 1 number: {want}")]);
     }
 }
@@ -94,7 +94,7 @@ fn keys_are_called_as_they_are_typed() {
         ("link.5.com=1e9", "link.5.com) is 1e9"),
         ("drive.2.speed_limit=-1", "drive.2.speed_limit) is -1"),
         ("length.l1=0", "length.l1) is 0"),
-        ("limits.a1=2,1", "limits.a1 (max) is 1: want a limit not below min"),
+        ("limits.a1=2,1", "(limits.a1, max) is 1: want a limit not below min"),
         ("payload.mass=-1", "payload.mass) is -1"),
     ] {
         fails(&["check", "nine-link", "--set", pair], 2, &[words]);

@@ -549,7 +549,7 @@ fn a_model_is_written_and_not_overwritten() {
     let folder = Folder::new("model");
     let file = word(folder.path("arm.xml"));
     let answer = object(&["export-model", "serial-3r", "--pose", "1.2,0.1,-0.8", "-o", &file]);
-    assert_eq!(keys(&answer), ["file", "pose", "qpos"]);
+    assert_eq!(keys(&answer), ["file", "left_out", "pose", "qpos"]);
     assert_eq!(numbers(&answer["pose"]), [1.2, 0.1, -0.8]);
     assert_eq!(numbers(&answer["qpos"]).len(), 6, "three links, three rotors");
     let model = fs::read_to_string(&file).expect("a file");

@@ -75,7 +75,9 @@ proptest! {
         let (text, line) = with(key, table, &format!("{value:e}"));
         let error = Scenario::parse(&text, "own.toml", None).expect_err("out of range").to_string();
         let named = if table.is_empty() { key.to_owned() } else { format!("{table}.{key}") };
-        let head = format!("own.toml:{line}: {named} is {}: want ", ShortNumber(value));
+        let plain = stillbase::session::scenario::name_of(&named);
+        let called = if plain == named { named } else { format!("{plain} ({named})") };
+        let head = format!("own.toml:{line}: {called} is {}: want ", ShortNumber(value));
         prop_assert!(error.starts_with(&head), "{error}, not {head}");
         prop_assert!(error.len() < 200 && !error.contains("NaN"), "{error}");
     }
@@ -112,7 +114,7 @@ proptest! {
             ("do = \"set-plant\"\nchange = { payload = { weight = 1.0 } }", "weight"),
             ("do = \"set-control\"\nchange = { kp = 1e99 }", "control.kp) is 1e99"),
             ("do = \"set-machine\"\nkey = \"link.5.mass\"\nvalue = \"-1\"", "link.5.mass) is -1: want 1e-15 to 1000000 kg"),
-            ("do = \"set-time\"\ntime = 1e9", "time is 1e9: want"),
+            ("do = \"set-time\"\ntime = 1e9", "time) is 1e9: want"),
         ][bad];
         let mut text = CASE_3.to_owned();
         let mut line = 0;

@@ -2,7 +2,7 @@
 
 use super::error::{KeyPath, KeyStep};
 use super::keys::KeyRow;
-use stillbase_settings::mending::{Meant, Vocabulary, called};
+use stillbase_settings::mending::{Meant, Vocabulary, called, with_key};
 use stillbase_settings::range::quote_clipped;
 
 /// A key of machine files, in which `*` stands for the name or number of a link, a drive and so on.
@@ -73,9 +73,11 @@ const ROWS: &[WordRow] = &[
     row("link.*.com", "centre of mass along link *", "", "0.25"),
     row("link.*.com_normal", "centre of mass off link *", "", "0.0"),
     row("link.*.axial", "height of link *", "", "0.0"),
+    row("material", "list of materials", "one [[material]] for each", "[{ name = \"bronze\", density = 8800.0 }]"),
     row("material.*", "material *", "", ""),
     row("material.*.name", "name of material *", OWN_NAME, "\"bronze\""),
     row("material.*.density", "density of *", "", "8800.0"),
+    row("part", "list of parts", "one [[part]] for each", ""),
     row("part.*", "part *", "", ""),
     row("part.*.link", "link of part *", OF_LINK, "\"1\""),
     row("part.*.name", "name of part *", "a text in quotes", "\"bar\""),
@@ -101,6 +103,7 @@ const ROWS: &[WordRow] = &[
     row("part.*.holes.*.at", "place of a hole of part *", ALONG, "\"tip\""),
     row("part.*.holes.*.across", "distance of a hole of part * off its line", "", "0.0"),
     row("part.*.holes.*.diameter", "diameter of a hole of part *", "a number in m", "0.008"),
+    row("lump", "list of lumps", "one [[lump]] for each", "[{ link = \"1\", mass = 0.3, at = \"tip\" }]"),
     row("lump.*", "lump *", "", ""),
     row("lump.*.link", "link that carries lump *", OF_LINK, "\"1\""),
     row("lump.*.name", "name of lump *", "a text in quotes", "\"motor\""),
@@ -108,6 +111,12 @@ const ROWS: &[WordRow] = &[
     row("lump.*.at", "place of lump *", ALONG, "\"tip\""),
     row("lump.*.across", "distance of lump * off its link", "", "0.0"),
     row("lump.*.inertia", "inertia of lump *", "", "0.001"),
+    row(
+        "counterweight",
+        "list of counterweights",
+        "one [[counterweight]] for each",
+        "[{ link = \"1\", mass = 0.5, at = -0.1 }]",
+    ),
     row("counterweight.*", "counterweight *", "", ""),
     row("counterweight.*.link", "link that carries counterweight *", OF_LINK, "\"1\""),
     row("counterweight.*.mass", "mass of counterweight *", "", "0.5"),
@@ -115,6 +124,7 @@ const ROWS: &[WordRow] = &[
     row("counterweight.*.across", "distance of counterweight * off its link", "", "0.0"),
     row("counterweight.*.radius", "radius of counterweight *", "", "0.03"),
     row("counterweight.*.fixed", "counterweight * stays", "", "true"),
+    row("closure", "list of closures", "one [[closure]] for each", "[{ a = { link = \"1\" }, b = { link = \"2\" } }]"),
     row("closure.*", "closure *", "", ""),
     row("closure.*.a", "first point of closure *", POINT, "{ link = \"1\", at = \"tip\" }"),
     row("closure.*.b", "second point of closure *", POINT, "{ link = \"2\", at = \"tip\" }"),
@@ -125,6 +135,7 @@ const ROWS: &[WordRow] = &[
     row("end_effector", "end effector", POINT, "{ link = \"1\", at = \"tip\" }"),
     row("end_effector.link", "link of the end effector", OF_LINK, "\"1\""),
     row("end_effector.at", "place of the end effector", ALONG, "\"tip\""),
+    row("angle", "list of angles", "one [[angle]] for each", "[{ name = \"a1\", to = \"2\", from = \"1\" }]"),
     row("angle.*", "angle *", "", ""),
     row("angle.*.name", "name of angle *", OWN_NAME, "\"a1\""),
     row("angle.*.to", "drive whose angle counts positive in angle *", OF_DRIVE, "\"2\""),
@@ -248,7 +259,7 @@ pub fn named(place: &KeyPath) -> String {
         // A key of `--set` is one word.
         [KeyStep::Key(key)] if key.contains('.') => {
             let path = KeyPath(key.split('.').map(|part| KeyStep::Key(part.into())).collect());
-            MachineWords.name(&path).map_or_else(|| place.to_string(), |name| format!("{name} ({place})"))
+            MachineWords.name(&path).map_or_else(|| place.to_string(), |name| with_key(&name, &place.to_string()))
         }
         _ => called(place, &MachineWords),
     }

@@ -3,6 +3,7 @@
 use super::keys::key_of;
 use stillbase_mechanics::machine::pattern_of;
 use stillbase_settings::key::names;
+use stillbase_settings::mending::with_key;
 
 /// Keys with their names, in which `*` stands for the name of a link, a drive or a length. Those of the machine are named
 /// with it; all other keys are called as the last word of their path.
@@ -124,7 +125,7 @@ pub fn name_of(path: &str) -> String {
 /// Returns a setting with its plain name first: `mass of link 5 (link.5.mass)`; what is no setting stays as it is.
 pub(crate) fn with_name(key: &str) -> String {
     let bare = key.split('[').next().unwrap_or(key);
-    if key_of(bare).is_some() { format!("{} ({key})", name_of(bare)) } else { key.to_owned() }
+    if key_of(bare).is_some() { with_key(&name_of(bare), key) } else { key.to_owned() }
 }
 
 /// Returns further words by which people look for a setting.
