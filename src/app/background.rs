@@ -73,6 +73,8 @@ pub(super) struct Opening {
     pub closes: bool,
     /// The message.
     pub message: Option<String>,
+    /// Title in the history, if it is not the usual one.
+    pub title: Option<&'static str>,
     /// The file of the session.
     pub file: Option<SessionFile>,
     /// The scenario to open instead if this one cannot be opened, and its message.

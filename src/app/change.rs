@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::given::assess::TableText;
-use super::{RefusedEdit, ResumePoint};
+use super::{FileReport, RefusedEdit, ResumePoint};
 use stillbase_files::FoundScenario;
 use stillbase_session::scenario::Scenario;
 use stillbase_session::{Edit, ProgressCallback, Refusal, Session};
@@ -103,6 +103,8 @@ pub(super) struct OpenedSession {
     pub session: Session,
     /// A note about the source, for the user.
     pub note: Option<String>,
+    /// What was left out of the file.
+    pub left_out: Option<FileReport>,
     /// What the window showed when the file was written, if the file says so.
     pub left_off: Option<ResumePoint>,
 }
@@ -112,6 +114,15 @@ pub(super) struct OpenedSession {
 pub(super) struct NotOpened {
     pub why: String,
     pub refused: Option<RefusedEdit>,
+    /// The faults of the file.
+    pub report: Option<FileReport>,
+}
+
+impl NotOpened {
+    /// Returns the reason of a source that cannot be read.
+    fn unread(why: &dyn std::fmt::Display) -> Self {
+        Self { why: shorten_message(&why.to_string()).into_owned(), refused: None, report: None }
+    }
 }
 
 impl SessionSource {
@@ -119,26 +130,31 @@ impl SessionSource {
     pub fn open(self, watch: ProgressCallback<'_>) -> Result<Opened, NotOpened> {
         let read = |path: &Path| {
             let found = stillbase_files::scenario(&path.display().to_string());
-            found.map_err(|why| NotOpened { why: shorten_message(&why.to_string()).into_owned(), refused: None })
+            found.map_err(|why| {
+                let report = why.faults().map(|(file, faults)| FileReport::of_faults(file, faults));
+                NotOpened { report, ..NotOpened::unread(&why) }
+            })
         };
         if let Self::File(path) = &self
             && path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
         {
             let text = stillbase_files::text::read(path);
-            let text =
-                text.map_err(|why| NotOpened { why: shorten_message(&why.to_string()).into_owned(), refused: None })?;
+            let text = text.map_err(|why| NotOpened::unread(&why))?;
             return Ok(Opened::Table(path.clone(), TableText { name: path.display().to_string(), text }));
         }
-        let (FoundScenario { scenario, note }, left_off) = match self {
-            Self::Scenario(scenario) => (FoundScenario { scenario: *scenario, note: None }, None),
+        let (FoundScenario { scenario, note, left_out }, left_off, path) = match self {
+            Self::Scenario(scenario) => {
+                (FoundScenario { scenario: *scenario, note: None, left_out: Vec::new() }, None, PathBuf::new())
+            }
             Self::File(path) | Self::Journal(path) => {
                 let text = stillbase_files::text::read(&path).unwrap_or_default();
-                (read(&path)?, ResumePoint::of(&text))
+                (read(&path)?, ResumePoint::of(&text), path)
             }
         };
         let mut session = Session::open_while(scenario.clone(), watch).map_err(|refusal| NotOpened {
             why: refusal.to_string(),
             refused: Some(RefusedEdit::of_opening(&scenario, &refusal)),
+            report: None,
         })?;
         if let Some(ResumePoint { time, reached, .. }) = &left_off {
             // The file may name any time: the run is not extended beyond its length.
@@ -146,6 +162,11 @@ impl SessionSource {
                 session.seek_while(time.min(session.length()), watch);
             }
         }
-        Ok(Opened::Session(Box::new(OpenedSession { session, note, left_off })))
+        Ok(Opened::Session(Box::new(OpenedSession {
+            session,
+            note,
+            left_out: FileReport::not_read(&path, left_out),
+            left_off,
+        })))
     }
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::activity::Activity;
 use super::export::Export;
 use super::file_dialog::{FileDialog, FilePurpose, PlotFile};
+use super::file_report::FileReport;
 use super::given::assess::{TableAction, TableOptions};
 use super::guide::GuideStep;
 use super::layout::Layout;
@@ -250,6 +251,8 @@ pub enum ViewChange {
     DropMeasurement(Option<usize>),
     /// Open or close the file dialog.
     Dialog(Option<FileDialog>),
+    /// Open or close the list about a file.
+    Report(Option<FileReport>),
     /// Open, change or close the card of options for an export to a file.
     Export(Option<Export>),
 }
@@ -269,6 +272,8 @@ pub enum WindowCommand {
     LookFor,
     /// Copy the command that runs the scenario on display.
     CopyCommand,
+    /// Take up the file of the session that another program has changed, or keep the session as it is.
+    ChangedFile(bool),
     /// Copy a text, and say so.
     Copy(String),
     /// Show why what was typed is refused, with ways out that are known.

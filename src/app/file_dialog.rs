@@ -1,5 +1,7 @@
 //! [`FileDialog`]: the dialog for a file name.
 
+use std::path::Path;
+
 use super::export::Export;
 use stillbase_exchange::form;
 use stillbase_session::Session;
@@ -87,7 +89,35 @@ impl FilePurpose {
 /// Ending of machine files of this program.
 pub(super) const MACHINE_EXTENSION: &str = "toml";
 
+/// Formats of a machine's file: the ending, and what it is.
+pub(super) const MACHINE_FORMATS: [(&str, &str); 7] = [
+    (MACHINE_EXTENSION, "TOML"),
+    ("urdf", "URDF"),
+    ("xml", "MJCF"),
+    ("svg", "drawing, SVG"),
+    ("dxf", "drawing, DXF"),
+    ("csv", "parts, CSV"),
+    ("md", "parts, Markdown"),
+];
+
 impl FileDialog {
+    /// Returns whether it asks for a file to open.
+    pub(super) fn opens(&self) -> bool {
+        self.purpose == FilePurpose::Open
+    }
+
+    /// Returns the ending of the name typed so far; empty if it has none.
+    pub(super) fn ending(&self) -> String {
+        Path::new(self.path.trim()).extension().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    /// Gives the name an ending in place of its own.
+    pub(super) fn set_ending(&mut self, ending: &str) {
+        if !self.path.trim().is_empty() {
+            self.path = Path::new(self.path.trim()).with_extension(ending).display().to_string();
+        }
+    }
+
     /// Returns a dialog to open a file.
     pub fn opening() -> Self {
         Self { purpose: FilePurpose::Open, path: String::new() }

@@ -84,6 +84,7 @@ fn asks_for_text(key: &KeyboardShortcut) -> bool {
 fn escape(session: &Session, view_state: &ViewState) -> Command {
     let ViewState { open, tool, arrangement, pair, .. } = view_state;
     match open {
+        OpenDialogs { report: Some(_), .. } => ViewChange::Report(None).into(),
         OpenDialogs { dialog: Some(_), .. } => ViewChange::Dialog(None).into(),
         OpenDialogs { export: Some(_), .. } => ViewChange::Export(None).into(),
         OpenDialogs { finder: Some(_), .. } => ViewChange::Switch(Switch::Finder, false).into(),

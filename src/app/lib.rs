@@ -19,6 +19,7 @@ pub mod export;
 mod facts;
 mod file_dialog;
 mod file_menu;
+mod file_report;
 mod finder;
 mod fit;
 mod framing;
@@ -70,6 +71,7 @@ mod view_change;
 mod view_state;
 mod viewport;
 mod waiting;
+mod watched_file;
 mod widgets;
 #[cfg(feature = "window")]
 pub mod window;
@@ -79,6 +81,7 @@ pub use command::{
     CameraMove, Command, ComparisonCommand, FrontsCommand, Recovery, SessionCommand, Switch, ViewChange, WindowCommand,
 };
 pub use file_dialog::{FileDialog, FilePurpose, PlotFile};
+pub use file_report::FileReport;
 pub use gesture::{DragGesture, HoverTarget, Tool};
 pub use given::assess::{TableAction, TableContent, TableOptions};
 pub use guide::{GuidePlace, GuideStep, GuideView, Page as GuidePage};

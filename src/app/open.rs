@@ -1,6 +1,7 @@
 //! Dialogs, lists and cards that are open over the window.
 
 use super::FileDialog;
+use super::FileReport;
 use super::export::Export;
 use super::guide::GuideView;
 use super::notes::NoteDraft;
@@ -34,6 +35,8 @@ pub struct OpenDialogs {
     pub guide: Option<GuideView>,
     /// The file dialog.
     pub dialog: Option<FileDialog>,
+    /// The list about a file: its faults, or what was left out of it.
+    pub report: Option<FileReport>,
     /// The card with the choices for a result that becomes a file.
     pub export: Option<Export>,
     /// The time of the bookmark that is being named, s.

@@ -12,6 +12,7 @@ mod opening;
 mod pass;
 mod plot_window;
 mod time;
+mod watching;
 mod writing;
 
 use std::path::PathBuf;
@@ -24,6 +25,7 @@ use super::pace::PlaybackRate;
 use super::pair::Pair;
 use super::saved_runs::SavedRuns;
 use super::saving::{LeftSession, Saving};
+use super::watched_file::WatchedFile;
 use super::{Activity, Framing, Intro, Layout, Message, Preferences, ResumePoint, SessionCommand, ViewState};
 use stillbase_mechanics::machine::Machine;
 use stillbase_picture::scene::exaggeration::exaggeration;
@@ -54,6 +56,8 @@ pub struct AppState {
     hints: bool,
     /// Record of saved and unsaved changes, with the questions about unsaved ones.
     saving: Saving,
+    /// The file of the session, which other programs may change.
+    watched: Option<WatchedFile>,
     /// Runs side by side, while they are on display.
     comparison: Option<Comparison>,
     /// What the table of runs holds while it is closed, and runs that are still to be made for it.
@@ -101,6 +105,7 @@ impl AppState {
             intro: None,
             hints: true,
             saving: Saving::default(),
+            watched: None,
             comparison: None,
             runs: SavedRuns::default(),
             opened_table: None,

@@ -8,6 +8,7 @@ use egui::{Align, ComboBox, Frame, Layout, Margin, Panel, RichText, Ui};
 
 use super::actions::SPEEDS;
 use super::facts::ScenarioFacts;
+use super::file_dialog::MACHINE_FORMATS;
 use super::gallery::Choosable;
 use super::icon::{Icon, IconButton};
 use super::marks::Marks;
@@ -203,6 +204,22 @@ fn right_end(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &
     }
 }
 
+/// Draws the list of formats of a machine's file; the chosen one gives the name its ending.
+fn formats(ui: &mut Ui, dialog: &mut FileDialog) {
+    if dialog.purpose != FilePurpose::Machine {
+        return;
+    }
+    let now = dialog.ending();
+    ui.horizontal_wrapped(|ui| {
+        for (ending, words) in MACHINE_FORMATS {
+            let is_chosen = now.eq_ignore_ascii_case(ending);
+            if ui.selectable_label(is_chosen, words).on_hover_text(format!("a file that ends in .{ending}")).clicked() {
+                dialog.set_ending(ending);
+            }
+        }
+    });
+}
+
 /// Draws the file dialog.
 pub fn dialog(ctx: &egui::Context, view_state: &mut ViewState, commands: &mut Vec<Command>) {
     let Some(mut dialog) = view_state.open.dialog.clone() else { return };
@@ -226,6 +243,7 @@ pub fn dialog(ctx: &egui::Context, view_state: &mut ViewState, commands: &mut Ve
                 let words = format!("in {}, unless the name says another folder", folder.display());
                 ui.add(egui::Label::new(RichText::new(words).font(plain(11.5)).weak()).truncate());
             }
+            formats(ui, &mut dialog);
             ui.horizontal(|ui| {
                 let ready = !dialog.path.trim().is_empty();
                 if ui.add_enabled(ready, egui::Button::new(verb)).clicked() || (enter && ready) {

@@ -208,6 +208,12 @@ impl ViewState {
                 self.open.finder = self.open.finder.take().filter(|_| dialog.is_none());
                 self.open.dialog = dialog;
             }
+            ViewChange::Report(report) => {
+                // Whoever has read the faults of a file goes to mend them.
+                let is_left = report.is_none();
+                self.open.dialog = self.open.dialog.take().filter(|dialog| !(is_left && dialog.opens()));
+                self.open.report = report;
+            }
             ViewChange::Export(export) => self.open.export = export,
             ViewChange::WriteNote(draft) => self.open.note = draft,
             ViewChange::DropMeasurement(Some(i)) if i < self.measurements.len() => {

@@ -10,6 +10,7 @@ mod pane;
 mod screen;
 mod shell;
 mod times;
+mod waker;
 mod windows;
 
 pub use app::{App, Clock};
@@ -36,7 +37,8 @@ pub fn run(scenario: Scenario, file: Option<PathBuf>, theme: Option<Theme>) -> R
     let mut app_state = AppState::open_or_explain(scenario, liked.theme)?
         .with_workers(Threads::Background)
         .with_preferences(&liked)
-        .offering_recovery(keeper::find_left_session());
+        .offering_recovery(keeper::find_left_session())
+        .watching(file.clone());
     let left = file.filter(|file| ResumePoint::of(&stillbase_files::text::read(file).unwrap_or_default()).is_some());
     if let Some(file) = left {
         app_state.carry_out(SessionCommand::OpenFile(file));

@@ -9,6 +9,8 @@ use std::process::ExitCode;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use serde::Serialize;
 use stillbase_session::{Proposal, WayOut};
+use stillbase_settings::fault::{Fault, Faults};
+use stillbase_settings::range::shortened;
 use stillbase_settings::text::{plain, shell_word, shorten_message};
 
 use super::failure::{Failure, RefusedScenario};
@@ -26,11 +28,43 @@ pub fn print_message(message: impl Display) {
     let _ = writeln!(io::stderr(), "stillbase: {line}");
 }
 
+/// Prints the faults of a file, each in a line with its place and, below it, an example; `why` for a single one.
+fn print_faults(why: &str, file: &str, faults: &Faults) {
+    let example = |fault: &Fault| {
+        if !fault.example.is_empty() {
+            // Examples are printed as they may be pasted.
+            print_message("for example:");
+            for line in fault.example.lines() {
+                let _ = writeln!(io::stderr(), "{}", plain(format!("    {line}").trim_end()));
+            }
+        }
+    };
+    if let [only] = &faults.list[..] {
+        print_message(why);
+        return example(only);
+    }
+    let file = shortened(file, MAX_FILE_NAME);
+    print_message(format!("{file}: {}", faults.counted()));
+    for fault in &faults.list {
+        print_message(fault.in_file(&file));
+        example(fault);
+    }
+    faults.rest().into_iter().for_each(print_message);
+}
+
+/// Maximum length of the name of a file in messages, characters.
+const MAX_FILE_NAME: usize = 300;
+
 /// A failure as JSON.
 #[derive(Serialize)]
 struct FailureReport<'a> {
     reason: &'a str,
     proposals: &'a [Proposal],
+    /// The faults of the file that was read, and how many more it has.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    faults: Option<&'a [Fault]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    more_faults: Option<usize>,
 }
 
 /// Prints the reason of a failure in one line, and a line for each proposal that leads out of it; returns the exit
@@ -39,9 +73,9 @@ struct FailureReport<'a> {
 pub fn exit_code(done: Result<(), Failure>, as_json: bool, line: &Line<'_>) -> ExitCode {
     let Err(failure) = done else { return ExitCode::SUCCESS };
     // A failure other than a refusal may follow an answer; it prints no second object.
-    let RefusedScenario { failure, mut proposals, misnamed, is_printed } = match failure {
+    let RefusedScenario { failure, mut proposals, misnamed, faults, is_printed } = match failure {
         Failure::Refused(refused) => *refused,
-        failure => RefusedScenario { failure, proposals: Vec::new(), misnamed: None, is_printed: true },
+        failure => RefusedScenario { failure, proposals: Vec::new(), misnamed: None, faults: None, is_printed: true },
     };
     proposals.extend(misnamed.iter().flat_map(|misnamed| instead(misnamed, line)));
     let (status, why) = match failure {
@@ -51,10 +85,15 @@ pub fn exit_code(done: Result<(), Failure>, as_json: bool, line: &Line<'_>) -> E
     };
     if as_json && !is_printed {
         // If this fails because standard output cannot be written, standard error still gives the reason.
-        let report = FailureReport { reason: &why, proposals: &proposals };
+        let list = faults.as_ref().map(|(_, faults)| &faults.list[..]);
+        let more_faults = faults.as_ref().map(|(_, faults)| faults.more);
+        let report = FailureReport { reason: &why, proposals: &proposals, faults: list, more_faults };
         let _ = Format { json: true }.print(&report, |_| String::new());
     }
-    print_message(why);
+    match &faults {
+        Some((file, faults)) => print_faults(&why, file, faults),
+        None => print_message(why),
+    }
     for proposal in proposals {
         let typed = match &proposal.way {
             WayOut::Set(_) => {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
-use stillbase_exchange::cut::{Cut, unweighed_tail};
+use stillbase_exchange::cut::Cut;
 use stillbase_exchange::drawing::Sheet;
 use stillbase_exchange::form::{self, Form, ModelContent};
 use stillbase_exchange::mjcf::{hinges, middle};
@@ -13,7 +13,6 @@ use stillbase_exchange::urdf::joint;
 use stillbase_files::write_new;
 use stillbase_mechanics::machine::Machine;
 use stillbase_settings::number::{counted, fixed};
-use stillbase_settings::text::shell_word;
 
 use super::dimensions::Dimensions;
 use super::exit::print_message;
@@ -60,6 +59,9 @@ struct Answer {
     file: String,
     #[serde(flatten)]
     of: Written,
+    /// What a model leaves out; absent for a model that leaves out nothing, and for what is no model.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    left_out: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -110,17 +112,11 @@ impl ExportModelArguments {
         let of = described(&machine, form, pose, &cut)?;
         write_new(&self.output, text.as_bytes(), self.force)?;
         print_message(format!("wrote {}", self.output.display()));
-        let tail = unweighed_tail(&machine);
-        if form.shows == ModelContent::Links && tail > 0.0 {
-            print_message(format!(
-                "bars are drawn up to {} mm longer than their pins ask for, to carry counterweights, and nothing weighs \
-                 this: stillbase design {} --counterweights --bars {},0.006 weighs what is cut",
-                fixed(1e3 * tail, 1),
-                shell_word(self.machine.name()),
-                cut.bar_width
-            ));
+        let left_out = form.left_out(&machine);
+        for what in &left_out {
+            print_message(format!("note: {}: left out: {what}", self.output.display()));
         }
-        let answer = Answer { file: self.output.display().to_string(), of };
+        let answer = Answer { file: self.output.display().to_string(), of, left_out };
         self.format.print(&answer, |answer| answer.of.words(&machine))
     }
 

@@ -18,6 +18,7 @@ use stillbase_planning::pose_space::{NoPoseSpace, PlaneError};
 use stillbase_planning::timing::TimeError;
 use stillbase_session::scenario::{Scenario, ScenarioError};
 use stillbase_session::{Proposal, Refusal, proposals};
+use stillbase_settings::fault::Faults;
 
 use stillbase_study::layers::NoLayers;
 
@@ -46,13 +47,15 @@ pub struct RefusedScenario {
     pub proposals: Vec<Proposal>,
     /// A word of the command line that names nothing, with what it may have been to name.
     pub misnamed: Option<Misnamed>,
-    /// Whether the answer on standard output already holds both.
+    /// The file that was read, and all its faults.
+    pub faults: Option<(String, Faults)>,
+    /// Whether the answer on standard output already holds all of it.
     pub is_printed: bool,
 }
 
 impl RefusedScenario {
     fn of(failure: Failure, proposals: Vec<Proposal>) -> Self {
-        Self { failure, proposals, misnamed: None, is_printed: false }
+        Self { failure, proposals, misnamed: None, faults: None, is_printed: false }
     }
 }
 
@@ -96,6 +99,16 @@ impl Failure {
             failure => {
                 Self::Refused(Box::new(RefusedScenario { misnamed, ..RefusedScenario::of(failure, Vec::new()) }))
             }
+        }
+    }
+
+    /// Returns the failure with the faults of the file that was read.
+    #[must_use]
+    pub fn with_faults(self, faults: Option<(&str, &Faults)>) -> Self {
+        let faults = faults.map(|(file, faults)| (file.to_owned(), faults.clone()));
+        match self {
+            Self::Refused(refused) => Self::Refused(Box::new(RefusedScenario { faults, ..*refused })),
+            other => other,
         }
     }
 
@@ -151,7 +164,7 @@ impl From<FileError> for Failure {
     fn from(e: FileError) -> Self {
         let misnamed = Misnamed::machine(&e);
         let nearest = misnamed.as_ref().map_or_else(String::new, Misnamed::nearest_file);
-        Self::wrong_input(format!("{e}{nearest}")).with_misnamed(misnamed)
+        Self::wrong_input(format!("{e}{nearest}")).with_misnamed(misnamed).with_faults(e.file().zip(e.faults()))
     }
 }
 
@@ -160,7 +173,7 @@ impl From<ScenarioError> for Failure {
     fn from(e: ScenarioError) -> Self {
         let misnamed = Misnamed::scenario(&e);
         let nearest = misnamed.as_ref().map_or_else(String::new, Misnamed::nearest_file);
-        Self::wrong_input(format!("{e}{nearest}")).with_misnamed(misnamed)
+        Self::wrong_input(format!("{e}{nearest}")).with_misnamed(misnamed).with_faults(e.faults())
     }
 }
 

@@ -16,7 +16,7 @@ use stillbase_study::import::{GivenMotion, ImportQuery, ImportedMotion, MotionIm
 
 use super::exit::print_message;
 use super::failure::Failure;
-use super::input::{DEFAULT_SCENARIO, Settings, above_zero, pose_constant, read};
+use super::input::{self, DEFAULT_SCENARIO, Settings, above_zero, pose_constant, read};
 use super::output::{Format, check_output};
 use super::remedy::option;
 use table::table;
@@ -111,7 +111,7 @@ impl ImportArguments {
         for file in files.iter().flatten() {
             check_output(file, self.force, &["toml"])?;
         }
-        let machine = self.settings.apply(stillbase_files::machine(&self.machine, None)?)?;
+        let machine = self.settings.apply(input::machine(&self.machine)?)?;
         let name = self.file.display().to_string();
         let wanted = self.columns.map(|columns| match columns {
             Columns::Drives => Coordinates::Drives,

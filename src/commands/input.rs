@@ -6,6 +6,7 @@ use std::path::Path;
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use stillbase_files::FoundMachine;
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
 use stillbase_mechanics::sketch::{Missing, resolve};
@@ -117,7 +118,7 @@ impl Settings {
 /// The machine on which a command operates.
 #[derive(Args)]
 pub struct MachineArgument {
-    /// A built-in machine (`stillbase machines` lists them) or a TOML file
+    /// A built-in machine (`stillbase machines` lists them) or a file: TOML, URDF or MJCF
     #[arg(value_name = "MACHINE")]
     name: String,
     #[command(flatten)]
@@ -130,12 +131,7 @@ impl MachineArgument {
     /// # Errors
     /// If there is no such machine or it is not valid, or as [`Settings::apply`].
     pub fn load(&self) -> Result<Machine, Failure> {
-        self.settings.apply(stillbase_files::machine(&self.name, None)?)
-    }
-
-    /// Returns the machine as it was named.
-    pub fn name(&self) -> &str {
-        &self.name
+        self.settings.apply(machine(&self.name)?)
     }
 
     /// Returns what the drawing lacks to be a machine, if the argument is a scenario with an incomplete drawing.
@@ -163,12 +159,27 @@ impl MachineArgument {
     pub fn load_with(&self, others: &[String]) -> Result<Vec<(String, Machine)>, Failure> {
         let mut all: Vec<(String, Machine)> = Vec::new();
         for called in std::iter::once(&self.name).chain(others) {
-            let machine = stillbase_files::machine(called, None)?;
+            let machine = machine(called)?;
             let machine = self.settings.apply(machine).map_err(|why| why.with_context(called))?;
             all.push((distinct_name(machine.name(), |name| all.iter().any(|(known, _)| known == name)), machine));
         }
         Ok(all)
     }
+}
+
+/// Returns a machine by name or file, and prints what was left out of the model of another program.
+///
+/// # Errors
+/// If there is no such machine, or it is not valid.
+pub fn machine(name: &str) -> Result<Machine, Failure> {
+    let FoundMachine { machine, left_out: notes } = stillbase_files::found_machine(name, None)?;
+    left_out(name, &notes).for_each(|note| print_message(format!("note: {note}")));
+    Ok(machine)
+}
+
+/// Returns what was left out of a file, each with the name of the file.
+pub fn left_out<'a>(file: &'a str, notes: &'a [String]) -> impl Iterator<Item = String> + 'a {
+    notes.iter().map(move |note| format!("{file}: {note}"))
 }
 
 /// Returns a name that is not taken: `own`, or `own` with the first free number, from 2 on.
@@ -240,9 +251,8 @@ pub fn overlay_for_study(name: &str, settings: &Settings) -> Result<Scenario, Fa
 /// As [`overlay_for_study`], except for settings without an effect.
 pub fn overlay_unchecked(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     let found = stillbase_files::scenario(name)?;
-    if let Some(made) = &found.note {
-        print_message(format!("note: {made}"));
-    }
+    let notes = found.note.iter().cloned().chain(left_out(name, &found.left_out));
+    notes.for_each(|note| print_message(format!("note: {note}")));
     overlay_settings(found.scenario, settings)
 }
 

@@ -2,6 +2,7 @@
 
 use super::cut::{Cut, CutError};
 use super::drawing::{Sheet, dxf, svg};
+use super::left_out;
 use super::mjcf::{MjcfError, mjcf};
 use super::parts::PartsList;
 use super::stl::{SolidsError, stl};
@@ -16,6 +17,8 @@ pub struct Form {
     /// The part of a machine that it shows.
     pub shows: ModelContent,
     write: fn(&Machine, &[f64], &Cut) -> Result<String, ExchangeError>,
+    /// Returns what a model leaves out; empty for what is no model.
+    leaves_out: fn(&Machine) -> Vec<String>,
 }
 
 /// The part of a machine that a file shows.
@@ -36,22 +39,53 @@ pub enum ModelContent {
 /// All export formats.
 pub const FORMS: [Form; 7] = [
     // For MuJoCo.
-    Form { ending: "xml", shows: ModelContent::Pose, write: |machine, pose, cut| Ok(mjcf(machine, pose, cut)?) },
+    Form {
+        ending: "xml",
+        shows: ModelContent::Pose,
+        write: |machine, pose, cut| Ok(mjcf(machine, pose, cut)?),
+        leaves_out: left_out::of_mjcf,
+    },
     // For ROS, Pinocchio and others.
-    Form { ending: "urdf", shows: ModelContent::Joints, write: |machine, _, cut| Ok(urdf(machine, cut)) },
+    Form {
+        ending: "urdf",
+        shows: ModelContent::Joints,
+        write: |machine, _, cut| Ok(urdf(machine, cut)),
+        leaves_out: left_out::of_urdf,
+    },
     // For viewing.
-    Form { ending: "svg", shows: ModelContent::Links, write: |machine, _, cut| Ok(svg(&Sheet::of(machine, cut)?)) },
+    Form {
+        ending: "svg",
+        shows: ModelContent::Links,
+        write: |machine, _, cut| Ok(svg(&Sheet::of(machine, cut)?)),
+        leaves_out: left_out::of_drawing,
+    },
     // For cutting.
-    Form { ending: "dxf", shows: ModelContent::Links, write: |machine, _, cut| Ok(dxf(&Sheet::of(machine, cut)?)) },
+    Form {
+        ending: "dxf",
+        shows: ModelContent::Links,
+        write: |machine, _, cut| Ok(dxf(&Sheet::of(machine, cut)?)),
+        leaves_out: left_out::of_drawing,
+    },
     // For a printer or a program for solids.
-    Form { ending: "stl", shows: ModelContent::Solids, write: |machine, pose, cut| Ok(stl(machine, pose, cut)?) },
+    Form {
+        ending: "stl",
+        shows: ModelContent::Solids,
+        write: |machine, pose, cut| Ok(stl(machine, pose, cut)?),
+        leaves_out: left_out::of_drawing,
+    },
     // For a spreadsheet.
-    Form { ending: "csv", shows: ModelContent::Parts, write: |machine, _, cut| Ok(PartsList::of(machine, cut)?.csv()) },
+    Form {
+        ending: "csv",
+        shows: ModelContent::Parts,
+        write: |machine, _, cut| Ok(PartsList::of(machine, cut)?.csv()),
+        leaves_out: |_| Vec::new(),
+    },
     // For reading.
     Form {
         ending: "md",
         shows: ModelContent::Parts,
         write: |machine, _, cut| Ok(PartsList::of(machine, cut)?.markdown()),
+        leaves_out: |_| Vec::new(),
     },
 ];
 
@@ -101,6 +135,11 @@ impl Form {
     pub fn of(ending: &str) -> Result<Self, ExchangeError> {
         let own = FORMS.into_iter().find(|form| form.ending.eq_ignore_ascii_case(ending));
         own.ok_or_else(|| ExchangeError::Ending { ending: ending.chars().take(40).collect() })
+    }
+
+    /// Returns what a model of the machine leaves out, in sentences; empty for drawings and lists, which are no models.
+    pub fn left_out(&self, machine: &Machine) -> Vec<String> {
+        (self.leaves_out)(machine)
     }
 
     /// Returns the text of the file; `pose`, rad, is the initial pose of formats that show one.

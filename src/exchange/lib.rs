@@ -7,6 +7,7 @@ pub mod cut;
 pub mod drawing;
 pub mod form;
 pub mod import;
+mod left_out;
 mod look;
 mod mesh;
 pub mod mjcf;

@@ -45,7 +45,7 @@ pub enum MjcfError {
 }
 
 /// MuJoCo treats masses, kg, and inertias, kg m², below this as zero.
-const MIN_MASS_OR_INERTIA: f64 = 1e-12;
+pub(super) const MIN_MASS_OR_INERTIA: f64 = 1e-12;
 /// Mass of a rotor's body, kg: the rotor's real mass belongs to the link that carries it.
 const ROTOR_MASS_KG: f64 = 1e-11;
 

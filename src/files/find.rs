@@ -8,6 +8,7 @@ use stillbase_exchange::import::{ImportedMachine, import};
 use stillbase_mechanics::machine::{self, FileError, Machine, MachineError};
 use stillbase_session::gentle_motion;
 use stillbase_session::scenario::{FileContent, Scenario, ScenarioError, TaskKind, content};
+use stillbase_settings::fault::{Fault, Faults};
 use stillbase_settings::number::ShortNumber;
 use stillbase_settings::range::shortened;
 use stillbase_settings::spelling::UnknownName;
@@ -15,23 +16,43 @@ use stillbase_settings::spelling::UnknownName;
 const IS_SCENARIO: &str = "this is a scenario, not a machine: want the machine that it names; simulate, headless, \
                            compare, joints, export, tolerance, spectrum and plan take a SCENARIO";
 
+/// A machine, with notes on its origin.
+#[derive(Clone, Debug)]
+pub struct FoundMachine {
+    /// The machine.
+    pub machine: Machine,
+    /// What was left out of the model of another program; empty for a machine of this one.
+    pub left_out: Vec<String>,
+}
+
 /// Returns a machine by built-in name or by file; a relative path is resolved in `folder`, if given.
 ///
 /// # Errors
 /// If there is no such machine or file, or if the file is not a machine.
 pub fn machine(name: &str, folder: Option<&Path>) -> Result<Machine, FileError> {
+    found_machine(name, folder).map(|found| found.machine)
+}
+
+/// Returns a machine as [`machine`] does, with what was left out of it. The file may be a model of another program.
+///
+/// # Errors
+/// As [`machine`].
+pub fn found_machine(name: &str, folder: Option<&Path>) -> Result<FoundMachine, FileError> {
+    let own = |machine| FoundMachine { machine, left_out: Vec::new() };
     if let Some(machine) = machine::builtin(name) {
-        return Ok(machine.clone());
+        return Ok(own(machine.clone()));
     }
     let file = folder.map_or_else(|| name.into(), |folder| folder.join(name));
-    let other = |file: String| {
-        let error = MachineError::Syntax(IS_SCENARIO.into());
-        FileError::Wrong { file: shortened(&file, 300), line: None, error }
-    };
+    let other = |file: String| wrong_file(&file, whole_file(IS_SCENARIO));
     match read(&file) {
         Ok(text) => {
             let file = file.display().to_string();
-            machine::parse(&text, &file).map_err(|why| match content(&text) {
+            if is_model(&text) {
+                let ImportedMachine { machine, notes, .. } =
+                    import(&text).map_err(|why| wrong_file(&file, why.fault()))?;
+                return Ok(FoundMachine { machine, left_out: notes });
+            }
+            machine::parse(&text, &file).map(own).map_err(|why| match content(&text) {
                 Some(FileContent::Scenario) => other(file),
                 _ => why,
             })
@@ -43,13 +64,31 @@ pub fn machine(name: &str, folder: Option<&Path>) -> Result<Machine, FileError> 
     }
 }
 
-/// A scenario, with a note on its origin.
+/// Returns whether a text is a model of another program; TOML cannot begin with this character.
+fn is_model(text: &str) -> bool {
+    text.trim_start().starts_with('<')
+}
+
+/// Returns the fault of a whole file.
+fn whole_file(why: impl Into<String>) -> Fault {
+    Fault { line: None, column: None, key: String::new(), text: why.into(), example: String::new() }
+}
+
+/// Returns the error of a file with one fault.
+fn wrong_file(file: &str, fault: Fault) -> FileError {
+    let (line, error) = (fault.line, MachineError::Syntax(fault.text.clone()));
+    FileError::Wrong { file: shortened(file, 300), line, error, faults: Box::new(Faults::one(fault)) }
+}
+
+/// A scenario, with notes on its origin.
 #[derive(Clone, Debug)]
 pub struct FoundScenario {
     /// The scenario.
     pub scenario: Scenario,
-    /// Note that the scenario was made for a machine, with the notes of its import; `None` otherwise.
+    /// Note that the scenario was made for a machine; `None` otherwise.
     pub note: Option<String>,
+    /// What was left out of the model of another program; empty for files of this one.
+    pub left_out: Vec<String>,
 }
 
 /// Returns a scenario by built-in name or by file. A machine file that the scenario names is resolved in the folder of
@@ -59,10 +98,9 @@ pub struct FoundScenario {
 /// If there is no such scenario, machine or file, the file is neither, or no task can be stated for the machine.
 pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
     if let Some(scenario) = Scenario::builtin(name) {
-        return Ok(FoundScenario { scenario, note: None });
+        return Ok(FoundScenario { scenario, note: None, left_out: Vec::new() });
     }
     let file = Path::new(name);
-    let said = |message: String| ScenarioError::Syntax { file: shortened(name, 300), line: None, message };
     let text = match read(file) {
         Ok(text) => text,
         Err(source) if source.kind() == ErrorKind::NotFound && !name.ends_with(".toml") => {
@@ -76,18 +114,15 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
         }
         Err(source) => return Err(ScenarioError::Unreadable { file: shortened(name, 300), source }),
     };
-    // This is a model of another program, because TOML cannot begin with this character.
-    if text.trim_start().starts_with('<') {
-        let ImportedMachine { machine, notes, .. } = import(&text).map_err(|why| said(why.to_string()))?;
-        let FoundScenario { scenario, note } = scenario_for(name, &machine)?;
-        let made = note.into_iter().chain(notes).collect::<Vec<_>>().join("; ");
-        return Ok(FoundScenario { scenario, note: Some(made) });
+    if is_model(&text) {
+        let ImportedMachine { machine, notes, .. } = import(&text).map_err(|why| wrong_file(name, why.fault()))?;
+        return Ok(FoundScenario { left_out: notes, ..scenario_for(name, &machine)? });
     }
     if content(&text) == Some(FileContent::Machine) {
         return scenario_for(name, &machine::parse(&text, &shortened(name, 300))?);
     }
     let scenario = Scenario::parse(&text, name, Some(&|name| machine(name, file.parent())))?;
-    Ok(FoundScenario { scenario, note: None })
+    Ok(FoundScenario { scenario, note: None, left_out: Vec::new() })
 }
 
 /// Makes a scenario for a machine, whose name or file is `name`.
@@ -104,5 +139,5 @@ fn scenario_for(name: &str, machine: &Machine) -> Result<FoundScenario, Scenario
         task.to[1],
         ShortNumber(task.time)
     );
-    Ok(FoundScenario { scenario, note: Some(made) })
+    Ok(FoundScenario { scenario, note: Some(made), left_out: Vec::new() })
 }

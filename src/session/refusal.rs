@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::scenario::{MAX_FRAMES, MAX_STEPS, MAX_TIME, SettingError, ordinal};
+use crate::scenario::{MAX_FRAMES, MAX_STEPS, MAX_TIME, SettingError, ordinal, with_name};
 use stillbase_mechanics::machine::MachineError;
 use stillbase_mechanics::sketch::SketchRefusal;
 use stillbase_planning::curves::{CurveError, PathError};
@@ -100,7 +100,7 @@ pub enum Refusal {
         value: String,
     },
     /// A number out of range.
-    #[error("{}", range_error(what, *value, want))]
+    #[error("{}", range_error(&with_name(what), *value, want))]
     OutOfRange {
         /// Key of the number.
         what: String,

@@ -5,15 +5,21 @@
 
 #[doc(hidden)]
 pub mod change;
+pub mod fault;
 pub mod key;
+pub mod key_path;
 #[doc(hidden)]
 pub mod keyed;
+#[doc(hidden)]
+pub mod mending;
 #[doc(hidden)]
 pub mod number;
 #[doc(hidden)]
 pub mod quantity;
 pub mod range;
 pub mod spelling;
+#[doc(hidden)]
+pub mod stated;
 #[doc(hidden)]
 pub mod text;
 pub mod word;

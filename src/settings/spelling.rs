@@ -58,6 +58,14 @@ pub fn nearest_words<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -
     if nearest.len() > MAX_NEAREST { Vec::new() } else { nearest }
 }
 
+/// Returns the keys that come nearest to a word that is none: those of which few letters are wrong.
+#[doc(hidden)]
+pub fn nearest_keys<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
+    let letters = word.chars().count();
+    let is_near = |key: &&str| 5 * letters_apart(&key.to_lowercase(), &word.to_lowercase()) <= 2 * (letters + 1);
+    nearest_words(word, known).into_iter().filter(is_near).collect()
+}
+
 /// Number of letters that are compared; the effort grows with its square.
 const MAX_LETTERS: usize = 100;
 

@@ -32,6 +32,9 @@ pub const TESTS: &[Test] = tests![
     a_run_is_recorded_whole_or_not,
     a_dialog_that_is_left_does_nothing,
     a_machine_goes_elsewhere_from_the_design_view,
+    all_faults_of_a_file_are_listed,
+    what_is_left_out_of_a_model_is_listed,
+    a_file_that_changes_is_taken_up,
 ];
 
 /// A file that is dropped: its name.
@@ -85,6 +88,138 @@ fn answer(h: &mut Window, path: &Path) {
 fn name_file(h: &mut Window, what: Ask, path: &Path) {
     ask(h, what);
     answer(h, path);
+}
+
+/// The list about a file, by its title; `None` if there is none.
+fn report(h: &Window) -> Option<String> {
+    h.state().app_state().view_state().open.report.as_ref().map(stillbase::app::FileReport::title)
+}
+
+/// A file with several faults is answered by a list, which can be copied and is left by Esc.
+fn all_faults_of_a_file_are_listed() {
+    let folder = Folder::new("faults");
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let own = include_str!("../../assets/machines/two-drive.toml");
+    let bad = own.replacen("mass = 2.0", "mass = -2.0", 1).replacen("mass = 1.0", "weight = 1.0", 1);
+    let file = folder.file("bad.toml", bad.replacen("[lengths]", "belt = 2\n[lengths]", 1));
+    for dialog in [true, false] {
+        if dialog {
+            name_file(&mut h, Ask::Open, &file);
+        } else {
+            drop_on(&mut h, &file);
+        }
+        assert_eq!(report(&h).as_deref(), Some("bad.toml: 3 faults"));
+        let said = painted(&h);
+        let says = |words: &str| said.iter().any(|text| text.contains(words));
+        assert!(says("A belt from the base") || says("a belt from the base"), "{said:?}");
+        assert!(says("mass of link 1 (link.1.mass) is -2: want 1e-15") && says("mass = 1.2"), "{said:?}");
+        assert_eq!(session(&h).scenario().name, "case-3");
+        h.get_by_label("Copy the list").click();
+        h.run_steps(2);
+        done(&h, "copied");
+        h.key_press(Key::Escape);
+        h.run_steps(2);
+        assert!(report(&h).is_none() && h.query_by_label("File name").is_none());
+    }
+    drop_on(&mut h, &folder.file("empty.toml", ""));
+    assert_eq!(report(&h).as_deref(), Some("empty.toml: 1 fault"));
+    assert!(painted(&h).iter().any(|text| text.contains("attach = \"base\"")), "a smallest machine is shown");
+    // What is opened next closes the list.
+    drop_on(&mut h, &folder.file("good.toml", own));
+    assert!(report(&h).is_none());
+}
+
+/// What a model leaves out is listed once it is written, and again when it is read.
+fn what_is_left_out_of_a_model_is_listed() {
+    let folder = Folder::new("left-out");
+    let mut h = window("scara", Theme::Light);
+    h.run_steps(2);
+    let file = folder.path("arm.xml");
+    h.state_mut().app_state_mut().carry_out(SessionCommand::TakeElsewhere(file));
+    h.run_steps(4);
+    let title = report(&h).expect("MJCF has no names of angles");
+    assert!(title.starts_with("arm.xml: ") && title.ends_with("left out when it was written"), "{title}");
+    h.get_by_label("Close").click();
+    h.run_steps(2);
+    assert!(report(&h).is_none());
+    let model = "<robot name=\"x\"><link name=\"base\"/><link name=\"a\"><inertial><mass value=\"1\"/>\
+                 <inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/></inertial></link><link name=\"tool\"/>\
+                 <joint name=\"j\" type=\"continuous\"><parent link=\"base\"/><child link=\"a\"/><axis xyz=\"0 0 1\"/>\
+                 <dynamics damping=\"0.5\"/></joint>\
+                 <joint name=\"t\" type=\"fixed\"><parent link=\"a\"/><child link=\"tool\"/><origin xyz=\"0.5 0 0\"/></joint>\
+                 </robot>";
+    drop_on(&mut h, &folder.file("one.urdf", model));
+    h.run_steps(3);
+    let why = h.state().app_state().view_state().status.message.clone();
+    assert_eq!(report(&h).as_deref(), Some("one.urdf: 1 thing left out when it was read"), "{why:?}");
+}
+
+/// Another program changes the file: it is taken up as one change; a broken one changes nothing; with changes of one's
+/// own the window asks.
+fn a_file_that_changes_is_taken_up() {
+    let folder = Folder::new("changes");
+    let own = include_str!("../../assets/machines/two-drive.toml");
+    let with = |mass: &str| own.replacen("mass = 2.0", &format!("mass = {mass}"), 1);
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let file = folder.file("arm.toml", own);
+    drop_on(&mut h, &file);
+    h.run_steps(3);
+    let mass = |h: &Window| session(h).scenario().machine.spec().links[0].mass;
+    assert_eq!(mass(&h), 2.0);
+    // Seen once it rests, at the second look.
+    let look = |h: &mut Window| {
+        h.state_mut().app_state_mut().look_at_file(1.0);
+        h.run_steps(3);
+    };
+    look(&mut h);
+    let undo_count = session(&h).undo_count();
+    folder.file("arm.toml", with("2.125"));
+    look(&mut h);
+    assert_eq!(mass(&h), 2.0, "it may still be written");
+    look(&mut h);
+    assert_eq!(mass(&h), 2.125);
+    assert_eq!(session(&h).undo_title(), Some("taken from the file"));
+    assert_eq!(session(&h).undo_count(), undo_count + 1);
+    done(&h, "taken from the file");
+    assert!(!h.state().app_state().changes().1, "nothing is unsaved");
+    // A file that is broken keeps the machine, and shows its faults; mended, it is taken.
+    folder.file("arm.toml", with("-3"));
+    look(&mut h);
+    look(&mut h);
+    assert_eq!((mass(&h), report(&h).as_deref()), (2.125, Some("arm.toml: 1 fault")));
+    look(&mut h);
+    folder.file("arm.toml", with("2.25"));
+    look(&mut h);
+    look(&mut h);
+    assert!(mass(&h) == 2.25 && report(&h).is_none());
+    // Changes of one's own are asked about.
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::set("link.1.mass", 5.0)));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::EndGesture);
+    h.run_steps(2);
+    folder.file("arm.toml", with("2.0625"));
+    look(&mut h);
+    look(&mut h);
+    assert_eq!(mass(&h), 5.0);
+    h.get_by_label("Keep mine").click();
+    h.run_steps(3);
+    look(&mut h);
+    assert!(mass(&h) == 5.0 && h.query_by_label("Keep mine").is_none());
+    folder.file("arm.toml", with("2.03125"));
+    look(&mut h);
+    look(&mut h);
+    h.get_by_label("Take the file's").click();
+    h.run_steps(4);
+    assert_eq!(mass(&h), 2.03125);
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(4);
+    assert_eq!(mass(&h), 5.0);
+    // A file that is gone changes nothing.
+    fs::remove_file(&file).expect("it is there");
+    look(&mut h);
+    look(&mut h);
+    assert_eq!(mass(&h), 5.0);
 }
 
 /// From the foot of the design view; the ending of the name says what is written.

@@ -159,6 +159,99 @@ fn limits_come_back() {
     }
 }
 
+/// What a model does not leave out by its list comes back equal, for the machines that come along and random ones.
+#[test]
+fn what_is_not_listed_comes_back() {
+    use stillbase::exchange::form::Form;
+    let mut noise = Noise::of(21);
+    let mut all = machines();
+    all.extend((0..100).map(|i| if i % 2 == 0 { a_machine(&mut noise) } else { a_chain(&mut noise, 1 + i / 2 % 8) }));
+    for machine in all {
+        for ending in ["urdf", "xml"] {
+            let form = Form::of(ending).expect("a format");
+            let pose = if ending == "xml" { middle(&machine) } else { vec![0.0; machine.drives()] };
+            let text = form.written(&machine, &pose, &Cut::default()).expect("a model");
+            let list = form.left_out(&machine);
+            let lists = |words: &str| list.iter().any(|what| what.contains(words));
+            let back = import(&text).unwrap_or_else(|why| panic!("{}: {why}", machine.name())).machine;
+            let (own, other, of) = (machine.spec(), back.spec(), format!("{} as {ending}: {list:?}", machine.name()));
+            assert!(other.name == own.name && other.gravity == own.gravity, "{of}");
+            assert_eq!(other.summary == own.summary, !lists("summary"), "{of}");
+            assert_eq!(other.parts == own.parts && other.lumps == own.lumps, !lists("lump"), "{of}");
+            assert_eq!(other.counterweights == own.counterweights, !lists("counterweight"), "{of}");
+            assert_eq!(other.payload == own.payload, !lists("payload"), "{of}");
+            if !lists("named lengths") {
+                assert_eq!(other.lengths.is_empty(), own.lengths.is_empty(), "{of}");
+            }
+            for (drive, own) in other.drives.iter().zip(&own.drives) {
+                assert!((&drive.name, &drive.on) == (&own.name, &own.on), "{of}");
+                assert_eq!(drive.torque_limit, own.torque_limit, "{of}");
+                if !lists("limits of rate") {
+                    let limits =
+                        |d: &stillbase::mechanics::machine::Drive| (d.speed_limit, d.acceleration_limit, d.jerk_limit);
+                    assert_eq!(limits(drive), limits(own), "{of}");
+                }
+                if !lists("rotor and gear") {
+                    let is_near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * b.abs();
+                    let (a, b) = (drive.rotor.unwrap_or_default(), own.rotor.unwrap_or_default());
+                    assert!(is_near(a.inertia, b.inertia) && is_near(a.ratio, b.ratio), "{of}: {a:?} {b:?}");
+                }
+            }
+            if lists("pin of link") {
+                continue;
+            }
+            assert_eq!(other.links.len(), own.links.len(), "{of}");
+            for (j, link) in machine.links().iter().enumerate() {
+                let i = back.links().iter().position(|other| other.name == link.name).expect("its name");
+                let length = |machine: &Machine, j: usize| machine.resolved_links()[j].length;
+                let names = list.iter().find_map(|what| what.strip_prefix("length of link ")).unwrap_or_default();
+                let is_listed = names.split(':').next().unwrap_or_default().split(", ").any(|name| name == link.name);
+                let is_near = (length(&back, i) - length(&machine, j)).abs() < 1e-9;
+                assert!(is_near || is_listed, "{of}: link {}: {} {}", link.name, length(&back, i), length(&machine, j));
+            }
+        }
+    }
+}
+
+/// Belts: a link that a belt holds at the angle of a joint on the base has that joint's drive; other ratios are said to
+/// be none, with what would do.
+#[test]
+fn belts_come_in_as_drives_of_the_base() {
+    let model = |multiplier: &str| {
+        let link = |name: &str| {
+            format!(
+                "<link name=\"{name}\"><inertial><origin xyz=\"0.2 0 0\"/><mass value=\"1\"/><inertia ixx=\"0.1\" iyy=\"0.1\" \
+                 izz=\"0.1\"/></inertial></link>"
+            )
+        };
+        let joint = |name: &str, parent: &str, child: &str, mimic: &str| {
+            format!(
+                "<joint name=\"{name}\" type=\"continuous\"><parent link=\"{parent}\"/><child link=\"{child}\"/>\
+                 <origin xyz=\"{} 0 0\"/><axis xyz=\"0 0 1\"/>{mimic}</joint>",
+                if parent == "base" { 0.0 } else { 0.4 }
+            )
+        };
+        // The belt turns the distant link back by what its carrier turns, and forth by what its pulley at the base does.
+        let mimic = format!("<mimic joint=\"upper\" multiplier=\"{multiplier}\"/>");
+        format!(
+            "<robot name=\"belted\"><link name=\"base\"/>{}{}<link name=\"tool\"/>{}{}\
+             <joint name=\"t\" type=\"fixed\"><parent link=\"b\"/><child link=\"tool\"/><origin xyz=\"0.4 0 0\"/></joint>\
+             <transmission name=\"x\"><actuator name=\"m\"><mechanicalReduction>3</mechanicalReduction></actuator></transmission>\
+             </robot>",
+            link("a"),
+            link("b"),
+            joint("upper", "base", "a", ""),
+            joint("fore", "a", "b", &mimic)
+        )
+    };
+    let why = import(&model("0.5")).expect_err("a belt of another ratio").to_string();
+    assert!(why.contains("a belt from the base") && why.contains("multiplier 1 or -1"), "{why}");
+    let free = model("1").replace("<mimic joint=\"upper\" multiplier=\"1\"/>", "");
+    let found = import(&free).expect("two motors");
+    assert_eq!(found.machine.drives(), 2);
+    assert!(found.notes.iter().any(|note| note.contains("reductions of transmissions")), "{:?}", found.notes);
+}
+
 #[test]
 fn a_thousand_machines_go_out_and_come_back() {
     let mut noise = Noise::of(16);

@@ -40,6 +40,7 @@ const EDGES: &[(&str, &[&str])] = &[
             "app/window/pane.rs",
             "app/window/shell.rs",
             "app/window/times.rs",
+            "app/window/waker.rs",
             "app/window/windows.rs",
             "commands/design/weighed.rs",
             "files/journal.rs",
@@ -52,6 +53,7 @@ const EDGES: &[(&str, &[&str])] = &[
         &[
             "app/jobs.rs",
             "app/window/keeper.rs",
+            "app/window/waker.rs",
             "commands/interrupt.rs",
             "commands/tolerance/parallel.rs",
             "files/video.rs",

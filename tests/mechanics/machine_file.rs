@@ -63,7 +63,7 @@ proptest! {
 /// The error and the line it names.
 fn wrong(text: &str) -> (MachineError, Option<usize>) {
     match parse(text, "arm.toml") {
-        Err(FileError::Wrong { file, line, error }) => {
+        Err(FileError::Wrong { file, line, error, .. }) => {
             assert_eq!(file, "arm.toml");
             (error, line)
         }
@@ -285,7 +285,7 @@ fn what_is_no_machine_file_is_named() {
     let (error, line) = wrong(&NINE_LINK.replacen("mass = 1.45\n", "", 1));
     let table = NINE_LINK.match_indices("[[link]]").nth(1).expect("link 2").0;
     assert_eq!(line, Some(NINE_LINK[..table].matches('\n').count() + 1), "{error}");
-    assert!(error.to_string().contains("missing field `mass`"), "{error}");
+    assert!(error.to_string().contains("mass of link 2 (link.2.mass) is missing"), "{error}");
 }
 
 #[test]

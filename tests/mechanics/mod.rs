@@ -6,6 +6,7 @@ mod breakdown;
 mod counterweights;
 mod dynamics;
 mod family;
+mod faults;
 pub mod inside;
 mod joint_forces;
 mod keep;

@@ -254,7 +254,7 @@ fn what_writes_a_number_types_it() {
         assert_eq!(parse(&to_toml(machine), "again.toml").expect("its own file"), *machine);
     }
     let error = builtins()[0].set("link.1.mass", "default").expect_err("nothing gives it");
-    assert!(matches!(error, MachineError::NoParts { key: "mass", .. }), "{error}");
+    assert!(matches!(error, MachineError::NoParts { .. }), "{error}");
     assert!(error.to_string().contains("[[lump]] of link \"1\""), "{error}");
     let on_axis = builtins()[0].set("link.1.com_normal", "0.1").and_then(|m| m.set("link.1.com_normal", "default"));
     assert_eq!(on_axis.expect("on the axis"), builtins()[0]);
@@ -290,9 +290,9 @@ fn every_key_of_a_part_is_read_back_as_it_was_set() {
         ("part.9.width", "0.1", "want one of \"1\", \"2\""),
         ("part.1.wall", "0.001", "a flat bar has no wall: want width, thickness"),
         ("part.4.wall", "none", "a tube has a wall: want diameter, wall"),
-        ("part.1.width", "0", "part[1].width is 0: want 1e-6 to 1000000 m"),
+        ("part.1.width", "0", "part[1].width) is 0: want 1e-6 to 1000000 m"),
         ("part.1.to", "elbow", "names the length \"elbow\""),
-        ("lump.1.mass", "0", "lump[1].mass is 0"),
+        ("lump.1.mass", "0", "lump[1].mass) is 0"),
         ("lump.1.at", "default", "a place along the link"),
         ("material.pom.density", "-1", "want 1 to 100000 kg/m³"),
         ("material.wood.density", "700", "want one of \"pom\""),
@@ -398,7 +398,7 @@ fn what_is_wrong_with_a_part_is_told_with_its_line() {
         ("density = 1410.0", "density = 0.0", "density = 0.0", "want 1 to 100000 kg/m³"),
         ("mass = 0.42", "mass = -0.42", "mass = -0.42", "want 1e-15"),
         ("at = 0.02\n", "at = \"elbow\"\n", "at = \"elbow\"", "names the length \"elbow\""),
-        ("mass = 0.012\n", "", "[[lump]]\nlink = \"fore\"", "missing field `mass`"),
+        ("mass = 0.012\n", "", "[[lump]]\nlink = \"fore\"", "(lump[2].mass) is missing"),
     ] {
         let error = refused(from, to, line);
         assert!(error.contains(words), "{to}: {error}");
@@ -407,7 +407,7 @@ fn what_is_wrong_with_a_part_is_told_with_its_line() {
     let end = ARM.find("[[part]]\nlink = \"fore\"").expect("parts");
     let text = format!("{}{}", &ARM[..end], &ARM[ARM.find("[end_effector]").expect("end")..]);
     let error = parse(&text, "arm.toml").expect_err("nothing gives a mass").to_string();
-    assert!(error.contains("link.fore.mass: missing field `mass`") && error.contains("[[part]]"), "{error}");
+    assert!(error.contains("mass of link fore (link.fore.mass) is missing") && error.contains("[[part]]"), "{error}");
     let many = format!("{ARM}{}", "[[lump]]\nlink = \"fore\"\nmass = 1e-3\nat = 0.0\n".repeat(1000));
     assert!(parse(&many, "many.toml").expect_err("too many").to_string().contains("at most 1000"));
 }

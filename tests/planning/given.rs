@@ -251,11 +251,11 @@ fn a_scenario_needs_no_more_than_the_samples() {
     assert!((last.peaks.moment / planned.moment - 1.0).abs() < 1e-3, "{} {}", last.peaks.moment, planned.moment);
 
     for (text, words) in [
-        (written(&elliptic(50), ""), "own.toml:2: missing field `b`"),
+        (written(&elliptic(50), ""), "own.toml:2: pose constant at A (task.b) is missing"),
         (written(&samples, "").replace("[[", "[[nan, 1, 1, 1], ["), "sample 1, number 1: want a finite number"),
         (
             "machine = \"nine-link\"\n[task]\nkind = \"reactionless\"\nb = 2.4\nto = [0.5, 0.5]\n".into(),
-            "missing field `from`",
+            "point A (task.from) is missing",
         ),
     ] {
         let said = Scenario::parse(&text, "own.toml", None).expect_err("refused").to_string();

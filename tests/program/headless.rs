@@ -59,8 +59,11 @@ fn a_scenario_file_is_named_with_its_line() {
     let folder = Folder::new("cli");
     let case = include_str!("../../assets/scenarios/case-3.toml");
     let refused = |text: &str, words: &[&str]| fails(&["simulate", &word(folder.file("my.toml", text))], 2, words);
-    refused(&case.replace("time = 1.0", "tiem = 1.0"), &["my.toml:13:", "unknown field `tiem`"]);
-    refused(&case.replace("time = 1.0", "time = -1.0"), &["my.toml", "task.time is -1"]);
+    refused(
+        &case.replace("time = 1.0", "tiem = 1.0"),
+        &["my.toml:13:", "task has no key \"tiem\": want time (nearest)"],
+    );
+    refused(&case.replace("time = 1.0", "time = -1.0"), &["my.toml", "task.time) is -1"]);
     refused(&case.replace("nine-link", "ten-link"), &["ten-link", "no such machine"]);
     fails(&["simulate", "case-9"], 2, &["case-9", "case-1 (nearest), case-2 (nearest), case-3 (nearest), circle"]);
     fails(&["chek"], 2, &["chek", "--help"]);

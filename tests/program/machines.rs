@@ -112,8 +112,8 @@ fn settings_change_the_machine_before_anything_is_planned() {
 #[test]
 fn wrong_settings_say_what_would_be_right() {
     let refused = |set: &str, words: &[&str]| fails(&["check", "nine-link", "--set", set], 2, words);
-    refused("link.5.mass=NaN", &["link.5.mass is not a number", "want a finite number, kg"]);
-    refused("link.5.mass=-1", &["link.5.mass is -1", "want 1e-15 to 1000000 kg"]);
+    refused("link.5.mass=NaN", &["mass of link 5 (link.5.mass) is not a number", "want a finite number, kg"]);
+    refused("link.5.mass=-1", &["link.5.mass) is -1", "want 1e-15 to 1000000 kg"]);
     refused("link.5.mass=much", &["link.5.mass=\"much\"", "want one number"]);
     refused("link.5.length=0.7", &["l5", "link 8", "parallelogram", "length.l5"]);
     refused("link.99.mass=1", &["\"99\"", "want one of \"1\""]);
@@ -137,14 +137,14 @@ fn a_damaged_machine_file_is_named_with_its_line() {
         let line = format!("arm.toml:{}:", NINE_LINK[..at].matches('\n').count() + 1);
         check(&NINE_LINK.replacen(from, to, 1), &[&[line.as_str()], words].concat());
     };
-    damage("mass = 1.45", "mass = nan", &["link.2.mass is not a number"]);
-    damage("mass = 1.45", "mass = -1.45", &["link.2.mass is -1.45", "1e-15 to 1000000 kg"]);
-    damage("mass = 1.45", "weight = 1.45", &["unknown field `weight`"]);
+    damage("mass = 1.45", "mass = nan", &["mass of link 2 (link.2.mass) is not a number"]);
+    damage("mass = 1.45", "mass = -1.45", &["(link.2.mass) is -1.45", "1e-15 to 1000000 kg"]);
+    damage("mass = 1.45", "weight = 1.45", &["link 2 has no key \"weight\": want mass of link 2"]);
     damage("mass = 1.45", "mass = ", &[]);
     damage(
         "[[closure]]\na = { link = \"4\"",
         "[[closure]]\na = { link = \"6\"",
-        &["closure[1]", "parallelogram that closes"],
+        &["(closure[1])", "parallelogram that closes"],
     );
     damage("attach = { link = \"3\"", "attach = { link = \"6\"", &["link.6.attach", "hangs on itself"]);
     damage(
@@ -155,8 +155,57 @@ fn a_damaged_machine_file_is_named_with_its_line() {
     let end = NINE_LINK.find("[end_effector]").expect("end effector");
     let angles = NINE_LINK.find("# Relative joint angles").expect("angles");
     check(&[&NINE_LINK[..end], &NINE_LINK[angles..]].concat(), &["arm.toml: no end effector", "want [end_effector]"]);
-    check(&NINE_LINK.replacen("com = 0.20158885517910255\n", "", 1), &["arm.toml:", "missing field `com`"]);
+    check(&NINE_LINK.replacen("com = 0.20158885517910255\n", "", 1), &["arm.toml:", "(link.1.com) is missing"]);
     check("\u{0}", &["arm.toml:1:"]);
+}
+
+/// All faults of a file are told, in words and as JSON, by every command that reads the file.
+#[test]
+fn all_faults_of_a_file_are_told() {
+    let folder = Folder::new("cli");
+    let wrong = NINE_LINK.replacen("mass = 1.45", "mass = -1.45", 1).replacen("[lengths]", "colour = 1\n[lengths]", 1);
+    let file = word(folder.file("arm.toml", &wrong));
+    for command in [&["check"][..], &["simulate"], &["design"], &["workspace", "--b", "2.4"]] {
+        let args = [&command[..1], &[file.as_str()], &command[1..]].concat();
+        fails(&args, 2, &["arm.toml: 2 faults", "the file has no key \"colour\"", "mass = 1.2"]);
+    }
+    let out = stillbase(&["check", &file, "--json"]);
+    let got: Value = serde_json::from_slice(&out.stdout).expect("JSON");
+    assert!(got["reason"].as_str().is_some_and(|why| why.contains("(one of 2 faults)")), "{got}");
+    let fault = &got["faults"][1];
+    assert!(fault["key"] == "link.2.mass" && fault["example"] == "mass = 1.2" && fault["column"] == 1, "{got}");
+    assert_eq!(
+        fault["line"].as_u64(),
+        wrong.find("mass = -1.45").map(|at| wrong[..at].matches('\n').count() as u64 + 1)
+    );
+    // What a file of nothing shows is a machine.
+    let empty = word(folder.file("empty.toml", ""));
+    let out = stillbase(&["check", &empty, "--json"]);
+    let got: Value = serde_json::from_slice(&out.stdout).expect("JSON");
+    let example = got["faults"][0]["example"].as_str().expect("an example").to_owned();
+    prints(&["check", &word(folder.file("smallest.toml", example))]);
+}
+
+/// A model of another program is a machine for every command, and what it leaves out is told.
+#[test]
+fn models_of_other_programs_are_machines() {
+    let folder = Folder::new("cli");
+    for ending in ["urdf", "xml"] {
+        let file = word(folder.path(&format!("arm.{ending}")));
+        let out = stillbase(&["export-model", "scara", "-o", &file, "--json"]);
+        let got: Value = serde_json::from_slice(&out.stdout).expect("JSON");
+        let left_out = got["left_out"].as_array().expect("a list").clone();
+        assert!(!left_out.is_empty());
+        for what in left_out {
+            assert!(text(&out.stderr).contains(what.as_str().expect("words")), "{what}");
+        }
+        let own: Value = serde_json::from_slice(&stillbase(&["check", "scara", "--json"]).stdout).expect("JSON");
+        let got: Value = serde_json::from_slice(&stillbase(&["check", &file, "--json"]).stdout).expect("JSON");
+        let mass = |of: &Value| of["mass"].as_f64().expect("a mass");
+        assert!((mass(&own) - mass(&got)).abs() < 1e-9 * mass(&own), "{ending}");
+    }
+    let bad = word(folder.file("bad.urdf", "<robot name=\"x\"><link name=\"a\"/></robot>"));
+    fails(&["check", &bad], 2, &["bad.urdf"]);
 }
 
 /// A scenario whose machine is being drawn says what is missing, and what would mend it.
@@ -500,7 +549,7 @@ fn a_model_is_written_and_not_overwritten() {
     let folder = Folder::new("model");
     let file = word(folder.path("arm.xml"));
     let answer = object(&["export-model", "serial-3r", "--pose", "1.2,0.1,-0.8", "-o", &file]);
-    assert_eq!(keys(&answer), ["file", "pose", "qpos"]);
+    assert_eq!(keys(&answer), ["file", "left_out", "pose", "qpos"]);
     assert_eq!(numbers(&answer["pose"]), [1.2, 0.1, -0.8]);
     assert_eq!(numbers(&answer["qpos"]).len(), 6, "three links, three rotors");
     let model = fs::read_to_string(&file).expect("a file");

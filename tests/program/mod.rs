@@ -73,19 +73,28 @@ fn object(args: &[&str]) -> Value {
 }
 
 /// A command that fails says why in one line, proposes settings or command lines in further lines, and prints no result.
+/// Faults of a file have a line each, with lines of examples.
 fn fails(args: &[&str], status: i32, words: &[&str]) {
     let out = stillbase(args);
     let said = text(&out.stderr);
     assert_eq!(out.status.code(), Some(status), "{args:?}: {said}");
     let way_out = |line: &str| line.contains(": --set ") || line.contains(": stillbase ");
-    let proposes = |line: &str| line.starts_with("stillbase: ") && way_out(line);
+    let is_of_faults = |line: &str| {
+        let fault =
+            line.strip_prefix("stillbase: ").is_some_and(|rest| rest.contains(".toml") || rest.starts_with("and "));
+        fault || line == "stillbase: for example:" || line.starts_with("    ") || line.is_empty()
+    };
+    let has_faults = said.contains(" faults\n") || said.contains("stillbase: for example:\n");
+    let proposes =
+        |line: &str| (line.starts_with("stillbase: ") && way_out(line)) || (has_faults && is_of_faults(line));
     assert!(said.starts_with("stillbase: ") && said.trim_end().lines().skip(1).all(proposes), "{args:?}: {said}");
     for word in words {
         assert!(said.contains(word), "{args:?}: {said:?} lacks {word:?}");
     }
     // As JSON, the refusal of a scenario is an object of its own.
     let refusal: Option<Value> = serde_json::from_slice(&out.stdout).ok().filter(|_| args.contains(&"--json"));
-    let is_refusal = refusal.is_some_and(|refusal| keys(&refusal) == ["proposals", "reason"]);
+    let keys_of_one = [&["proposals", "reason"][..], &["faults", "more_faults", "proposals", "reason"]];
+    let is_refusal = refusal.is_some_and(|refusal| keys_of_one.contains(&&keys(&refusal)[..]));
     assert!(out.stdout.is_empty() || is_refusal, "{args:?}: {}", text(&out.stdout));
 }
 

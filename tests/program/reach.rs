@@ -140,7 +140,7 @@ fn numbers_that_mean_nothing_are_refused() {
         fails(&["workspace", "nine-link", "--b", b], 2, &["--b"]);
     }
     fails(&["simulate", "--every", "0"], 2, &["whole number of steps"]);
-    fails(&["check", "nine-link", "--set", "length.l1=1e300"], 2, &["length.l1 is 1e300: want 1e-6 to 1000000 m"]);
+    fails(&["check", "nine-link", "--set", "length.l1=1e300"], 2, &["length.l1) is 1e300: want 1e-6 to 1000000 m"]);
 }
 
 #[test]

@@ -195,19 +195,19 @@ fn plants_bases_and_control_are_set_by_key() {
     assert!(got["verdict"]["base_tilt"].as_f64().expect("a number") > 0.01);
     for (pair, word) in [
         ("base.kind=floating", "floating"),
-        ("base.mass=-1", "base.mass is -1"),
+        ("base.mass=-1", "base.mass) is -1"),
         ("base.colour=3", "colour"),
-        ("plant.payload.mass=-1", "plant.payload.mass is -1"),
+        ("plant.payload.mass=-1", "plant.payload.mass) is -1"),
         ("plant.link.77.mass=1", "77"),
         ("plant.length.l1=-1", "length"),
         ("plant.friction.coulomb=1,2", "has 2 numbers: want one for all drives, or 3, one for each"),
         ("control.law=magic", "magic"),
-        ("control.rate=333.3", "control.rate is 333.3"),
+        ("control.rate=333.3", "control.rate) is 333.3"),
         ("control.delay=0.0005", "control.delay"),
         ("plant.payload.until=0", "plant.payload.until"),
         ("base.wheel.inertia=0", "base.wheel.inertia"),
         ("task.time=nan", "time is not a finite number"),
-        ("plant.payload.offset=[0.1,inf]", "payload.offset is not a finite number"),
+        ("plant.payload.offset=[0.1,inf]", "payload.offset) is not a finite number"),
     ] {
         fails(&["simulate", "case-1", "--set", pair], 2, &[word]);
     }

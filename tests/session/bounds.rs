@@ -75,7 +75,9 @@ proptest! {
         let (text, line) = with(key, table, &format!("{value:e}"));
         let error = Scenario::parse(&text, "own.toml", None).expect_err("out of range").to_string();
         let named = if table.is_empty() { key.to_owned() } else { format!("{table}.{key}") };
-        let head = format!("own.toml:{line}: {named} is {}: want ", ShortNumber(value));
+        let plain = stillbase::session::scenario::name_of(&named);
+        let called = if plain == named { named } else { format!("{plain} ({named})") };
+        let head = format!("own.toml:{line}: {called} is {}: want ", ShortNumber(value));
         prop_assert!(error.starts_with(&head), "{error}, not {head}");
         prop_assert!(error.len() < 200 && !error.contains("NaN"), "{error}");
     }
@@ -108,11 +110,11 @@ proptest! {
             ("do = \"drag-target\"\nx = -2e7\ny = 0.0", "x is -2e7: want -1000000 to 1000000 m"),
             ("do = \"slide-c\"\nb = 1.0", "slide-c"),
             ("do = \"slide-b\"\nc = 1.0", "unknown field `c`"),
-            ("do = \"set-plant\"\nchange = { payload = { mass = -1.0 } }", "plant.payload.mass is -1: want 0 to 10000 kg"),
+            ("do = \"set-plant\"\nchange = { payload = { mass = -1.0 } }", "plant.payload.mass) is -1: want 0 to 10000 kg"),
             ("do = \"set-plant\"\nchange = { payload = { weight = 1.0 } }", "weight"),
-            ("do = \"set-control\"\nchange = { kp = 1e99 }", "control.kp is 1e99"),
-            ("do = \"set-machine\"\nkey = \"link.5.mass\"\nvalue = \"-1\"", "link.5.mass is -1: want 1e-15 to 1000000 kg"),
-            ("do = \"set-time\"\ntime = 1e9", "time is 1e9: want"),
+            ("do = \"set-control\"\nchange = { kp = 1e99 }", "control.kp) is 1e99"),
+            ("do = \"set-machine\"\nkey = \"link.5.mass\"\nvalue = \"-1\"", "link.5.mass) is -1: want 1e-15 to 1000000 kg"),
+            ("do = \"set-time\"\ntime = 1e9", "time) is 1e9: want"),
         ][bad];
         let mut text = CASE_3.to_owned();
         let mut line = 0;
@@ -137,14 +139,14 @@ fn machines_inside_a_scenario_are_named_with_their_lines() {
     let said = |text: &str| Scenario::parse(text, "own.toml", None).expect_err("wrong").to_string();
     let lines = CASE_3.lines().count();
     let error = said(&format!("{CASE_3}[plant.link.5]\ncom = 0.0\nmass = -3.0\n"));
-    assert!(error.starts_with(&format!("own.toml:{}: plant.link.5.mass is -3", lines + 3)), "{error}");
+    assert!(error.starts_with(&format!("own.toml:{}: mass of link 5 (plant.link.5.mass) is -3", lines + 3)), "{error}");
     let error = said(&format!("{CASE_3}[plant.length]\nl1 = 0.5\nl2 = 1e300\n"));
-    assert!(error.starts_with(&format!("own.toml:{}: plant.length.l2 is 1e300", lines + 3)), "{error}");
+    assert!(error.starts_with(&format!("own.toml:{}: length l2 (plant.length.l2) is 1e300", lines + 3)), "{error}");
     let error = said(&format!("{CASE_3}[plant.link.55]\nmass = 3.0\n"));
     assert!(error.starts_with(&format!("own.toml:{}: ", lines + 2)) && error.contains("\"55\""), "{error}");
     let error = said(&CASE_3.replace("[task]", "set = [\"link.5.mass=-1\"]\n[task]"));
     let line = CASE_3.lines().position(|line| line == "[task]").expect("there") + 1;
-    assert!(error.starts_with(&format!("own.toml:{line}: machine: link.5.mass is -1")), "{error}");
+    assert!(error.starts_with(&format!("own.toml:{line}: machine: mass of link 5 (link.5.mass) is -1")), "{error}");
     let machine = stillbase::mechanics::machine::to_toml(builtin("nine-link").expect("built in"));
     let inline = Scenario {
         machine: builtin("nine-link").expect("it").set("payload.mass", "0.1").expect("valid"),
@@ -155,7 +157,7 @@ fn machines_inside_a_scenario_are_named_with_their_lines() {
     let bad = text.replacen("mass = 1.45", "mass = -1.45", 1);
     let line = bad.lines().position(|line| line == "mass = -1.45").expect("there") + 1;
     let error = said(&bad);
-    assert!(error.starts_with(&format!("own.toml:{line}: machine: link.2.mass is -1.45")), "{error}");
+    assert!(error.starts_with(&format!("own.toml:{line}: machine: mass of link 2 (link.2.mass) is -1.45")), "{error}");
 }
 
 /// Nothing that is asked for within the ranges takes for ever: what would is refused at once.

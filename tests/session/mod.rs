@@ -8,6 +8,7 @@ mod cases;
 mod command_line;
 mod design;
 mod events;
+mod faults;
 mod hand;
 mod limits;
 mod notes;

@@ -195,6 +195,7 @@ impl AppState {
                 WindowCommand::Quit
                     | WindowCommand::Leave
                     | WindowCommand::AskToLeave(true)
+                    | WindowCommand::ChangedFile(_)
                     | WindowCommand::CopyCommand
             ),
         };

@@ -231,6 +231,7 @@ impl AppState {
                 self.show_outcome(Err(entry.why.clone()));
                 self.view_state.status.entry = Some(entry);
             }
+            WindowCommand::ChangedFile(takes) => self.answer_changed_file(takes),
             WindowCommand::Cancel(activity) => return Ok(Some(self.cancel(activity))),
             WindowCommand::AskToLeave(asks) => self.ask_to_leave(asks),
             WindowCommand::Quit if !self.may_leave() => self.ask_to_leave(true),

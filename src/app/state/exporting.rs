@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::AppState;
-use super::writing::absolute;
+use super::writing::{AfterWriting, absolute};
 use crate::export::{
     self, Export, FilmChoice, FilmOrder, Look, TimeChoice, ValuesChoice, write_film, write_picture, write_report,
     write_values,
@@ -29,7 +29,7 @@ impl AppState {
             let replaces = self.saving.replaces.as_deref() == Some(path);
             export::check_film(path, replaces).map_err(|e| e.to_string())?;
         }
-        self.write(path, Activity::Exporting, BUSY, None, |app_state| {
+        self.write(path, Activity::Exporting, BUSY, AfterWriting::Nothing, |app_state| {
             Ok(match wanted {
                 Export::Picture(look) => app_state.picture_work(look),
                 Export::Film(choice) => app_state.film_work(choice)?,

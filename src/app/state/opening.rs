@@ -23,12 +23,22 @@ impl AppState {
     }
 
     fn take_opened(&mut self, opening: Opening, opened: Option<Result<Opened, NotOpened>>) {
-        let broken = || NotOpened { why: "opening broke off: this is a fault of the program".into(), refused: None };
+        let broken = || NotOpened {
+            why: "opening broke off: this is a fault of the program".into(),
+            refused: None,
+            report: None,
+        };
         match opened.unwrap_or_else(|| Err(broken())) {
             Ok(Opened::Table(file, table)) => self.take_up(file, table),
             Ok(Opened::Session(opened)) => {
-                let OpenedSession { session, note, left_off } = *opened;
-                let message = note.or_else(|| opening.message.clone());
+                let OpenedSession { session, note, left_out, left_off } = *opened;
+                // A file that is taken up again says so.
+                let message = if opening.title.is_some() { None } else { note };
+                let message = message.or_else(|| opening.message.clone());
+                let watched = match &opening.file {
+                    Some(SessionFile::Own(file)) => Some(file.clone()),
+                    _ => None,
+                };
                 // Only a file that the window wrote says where the session was left.
                 let own = match &opening.file {
                     Some(SessionFile::Own(file)) if left_off.is_some() => Some(file.clone()),
@@ -37,6 +47,8 @@ impl AppState {
                     _ => None,
                 };
                 self.take_over(session, Opening { message, ..opening });
+                self.view_state.open.report = left_out;
+                self.watch(watched);
                 if let Some(file) = own {
                     self.saving.keep_file(self.session.undo_count(), file);
                 }
@@ -56,18 +68,23 @@ impl AppState {
                     self.open(SessionSource::Scenario(Box::new(scenario)), opening);
                 }
             }
-            Err(NotOpened { why, refused }) => {
+            Err(NotOpened { why, refused, report }) => {
                 if let Some(SessionFile::Own(file)) = &opening.file {
                     self.saving.misses(file);
                 }
                 self.view_state.status.refused = refused;
+                self.view_state.open.report = report;
                 self.show_outcome(Err(why));
             }
         }
         self.refresh();
     }
 
-    pub(super) fn take_over(&mut self, next: Session, Opening { plays, closes, message: news, file, .. }: Opening) {
+    pub(super) fn take_over(
+        &mut self,
+        next: Session,
+        Opening { plays, closes, message: news, title, file, .. }: Opening,
+    ) {
         self.saving.opened();
         match file {
             Some(SessionFile::Own(file)) => self.saving.uses(&file),
@@ -79,7 +96,10 @@ impl AppState {
             None => {}
         }
         let old = self.session.clone();
-        self.session.take_over(next);
+        match title {
+            Some(title) => self.session.take_over_as(next, title.into()),
+            None => self.session.take_over(next),
+        }
         self.saving.begin_file(self.session.undo_count());
         self.view_state.open.note = None;
         // A scenario without a drawing is not drawn on.

@@ -12,8 +12,8 @@ use crate::sketching::{SketchFacts, SketchScene};
 use crate::status::news::News;
 use crate::{
     BottomPanel, Command, DrawingGuard, Intro, Layout, SessionCommand, StatusMessage, ViewChange, WindowCommand,
-    compare, finder, given, guide, keys, notation, notes, order, place, plots, rail, saving, side, sketching, status,
-    studio, study, theme, top, viewport, widgets,
+    compare, file_report, finder, given, guide, keys, notation, notes, order, place, plots, rail, saving, side,
+    sketching, status, studio, study, theme, top, viewport, watched_file, widgets,
 };
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_session::Session;
@@ -164,6 +164,8 @@ impl AppState {
         finder::show(ui.ctx(), &self.session, &facts, &content, &mut self.view_state, &mut commands);
         notes::show(ui.ctx(), &self.session, &self.views, &mut self.view_state, &mut commands);
         top::dialog(ui.ctx(), &mut self.view_state, &mut commands);
+        watched_file::show(ui.ctx(), self.watched.as_ref(), &self.view_state, &mut commands);
+        file_report::show(ui.ctx(), &self.view_state, &mut commands);
         export::show(ui.ctx(), &self.session, (&queries, &self.signals()), &self.view_state, &mut commands);
         commands
             .extend(widgets::refused_entry(ui.ctx()).map(|entry| Command::Window(WindowCommand::RefuseEntry(entry))));

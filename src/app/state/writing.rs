@@ -5,13 +5,23 @@ use std::path::{Path, PathBuf};
 use super::AppState;
 use super::background::fault;
 use crate::file_dialog::MACHINE_EXTENSION;
-use crate::{Activity, PlotFile, ResumePoint, plots, studio};
+use crate::{Activity, FileReport, PlotFile, ResumePoint, plots, studio};
 use stillbase_exchange::form::Form;
 use stillbase_mechanics::machine::to_toml;
 use stillbase_query::Ticket;
 
 /// Computes the content of a file, in the background.
 type Content = Box<dyn FnOnce() -> Result<Vec<u8>, String> + Send>;
+
+/// What happens once a file is written.
+pub(super) enum AfterWriting {
+    /// Nothing more.
+    Nothing,
+    /// This number of changes of the session is saved, in this file.
+    Saved(u64, PathBuf),
+    /// A list is shown of what the file leaves out, if it leaves out anything.
+    List(Option<FileReport>),
+}
 
 impl AppState {
     /// Returns whether the user has agreed to replace the file. Fails if the file exists and the user has not agreed.
@@ -24,13 +34,13 @@ impl AppState {
     }
 
     /// Starts to write a file, if it does not exist or may be replaced, and if no work of this activity is under way.
-    /// The dialog closes unless the work fails at once. `of` is as for `write_content`.
+    /// The dialog closes unless the work fails at once. `then` happens once the file is there.
     pub(super) fn write<W>(
         &mut self,
         path: &Path,
         activity: Activity,
         busy: &str,
-        of: Option<(u64, PathBuf)>,
+        then: AfterWriting,
         work: impl FnOnce(&Self) -> Result<W, String>,
     ) -> Result<(), String>
     where
@@ -44,10 +54,15 @@ impl AppState {
         let work = move |ticket: &Ticket| work(ticket, &path, replaces);
         self.background.run(activity, work, move |app_state, said: Option<Result<String, String>>| {
             let said = said.unwrap_or_else(|| Err(fault(activity.words())));
-            if let (Ok(_), Some((changes, file))) = (&said, of) {
-                app_state.saving.saved = changes;
-                app_state.saving.uses(&file);
-                app_state.saving.keep_file(app_state.own_session().undo_count(), file);
+            match (&said, then) {
+                (Ok(_), AfterWriting::Saved(changes, file)) => {
+                    app_state.saving.saved = changes;
+                    app_state.saving.uses(&file);
+                    app_state.watch(Some(file.clone()));
+                    app_state.saving.keep_file(app_state.own_session().undo_count(), file);
+                }
+                (Ok(_), AfterWriting::List(report)) => app_state.view_state.open.report = report,
+                _ => {}
             }
             app_state.show_outcome(said.map(Some));
         });
@@ -59,15 +74,15 @@ impl AppState {
         Ok(())
     }
 
-    /// Writes `content` to a file. For a session, `of` is the number of changes that are then saved, and their file.
+    /// Writes `content` to a file.
     fn write_content(
         &mut self,
         path: &Path,
         busy: &str,
-        of: Option<(u64, PathBuf)>,
+        then: AfterWriting,
         content: impl FnOnce(&Self) -> Result<Content, String>,
     ) -> Result<(), String> {
-        self.write(path, Activity::Saving, busy, of, |app_state| {
+        self.write(path, Activity::Saving, busy, then, |app_state| {
             let content = content(app_state)?;
             Ok(move |_: &Ticket, path: &Path, replaces: bool| {
                 stillbase_files::write_new(path, &content()?, replaces).map_err(|e| e.to_string())?;
@@ -78,8 +93,8 @@ impl AppState {
 
     /// Saves the session.
     pub(super) fn save(&mut self, path: &Path) -> Result<(), String> {
-        let of = Some((self.saving.changes, path.to_owned()));
-        self.write_content(path, "one session is being saved: want that to end first", of, |app_state| {
+        let then = AfterWriting::Saved(self.saving.changes, path.to_owned());
+        self.write_content(path, "one session is being saved: want that to end first", then, |app_state| {
             let (scenario, left_off) = (app_state.session.to_scenario(), app_state.left_off());
             let left_off = ResumePoint { file: None, ..left_off };
             Ok(Box::new(move || Ok(left_off.before(&scenario.to_toml()).into_bytes())))
@@ -88,7 +103,7 @@ impl AppState {
 
     /// Writes a plot to a file.
     pub(super) fn write_plot(&mut self, path: &Path, plot: &str, file: PlotFile) -> Result<(), String> {
-        self.write_content(path, FILE_BEING_SAVED, None, |app_state| {
+        self.write_content(path, FILE_BEING_SAVED, AfterWriting::Nothing, |app_state| {
             let Self { session, view_state, comparison, .. } = app_state;
             let (queries, signals, comparison) = (app_state.queries(), &app_state.signals(), comparison.as_ref());
             let what = plots::DisplayContext { session, queries, signals, comparison, view_state };
@@ -100,13 +115,15 @@ impl AppState {
     pub(super) fn take_elsewhere(&mut self, path: &Path) -> Result<(), String> {
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         if ending.eq_ignore_ascii_case(MACHINE_EXTENSION) {
-            return self.write_content(path, FILE_BEING_SAVED, None, |app_state| {
+            return self.write_content(path, FILE_BEING_SAVED, AfterWriting::Nothing, |app_state| {
                 let text = to_toml(&app_state.session.scenario().machine);
                 Ok(Box::new(move || Ok(text.into_bytes())))
             });
         }
         let form = Form::of(&ending).map_err(|e| format!("{}: {e}", path.display()))?;
-        self.write_content(path, FILE_BEING_SAVED, None, |app_state| {
+        let left_out = form.left_out(&self.session.scenario().machine);
+        let then = AfterWriting::List(FileReport::not_written(path, left_out));
+        self.write_content(path, FILE_BEING_SAVED, then, |app_state| {
             let scenario = app_state.session.scenario();
             let pose = &app_state.session.frame().q.0[..scenario.machine.drives()];
             let cut = studio::cut(&app_state.session);
@@ -119,7 +136,7 @@ impl AppState {
     #[cfg(feature = "record")]
     pub(super) fn record(&mut self, path: &Path) -> Result<(), String> {
         let busy = "one recording is under way: want it to end first";
-        self.write(path, Activity::Recording, busy, None, |app_state| {
+        self.write(path, Activity::Recording, busy, AfterWriting::Nothing, |app_state| {
             let mut scenario = app_state.session.to_scenario();
             scenario.duration = Some(app_state.session.length());
             Ok(move |ticket: &Ticket, path: &Path, force: bool| {

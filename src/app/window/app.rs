@@ -11,6 +11,7 @@ use super::chooser::Chooser;
 use super::error::WindowError;
 use super::keeper::Keeper;
 use super::times::Times;
+use super::waker::Waker;
 use crate::{AppState, Preferences, SessionCommand, WindowCommand};
 
 /// The application, in a window or driven by tests without one.
@@ -30,6 +31,8 @@ pub struct App {
     is_cut_off: bool,
     /// Writes preferences and journal; `None` in tests.
     keeper: Option<Keeper>,
+    /// Wakes the window when the file of the session changes; `None` in tests.
+    waker: Option<Waker>,
     /// Shows the system's file dialogs; `None` in tests, where the window shows its own.
     chooser: Option<Chooser>,
 }
@@ -48,14 +51,27 @@ impl App {
     pub fn new(app_state: AppState, clock: Clock) -> Self {
         let (title, times, window) = (String::new(), Times::default(), None);
         let (may_break, breaks, is_cut_off) = (false, false, false);
-        Self { app_state, clock, title, times, window, may_break, breaks, is_cut_off, keeper: None, chooser: None }
+        Self {
+            app_state,
+            clock,
+            title,
+            times,
+            window,
+            may_break,
+            breaks,
+            is_cut_off,
+            keeper: None,
+            waker: None,
+            chooser: None,
+        }
     }
 
     /// Enables preferences, journal and the system's file dialogs; `may_break` says whether a key simulates the loss of
     /// the graphics device.
     pub(super) fn with_storage(self, liked: Preferences, may_break: bool) -> Self {
         let keeper = Keeper::new(liked, &self.app_state);
-        Self { keeper: Some(keeper), chooser: Some(Chooser::default()), may_break, ..self }
+        let waker = Some(Waker::default());
+        Self { keeper: Some(keeper), waker, chooser: Some(Chooser::default()), may_break, ..self }
     }
 
     /// Sets the desktop window.
@@ -115,6 +131,7 @@ impl App {
             Clock::Wall(last) => last.replace(now).map_or(0.0, |last| (now - last).as_secs_f64()),
         };
         self.app_state.pass(wall);
+        self.app_state.look_at_file(wall);
         if let Clock::Wall(_) = self.clock {
             self.app_state.record_cost(now.elapsed().as_secs_f64());
         }
@@ -127,6 +144,9 @@ impl App {
         }
         if let Some((chooser, window)) = self.chooser.as_mut().zip(self.window.as_deref()) {
             chooser.follow(ui.ctx(), window, &mut self.app_state);
+        }
+        if let Some(waker) = &mut self.waker {
+            waker.follow(ui.ctx(), self.app_state.watched_file());
         }
         if let Some(keeper) = &mut self.keeper {
             keeper.keep(ui.ctx(), &mut self.app_state);

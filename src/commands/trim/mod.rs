@@ -21,7 +21,7 @@ use stillbase_study::trim::{
 use super::exit::print_message;
 use super::failure::Failure;
 use super::holds::{apply_bounds, bound};
-use super::input::{Settings, read};
+use super::input::{self, Settings, read};
 use super::output::{Format, check_output};
 use super::sites::{range, sites};
 
@@ -107,7 +107,7 @@ impl TrimArguments {
             [files @ .., name] if !files.is_empty() => (name, files),
             _ => return Err(Failure::wrong_input("want files and a machine, as in trim measured.csv nine-link")),
         };
-        let machine = self.settings.apply(stillbase_files::machine(name, None)?)?;
+        let machine = self.settings.apply(input::machine(name)?)?;
         let drives = machine.drives();
         if !(self.accelerations.is_empty() || self.accelerations.len() == drives) {
             return Err(Failure::wrong_input(format!(

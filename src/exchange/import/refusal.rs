@@ -2,6 +2,7 @@
 
 use roxmltree::Node;
 
+use stillbase_settings::fault::Fault;
 use stillbase_settings::range::{quote_clipped, shortened};
 
 /// Error in a file, with its place.
@@ -26,6 +27,13 @@ impl ImportError {
     /// Makes an error of the whole file.
     pub fn of_file(what: impl Into<String>, want: impl Into<String>) -> Self {
         Self { at: None, line: None, element: String::new(), what: what.into(), want: want.into() }
+    }
+
+    /// Returns the error as a fault of the file.
+    pub fn fault(&self) -> Fault {
+        let Self { line, element, what, want, .. } = self;
+        let key = element.trim_end_matches(": ").to_owned();
+        Fault { line: *line, column: None, key, text: format!("{element}{what}: want {want}"), example: String::new() }
     }
 
     /// Adds the line of the element.

@@ -50,6 +50,7 @@ pub fn linkage(robot: Node<'_, '_>) -> Result<ImportedLinkage, ImportError> {
     if meshes {
         notes.push("meshes are left out: a machine here is made of bars".to_owned());
     }
+    notes.extend(left_out(robot));
     let root = file.links[file.root];
     let ground = child(root, "inertial").map(|_| body(root, &Isometry3::identity(), false)).transpose()?;
     let ground = ground.or(Some((0.0, Vector3::zeros(), Matrix3::zeros())));
@@ -66,6 +67,25 @@ pub fn linkage(robot: Node<'_, '_>) -> Result<ImportedLinkage, ImportError> {
         ground: ground.map(|(mass, com, inertia)| Ground { mass, com, inertia }),
         notes,
     })
+}
+
+/// Returns notes on elements of the file that are omitted or belong to a scenario.
+fn left_out(robot: Node<'_, '_>) -> Vec<String> {
+    let is_other = |node: &Node, name: &str, usual: f64| {
+        node.attribute(name).and_then(|x| x.trim().parse::<f64>().ok()).is_some_and(|x| x != usual)
+    };
+    let mut notes = Vec::new();
+    let mut dynamics = robot.descendants().filter(|node| node.has_tag_name("dynamics"));
+    if dynamics.any(|node| is_other(&node, "damping", 0.0) || is_other(&node, "friction", 0.0)) {
+        notes.push("damping and friction of joints are left out: friction belongs into the plant of a scenario".into());
+    }
+    let mut reductions = robot.descendants().filter(|node| node.has_tag_name("mechanicalReduction"));
+    if reductions.any(|node| node.text().and_then(|x| x.trim().parse::<f64>().ok()).is_some_and(|x| x != 1.0)) {
+        let words = "reductions of transmissions are left out: the ratio of a gear or belt is that of its motor, \
+                     --set drive.NAME.rotor.ratio with drive.NAME.rotor.inertia";
+        notes.push(words.into());
+    }
+    notes
 }
 
 /// The element `<stillbase>`, which this program adds to URDF.
@@ -441,7 +461,9 @@ fn turning(
         if sets[i].is_none() && !is_still(&rates[i]) && !is_rotor() && part.mass > negligible_mass {
             let all: Vec<String> = rates[i].iter().map(|x| fixed(*x, 3)).collect();
             let what = format!("it turns by {} times the driven joints", shortened(&all.join(", "), 100));
-            return Err(part.wrong(what, "links that each turn as one motor's drive does"));
+            let want = "links that each turn as one motor's drive does; a belt from the base keeps its link at the \
+                        angle of a joint that moves by itself, by mimic with multiplier 1 or -1";
+            return Err(part.wrong(what, want));
         }
     }
     Ok((sets, motors, rotors))

@@ -2,7 +2,7 @@
 
 use super::Chain;
 use super::caps::{MAX_CHAIN_LINKS, check_counts};
-use super::error::{KeyPath, KeyStep, MachineError, quoted};
+use super::error::{KeyPath, KeyStep, MachineError};
 use super::inertia::Inertia;
 use super::model::{Machine, MachineData, RelativeAngle, ResolvedClosure, ResolvedLink};
 use super::motors::Motors;
@@ -139,7 +139,8 @@ fn look_up(what: &'static str, names: &[&str], name: &str, place: impl Fn() -> K
         place: place(),
         what,
         name: name.into(),
-        known: quoted(names.iter().copied()),
+        known: names.iter().map(|name| (*name).into()).collect(),
+        more: "",
     })
 }
 
@@ -157,7 +158,8 @@ fn named_length(spec: &MachineSpec, name: &str, place: impl Fn() -> KeyPath) -> 
         place: place(),
         what: "length",
         name: name.into(),
-        known: quoted(spec.lengths.keys().map(String::as_str)),
+        known: spec.lengths.keys().cloned().collect(),
+        more: ", or a number in m",
     })
 }
 
@@ -204,8 +206,9 @@ fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<ResolvedLink>, Machi
         parents.push(match &link.attach {
             Attach::Base(word) if word == "base" => None,
             Attach::Base(word) => {
-                let known = "\"base\", or { link = \"…\", at = \"tip\" }".into();
-                return Err(MachineError::Unknown { place: place(), what: "attachment", name: word.clone(), known });
+                let (known, more) = (vec!["base".into()], ", or { link = \"…\", at = \"tip\" }");
+                let name = word.clone();
+                return Err(MachineError::Unknown { place: place(), what: "attachment", name, known, more });
             }
             Attach::On(point) => Some(locate(spec, names, point, &place)?),
         });

@@ -1,103 +1,18 @@
 //! [`MachineError`]: an error in a machine specification, with its place and the allowed values.
 
-use std::fmt;
-
 use thiserror::Error;
 
 use super::spec::MachineSpec;
+use super::words::named;
+pub use stillbase_settings::key_path::{KeyPath, KeyStep};
 use stillbase_settings::number::{ShortNumber, fixed};
 use stillbase_settings::range::{Requirement, quote_clipped};
-
-/// A place in a machine file: a path of keys and positions. It is printed in the syntax of `--set`, such as
-/// `link.5.mass`.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct KeyPath(pub Vec<KeyStep>);
-
-/// One step of a [`KeyPath`].
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum KeyStep {
-    /// A key of a table.
-    Key(String),
-    /// A position in an array, counted from 0.
-    At(usize),
-    /// A position in an array, counted from 0, with the name of the element, which is printed instead.
-    Named(usize, String),
-}
-
-impl KeyPath {
-    /// Makes a place from its steps; numbers become positions.
-    pub fn new(path: &[&dyn AsKeyStep]) -> Self {
-        Self(path.iter().map(|s| s.step()).collect())
-    }
-
-    /// Makes a place from a key in the syntax of `--set`: parts joined by dots, positions in brackets, such as
-    /// `task.via[3]`. Positions in brackets count from 1.
-    pub fn of_key(key: &str) -> Self {
-        let steps = key.split('.').flat_map(|part| {
-            let (name, position) = part.split_once('[').unwrap_or((part, ""));
-            let position = position.trim_end_matches(']').parse().ok().and_then(|i: usize| i.checked_sub(1));
-            std::iter::once(KeyStep::Key(name.into())).chain(position.map(KeyStep::At))
-        });
-        Self(steps.collect())
-    }
-
-    /// Returns the same place relative to an outer table, in which the present table has the key `key`.
-    #[must_use]
-    pub fn under(self, key: &str) -> Self {
-        Self(std::iter::once(KeyStep::Key(key.into())).chain(self.0).collect())
-    }
-}
-
-/// Types that can be a step of a place.
-pub trait AsKeyStep {
-    /// Returns the step.
-    fn step(&self) -> KeyStep;
-}
-
-impl AsKeyStep for &str {
-    fn step(&self) -> KeyStep {
-        KeyStep::Key((*self).into())
-    }
-}
-
-impl AsKeyStep for String {
-    fn step(&self) -> KeyStep {
-        KeyStep::Key(self.clone())
-    }
-}
-
-impl AsKeyStep for usize {
-    fn step(&self) -> KeyStep {
-        KeyStep::At(*self)
-    }
-}
-
-impl fmt::Display for KeyPath {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let [KeyStep::Key(angle), KeyStep::Named(_, name), KeyStep::Key(end)] = &self.0[..]
-            && angle == "angle"
-            && ["min", "max"].contains(&end.as_str())
-        {
-            return write!(f, "limits.{} ({end})", quote_clipped(name));
-        }
-        for (i, step) in self.0.iter().enumerate() {
-            match step {
-                // The table is `lengths`, the key of one length begins with `length`.
-                KeyStep::Key(k) if i == 0 && k == "lengths" => f.write_str("length")?,
-                KeyStep::Key(k) if i == 0 => f.write_str(&quote_clipped(k))?,
-                KeyStep::Key(name) | KeyStep::Named(_, name) => write!(f, ".{}", quote_clipped(name))?,
-                KeyStep::At(i) => write!(f, "[{}]", i + 1)?,
-            }
-        }
-        Ok(())
-    }
-}
 
 /// Error of a specification that is not a valid machine.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum MachineError {
     /// A number that is not finite.
-    #[error("{place} is {}: want a finite number, {unit}", ShortNumber(*value))]
+    #[error("{} is {}: want a finite number, {unit}", named(place), ShortNumber(*value))]
     NotFinite {
         /// Place in the machine file.
         place: KeyPath,
@@ -107,7 +22,7 @@ pub enum MachineError {
         unit: &'static str,
     },
     /// A number that is out of its range.
-    #[error("{place} is {}: want {want}", ShortNumber(*value))]
+    #[error("{} is {}: want {want}", named(place), ShortNumber(*value))]
     OutOfRange {
         /// Place in the machine file.
         place: KeyPath,
@@ -117,7 +32,12 @@ pub enum MachineError {
         want: Requirement,
     },
     /// A name that does not exist.
-    #[error("{place} names the {what} {:?}, which does not exist: want one of {known}", quote_clipped(name))]
+    #[error(
+        "{} names the {what} {:?}, which does not exist: want {}",
+        named(place),
+        quote_clipped(name),
+        one_of(known, more)
+    )]
     Unknown {
         /// Place in the machine file.
         place: KeyPath,
@@ -126,10 +46,12 @@ pub enum MachineError {
         /// The name.
         name: String,
         /// The names that exist.
-        known: String,
+        known: Vec<String>,
+        /// Words that follow the names: what else would do.
+        more: &'static str,
     },
     /// Two parts have the same name.
-    #[error("{place} is {:?}, which is taken: want a name of its own", quote_clipped(name))]
+    #[error("{} is {:?}, which is taken: want a name of its own", named(place), quote_clipped(name))]
     Duplicate {
         /// Place in the machine file.
         place: KeyPath,
@@ -137,7 +59,11 @@ pub enum MachineError {
         name: String,
     },
     /// A name with a control character, which could change a terminal's state.
-    #[error("{place} holds the control character U+{:04X}: want a name of printable characters", u32::from(*character))]
+    #[error(
+        "{} holds the control character U+{:04X}: want a name of printable characters",
+        named(place),
+        u32::from(*character)
+    )]
     Unprintable {
         /// Place in the machine file.
         place: KeyPath,
@@ -155,7 +81,7 @@ pub enum MachineError {
         want: String,
     },
     /// A text that is too long.
-    #[error("{place} is {:?}: want at most {most} characters", quote_clipped(text))]
+    #[error("{} is {:?}: want at most {most} characters", named(place), quote_clipped(text))]
     TooLong {
         /// Place in the machine file.
         place: KeyPath,
@@ -165,7 +91,7 @@ pub enum MachineError {
         most: usize,
     },
     /// Links that are attached to each other in a cycle.
-    #[error("{place}: link {link:?} hangs on itself ({chain}): want a chain that ends at \"base\"")]
+    #[error("{}: link {link:?} hangs on itself ({chain}): want a chain that ends at \"base\"", named(place))]
     Cycle {
         /// Place in the machine file.
         place: KeyPath,
@@ -176,7 +102,8 @@ pub enum MachineError {
     },
     /// A closure whose two points do not coincide in every pose.
     #[error(
-        "{place}: {a} and {b} are not one point in every pose, they differ by {gap}: want a parallelogram that closes"
+        "{}: {a} and {b} are not one point in every pose, they differ by {gap}: want a parallelogram that closes",
+        named(place)
     )]
     OpenLoop {
         /// Place in the machine file.
@@ -194,12 +121,15 @@ pub enum MachineError {
         quote_clipped(angle)
     )]
     HalfLimited {
+        /// Place in the machine file.
+        place: KeyPath,
         /// The angle.
         angle: String,
     },
     /// Motors whose stators sit on each other in a cycle.
     #[error(
-        "{place}: the motor of drive {drive:?} sits on itself ({chain}): want a chain that ends on the base, without \"on\""
+        "{}: the motor of drive {drive:?} sits on itself ({chain}): want a chain that ends on the base, without \"on\"",
+        named(place)
     )]
     StatorCycle {
         /// Place in the machine file.
@@ -210,7 +140,7 @@ pub enum MachineError {
         chain: String,
     },
     /// A part of a link that cannot be as it is stated.
-    #[error("{place}: {why}")]
+    #[error("{}: {why}", named(place))]
     Part {
         /// Place in the machine file.
         place: KeyPath,
@@ -219,14 +149,13 @@ pub enum MachineError {
     },
     /// A number of a link that is neither stated nor follows from parts.
     #[error(
-        "{place}: missing field `{key}`: want a number, or a [[part]] or [[lump]] of link {:?} from which it follows",
+        "{} is missing: want a number, or a [[part]] or [[lump]] of link {:?} from which it follows",
+        named(place),
         quote_clipped(link)
     )]
     NoParts {
         /// Place in the machine file.
         place: KeyPath,
-        /// The key of the number.
-        key: &'static str,
         /// The link.
         link: String,
     },
@@ -338,14 +267,23 @@ impl MachineError {
             | Self::StatorCycle { place, .. }
             | Self::OpenLoop { place, .. }
             | Self::Part { place, .. }
+            | Self::HalfLimited { place, .. }
             | Self::NoParts { place, .. } => Some(place),
             _ => None,
         }
     }
 }
 
+/// Returns the names that exist, for messages that say what would be right.
+fn one_of(known: &[String], more: &str) -> String {
+    match known {
+        [] => more.strip_prefix(", or ").unwrap_or("one that exists; there is none yet").into(),
+        known => format!("one of {}{more}", quoted(known.iter().map(String::as_str))),
+    }
+}
+
 /// Returns a list of names for messages: quoted, at most 20.
-pub(super) fn quoted<'a>(names: impl Iterator<Item = &'a str>) -> String {
+fn quoted<'a>(names: impl Iterator<Item = &'a str>) -> String {
     let mut known: Vec<String> = names.take(21).map(|n| format!("{:?}", quote_clipped(n))).collect();
     if known.len() > 20 {
         known[20] = "…".into();

@@ -3,11 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
-use toml::de::{DeTable, DeValue};
 
-use super::{KeyPath, KeyStep, Machine, MachineError, MachineSpec};
+use super::faults;
+use super::words::MachineWords;
+use super::{Machine, MachineError};
+use stillbase_settings::fault::Faults;
+use stillbase_settings::mending::faults_of;
 use stillbase_settings::range::shortened;
 use stillbase_settings::spelling::UnknownName;
+use stillbase_settings::stated::StatedFile;
 use stillbase_settings::text::MAX_TEXT_BYTES;
 
 /// Error of a machine file, with its place.
@@ -22,19 +26,44 @@ pub enum FileError {
         source: std::io::Error,
     },
     /// The file does not describe a machine.
-    #[error("{file}{}: {error}", line.map(|l| format!(":{l}")).unwrap_or_default())]
+    #[error("{file}{}: {error}{}", line.map(|l| format!(":{l}")).unwrap_or_default(), and_more(faults))]
     Wrong {
         /// The file.
         file: String,
         /// Line of the error, counted from 1, if known.
         line: Option<usize>,
-        /// The error.
+        /// The first error.
         #[source]
         error: MachineError,
+        /// All faults of the file.
+        faults: Box<Faults>,
     },
     /// No built-in machine has the name, and there is no such file.
     #[error(transparent)]
     UnknownName(#[from] UnknownName),
+}
+
+/// Says how many faults a file has, if it has several.
+fn and_more(faults: &Faults) -> String {
+    if faults.count() > 1 { format!(" (one of {})", faults.counted()) } else { String::new() }
+}
+
+impl FileError {
+    /// Returns the faults of the file; `None` if it was not even read.
+    pub fn faults(&self) -> Option<&Faults> {
+        match self {
+            Self::Wrong { faults, .. } => Some(faults),
+            Self::Unreadable { .. } | Self::UnknownName(_) => None,
+        }
+    }
+
+    /// Returns the file, for the places of its faults.
+    pub fn file(&self) -> Option<&str> {
+        match self {
+            Self::Wrong { file, .. } => Some(file),
+            Self::Unreadable { .. } | Self::UnknownName(_) => None,
+        }
+    }
 }
 
 /// Returns the path of a file for messages, shortened because a path may be arbitrarily long.
@@ -45,19 +74,22 @@ fn named(file: &Path) -> String {
 /// Reads a machine from text; `file` is the name used in errors.
 ///
 /// # Errors
-/// If the text does not describe a machine.
+/// If the text does not describe a machine; the error has all faults of the text.
 pub fn parse(text: &str, file: &str) -> Result<Machine, FileError> {
-    let wrong = |line, error| FileError::Wrong { file: file.into(), line, error };
-    let spec: MachineSpec = toml::from_str(text).map_err(|e| {
-        let line = e.span().map(|span| line_of(text, span.start));
-        if let Some(DeValue::Array(several)) =
-            DeTable::parse(text).ok().as_ref().and_then(|table| Some(table.get_ref().get("end_effector")?.get_ref()))
-        {
-            return wrong(line, MachineError::SeveralEndEffectors { count: several.len() });
-        }
-        wrong(line, MachineError::Syntax(shortened(e.message(), 300)))
-    })?;
-    Machine::new(spec).map_err(|e| wrong(e.place().and_then(|p| line_of_place(text, p)), e))
+    let first = match StatedFile::parse(text) {
+        Ok(stated) => match faults::read(&stated) {
+            Ok(machine) => return Ok(machine),
+            Err(first) => Some((stated.place(&first.0.path), first.1)),
+        },
+        Err(_) => None,
+    };
+    let faults = faults_of(text, &MachineWords, &|stated| faults::read(stated).map(|_| ()).map_err(|first| first.0));
+    let (line, error) = match (first, faults.list.first()) {
+        (Some((place, error)), _) => (place.map(|place| place.line), error),
+        (None, Some(fault)) => (fault.line, MachineError::Syntax(fault.text.clone())),
+        (None, None) => (None, MachineError::Syntax("this is not TOML".into())),
+    };
+    Err(FileError::Wrong { file: file.into(), line, error, faults: Box::new(faults) })
 }
 
 /// Writes a machine as TOML, from which [`parse`] returns an equal machine.
@@ -66,28 +98,4 @@ pub fn parse(text: &str, file: &str) -> Result<Machine, FileError> {
 /// Never: every machine can be written.
 pub fn to_toml(machine: &Machine) -> String {
     toml::to_string(machine.spec()).expect("a machine is plain data")
-}
-
-/// Returns the line of a byte offset, counted from 1.
-pub fn line_of(text: &str, byte: usize) -> usize {
-    text.as_bytes()[..byte.min(text.len())].iter().filter(|b| **b == b'\n').count() + 1
-}
-
-/// Returns the line of the innermost step of a place that exists in the text.
-pub fn line_of_place(text: &str, place: &KeyPath) -> Option<usize> {
-    let table = DeTable::parse(text).ok()?;
-    let mut span = None;
-    let mut at: Option<&DeValue> = None;
-    for step in &place.0 {
-        let next = match (step, at) {
-            (KeyStep::Key(k), None) => table.get_ref().get(k.as_str()),
-            (KeyStep::Key(k), Some(DeValue::Table(t))) => t.get(k.as_str()),
-            (KeyStep::At(i) | KeyStep::Named(i, _), Some(DeValue::Array(a))) => a.get(*i),
-            _ => None,
-        };
-        let Some(next) = next else { break };
-        span = Some(next.span());
-        at = Some(next.get_ref());
-    }
-    span.map(|s| line_of(text, s.start))
 }

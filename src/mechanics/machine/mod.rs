@@ -17,6 +17,7 @@ mod catalog;
 mod chain;
 mod check;
 mod error;
+mod faults;
 mod file;
 mod inertia;
 mod keys;
@@ -28,14 +29,15 @@ mod parts;
 pub mod ranges;
 mod set;
 mod spec;
+mod words;
 
 pub use caps::{MAX_CHAIN_LINKS, MAX_COUNTERWEIGHTS, MAX_LINKS};
 pub use catalog::{builtin, builtins, named, unknown};
 pub use chain::{Chain, place_of};
 pub use check::CLOSURE_TOLERANCE;
 pub use error::{KeyPath, KeyStep, MachineError};
+pub use faults::read as read_stated;
 pub use file::{FileError, parse, to_toml};
-pub use file::{line_of, line_of_place};
 pub use inertia::RotorCoupling;
 pub use inertia::{BALANCE_TOLERANCE, Inertia};
 pub use keys::KEYS;
@@ -50,3 +52,4 @@ pub use set::{MACHINE_TABLES, is_of_machine};
 pub use spec::{
     Angle, Attach, Closure, Counterweight, Drive, Length, Link, LinkPoint, MachineSpec, Payload, PlaceOnLink, Rotor,
 };
+pub use words::{MachineWords, SMALLEST, pattern_of};

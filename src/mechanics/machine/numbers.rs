@@ -51,7 +51,10 @@ pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
                 return Err(MachineError::OutOfRange { place, value: max, want });
             }
             (Some(_), None) | (None, Some(_)) => {
-                return Err(MachineError::HalfLimited { angle: angle.name.clone() });
+                return Err(MachineError::HalfLimited {
+                    place: KeyPath::new(&[&"angle", &i]),
+                    angle: angle.name.clone(),
+                });
             }
             _ => {}
         }

@@ -2,7 +2,6 @@
 
 use toml::{Table, Value};
 
-use super::error::quoted;
 use super::keys::{FieldAccess, KEYS, KeyRow, MACHINE_KEYS};
 use super::{KeyPath, Machine, MachineError, MachineSpec, PlaceOnLink};
 use stillbase_settings::change::{self, DEFAULT_WORD};
@@ -203,7 +202,8 @@ fn body_of(spec: &MachineSpec, key: &str) -> Result<usize, MachineError> {
         place: KeyPath::new(&[&key]),
         what,
         name: name.into(),
-        known: quoted(names.into_iter()),
+        known: names.into_iter().map(Into::into).collect(),
+        more: "",
     })
 }
 

@@ -174,8 +174,13 @@ impl Session {
     }
 
     /// Replaces the session by another one that has just been opened; undo restores the present one.
-    pub fn take_over(&mut self, mut next: Self) {
+    pub fn take_over(&mut self, next: Self) {
         let title = format!("open {}", next.document.scenario.title);
+        self.take_over_as(next, title);
+    }
+
+    /// Does the same as [`take_over`](Self::take_over) under a title of its own in the history.
+    pub fn take_over_as(&mut self, mut next: Self, title: String) {
         next.undo = std::mem::take(&mut self.undo);
         next.branch_events.0 = self.branch_events.0;
         next.undo.push(Arc::new(HistoryStep {

@@ -3,7 +3,9 @@
 use thiserror::Error;
 
 use super::bounds::ordinal;
+use super::names::with_name;
 use stillbase_mechanics::machine::{FileError, MachineError};
+use stillbase_settings::fault::Faults;
 use stillbase_settings::range::{Requirement, range_error};
 use stillbase_settings::spelling::UnknownName;
 use stillbase_settings::text::MAX_TEXT_BYTES;
@@ -30,7 +32,7 @@ pub enum ScenarioError {
         message: String,
     },
     /// A number out of range.
-    #[error("{file}{}: {}", at(*line), range_error(key, *value, want))]
+    #[error("{file}{}: {}", at(*line), range_error(&with_name(key), *value, want))]
     OutOfRange {
         /// The file.
         file: String,
@@ -69,9 +71,36 @@ pub enum ScenarioError {
     /// No built-in scenario has the name, and there is no such file.
     #[error(transparent)]
     UnknownName(#[from] UnknownName),
+    /// The text of a file is wrong in one place or several.
+    #[error("{first}{}", and_more(faults))]
+    Faulty {
+        /// The file.
+        file: String,
+        /// The first error.
+        #[source]
+        first: Box<ScenarioError>,
+        /// All faults.
+        faults: Box<Faults>,
+    },
     /// The file of the scenario's machine is wrong.
     #[error(transparent)]
     MachineFile(#[from] FileError),
+}
+
+/// Says how many faults a file has, if it has several.
+fn and_more(faults: &Faults) -> String {
+    if faults.count() > 1 { format!(" (one of {})", faults.counted()) } else { String::new() }
+}
+
+impl ScenarioError {
+    /// Returns the file that is faulty, and its faults; `None` if no file was read.
+    pub fn faults(&self) -> Option<(&str, &Faults)> {
+        match self {
+            Self::Faulty { file, faults, .. } => Some((file, faults)),
+            Self::MachineFile(why) => why.file().zip(why.faults()),
+            _ => None,
+        }
+    }
 }
 
 /// Formats a line number as it follows the name of a file.

@@ -12,11 +12,14 @@ use super::note::{StatedNote, notes};
 use super::own::ScenarioSettings;
 use super::task::Task;
 use super::tolerance::Tolerance;
+use super::words::ScenarioWords;
 use crate::{TimedEdit, check_edits};
-use stillbase_mechanics::machine::{self, FileError, KeyPath, KeyStep, Machine, MachineSpec};
+use stillbase_mechanics::machine::{self, FileError, KeyPath, KeyStep, Machine, MachineError, MachineSpec};
 use stillbase_mechanics::sketch::{Sketch, SketchRefusal};
 use stillbase_settings::change;
-use stillbase_settings::range::{quote_clipped, shortened};
+use stillbase_settings::mending::{Problem, Wrong, faults_of};
+use stillbase_settings::range::{quote_clipped, range_error, shortened};
+use stillbase_settings::stated::{MendValue, StatedFile};
 use stillbase_settings::text::{control_character, plain};
 use stillbase_simulation::control::Control;
 use stillbase_simulation::plant::{Base, PlantDifferences};
@@ -107,65 +110,130 @@ pub fn content(text: &str) -> Option<FileContent> {
 /// Looks up a machine by name or file.
 pub type FindMachine<'a> = &'a dyn Fn(&str) -> Result<Machine, FileError>;
 
-impl Scenario {
-    /// Reads a scenario from text. Errors name `label`; `find`, if given, looks up the machine by its name.
-    ///
-    /// # Errors
-    /// If the text is not a valid scenario.
-    pub fn parse(text: &str, label: &str, find: Option<FindMachine>) -> Result<Self, ScenarioError> {
-        let file: File = toml::from_str(text).map_err(|e| ScenarioError::Syntax {
-            file: label.into(),
-            line: e.span().map(|s| machine::line_of(text, s.start)),
-            message: shortened(e.message(), MAX_MESSAGE_CHARS),
+/// The first problem of a text, with the error that it makes.
+type FirstProblem = Box<(Problem, ScenarioError)>;
+
+/// A scenario being read from a file.
+struct Reading<'a> {
+    file: &'a StatedFile<'a>,
+    label: &'a str,
+    find: Option<FindMachine<'a>>,
+}
+
+impl Reading<'_> {
+    /// Makes a problem at a place, and the error that says so.
+    fn wrong(&self, path: KeyPath, message: String) -> FirstProblem {
+        let (file, line) = (self.label.into(), self.line(&path));
+        let problem = Problem { path, wrong: Wrong::Value(message) };
+        let message = shortened(&problem.text(&ScenarioWords), MAX_MESSAGE_CHARS);
+        Box::new((problem, ScenarioError::Syntax { file, line, message }))
+    }
+
+    fn line(&self, path: &KeyPath) -> Option<usize> {
+        self.file.place(path).map(|place| place.line)
+    }
+
+    /// Makes the error of a problem that the TOML reader has found.
+    fn syntax(&self, problem: Problem) -> FirstProblem {
+        let (file, line) = (self.label.into(), self.line(&problem.path));
+        let message = shortened(&problem.text(&ScenarioWords), MAX_MESSAGE_CHARS);
+        Box::new((problem, ScenarioError::Syntax { file, line, message }))
+    }
+
+    /// Reads the parts of the file, and its machine if the file holds a whole one.
+    fn parts(&self) -> Result<(File, Option<Machine>), FirstProblem> {
+        let Some(inline) = self.file.inner("machine") else {
+            let file = self.file.read().map_err(|error| self.syntax(Problem::of(self.file, &error)))?;
+            return Ok((file, None));
+        };
+        let machine = machine::read_stated(&inline).map_err(|first| {
+            let (problem, error) = *first;
+            let problem = problem.under("machine");
+            let (file, line) = (self.label.into(), self.line(&problem.path));
+            let error = match error {
+                MachineError::Syntax(message) => {
+                    ScenarioError::Syntax { file, line, message: format!("machine: {message}") }
+                }
+                error => ScenarioError::Machine { file, line, error },
+            };
+            Box::new((problem, error))
         })?;
-        let line_of = |key: &str| machine::line_of_place(text, &KeyPath::of_key(key));
-        let stated: toml::Table = text.parse().unwrap_or_default();
+        let mut rest = self.file.clone();
+        rest.set(&KeyPath::new(&[&"machine"]), &MendValue::Word(String::new()));
+        let file = rest.read().map_err(|error| self.syntax(Problem::of(&rest, &error)))?;
+        Ok((file, Some(machine)))
+    }
+
+    /// Returns the machine that the file names.
+    fn named_machine(&self, name: &str) -> Result<Machine, FirstProblem> {
+        self.find.map_or_else(|| machine::named(name), |find| find(name)).map_err(|error| {
+            let wrong = Wrong::Last(error.to_string());
+            Box::new((Problem { path: KeyPath::new(&[&"machine"]), wrong }, error.into()))
+        })
+    }
+
+    /// Returns a machine with the settings of the key `set`.
+    fn set(&self, machine: Machine, stated: &[String]) -> Result<Machine, FirstProblem> {
+        let mut settings = Vec::with_capacity(stated.len());
+        for (i, setting) in stated.iter().enumerate() {
+            let pair = setting.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
+            let message = || format!("is {:?}: want KEY=VALUE", quote_clipped(setting));
+            settings.push(pair.ok_or_else(|| self.wrong(KeyPath::new(&[&"set", &i]), message()))?);
+        }
+        if settings.is_empty() {
+            return Ok(machine);
+        }
+        machine.set_all(settings).map_err(|error| {
+            let path = KeyPath::new(&[&"set"]);
+            let (file, line) = (self.label.into(), self.line(&path));
+            Box::new((
+                Problem { path, wrong: Wrong::Value(error.to_string()) },
+                ScenarioError::Machine { file, line, error },
+            ))
+        })
+    }
+
+    fn scenario(&self) -> Result<Scenario, FirstProblem> {
+        let label = self.label;
+        if !self.file.keys().any(|key| OWN_TABLES.contains(&key)) {
+            let what =
+                if self.file.keys().next().is_none() { "the file states nothing" } else { "this is no file of ours" };
+            let said = format!("{what}: want a machine, as in the example, or a scenario, with machine and [task]");
+            let wrong = Wrong::Whole(said.clone(), machine::SMALLEST.into());
+            let error = ScenarioError::Syntax { file: label.into(), line: None, message: said };
+            return Err(Box::new((Problem { path: KeyPath::default(), wrong }, error)));
+        }
+        let (file, own_machine) = self.parts()?;
+        let stated: toml::Table = self.file.read().unwrap_or_default();
         // Missing keys of the task are derived from given ones, which have to be finite.
         if let Some(key) = change::not_finite(&stated).filter(|key| key.starts_with("task")) {
-            let message = format!("{} is not a finite number: want one", quote_clipped(&key));
-            return Err(ScenarioError::Syntax { file: label.into(), line: line_of(&key), message });
+            return Err(self.wrong(KeyPath::of_key(&key), "is not a finite number: want one".into()));
         }
         let name = file.name.as_deref().unwrap_or_default();
         for (key, text) in [("name", name), ("title", &file.title), ("summary", &file.summary)] {
             if let Some(c) = control_character(text) {
-                let message = format!("{key} holds the control character U+{:04X}: {PRINTABLE}", u32::from(c));
-                return Err(ScenarioError::Syntax { file: label.into(), line: line_of(key), message });
+                let message = format!("holds the control character U+{:04X}: {PRINTABLE}", u32::from(c));
+                return Err(self.wrong(KeyPath::new(&[&key]), message));
             }
         }
-        let machine = match file.machine {
-            MachineRef::Name(name) => find.map_or_else(|| machine::named(&name), |find| find(&name))?,
-            MachineRef::Inline(spec) => Machine::new(*spec).map_err(|error| {
-                let place = error.place().cloned().unwrap_or_default().under("machine");
-                ScenarioError::Machine { file: label.into(), line: machine::line_of_place(text, &place), error }
-            })?,
+        let machine = match (own_machine, &file.machine) {
+            (Some(machine), _) => machine,
+            (None, MachineRef::Name(name)) => self.named_machine(name)?,
+            (None, MachineRef::Inline(_)) => {
+                return Err(self.wrong(KeyPath::new(&[&"machine"]), "is no machine".into()));
+            }
         };
-        let wrong = |message: String| ScenarioError::Syntax { file: label.into(), line: line_of("set"), message };
-        let mut settings = Vec::with_capacity(file.set.len());
-        for setting in &file.set {
-            let pair = setting.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
-            settings.push(pair.ok_or_else(|| wrong(format!("set: {:?}: want KEY=VALUE", quote_clipped(setting))))?);
-        }
-        let machine = match settings.is_empty() {
-            true => machine,
-            false => machine.set_all(settings).map_err(|error| {
-                let (file, line) = (label.into(), line_of("set"));
-                ScenarioError::Machine { file, line, error }
-            })?,
-        };
+        let machine = self.set(machine, &file.set)?;
         let stem = Path::new(label).file_stem().map_or_else(|| label.into(), |s| s.to_string_lossy());
         let stem = plain(&stem).into_owned();
         let states = |key: &str| stated.get("task").is_some_and(|task| task.get(key).is_some());
-        let task = file.task.completed(states, &machine).map_err(|key| ScenarioError::Syntax {
-            file: label.into(),
-            line: line_of("task"),
-            message: format!("missing field `{key}`"),
+        let task = file.task.completed(states, &machine).map_err(|key| {
+            self.syntax(Problem { path: KeyPath::new(&[&"task"]), wrong: Wrong::Missing(key.into()) })
         })?;
         let sketch = match file.sketch {
             Some(sketch) => {
-                let bent = |why: SketchRefusal| ScenarioError::Syntax {
-                    file: label.into(),
-                    line: line_of("sketch"),
-                    message: format!("sketch: {}", shortened(&why.to_string(), MAX_MESSAGE_CHARS)),
+                let bent = |why: SketchRefusal| {
+                    self.wrong(KeyPath::new(&[&"sketch"]), shortened(&why.to_string(), MAX_MESSAGE_CHARS))
                 };
                 sketch.check().map_err(bent)?;
                 Some(if file.set.is_empty() { sketch } else { sketch.following_machine(&machine) })
@@ -174,14 +242,16 @@ impl Scenario {
         };
         let mut edits = Vec::with_capacity(file.edits.len());
         let wrong_edit = |(i, message): (usize, String)| {
-            let place = KeyPath::new(&[&"edit", &i]);
-            let (file, line) = (label.into(), machine::line_of_place(text, &place));
-            ScenarioError::Edit { file, line, entry: i + 1, message: shortened(&message, MAX_MESSAGE_CHARS) }
+            let path = KeyPath::new(&[&"edit", &i]);
+            let (file, line) = (label.into(), self.line(&path));
+            let message = shortened(&message, MAX_MESSAGE_CHARS);
+            let error = ScenarioError::Edit { file, line, entry: i + 1, message: message.clone() };
+            Box::new((Problem { path, wrong: Wrong::Value(message) }, error))
         };
         for (i, entry) in file.edits.into_iter().enumerate() {
             edits.push(TimedEdit::from_table(entry).map_err(|why| wrong_edit((i, why)))?);
         }
-        let mut scenario = Self {
+        let mut scenario = Scenario {
             name: file.name.unwrap_or(stem),
             title: file.title,
             summary: file.summary,
@@ -202,14 +272,12 @@ impl Scenario {
             notes: Vec::new(),
             branches: Vec::new(),
         };
-        scenario.check(label).map_err(|error| scenario.with_line(error, text))?;
+        scenario.check(label).map_err(|error| self.placed(error))?;
         check_edits(&scenario).map_err(wrong_edit)?;
         let wrong_entry = |of: &str, (i, message): (usize, String)| {
-            let line = machine::line_of_place(text, &KeyPath::new(&[&of, &i]));
-            let message = format!("{of} {}: {}", i + 1, shortened(&message, MAX_MESSAGE_CHARS));
-            ScenarioError::Syntax { file: label.into(), line, message }
+            self.wrong(KeyPath::new(&[&of, &i]), shortened(&message, MAX_MESSAGE_CHARS))
         };
-        let sound = |edits: &[TimedEdit]| check_edits(&Self { edits: edits.to_vec(), ..scenario.without_edits() });
+        let sound = |edits: &[TimedEdit]| check_edits(&Scenario { edits: edits.to_vec(), ..scenario.without_edits() });
         check_bookmarks(&scenario.bookmarks).map_err(|wrong| wrong_entry("bookmark", wrong))?;
         let notes = notes(file.notes, &scenario.machine).map_err(|wrong| wrong_entry("note", wrong))?;
         let branches = branches(file.branches, sound).map_err(|wrong| wrong_entry("branch", wrong))?;
@@ -217,13 +285,14 @@ impl Scenario {
         Ok(scenario)
     }
 
-    /// Adds the line of the wrong key in a text to an error of [`check`](Self::check).
-    fn with_line(&self, error: ScenarioError, text: &str) -> ScenarioError {
-        let line_of = |place: KeyPath| machine::line_of_place(text, &place);
+    /// Adds the place of the wrong key in the file to an error of [`Scenario::check`].
+    fn placed(&self, error: ScenarioError) -> FirstProblem {
         match error {
             ScenarioError::OutOfRange { file, key, value, want, .. } => {
-                let line = line_of(KeyPath::of_key(&key));
-                ScenarioError::OutOfRange { file, line, key, value, want }
+                let path = KeyPath::of_key(&key);
+                let said = range_error("", value, &want).trim_start().to_owned();
+                let error = ScenarioError::OutOfRange { file, line: self.line(&path), key, value, want };
+                Box::new((Problem { path, wrong: Wrong::Value(said) }, error))
             }
             ScenarioError::Machine { file, error, .. } => {
                 let file = file.trim_end_matches(": plant").to_owned();
@@ -239,10 +308,44 @@ impl Scenario {
                     [KeyStep::Key(key)] => KeyPath::of_key(key),
                     _ => place.clone(),
                 });
-                ScenarioError::Machine { file, line: line_of(place.under("plant")), error }
+                let path = place.under("plant");
+                let (line, said) = (self.line(&path), error.to_string());
+                Box::new((Problem { path, wrong: Wrong::Said(said) }, ScenarioError::Machine { file, line, error }))
             }
-            other => other,
+            other => Box::new((Problem { path: KeyPath::default(), wrong: Wrong::Last(other.to_string()) }, other)),
         }
+    }
+}
+
+/// Keys of which a scenario has at least one.
+const OWN_TABLES: [&str; 3] = ["machine", "task", "edit"];
+
+impl Scenario {
+    /// Reads a scenario from text. Errors name `label`; `find`, if given, looks up the machine by its name.
+    ///
+    /// # Errors
+    /// If the text is not a valid scenario; the error has all faults of the text.
+    pub fn parse(text: &str, label: &str, find: Option<FindMachine>) -> Result<Self, ScenarioError> {
+        let read = |file: &StatedFile| Reading { file, label, find }.scenario();
+        let first = match StatedFile::parse(text) {
+            Ok(file) => match read(&file) {
+                Ok(scenario) => return Ok(scenario),
+                Err(first) => match first.1 {
+                    // The faults of the machine's own file are told.
+                    error @ ScenarioError::MachineFile(_) => return Err(error),
+                    error => Some(error),
+                },
+            },
+            Err(_) => None,
+        };
+        let faults = faults_of(text, &ScenarioWords, &|file| read(file).map(|_| ()).map_err(|first| first.0));
+        let of_text = || {
+            let fault = faults.list.first();
+            let (line, message) = fault.map_or((None, String::new()), |fault| (fault.line, fault.text.clone()));
+            ScenarioError::Syntax { file: label.into(), line, message }
+        };
+        let first = Box::new(first.unwrap_or_else(of_text));
+        Err(ScenarioError::Faulty { file: label.into(), first, faults: Box::new(faults) })
     }
 
     /// Returns the scenario as TOML, from which [`parse`](Self::parse) gives an equal one. A built-in machine is named,

@@ -21,6 +21,7 @@ mod sketched;
 mod snap_point;
 mod task;
 mod tolerance;
+mod words;
 
 pub(crate) use bounds::{MAX_FRAMES, ordinal};
 pub use bounds::{MAX_STEPS, MAX_TIME, STEP_RANGE};
@@ -32,6 +33,7 @@ pub use file::{FileContent, FindMachine, content};
 pub use kept::{Bookmark, Branch, MAX_BOOKMARKS, MAX_BRANCHES, MAX_NAME};
 pub use keys::{KEYS, key_of, keys, part_of};
 pub(crate) use keys::{effect_in, effect_of};
+pub(crate) use names::with_name;
 pub use names::{name_of, search_words};
 pub use note::{MAX_NOTE, MAX_NOTES, Note, NoteTime};
 pub(crate) use points::name_of_point;

@@ -1,9 +1,12 @@
 //! Plain names of settings.
 
+use super::keys::key_of;
+use stillbase_mechanics::machine::pattern_of;
 use stillbase_settings::key::names;
+use stillbase_settings::mending::with_key;
 
-/// Keys with their names, in which `*` stands for the name of a link, a drive or a length. All other keys are called as
-/// the last word of their path.
+/// Keys with their names, in which `*` stands for the name of a link, a drive or a length. Those of the machine are named
+/// with it; all other keys are called as the last word of their path.
 const NAMES: &[(&str, &str)] = &[
     ("compare_b", "pose constant to compare with"),
     ("pose_acceleration", "greatest acceleration of b"),
@@ -44,42 +47,6 @@ const NAMES: &[(&str, &str)] = &[
     ("base.wheel.inertia", "inertia of the wheel"),
     ("base.wheel.torque_limit", "torque limit of the wheel"),
     ("base.wheel.speed_limit", "rate limit of the wheel"),
-    ("link.*.com", "centre of mass along link *"),
-    ("link.*.com_normal", "centre of mass off link *"),
-    ("link.*.mass", "mass of link *"),
-    ("link.*.inertia", "inertia of link *"),
-    ("link.*.length", "length of link *"),
-    ("link.*.axial", "height of link *"),
-    ("material.*.density", "density of *"),
-    ("part.*.from", "beginning of part *"),
-    ("part.*.to", "end of part *"),
-    ("part.*.across", "distance of part * off its link"),
-    ("part.*.width", "width of part *"),
-    ("part.*.thickness", "thickness of part *"),
-    ("part.*.diameter", "diameter of part *"),
-    ("part.*.height", "height of part *"),
-    ("part.*.wall", "wall of part *"),
-    ("lump.*.mass", "mass of lump *"),
-    ("lump.*.at", "place of lump *"),
-    ("lump.*.across", "distance of lump * off its link"),
-    ("lump.*.inertia", "inertia of lump *"),
-    ("counterweight.*.mass", "mass of counterweight *"),
-    ("counterweight.*.at", "place of counterweight *"),
-    ("counterweight.*.across", "distance of counterweight * off its link"),
-    ("counterweight.*.radius", "radius of counterweight *"),
-    ("counterweight.*.fixed", "counterweight * stays"),
-    ("length.*", "length *"),
-    ("payload.mass", "mass of the payload"),
-    ("payload.inertia", "inertia of the payload"),
-    ("payload.offset", "centre of mass of the payload"),
-    ("payload.axial", "height of the payload"),
-    ("limits.*", "limits of angle *"),
-    ("drive.*.rotor.inertia", "rotor inertia of drive *"),
-    ("drive.*.rotor.ratio", "gear ratio of drive *"),
-    ("drive.*.torque_limit", "torque limit of drive *"),
-    ("drive.*.speed_limit", "rate limit of drive *"),
-    ("drive.*.acceleration_limit", "acceleration limit of drive *"),
-    ("drive.*.jerk_limit", "jerk limit of drive *"),
     ("tolerance.seed", "which random machines"),
     ("tolerance.samples", "how many machines"),
     ("tolerance.moment_limit", "moment on the base that will do"),
@@ -140,7 +107,8 @@ const PARTS_OF_MACHINES: [&str; 4] = ["design.hold.", "design.", "plant.", "tole
 pub fn name_of(path: &str) -> String {
     let of_part = PARTS_OF_MACHINES.iter().find_map(|part| path.strip_prefix(part));
     let found = [Some(path), of_part].into_iter().flatten().find_map(|path| {
-        let (pattern, name) = NAMES.iter().find(|(pattern, _)| names(pattern, path))?;
+        let own = NAMES.iter().find(|(pattern, _)| names(pattern, path));
+        let (pattern, name) = own.copied().or_else(|| pattern_of(path))?;
         Some((pattern, name, path))
     });
     let Some((pattern, name, path)) = found else {
@@ -150,8 +118,14 @@ pub fn name_of(path: &str) -> String {
     match place.and_then(|place| path.split('.').nth(place)) {
         Some("*") => every(name),
         Some(which) => name.replace('*', which),
-        None => (*name).to_owned(),
+        None => name.to_owned(),
     }
+}
+
+/// Returns a setting with its plain name first: `mass of link 5 (link.5.mass)`; what is no setting stays as it is.
+pub(crate) fn with_name(key: &str) -> String {
+    let bare = key.split('[').next().unwrap_or(key);
+    if key_of(bare).is_some() { with_key(&name_of(bare), key) } else { key.to_owned() }
 }
 
 /// Returns further words by which people look for a setting.

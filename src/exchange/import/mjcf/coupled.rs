@@ -14,7 +14,8 @@ use stillbase_settings::range::quote_clipped;
 
 /// The couplings that are supported, for messages.
 pub(super) const PARALLEL_WANTED: &str = "a rotor on its motor's body, coupled to the driven body, or hinges whose \
-                                          coupling by 1 or -1 keeps two bodies parallel";
+                                          coupling by 1 or -1 keeps two bodies parallel, as a belt from the base \
+                                          does";
 
 /// A set, and another relative to which it turns.
 pub(super) type RelativeSet = (usize, usize);

@@ -62,6 +62,11 @@ impl CoupledBodies<'_> {
         if model.descendants().any(|node| node.has_tag_name("mesh")) {
             notes.push("meshes are left out: a machine here is made of bars".to_owned());
         }
+        if model.descendants().any(|node| node.has_tag_name("spatial")) {
+            notes.push(
+                "spatial tendons are left out: of belts and cables, fixed tendons and equalities are read".into(),
+            );
+        }
         for (name, what) in [("damping", "damping"), ("frictionloss", "friction"), ("stiffness", "stiffness")] {
             let hinges = (0..self.base).filter_map(|i| self.bodies.hinge(i));
             let mut values = hinges.map(|hinge| Ok(numbers(hinge, name)?.unwrap_or_default()));

@@ -131,7 +131,6 @@ pub(super) fn settle(spec: &mut MachineSpec, sums: &[Option<PlaneBody>]) -> Resu
     for (i, link) in spec.links.iter_mut().enumerate() {
         link.settle(sums.get(i).and_then(Option::as_ref)).map_err(|number| MachineError::NoParts {
             place: KeyPath::new(&[&"link", &i, &number.key()]),
-            key: number.key(),
             link: link.name.clone(),
         })?;
     }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::error::{KeyPath, MachineError, quoted};
+use super::super::error::{KeyPath, MachineError};
 use super::super::spec::MachineSpec;
 
 /// Densities of common materials, kg/m³.
@@ -43,6 +43,7 @@ pub(super) fn density(spec: &MachineSpec, name: &str, place: impl Fn() -> KeyPat
         place: place(),
         what: "material",
         name: name.into(),
-        known: format!("{}, or a [[material]] of this name with its density", quoted(known.map(|(name, _)| name))),
+        known: known.map(|(name, _)| name.into()).collect(),
+        more: ", or a [[material]] of this name with its density",
     })
 }

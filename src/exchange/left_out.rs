@@ -1,0 +1,114 @@
+//! What a model for another program leaves out of a machine, in sentences.
+
+use super::cut::unweighed_tail;
+use super::mjcf::MIN_MASS_OR_INERTIA;
+use stillbase_mechanics::machine::{Length, Machine, MachineSpec};
+use stillbase_settings::number::{counted, fixed};
+
+/// Returns what both formats leave out.
+fn of_both(machine: &Machine) -> Vec<String> {
+    let spec = machine.spec();
+    let mut list = Vec::new();
+    if !spec.summary.is_empty() {
+        list.push("summary: a model has none".to_owned());
+    }
+    if spec.links.iter().any(|link| matches!(link.length, Length::Named(_))) {
+        list.push(format!(
+            "named lengths: {}; each link has its own length there",
+            spec.lengths.keys().cloned().collect::<Vec<_>>().join(", ")
+        ));
+    }
+    if !spec.parts.is_empty() || !spec.lumps.is_empty() {
+        let (parts, lumps) = (counted(spec.parts.len(), "part"), counted(spec.lumps.len(), "lump"));
+        list.push(format!("{parts} and {lumps}: their mass and inertia became those of their links"));
+    }
+    if !spec.counterweights.is_empty() {
+        let count = counted(spec.counterweights.len(), "counterweight");
+        list.push(format!(
+            "{count}: mass and inertia became those of the links that carry them; shapes are drawn only"
+        ));
+    }
+    if spec.payload.mass > 0.0 || spec.payload.inertia > 0.0 {
+        let link = &spec.links[machine.end_link()].name;
+        list.push(format!("payload as such: read again, it is part of link {link}"));
+    }
+    let bare: Vec<&str> =
+        (0..spec.links.len()).filter(|j| is_unbounded(machine, *j)).map(|j| spec.links[j].name.as_str()).collect();
+    if !bare.is_empty() {
+        list.push(format!("length of link {}: a model has lengths only where pins are", bare.join(", ")));
+    }
+    list
+}
+
+/// Returns whether no pin or end effector sits at the tip of a link, so that its length is only drawn.
+fn is_unbounded(machine: &Machine, j: usize) -> bool {
+    let part = &machine.resolved_links()[j];
+    let end = machine.end_effector()[part.drive] - part.root[part.drive];
+    let reach = part.pins.iter().copied().chain((machine.end_link() == j).then_some(part.sign * end));
+    (reach.fold(0.0, f64::max) - part.length).abs() > 1e-9 * part.length
+}
+
+/// Returns the names of drives of which something holds.
+fn drives(spec: &MachineSpec, of: impl Fn(usize) -> bool) -> Option<String> {
+    let names: Vec<&str> = (0..spec.drives.len()).filter(|k| of(*k)).map(|k| spec.drives[k].name.as_str()).collect();
+    (!names.is_empty()).then(|| format!("drive {}", names.join(", ")))
+}
+
+/// Returns what URDF leaves out.
+pub fn of_urdf(machine: &Machine) -> Vec<String> {
+    let spec = machine.spec();
+    let mut list = of_both(machine);
+    let parts = machine.resolved_links();
+    let fixed = |j: &usize| parts[*j].parent.is_some_and(|parent| parts[parent].drive == parts[*j].drive);
+    let merged: Vec<&str> = (0..parts.len()).filter(fixed).map(|j| spec.links[j].name.as_str()).collect();
+    if !merged.is_empty() {
+        list.push(format!(
+            "pin of link {}: read again, such a link is one with the link that carries it",
+            merged.join(", ")
+        ));
+    }
+    let mut own = Vec::new();
+    let limited = |k: usize| spec.drives[k].acceleration_limit.is_some() || spec.drives[k].jerk_limit.is_some();
+    own.extend((spec.gravity != [0.0; 2]).then_some("gravity"));
+    own.extend((!spec.closures.is_empty()).then_some("pins that close loops"));
+    own.extend((!spec.angles.is_empty()).then_some("names and offsets of angles"));
+    own.extend((0..spec.drives.len()).any(limited).then_some("limits of acceleration and jerk"));
+    if !own.is_empty() {
+        list.push(format!("for other programs {}: only the element <stillbase> has them", own.join(", ")));
+    }
+    list
+}
+
+/// Returns what MJCF leaves out.
+pub fn of_mjcf(machine: &Machine) -> Vec<String> {
+    let spec = machine.spec();
+    let mut list = of_both(machine);
+    let moves = |k: usize| {
+        let drive = &spec.drives[k];
+        drive.speed_limit.is_some() || drive.acceleration_limit.is_some() || drive.jerk_limit.is_some()
+    };
+    if let Some(drives) = drives(spec, moves) {
+        list.push(format!("limits of rate, acceleration and jerk of {drives}: MJCF has none"));
+    }
+    let is_light = |k: usize| spec.drives[k].rotor.is_some_and(|rotor| rotor.inertia < MIN_MASS_OR_INERTIA);
+    if let Some(drives) = drives(spec, is_light) {
+        list.push(format!("rotor and gear of {drives}: MuJoCo moves only what has inertia"));
+    }
+    if !spec.angles.is_empty() {
+        list.push("names and offsets of angles: MJCF limits the angles of pins and sums of them".to_owned());
+    }
+    list
+}
+
+/// Returns what the masses of a machine leave out of a drawing of it: tails that only the drawing adds.
+pub fn of_drawing(machine: &Machine) -> Vec<String> {
+    let tail = unweighed_tail(machine);
+    if tail <= 0.0 {
+        return Vec::new();
+    }
+    vec![format!(
+        "the mass of tails: bars are drawn up to {} mm beyond their pins, to carry counterweights, and no link counts \
+         that; design --counterweights --bars weighs what is cut",
+        fixed(1e3 * tail, 1)
+    )]
+}
