@@ -15,4 +15,5 @@ mod parts;
 mod pin_friction;
 mod sincos;
 mod sketch;
+mod sketch_parts;
 mod sketch_steps;

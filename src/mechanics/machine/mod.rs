@@ -29,7 +29,7 @@ pub mod ranges;
 mod set;
 mod spec;
 
-pub use caps::{MAX_CHAIN_LINKS, MAX_COUNTERWEIGHTS, MAX_LINKS};
+pub use caps::{MAX_CHAIN_LINKS, MAX_COUNTERWEIGHTS, MAX_LINKS, MAX_PARTS, MAX_PER_PART};
 pub use catalog::{builtin, builtins, named, unknown};
 pub use chain::{Chain, place_of};
 pub use check::CLOSURE_TOLERANCE;
@@ -44,6 +44,7 @@ pub use motors::Motors;
 pub use parts::{
     DerivedNumbers, Ends, Hole, LinkNumber, Lump, MATERIALS, Material, Part, PartBody, PartSource, PlaneBody, Shape,
 };
+pub(crate) use parts::{sum_of, weigh};
 pub use ranges::{ANGLE, MAX_ANGLE};
 pub use set::{MACHINE_TABLES, is_of_machine};
 pub use spec::{

@@ -145,6 +145,7 @@ impl Scenario {
             let pair = setting.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
             settings.push(pair.ok_or_else(|| wrong(format!("set: {:?}: want KEY=VALUE", quote_clipped(setting))))?);
         }
+        let stated_machine = machine.clone();
         let machine = match settings.is_empty() {
             true => machine,
             false => machine.set_all(settings).map_err(|error| {
@@ -168,7 +169,10 @@ impl Scenario {
                     message: format!("sketch: {}", shortened(&why.to_string(), MAX_MESSAGE_CHARS)),
                 };
                 sketch.check().map_err(bent)?;
-                Some(if file.set.is_empty() { sketch } else { sketch.following_machine(&machine) })
+                Some(match file.set.is_empty() {
+                    true => sketch,
+                    false => sketch.following_machine(&stated_machine, &machine),
+                })
             }
             None => None,
         };
