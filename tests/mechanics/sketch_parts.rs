@@ -154,7 +154,8 @@ fn split_and_joined_bars_keep_what_they_weigh() {
     for i in 0..300 {
         let machine = made_of_parts(&mut noise);
         let sketch = Sketch::of(&machine, None);
-        let own = sketch.bars[(noise.between(0.0, sketch.bars.len() as f64) as usize).min(sketch.bars.len() - 1)].clone();
+        let own =
+            sketch.bars[(noise.between(0.0, sketch.bars.len() as f64) as usize).min(sketch.bars.len() - 1)].clone();
         let along = noise.between(0.05, 0.95) * sketch.length(&own);
         let Ok(split) = sketch.with(&SketchStep::Split { bar: own.id, along }) else { continue };
         splits += 1;

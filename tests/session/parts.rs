@@ -23,7 +23,7 @@ fn changes_of_parts_are_undone_done_again_and_saved() {
         &|machine| parts::add_part(machine, 0, Shape::Tube),
         &|machine| parts::add_part(machine, 1, Shape::Plate),
         &|machine| parts::add_lump(machine, 0),
-        &|machine| parts::set_material(machine, 1, "lead"),
+        &|machine| parts::change_part(machine, 1, |part| part.material = "lead".into()),
         &|machine| parts::follow_parts(machine, 0, &LinkNumber::ALL),
         &|machine| parts::remove(machine, PartSource::Part(0)),
         &|machine| parts::remove(machine, PartSource::Lump(1)),

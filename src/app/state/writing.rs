@@ -11,6 +11,13 @@ use stillbase_exchange::form::Form;
 use stillbase_mechanics::machine::to_toml;
 use stillbase_query::Ticket;
 
+/// A written file that is then one of the recent files.
+pub(super) struct Kept {
+    file: PathBuf,
+    /// The number of changes that it holds, if it is the session's own; `None` for a machine.
+    changes: Option<u64>,
+}
+
 /// Computes the content of a file, in the background.
 type Content = Box<dyn FnOnce() -> Result<Vec<u8>, String> + Send>;
 
@@ -31,7 +38,7 @@ impl AppState {
         path: &Path,
         activity: Activity,
         busy: &str,
-        of: Option<(u64, PathBuf)>,
+        of: Option<Kept>,
         work: impl FnOnce(&Self) -> Result<W, String>,
     ) -> Result<(), String>
     where
@@ -45,10 +52,12 @@ impl AppState {
         let work = move |ticket: &Ticket| work(ticket, &path, replaces);
         self.background.run(activity, work, move |app_state, said: Option<Result<String, String>>| {
             let said = said.unwrap_or_else(|| Err(fault(activity.words())));
-            if let (Ok(_), Some((changes, file))) = (&said, of) {
-                app_state.saving.saved = changes;
+            if let (Ok(_), Some(Kept { file, changes })) = (&said, of) {
                 app_state.saving.uses(&file);
-                app_state.saving.keep_file(app_state.own_session().undo_count(), file);
+                if let Some(changes) = changes {
+                    app_state.saving.saved = changes;
+                    app_state.saving.keep_file(app_state.own_session().undo_count(), file);
+                }
             }
             app_state.show_outcome(said.map(Some));
         });
@@ -60,12 +69,12 @@ impl AppState {
         Ok(())
     }
 
-    /// Writes `content` to a file. For a session, `of` is the number of changes that are then saved, and their file.
+    /// Writes `content` to a file; `of` says what is kept of it.
     fn write_content(
         &mut self,
         path: &Path,
         busy: &str,
-        of: Option<(u64, PathBuf)>,
+        of: Option<Kept>,
         content: impl FnOnce(&Self) -> Result<Content, String>,
     ) -> Result<(), String> {
         self.write(path, Activity::Saving, busy, of, |app_state| {
@@ -79,7 +88,7 @@ impl AppState {
 
     /// Saves the session.
     pub(super) fn save(&mut self, path: &Path) -> Result<(), String> {
-        let of = Some((self.saving.changes, path.to_owned()));
+        let of = Some(Kept { file: path.to_owned(), changes: Some(self.saving.changes) });
         self.write_content(path, "one session is being saved: want that to end first", of, |app_state| {
             let (scenario, left_off) = (app_state.session.to_scenario(), app_state.left_off());
             let left_off = ResumePoint { file: None, ..left_off };
@@ -101,7 +110,8 @@ impl AppState {
     pub(super) fn take_elsewhere(&mut self, path: &Path) -> Result<(), String> {
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         if ending.eq_ignore_ascii_case(MACHINE_EXTENSION) {
-            return self.write_content(path, FILE_BEING_SAVED, None, |app_state| {
+            let of = Some(Kept { file: path.to_owned(), changes: None });
+            return self.write_content(path, FILE_BEING_SAVED, of, |app_state| {
                 let text = to_toml(&app_state.session.scenario().machine);
                 Ok(Box::new(move || Ok(text.into_bytes())))
             });

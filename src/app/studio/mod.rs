@@ -10,6 +10,7 @@ mod lengths;
 mod lesson;
 mod measures;
 mod other_fronts;
+mod part_shape;
 mod parts;
 mod payload;
 mod table;
@@ -28,6 +29,7 @@ use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Session;
 
 pub use facts::{DesignFacts, leave, of_front};
+pub use table::{holds, look_up};
 
 /// Default widths of the panels, points.
 const TABLE_WIDTH_PT: f32 = 336.0;
@@ -81,6 +83,9 @@ pub fn show(
                 scrolled(ui, |ui| {
                     bars::show(ui, session, facts, view_state);
                     front::show(ui, facts, view_state, commands);
+                    if drawing.is_some() {
+                        measures::show(ui, session, facts, &p);
+                    }
                     payload::show(ui, facts, session.scenario().machine.spec().payload.mass, &p);
                     elsewhere(ui, session, view_state, commands);
                 });

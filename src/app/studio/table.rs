@@ -7,6 +7,7 @@ use crate::theme::{bold, colour, plain};
 use crate::widgets::{NumberRow, heading, name, send, tip_of, undoable_edit};
 use crate::{Command, ViewState, fit, place};
 use stillbase_mechanics::balance::ParameterBounds;
+use stillbase_mechanics::machine::MachineSpec;
 use stillbase_picture::scene::options::Handle;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::design::{DesignBrief, length_edit};
@@ -113,7 +114,8 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
 fn details(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
     let links = &session.scenario().machine.spec().links;
     let id = ui.scope_id().with("link in detail");
-    let mut at = ui.data(|data| data.get_temp::<usize>(id)).unwrap_or_default().min(links.len() - 1);
+    let at = ui.data(|data| data.get_temp::<usize>(id)).unwrap_or_default();
+    let mut at = sought_link(ui, session.scenario().machine.spec()).unwrap_or(at).min(links.len() - 1);
     ui.horizontal(|ui| {
         let words = |i: usize| format!("link {}", links[i].name);
         let list = egui::ComboBox::from_id_salt("detail").selected_text(words(at)).width(62.0).show_ui(ui, |ui| {
@@ -136,12 +138,72 @@ fn details(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comma
             let label = of("inertia");
             let path = format!("link.{}.inertia", link.name);
             let response = NumberRow::of(&label, &path).with(5, 1e-4).number(ui, &mut inertia);
+            if ui.data(|data| data.get_temp::<String>(sought_id())).as_ref() == Some(&path) {
+                ui.data_mut(|data| data.remove_temp::<String>(sought_id()));
+                response.request_focus();
+            }
             send(commands, &[response], || Edit::at(&["link", &link.name, "inertia"], inertia));
             head(ui, p, "inertia");
         });
     });
     ui.data_mut(|data| data.insert_temp(id, at));
+    off_axis(ui, session, at, p, commands);
+    ui.data_mut(|data| data.remove_temp::<String>(sought_id()));
     parts::show(ui, &session.scenario().machine, at, p, commands);
+}
+
+/// Draws how far off its axis a link, counted from 0, and its counterweights have their centres.
+fn off_axis(ui: &mut Ui, session: &Session, at: usize, p: &Palette, commands: &mut Vec<Command>) {
+    let spec = session.scenario().machine.spec();
+    let (link, brief) = (&spec.links[at], &session.scenario().design);
+    let weights = spec.counterweights.iter().enumerate().filter(|(_, weight)| weight.link == link.name);
+    ui.horizontal_wrapped(|ui| {
+        head(ui, p, "off the axis: CM m");
+        let label = format!("centre of mass off the axis of link {}", link.name);
+        let path = format!("link.{}.com_normal", link.name);
+        let shown = NumberCell { label: &label, path: &path, decimals: 4, value: link.com_normal };
+        number(ui, shown, brief, p, commands, |x| Edit::at(&["link", &link.name, "com_normal"], x));
+        for (n, weight) in weights {
+            head(ui, p, "disc m");
+            let place = (n + 1).to_string();
+            let label = format!("counterweight {place} off the axis of link {}", link.name);
+            let path = format!("counterweight.{place}.across");
+            let shown = NumberCell { label: &label, path: &path, decimals: 4, value: weight.across };
+            number(ui, shown, brief, p, commands, |x| Edit::at(&["counterweight", &place, "across"], x));
+        }
+    });
+}
+
+/// Whether the table holds the row of a setting, by its path.
+pub fn holds(path: &str) -> bool {
+    let mut words = path.split('.');
+    let (kind, key) = (words.next(), words.next_back());
+    match kind {
+        Some("link") => matches!(key, Some("mass" | "com" | "com_normal" | "inertia")),
+        Some("counterweight") => matches!(key, Some("mass" | "at" | "across")),
+        _ => false,
+    }
+}
+
+/// Key under which egui stores the setting that the table has to show in the next pass.
+fn sought_id() -> egui::Id {
+    egui::Id::unique("design setting sought")
+}
+
+/// Shows the row of a setting in the next pass: its link in detail, and its number with the keyboard's focus.
+pub fn look_up(ctx: &egui::Context, path: &str) {
+    ctx.data_mut(|data| data.insert_temp(sought_id(), path.to_owned()));
+}
+
+/// Returns the link of the setting that is to be shown, if there is one.
+fn sought_link(ui: &Ui, spec: &MachineSpec) -> Option<usize> {
+    let path = ui.data(|data| data.get_temp::<String>(sought_id()))?;
+    let of = path.split('.').nth(1)?;
+    let link = match path.starts_with("counterweight.") {
+        true => spec.counterweights.get(of.parse::<usize>().ok()?.checked_sub(1)?)?.link.as_str(),
+        false => of,
+    };
+    spec.links.iter().position(|own| own.name == link)
 }
 
 /// Draws the checkbox that keeps a link unchanged, both when the balance is kept and when counterweights are placed.
@@ -198,6 +260,11 @@ fn number(
         let mut value = shown.value;
         let row = NumberRow::of(shown.label, shown.path).with(shown.decimals, 0.002);
         let response = row.number(ui, &mut value);
+        if ui.data(|data| data.get_temp::<String>(sought_id())).as_deref() == Some(shown.path) {
+            ui.data_mut(|data| data.remove_temp::<String>(sought_id()));
+            response.request_focus();
+            response.scroll_to_me(Some(Align::Center));
+        }
         holding(ui, &response, shown, brief.hold.get(shown.path).copied(), p, commands);
         send(commands, &[response], || edit(value));
     });

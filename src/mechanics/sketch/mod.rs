@@ -17,13 +17,14 @@
 mod apply;
 mod body;
 mod classes;
+mod division;
 mod drawing;
 mod emit;
-mod division;
 mod ends;
 mod graph;
 mod joining;
 mod lengths;
+mod limits;
 mod loops;
 mod mends;
 mod missing;
@@ -43,6 +44,7 @@ mod valid;
 
 pub use body::Body;
 pub use drawing::{Bar, BarId, EndEffector, Motor, Pin, PinId, Place, Sketch};
+pub use limits::LimitArc;
 pub use loops::{LoopShape, LoopState};
 pub use mends::Mend;
 pub use missing::{Lack, Missing};
