@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 
 use egui::{Align, ComboBox, Layout, RichText, Ui};
 
+use super::hand::typed;
 use super::{Pen, SketchFacts, draw};
 use crate::Command;
 use crate::theme::{colour, plain};
@@ -63,7 +64,7 @@ pub fn show(ui: &mut Ui, facts: &SketchFacts, pen: &Pen, p: &Palette, commands: 
     row("angle from x", "rad", 1e-2, -4.0..=4.0).show(ui, p, &mut numbers.radians);
     if adds {
         let to = sketch.at(numbers.from) + unit(numbers.radians) * numbers.metres;
-        let (from, to) = (BarEnd::pin(numbers.from), BarEnd::At([to.re, to.im]));
+        let (from, to) = (BarEnd::pin(numbers.from), typed(sketch, [to.re, to.im]).end());
         draw(sketch, SketchStep::Bar { from, to, name: None }, commands);
     }
     ui.data_mut(|data| data.insert_temp(id, numbers));

@@ -7,7 +7,7 @@ use super::pen::{Drag, Pen, PenTool, Start};
 use super::{SketchFacts, draw};
 use crate::Command;
 use stillbase_mechanics::planar::{Vector, unit};
-use stillbase_mechanics::sketch::{LimitArc, Onto, PinId, SketchStep, Snap, SnapOptions, snap};
+use stillbase_mechanics::sketch::{LimitArc, Onto, PinId, Sketch, SketchStep, Snap, SnapOptions, snap};
 use stillbase_picture::paint::SceneViewport;
 use stillbase_picture::scene::sketching::{DrawnArc, GRID_M, Rubber, SketchItem, metres_per_px, pick};
 
@@ -22,6 +22,14 @@ const LIMIT_STEP_RAD: f64 = std::f64::consts::PI / 180.0;
 const TYPED_SNAP_M: f64 = 1e-6;
 /// Shortest bar that is drawn, m.
 const SHORTEST_M: f64 = 1e-3;
+
+/// Returns where a typed place puts the end of a bar: on the pin or the bar that is there, m.
+pub fn typed(sketch: &Sketch, to: [f64; 2]) -> Snap {
+    let options = SnapOptions { grid: 0.0, angle: 0.0, radius: TYPED_SNAP_M };
+    let caught = snap(sketch, None, to, &options);
+    let onto = if matches!(caught.onto, Onto::Pin(_) | Onto::Bar { .. }) { caught.onto } else { Onto::Free };
+    Snap { point: to, onto, ..caught }
+}
 
 /// The pointer over a drawing.
 pub struct Hand<'a> {
@@ -149,10 +157,7 @@ impl Hand<'_> {
         let length = metres.or(at_pointer.map(|end| end.length))?;
         let angle = radians.or(at_pointer.map(|end| end.angle)).unwrap_or_default();
         let to = Vector::new(start.at[0], start.at[1]) + unit(angle) * length;
-        let options = SnapOptions { grid: 0.0, angle: 0.0, radius: TYPED_SNAP_M };
-        let caught = snap(&self.facts.sketch, None, [to.re, to.im], &options);
-        let onto = if matches!(caught.onto, Onto::Pin(_) | Onto::Bar { .. }) { caught.onto } else { Onto::Free };
-        Some(Snap { point: [to.re, to.im], onto, length, angle })
+        Some(Snap { length, angle, ..typed(&self.facts.sketch, [to.re, to.im]) })
     }
 
     /// Chooses things, and drags pins and limits.
