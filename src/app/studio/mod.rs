@@ -13,6 +13,7 @@ mod other_fronts;
 mod part_shape;
 mod parts;
 mod payload;
+mod sought;
 mod table;
 mod tabs;
 mod terms;
@@ -29,7 +30,7 @@ use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Session;
 
 pub use facts::{DesignFacts, leave, of_front};
-pub use table::{holds, look_up};
+pub use sought::{holds, look_up};
 
 /// Default widths of the panels, points.
 const TABLE_WIDTH_PT: f32 = 336.0;

@@ -7,7 +7,6 @@ use crate::theme::{bold, colour, plain};
 use crate::widgets::{NumberRow, heading, name, send, tip_of, undoable_edit};
 use crate::{Command, ViewState, fit, place};
 use stillbase_mechanics::balance::ParameterBounds;
-use stillbase_mechanics::machine::MachineSpec;
 use stillbase_picture::scene::options::Handle;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::design::{DesignBrief, length_edit};
@@ -15,7 +14,7 @@ use stillbase_session::scenario::{TaskChange, Value, to_value};
 use stillbase_session::{Edit, Session};
 use stillbase_settings::change::DEFAULT_WORD;
 
-use super::parts;
+use super::{parts, sought};
 
 /// Width of the column of names, width of a column of numbers, gap between columns, and height of a row, points.
 const NAME_WIDTH_PT: f32 = 34.0;
@@ -115,7 +114,7 @@ fn details(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comma
     let links = &session.scenario().machine.spec().links;
     let id = ui.scope_id().with("link in detail");
     let at = ui.data(|data| data.get_temp::<usize>(id)).unwrap_or_default();
-    let mut at = sought_link(ui, session.scenario().machine.spec()).unwrap_or(at).min(links.len() - 1);
+    let mut at = sought::link(ui, session.scenario().machine.spec()).unwrap_or(at).min(links.len() - 1);
     ui.horizontal(|ui| {
         let words = |i: usize| format!("link {}", links[i].name);
         let list = egui::ComboBox::from_id_salt("detail").selected_text(words(at)).width(62.0).show_ui(ui, |ui| {
@@ -138,17 +137,14 @@ fn details(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comma
             let label = of("inertia");
             let path = format!("link.{}.inertia", link.name);
             let response = NumberRow::of(&label, &path).with(5, 1e-4).number(ui, &mut inertia);
-            if ui.data(|data| data.get_temp::<String>(sought_id())).as_ref() == Some(&path) {
-                ui.data_mut(|data| data.remove_temp::<String>(sought_id()));
-                response.request_focus();
-            }
+            sought::found(ui, &response, &path);
             send(commands, &[response], || Edit::at(&["link", &link.name, "inertia"], inertia));
             head(ui, p, "inertia");
         });
     });
     ui.data_mut(|data| data.insert_temp(id, at));
     off_axis(ui, session, at, p, commands);
-    ui.data_mut(|data| data.remove_temp::<String>(sought_id()));
+    sought::give_up(ui);
     parts::show(ui, &session.scenario().machine, at, p, commands);
 }
 
@@ -172,38 +168,6 @@ fn off_axis(ui: &mut Ui, session: &Session, at: usize, p: &Palette, commands: &m
             number(ui, shown, brief, p, commands, |x| Edit::at(&["counterweight", &place, "across"], x));
         }
     });
-}
-
-/// Whether the table holds the row of a setting, by its path.
-pub fn holds(path: &str) -> bool {
-    let mut words = path.split('.');
-    let (kind, key) = (words.next(), words.next_back());
-    match kind {
-        Some("link") => matches!(key, Some("mass" | "com" | "com_normal" | "inertia")),
-        Some("counterweight") => matches!(key, Some("mass" | "at" | "across")),
-        _ => false,
-    }
-}
-
-/// Key under which egui stores the setting that the table has to show in the next pass.
-fn sought_id() -> egui::Id {
-    egui::Id::unique("design setting sought")
-}
-
-/// Shows the row of a setting in the next pass: its link in detail, and its number with the keyboard's focus.
-pub fn look_up(ctx: &egui::Context, path: &str) {
-    ctx.data_mut(|data| data.insert_temp(sought_id(), path.to_owned()));
-}
-
-/// Returns the link of the setting that is to be shown, if there is one.
-fn sought_link(ui: &Ui, spec: &MachineSpec) -> Option<usize> {
-    let path = ui.data(|data| data.get_temp::<String>(sought_id()))?;
-    let of = path.split('.').nth(1)?;
-    let link = match path.starts_with("counterweight.") {
-        true => spec.counterweights.get(of.parse::<usize>().ok()?.checked_sub(1)?)?.link.as_str(),
-        false => of,
-    };
-    spec.links.iter().position(|own| own.name == link)
 }
 
 /// Draws the checkbox that keeps a link unchanged, both when the balance is kept and when counterweights are placed.
@@ -260,11 +224,7 @@ fn number(
         let mut value = shown.value;
         let row = NumberRow::of(shown.label, shown.path).with(shown.decimals, 0.002);
         let response = row.number(ui, &mut value);
-        if ui.data(|data| data.get_temp::<String>(sought_id())).as_deref() == Some(shown.path) {
-            ui.data_mut(|data| data.remove_temp::<String>(sought_id()));
-            response.request_focus();
-            response.scroll_to_me(Some(Align::Center));
-        }
+        sought::found(ui, &response, shown.path);
         holding(ui, &response, shown, brief.hold.get(shown.path).copied(), p, commands);
         send(commands, &[response], || edit(value));
     });
