@@ -268,6 +268,8 @@ pub enum WindowCommand {
     Seek(Objective),
     /// Add or remove Pareto fronts that are drawn beside that of the machine being designed.
     Fronts(FrontsCommand),
+    /// Take a file that is not there any more off the list of recent files.
+    Forget(PathBuf),
     /// Move the keyboard focus to the search for signals.
     LookFor,
     /// Copy the command that runs the scenario on display.

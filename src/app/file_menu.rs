@@ -6,36 +6,17 @@ use egui::{Button, Label, RichText, Sense, Ui, vec2};
 
 use super::actions::{ACTIONS, Action, ActionGroup, shortcut_label};
 use super::fit::{fitted, fitted_path};
-use super::gallery::portrait_of;
+use super::own_files::own_files;
 use super::theme::{colour, plain};
 use super::widgets::name;
 use super::{Command, SessionCommand, ViewState};
-use stillbase_files::stamp::FileStamp;
-use stillbase_picture::paint::portrait::Portrait;
 use stillbase_picture::scene::palette::Palette;
-use stillbase_query::{Queries, QuickQuery, QuickWork};
+use stillbase_query::Queries;
 use stillbase_session::Session;
 
 /// Width of the menu, and size of the picture of a recent file, points.
 const WIDTH_PT: f32 = 330.0;
 const PICTURE_PT: egui::Vec2 = vec2(64.0, 40.0);
-
-/// Query for the pictures of recent files, each file with its time of change and size. `None` for one that cannot be
-/// opened.
-struct RecentPortraits;
-
-impl QuickQuery for RecentPortraits {
-    type Input = Vec<(PathBuf, Option<FileStamp>)>;
-    type Answer = Vec<Option<Portrait>>;
-
-    fn answer(files: &Self::Input) -> Self::Answer {
-        let picture = |path: &PathBuf| {
-            let found = stillbase_files::scenario(&path.display().to_string()).ok()?;
-            Some(portrait_of(&found.scenario))
-        };
-        files.iter().map(|(path, _)| picture(path)).collect()
-    }
-}
 
 /// Draws the button of the menu, and the menu while it is open.
 pub fn show(
@@ -91,16 +72,16 @@ fn recent_files(ui: &mut Ui, p: &Palette, queries: &Queries, recent: &[PathBuf])
     if recent.is_empty() {
         ui.add(Label::new(RichText::new("no file was opened or saved yet").color(colour(p.dim))));
     }
-    let files: Vec<_> = recent.iter().map(|path| (path.clone(), FileStamp::of(path))).collect();
-    let portraits = queries.ask_in_background::<QuickWork<RecentPortraits>>(&files).last;
-    for (i, path) in recent.iter().enumerate() {
+    let files = own_files(queries, recent, false);
+    let of = |path: &PathBuf| files.as_ref().and_then(|all| all.iter().find(|file| file.path == *path));
+    for path in recent {
         let (rect, response) = ui.allocate_exact_size(vec2(WIDTH_PT, PICTURE_PT.y + 8.0), Sense::click());
         if response.hovered() || response.has_focus() {
             ui.painter().rect_filled(rect, 6.0, colour(p.line));
         }
         let picture = egui::Rect::from_min_size(rect.min + vec2(6.0, 4.0), PICTURE_PT);
-        if let Some(portrait) = portraits.as_ref().and_then(|all| all.get(i)?.as_ref()) {
-            portrait.paint(ui.painter(), picture, p);
+        if let Some(Ok(content)) = of(path).map(|file| &file.content) {
+            content.portrait.paint(ui.painter(), picture, p);
         }
         let room = rect.right() - picture.right() - 18.0;
         let text = |ui: &Ui, y: f32, words: &str, font, ink| {

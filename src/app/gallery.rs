@@ -1,9 +1,11 @@
 //! The built-in machines and scenarios as pictures to choose from.
 
+use std::path::PathBuf;
 use std::sync::LazyLock;
 
 use egui::{Align2, Key, RichText, Sense, Stroke, TextStyle, TextWrapMode, Ui, WidgetText, vec2};
 
+use super::own_files::{OwnFile, own_files};
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use stillbase_mechanics::machine::{self, Machine};
@@ -38,22 +40,94 @@ pub enum Choosable {
     Machine(&'static Machine),
     /// A new drawing.
     New(Template),
+    /// A file of the user.
+    File(PathBuf),
+    /// A file that is not there any more, to be taken off the list.
+    Forget(PathBuf),
 }
 
 /// Pictures of the drawings from which a person starts.
 static TEMPLATES: LazyLock<Vec<Thumbnail>> =
     LazyLock::new(|| Template::ALL.into_iter().map(|template| Thumbnail::of(template.sketch())).collect());
 
-/// Draws the drawings from which a person starts, and the built-in machines; returns the choice of the user.
-pub fn machines(ui: &mut Ui, present: &Machine, p: &Palette) -> Option<Choosable> {
+/// Draws the drawings from which a person starts, the user's own files, and the built-in machines; returns the choice
+/// of the user.
+pub fn machines(
+    ui: &mut Ui,
+    present: &Machine,
+    (queries, recent): (&Queries, &[PathBuf]),
+    p: &Palette,
+) -> Option<Choosable> {
     let new = templates(ui, p).map(Choosable::New);
-    new.or(builtins(ui, present, p).map(Choosable::Machine))
+    let own = own(ui, queries, recent, p);
+    title(ui, "BUILT IN", p);
+    new.or(own).or(builtins(ui, present, p).map(Choosable::Machine))
+}
+
+fn title(ui: &mut Ui, words: &str, p: &Palette) {
+    ui.label(RichText::new(words).font(bold(11.0)).color(colour(p.dim)));
+}
+
+/// Draws the user's own files; nothing before the first is opened or saved.
+fn own(ui: &mut Ui, queries: &Queries, recent: &[PathBuf], p: &Palette) -> Option<Choosable> {
+    if recent.is_empty() {
+        return None;
+    }
+    title(ui, "MY MACHINES", p);
+    let Some(files) = own_files(queries, recent, true) else {
+        ui.label(RichText::new("reading them …").font(plain(12.0)).color(colour(p.dim)));
+        return None;
+    };
+    let mut chosen = None;
+    for row in files.chunks(columns(ui)) {
+        ui.horizontal(|ui| {
+            for file in row {
+                if let Some(choice) = own_card(ui, file, p) {
+                    chosen = Some(choice);
+                    ui.close();
+                }
+            }
+        });
+    }
+    chosen
+}
+
+fn own_card(ui: &mut Ui, file: &OwnFile, p: &Palette) -> Option<Choosable> {
+    let name = file.name();
+    let folder = file.path.parent().map_or_else(String::new, |folder| folder.display().to_string());
+    let about = match &file.content {
+        Ok(content) if content.summary.is_empty() => folder,
+        Ok(content) => format!("{}\n{folder}", content.summary),
+        Err(why) => format!("{why}\n{folder}"),
+    };
+    let content = file.content.as_ref();
+    let second = content.map_or_else(
+        |_| if file.path.exists() { String::new() } else { "click takes it off".to_owned() },
+        |content| match (content.is_machine, content.drives) {
+            (false, _) => name.clone(),
+            (true, 1) => "1 drive".to_owned(),
+            (true, drives) => format!("{drives} drives"),
+        },
+    );
+    let choice = Choice {
+        title: content.map_or(name.as_str(), |content| content.title.as_str()),
+        second,
+        summary: &about,
+        portrait: content.ok().map(|content| &content.portrait),
+        is_present: false,
+    };
+    let response = card(ui, p, &choice).on_hover_text(file.path.display().to_string());
+    let forgets = file.is_recent && !file.path.exists();
+    response.clicked().then(|| match forgets {
+        true => Choosable::Forget(file.path.clone()),
+        false => Choosable::File(file.path.clone()),
+    })
 }
 
 /// Draws a row of drawings from which a person starts; returns the one that the user has chosen.
 fn templates(ui: &mut Ui, p: &Palette) -> Option<Template> {
     let mut chosen = None;
-    ui.label(RichText::new("NEW").font(bold(11.0)).color(colour(p.dim)));
+    title(ui, "NEW", p);
     let width = columns(ui) as f32 * (CARD_SIZE.x + GAP) - GAP;
     let per_row = (((width + GAP) / (LEAST_NEW_WIDTH + GAP)).floor() as usize).clamp(1, Template::ALL.len());
     let size = vec2(((width + GAP) / per_row as f32 - GAP).floor(), NEW_HEIGHT);
@@ -69,7 +143,6 @@ fn templates(ui: &mut Ui, p: &Palette) -> Option<Template> {
             }
         });
     }
-    ui.label(RichText::new("BUILT IN").font(bold(11.0)).color(colour(p.dim)));
     chosen
 }
 

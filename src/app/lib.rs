@@ -41,6 +41,7 @@ mod notation;
 mod notes;
 mod open;
 mod order;
+mod own_files;
 mod pace;
 mod pair;
 mod path;

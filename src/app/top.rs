@@ -14,7 +14,8 @@ use super::icon::{Icon, IconButton};
 use super::marks::Marks;
 use super::theme::{bold, colour, plain};
 use super::{
-    Command, FileDialog, FilePurpose, SessionCommand, Switch, ViewChange, ViewState, file_menu, fit, gallery, timeline,
+    Command, FileDialog, FilePurpose, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, file_menu, fit,
+    gallery, timeline,
 };
 use stillbase_mechanics::machine::Machine;
 use stillbase_picture::scene::palette::Theme;
@@ -42,7 +43,7 @@ pub fn show(
                 ui.add_space(2.0);
             }
             file_menu::show(ui, session, facts.queries, recent, view_state, commands);
-            machines(ui, session, facts.machine_differs, view_state, commands);
+            machines(ui, session, (facts, recent), view_state, commands);
             scenarios(ui, session, facts.queries, facts.work_differs, view_state, commands);
             ui.add_space(8.0);
             transport(ui, session, view_state, commands);
@@ -60,7 +61,14 @@ fn is_narrow(ui: &Ui) -> bool {
     ui.ctx().content_rect().width() < 1200.0
 }
 
-fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewState, commands: &mut Vec<Command>) {
+fn machines(
+    ui: &mut Ui,
+    session: &Session,
+    (facts, recent): (&ScenarioFacts<'_>, &[PathBuf]),
+    view_state: &ViewState,
+    commands: &mut Vec<Command>,
+) {
+    let changed = facts.machine_differs;
     let present = &session.scenario().machine;
     // While a drawing is incomplete, the machine is another one.
     let drawn = session.scenario().sketch.as_ref().map(|sketch| sketch.name.as_str());
@@ -77,13 +85,16 @@ fn machines(ui: &mut Ui, session: &Session, changed: bool, view_state: &ViewStat
         .selected_text(chosen_text(ui, shown, changed, width))
         .width(width)
         .height(gallery::room(ui));
-    let response = combo.show_ui(ui, |ui| match gallery::machines(ui, present, &view_state.palette()) {
-        Some(Choosable::Machine(machine)) => {
-            commands.push(SessionCommand::Open(Box::new(with_machine(session, machine))).into());
-        }
-        Some(Choosable::New(template)) => commands.push(SessionCommand::NewDrawing(template).into()),
-        None => {}
-    });
+    let response =
+        combo.show_ui(ui, |ui| match gallery::machines(ui, present, (facts.queries, recent), &view_state.palette()) {
+            Some(Choosable::Machine(machine)) => {
+                commands.push(SessionCommand::Open(Box::new(with_machine(session, machine))).into());
+            }
+            Some(Choosable::New(template)) => commands.push(SessionCommand::NewDrawing(template).into()),
+            Some(Choosable::File(file)) => commands.push(SessionCommand::OpenFile(file).into()),
+            Some(Choosable::Forget(file)) => commands.push(Command::Window(WindowCommand::Forget(file))),
+            None => {}
+        });
     name(&response.response.on_hover_text(format!("{current}\n{tip}")), "Machine");
 }
 

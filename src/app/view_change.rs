@@ -2,7 +2,7 @@
 
 use super::{
     BottomPanel, Command, Finder, Framing, GuideStep, GuideView, Layout, PenTool, StatusMessage, Switch, Tool,
-    ViewChange, ViewState,
+    ViewChange, ViewState, studio,
 };
 use stillbase_picture::scene::Measure;
 use stillbase_picture::scene::views::ViewKind;
@@ -195,7 +195,7 @@ impl ViewState {
             }
             ViewChange::LookUp(path) => {
                 self.arrangement.now_mut().side.shown = true;
-                if self.view == ViewKind::Design {
+                if self.view == ViewKind::Design && !studio::holds(&path) {
                     self.view = ViewKind::Flat;
                 }
                 self.looked_up = Some(path);

@@ -5,11 +5,15 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use stillbase_app::{
-    AppState, Command, ComparisonCommand, PictureOrder, SessionCommand, Shot, Switch, ViewChange, WindowCommand,
+    AppState, Command, ComparisonCommand, PenChange, PictureOrder, SessionCommand, Shot, Switch, ViewChange,
+    WindowCommand,
 };
 use stillbase_files::write_new;
+use stillbase_mechanics::machine;
+use stillbase_mechanics::sketch::Sketch;
 use stillbase_picture::render::offscreen::Picture;
 use stillbase_picture::scene::palette::Theme;
+use stillbase_picture::scene::sketching::SketchItem;
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_session::Edit;
 use stillbase_session::scenario::{TaskChange, Value};
@@ -52,12 +56,13 @@ impl Shown {
 }
 
 /// The pictures: name, scenario, time in s, and content.
-const PICTURES: [(&str, &str, f64, Shown); 7] = [
+const PICTURES: [(&str, &str, f64, Shown); 8] = [
     ("window", "case-3", 0.62, Shown::Window(Vec::new)),
     ("spacecraft", "spacecraft", 0.75, Shown::Window(Vec::new)),
     ("compare", "case-1", 0.62, Shown::Window(side_by_side)),
     ("tolerances", "case-3", 0.62, Shown::Window(study)),
     ("design", "nine-link-bare", 0.62, Shown::Window(designed)),
+    ("draw", "case-3", 0.62, Shown::Window(drawn)),
     ("tower", "case-3", 0.62, Shown::Scene(ViewKind::Tower)),
     ("joints", "case-1", 0.5, Shown::Scene(ViewKind::Joints)),
 ];
@@ -107,6 +112,16 @@ fn designed() -> Vec<Command> {
         Command::View(ViewChange::Kind(ViewKind::Design)),
         Command::Session(SessionCommand::Take(16)),
         Command::Session(SessionCommand::EndGesture),
+    ]
+}
+
+/// Returns commands that draw the machine, with the card of the bar that carries the forearm.
+fn drawn() -> Vec<Command> {
+    let machine = machine::builtin("nine-link");
+    let bar = machine.and_then(|machine| Sketch::of(machine, None).bars.get(4).map(|bar| bar.id));
+    vec![
+        Command::View(ViewChange::Switch(Switch::Sketching, true)),
+        Command::View(ViewChange::Pen(PenChange::Choose(bar.map(SketchItem::Bar)))),
     ]
 }
 

@@ -22,6 +22,7 @@ pages! {
     planning: "planning.md",
     plants: "plants.md",
     inside: "inside.md",
+    draw: "draw.md",
     design: "design.md",
     elsewhere: "elsewhere.md",
     tolerances: "tolerances.md",

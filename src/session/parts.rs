@@ -1,6 +1,8 @@
 //! Edits of the parts of links: one more, one less, another material, and typed numbers that follow from parts again.
 
-use stillbase_mechanics::machine::{LinkNumber, Lump, MATERIALS, Machine, MachineSpec, Part, PartSource};
+use stillbase_mechanics::machine::{
+    Hole, LinkNumber, Lump, MATERIALS, Machine, MachineSpec, Material, Part, PartSource,
+};
 use stillbase_mechanics::machine::{PlaceOnLink, Shape};
 use stillbase_settings::change::{DEFAULT_WORD, join, single_change};
 use toml::{Table, Value};
@@ -13,14 +15,16 @@ const HEIGHT_M: f64 = 0.02;
 const THICKNESS_M: f64 = 0.006;
 const WALL_M: f64 = 0.002;
 const LUMP_KG: f64 = 0.1;
+/// Usual diameter of a new hole, m, and where along a bar one is tried, as shares of the bar.
+const HOLE_M: f64 = 0.006;
+const HOLE_SHARES: [f64; 7] = [0.5, 0.25, 0.75, 0.125, 0.875, 0.375, 0.625];
 
-/// Returns the edit that adds a part of a shape to a link, counted from 0, from its root to its tip.
-pub fn add_part(machine: &Machine, link: usize, shape: Shape) -> Edit {
-    let length = machine.resolved_links()[link].length;
+/// Returns a new part of a shape from the root to the tip of a link of a length, m.
+pub fn new_part(link: &str, shape: Shape, length: f64) -> Part {
     let given = |key: &str, length: f64| shape.lengths().contains(&key).then_some(length);
     let half = 0.5 * WIDTH_M;
-    let part = Part {
-        link: machine.spec().links[link].name.clone(),
+    Part {
+        link: link.to_owned(),
         name: String::new(),
         shape,
         from: PlaceOnLink::Named("root".into()),
@@ -38,10 +42,27 @@ pub fn add_part(machine: &Machine, link: usize, shape: Shape) -> Edit {
             _ => Vec::new(),
         },
         holes: Vec::new(),
-    };
+    }
+}
+
+/// Returns the edit that adds a part of a shape to a link, counted from 0, from its root to its tip.
+pub fn add_part(machine: &Machine, link: usize, shape: Shape) -> Edit {
+    let (name, length) = (&machine.spec().links[link].name, machine.resolved_links()[link].length);
     let mut parts = machine.spec().parts.clone();
-    parts.push(part);
+    parts.push(new_part(name, shape, length));
     Edit::Set { change: list("part", &parts) }
+}
+
+/// Sets a length of a part by its key, m.
+pub fn set_length(part: &mut Part, key: &str, metres: f64) {
+    let own = match key {
+        "width" => &mut part.width,
+        "thickness" => &mut part.thickness,
+        "diameter" => &mut part.diameter,
+        "height" => &mut part.height,
+        _ => &mut part.wall,
+    };
+    *own = Some(metres);
 }
 
 /// Returns the edit that adds a lump to the tip of a link, counted from 0.
@@ -82,13 +103,41 @@ pub fn remove(machine: &Machine, source: PartSource) -> Edit {
     Edit::Set { change: join(change, &of_link(&link, typed(&spec))) }
 }
 
-/// Returns the edit that makes a part of another material.
-pub fn set_material(machine: &Machine, part: usize, material: &str) -> Edit {
+/// Returns the edit that changes a part, counted from 0: its material, its name, its ends, its holes or its corners.
+pub fn change_part(machine: &Machine, part: usize, change: impl FnOnce(&mut Part)) -> Edit {
     let mut parts = machine.spec().parts.clone();
     if let Some(part) = parts.get_mut(part) {
-        material.clone_into(&mut part.material);
+        change(part);
     }
     Edit::Set { change: list("part", &parts) }
+}
+
+/// Returns a new hole for a part, counted from 0: the first of some places along it that other holes leave free. `None`
+/// for a part that does not exist.
+pub fn hole_of(machine: &Machine, part: usize) -> Option<Hole> {
+    let own = machine.spec().parts.get(part)?;
+    let body = machine.part_bodies().iter().find(|body| body.source == PartSource::Part(part))?;
+    let [from, to] = body.ends;
+    let diameter = HOLE_M.min(0.4 * own.width.unwrap_or(f64::INFINITY));
+    let is_free = |x: &f64| {
+        let off = |hole: &Hole| (machine.place_on(&own.link, &hole.at).unwrap_or(f64::MAX) - x).hypot(hole.across);
+        own.holes.iter().all(|hole| off(hole) > 0.5 * (hole.diameter + diameter))
+    };
+    let places = HOLE_SHARES.map(|share| from + share * (to - from));
+    let places: &[f64] = if own.shape == Shape::Plate { &[body.body.at] } else { &places };
+    let at = places.iter().copied().find(is_free).unwrap_or(places[0]);
+    let across = if own.shape == Shape::Plate { body.body.across - own.across } else { 0.0 };
+    let rounded = |x: f64| (1e4 * x).round() / 1e4;
+    Some(Hole { at: PlaceOnLink::Metres(rounded(at)), across: rounded(across), diameter })
+}
+
+/// Returns the edit that names a lump, counted from 0.
+pub fn name_lump(machine: &Machine, lump: usize, name: String) -> Edit {
+    let mut lumps = machine.spec().lumps.clone();
+    if let Some(lump) = lumps.get_mut(lump) {
+        lump.name = name;
+    }
+    Edit::Set { change: list("lump", &lumps) }
 }
 
 /// Returns the edit after which numbers of a link, counted from 0, follow from its parts.
@@ -114,7 +163,12 @@ pub fn set_heights(machine: &Machine, heights: &Machine) -> Edit {
 
 /// Returns the names of all materials of a machine, the built-in ones first.
 pub fn materials(machine: &Machine) -> Vec<&str> {
-    let own = machine.spec().materials.iter().map(|material| material.name.as_str());
+    materials_beside(&machine.spec().materials)
+}
+
+/// Returns the names of the built-in materials, and of those beside them.
+pub fn materials_beside(own: &[Material]) -> Vec<&str> {
+    let own = own.iter().map(|material| material.name.as_str());
     MATERIALS.iter().map(|(name, _)| *name).chain(own).collect()
 }
 

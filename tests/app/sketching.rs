@@ -1,11 +1,13 @@
 //! A machine is drawn: a template, bars by the pointer and by numbers, drives, what is missing.
 
 use egui::{Key, Modifiers, Pos2};
-use egui_kittest::kittest::Queryable as _;
-use stillbase::app::{PenTool, SessionCommand};
-use stillbase::mechanics::sketch::{Sketch, Template, resolve};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use stillbase::app::{PenTool, SessionCommand, ViewChange};
+use stillbase::mechanics::sketch::{BarEnd, Sketch, SketchStep, Template, resolve};
 use stillbase::picture::scene::palette::Theme;
+use stillbase::picture::scene::sketching::DrawnArc;
 use stillbase::picture::scene::views::ViewKind;
+use stillbase::session::Edit;
 
 use super::{Window, drag, seen, session, window};
 use crate::Test;
@@ -17,6 +19,12 @@ pub const TESTS: &[Test] = tests![
     what_is_missing_is_mended_by_buttons,
     a_refused_step_is_told_at_its_pin,
     a_machine_grows_from_nothing_by_the_pointer,
+    a_bar_is_made_of_a_section,
+    limits_are_dragged_at_their_arcs_and_typed,
+    a_pin_dropped_on_another_becomes_one_with_it,
+    the_balance_follows_the_pin_under_the_pointer,
+    a_bar_by_numbers_closes_a_loop_without_the_pointer,
+    numbers_off_the_axis_are_found_in_the_design_view,
 ];
 
 /// A window in which a template is drawn.
@@ -216,4 +224,199 @@ fn a_machine_grows_from_nothing_by_the_pointer() {
     let (old, new) = (sketch(&h), session(&h).scenario().machine.clone());
     assert_eq!(old.machine().as_ref(), Some(&new));
     assert!((tip(&h, 1) - pin).length() > 10.0);
+}
+
+/// Chooses a word of a list, by the label of the list.
+fn choose(h: &mut Window, list: &str, word: &str) {
+    h.get_by_label(list).click();
+    h.run_steps(3);
+    h.get_all_by_label(word).last().expect("in the list").click();
+    h.run_steps(5);
+}
+
+fn a_bar_is_made_of_a_section() {
+    let mut h = drawing(Template::SerialOfTwo, Theme::Dark);
+    let before = sketch(&h);
+    let (from, to) = (at(&h, 0.0, 0.0), tip(&h, 0));
+    click(&mut h, from + 0.5 * (to - from));
+    h.run_steps(3);
+    assert!(h.query_by_label_contains("kg, by a slender bar").is_some());
+    choose(&mut h, "section of bar 1", "tube");
+    choose(&mut h, "material of bar 1", "steel");
+    let made = sketch(&h);
+    assert_eq!((made.parts.len(), made.parts[0].material.as_str()), (1, "steel"));
+    assert!(h.query_by_label_contains("kg, by its parts").is_some());
+    let mass = made.body(&made.bars[0]).mass;
+    assert_eq!(session(&h).scenario().machine.links()[0].mass, mass);
+    assert!((mass - before.body(&before.bars[0]).mass).abs() > 0.01);
+    choose(&mut h, "section of bar 1", "no section");
+    assert_eq!(sketch(&h).body(&made.bars[0]), before.body(&before.bars[0]));
+    for _ in 0..3 {
+        h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        h.run_steps(4);
+    }
+    assert_eq!(sketch(&h), before);
+}
+
+/// Where the end of the first arc is on the screen.
+fn grip(h: &Window, end: usize) -> Pos2 {
+    let sketch = sketch(h);
+    let arcs = DrawnArc::all(&sketch);
+    let [x, y] = arcs[0].on(arcs[0].arc.range[end], 1.0);
+    at(h, x, y)
+}
+
+fn limits_are_dragged_at_their_arcs_and_typed() {
+    let mut h = drawing(Template::SerialOfTwo, Theme::Light);
+    let before = sketch(&h);
+    let limits = |h: &Window| {
+        let angle = sketch(h).angles[0].clone();
+        [angle.min.expect("limited"), angle.max.expect("limited")]
+    };
+    let [low, high] = limits(&h);
+    let (from, arc) = (grip(&h, 1), DrawnArc::all(&before).remove(0));
+    let [x, y] = arc.on(high - 0.5, 1.0);
+    let to = at(&h, x, y);
+    drag(&mut h, from, to);
+    h.run_steps(5);
+    let dragged = limits(&h);
+    assert!((dragged[1] - (high - 0.5)).abs() < 0.03 && dragged[0] == low, "{dragged:?}");
+    let degrees = dragged[1].to_degrees();
+    assert!((degrees - degrees.round()).abs() < 1e-9, "{degrees}");
+    assert_eq!(session(&h).scenario().machine.spec().angles[0].max, Some(dragged[1]));
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(5);
+    assert_eq!(sketch(&h), before, "one step");
+    // Without the pointer: off, and on again about the angle as it is drawn.
+    h.get_by_label("no limits of drive 2 from drive 1").click();
+    h.run_steps(5);
+    assert_eq!((sketch(&h).angles[0].min, DrawnArc::all(&sketch(&h)).len()), (None, 0));
+    h.get_by_label("limit the angle of drive 2 from drive 1").click();
+    h.run_steps(5);
+    let [low, high] = limits(&h);
+    let now = DrawnArc::all(&sketch(&h))[0].arc.now;
+    assert!(low < now && now < high && (high - low - 3.0).abs() < 0.1, "{low} {now} {high}");
+    // Esc gives up a drag.
+    let limited = sketch(&h);
+    let (from, to) = (grip(&h, 0), grip(&h, 0) + egui::vec2(20.0, 20.0));
+    h.hover_at(from);
+    h.step();
+    h.drag_at(from);
+    h.step();
+    h.hover_at(to);
+    h.run_steps(2);
+    h.key_press(Key::Escape);
+    h.run_steps(2);
+    h.drop_at(to);
+    h.run_steps(4);
+    assert_eq!(sketch(&h), limited);
+}
+
+fn a_pin_dropped_on_another_becomes_one_with_it() {
+    let mut h = drawing(Template::SerialOfTwo, Theme::Dark);
+    tool(&mut h, "draw: bar");
+    let (from, to) = (at(&h, 0.2, -0.05), at(&h, 0.3, 0.05));
+    drag(&mut h, from, to);
+    h.run_steps(4);
+    let loose = sketch(&h);
+    assert!(h.query_by_label_contains("bar 3 is not connected to the base").is_some());
+    tool(&mut h, "draw: move");
+    let (held, onto) = (loose.bars[2].root, loose.bars[1].tip);
+    let [from, to] = [held, onto].map(|pin| at(&h, loose.at(pin).re, loose.at(pin).im));
+    h.hover_at(from);
+    h.step();
+    h.drag_at(from);
+    h.step();
+    h.hover_at(to);
+    h.run_steps(3);
+    let pen = h.state().app_state().view_state().pen.clone().expect("drawing");
+    let drag = pen.drag.expect("under way");
+    assert!(matches!(drag.step, Some(SketchStep::Weld { .. })) && drag.onto.is_some(), "{drag:?}");
+    assert_eq!(sketch(&h), loose, "not before the release");
+    h.drop_at(to);
+    h.run_steps(5);
+    let welded = sketch(&h);
+    assert_eq!((welded.pins.len(), welded.bars[2].root), (loose.pins.len() - 1, onto));
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(5);
+    assert_eq!(sketch(&h), loose);
+}
+
+fn the_balance_follows_the_pin_under_the_pointer() {
+    let mut h = drawing(Template::SerialOfTwo, Theme::Dark);
+    h.run_steps(4);
+    let reads = |h: &Window, words: &str| {
+        let node = h.query_all_by_label_contains(words).next()?;
+        let node = node.accesskit_node();
+        node.value().or_else(|| node.label())
+    };
+    let row = |h: &Window| reads(h, "g₁, no force").expect("a row of the balance");
+    let (before, machine) = (row(&h), session(&h).scenario().machine.clone());
+    let pin = tip(&h, 0);
+    h.hover_at(pin);
+    h.step();
+    h.drag_at(pin);
+    h.step();
+    h.hover_at(pin + egui::vec2(90.0, -60.0));
+    h.run_steps(4);
+    assert_ne!(row(&h), before, "while the pin is held");
+    assert_eq!(session(&h).scenario().machine, machine, "the session waits for the release");
+    let during = row(&h);
+    h.drop_at(pin + egui::vec2(90.0, -60.0));
+    h.run_steps(5);
+    assert_eq!(row(&h), during);
+    assert_ne!(session(&h).scenario().machine, machine);
+}
+
+fn a_bar_by_numbers_closes_a_loop_without_the_pointer() {
+    let mut h = drawing(Template::Blank, Theme::Dark);
+    let bar = |h: &mut Window, from: BarEnd, to: BarEnd| {
+        let edit = Edit::Sketch(SketchStep::Bar { from, to, name: None });
+        h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(edit));
+        h.run_steps(3);
+    };
+    let base = BarEnd::pin(sketch(&h).base);
+    bar(&mut h, base, BarEnd::At([0.3, 0.0]));
+    bar(&mut h, base, BarEnd::At([0.0, 0.3]));
+    let arm = BarEnd::pin(sketch(&h).bars[0].tip);
+    bar(&mut h, arm, BarEnd::At([0.3, 0.3]));
+    // Its usual length and angle lead up from the pin that is chosen; here from the tip of the first arm.
+    h.get_by_label("new bar from").click();
+    h.run_steps(3);
+    let pin = sketch(&h).bars[1].tip;
+    h.get_all_by_label(&format!("pin {}", pin.0)).last().expect("in the list").click();
+    h.run_steps(3);
+    h.get_by_label("angle from x rad").click();
+    h.run_steps(2);
+    for key in [Key::Num0, Key::Enter] {
+        h.key_press(key);
+        if key == Key::Num0 {
+            h.event(egui::Event::Text("0".into()));
+        }
+        h.run_steps(2);
+    }
+    h.get_by_label("add the new bar").click();
+    h.run_steps(4);
+    let closed = sketch(&h);
+    assert_eq!((closed.bars.len(), closed.bars[3].tip), (4, closed.bars[2].tip), "on the pin that is there");
+    assert_eq!(resolve(&closed).loops.len(), 1);
+}
+
+fn numbers_off_the_axis_are_found_in_the_design_view() {
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    h.key_press(Key::D);
+    h.run_steps(5);
+    for (path, label) in [
+        ("link.5.com_normal", "centre of mass off the axis of link 5 m"),
+        ("link.7.inertia", "inertia of link 7 kg m²"),
+    ] {
+        h.state_mut().app_state_mut().carry_out(ViewChange::LookUp(path.to_owned()));
+        h.run_steps(4);
+        assert_eq!(h.state().app_state().view_state().view, ViewKind::Design, "{path}");
+        assert!(h.get_by_label(label).is_focused(), "{label}");
+    }
+    h.state_mut().app_state_mut().carry_out(ViewChange::LookUp("task.time".to_owned()));
+    h.run_steps(4);
+    assert_ne!(h.state().app_state().view_state().view, ViewKind::Design);
 }

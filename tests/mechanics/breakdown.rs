@@ -83,3 +83,18 @@ fn the_nine_links_bring_what_the_paper_writes() {
     assert!(breakdown.terms[..3].iter().all(|term| !term.balanced));
     assert!(Breakdown::of(builtin("nine-link").expect("built in")).terms.iter().all(|term| term.balanced));
 }
+
+/// The parts and lumps of a link bring together what the link brings.
+#[test]
+fn parts_bring_what_their_link_brings() {
+    let arm = stillbase::mechanics::machine::parse(include_str!("parts.toml"), "parts.toml").expect("an arm");
+    let breakdown = Breakdown::of(&arm);
+    for term in &breakdown.terms {
+        for (source, whole) in breakdown.sources.iter().zip(&term.parts) {
+            let Body::Link(link) = source.body else { continue };
+            let own = arm.part_bodies().iter().filter(|part| part.link == link);
+            let sum: Vector = own.map(|part| term.of_part(&arm, part)).sum();
+            assert!((sum - whole).norm() < 1e-12 * (1.0 + whole.norm()), "{:?}: {sum} and {whole}", term.condition);
+        }
+    }
+}

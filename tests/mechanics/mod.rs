@@ -16,4 +16,5 @@ mod parts;
 mod pin_friction;
 mod sincos;
 mod sketch;
+mod sketch_parts;
 mod sketch_steps;

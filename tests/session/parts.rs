@@ -1,6 +1,7 @@
 //! Parts of links in a session: every change is undone, done again, saved and replayed.
 
 use stillbase::mechanics::machine::{LinkNumber, Machine, PartSource, Shape, parse, to_toml};
+use stillbase::mechanics::sketch::SketchStep;
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session, gentle_motion, parts};
 use stillbase::study::parts::LinkParts;
@@ -12,10 +13,33 @@ fn session() -> Session {
 
 #[test]
 fn changes_of_parts_are_undone_done_again_and_saved() {
+    changes_are_kept(session());
+}
+
+/// The same while the machine is drawn: the drawing is that machine after each change.
+#[test]
+fn changes_of_parts_reach_the_drawing() {
     let mut session = session();
+    let name = SketchStep::Name { name: "drawn arm".into() };
+    session.apply(Edit::Sketch(name)).expect("it is drawn");
+    session.end_gesture();
+    changes_are_kept(session);
+}
+
+fn changes_are_kept(mut session: Session) {
     let machine = |session: &Session| -> Machine { session.scenario().machine.clone() };
     let mut states = vec![machine(&session)];
-    let edits: [&dyn Fn(&Machine) -> Edit; 12] = [
+    let hole = |machine: &Machine, part: usize| {
+        let hole = parts::hole_of(machine, part);
+        parts::change_part(machine, part, |part| part.holes.extend(hole))
+    };
+    let edits: [&dyn Fn(&Machine) -> Edit; 18] = [
+        &|machine| hole(machine, 0),
+        &|machine| hole(machine, 0),
+        &|machine| parts::change_part(machine, 1, |part| part.polygon[2][1] += 0.01),
+        &|machine| parts::change_part(machine, 2, |part| part.name = "slide".into()),
+        &|machine| parts::change_part(machine, 2, |part| part.ends = None),
+        &|machine| parts::name_lump(machine, 0, "bearing".into()),
         &|_| Edit::set("part.1.width", 0.05),
         &|_| Edit::set("part.1.from", -0.02),
         &|_| Edit::set("lump.1.mass", 0.3),
@@ -23,7 +47,7 @@ fn changes_of_parts_are_undone_done_again_and_saved() {
         &|machine| parts::add_part(machine, 0, Shape::Tube),
         &|machine| parts::add_part(machine, 1, Shape::Plate),
         &|machine| parts::add_lump(machine, 0),
-        &|machine| parts::set_material(machine, 1, "lead"),
+        &|machine| parts::change_part(machine, 1, |part| part.material = "lead".into()),
         &|machine| parts::follow_parts(machine, 0, &LinkNumber::ALL),
         &|machine| parts::remove(machine, PartSource::Part(0)),
         &|machine| parts::remove(machine, PartSource::Lump(1)),
@@ -35,6 +59,11 @@ fn changes_of_parts_are_undone_done_again_and_saved() {
         states.push(machine(&session));
         let [.., was, is] = &states[..] else { panic!("two states") };
         assert_ne!(was, is);
+        if let Some(sketch) = &session.scenario().sketch {
+            let drawn = sketch.machine().expect("complete");
+            assert_eq!(drawn.spec().parts, is.spec().parts);
+            assert_eq!((&drawn.spec().lumps, drawn.links()), (&is.spec().lumps, is.links()));
+        }
         // Saved and read again, it is the same machine, in the file of a machine too.
         let saved = session.to_scenario().to_toml();
         let again = Scenario::parse(&saved, "again.toml", None).expect("its own file");

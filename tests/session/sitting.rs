@@ -5,8 +5,10 @@ use std::collections::BTreeSet;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
 use proptest::test_runner::TestRunner;
+use stillbase::mechanics::machine::Shape;
 use stillbase::mechanics::planar::PerDrive;
-use stillbase::mechanics::sketch::{BarEnd, BarId, PinId, SketchStep, Template};
+use stillbase::mechanics::sketch::{BarEnd, BarId, Body, PinId, SketchStep, Template};
+use stillbase::session::parts::{new_part, set_length};
 use stillbase::session::scenario::{Note, NoteTime, Scenario, keys};
 use stillbase::session::{Edit, Session, TimedEdit};
 use stillbase::settings::key::Key;
@@ -187,6 +189,24 @@ pub fn any_sketch() -> impl Strategy<Value = Edit> {
         1 => (1..4u32, 0.0..1e-4, 1.0..50.0)
             .prop_map(|(k, inertia, ratio)| SketchStep::Gear { drive: k.to_string(), inertia, ratio }),
         1 => pin().prop_map(|pin| SketchStep::EndEffector { pin, bar: None }),
+        1 => (bar_id(), bar_id()).prop_map(|(bar, with)| SketchStep::Join { bar, with }),
+        1 => (1..4u32, 1..4u32, -3.0..0.0, 0.1..3.0).prop_map(|(to, from, low, span)| SketchStep::Limits {
+            to: to.to_string(),
+            from: from.to_string(),
+            offset: 0.0,
+            range: Some([low, low + span])
+        }),
+        1 => (bar_id(), prop::option::of(0.1..2.0)).prop_map(|(bar, mass)| SketchStep::Mass {
+            bar,
+            body: mass.map(|mass| Body { mass: Some(mass), ..Body::default() }),
+            per_metre: 1.5
+        }),
+        1 => (9..18u32, 0.01..0.05, prop::bool::ANY).prop_map(|(bar, width, is_flat)| {
+            let shape = if is_flat { Shape::Flat } else { Shape::Tube };
+            let mut part = new_part(&(bar - 8).to_string(), shape, 0.3);
+            set_length(&mut part, if is_flat { "width" } else { "diameter" }, width);
+            SketchStep::Parts { bar: BarId(bar), parts: vec![part], lumps: vec![] }
+        }),
         1 => Just(SketchStep::New { template: Template::NineLinks }),
         1 => Just(SketchStep::New { template: Template::Blank }),
     ]

@@ -2,6 +2,7 @@
 
 mod beside;
 mod display;
+mod drawing;
 mod hands;
 mod keyboard;
 mod loss;
@@ -26,8 +27,8 @@ macro_rules! tests {
 
 use tests;
 
-pub const TESTS: [&[Test]; 6] =
-    [beside::TESTS, hands::TESTS, keyboard::TESTS, loss::TESTS, portal::TESTS, tasks::TESTS];
+pub const TESTS: [&[Test]; 7] =
+    [beside::TESTS, drawing::TESTS, hands::TESTS, keyboard::TESTS, loss::TESTS, portal::TESTS, tasks::TESTS];
 
 /// Those that are asked for only.
 pub const LONG: &[Test] = wander::TESTS;

@@ -59,6 +59,7 @@ impl GuidePlace {
             (Some(FilePurpose::Machine), ..) => Page::Elsewhere.into(),
             (Some(FilePurpose::Plot(..)), ..) => Self::under(Page::FirstRun, "Plots"),
             (Some(_), ..) => Page::Files.into(),
+            (None, ViewKind::Design, _) if view_state.drawing_pen().is_some() => Page::Draw.into(),
             (None, ViewKind::Design, _) if view_state.arrangement.shows_equations => {
                 Self::under(Page::Design, "Every equation of the paper")
             }
@@ -85,7 +86,8 @@ pub fn search_words(place: &GuidePlace) -> &'static str {
         (Page::Paper, "symbols") => "notation letters meaning",
         (Page::Trim, "") => "measure measurement real machine sensor identify calibrate lab",
         (Page::Planning, "") => "change of b motion trajectory refused",
-        (Page::Design, "") => "balance counterweights new machine optimise",
+        (Page::Draw, "") => "sketch new machine bars pins motors limits section",
+        (Page::Design, "") => "balance counterweights machine optimise",
         (Page::Elsewhere, "") => "export import urdf mjcf dxf cad",
         (Page::Tolerances, "") => "monte carlo manufacturing spread yield",
         (Page::Index, "") => "help manual documentation contents",

@@ -32,6 +32,7 @@ pages! {
     Planning: "planning",
     Plants: "plants",
     Inside: "inside",
+    Draw: "draw",
     Design: "design",
     Elsewhere: "elsewhere",
     Tolerances: "tolerances",

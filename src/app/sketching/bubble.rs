@@ -51,7 +51,7 @@ fn at(sketch: &Sketch, place: &Place) -> Vector {
 
 /// Draws the box beside its part, inside the scene.
 pub fn show(ui: &Ui, spot: &SceneViewport, facts: &SketchFacts, pen: &Pen, p: &Palette, commands: &mut Vec<Command>) {
-    if pen.from.is_some() || pen.moving.is_some() {
+    if pen.from.is_some() || pen.drag.is_some() {
         return;
     }
     let Some(Said { place, text, tone, ways }) = said(facts, pen, p) else { return };

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 
 use egui::{Align, ComboBox, Layout, RichText, Ui};
 
+use super::hand::typed;
 use super::{Pen, SketchFacts, draw};
 use crate::Command;
 use crate::theme::{colour, plain};
@@ -22,7 +23,8 @@ struct Numbers {
     radians: f64,
 }
 
-fn title(sketch: &Sketch, pin: PinId) -> String {
+/// Returns how a pin is called.
+pub fn pin_title(sketch: &Sketch, pin: PinId) -> String {
     if pin == sketch.base { "pin B".to_owned() } else { format!("pin {}", pin.0) }
 }
 
@@ -42,10 +44,10 @@ pub fn show(ui: &mut Ui, facts: &SketchFacts, pen: &Pen, p: &Palette, commands: 
     let mut adds = false;
     ui.horizontal(|ui| {
         ui.label(RichText::new("from").font(plain(12.5)).color(colour(p.dim)));
-        let list = ComboBox::from_id_salt("from pin").selected_text(title(sketch, numbers.from)).width(90.0);
+        let list = ComboBox::from_id_salt("from pin").selected_text(pin_title(sketch, numbers.from)).width(90.0);
         let list = list.show_ui(ui, |ui| {
             for pin in &sketch.pins {
-                ui.selectable_value(&mut numbers.from, pin.id, title(sketch, pin.id));
+                ui.selectable_value(&mut numbers.from, pin.id, pin_title(sketch, pin.id));
             }
         });
         name(&list.response, "new bar from");
@@ -63,7 +65,7 @@ pub fn show(ui: &mut Ui, facts: &SketchFacts, pen: &Pen, p: &Palette, commands: 
     row("angle from x", "rad", 1e-2, -4.0..=4.0).show(ui, p, &mut numbers.radians);
     if adds {
         let to = sketch.at(numbers.from) + unit(numbers.radians) * numbers.metres;
-        let (from, to) = (BarEnd::pin(numbers.from), BarEnd::At([to.re, to.im]));
+        let (from, to) = (BarEnd::pin(numbers.from), typed(sketch, [to.re, to.im]).end());
         draw(sketch, SketchStep::Bar { from, to, name: None }, commands);
     }
     ui.data_mut(|data| data.insert_temp(id, numbers));

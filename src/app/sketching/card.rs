@@ -5,10 +5,11 @@ use std::ops::RangeInclusive;
 use egui::{Align, ComboBox, Layout, RichText, TextEdit, Ui};
 
 use super::motors::motor_at;
-use super::{PenChange, SketchFacts, draw};
+use super::{PenChange, SketchFacts, draw, section};
 use crate::theme::{bold, colour, plain};
 use crate::widgets::{NumberRow, name};
 use crate::{Command, ViewChange};
+use stillbase_mechanics::planar::Vector;
 use stillbase_mechanics::sketch::{Bar, PinId, SketchStep};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_picture::scene::sketching::SketchItem;
@@ -71,7 +72,7 @@ pub fn show(ui: &mut Ui, facts: &SketchFacts, chosen: SketchItem, p: &Palette, c
             }
         }
         SketchItem::Pin(id) if facts.sketch.pin(id).is_some() => of_pin(ui, facts, id, p, commands),
-        SketchItem::Pin(_) => {}
+        SketchItem::Pin(_) | SketchItem::Limit(..) => {}
     }
 }
 
@@ -101,6 +102,7 @@ fn of_bar(ui: &mut Ui, facts: &SketchFacts, bar: &Bar, p: &Palette, commands: &m
     renamed(ui, &format!("name of bar {}", bar.name), &bar.name, p, |name| {
         draw(sketch, SketchStep::NameBar { bar: id, name }, commands);
     });
+    section::show(ui, facts, bar, p, commands);
     ui.horizontal_wrapped(|ui| {
         let split = SketchStep::Split { bar: id, along: 0.5 * sketch.length(bar) };
         for (words, tip, step) in [
@@ -172,7 +174,8 @@ fn of_pin(ui: &mut Ui, facts: &SketchFacts, id: PinId, p: &Palette, commands: &m
         many => format!("joins bars {}", many.join(", ")),
     };
     ui.label(RichText::new(words).font(plain(11.5)).color(colour(p.dim)));
-    let at = sketch.at(id);
+    // While the pin is dragged, its place is that of the pointer.
+    let at = facts.shown().0.pin(id).map_or_else(|| sketch.at(id), |pin| Vector::new(pin.at[0], pin.at[1]));
     for (axis, value) in [("x", at.re), ("y", at.im)] {
         let label = format!("{axis} of pin {}", id.0);
         let field = NumberField { label: &label, words: axis, unit: "m", decimals: 4, speed: 1e-3 };

@@ -3,23 +3,33 @@
 use egui::{CursorIcon, EventFilter, Key, PointerButton, Pos2, Response, Ui};
 
 use super::motors::motor_at;
-use super::pen::{Pen, PenTool, Start};
+use super::pen::{Drag, Pen, PenTool, Start};
 use super::{SketchFacts, draw};
 use crate::Command;
 use stillbase_mechanics::planar::{Vector, unit};
-use stillbase_mechanics::sketch::{Onto, SketchStep, Snap, SnapOptions, snap};
+use stillbase_mechanics::sketch::{LimitArc, Onto, PinId, Sketch, SketchStep, Snap, SnapOptions, snap};
 use stillbase_picture::paint::SceneViewport;
-use stillbase_picture::scene::sketching::{GRID_M, Rubber, SketchItem, metres_per_px, pick};
+use stillbase_picture::scene::sketching::{DrawnArc, GRID_M, Rubber, SketchItem, metres_per_px, pick};
 
 /// Distance within which the pointer snaps, points.
 const SNAP_PT: f64 = 10.0;
 /// Step of angles, and grid with Ctrl.
 const ANGLE_STEP_RAD: f64 = std::f64::consts::PI / 12.0;
 const CTRL_GRID_M: f64 = 0.01;
+/// Step of joint limits.
+const LIMIT_STEP_RAD: f64 = std::f64::consts::PI / 180.0;
 /// Distance within which a typed end lies on a pin or bar, m.
 const TYPED_SNAP_M: f64 = 1e-6;
 /// Shortest bar that is drawn, m.
 const SHORTEST_M: f64 = 1e-3;
+
+/// Returns where a typed place puts the end of a bar: on the pin or the bar that is there, m.
+pub fn typed(sketch: &Sketch, to: [f64; 2]) -> Snap {
+    let options = SnapOptions { grid: 0.0, angle: 0.0, radius: TYPED_SNAP_M };
+    let caught = snap(sketch, None, to, &options);
+    let onto = if matches!(caught.onto, Onto::Pin(_) | Onto::Bar { .. }) { caught.onto } else { Onto::Free };
+    Snap { point: to, onto, ..caught }
+}
 
 /// The pointer over a drawing.
 pub struct Hand<'a> {
@@ -43,7 +53,7 @@ impl Hand<'_> {
         if deletes && !is_typing && pen.from.is_none() {
             self.delete(pen.chosen.take(), commands);
         }
-        if self.ui.input(|i| i.key_pressed(Key::Escape)) && (pen.from.is_some() || pen.moving.is_some()) {
+        if self.ui.input(|i| i.key_pressed(Key::Escape)) && (pen.from.is_some() || pen.drag.is_some()) {
             pen.apply(super::PenChange::GiveUp);
             self.response.surrender_focus();
         }
@@ -74,6 +84,11 @@ impl Hand<'_> {
         match thing {
             Some(SketchItem::Pin(pin)) => draw(&self.facts.sketch, SketchStep::DeletePin { pin }, commands),
             Some(SketchItem::Bar(bar)) => draw(&self.facts.sketch, SketchStep::DeleteBar { bar }, commands),
+            Some(SketchItem::Limit(arc, _)) => {
+                if let Some(LimitArc { to, from, .. }) = self.facts.sketch.limit_arcs().into_iter().nth(arc) {
+                    draw(&self.facts.sketch, SketchStep::Limits { to, from, offset: 0.0, range: None }, commands);
+                }
+            }
             None => {}
         }
     }
@@ -142,37 +157,63 @@ impl Hand<'_> {
         let length = metres.or(at_pointer.map(|end| end.length))?;
         let angle = radians.or(at_pointer.map(|end| end.angle)).unwrap_or_default();
         let to = Vector::new(start.at[0], start.at[1]) + unit(angle) * length;
-        let options = SnapOptions { grid: 0.0, angle: 0.0, radius: TYPED_SNAP_M };
-        let caught = snap(&self.facts.sketch, None, [to.re, to.im], &options);
-        let onto = if matches!(caught.onto, Onto::Pin(_) | Onto::Bar { .. }) { caught.onto } else { Onto::Free };
-        Some(Snap { point: [to.re, to.im], onto, length, angle })
+        Some(Snap { length, angle, ..typed(&self.facts.sketch, [to.re, to.im]) })
     }
 
-    /// Chooses things, and drags pins.
+    /// Chooses things, and drags pins and limits.
     fn moves(&self, pen: &mut Pen, pos: Option<Pos2>, commands: &mut Vec<Command>) {
         if self.response.clicked_by(PointerButton::Primary) {
-            pen.chosen = pen.hot;
+            pen.chosen = pen.hot.filter(|hot| !matches!(hot, SketchItem::Limit(..)));
         }
         if self.response.drag_started_by(PointerButton::Primary) {
             let press = self.ui.input(|i| i.pointer.press_origin()).or(pos);
             let held = press.and_then(|pos| pick(&self.facts.sketch, &self.spot.pointer(pos)));
-            if let Some(SketchItem::Pin(pin)) = held {
-                let at = self.facts.sketch.at(pin);
-                pen.moving = Some((pin, [at.re, at.im]));
-                pen.chosen = held;
+            match held {
+                Some(item @ SketchItem::Pin(_)) => {
+                    pen.chosen = held;
+                    pen.drag = Some(Drag { item, step: None, onto: None });
+                }
+                Some(item @ SketchItem::Limit(..)) => pen.drag = Some(Drag { item, step: None, onto: None }),
+                _ => {}
             }
         }
-        let Some((pin, _)) = pen.moving else { return };
+        let Some(drag) = &mut pen.drag else { return };
         self.ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
-        let Some(end) = pos.and_then(|pos| self.snapped(None, pos)) else { return };
-        pen.moving = Some((pin, end.point));
-        if self.response.drag_stopped_by(PointerButton::Primary) {
-            pen.moving = None;
-            match end.onto {
-                Onto::Pin(own) if own == pin => {}
-                Onto::Pin(onto) => draw(&self.facts.sketch, SketchStep::Weld { pin, onto }, commands),
-                _ => draw(&self.facts.sketch, SketchStep::MovePin { pin, to: end.point }, commands),
-            }
+        pen.hot = Some(drag.item);
+        let next = pos.and_then(|pos| match drag.item {
+            SketchItem::Pin(pin) => self.pin_dragged(pin, pos),
+            SketchItem::Limit(arc, end) => self.limit_dragged(arc, end, pos),
+            SketchItem::Bar(_) => None,
+        });
+        if let Some((step, onto)) = next {
+            (drag.step, drag.onto) = (step, onto);
+        }
+        if self.response.drag_stopped_by(PointerButton::Primary)
+            && let Some(step) = pen.drag.take().and_then(|drag| drag.step)
+        {
+            draw(&self.facts.sketch, step, commands);
         }
     }
+
+    /// Returns the step of a pin that is dragged to a place, and the pin with which it would become one.
+    fn pin_dragged(&self, pin: PinId, pos: Pos2) -> Option<Dragged> {
+        let end = self.snapped(None, pos)?;
+        Some(match end.onto {
+            Onto::Pin(own) if own == pin => (None, None),
+            Onto::Pin(onto) => (Some(SketchStep::Weld { pin, onto }), Some(end.point)),
+            _ => (Some(SketchStep::MovePin { pin, to: end.point }), None),
+        })
+    }
+
+    /// Returns the step of a limit that is dragged to a place: in whole degrees, or freely with Shift.
+    fn limit_dragged(&self, arc: usize, end: usize, pos: Pos2) -> Option<Dragged> {
+        let drawn = DrawnArc::all(&self.facts.sketch).into_iter().nth(arc)?;
+        let to = self.spot.pointer(pos).ray()?.at_height(0.0)?;
+        let step = if self.ui.input(|i| i.modifiers.shift) { 0.0 } else { LIMIT_STEP_RAD };
+        let range = drawn.arc.dragged(end, drawn.way(to), step);
+        Some(((range != drawn.arc.range).then(|| drawn.arc.step(range)), None))
+    }
 }
+
+/// The step of a drag, and the place of the pin with which the dragged one would become one, m.
+type Dragged = (Option<SketchStep>, Option<[f64; 2]>);

@@ -5,14 +5,17 @@ mod by_numbers;
 mod card;
 mod facts;
 mod hand;
+mod limits;
 mod missing;
 mod motors;
 mod panel;
 mod pen;
 mod rail;
 mod scene;
+mod section;
 mod typed;
 
+pub use card::{NumberField, renamed};
 pub use facts::SketchFacts;
 pub use panel::{balance_waits, show as panel};
 pub use pen::{Pen, PenChange, PenTool};

@@ -3,7 +3,7 @@
 use egui::{ComboBox, RichText, Ui};
 
 use super::card::NumberField;
-use super::{SketchFacts, draw};
+use super::{SketchFacts, draw, limits};
 use crate::Command;
 use crate::theme::{bold, colour};
 use crate::widgets::{name, section};
@@ -66,5 +66,6 @@ pub fn show(ui: &mut Ui, facts: &SketchFacts, p: &Palette, commands: &mut Vec<Co
         if let Some(ratio) = field.show(ui, p, ratio, -1e4..=1e4) {
             draw(sketch, gear(inertia, ratio), commands);
         }
+        limits::show(ui, facts, drive, p, commands);
     }
 }

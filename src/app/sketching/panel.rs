@@ -1,13 +1,15 @@
 //! The panel on the left while a machine is drawn, and what stands for its balance until it is complete.
 
-use egui::{Button, RichText, Ui};
+use egui::{Button, ComboBox, RichText, Ui};
 
+use super::by_numbers::pin_title;
 use super::card::renamed;
-use super::{Pen, SketchFacts, by_numbers, card, draw, missing, motors};
+use super::{Pen, PenChange, SketchFacts, by_numbers, card, draw, missing, motors};
 use crate::theme::{bold, colour, plain};
 use crate::widgets::{heading, name, note, section};
 use crate::{Command, FileDialog, SessionCommand, Switch, ViewChange, ViewState};
-use stillbase_mechanics::sketch::SketchStep;
+use stillbase_mechanics::sketch::{Sketch, SketchStep};
+use stillbase_picture::scene::sketching::SketchItem;
 use stillbase_session::{Session, with_own_task};
 
 /// Draws the panel.
@@ -43,6 +45,7 @@ pub fn show(
         }
     }
     ui.add_space(6.0);
+    card_of(ui, sketch, pen, commands);
     match pen.chosen {
         Some(chosen) => card::show(ui, facts, chosen, p, commands),
         None => note(ui, p, "Click a bar for its drive, its length and its angle; click a pin for its place."),
@@ -58,6 +61,28 @@ pub fn show(
             commands.push(ViewChange::Dialog(Some(FileDialog::of_machine(session))).into());
         }
     }
+}
+
+/// Draws the list of bars and pins, which chooses the card without the pointer.
+fn card_of(ui: &mut Ui, sketch: &Sketch, pen: &Pen, commands: &mut Vec<Command>) {
+    let title = |item: Option<SketchItem>| match item {
+        Some(SketchItem::Bar(id)) => {
+            sketch.bar(id).map_or_else(|| "no bar or pin".to_owned(), |bar| format!("bar {}", bar.name))
+        }
+        Some(SketchItem::Pin(id)) => pin_title(sketch, id),
+        _ => "no bar or pin".to_owned(),
+    };
+    let list = ComboBox::from_id_salt("card of").selected_text(title(pen.chosen)).width(120.0);
+    let list = list.show_ui(ui, |ui| {
+        let bars = sketch.bars.iter().map(|bar| Some(SketchItem::Bar(bar.id)));
+        let pins = sketch.pins.iter().map(|pin| Some(SketchItem::Pin(pin.id)));
+        for item in [None].into_iter().chain(bars).chain(pins) {
+            if ui.selectable_label(item == pen.chosen, title(item)).clicked() {
+                commands.push(ViewChange::Pen(PenChange::Choose(item)).into());
+            }
+        }
+    });
+    name(&list.response.on_hover_text("The bar or pin whose card is shown"), "bar or pin in the card");
 }
 
 /// Offers a task for a machine whose present task it cannot do.

@@ -2,7 +2,7 @@
 
 use super::typed::Typed;
 use crate::icon::Icon;
-use stillbase_mechanics::sketch::{BarEnd, PinId, SketchRefusal};
+use stillbase_mechanics::sketch::{BarEnd, SketchRefusal, SketchStep};
 use stillbase_picture::scene::sketching::SketchItem;
 
 /// What a click or drag in a drawing does.
@@ -42,7 +42,9 @@ impl PenTool {
             Self::Bar => {
                 "drag from pin to pin · type length, Tab, angle · click a bar: its drive · Shift fine, Ctrl 10 mm and 15°"
             }
-            Self::Move => "drag a pin; onto another pin joins both · click a bar: which drive it follows · Delete",
+            Self::Move => {
+                "drag a pin; onto another pin joins both · drag the end of an arc: a limit · click a bar: its drive · Delete"
+            }
             Self::Motor => "click a pin to hang a motor on it",
             Self::EndEffector => "click the pin that does the work",
             Self::Delete => "click a bar or a pin to delete it · Ctrl Z brings it back",
@@ -59,6 +61,17 @@ pub struct Start {
     pub at: [f64; 2],
 }
 
+/// A drag under way, which is one step once it ends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drag {
+    /// The pin or the limit that is dragged.
+    pub item: SketchItem,
+    /// The step that it would be if it ended now; `None` where it began.
+    pub step: Option<SketchStep>,
+    /// The place of the pin with which the dragged one would become one, m.
+    pub onto: Option<[f64; 2]>,
+}
+
 /// The state of drawing, while a machine is drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pen {
@@ -72,8 +85,8 @@ pub struct Pen {
     pub from: Option<Start>,
     /// What is typed about it.
     pub typed: Typed,
-    /// The pin that is dragged, and where to, m.
-    pub moving: Option<(PinId, [f64; 2])>,
+    /// The drag of a pin or of a limit.
+    pub drag: Option<Drag>,
     /// Why the last step was refused.
     pub refused: Option<SketchRefusal>,
 }
@@ -94,7 +107,7 @@ pub enum PenChange {
 impl Pen {
     /// Whether Esc has something to give up.
     pub fn is_busy(&self) -> bool {
-        self.from.is_some() || self.moving.is_some() || self.refused.is_some() || self.chosen.is_some()
+        self.from.is_some() || self.drag.is_some() || self.refused.is_some() || self.chosen.is_some()
     }
 
     /// Applies a change.
@@ -103,7 +116,7 @@ impl Pen {
             PenChange::Tool(tool) => *self = Self { tool, chosen: self.chosen, ..Self::default() },
             PenChange::Choose(chosen) => self.chosen = chosen,
             PenChange::Refuse(refusal) => self.refused = Some(refusal),
-            PenChange::GiveUp if self.from.is_some() || self.moving.is_some() || self.refused.is_some() => {
+            PenChange::GiveUp if self.from.is_some() || self.drag.is_some() || self.refused.is_some() => {
                 *self = Self { tool: self.tool, chosen: self.chosen, ..Self::default() };
             }
             PenChange::GiveUp => self.chosen = None,

@@ -11,7 +11,6 @@ use crate::theme::{colour, plain};
 use crate::viewport::move_camera;
 use crate::widgets::name;
 use crate::{Command, ViewState, corner, framing};
-use stillbase_mechanics::sketch::{SketchStep, resolve};
 use stillbase_picture::paint::labels::draw_labels;
 use stillbase_picture::paint::{SceneViewport, paint};
 use stillbase_picture::scene::sketching::{Rubber, SketchOptions, content};
@@ -35,7 +34,7 @@ pub fn show(ui: &mut Ui, scene: SketchScene<'_>, view_state: &mut ViewState, com
         framing::keep_framed(rect, &[strip], scene.views, |_| content(&scene.facts.sketch), view_state);
         let spot = SceneViewport { rect, camera: *view_state.camera() };
         let under_way = Hand { ui, response: &response, spot: &spot, facts: scene.facts }.points(&mut pen, commands);
-        let holds = pen.from.is_some() || pen.moving.is_some() || pen.tool == PenTool::Bar;
+        let holds = pen.from.is_some() || pen.drag.is_some() || pen.tool == PenTool::Bar;
         if !(holds && response.dragged_by(PointerButton::Primary)) {
             move_camera(ui, &response, rect, view_state);
         }
@@ -56,7 +55,7 @@ pub fn show(ui: &mut Ui, scene: SketchScene<'_>, view_state: &mut ViewState, com
     shown.inner
 }
 
-/// Draws the drawing, with the dragged pin where it would be.
+/// Draws the drawing as it would be after the drag under way.
 fn draw_scene(
     ui: &mut Ui,
     rect: Rect,
@@ -66,13 +65,10 @@ fn draw_scene(
     view_state: &ViewState,
 ) {
     let SketchScene { facts, views } = scene;
-    let options = SketchOptions { theme: view_state.arrangement.theme, hot: pen.hot, chosen: pen.chosen, rubber };
-    let moved = pen.moving.and_then(|(pin, to)| facts.sketch.with(&SketchStep::MovePin { pin, to }).ok());
-    let drawn = match &moved {
-        Some(moved) => views.sketched(moved, &resolve(moved), &options),
-        None => views.sketched(&facts.sketch, &facts.resolved, &options),
-    };
-    let drawn = Arc::new(drawn);
+    let ring = pen.drag.as_ref().and_then(|drag| drag.onto);
+    let options = SketchOptions { theme: view_state.arrangement.theme, hot: pen.hot, chosen: pen.chosen, rubber, ring };
+    let (sketch, resolved) = facts.shown();
+    let drawn = Arc::new(views.sketched(sketch, resolved, &options));
     paint(ui, 0, rect, &drawn, view_state.camera());
     let spot = SceneViewport { rect, camera: *view_state.camera() };
     draw_labels(ui, 0, &spot, &drawn, &[corner::strip(rect)]);

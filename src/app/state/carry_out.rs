@@ -202,6 +202,7 @@ impl AppState {
             }
             WindowCommand::Seek(objective) => self.seek(objective),
             WindowCommand::Fronts(change) => self.change_fronts(change),
+            WindowCommand::Forget(file) => self.saving.misses(&file),
             WindowCommand::LookFor => {
                 self.view_state.arrangement.now_mut().plots.shown = true;
                 self.focuses_search = true;

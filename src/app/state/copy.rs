@@ -80,6 +80,6 @@ impl AppState {
             return Vec::new();
         };
         let front_by = self.view_state.front_by;
-        studio::DesignFacts::weighed(self.queries(), &self.session, front_by, &self.fronts).weights(point)
+        studio::DesignFacts::weighed(self.queries(), (&self.session, None), front_by, &self.fronts).weights(point)
     }
 }

@@ -93,13 +93,22 @@ impl AppState {
         let width = ui.ctx().content_rect().width();
         let contrasts = self.view_state.pair.as_ref().is_some_and(|pair| pair.hides_settings(width));
         let designs = self.view_state.view == ViewKind::Design && !presents;
-        let draws = self.view_state.drawing_pen().is_some();
-        let drawing = draws.then(|| SketchFacts::of(&queries, &self.session));
+        let drawing = self.view_state.drawing_pen().map(|pen| SketchFacts::of(&queries, &self.session, pen));
+        let draws = drawing.is_some();
         let mut chosen = Vec::new();
         if designs {
+            // The table of links stands in place of a drawing.
+            if let Some(path) = self.view_state.looked_up.take() {
+                self.view_state.pen = None;
+                studio::look_up(ui.ctx(), &path);
+            }
+            let shown = drawing.as_ref().and_then(SketchFacts::previewed_machine);
             let found = match self.view_state.arrangement.shows_equations {
-                true => studio::DesignFacts::learned(&queries, &self.session),
-                false => studio::DesignFacts::weighed(&queries, &self.session, self.view_state.front_by, &self.fronts),
+                true => studio::DesignFacts::learned(&queries, &self.session, shown),
+                false => {
+                    let by = self.view_state.front_by;
+                    studio::DesignFacts::weighed(&queries, (&self.session, shown), by, &self.fronts)
+                }
             };
             studio::show(ui, &self.session, (&found, drawing.as_ref()), &self.view_state, &mut commands);
             chosen = self.view_state.ghost.map_or_else(Vec::new, |i| found.weights(i));

@@ -6,6 +6,7 @@ use super::facts::{BalanceBars, DesignFacts};
 use crate::theme::{bold, colour, plain};
 use crate::widgets::heading;
 use crate::{ViewState, place};
+use stillbase_mechanics::machine::Machine;
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::options::Handle;
 use stillbase_picture::scene::palette::{Palette, mix};
@@ -23,7 +24,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, view_state: &Vi
     heading(ui, p, "(7) and (8)", "part of each link; below: the residual");
     let hot = hot_link(view_state, session);
     for term in facts.terms.iter() {
-        row(ui, p, session, term, hot);
+        row(ui, p, &facts.machine, term, hot);
     }
     if facts.terms.iter().any(|term| term.residual[1].abs() > 1e-9) {
         let words = "Some masses lie off the axes of their links; the bars show only the components along the axes.";
@@ -55,7 +56,7 @@ fn link_of(handle: Handle, session: &Session) -> Option<usize> {
     }
 }
 
-fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &BalanceBars, hot: Option<usize>) {
+fn row(ui: &mut Ui, p: &Palette, machine: &Machine, term: &BalanceBars, hot: Option<usize>) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT_PT), Sense::hover());
     let painter = ui.painter();
     let top = rect.top() + 3.0;
@@ -86,7 +87,7 @@ fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &BalanceBars, hot: Opt
             let next = ends[side] + (part * scale) as f32;
             let segment = Rect::from_x_y_ranges(ends[side].min(next)..=ends[side].max(next), bar.y_range());
             ends[side] = next;
-            draw_segment(ui, p, session, segment, &LinkPart { link: *link, value: *part, unit: term.unit }, hot);
+            draw_segment(ui, p, machine, segment, &LinkPart { link: *link, value: *part, unit: term.unit }, hot);
         }
         // The residual is drawn on the side that predominates.
         if !term.is_balanced {
@@ -103,7 +104,7 @@ fn row(ui: &mut Ui, p: &Palette, session: &Session, term: &BalanceBars, hot: Opt
     let of: Vec<String> = term
         .parts
         .iter()
-        .map(|(link, part)| format!("link {} {}", session.scenario().machine.links()[*link].name, signed(*part, 4)))
+        .map(|(link, part)| format!("link {} {}", machine.links()[*link].name, signed(*part, 4)))
         .collect();
     let words = format!("{}, {}: residual {} {}; {}", term.symbol, term.meaning, text, term.unit, of.join(", "));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &words));
@@ -117,9 +118,8 @@ struct LinkPart<'a> {
 }
 
 /// Draws the contribution of one link; `hot` is the highlighted link.
-fn draw_segment(ui: &Ui, p: &Palette, session: &Session, rect: Rect, part: &LinkPart<'_>, hot: Option<usize>) {
+fn draw_segment(ui: &Ui, p: &Palette, machine: &Machine, rect: Rect, part: &LinkPart<'_>, hot: Option<usize>) {
     let LinkPart { link, value, unit } = *part;
-    let machine = &session.scenario().machine;
     let tone = p.drive(machine.resolved_links()[link].drive);
     let tone = if hot == Some(link) { tone } else { mix(tone, p.panel, 0.38) };
     let inner = rect.shrink2(vec2(if rect.width() > 3.0 { 0.75 } else { 0.0 }, 0.0));

@@ -12,6 +12,7 @@ use stillbase_mechanics::counterweights::{
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_picture::scene::options::WeightOption;
 use stillbase_planning::Motion;
+use stillbase_planning::pose_space::{Planes, PoseSpace};
 use stillbase_query::{
     ByIdentity, Portion, ProgressCallback, Queries, Query, QueryResult, QueryStatus, QuickQuery, QuickWork,
 };
@@ -35,6 +36,12 @@ pub struct DesignFacts {
     /// The lines of Eqs. (7) and (8).
     pub(super) terms: Arc<Vec<BalanceBars>>,
     sums: Arc<Sums>,
+    /// The machine on display: that of the session, or the one that a drag previews.
+    pub(super) machine: Machine,
+    /// Area of its reactionless workspace, m².
+    pub(super) workspace: Option<WorkspaceSize>,
+    /// Whether a drag previews the machine.
+    pub(super) is_preview: bool,
     /// Cost of the balance, in comparison with the machine without its counterweights.
     pub(super) measures: Option<Arc<Measures>>,
     /// Residual of the balance over the payloads of the brief.
@@ -83,6 +90,30 @@ impl QuickQuery for Sums {
             balanced: inertia.is_balanced(),
             bare: machine.without_counterweights().ok(),
         }
+    }
+}
+
+/// Area of a workspace.
+#[derive(Clone, Copy)]
+pub(super) struct WorkspaceSize {
+    /// m².
+    pub area: f64,
+    pub is_reactionless: bool,
+}
+
+fn area_of(planes: &Planes) -> WorkspaceSize {
+    WorkspaceSize { area: planes.boundary().area(), is_reactionless: planes.is_reactionless() }
+}
+
+/// Query for the area of the reactionless workspace of a machine; `None` if it has no planes.
+struct WorkspaceArea;
+
+impl QuickQuery for WorkspaceArea {
+    type Input = Machine;
+    type Answer = Option<WorkspaceSize>;
+
+    fn answer(machine: &Machine) -> Self::Answer {
+        PoseSpace::of(machine).ok()?.planes().ok().map(|planes| area_of(planes))
     }
 }
 
@@ -211,15 +242,21 @@ impl BalanceBars {
 const ROUNDING_TOLERANCE: f64 = 1e-9;
 
 impl DesignFacts {
-    /// Queries the values of the machine on display, with its Pareto front and those of other machines.
-    pub fn weighed(queries: &Queries, session: &Session, by: Option<FrontMeasure>, others: &[FrontCase]) -> Self {
-        let mut facts = Self::of(queries, session);
+    /// Queries the values of the machine on display, with its Pareto front and those of other machines. While a drag
+    /// previews another machine, its balance is shown; the front stays that of the session.
+    pub fn weighed(
+        queries: &Queries,
+        (session, preview): (&Session, Option<&Machine>),
+        by: Option<FrontMeasure>,
+        others: &[FrontCase],
+    ) -> Self {
+        let mut facts = Self::of(queries, session, preview);
         facts.other_fronts = (!others.is_empty()).then(|| {
             let machines = others.to_vec();
             let request = FrontsRequest { machines, count: FRONT_POINTS, motion: None, workspace: false };
             queries.ask_in_background::<Fronts>(&request)
         });
-        let Some(bare) = &facts.sums.bare else { return facts };
+        let Some(bare) = &queries.ask::<QuickWork<Sums>>(&session.scenario().machine).bare else { return facts };
         let front = queries.ask_in_background::<FrontSearch>(&front_request(bare, &session.scenario().design));
         let points = front.last.map(|front| queries.ask::<QuickWork<FrontPoints>>(&ByIdentity(front)));
         // A run that waits has no motion.
@@ -235,13 +272,16 @@ impl DesignFacts {
     }
 
     /// Queries the values of the machine on display, with its equations.
-    pub fn learned(queries: &Queries, session: &Session) -> Self {
+    pub fn learned(queries: &Queries, session: &Session, preview: Option<&Machine>) -> Self {
         let lesson = MachineEquations::of(queries, session, session.scenario().design.penalties);
-        Self { lesson, ..Self::of(queries, session) }
+        Self { lesson, ..Self::of(queries, session, preview) }
     }
 
-    fn of(queries: &Queries, session: &Session) -> Self {
-        let (machine, run) = (&session.scenario().machine, session.run());
+    fn of(queries: &Queries, session: &Session, preview: Option<&Machine>) -> Self {
+        let run = session.run();
+        let machine = preview.unwrap_or(&session.scenario().machine);
+        let asked = |machine: &Machine| queries.ask_in_background::<QuickWork<WorkspaceArea>>(machine).last;
+        let workspace = preview.map(|machine| asked(machine).and_then(|area| *area));
         let sums = queries.ask::<QuickWork<Sums>>(machine);
         let cost = |bare: &Machine| {
             queries.ask_in_background::<QuickWork<Cost>>(&(bare.clone(), machine.clone(), run.shared_motion())).last
@@ -256,6 +296,9 @@ impl DesignFacts {
             layers,
             measures: sums.bare.as_ref().and_then(cost),
             payloads: session.scenario().design.payload.and_then(over),
+            machine: machine.clone(),
+            workspace: workspace.unwrap_or_else(|| run.planes().map(|planes| area_of(planes))),
+            is_preview: preview.is_some(),
             sums,
             front: None,
             length_search: queries.newest::<LengthsQuery>(),

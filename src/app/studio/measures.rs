@@ -17,7 +17,7 @@ const BETA: &str = "Ratio of root mean squares to those of the machine without c
 pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, p: &Palette) {
     ui.add_space(8.0);
     heading(ui, p, "What it comes to", "");
-    let (machine, run) = (&session.scenario().machine, session.run());
+    let (machine, run) = (&facts.machine, session.run());
     let lambda: Vec<String> = facts.lambda().iter().map(|lambda| signed(*lambda, 3)).collect();
     let is_balanced = facts.terms.iter().all(|term| term.is_balanced);
     let notation = notation::of(ui.ctx());
@@ -27,9 +27,9 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, p: &Palette) {
         (notation.name("effective inertia of all drives", "Σ D"), format!("{} kg m²", signed(facts.now()[1], 3))),
         (notation.name(ratios, "λ"), lambda.join("  ")),
     ];
-    if let Some(planes) = run.planes() {
-        let noun = if planes.is_reactionless() { "reactionless workspace" } else { "nearly reactionless workspace" };
-        rows.push((noun.into(), notation.write(planes.boundary().area(), 3, "m²")));
+    if let Some(workspace) = facts.workspace {
+        let noun = if workspace.is_reactionless { "reactionless workspace" } else { "nearly reactionless workspace" };
+        rows.push((noun.into(), notation.write(workspace.area, 3, "m²")));
     }
     if let Some(measures) = &facts.measures
         && measures.added_mass > 1e-9
@@ -44,7 +44,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, p: &Palette) {
         }
     }
     let forecast = &run.plan().forecast;
-    if run.waiting().is_none() {
+    if run.waiting().is_none() && !facts.is_preview {
         rows.extend([
             (
                 notation.name("the plan: greatest torque foreseen", "τ"),

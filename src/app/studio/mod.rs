@@ -11,8 +11,10 @@ mod lengths;
 mod lesson;
 mod measures;
 mod other_fronts;
+mod part_shape;
 mod parts;
 mod payload;
+mod sought;
 mod stock;
 mod table;
 mod tabs;
@@ -31,6 +33,7 @@ use stillbase_session::Session;
 
 pub use facts::{DesignFacts, as_cut, leave, of_front};
 pub use layers::cut;
+pub use sought::{holds, look_up};
 
 /// Default widths of the panels, points.
 const TABLE_WIDTH_PT: f32 = 336.0;
@@ -89,6 +92,9 @@ pub fn show(
                 scrolled(ui, |ui| {
                     bars::show(ui, session, facts, view_state);
                     front::show(ui, facts, view_state, commands);
+                    if drawing.is_some() {
+                        measures::show(ui, session, facts, &p);
+                    }
                     payload::show(ui, facts, session.scenario().machine.spec().payload.mass, &p);
                     elsewhere(ui, session, view_state, commands);
                 });

@@ -2,6 +2,7 @@
 
 use egui::{Align, Button, Layout, Response, RichText, Ui};
 
+use super::part_shape;
 use super::table::{ROW_HEIGHT_PT, cell, head};
 use crate::theme::{colour, plain};
 use crate::widgets::{NumberRow, name, section, send, undoable_edit};
@@ -42,6 +43,7 @@ pub fn show(ui: &mut Ui, machine: &Machine, link: usize, p: &Palette, commands: 
                 }
             });
             numbers(ui, machine, part, p, commands);
+            part_shape::show(ui, machine, part.source, p, commands);
         }
         row(ui, &all.sum, p.dim, |_| ());
         overruled(ui, machine, &all, p, commands);
@@ -108,7 +110,7 @@ fn material(ui: &mut Ui, machine: &Machine, part: &LinkPart, commands: &mut Vec<
     let list = list.show_ui(ui, |ui| {
         for material in parts::materials(machine) {
             if ui.selectable_label(material == part.material, material).clicked() && material != part.material {
-                undoable_edit(commands, parts::set_material(machine, i, material));
+                undoable_edit(commands, parts::change_part(machine, i, |part| material.clone_into(&mut part.material)));
             }
         }
     });

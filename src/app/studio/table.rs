@@ -14,7 +14,7 @@ use stillbase_session::scenario::{TaskChange, Value, to_value};
 use stillbase_session::{Edit, Session};
 use stillbase_settings::change::DEFAULT_WORD;
 
-use super::parts;
+use super::{parts, sought};
 
 /// Width of the column of names, width of a column of numbers, gap between columns, and height of a row, points.
 const NAME_WIDTH_PT: f32 = 34.0;
@@ -113,7 +113,8 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
 fn details(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>) {
     let links = &session.scenario().machine.spec().links;
     let id = ui.scope_id().with("link in detail");
-    let mut at = ui.data(|data| data.get_temp::<usize>(id)).unwrap_or_default().min(links.len() - 1);
+    let at = ui.data(|data| data.get_temp::<usize>(id)).unwrap_or_default();
+    let mut at = sought::link(ui, session.scenario().machine.spec()).unwrap_or(at).min(links.len() - 1);
     ui.horizontal(|ui| {
         let words = |i: usize| format!("link {}", links[i].name);
         let list = egui::ComboBox::from_id_salt("detail").selected_text(words(at)).width(62.0).show_ui(ui, |ui| {
@@ -136,12 +137,37 @@ fn details(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comma
             let label = of("inertia");
             let path = format!("link.{}.inertia", link.name);
             let response = NumberRow::of(&label, &path).with(5, 1e-4).number(ui, &mut inertia);
+            sought::found(ui, &response, &path);
             send(commands, &[response], || Edit::at(&["link", &link.name, "inertia"], inertia));
             head(ui, p, "inertia");
         });
     });
     ui.data_mut(|data| data.insert_temp(id, at));
+    off_axis(ui, session, at, p, commands);
+    sought::give_up(ui);
     parts::show(ui, &session.scenario().machine, at, p, commands);
+}
+
+/// Draws how far off its axis a link, counted from 0, and its counterweights have their centres.
+fn off_axis(ui: &mut Ui, session: &Session, at: usize, p: &Palette, commands: &mut Vec<Command>) {
+    let spec = session.scenario().machine.spec();
+    let (link, brief) = (&spec.links[at], &session.scenario().design);
+    let weights = spec.counterweights.iter().enumerate().filter(|(_, weight)| weight.link == link.name);
+    ui.horizontal_wrapped(|ui| {
+        head(ui, p, "off the axis: CM m");
+        let label = format!("centre of mass off the axis of link {}", link.name);
+        let path = format!("link.{}.com_normal", link.name);
+        let shown = NumberCell { label: &label, path: &path, decimals: 4, value: link.com_normal };
+        number(ui, shown, brief, p, commands, |x| Edit::at(&["link", &link.name, "com_normal"], x));
+        for (n, weight) in weights {
+            head(ui, p, "disc m");
+            let place = (n + 1).to_string();
+            let label = format!("counterweight {place} off the axis of link {}", link.name);
+            let path = format!("counterweight.{place}.across");
+            let shown = NumberCell { label: &label, path: &path, decimals: 4, value: weight.across };
+            number(ui, shown, brief, p, commands, |x| Edit::at(&["counterweight", &place, "across"], x));
+        }
+    });
 }
 
 /// Draws the checkbox that keeps a link unchanged, both when the balance is kept and when counterweights are placed.
@@ -198,6 +224,7 @@ fn number(
         let mut value = shown.value;
         let row = NumberRow::of(shown.label, shown.path).with(shown.decimals, 0.002);
         let response = row.number(ui, &mut value);
+        sought::found(ui, &response, shown.path);
         holding(ui, &response, shown, brief.hold.get(shown.path).copied(), p, commands);
         send(commands, &[response], || edit(value));
     });

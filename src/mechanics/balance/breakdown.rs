@@ -1,7 +1,7 @@
 //! [`Breakdown`]: every condition of (7) and (8), with the contribution of each body of a machine.
 
 use super::condition::Condition;
-use crate::machine::{Inertia, Machine};
+use crate::machine::{Inertia, Machine, PartBody, PlaneBody};
 use crate::planar::{MAX_DRIVES, Vector};
 
 /// A body with mass: a link, a counterweight or the payload.
@@ -76,16 +76,29 @@ impl Breakdown {
     }
 }
 
+impl BalanceTerm {
+    /// Returns what a part or a lump contributes to the term, kg m or kg m². It is part of what its link contributes,
+    /// unless typed numbers of the link overrule it.
+    pub fn of_part(&self, machine: &Machine, part: &PartBody) -> Vector {
+        let PlaneBody { mass, at, across, .. } = part.body;
+        self.condition.of(mass, &coefficients(machine, part.link, at, across))
+    }
+}
+
+/// Returns the coefficients a_k, m, of a point of a link, Σ_k a_k e(q_k).
+fn coefficients(machine: &Machine, link: usize, along: f64, across: f64) -> [Vector; MAX_DRIVES] {
+    let own = &machine.resolved_links()[link];
+    let mut a = own.root.map(|w| Vector::new(w, 0.0));
+    a[own.drive] += own.sign * Vector::new(along, across);
+    a
+}
+
 type Mass = (CarriedBody, f64, [Vector; MAX_DRIVES]);
 
 /// Returns each body, its mass, kg, and the coefficients a_k, m, of its CM Σ_k a_k e(q_k).
 fn masses(machine: &Machine) -> Vec<Mass> {
-    let (spec, parts) = (machine.spec(), machine.resolved_links());
-    let on = |link: usize, along: f64, across: f64| {
-        let mut a = parts[link].root.map(|w| Vector::new(w, 0.0));
-        a[parts[link].drive] += parts[link].sign * Vector::new(along, across);
-        a
-    };
+    let spec = machine.spec();
+    let on = |link: usize, along: f64, across: f64| coefficients(machine, link, along, across);
     let links = spec.links.iter().enumerate().map(|(link, body)| {
         let source = CarriedBody { body: Body::Link(link), link };
         (source, body.mass, on(link, body.com, body.com_normal))

@@ -20,9 +20,9 @@ const MAX_LENGTHS: usize = MAX_LINKS;
 /// Maximum number of materials beside the built-in ones.
 const MAX_MATERIALS: usize = 100;
 /// Maximum number of parts, and of lumps: some on each link.
-const MAX_PARTS: usize = 1000;
+pub const MAX_PARTS: usize = 1000;
 /// Maximum number of holes of a part, and of corners of a plate. Each is compared with all others.
-const MAX_PER_PART: usize = 100;
+pub const MAX_PER_PART: usize = 100;
 /// Maximum number of characters of a name.
 const MAX_NAME: usize = 100;
 /// Maximum number of characters of a summary.

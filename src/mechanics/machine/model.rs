@@ -4,9 +4,11 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use super::Chain;
+use super::check::place_on_link;
+use super::error::KeyPath;
 use super::motors::Motors;
 use super::parts::{PartBody, PartSource, PlaneBody, sum_of};
-use super::spec::{Link, MachineSpec};
+use super::spec::{Link, MachineSpec, PlaceOnLink};
 use crate::planar::{MAX_DRIVES, Vector};
 
 /// A valid machine. Copies share their data, so that copying a machine and comparing copies are cheap.
@@ -157,6 +159,12 @@ impl Machine {
     /// Returns all parts and lumps of a link combined; `None` if it has none. Typed numbers of the link overrule it.
     pub fn parts_of_link(&self, link: usize) -> Option<PlaneBody> {
         sum_of(&self.0.part_bodies, link)
+    }
+
+    /// Returns a place on a link, m from its root; `None` if there is no such link or length.
+    pub fn place_on(&self, link: &str, place: &PlaceOnLink) -> Option<f64> {
+        let i = self.links().iter().position(|own| own.name == link)?;
+        place_on_link(self.spec(), i, place, KeyPath::default).ok()
     }
 
     /// Returns the index of the link that carries the end effector.

@@ -12,7 +12,8 @@ impl Sketch {
     /// # Errors
     /// If the step does not fit the drawing, or would make a loop outside the family; says where, and what would do.
     pub fn with(&self, step: &SketchStep) -> Result<Self, SketchRefusal> {
-        let next = self.stepped(step)?;
+        let mut next = self.stepped(step)?;
+        next.follow_pins(self);
         next.check()?;
         Ok(next)
     }
@@ -53,6 +54,7 @@ impl Sketch {
                 }
                 Ok(next)
             }
+            SketchStep::Parts { bar, parts, lumps } => self.with_parts(*bar, parts, lumps),
         }
     }
 
@@ -119,7 +121,7 @@ impl Sketch {
         if let Some(bar) = next.bar_mut(id) {
             bar.name = name.into();
         }
-        next.counterweights.iter_mut().filter(|weight| weight.link == old).for_each(|weight| weight.link = name.into());
+        next.links_mut().filter(|link| **link == old).for_each(|link| *link = name.into());
         Ok(next)
     }
 

@@ -1,23 +1,26 @@
-//! [`Body`]: mass of a bar, and where it is.
+//! [`Body`]: numbers of a bar that someone typed, and what a bar weighs.
 
 use serde::{Deserialize, Serialize};
 
 use super::drawing::{Bar, Sketch};
-use crate::machine::Link;
+use crate::machine::{Link, LinkNumber, PlaneBody, sum_of};
 
-/// Mass of a bar and where it is.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// Typed numbers of a bar. Those that are not given follow from its parts, or without parts from its length.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Body {
     /// Mass, kg.
-    pub mass: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mass: Option<f64>,
     /// Inertia about its own centre of mass, kg m².
-    pub inertia: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inertia: Option<f64>,
     /// Position of its centre of mass from the root towards the tip, m.
-    pub com: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub com: Option<f64>,
     /// Distance of its centre of mass to the left of the direction root to tip, m.
-    #[serde(default, skip_serializing_if = "is_nought")]
-    pub com_normal: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub com_normal: Option<f64>,
     /// Height of its centre of mass above the reference plane through B, m.
     #[serde(default, skip_serializing_if = "is_nought")]
     pub axial: f64,
@@ -28,26 +31,77 @@ fn is_nought(x: &f64) -> bool {
 }
 
 impl Body {
-    /// Returns the body of a link.
+    /// Returns the typed numbers of a link.
     pub(super) fn of(link: &Link) -> Self {
-        let Link { mass, inertia, com, com_normal, axial, .. } = *link;
-        Self { mass, inertia, com, com_normal, axial }
+        let typed = |number| Some(link.number(number)).filter(|_| !link.follows(number));
+        let [mass, inertia, com, com_normal] = LinkNumber::ALL.map(typed);
+        Self { mass, inertia, com, com_normal, axial: link.axial }
+    }
+
+    /// Returns all numbers of a body as typed.
+    pub(super) fn typed(body: &PlaneBody, axial: f64) -> Self {
+        let PlaneBody { mass, at, across, inertia } = *body;
+        let com_normal = Some(across).filter(|across| *across != 0.0);
+        Self { mass: Some(mass), inertia: Some(inertia), com: Some(at), com_normal, axial }
+    }
+
+    /// Returns a number, in SI units, if it is typed.
+    pub(super) fn number(&self, number: LinkNumber) -> Option<f64> {
+        match number {
+            LinkNumber::Mass => self.mass,
+            LinkNumber::Inertia => self.inertia,
+            LinkNumber::Along => self.com,
+            LinkNumber::Across => self.com_normal,
+        }
+    }
+
+    /// Returns whether no number is typed but the height.
+    pub(super) fn follows(&self) -> bool {
+        *self == Self { axial: self.axial, ..Self::default() }
     }
 }
 
 impl Sketch {
-    /// Returns the body of a bar: its own, or that of a slender bar between its outermost pins, to four digits.
-    pub fn body(&self, bar: &Bar) -> Body {
-        if let Some(body) = bar.body {
-            return body;
+    /// Returns what a bar weighs: its typed numbers, and for the others those of its parts, or of a slender bar.
+    pub fn body(&self, bar: &Bar) -> PlaneBody {
+        let stated = self.stated(bar);
+        let index = self.bars.iter().position(|own| own.id == bar.id);
+        let parts = index.filter(|_| self.has_parts(&bar.name)).and_then(|i| sum_of(&self.part_bodies().ok()?, i));
+        let rest = parts.unwrap_or_else(|| self.slender(bar));
+        PlaneBody {
+            mass: stated.mass.unwrap_or(rest.mass),
+            at: stated.com.unwrap_or(rest.at),
+            across: stated.com_normal.unwrap_or(rest.across),
+            inertia: stated.inertia.unwrap_or(rest.inertia),
         }
-        let places = || bar.all_pins().map(|pin| self.along(bar, pin));
-        let (low, high) = (places().fold(0.0, f64::min), places().fold(0.0, f64::max));
+    }
+
+    /// Returns the numbers of a bar that its machine states: those that follow from no parts.
+    pub(super) fn stated(&self, bar: &Bar) -> Body {
+        let own = bar.body.unwrap_or_default();
+        if self.has_parts(&bar.name) {
+            return own;
+        }
+        let PlaneBody { mass, at, inertia, .. } = self.slender(bar);
+        let [mass, inertia, com] =
+            [(own.mass, mass), (own.inertia, inertia), (own.com, at)].map(|(typed, rest)| typed.or(Some(rest)));
+        Body { mass, inertia, com, com_normal: own.com_normal.filter(|across| *across != 0.0), axial: own.axial }
+    }
+
+    /// Returns the body of a slender bar between its outermost pins, to four digits.
+    fn slender(&self, bar: &Bar) -> PlaneBody {
+        let [low, high] = self.extent(bar);
         let length = high - low;
         let mass = bar.per_metre * length;
         let inertia = mass * length * length / 12.0;
-        let [mass, inertia, com] = [mass, inertia, 0.5 * (low + high)].map(four_digits);
-        Body { mass, inertia, com, com_normal: 0.0, axial: 0.0 }
+        let [mass, inertia, at] = [mass, inertia, 0.5 * (low + high)].map(four_digits);
+        PlaneBody { mass, at, across: 0.0, inertia }
+    }
+
+    /// Returns where the outermost pins of a bar are, m from its root.
+    pub(super) fn extent(&self, bar: &Bar) -> [f64; 2] {
+        let places = || bar.all_pins().map(|pin| self.along(bar, pin));
+        [places().fold(0.0, f64::min), places().fold(0.0, f64::max)]
     }
 }
 

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::body::Body;
-use crate::machine::{Angle, Counterweight, Drive, Payload};
+use crate::machine::{Angle, Counterweight, Drive, Lump, Material, Part, Payload};
 use crate::planar::{Vector, dot};
 
 /// Least distance of two pins of one bar, m.
@@ -66,10 +66,11 @@ pub struct Bar {
     /// Whether it points against the arm of its drive. Among the bars of a drive, the first decides.
     #[serde(default, skip_serializing_if = "is_false")]
     pub against: bool,
-    /// Mass per metre of a bar without a body of its own, kg/m.
+    /// Mass per metre of a bar without parts and without typed numbers, kg/m.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub per_metre: f64,
-    /// Its mass and where it is; `None` for a slender bar of `per_metre`.
+    /// Numbers that someone typed; `None` for a bar whose numbers follow from its parts, or without parts from
+    /// `per_metre`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<Body>,
 }
@@ -162,6 +163,15 @@ pub struct Sketch {
     /// Discs on bars; places are measured from the root of the bar.
     #[serde(default, rename = "counterweight", skip_serializing_if = "Vec::is_empty")]
     pub counterweights: Vec<Counterweight>,
+    /// Materials beside the built-in ones.
+    #[serde(default, rename = "material", skip_serializing_if = "Vec::is_empty")]
+    pub materials: Vec<Material>,
+    /// What bars are made of. Places along a bar are its `root`, its `tip`, or metres from its root.
+    #[serde(default, rename = "part", skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<Part>,
+    /// Bodies on bars whose mass is known.
+    #[serde(default, rename = "lump", skip_serializing_if = "Vec::is_empty")]
+    pub lumps: Vec<Lump>,
 }
 
 fn is_usual(payload: &Payload) -> bool {
@@ -185,6 +195,9 @@ impl Sketch {
             motors: Vec::new(),
             angles: Vec::new(),
             counterweights: Vec::new(),
+            materials: Vec::new(),
+            parts: Vec::new(),
+            lumps: Vec::new(),
         }
     }
 

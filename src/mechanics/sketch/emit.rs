@@ -7,7 +7,7 @@ use super::drawing::{MIN_DISTANCE, PinId, Sketch};
 use super::graph::Graph;
 use super::lengths::Lengths;
 use super::loops::Recognised;
-use crate::machine::{Attach, Closure, DerivedNumbers, Drive, Link, LinkPoint, MachineSpec};
+use crate::machine::{Attach, Closure, DerivedNumbers, Drive, Link, LinkNumber, LinkPoint, MachineSpec};
 
 /// The bar to which the roots of others are pinned at a pin, by index; `None` for the base.
 pub(super) type Owners = HashMap<PinId, Option<usize>>;
@@ -22,8 +22,8 @@ impl Sketch {
             |bar: usize, pin: PinId| LinkPoint { link: own.bars[bar].name.clone(), at: lengths.place(&own, bar, pin) };
         let links = own.bars.iter().enumerate().map(|(i, bar)| {
             let drive = classes.drive(&own, i).unwrap_or_default();
-            let body = own.body(bar);
-            Link {
+            let stated = own.stated(bar);
+            let mut link = Link {
                 name: bar.name.clone(),
                 drive: drive.into(),
                 attach: match owners.get(&bar.root).copied().flatten() {
@@ -32,13 +32,15 @@ impl Sketch {
                 },
                 direction: if own.is_against(bar, drive) { -1 } else { 1 },
                 length: lengths.length(&own, i),
-                mass: body.mass,
-                inertia: body.inertia,
-                com: body.com,
-                com_normal: body.com_normal,
-                axial: body.axial,
+                mass: 0.0,
+                inertia: 0.0,
+                com: 0.0,
+                com_normal: 0.0,
+                axial: stated.axial,
                 derived: DerivedNumbers::default(),
-            }
+            };
+            LinkNumber::ALL.into_iter().for_each(|number| link.type_number(number, stated.number(number)));
+            link
         });
         let index = |id| own.bars.iter().position(|bar| bar.id == id);
         let drives = own.motors.iter().map(|motor| {
@@ -58,10 +60,9 @@ impl Sketch {
             end_effector: end,
             angles: own.angles.clone(),
             lengths: lengths.named.clone(),
-            // A drawing holds the masses of its bars, not the parts from which they follow.
-            materials: Vec::new(),
-            parts: Vec::new(),
-            lumps: Vec::new(),
+            materials: own.materials.clone(),
+            parts: own.named_parts(&lengths),
+            lumps: own.named_lumps(&lengths),
         }
     }
 

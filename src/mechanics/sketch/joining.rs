@@ -16,7 +16,6 @@ impl Sketch {
             let what = format!("bar {} has no inner place at {}", bar.name, mm(along));
             return Err(SketchRefusal::new(Place::Bar(id), what, format!("a place between 0 and {}", mm(length))));
         }
-        let body = self.body(&bar);
         let mut next = self.clone();
         let pin = next.pin_on(id, along)?;
         let beyond = |own: &PinId| self.along(&bar, *own) > along + 0.5 * MIN_DISTANCE;
@@ -24,12 +23,9 @@ impl Sketch {
             bar.pins.iter().copied().filter(|own| *own != pin).partition(beyond);
         let second =
             Bar { id: BarId(next.next_id()), name: next.free_bar_name(), root: pin, pins: outer, ..bar.clone() };
-        // A body of its own is spread evenly over both.
-        let per_metre = if bar.body.is_some() { body.mass / length } else { bar.per_metre };
-        let second = Bar { body: None, length: None, per_metre, ..second };
+        let second = Bar { length: None, ..second };
         if let Some(first) = next.bar_mut(id) {
-            (first.tip, first.pins, first.body, first.per_metre) = (pin, inner, None, per_metre);
-            first.length = None;
+            (first.tip, first.pins, first.length) = (pin, inner, None);
         }
         for motor in next.motors.iter_mut().filter(|motor| motor.stator == Some(id)) {
             if motor.pin != pin && second.has(motor.pin) {
@@ -41,10 +37,9 @@ impl Sketch {
                 end.bar = second.id;
             }
         }
-        for weight in next.counterweights.iter_mut().filter(|weight| weight.link == bar.name && weight.at > along) {
-            (weight.link, weight.at) = (second.name.clone(), weight.at - along);
-        }
+        let name = second.name.clone();
         next.bars.push(second);
+        next.divide(self, &bar, &name, along);
         Ok(next)
     }
 
@@ -67,10 +62,7 @@ impl Sketch {
         let (from, sense) =
             (self.along(&first, second.root), self.along(&first, second.tip) - self.along(&first, second.root));
         let sense = sense.signum();
-        for weight in next.counterweights.iter_mut().filter(|weight| weight.link == second.name) {
-            (weight.link, weight.at, weight.across) =
-                (first.name.clone(), from + sense * weight.at, sense * weight.across);
-        }
+        next.unite(&first, &second, from, sense);
         next.motors.iter_mut().filter(|motor| motor.stator == Some(with)).for_each(|motor| motor.stator = Some(id));
         for end in next.end_effector.iter_mut().filter(|end| end.bar == with) {
             end.bar = id;
@@ -78,8 +70,6 @@ impl Sketch {
         }
         if let Some(own) = next.bar_mut(id) {
             own.pins = pins.into_iter().filter(|pin| *pin != own.root && *pin != own.tip).collect();
-            own.per_metre = 0.5 * (first.per_metre + second.per_metre);
-            own.body = None;
             own.length = None;
         }
         next.measure_from(id, root, tip, self.along(&first, root), false);

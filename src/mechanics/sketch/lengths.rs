@@ -103,6 +103,6 @@ fn unite(shared: &mut Vec<Vec<Distance>>, sides: &[Distance]) {
 }
 
 /// Rounds a length to a picometre, so that a decimal number that was drawn is written as such.
-fn rounded(metres: f64) -> f64 {
+pub(super) fn rounded(metres: f64) -> f64 {
     if metres.abs() < 1e3 { (metres * PARTS).round() / PARTS } else { metres }
 }

@@ -5,24 +5,34 @@
 //! makes the [`Machine`](crate::machine::Machine) once nothing is. [`Sketch::of`] draws a machine, and [`snap`] helps
 //! the hand.
 //!
+//! # Mass
+//! A bar is slender, until parts say what it is made of, or someone types its mass; typed numbers overrule parts, as in
+//! a machine file. Where a bar becomes longer, what reaches from its root to its tip grows with it, and what lies at a
+//! pin follows that pin; else parts, lumps and counterweights stay where they are. A bar that is split divides what it
+//! has, and one that is joined keeps it: in the straight pose mass, centre of mass and inertia stay.
+//!
 //! # The family
 //! Every bar stays parallel to the arm of one drive. So loops are parallelograms, or sums of parallelograms.
 
 mod apply;
 mod body;
 mod classes;
+mod division;
 mod drawing;
 mod emit;
 mod ends;
 mod graph;
 mod joining;
 mod lengths;
+mod limits;
 mod loops;
 mod mends;
 mod missing;
 mod motors;
 mod moving;
+mod parts;
 mod posing;
+mod recount;
 mod refusal;
 mod removal;
 mod resolve;
@@ -34,6 +44,7 @@ mod valid;
 
 pub use body::Body;
 pub use drawing::{Bar, BarId, EndEffector, Motor, Pin, PinId, Place, Sketch};
+pub use limits::LimitArc;
 pub use loops::{LoopShape, LoopState};
 pub use mends::Mend;
 pub use missing::{Lack, Missing};

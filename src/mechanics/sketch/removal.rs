@@ -1,6 +1,7 @@
 //! Deleting bars and pins, and what is then on nothing.
 
 use super::drawing::{BarId, PinId, Place, Sketch};
+use super::recount::Recount;
 use super::refusal::SketchRefusal;
 
 impl Sketch {
@@ -28,7 +29,8 @@ impl Sketch {
         Ok(next)
     }
 
-    /// Takes a pin off a bar of more than two pins. The outermost of the others becomes its end instead.
+    /// Takes a pin off a bar of more than two pins. The outermost of the others becomes its end instead; parts from root
+    /// to tip reach to that.
     fn shorten(&mut self, id: BarId, pin: PinId) {
         let Some(bar) = self.bar(id).cloned() else { return };
         let mut rest: Vec<PinId> = bar.all_pins().filter(|own| *own != pin).collect();
@@ -40,7 +42,9 @@ impl Sketch {
             _ => (bar.root, bar.tip),
         };
         let (from, turned) = (self.along(&bar, root), self.along(&bar, tip) < self.along(&bar, root));
+        let spanning = self.spanning(&bar);
         self.measure_from(id, root, tip, from, turned);
+        self.span_again(&spanning);
         if let Some(own) = self.bar_mut(id) {
             own.pins.retain(|own| *own != pin);
         }
@@ -49,18 +53,18 @@ impl Sketch {
     /// Measures a bar from another root, `from` m along its axis, towards another tip; its mass stays where it is.
     pub(super) fn measure_from(&mut self, id: BarId, root: PinId, tip: PinId, from: f64, turned: bool) {
         let sense = if turned { -1.0 } else { 1.0 };
+        let Some(bar) = self.bar(id).cloned() else { return };
+        let length = (self.along(&bar, tip) - from).abs();
+        self.recount(&bar.name, &Recount { from, sense, was: self.length(&bar), length });
         let Some(bar) = self.bar_mut(id) else { return };
         let pins: Vec<PinId> = bar.all_pins().filter(|pin| *pin != root && *pin != tip).collect();
         (bar.root, bar.tip, bar.pins) = (root, tip, pins);
         bar.against ^= turned && bar.drive.is_some();
         if let Some(body) = &mut bar.body {
-            (body.com, body.com_normal) = (sense * (body.com - from), sense * body.com_normal);
+            body.com = body.com.map(|com| sense * (com - from));
+            body.com_normal = body.com_normal.map(|across| sense * across);
         }
-        let (name, is_end) = (bar.name.clone(), self.end_effector.is_some_and(|end| end.bar == id));
-        for weight in self.counterweights.iter_mut().filter(|weight| weight.link == name) {
-            (weight.at, weight.across) = (sense * (weight.at - from), sense * weight.across);
-        }
-        if is_end {
+        if self.end_effector.is_some_and(|end| end.bar == id) {
             self.payload.offset = self.payload.offset.map(|x| sense * x);
         }
     }
@@ -84,6 +88,9 @@ impl Sketch {
         }
         self.angles.retain(|angle| names.contains(&angle.to) && names.contains(&angle.from));
         let bars = &self.bars;
-        self.counterweights.retain(|weight| bars.iter().any(|bar| bar.name == weight.link));
+        let is_left = |link: &String| bars.iter().any(|bar| bar.name == *link);
+        self.counterweights.retain(|weight| is_left(&weight.link));
+        self.parts.retain(|part| is_left(&part.link));
+        self.lumps.retain(|lump| is_left(&lump.link));
     }
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::body::Body;
 use super::drawing::{BarId, PinId, Sketch, mm};
 use super::template::Template;
-use crate::machine::Rotor;
+use crate::machine::{Lump, Part, Rotor};
 
 /// Where an end of a new bar is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -216,11 +216,22 @@ pub enum SketchStep {
         /// The corner that moves.
         moves: PinId,
     },
+    /// Says what a bar is made of.
+    Parts {
+        /// The bar.
+        bar: BarId,
+        /// Its bars and plates; places along it are its `root`, its `tip`, or metres from its root.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        parts: Vec<Part>,
+        /// Bodies on it whose mass is known.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        lumps: Vec<Lump>,
+    },
     /// Sets the mass of a bar.
     Mass {
         /// The bar.
         bar: BarId,
-        /// Its mass and where it is; a slender bar if it is not given.
+        /// Its typed numbers; if they are not given, they follow from its parts, or it is slender.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         body: Option<Body>,
         /// Mass per metre of a slender bar, kg/m.
@@ -265,7 +276,13 @@ impl SketchStep {
             Self::Length { metres, .. } => format!("length of bar to {}", mm(*metres)),
             Self::Angle { radians, .. } => format!("turn bar to {:.1}°", radians.to_degrees()),
             Self::Parallelogram { .. } => "make it a parallelogram".into(),
-            Self::Mass { body: Some(body), .. } => format!("mass of bar to {} kg", body.mass),
+            Self::Parts { parts, lumps, .. } => match (parts.as_slice(), lumps.as_slice()) {
+                ([], []) => "bar of no parts".into(),
+                ([one], []) => format!("bar of {}", one.title()),
+                _ => format!("bar of {} parts", parts.len() + lumps.len()),
+            },
+            Self::Mass { body: Some(Body { mass: Some(mass), .. }), .. } => format!("mass of bar to {mass} kg"),
+            Self::Mass { body: Some(_), .. } => "numbers of bar".into(),
             Self::Mass { per_metre, .. } => format!("mass of bar to {per_metre} kg/m"),
         }
     }

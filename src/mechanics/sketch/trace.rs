@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_4;
 
 use super::body::Body;
 use super::drawing::{Bar, BarId, EndEffector, Motor, PinId, Sketch};
-use crate::machine::{Drive, Length, Machine, RelativeAngle, place_of};
+use crate::machine::{Drive, Length, Machine, MachineSpec, RelativeAngle, place_of};
 use crate::planar::{DriveAngles, PerDrive, Vector};
 
 /// Distance along a link below which two points are one, m.
@@ -99,6 +99,10 @@ impl Sketch {
                 body: Some(Body::of(link)),
             });
         }
+        sketch.take_parts(spec);
+        for bar in &mut sketch.bars {
+            bar.body = bar.body.filter(|body| !spec.has_parts(&bar.name) || *body != Body::default());
+        }
         sketch.end_effector = sketch.bars.get(end.0).map(|bar| EndEffector { pin: end_pin, bar: bar.id });
         sketch.motors = spec.drives.iter().map(|drive| sketch.motor_of(drive)).collect();
         (sketch.name, sketch.summary) = (spec.name.clone(), spec.summary.clone());
@@ -122,10 +126,11 @@ impl Sketch {
     }
 
     /// Returns the drawing with the numbers of its machine after settings have changed it: drawn anew if it was
-    /// complete, with the same identities; else with the numbers of parts that have the same names.
+    /// complete, with the same identities; else with what has changed since the machine `was`, on bars and drives of
+    /// the same names.
     #[must_use]
-    pub fn following_machine(&self, machine: &Machine) -> Self {
-        let spec = machine.spec();
+    pub fn following_machine(&self, was: &Machine, machine: &Machine) -> Self {
+        let (spec, was) = (machine.spec(), was.spec());
         let mut next = self.clone();
         for motor in &mut next.motors {
             if let Some(drive) = spec.drives.iter().find(|drive| drive.name == motor.drive.name) {
@@ -138,16 +143,26 @@ impl Sketch {
                 (angle.min, angle.max) = (own.min, own.max);
             }
         }
-        let weights = spec.counterweights.iter().filter(|weight| self.bars.iter().any(|bar| bar.name == weight.link));
-        next.counterweights = weights.cloned().collect();
-        let Some(before) = self.machine() else { return next };
+        let is_complete = self.machine().is_some();
+        if is_complete || spec.counterweights != was.counterweights {
+            let is_drawn = |link: &String| self.bars.iter().any(|bar| bar.name == *link);
+            next.counterweights = spec.counterweights.iter().filter(|weight| is_drawn(&weight.link)).cloned().collect();
+        }
+        let lists = |spec: &MachineSpec| (spec.materials.clone(), spec.parts.clone(), spec.lumps.clone());
+        if is_complete || lists(spec) != lists(was) {
+            next.take_parts(spec);
+        }
+        if !is_complete {
+            return next;
+        }
+        let mut next = next.redrawn(machine).unwrap_or(next);
         // Of a complete drawing every link is a bar, in the same order.
-        for ((bar, link), old) in next.bars.iter_mut().zip(&spec.links).zip(&before.spec().links) {
-            if Body::of(link) != Body::of(old) {
+        let stated: Vec<Body> = next.bars.iter().map(|bar| next.stated(bar)).collect();
+        for ((bar, link), stated) in next.bars.iter_mut().zip(&spec.links).zip(stated) {
+            if Body::of(link) != stated {
                 bar.body = Some(Body::of(link));
             }
         }
-        let next = next.redrawn(machine).unwrap_or(next);
         // Where the drawing measures a bar from another end than its machine does, it is drawn anew.
         let is_same = |own: Machine| own.links() == machine.links() && own.resolved_links() == machine.resolved_links();
         if next.machine().is_some_and(is_same) { next } else { Self::of(machine, None) }

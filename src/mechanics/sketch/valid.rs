@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::drawing::{Bar, Place, Sketch};
 use super::refusal::SketchRefusal;
 use crate::machine::ranges::{LENGTH, PLACE};
-use crate::machine::{MAX_COUNTERWEIGHTS, MAX_LINKS};
+use crate::machine::{LinkNumber, MAX_COUNTERWEIGHTS, MAX_LINKS, MAX_PARTS, MAX_PER_PART};
 use crate::planar::MAX_DRIVES;
 use stillbase_settings::range::{quote_clipped, shortened};
 use stillbase_settings::text::control_character;
@@ -34,7 +34,8 @@ impl Sketch {
         self.check_pins()?;
         self.bars.iter().try_for_each(|bar| self.check_bar(bar))?;
         self.check_motors()?;
-        self.check_numbers()
+        self.check_numbers()?;
+        self.check_parts()
     }
 
     fn check_counts(&self) -> Result<(), SketchRefusal> {
@@ -47,6 +48,11 @@ impl Sketch {
             ("drives", self.motors.len(), MAX_DRIVES),
             ("angles", self.angles.len(), MAX_ANGLES),
             ("counterweights", self.counterweights.len(), MAX_COUNTERWEIGHTS),
+            ("materials", self.materials.len(), MAX_PARTS),
+            ("parts", self.parts.len(), MAX_PARTS),
+            ("lumps", self.lumps.len(), MAX_PARTS),
+            ("holes on a part", self.parts.iter().map(|part| part.holes.len()).max().unwrap_or(0), MAX_PER_PART),
+            ("corners of a plate", self.parts.iter().map(|part| part.polygon.len()).max().unwrap_or(0), MAX_PER_PART),
         ];
         match counts.into_iter().find(|(_, count, most)| count > most) {
             Some((what, count, most)) => whole(format!("the drawing has {count} {what}"), format!("at most {most}")),
@@ -163,8 +169,8 @@ impl Sketch {
     /// Checks that every number is finite: a machine's own checks say the rest.
     fn check_numbers(&self) -> Result<(), SketchRefusal> {
         let own = |bar: &Bar| {
-            let body = bar.body.map(|b| [b.mass, b.inertia, b.com, b.com_normal, b.axial]).unwrap_or_default();
-            body.into_iter().chain([bar.per_metre])
+            let body = bar.body.unwrap_or_default();
+            LinkNumber::ALL.into_iter().filter_map(move |number| body.number(number)).chain([body.axial, bar.per_metre])
         };
         let motors = self.motors.iter().flat_map(|motor| {
             let drive = &motor.drive;

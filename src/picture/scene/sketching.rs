@@ -1,5 +1,6 @@
 //! The scene of a drawing: bars in the colours of their drives, pins, motors, the end effector, and the bar under way.
 
+mod limits;
 mod pick;
 
 use std::sync::Arc;
@@ -10,6 +11,7 @@ use super::{Anchor, Label, Marker, MeshSet, Polyline, Rgba, Scene, point};
 use stillbase_mechanics::planar::Vector;
 use stillbase_mechanics::sketch::{Bar, BarId, PinId, Resolved, Sketch};
 
+pub use limits::DrawnArc;
 pub use pick::{metres_per_px, pick};
 
 /// Width of a square of the grid, m.
@@ -33,6 +35,8 @@ pub enum SketchItem {
     Pin(PinId),
     /// A bar.
     Bar(BarId),
+    /// A joint limit: the number of its arc, from 0, and 0 for the lower or 1 for the upper limit.
+    Limit(usize, usize),
 }
 
 /// A bar under way, from its start to the pointer.
@@ -55,6 +59,8 @@ pub struct SketchOptions {
     pub chosen: Option<SketchItem>,
     /// The bar under way.
     pub rubber: Option<Rubber>,
+    /// The place of the pin with which a dragged pin becomes one, m.
+    pub ring: Option<[f64; 2]>,
 }
 
 /// Returns the points that the camera has to show, m.
@@ -73,9 +79,11 @@ pub fn scene(model: Arc<MeshSet>, sketch: &Sketch, resolved: &Resolved, options:
     let drawing = Drawing { sketch, resolved, options, palette: &palette };
     drawing.bars(&mut scene);
     drawing.motors(&mut scene);
+    limits::draw(&mut scene, sketch, options.hot, &palette);
     drawing.pins(&mut scene);
     drawing.end_effector(&mut scene);
     drawing.rubber(&mut scene);
+    drawing.ring(&mut scene);
     scene
 }
 
@@ -198,6 +206,16 @@ impl Drawing<'_> {
         let label =
             Label::new("sketch/end-effector/name", at, [16.0, 0.0], words, self.palette.dim, 11.5, Anchor::Left);
         scene.labels.push(label);
+    }
+
+    /// Draws a ring about the pin with which another becomes one.
+    fn ring(&self, scene: &mut Scene) {
+        let Some([x, y]) = self.options.ring else { return };
+        let at = point(Vector::new(x, y), 0.0);
+        for (radius, width) in [(11.0, 2.4), (17.0, 1.2)] {
+            let ring = Marker::disc("sketch/ring", at, radius, faded(self.palette.background, 0.0));
+            scene.markers.push(ring.edged(self.palette.amber, width));
+        }
     }
 
     /// Draws the bar under way, dashed.

@@ -1,8 +1,8 @@
 //! Texts about a state of a design, as Markdown.
 
 use super::state::DesignState;
-use stillbase_mechanics::balance::Breakdown;
-use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::balance::{BalanceTerm, Breakdown};
+use stillbase_mechanics::machine::{Inertia, LinkNumber, Machine, PartBody, PartSource};
 use stillbase_mechanics::planar::Vector;
 use stillbase_picture::numbers::signed;
 use stillbase_settings::number::counted;
@@ -117,25 +117,36 @@ pub(super) fn links(machine: &Machine) -> String {
     table(&heads, &rows) + &sum
 }
 
-/// Returns the table of the conditions (7) and (8): contribution of each link with its discs and payload, and the
-/// residual.
+/// Returns the table of the conditions (7) and (8): contribution of each link with its discs and payload, what of it is
+/// that of a lump, and the residual.
 pub(super) fn balance(machine: &Machine, breakdown: &Breakdown) -> String {
     let terms = &breakdown.terms;
     let heads = terms.iter().map(|term| format!("{} {}", term.condition.symbol(), term.condition.unit()));
     let heads: Vec<String> = ["link".to_owned()].into_iter().chain(heads).collect();
-    let row = |(link, own): (usize, &stillbase_mechanics::machine::Link)| {
-        let parts = terms.iter().map(|term| match complex(breakdown.of_link(term, link)) {
+    let line = |name: String, of: &dyn Fn(&BalanceTerm) -> Vector| {
+        let parts = terms.iter().map(|term| match complex(of(term)) {
             none if none == "0.0000" => "·".to_owned(),
             part => part,
         });
-        [cell(&own.name, MAX_NAME_CHARS)].into_iter().chain(parts).collect::<Vec<_>>()
+        [name].into_iter().chain(parts).collect::<Vec<_>>()
+    };
+    let row = |(link, own): (usize, &stillbase_mechanics::machine::Link)| {
+        let whole = line(cell(&own.name, MAX_NAME_CHARS), &|term| breakdown.of_link(term, link));
+        // Typed numbers of the link overrule its lumps.
+        let counts = own.follows(LinkNumber::Mass) && own.follows(LinkNumber::Along);
+        let is_lump = |part: &&PartBody| counts && part.link == link && matches!(part.source, PartSource::Lump(_));
+        let lumps = machine.part_bodies().iter().filter(is_lump).map(|part| {
+            let name = format!("of it {}", part.title(machine.spec()));
+            line(cell(&name, MAX_NAME_CHARS), &|term| term.of_part(machine, part))
+        });
+        std::iter::once(whole).chain(lumps).collect::<Vec<_>>()
     };
     let of_term = terms.iter().map(|term| match term.balanced {
         true => "**0**".to_owned(),
         false => format!("**{}**", complex(term.residual)),
     });
     let residuals = ["**residual**".to_owned()].into_iter().chain(of_term).collect::<Vec<_>>();
-    let rows = [residuals].into_iter().chain(machine.links().iter().enumerate().map(row)).collect::<Vec<_>>();
+    let rows = [residuals].into_iter().chain(machine.links().iter().enumerate().flat_map(row)).collect::<Vec<_>>();
     if terms.len() <= MAX_COLUMNS {
         return table(&heads, &rows);
     }

@@ -223,6 +223,7 @@ impl Reading<'_> {
                 return Err(self.wrong(KeyPath::new(&[&"machine"]), "is no machine".into()));
             }
         };
+        let stated_machine = machine.clone();
         let machine = self.set(machine, &file.set)?;
         let stem = Path::new(label).file_stem().map_or_else(|| label.into(), |s| s.to_string_lossy());
         let stem = plain(&stem).into_owned();
@@ -236,7 +237,10 @@ impl Reading<'_> {
                     self.wrong(KeyPath::new(&[&"sketch"]), shortened(&why.to_string(), MAX_MESSAGE_CHARS))
                 };
                 sketch.check().map_err(bent)?;
-                Some(if file.set.is_empty() { sketch } else { sketch.following_machine(&machine) })
+                Some(match file.set.is_empty() {
+                    true => sketch,
+                    false => sketch.following_machine(&stated_machine, &machine),
+                })
             }
             None => None,
         };

@@ -72,8 +72,9 @@ impl Scenario {
     fn apply_change(&mut self, change: &Table) -> Result<(), SettingError> {
         let (of_machine, own): (Table, Table) = change.clone().into_iter().partition(|(key, _)| is_of_machine(key));
         if !of_machine.is_empty() {
-            self.machine = self.machine.with_settings(&of_machine)?;
-            self.sketch = self.sketch.as_ref().map(|sketch| sketch.following_machine(&self.machine));
+            let machine = self.machine.with_settings(&of_machine)?;
+            self.sketch = self.sketch.as_ref().map(|sketch| sketch.following_machine(&self.machine, &machine));
+            self.machine = machine;
         }
         for (part, value) in &own {
             let wrong = |why: String| {

@@ -26,4 +26,4 @@ pub use part::{Ends, Hole, Lump, Part, Shape};
 pub use weigh::{PartBody, PartSource};
 
 pub(super) use derived::LinkInFile;
-pub(super) use weigh::{sum_of, weigh};
+pub(crate) use weigh::{sum_of, weigh};

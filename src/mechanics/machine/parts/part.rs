@@ -215,7 +215,7 @@ fn is_usual(material: &str) -> bool {
 
 impl Part {
     /// Returns whether its places along the link are those of a part whose file names none.
-    pub(super) fn has_usual_places(&self) -> bool {
+    pub(crate) fn has_usual_places(&self) -> bool {
         is_root(&self.from) && is_tip(&self.to)
     }
 }

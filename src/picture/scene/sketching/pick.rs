@@ -1,6 +1,6 @@
 //! What the pointer is on in a drawing.
 
-use super::SketchItem;
+use super::{DrawnArc, SketchItem};
 use crate::scene::pointer::Pointer;
 use stillbase_mechanics::sketch::{PinId, Sketch};
 
@@ -8,7 +8,8 @@ use stillbase_mechanics::sketch::{PinId, Sketch};
 const PIN_PICK_PX: f64 = 11.0;
 const BAR_PICK_PX: f64 = 8.0;
 
-/// Returns the thing of a drawing under the pointer: a pin comes before a bar, and of several the nearest.
+/// Returns the thing of a drawing under the pointer: a pin comes before the grip of a limit, a grip before a bar, and of
+/// several the nearest.
 pub fn pick(sketch: &Sketch, pointer: &Pointer) -> Option<SketchItem> {
     let at = |pin: PinId| {
         let at = sketch.at(pin);
@@ -16,6 +17,15 @@ pub fn pick(sketch: &Sketch, pointer: &Pointer) -> Option<SketchItem> {
     };
     let pins = sketch.pins.iter().filter_map(|pin| Some((SketchItem::Pin(pin.id), pointer.distance(at(pin.id))?)));
     let near = pins.filter(|(_, far)| *far < PIN_PICK_PX).min_by(|a, b| a.1.total_cmp(&b.1));
+    let grips = || {
+        let all = DrawnArc::all(sketch);
+        let ends = all.iter().enumerate().flat_map(|(i, drawn)| [(i, 0, drawn), (i, 1, drawn)]);
+        let far = ends.filter_map(|(i, end, drawn)| {
+            let [x, y] = drawn.on(drawn.arc.range[end], 1.0);
+            Some((SketchItem::Limit(i, end), pointer.distance([x, y, 0.0])?))
+        });
+        far.filter(|(_, far)| *far < PIN_PICK_PX).min_by(|a, b| a.1.total_cmp(&b.1))
+    };
     let bars = || {
         sketch.bars.iter().filter_map(|bar| {
             let sides = bar.all_pins().map(|pin| [at(bar.root), at(pin)]);
@@ -24,7 +34,7 @@ pub fn pick(sketch: &Sketch, pointer: &Pointer) -> Option<SketchItem> {
         })
     };
     let on = || bars().filter(|(_, far)| *far < BAR_PICK_PX).min_by(|a, b| a.1.total_cmp(&b.1));
-    near.or_else(on).map(|(item, _)| item)
+    near.or_else(grips).or_else(on).map(|(item, _)| item)
 }
 
 /// Returns the size of a pixel in the plane of the drawing, m; 0 if the pointer does not see the plane.
