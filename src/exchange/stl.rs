@@ -24,6 +24,9 @@ pub enum SolidsError {
         /// Number of drives.
         wanted: usize,
     },
+    /// An angle of the pose is no number.
+    #[error("an angle of {0} rad in the pose: want finite angles")]
+    Angle(f64),
     /// Two links on one pin run through each other.
     #[error(
         "links {a:?} and {b:?} share a pin and a height: want heights that differ by a bar at least; \
@@ -40,11 +43,14 @@ pub enum SolidsError {
 /// Returns all solids of a machine in a pose, rad.
 ///
 /// # Errors
-/// If the parts cannot be cut, the pose has the wrong number of angles, or two links on one pin share a height.
+/// If the parts cannot be cut, the pose has the wrong number of angles or one that is no number, or two links on one pin share a height.
 pub fn solids(machine: &Machine, pose: &[f64], cut: &Cut) -> Result<Vec<SolidMesh>, SolidsError> {
     cut.check_stack(machine)?;
     if pose.len() != machine.drives() {
         return Err(SolidsError::Pose { given: pose.len(), wanted: machine.drives() });
+    }
+    if let Some(bad) = pose.iter().find(|q| !q.is_finite()) {
+        return Err(SolidsError::Angle(*bad));
     }
     let e: UnitVectors = std::array::from_fn(|k| unit(pose.get(k).copied().unwrap_or_default()));
     let (links, axles) = (link_solids(machine, cut), axles(machine));

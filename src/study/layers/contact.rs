@@ -12,7 +12,7 @@ use super::way::TaskPoses;
 
 /// Cells of poses that are examined for one pair of solids, and for all pairs together.
 const CELLS_PER_PAIR: usize = 100_000;
-const CELLS: usize = 5_000_000;
+const CELLS: usize = 2_000_000;
 
 /// Two solids that overlap in plan in some pose, so that they cannot lie in one layer.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -176,7 +176,10 @@ pub fn find_layers(request: &LayersRequest) -> Result<LayersReport, NoLayers> {
 fn at_heights(machine: &Machine, heights: &[f64]) -> Result<Machine, MachineError> {
     let mut spec = machine.spec().clone();
     let end = machine.end_link();
-    spec.payload.axial += heights[end] - spec.links[end].axial;
+    // The height of a payload that is not there has no use.
+    if spec.payload.mass > 0.0 || spec.payload.axial != 0.0 {
+        spec.payload.axial += heights[end] - spec.links[end].axial;
+    }
     for (link, height) in spec.links.iter_mut().zip(heights) {
         link.axial = *height;
     }
