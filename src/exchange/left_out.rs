@@ -1,7 +1,7 @@
 //! What a model for another program leaves out of a machine, in sentences.
 
 use super::cut::unweighed_tail;
-use super::mjcf::MIN_MASS_OR_INERTIA;
+use super::mjcf::{MIN_MASS_OR_INERTIA, parallel};
 use stillbase_mechanics::machine::{Length, Machine, MachineSpec};
 use stillbase_settings::number::{counted, fixed};
 
@@ -93,6 +93,11 @@ pub fn of_mjcf(machine: &Machine) -> Vec<String> {
     let is_light = |k: usize| spec.drives[k].rotor.is_some_and(|rotor| rotor.inertia < MIN_MASS_OR_INERTIA);
     if let Some(drives) = drives(spec, is_light) {
         list.push(format!("rotor and gear of {drives}: MuJoCo moves only what has inertia"));
+    }
+    if !spec.closures.is_empty() && !parallel(machine).is_empty() {
+        list.push(
+            "pins that close loops, and lengths up to them: equalities keep the links parallel instead".to_owned(),
+        );
     }
     if !spec.angles.is_empty() {
         list.push("names and offsets of angles: MJCF limits the angles of pins and sums of them".to_owned());

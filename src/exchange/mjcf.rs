@@ -396,7 +396,7 @@ fn limited(machine: &Machine) -> Vec<(String, PinAngleSum, [f64; 2])> {
 
 /// Returns the links that need an equality to stay parallel to the first link of their drive, with the angle between
 /// the two. Empty if the loops keep all links parallel.
-fn parallel(machine: &Machine) -> Vec<(usize, PinAngleSum)> {
+pub(super) fn parallel(machine: &Machine) -> Vec<(usize, PinAngleSum)> {
     let parts = machine.resolved_links();
     if parts.len() == machine.drives() + 2 * machine.loops().len() {
         return Vec::new();

@@ -11,8 +11,10 @@ pub const MAX_FAULTS: usize = 20;
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Fault {
     /// Line, counted from 1; `None` for a fault of the whole file.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub line: Option<usize>,
     /// Column, characters counted from 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub column: Option<usize>,
     /// The key, in the syntax of `--set`; empty for a fault of the whole file.
     pub key: String,

@@ -169,7 +169,12 @@ pub fn called(path: &KeyPath, words: &dyn Vocabulary) -> String {
 pub fn with_key(name: &str, key: &str) -> String {
     // The ends of limits stand in parentheses.
     let key = key.trim_end_matches(')').replace(" (", ", ");
-    if name == key { key } else { format!("{name} ({key})") }
+    // A list and its entry are called alike: `bookmark 2` and `bookmark[2]`.
+    if name == key || name == key.replace('[', " ").replace(']', "") {
+        name.to_owned()
+    } else {
+        format!("{name} ({key})")
+    }
 }
 
 /// Returns the message of the TOML reader on a value in plain words: what the value is.

@@ -197,7 +197,7 @@ fn what_is_not_listed_comes_back() {
                     assert!(is_near(a.inertia, b.inertia) && is_near(a.ratio, b.ratio), "{of}: {a:?} {b:?}");
                 }
             }
-            if lists("pin of link") {
+            if lists("pin of link") || (ending == "xml" && lists("pins that close loops")) {
                 continue;
             }
             assert_eq!(other.links.len(), own.links.len(), "{of}");

@@ -83,7 +83,7 @@ fn lists_say_how_long_they_are() {
         let (two, one) = (format!("{key}=1,2"), format!("{key}=[1]"));
         let want = "want one for all drives, or 3, one for each";
         fails(&["simulate", "--set", &two], 2, &[&format!("{key}) has 2 numbers: {want}")]);
-        fails(&["simulate", "--set", &one], 2, &[&format!("{key} has 1 number: {want}")]);
+        fails(&["simulate", "--set", &one], 2, &[&format!("{key}) has 1 number: {want}")]);
     }
 }
 

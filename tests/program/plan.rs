@@ -205,7 +205,7 @@ fn what_would_never_end_is_refused() {
         &["task.moment_limit) is 1e-308"],
     );
     fails(&["simulate", "circle", "--set", "drive.1.speed_limit=1e-9", "-o", &out], 1, &["at most 3600 s"]);
-    fails(&["simulate", "case-3", "--set", "drive.1.torque_limit=1e-300"], 2, &["torque_limit is 1e-300", "1e-9 to"]);
+    fails(&["simulate", "case-3", "--set", "drive.1.torque_limit=1e-300"], 2, &["torque_limit) is 1e-300", "1e-9 to"]);
     let case = include_str!("../../assets/scenarios/case-3.toml");
     let long = word(folder.file("long.toml", case.replace("[task]", "duration = 3600\n[task]")));
     fails(&["simulate", &long, "-o", &out], 2, &["GB: want at most 4 GB"]);

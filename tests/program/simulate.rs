@@ -207,7 +207,7 @@ fn plants_bases_and_control_are_set_by_key() {
         ("plant.payload.until=0", "plant.payload.until"),
         ("base.wheel.inertia=0", "base.wheel.inertia"),
         ("task.time=nan", "time is not a finite number"),
-        ("plant.payload.offset=[0.1,inf]", "payload.offset) is not a finite number"),
+        ("plant.payload.offset=[0.1,inf]", "payload.offset is not a finite number"),
     ] {
         fails(&["simulate", "case-1", "--set", pair], 2, &[word]);
     }

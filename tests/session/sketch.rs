@@ -86,7 +86,7 @@ fn a_scenario_with_a_drawing_is_a_file() {
     };
     let message = refused("root = 0", "root = 77");
     assert!(message.starts_with("drawn.toml:") && message.contains("no pin with the number 77"), "{message}");
-    assert!(refused("root = 0", "rot = 0").contains("unknown field"));
+    assert!(refused("root = 0", "rot = 0").contains("no key \"rot\""));
     assert!(refused("next = ", "next = 1 # ").contains("not its own"));
 }
 

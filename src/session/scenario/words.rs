@@ -1,6 +1,5 @@
 //! The keys of scenario files in words: plain names, what would be right, and examples.
 
-use super::bounds::ordinal;
 use super::keys::key_of;
 use super::names::name_of;
 use stillbase_mechanics::machine::{KeyPath, KeyStep, MachineWords};
@@ -60,7 +59,7 @@ impl Vocabulary for ScenarioWords {
         if let [KeyStep::Key(list), KeyStep::At(i)] = &path.0[..]
             && ENTRIES.contains(&list.as_str())
         {
-            return Some(format!("{} {list}", ordinal(i + 1)));
+            return Some(format!("{list} {}", i + 1));
         }
         let listed = stated(path).map(|(_, name, _)| (*name).to_owned());
         listed.or_else(|| setting(path).map(|(key, _)| name_of(&key)))
