@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{Align, ComboBox, Layout, RichText, TextEdit, Ui};
+use egui::{Align, ComboBox, Id, Layout, RichText, TextEdit, Ui};
 
 use super::motors::motor_at;
 use super::{PenChange, SketchFacts, draw, section};
@@ -30,9 +30,23 @@ pub struct NumberField<'a> {
 }
 
 impl NumberField<'_> {
-    /// Draws it; returns the new value at the end of a change.
+    /// Draws it with its name and its unit; returns the new value at the end of a change.
     pub fn show(&self, ui: &mut Ui, p: &Palette, value: f64, range: RangeInclusive<f64>) -> Option<f64> {
         let id = ui.scope_id().with(self.label);
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(self.words).font(plain(12.5)).color(colour(p.dim)));
+            let end = Layout::right_to_left(Align::Center);
+            ui.with_layout(end, |ui| {
+                crate::widgets::unit(ui, p, self.unit);
+                self.number(ui, id, value, range)
+            })
+            .inner
+        })
+        .inner
+    }
+
+    /// Draws the number alone; returns the new value at the end of a change. The value is kept under `id` meanwhile.
+    pub fn number(&self, ui: &mut Ui, id: Id, value: f64, range: RangeInclusive<f64>) -> Option<f64> {
         let mut now = ui.data(|data| data.get_temp::<f64>(id)).unwrap_or(value);
         let row = NumberRow {
             label: self.label,
@@ -43,17 +57,7 @@ impl NumberField<'_> {
             slide: range.clone(),
             range,
         };
-        let response = ui
-            .horizontal(|ui| {
-                ui.label(RichText::new(self.words).font(plain(12.5)).color(colour(p.dim)));
-                let end = Layout::right_to_left(Align::Center);
-                ui.with_layout(end, |ui| {
-                    crate::widgets::unit(ui, p, self.unit);
-                    row.number(ui, &mut now)
-                })
-                .inner
-            })
-            .inner;
+        let response = row.number(ui, &mut now);
         if response.dragged() {
             ui.data_mut(|data| data.insert_temp(id, now));
             return None;

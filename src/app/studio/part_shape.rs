@@ -1,18 +1,22 @@
 //! The name of a part, the ends of a flat bar, holes, and the corners of a plate.
 
-use egui::{Button, ComboBox, RichText, Ui};
+use egui::{Align, Button, ComboBox, RichText, Ui};
 
+use super::table::{NUMBER_WIDTH_PT, cell, head};
 use crate::Command;
 use crate::sketching::{NumberField, renamed};
 use crate::theme::{colour, plain};
 use crate::widgets::{name, undoable_edit};
-use stillbase_mechanics::machine::{Ends, Hole, Machine, Part, PartSource, PlaceOnLink, Shape};
+use stillbase_mechanics::machine::{Ends, Machine, Part, PartSource, PlaceOnLink, Shape};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Edit;
 use stillbase_session::parts::{change_part, hole_of, name_lump};
 
-/// Greatest distance from the root, and greatest diameter, m.
+/// Greatest distance from the root, and least diameter of a hole, m.
 const FARTHEST_M: f64 = 100.0;
+const THINNEST_M: f64 = 1e-4;
+/// Width of the title of a hole or a corner, points.
+const TITLE_WIDTH_PT: f32 = 62.0;
 
 /// Draws what a part has beside the numbers with keys.
 pub fn show(ui: &mut Ui, machine: &Machine, source: PartSource, p: &Palette, commands: &mut Vec<Command>) {
@@ -40,6 +44,14 @@ pub fn show(ui: &mut Ui, machine: &Machine, source: PartSource, p: &Palette, com
     if matches!(part.shape, Shape::Flat | Shape::Plate) {
         shown.holes(ui, commands);
     }
+}
+
+/// What is done to a hole or a corner.
+enum Change {
+    /// It is removed.
+    Gone,
+    /// A number of it, by its word, becomes another, m.
+    To(&'static str, f64),
 }
 
 /// A part with its number, from 0.
@@ -72,27 +84,24 @@ impl Shown<'_> {
     }
 
     fn holes(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        if !self.part.holes.is_empty() {
+            self.heads(ui, ["at m", "across m", "Ø m"]);
+        }
         for (k, hole) in self.part.holes.iter().enumerate() {
             let at = self.machine.place_on(&self.part.link, &hole.at).unwrap_or_default();
             let numbers = [("at", at), ("across", hole.across), ("diameter", hole.diameter)];
-            let title = format!("hole {} of part {}", k + 1, self.i + 1);
-            if self.title(ui, &title) {
-                undoable_edit(commands, self.edit(|part| _ = part.holes.remove(k)));
-            }
-            for (word, value) in numbers {
-                let range = if word == "diameter" { 1e-4..=FARTHEST_M } else { -FARTHEST_M..=FARTHEST_M };
-                let label = format!("{word} of {title}");
-                let field = NumberField { label: &label, words: word, unit: "m", decimals: 4, speed: 5e-4 };
-                let Some(new) = field.show(ui, self.p, value, range) else { continue };
-                let edit = self.edit(|part| {
-                    let Hole { at, across, diameter } = &mut part.holes[k];
-                    match word {
-                        "at" => *at = PlaceOnLink::Metres(new),
-                        "across" => *across = new,
-                        _ => *diameter = new,
-                    }
-                });
-                undoable_edit(commands, edit);
+            match self.row(ui, ("hole", k), &numbers) {
+                Some(Change::Gone) => undoable_edit(commands, self.edit(|part| _ = part.holes.remove(k))),
+                Some(Change::To("at", new)) => {
+                    undoable_edit(commands, self.edit(|part| part.holes[k].at = PlaceOnLink::Metres(new)));
+                }
+                Some(Change::To("across", new)) => {
+                    undoable_edit(commands, self.edit(|part| part.holes[k].across = new));
+                }
+                Some(Change::To(_, new)) => {
+                    undoable_edit(commands, self.edit(|part| part.holes[k].diameter = new));
+                }
+                None => {}
             }
         }
         if self.add(ui, "+ hole", &format!("add a hole to part {}", self.i + 1)) {
@@ -102,17 +111,15 @@ impl Shown<'_> {
     }
 
     fn corners(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        for (k, corner) in self.part.polygon.iter().enumerate() {
-            let title = format!("corner {} of part {}", k + 1, self.i + 1);
-            if self.title(ui, &title) {
-                undoable_edit(commands, self.edit(|part| _ = part.polygon.remove(k)));
-            }
-            for (axis, word) in ["along", "across"].into_iter().enumerate() {
-                let label = format!("{word} of {title}");
-                let field = NumberField { label: &label, words: word, unit: "m", decimals: 4, speed: 5e-4 };
-                if let Some(new) = field.show(ui, self.p, corner[axis], -FARTHEST_M..=FARTHEST_M) {
+        self.heads(ui, ["along m", "across m", ""]);
+        for (k, [along, across]) in self.part.polygon.iter().enumerate() {
+            match self.row(ui, ("corner", k), &[("along", *along), ("across", *across)]) {
+                Some(Change::Gone) => undoable_edit(commands, self.edit(|part| _ = part.polygon.remove(k))),
+                Some(Change::To(word, new)) => {
+                    let axis = usize::from(word == "across");
                     undoable_edit(commands, self.edit(|part| part.polygon[k][axis] = new));
                 }
+                None => {}
             }
         }
         if self.add(ui, "+ corner", &format!("add a corner to part {}", self.i + 1)) {
@@ -120,13 +127,35 @@ impl Shown<'_> {
         }
     }
 
-    /// Draws a title with a button behind it; returns whether the button is pressed.
-    fn title(&self, ui: &mut Ui, title: &str) -> bool {
+    fn heads(&self, ui: &mut Ui, words: [&str; 3]) {
         ui.horizontal(|ui| {
-            ui.label(RichText::new(title).font(plain(11.5)).color(colour(self.p.dim)));
-            self.add(ui, "×", &format!("remove {title}"))
-        })
-        .inner
+            cell(ui, TITLE_WIDTH_PT, Align::Min, |_| ());
+            for words in words {
+                cell(ui, NUMBER_WIDTH_PT, Align::Max, |ui| head(ui, self.p, words));
+            }
+        });
+    }
+
+    /// Draws a hole or a corner in a line; returns its change.
+    fn row(&self, ui: &mut Ui, (kind, k): (&str, usize), numbers: &[(&'static str, f64)]) -> Option<Change> {
+        let title = format!("{kind} {} of part {}", k + 1, self.i + 1);
+        let mut change = None;
+        ui.horizontal(|ui| {
+            cell(ui, TITLE_WIDTH_PT, Align::Min, |ui| head(ui, self.p, &format!("{kind} {}", k + 1)));
+            for &(word, value) in numbers {
+                let label = format!("{word} of {title}");
+                let field = NumberField { label: &label, words: word, unit: "m", decimals: 4, speed: 5e-4 };
+                let id = ui.scope_id().with(&label);
+                let least = if word == "diameter" { THINNEST_M } else { -FARTHEST_M };
+                let range = least..=FARTHEST_M;
+                let new = cell(ui, NUMBER_WIDTH_PT, Align::Max, |ui| field.number(ui, id, value, range));
+                change = new.map(|new| Change::To(word, new)).or(change.take());
+            }
+            if self.add(ui, "×", &format!("remove {title}")) {
+                change = Some(Change::Gone);
+            }
+        });
+        change
     }
 
     fn add(&self, ui: &mut Ui, words: &str, label: &str) -> bool {
