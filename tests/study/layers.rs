@@ -336,7 +336,7 @@ fn the_order_is_the_best_of_all() {
 #[test]
 fn the_machine_of_the_paper_has_no_order_within_its_limits() {
     let machine = builtin("nine-link").expect("built in");
-    let Err(NoLayers::NoOrder(conflict)) = find_layers(&request(&machine, Cut::default())) else {
+    let Err(NoLayers::NoOrder(conflict)) = find_layers(&request(machine, Cut::default())) else {
         panic!("links 4 and 6 both pass over the base axis, and each over a pin of the other")
     };
     assert_eq!(conflict.links, ["2", "3", "4", "6"]);
@@ -363,8 +363,8 @@ fn dimensions_that_cannot_be_are_refused() {
         Cut { spacer: f64::NAN, ..Cut::default() },
         Cut { bar_width: 0.004, ..Cut::default() },
     ] {
-        assert!(matches!(find_layers(&request(&machine, cut)), Err(NoLayers::Cut(_))), "{cut:?}");
+        assert!(matches!(find_layers(&request(machine, cut)), Err(NoLayers::Cut(_))), "{cut:?}");
     }
-    let without_task = LayersRequest { along_task: true, ..request(&machine, Cut::default()) };
+    let without_task = LayersRequest { along_task: true, ..request(machine, Cut::default()) };
     assert!(matches!(find_layers(&without_task), Err(NoLayers::Motion(2))));
 }
