@@ -117,7 +117,8 @@ fn all_faults_of_a_file_are_listed() {
         assert_eq!(session(&h).scenario().name, "case-3");
         h.get_by_label("Copy the list").click();
         h.run_steps(2);
-        done(&h, "copied");
+        let said = h.state().app_state().view_state().status.message.clone().expect("it is said");
+        assert!(!said.is_problem && said.text.contains("copied"), "{said:?}");
         h.key_press(Key::Escape);
         h.run_steps(2);
         assert!(report(&h).is_none() && h.query_by_label("File name").is_none());

@@ -176,6 +176,9 @@ fn painted(h: &Window) -> Vec<String> {
 
 /// Types into a field and leaves it.
 fn type_into(h: &mut Window, label: &str, text: &str) {
+    // A panel scrolls, and the field may lie beyond its edge.
+    h.get_by_label(label).scroll_to_me();
+    h.run_steps(4);
     h.get_by_label(label).click();
     h.run_steps(2);
     h.event(egui::Event::Text(text.into()));

@@ -17,6 +17,7 @@ pub const TESTS: &[Test] = tests![
     tower_is_current,
     joints_is_current,
     design_is_current,
+    draw_is_current,
     no_picture_is_left_over,
     films_and_pictures_are_rendered,
 ];
@@ -99,6 +100,10 @@ fn tower_is_current() {
 
 fn design_is_current() {
     is_current("design");
+}
+
+fn draw_is_current() {
+    is_current("draw");
 }
 
 fn joints_is_current() {
