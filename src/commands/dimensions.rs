@@ -2,14 +2,15 @@
 
 use clap::Args;
 use stillbase_exchange::cut::Cut;
+use stillbase_mechanics::machine::Machine;
 
 /// Dimensions of bars, pins and discs.
 #[derive(Args)]
 pub struct Dimensions {
-    /// Width of the bars, m; default: 0.03
+    /// Width of the bars, m; default: that of the machine's parts, or 0.03
     #[arg(long, value_name = "W")]
     pub bar_width: Option<f64>,
-    /// Diameter of the pins and their holes, m; default: 0.008
+    /// Diameter of the pins and their holes, m; default: that of the machine's parts, or 0.008
     #[arg(long, value_name = "D")]
     pub pin_diameter: Option<f64>,
     /// Density of the counterweights, kg/m³; default: that of steel, 7850
@@ -18,7 +19,7 @@ pub struct Dimensions {
     /// Thickness of the counterweights, m; default: the thickness that gives each its mass
     #[arg(long, value_name = "T")]
     pub thickness: Option<f64>,
-    /// Thickness of the bars, m; default: 0.006
+    /// Thickness of the bars, m; default: that of the machine's parts, or 0.006
     #[arg(long, value_name = "T")]
     pub plate_thickness: Option<f64>,
     /// Gap between bars of neighbouring layers, m; default: 0.001
@@ -27,9 +28,9 @@ pub struct Dimensions {
 }
 
 impl Dimensions {
-    /// Returns the dimensions, with the usual ones where none are given.
-    pub fn cut(&self) -> Cut {
-        let usual = Cut::default();
+    /// Returns the dimensions for a machine: where none are given those of its parts, or else the usual ones.
+    pub fn cut(&self, machine: &Machine) -> Cut {
+        let usual = Cut::default().fitting(machine);
         Cut {
             bar_width: self.bar_width.unwrap_or(usual.bar_width),
             pin_diameter: self.pin_diameter.unwrap_or(usual.pin_diameter),

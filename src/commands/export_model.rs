@@ -107,7 +107,7 @@ impl ExportModelArguments {
             return Err(Failure::wrong_input(format!("--pose {bad}: want finite angles in rad")));
         }
         let pose = if self.pose.is_empty() { middle(&machine) } else { self.pose.clone() };
-        let cut = self.dimensions.cut();
+        let cut = self.dimensions.cut(&machine);
         let text = form.written(&machine, &pose, &cut).map_err(Failure::wrong_input)?;
         let of = described(&machine, form, pose, &cut)?;
         write_new(&self.output, text.as_bytes(), self.force)?;

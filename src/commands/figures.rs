@@ -8,6 +8,7 @@ use stillbase_app::{
     AppState, Command, ComparisonCommand, PenChange, PictureOrder, SessionCommand, Shot, Switch, ViewChange,
     WindowCommand,
 };
+use stillbase_exchange::cut::Cut;
 use stillbase_files::write_new;
 use stillbase_mechanics::machine;
 use stillbase_mechanics::sketch::Sketch;
@@ -15,8 +16,10 @@ use stillbase_picture::render::offscreen::Picture;
 use stillbase_picture::scene::palette::Theme;
 use stillbase_picture::scene::sketching::SketchItem;
 use stillbase_picture::scene::views::ViewKind;
-use stillbase_session::Edit;
-use stillbase_session::scenario::{TaskChange, Value};
+use stillbase_query::ByIdentity;
+use stillbase_session::scenario::{Scenario, TaskChange, Value};
+use stillbase_session::{Edit, Run, parts};
+use stillbase_study::layers::{LayersRequest, find_layers};
 
 use super::exit::print_message;
 use super::failure::Failure;
@@ -56,13 +59,14 @@ impl Shown {
 }
 
 /// The pictures: name, scenario, time in s, and content.
-const PICTURES: [(&str, &str, f64, Shown); 8] = [
+const PICTURES: [(&str, &str, f64, Shown); 9] = [
     ("window", "case-3", 0.62, Shown::Window(Vec::new)),
     ("spacecraft", "spacecraft", 0.75, Shown::Window(Vec::new)),
     ("compare", "case-1", 0.62, Shown::Window(side_by_side)),
     ("tolerances", "case-3", 0.62, Shown::Window(study)),
     ("design", "nine-link-bare", 0.62, Shown::Window(designed)),
     ("draw", "case-3", 0.62, Shown::Window(drawn)),
+    ("workshop", "case-3", 0.62, Shown::Window(stacked)),
     ("tower", "case-3", 0.62, Shown::Scene(ViewKind::Tower)),
     ("joints", "case-1", 0.5, Shown::Scene(ViewKind::Joints)),
 ];
@@ -123,6 +127,22 @@ fn drawn() -> Vec<Command> {
         Command::View(ViewChange::Switch(Switch::Sketching, true)),
         Command::View(ViewChange::Pen(PenChange::Choose(bar.map(SketchItem::Bar)))),
     ]
+}
+
+/// Returns commands that stack the links of the nine-link machine so that none meets another along case 3, from the side.
+fn stacked() -> Vec<Command> {
+    let stack = || {
+        let scenario = Scenario::builtin("case-3")?;
+        let run = Run::new(&scenario).ok()?;
+        let motion = Some(ByIdentity(run.plan().motion.clone()));
+        let machine = scenario.machine.clone();
+        let request = LayersRequest { machine, cut: Cut::default(), motion, along_task: true };
+        let report = find_layers(&request).ok()?;
+        Some(Command::Session(SessionCommand::Edit(parts::set_heights(&scenario.machine, &report.machine))))
+    };
+    let mut commands = vec![Command::View(ViewChange::Kind(ViewKind::Space))];
+    commands.extend(stack());
+    commands
 }
 
 /// Returns commands that show a study of tolerances with a limit on |n_B| of 10 mN m.

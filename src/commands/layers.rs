@@ -58,7 +58,7 @@ impl LayersArguments {
         }
         let task = self.task.as_ref().map(|name| task_run(name, &[&machine])).transpose()?;
         let motion = task.as_ref().map(|run| ByIdentity(run.plan().motion.clone()));
-        let cut = self.dimensions.cut();
+        let cut = self.dimensions.cut(&machine);
         let request = LayersRequest { machine: machine.clone(), cut, motion, along_task: self.along_task };
         let report = find_layers(&request).map_err(|why| Failure::from(why).with_context(machine.name()))?;
         if let Some(file) = &self.output {

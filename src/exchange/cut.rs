@@ -77,6 +77,25 @@ impl Default for Cut {
 }
 
 impl Cut {
+    /// Returns the dimensions with those of the parts of a machine: the widest and the thickest bar, and the widest hole.
+    #[must_use]
+    pub fn fitting(self, machine: &Machine) -> Self {
+        let bars: Vec<usize> = (0..machine.links().len()).filter_map(|link| machine.spine(link)).collect();
+        let greatest =
+            |of: &dyn Fn(usize) -> Option<f64>| bars.iter().filter_map(|bar| of(*bar)).max_by(f64::total_cmp);
+        let part = |bar: usize| &machine.spec().parts[bar];
+        let width = greatest(&|bar| part(bar).width.or(part(bar).diameter));
+        let thickness = greatest(&|bar| part(bar).thickness.or(part(bar).height).or(part(bar).diameter));
+        let hole =
+            greatest(&|bar| machine.part_holes(bar).into_iter().map(|(_, diameter)| diameter).max_by(f64::total_cmp));
+        Self {
+            bar_width: width.unwrap_or(self.bar_width),
+            plate_thickness: thickness.unwrap_or(self.plate_thickness),
+            pin_diameter: hole.unwrap_or(self.pin_diameter),
+            ..self
+        }
+    }
+
     /// Checks the material and thickness of discs.
     ///
     /// # Errors

@@ -103,13 +103,14 @@ pub fn link_solids(machine: &Machine, cut: &Cut) -> Vec<LinkSolid> {
     let mut solids = Vec::new();
     for (link, own) in machine.spec().links.iter().enumerate() {
         let [from, to] = bar_extent(machine, link).map(|along| Vector::new(along, 0.0));
-        let (radius, thickness) = (0.5 * cut.bar_width, cut.plate_thickness);
+        let [width, thickness] = bar_section(machine, link).unwrap_or([cut.bar_width, cut.plate_thickness]);
+        let radius = 0.5 * width;
         let bar = |kind, ends| LinkSolid { link, kind, ends, radius, thickness };
         solids.push(bar(SolidKind::Bar, [from, to]));
         for (i, weight) in machine.spec().counterweights.iter().enumerate().filter(|(_, w)| w.link == own.name) {
             let Some(thickness) = cut.thickness_of(weight) else { continue };
             let at = Vector::new(weight.at, weight.across);
-            if weight.across.abs() > weight.radius {
+            if weight.across.abs() > radius {
                 solids.push(bar(SolidKind::Arm(i), [Vector::new(weight.at, 0.0), at]));
             }
             let kind = SolidKind::Disc(i);
@@ -117,6 +118,13 @@ pub fn link_solids(machine: &Machine, cut: &Cut) -> Vec<LinkSolid> {
         }
     }
     solids
+}
+
+/// Returns width in the plane of the motion and height normal to it of the bar of a link, m; `None` if no part is one.
+fn bar_section(machine: &Machine, link: usize) -> Option<[f64; 2]> {
+    let part = &machine.spec().parts[machine.spine(link)?];
+    let width = part.width.or(part.diameter)?;
+    Some([width, part.thickness.or(part.height).unwrap_or(width)])
 }
 
 /// Returns the pins of a machine, that at the base first.

@@ -24,6 +24,7 @@ pages! {
     inside: "inside.md",
     draw: "draw.md",
     design: "design.md",
+    workshop: "workshop.md",
     elsewhere: "elsewhere.md",
     tolerances: "tolerances.md",
     trim: "trim.md",

@@ -18,6 +18,7 @@ pub const TESTS: &[Test] = tests![
     joints_is_current,
     design_is_current,
     draw_is_current,
+    workshop_is_current,
     no_picture_is_left_over,
     films_and_pictures_are_rendered,
 ];
@@ -104,6 +105,10 @@ fn design_is_current() {
 
 fn draw_is_current() {
     is_current("draw");
+}
+
+fn workshop_is_current() {
+    is_current("workshop");
 }
 
 fn joints_is_current() {

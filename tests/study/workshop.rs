@@ -1,5 +1,7 @@
 //! Machines that are balanced as they are cut: bars, tails and arms are weighed with the discs that they carry.
 
+use stillbase::exchange::cut::Cut;
+use stillbase::exchange::solids::{SolidKind, link_solids};
 use stillbase::mechanics::counterweights::{CounterweightSite, CounterweightSpec, Disc, Objective};
 use stillbase::mechanics::machine::{BarStock, Inertia, Machine, MachineError, Part, Shape, builtin};
 use stillbase::study::workshop::{CutMachine, CutRequest, NoCut, as_bought, balance_as_cut};
@@ -130,4 +132,20 @@ fn what_cannot_be_cut_is_refused() {
     assert!(matches!(refused, NoCut::Weights(_)), "{refused}");
     request.sites[0].link = 99;
     balance_as_cut(&machine, &request, &BarStock::default()).expect_err("no such link");
+}
+
+/// Layers and solids take the dimensions of the parts.
+#[test]
+fn dimensions_fit_the_parts() {
+    let stock = BarStock { width: 0.024, thickness: 0.004, pin_diameter: 0.006, ..BarStock::default() };
+    let found = balance_as_cut(&bare(), &lightest(&bare()), &stock).expect("it can be balanced");
+    let machine = &found.placed.machine;
+    let fitted = Cut::default().fitting(machine);
+    assert_eq!([fitted.bar_width, fitted.plate_thickness, fitted.pin_diameter], [0.024, 0.004, 0.006]);
+    assert_eq!(Cut::default().fitting(&bare()), Cut::default());
+    for solid in link_solids(machine, &Cut::default()).iter().filter(|solid| solid.kind == SolidKind::Bar) {
+        assert_eq!([solid.radius, solid.thickness], [0.012, 0.004]);
+        let ends = machine.part_ends(machine.spine(solid.link).expect("a bar")).expect("its ends");
+        assert_eq!(solid.ends.map(|end| end.re), ends);
+    }
 }

@@ -88,6 +88,7 @@ pub fn search_words(place: &GuidePlace) -> &'static str {
         (Page::Planning, "") => "change of b motion trajectory refused",
         (Page::Draw, "") => "sketch new machine bars pins motors limits section",
         (Page::Design, "") => "balance counterweights machine optimise",
+        (Page::Workshop, "") => "cut bars tails layers stack drawing build parts dxf stl",
         (Page::Elsewhere, "") => "export import urdf mjcf dxf cad",
         (Page::Tolerances, "") => "monte carlo manufacturing spread yield",
         (Page::Index, "") => "help manual documentation contents",

@@ -34,6 +34,7 @@ pages! {
     Inside: "inside",
     Draw: "draw",
     Design: "design",
+    Workshop: "workshop",
     Elsewhere: "elsewhere",
     Tolerances: "tolerances",
     Trim: "trim",

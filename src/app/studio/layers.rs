@@ -22,7 +22,7 @@ const LAYER_WIDTH_PT: f32 = 20.0;
 /// Height of the base plate below the rows, points.
 const PLATE_HEIGHT_PT: f32 = 5.0;
 
-/// Returns the dimensions of bars, pins and discs as the design view states them.
+/// Returns the dimensions of bars, pins and discs as the parts have them, or else as the design view states them.
 pub fn cut(session: &Session) -> Cut {
     let brief = &session.scenario().design;
     Cut {
@@ -32,6 +32,7 @@ pub fn cut(session: &Session) -> Cut {
         density: brief.density,
         ..Cut::default()
     }
+    .fitting(&session.scenario().machine)
 }
 
 /// Draws the section.
