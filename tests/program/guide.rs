@@ -173,6 +173,7 @@ pages! {
     inside: "src/guide/inside.md", 3;
     design: "src/guide/design.md", 4;
     elsewhere: "src/guide/elsewhere.md", 12;
+    workshop: "src/guide/workshop.md", 7;
     tolerances: "src/guide/tolerances.md", 3;
     trim: "src/guide/trim.md", 6;
     own_motion: "src/guide/own_motion.md", 4;
