@@ -138,7 +138,11 @@ fn turn(session: &Session, view_state: &ViewState, by: f64) -> Option<Command> {
     Some(Command::Session(SessionCommand::Edit(set_b(session, view_state, session.b_aim() + by))))
 }
 
-fn case(i: usize) -> Option<Command> {
+fn case(view_state: &ViewState, i: usize) -> Option<Command> {
+    // In the design view, a digit beside a field was meant for the field.
+    if view_state.view == ViewKind::Design {
+        return None;
+    }
     Scenario::cases().nth(i).map(|it| Command::Session(SessionCommand::Case(it)))
 }
 
@@ -240,9 +244,9 @@ pub const ACTIONS: &[Action] = actions![
     Run, "Twice as slow" = "speed slow motion slower rate", [on(PLAIN, Key::Comma)], "top bar, speed", |_, v| slower(v);
     Run, "Twice as fast" = "speed faster speed up rate quick", [on(PLAIN, Key::Period)], "top bar, speed", |_, v| faster(v);
 
-    Task, "The paper's case 1, as it is in the paper" = "example demo straight line", [on(PLAIN, Key::Num1)], "top bar, scenario", |_, _| case(0);
-    Task, "The paper's case 2, as it is in the paper" = "example demo", [on(PLAIN, Key::Num2)], "top bar, scenario", |_, _| case(1);
-    Task, "The paper's case 3, as it is in the paper" = "example demo reactionless", [on(PLAIN, Key::Num3)], "top bar, scenario", |_, _| case(2);
+    Task, "The paper's case 1, as it is in the paper" = "example demo straight line", [on(PLAIN, Key::Num1)], "top bar, scenario", |_, v| case(v, 0);
+    Task, "The paper's case 2, as it is in the paper" = "example demo", [on(PLAIN, Key::Num2)], "top bar, scenario", |_, v| case(v, 1);
+    Task, "The paper's case 3, as it is in the paper" = "example demo reactionless", [on(PLAIN, Key::Num3)], "top bar, scenario", |_, v| case(v, 2);
     Task, "Put the machine back on its planned path" = "reset return stop leading by hand release undo drag", [on(PLAIN, Key::B)], "left panel", |s, _| {
         s.is_dragged().then_some(Command::Session(SessionCommand::BackToPath))
     };
@@ -347,13 +351,13 @@ pub const ACTIONS: &[Action] = actions![
     Help, "Undo" = "back revert", [on(CTRL, Key::Z)], "keyboard", |s, _| s.undo_title().map(|_| Command::Session(SessionCommand::Undo));
     Help, "Redo" = "again forward repeat", [on(CTRL, Key::Y), on(CTRL_SHIFT, Key::Z)], "keyboard", |s, _| s.redo_title().map(|_| Command::Session(SessionCommand::Redo));
     Help, "History: what was done, to go back and forth in" = "log changes branches undo", [on(PLAIN, Key::H)], "tool bar" turns History;
-    Open, "Draw a machine: blank" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::Blank)));
-    Open, "Draw a machine: serial arm of two bars" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::SerialOfTwo)));
-    Open, "Draw a machine: serial arm of three bars" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::SerialOfThree)));
-    Open, "Draw a machine: parallelogram arm" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::ParallelogramArm)));
-    Open, "Draw a machine: pantograph" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::Pantograph)));
-    Open, "Draw a machine: SCARA with belts" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::ScaraWithBelts)));
-    Open, "Draw a machine: nine links of the paper" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::NineLinks)));
+    Open, "Draw a new machine from nothing" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::Blank)));
+    Open, "Draw a serial arm of two bars" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::SerialOfTwo)));
+    Open, "Draw a serial arm of three bars" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::SerialOfThree)));
+    Open, "Draw a parallelogram arm" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::ParallelogramArm)));
+    Open, "Draw a pantograph" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::Pantograph)));
+    Open, "Draw a SCARA with belts" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::ScaraWithBelts)));
+    Open, "Draw the nine links of the paper" = "new machine sketch create own linkage bars template", [], "top bar, machine", |_, _| Some(Command::Session(SessionCommand::NewDrawing(Template::NineLinks)));
     Open, "New session: this machine and its task, nothing done yet" = "start over fresh clear reset blank", [],
         "top bar, File", |s, _| new_session(s);
     Open, "Open: a session, scenario, machine, model or table" = "load file import machine model urdf mjcf xml toml csv recent", [on(CTRL, Key::O)], "top bar, File", |s, _| dialog(s, FilePurpose::Open);

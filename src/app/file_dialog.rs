@@ -90,12 +90,13 @@ impl FilePurpose {
 pub(super) const MACHINE_EXTENSION: &str = "toml";
 
 /// Formats of a machine's file: the ending, and what it is.
-pub(super) const MACHINE_FORMATS: [(&str, &str); 7] = [
+pub(super) const MACHINE_FORMATS: [(&str, &str); 8] = [
     (MACHINE_EXTENSION, "TOML"),
     ("urdf", "URDF"),
     ("xml", "MJCF"),
     ("svg", "drawing, SVG"),
     ("dxf", "drawing, DXF"),
+    ("stl", "solids, STL"),
     ("csv", "parts, CSV"),
     ("md", "parts, Markdown"),
 ];

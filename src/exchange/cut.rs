@@ -151,17 +151,20 @@ impl Cut {
         (0.75 * self.pin_diameter).min(0.5 * self.bar_width)
     }
 
-    /// Returns the layer of each link, counted from 0 for the lowest; `None` if the links do not lie in layers of these
-    /// dimensions, as in a machine without heights.
+    /// Returns the layer of each link, counted from 0 next to the base plate, or from the lowest link if it lies at no
+    /// height of a layer; `None` if the links do not lie in layers of these dimensions, or all in one.
     pub fn layers_of(&self, machine: &Machine) -> Option<Vec<usize>> {
         let heights = machine.spec().links.iter().map(|link| link.axial);
-        let lowest = heights.clone().fold(f64::INFINITY, f64::min);
+        let least = heights.clone().fold(f64::INFINITY, f64::min);
+        let below = least / self.layer_pitch();
+        let is_layer = below >= 0.0 && (below - below.round()).abs() < LAYER_TOLERANCE;
+        let lowest = if is_layer { 0.0 } else { least };
         let layer = |height: f64| {
             let layers = (height - lowest) / self.layer_pitch();
             ((layers - layers.round()).abs() < LAYER_TOLERANCE && layers < MAX_LAYER).then_some(layers.round() as usize)
         };
         let layers: Vec<usize> = heights.map(layer).collect::<Option<_>>()?;
-        layers.iter().any(|layer| *layer > 0).then_some(layers)
+        layers.iter().any(|layer| Some(layer) != layers.first()).then_some(layers)
     }
 
     /// Returns the thickness of a counterweight, m; `None` for a point. Drawings, lists and models have it from here.

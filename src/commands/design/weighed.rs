@@ -228,7 +228,7 @@ impl WeightArguments {
             NoCounterweights::Weights(why) => self.refusal(why, &disc),
             NoCounterweights::Front(why) => request_failure(why),
             NoCounterweights::Cut(NoCut::Weights(why)) => self.refusal(why, &disc),
-            NoCounterweights::Cut(NoCut::Bars(why)) => Failure::wrong_input(why),
+            NoCounterweights::Cut(why @ NoCut::Bars(_)) => Failure::wrong_input(why),
             NoCounterweights::Cut(why) => Failure::no_answer(why),
             NoCounterweights::Machine(why) => why.into(),
         })

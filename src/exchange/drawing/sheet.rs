@@ -355,7 +355,17 @@ fn below_part(machine: &Machine, outline: &PieceOutline) -> Vec<String> {
     if !arms.is_empty() {
         about.push_str(&format!(", with its {}", arms.join(", ")));
     }
-    vec![format!("{about} · {}", hole_line(&sorted(along)))]
+    let widths: Vec<f64> = sorted(outline.holes.iter().map(|(_, diameter)| *diameter).collect());
+    let across = match widths[..] {
+        [] => String::new(),
+        [one] => format!(", Ø {}", mm(one)),
+        [first, .., last] => format!(", Ø {} to {}", mm(first), mm(last)),
+    };
+    let ends = match (part.shape, machine.part_ends(outline.part)) {
+        (Shape::Flat, Some([from, to])) => format!("from {} to {} mm along the link · ", signed(from), signed(to)),
+        _ => String::new(),
+    };
+    vec![format!("{about} · {ends}{}{across}", hole_line(&sorted(along)))]
 }
 
 /// Returns the lines of text about a whole link: end effector, centre of mass, lumps and counterweights; these last.
