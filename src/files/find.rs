@@ -33,10 +33,10 @@ pub fn machine(name: &str, folder: Option<&Path>) -> Result<Machine, FileError> 
     found_machine(name, folder).map(|found| found.machine)
 }
 
-/// Returns a machine as [`machine`] does, with what was left out of it. The file may be a model of another program.
+/// Returns a machine as [`machine()`] does, with what was left out of it. The file may be a model of another program.
 ///
 /// # Errors
-/// As [`machine`].
+/// As [`machine()`].
 pub fn found_machine(name: &str, folder: Option<&Path>) -> Result<FoundMachine, FileError> {
     let own = |machine| FoundMachine { machine, left_out: Vec::new() };
     if let Some(machine) = machine::builtin(name) {
