@@ -208,6 +208,13 @@ impl DesignBrief {
         Ok((machine, stock))
     }
 
+    /// Returns the brief for the counterweights that a machine has: they may lie as far off the axes as they do.
+    #[must_use]
+    pub fn fitting(&self, machine: &Machine) -> Self {
+        let across = machine.spec().counterweights.iter().map(|weight| weight.across.abs()).fold(self.across, f64::max);
+        Self { across, ..self.clone() }
+    }
+
     /// Returns the optimisation problem of the lightest counterweights for a machine, within the bounds of the brief.
     pub fn lightest_problem(&self, machine: &Machine) -> CounterweightSpec {
         let spec = machine.spec();

@@ -79,7 +79,17 @@ pub fn for_machine(present: &Scenario, machine: &Machine) -> Scenario {
 /// Returns the scenario to open for a new drawing. A template that is a machine gets a task made for it; until a drawing
 /// is complete, the machine and the task are those of the present scenario.
 pub fn for_template(present: &Scenario, template: Template) -> Scenario {
-    let sketch = template.sketch();
+    let mut sketch = template.sketch();
+    // A drawing of this name may be open, so the new one is told apart.
+    let taken = |name: &str| {
+        present.machine.name() == name
+            || present.name == name
+            || present.sketch.as_ref().is_some_and(|own| own.name == name)
+    };
+    let plain = sketch.name.clone();
+    if let Some(free) = (2..).map(|i| format!("{plain} {i}")).find(|name| !taken(name)).filter(|_| taken(&plain)) {
+        sketch.name = free;
+    }
     let made = sketch.machine().and_then(|machine| gentle_motion(&machine).ok());
     let name = sketch.name.clone();
     let scenario = made.unwrap_or_else(|| Scenario {

@@ -492,3 +492,36 @@ fn b_is_that_of_the_plan_on_every_base() {
         }
     }
 }
+
+/// A drawing that is begun beside one of the same name has a name of its own.
+#[test]
+fn a_new_drawing_is_told_apart() {
+    use stillbase::mechanics::sketch::Template;
+    use stillbase::session::for_template;
+    let first = for_template(&case_3(), Template::Blank);
+    let second = for_template(&first, Template::Blank);
+    let third = for_template(&second, Template::Blank);
+    let names = [first, second, third].map(|scenario| scenario.sketch.expect("a drawing").name);
+    assert_eq!(names, ["my arm", "my arm 2", "my arm"]);
+}
+
+/// Counterweights of a file may lie farther off the axes than the brief of its scenario says.
+#[test]
+fn a_brief_fits_the_counterweights_of_its_machine() {
+    let machine = builtins()[0].set("counterweight", "default").unwrap_or_else(|_| builtins()[0].clone());
+    let brief = case_3().design;
+    assert_eq!(brief.fitting(&machine), brief);
+    let mut spec = machine.spec().clone();
+    let link = spec.links[0].name.clone();
+    let weight = |across| stillbase::mechanics::machine::Counterweight {
+        link: link.clone(),
+        mass: 0.1,
+        at: -0.1,
+        across,
+        radius: 0.01,
+        fixed: false,
+    };
+    spec.counterweights = vec![weight(0.02), weight(-0.03)];
+    let off = Machine::new(spec).expect("a machine");
+    assert_eq!(brief.fitting(&off).across, 0.03);
+}

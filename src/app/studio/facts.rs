@@ -257,7 +257,7 @@ impl DesignFacts {
             queries.ask_in_background::<Fronts>(&request)
         });
         let Some(bare) = &queries.ask::<QuickWork<Sums>>(&session.scenario().machine).bare else { return facts };
-        let front = queries.ask_in_background::<FrontSearch>(&front_request(bare, &session.scenario().design));
+        let front = queries.ask_in_background::<FrontSearch>(&front_request(bare, &brief_of(session)));
         let points = front.last.map(|front| queries.ask::<QuickWork<FrontPoints>>(&ByIdentity(front)));
         // A run that waits has no motion.
         let motion = session.run().shared_motion().filter(|_| session.run().waiting().is_none());
@@ -371,7 +371,7 @@ impl DesignFacts {
 /// Returns a machine of the Pareto front for the present machine and brief, by its index.
 pub fn of_front(queries: &Queries, session: &Session, i: usize) -> Option<Machine> {
     let sums = queries.ask::<QuickWork<Sums>>(&session.scenario().machine);
-    let front = queries.ask::<FrontSearch>(&front_request(sums.bare.as_ref()?, &session.scenario().design));
+    let front = queries.ask::<FrontSearch>(&front_request(sums.bare.as_ref()?, &brief_of(session)));
     Some(front.as_ref().as_ref().ok()?.points.get(i)?.machine.clone())
 }
 
@@ -387,7 +387,7 @@ fn cut_request(session: &Session) -> Option<<CutQuery as QuickQuery>::Input> {
         return None;
     }
     let (machine, stock) = brief.stock(machine).ok()?;
-    let request = brief.lightest_problem(&machine);
+    let request = brief_of(session).lightest_problem(&machine);
     Some((machine, request, CutRequest { stock, bought: false }))
 }
 
@@ -396,6 +396,11 @@ pub fn leave(queries: &Queries) {
     queries.give_up::<FrontSearch>();
     queries.give_up::<Fronts>();
     queries.give_up::<MeasureQuery>();
+}
+
+/// Returns the brief of a session; a machine from a file may have counterweights farther off the axes than it says.
+fn brief_of(session: &Session) -> DesignBrief {
+    session.scenario().design.fitting(&session.scenario().machine)
 }
 
 /// Returns the request for a Pareto front.

@@ -123,8 +123,8 @@ pub enum CounterweightError {
     NoRotor(String),
     /// The masses of the links lie off their axes, where no counterweight on an axis balances them.
     #[error(
-        "{condition}, has {residual} that no counterweight on an axis takes away: want com_normal 0, or a \
-         counterweight that may lie off the axis of {want}{}",
+        "{condition}, has {residual} that no counterweight on an axis takes away: want centres of mass on the axes of \
+         their links (com_normal = 0), or a counterweight that may lie off the axis of {want}{}",
         sufficient_relief(.reliefs)
     )]
     OffAxis {

@@ -55,6 +55,7 @@ impl RecordedFronts {
         let mut seen: Vec<[f64; 2]> = Vec::new();
         for DesignVersion { machine, brief, .. } in versions {
             let Some(bare) = bare(machine) else { continue };
+            let brief = &brief.fitting(machine);
             if !all.iter().any(|known| known.is_of(&bare, brief)) {
                 let found = brief.front(&bare, FRONT_POINTS);
                 let points = found.map_or_else(|_| Vec::new(), |front| front.measures());
@@ -94,7 +95,8 @@ impl RecordedFronts {
         self.axes(store, root)?;
         let (mut curves, mut points) = (SparseRows::new(), SparseRows::new());
         for (at, DesignVersion { machine, brief, .. }) in states {
-            let known = bare(machine).and_then(|bare| self.all.iter().find(|known| known.is_of(&bare, brief)));
+            let brief = brief.fitting(machine);
+            let known = bare(machine).and_then(|bare| self.all.iter().find(|known| known.is_of(&bare, &brief)));
             curves.push(at, known.map(|known| known.points.iter().map(|at| self.place(*at)).collect::<Vec<_>>()));
             points.push(at, known.map(|_| own(machine)));
         }
