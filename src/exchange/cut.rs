@@ -84,7 +84,7 @@ impl Cut {
         let greatest =
             |of: &dyn Fn(usize) -> Option<f64>| bars.iter().filter_map(|bar| of(*bar)).max_by(f64::total_cmp);
         let part = |bar: usize| &machine.spec().parts[bar];
-        let width = greatest(&|bar| part(bar).width.or(part(bar).diameter));
+        let width = greatest(&|bar| part(bar).breadth());
         let thickness = greatest(&|bar| part(bar).thickness.or(part(bar).height).or(part(bar).diameter));
         let hole =
             greatest(&|bar| machine.part_holes(bar).into_iter().map(|(_, diameter)| diameter).max_by(f64::total_cmp));
@@ -204,22 +204,13 @@ fn disc_area(radius: f64) -> f64 {
     std::f64::consts::PI * radius * radius
 }
 
-/// Returns the positions of the holes of a link, m from its root, in ascending order.
-pub fn holes(machine: &Machine, j: usize) -> Vec<f64> {
-    let mut holes = machine.resolved_links()[j].pins.clone();
-    holes.dedup_by(|b, a| *b - *a <= SAME_PIN_DISTANCE);
-    holes
-}
-
 /// Returns the greatest length by which drawn bars reach beyond the pins of their links, m, although the masses of these
 /// links do not count it: links that are made of parts do.
 pub fn unweighed_tail(machine: &Machine) -> f64 {
     let bare = (0..machine.links().len()).filter(|j| machine.parts_of_link(*j).is_none());
     let beyond = bare.map(|j| {
-        let link = &machine.resolved_links()[j];
-        let ends = link.pins.iter().fold([0.0, link.length], |[from, to], at| [from.min(*at), to.max(*at)]);
-        let [from, to] = bar_extent(machine, j);
-        (ends[0] - from).max(to - ends[1])
+        let ([first, last], [from, to]) = (machine.extent_with(j, |_| false), bar_extent(machine, j));
+        (first - from).max(to - last)
     });
     beyond.fold(0.0, f64::max)
 }
@@ -227,11 +218,6 @@ pub fn unweighed_tail(machine: &Machine) -> f64 {
 /// Returns the interval that a bar covers, m from its root: that of its part, or else its length, all its pins, and the
 /// centres of its discs.
 pub fn bar_extent(machine: &Machine, j: usize) -> [f64; 2] {
-    let (link, part) = (&machine.links()[j], &machine.resolved_links()[j]);
-    if let Some(ends) = machine.spine(j).and_then(|bar| machine.part_ends(bar)) {
-        return ends;
-    }
-    let discs = machine.spec().counterweights.iter().filter(|weight| weight.link == link.name).map(|weight| weight.at);
-    let all = part.pins.iter().copied().chain(discs);
-    all.fold([0.0, part.length], |[from, to], at| [at.min(from), at.max(to)])
+    let part = machine.spine(j).and_then(|bar| machine.part_ends(bar));
+    part.unwrap_or_else(|| machine.extent_with(j, |_| true))
 }

@@ -123,7 +123,7 @@ pub fn link_solids(machine: &Machine, cut: &Cut) -> Vec<LinkSolid> {
 /// Returns width in the plane of the motion and height normal to it of the bar of a link, m; `None` if no part is one.
 fn bar_section(machine: &Machine, link: usize) -> Option<[f64; 2]> {
     let part = &machine.spec().parts[machine.spine(link)?];
-    let width = part.width.or(part.diameter)?;
+    let width = part.breadth()?;
     Some([width, part.thickness.or(part.height).unwrap_or(width)])
 }
 

@@ -241,7 +241,7 @@ impl TailSearch<'_> {
     fn trim(&mut self, best: &mut Attempt) {
         for _ in 0..MAX_ROUNDS {
             let needed = |(link, reach): (usize, &[f64; 2])| {
-                let [from, to] = on_bar(&best.placed.machine, link);
+                let [from, to] = best.placed.machine.extent_with(link, |_| true);
                 [from.max(reach[0]), to.min(reach[1])]
             };
             let shorter: Vec<[f64; 2]> = best.reach.iter().enumerate().map(needed).collect();
@@ -273,20 +273,11 @@ fn with_arms(machine: &Machine, stock: &BarStock, reach: &[[f64; 2]]) -> Result<
     if feet == reach { Ok(armed) } else { machine.with_bars(stock, &feet)?.with_arms(stock) }
 }
 
-/// Returns the interval that the bar of a link needs to cover for pins and discs, m from its root.
-fn on_bar(machine: &Machine, link: usize) -> [f64; 2] {
-    let name = &machine.links()[link].name;
-    let discs = machine.spec().counterweights.iter().filter(|weight| weight.link == *name);
-    discs.fold(machine.least_extent(link), |[from, to], weight| [from.min(weight.at), to.max(weight.at)])
-}
-
 /// Returns the greatest length by which a bar reaches beyond root, tip and pins of its link, m.
 fn longest_tail(machine: &Machine) -> f64 {
     let beyond = (0..machine.links().len()).filter_map(|j| {
-        let (i, link) = (machine.spine(j)?, &machine.resolved_links()[j]);
-        let [low, high] = machine.part_ends(i)?;
-        let pins = link.pins.iter().copied().chain([0.0, link.length]);
-        let (first, last) = pins.fold((0.0_f64, 0.0_f64), |(first, last), at| (first.min(at), last.max(at)));
+        let [low, high] = machine.part_ends(machine.spine(j)?)?;
+        let [first, last] = machine.extent_with(j, |_| false);
         Some((first - low).max(high - last))
     });
     beyond.fold(0.0, f64::max)
@@ -306,7 +297,7 @@ pub fn as_bought(machine: &CutMachine, disc: &Disc, stock: &BarStock) -> Result<
         (weight.at, weight.across) = (round(weight.at), round(weight.across));
     }
     let rounded = Machine::new(spec)?;
-    let reach: Vec<[f64; 2]> = (0..rounded.links().len()).map(|link| on_bar(&rounded, link)).collect();
+    let reach: Vec<[f64; 2]> = (0..rounded.links().len()).map(|link| rounded.extent_with(link, |_| true)).collect();
     let cut = with_arms(&rounded, stock, &reach)?;
     let (residual, tail) = (residual(&cut), longest_tail(&cut));
     let added_mass = cut.spec().counterweights.iter().filter(|weight| !weight.fixed).map(|weight| weight.mass).sum();

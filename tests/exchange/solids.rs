@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 
-use stillbase::exchange::cut::{Cut, bar_extent, holes};
+use stillbase::exchange::cut::{Cut, bar_extent};
 use stillbase::exchange::drawing::{Sheet, dxf};
 use stillbase::exchange::form::Form;
 use stillbase::exchange::mjcf::middle;
@@ -73,7 +73,7 @@ fn solids_are_closed_and_have_their_volume() {
             let ([from, to], round) = (bar_extent(&machine, j), |d: f64| 0.25 * PI * d * d);
             // The ends are polygons of 64 sides within the circle.
             let ends = round(cut.bar_width) * (TAU / 64.0).sin() / (TAU / 64.0);
-            let drilled = holes(&machine, j).len() as f64 * round(cut.pin_diameter);
+            let drilled = machine.pin_places(j).len() as f64 * round(cut.pin_diameter);
             let wanted = ((to - from) * cut.bar_width + ends - drilled) * cut.plate_thickness;
             assert!((solid.volume() - wanted).abs() < 1e-9 * wanted, "{}: {}", machine.name(), solid.name);
             let z = solid.triangles.iter().flatten().map(|p| p[2]);

@@ -96,7 +96,7 @@ fn corners(part: &Part, [from, to]: [f64; 2], arms: &[usize], parts: &[Part]) ->
             false => part.polygon.iter().rev().map(corner).collect(),
         };
     }
-    let half = 0.5 * part.width.or(part.diameter).unwrap_or_default();
+    let half = 0.5 * part.breadth().unwrap_or_default();
     let (low, high) = (part.across - half, part.across + half);
     let is_round = part.shape == Shape::Flat && part.ends.unwrap_or_default() == Ends::Round;
     let bulge = if is_round { 1.0 } else { 0.0 };

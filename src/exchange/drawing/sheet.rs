@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 
 use super::outline::{Corner, PieceOutline, pieces_of};
-use crate::cut::{Cut, CutError, SAME_PIN_DISTANCE, bar_extent, holes};
+use crate::cut::{Cut, CutError, SAME_PIN_DISTANCE, bar_extent};
 use stillbase_mechanics::machine::{Counterweight, Machine, PartSource, Shape};
 use stillbase_settings::number::{counted, fixed};
 
@@ -167,7 +167,7 @@ impl Piece {
     fn of(machine: &Machine, cut: &Cut, (j, layer): (usize, Option<usize>), height: f64) -> Self {
         let mut piece = Self { shapes: Vec::new(), reach: [0.0; 4], layer };
         let part = &machine.resolved_links()[j];
-        let holes = holes(machine, j);
+        let holes = machine.pin_places(j);
         piece.bar(cut, part.drive, bar_extent(machine, j));
         piece.discs(machine, j);
         for at in &holes {
@@ -325,7 +325,7 @@ fn hole_line(holes: &[f64]) -> String {
 
 /// Returns the lines of text below a link without parts.
 fn below(machine: &Machine, cut: &Cut, j: usize) -> Vec<String> {
-    let mut lines = vec![hole_line(&holes(machine, j))];
+    let mut lines = vec![hole_line(&machine.pin_places(j))];
     let mut link = below_link(machine, cut, j);
     let discs = link.split_off(link.len() - weights_of(machine, j).count());
     let area = outline_area(machine, cut, j);
@@ -394,7 +394,7 @@ fn below_link(machine: &Machine, cut: &Cut, j: usize) -> Vec<String> {
 
 /// Returns the area of a bar without its holes, m².
 fn outline_area(machine: &Machine, cut: &Cut, j: usize) -> f64 {
-    let (holes, [from, to]) = (holes(machine, j), bar_extent(machine, j));
+    let (holes, [from, to]) = (machine.pin_places(j), bar_extent(machine, j));
     let round = |diameter: f64| 0.25 * PI * diameter * diameter;
     (to - from) * cut.bar_width + round(cut.bar_width) - holes.len() as f64 * round(cut.pin_diameter)
 }

@@ -83,23 +83,33 @@ impl Machine {
     /// Returns the shortest interval that the bar of a link covers, m from its root: root, tip, pins and fixed
     /// counterweights.
     pub fn least_extent(&self, j: usize) -> [f64; 2] {
+        self.extent_with(j, |weight| weight.fixed)
+    }
+
+    /// Returns the places of the pins of a link, m from its root, in ascending order; pins that differ by rounding are one.
+    pub fn pin_places(&self, j: usize) -> Vec<f64> {
+        let mut pins = self.resolved_links()[j].pins.clone();
+        pins.dedup_by(|b, a| *b - *a <= SAME_PLACE);
+        pins
+    }
+
+    /// Returns the interval that covers root, tip, pins and some counterweights of a link, m from its root.
+    pub fn extent_with(&self, j: usize, is_carried: impl Fn(&Counterweight) -> bool) -> [f64; 2] {
         let (link, resolved) = (&self.links()[j], &self.resolved_links()[j]);
-        let fixed = self.spec().counterweights.iter().filter(|weight| weight.fixed && weight.link == link.name);
-        let all = resolved.pins.iter().copied().chain(fixed.map(|weight| weight.at));
+        let carried = self.spec().counterweights.iter().filter(|weight| weight.link == link.name && is_carried(weight));
+        let all = resolved.pins.iter().copied().chain(carried.map(|weight| weight.at));
         all.fold([0.0, resolved.length], |[from, to], at| [from.min(at), to.max(at)])
     }
 
     /// Returns the bar of a link, with a hole for each pin.
     fn bar(&self, j: usize, stock: &BarStock, [from, to]: [PlaceOnLink; 2]) -> Part {
         let (link, length) = (&self.links()[j], self.resolved_links()[j].length);
-        let mut pins = self.resolved_links()[j].pins.clone();
-        pins.dedup_by(|b, a| *b - *a <= SAME_PLACE);
         let hole = |at: f64| Hole { at: place(at, length), across: 0.0, diameter: stock.pin_diameter };
         Part {
             name: CUT_BAR.into(),
             from,
             to,
-            holes: pins.into_iter().map(hole).collect(),
+            holes: self.pin_places(j).into_iter().map(hole).collect(),
             width: Some(stock.width),
             material: stock.material.clone(),
             ..Part::flat(&link.name, stock.thickness)
@@ -146,7 +156,7 @@ impl Machine {
             if weight.at < from - SAME_PLACE || weight.at > to + SAME_PLACE {
                 return Err(not_carried());
             }
-            let half = 0.5 * bar.width.or(bar.diameter).unwrap_or(stock.width);
+            let half = 0.5 * bar.breadth().unwrap_or(stock.width);
             if weight.across.abs() > half {
                 let [left, right] = [weight.at - 0.5 * stock.width, weight.at + 0.5 * stock.width];
                 let foot = half.copysign(weight.across);

@@ -137,6 +137,11 @@ impl Part {
         }
     }
 
+    /// Returns its extent across its line in the plane of the motion, m; `None` for a plate.
+    pub fn breadth(&self) -> Option<f64> {
+        self.width.or(self.diameter)
+    }
+
     /// Returns its name, or else its shape, section in mm and material.
     pub fn title(&self) -> String {
         if self.has_own_name() {

@@ -120,7 +120,7 @@ impl Part {
     /// the left of the part's line, m; `ends` are the places where a bar begins and ends, m.
     pub(super) fn depth(&self, point: [f64; 2], ends: [f64; 2]) -> f64 {
         let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-        let half = 0.5 * self.width.or(self.diameter).unwrap_or_default();
+        let half = 0.5 * self.breadth().unwrap_or_default();
         match (self.shape, self.ends.unwrap_or_default()) {
             (Shape::Plate, _) => polygon::depth(&self.polygon, point),
             (Shape::Flat, Ends::Round) => half - polygon::distance([low, 0.0], [high, 0.0], point),
