@@ -91,7 +91,10 @@
 //! let inertia = Inertia::of(&parse(text, "bar.toml")?);
 //! assert!((inertia.momenta()[0] - (0.05 + 2.0 * 0.2 * 0.2)).abs() < 1e-15);
 //! let error = parse(&text.replace("2.0", "-2.0"), "bar.toml").expect_err("no mass");
-//! assert_eq!(error.to_string(), "bar.toml:10: link.bar.mass is -2: want 1e-15 to 1000000 kg");
+//! assert_eq!(
+//!     error.to_string(),
+//!     "bar.toml:10: mass of link bar (link.bar.mass) is -2: want 1e-15 to 1000000 kg"
+//! );
 //! # Ok::<(), stillbase::mechanics::machine::FileError>(())
 //! ```
 //! [`place_weights`](mechanics::counterweights::place_weights) finds counterweights and proves that they are optimal:
