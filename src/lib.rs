@@ -102,11 +102,11 @@
 //! counterweight of 1 kg balances the bar from 0.4 m behind the pin:
 //! ```
 //! # use stillbase::mechanics::machine::{Inertia, parse};
-//! use stillbase::mechanics::counterweights::{CounterweightSpec, Disc, Objective, CounterweightSite, place_weights};
+//! use stillbase::mechanics::counterweights::{CounterweightSpec, CounterweightStock, Objective, CounterweightSite, place_weights};
 //! # let text = "name = 'bar'\ndrive = [{ name = '1' }]\nend_effector = { link = 'bar' }\n[[link]]\nname = 'bar'\n\
 //! # drive = '1'\nattach = 'base'\nlength = 0.4\nmass = 2.0\ninertia = 0.05\ncom = 0.2";
 //! # let machine = parse(text, "bar.toml")?;
-//! let spec = CounterweightSpec::least(Objective::mass(), CounterweightSite::anywhere(&machine), Disc::STEEL);
+//! let spec = CounterweightSpec::least(Objective::mass(), CounterweightSite::anywhere(&machine), CounterweightStock::STEEL);
 //! let placed = place_weights(&machine, &spec)?;
 //! assert!((placed.added_mass - 1.0).abs() < 1e-6 && Inertia::of(&placed.machine).is_force_balanced());
 //! assert!(placed.is_certified() && placed.gap < 1e-6);

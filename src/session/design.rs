@@ -53,9 +53,12 @@ impl DesignBrief {
         let follows =
             problem.parameters.iter().zip(&kept.values).filter(|(one, _)| one.bounds != ParameterBounds::Fixed);
         let follows = follows.map(|(one, value)| (one.parameter.key(&changed), *value));
-        let discs = kept.machine.spec().counterweights.iter().enumerate();
-        let discs = discs.map(|(i, weight)| (format!("counterweight.{}.radius", i + 1), weight.radius));
-        Ok(follows.chain(discs).fold(change.clone(), |all, (key, value)| join(all, &single_change(&key, value))))
+        let weights = kept.machine.spec().counterweights.iter().enumerate();
+        let sizes = weights.map(|(i, weight)| {
+            let (key, size) = weight.free_size();
+            (format!("counterweight.{}.{key}", i + 1), size)
+        });
+        Ok(follows.chain(sizes).fold(change.clone(), |all, (key, value)| join(all, &single_change(&key, value))))
     }
 
     /// Returns the numbers that may change: mass and place of counterweights if at least one is not fixed, otherwise
@@ -142,17 +145,22 @@ impl DesignBrief {
         let within = |[low, high]: [f64; 2], at: f64| [low.min(at), high.max(at)];
         let [low, high] = weights.into_iter().flatten().map(|weight| weight.at).fold(ends, within);
         let clear = weights[0].and_then(|weight| self.clear_of_pins(&machine.resolved_links()[link].pins, weight));
-        ParameterBounds::Within(clear.map_or([low, high], |[from, to]| [low.max(from), high.min(to)]))
+        let [low, high] = clear.map_or([low, high], |[from, to]| [low.max(from), high.min(to)]);
+        // Half a ring stays on its side of the root, so that its round side stays where it is.
+        ParameterBounds::Within(match weights[0] {
+            Some(weight) if weight.half && weight.at < 0.0 => [low, high.min(0.0)],
+            Some(weight) if weight.half => [low.max(0.0), high],
+            _ => [low, high],
+        })
     }
 
-    /// Returns the range of places, m, in which a counterweight of its present radius and distance from the axis stays
+    /// Returns the range of places, m, in which a counterweight of its present shape and distance from the axis stays
     /// clear of the pins on either side. Returns `None` if it is not clear of them now.
     fn clear_of_pins(&self, pins: &[f64], weight: &Counterweight) -> Option<[f64; 2]> {
-        let away = self.clearance? + weight.radius;
-        let away = (away * away - weight.across * weight.across).max(0.0).sqrt();
+        let [to_root, to_tip] = weight.clear_along(self.clearance?);
         let behind = pins.iter().filter(|pin| **pin <= weight.at).fold(f64::NEG_INFINITY, |most, pin| most.max(*pin));
         let ahead = pins.iter().filter(|pin| **pin > weight.at).fold(f64::INFINITY, |least, pin| least.min(*pin));
-        let [from, to] = [behind + away, ahead - away];
+        let [from, to] = [behind + to_root, ahead - to_tip];
         (from..=to).contains(&weight.at).then_some([from, to])
     }
 
@@ -231,7 +239,7 @@ impl DesignBrief {
         CounterweightSpec {
             clearance: self.clearance,
             payload: self.payload,
-            ..CounterweightSpec::least(Objective::mass(), sites.collect(), self.disc())
+            ..CounterweightSpec::least(Objective::mass(), sites.collect(), self.plate())
         }
     }
 }

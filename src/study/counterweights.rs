@@ -105,10 +105,29 @@ fn all_numbers<S: Serializer>(weights: &[Counterweight], serializer: S) -> Resul
         at: f64,
         across: f64,
         radius: f64,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        inner_radius: Option<f64>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        half: Option<bool>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        length: Option<f64>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        width: Option<f64>,
     }
     serializer.collect_seq(weights.iter().map(|weight| {
-        let Counterweight { link, mass, at, across, radius, fixed: _ } = weight;
-        Numbers { link, mass: *mass, at: *at, across: *across, radius: *radius }
+        let Counterweight { mass, at, across, radius, inner_radius, half, length, width, .. } = *weight;
+        let some = |size: f64| (size > 0.0).then_some(size);
+        Numbers {
+            link: &weight.link,
+            mass,
+            at,
+            across,
+            radius,
+            inner_radius: some(inner_radius),
+            half: half.then_some(true),
+            length: some(length),
+            width: some(width),
+        }
     }))
 }
 

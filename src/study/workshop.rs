@@ -8,7 +8,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use stillbase_mechanics::counterweights::{
-    CounterweightError, CounterweightSpec, Disc, PlacedCounterweights, place_weights,
+    CounterweightError, CounterweightSpec, CounterweightStock, PlacedCounterweights, place_weights,
 };
 use stillbase_mechanics::machine::{BarStock, Inertia, Machine, MachineError};
 use stillbase_query::QuickQuery;
@@ -102,7 +102,7 @@ impl CutRequest {
     /// As [`balance_as_cut`].
     pub fn balance(&self, machine: &Machine, request: &CounterweightSpec) -> Result<CutMachine, NoCut> {
         let exact = balance_as_cut(machine, request, &self.stock)?;
-        if self.bought { Ok(as_bought(&exact, &request.disc, &self.stock)?) } else { Ok(exact) }
+        if self.bought { Ok(as_bought(&exact, &request.stock, &self.stock)?) } else { Ok(exact) }
     }
 }
 
@@ -283,18 +283,24 @@ fn longest_tail(machine: &Machine) -> f64 {
     beyond.fold(0.0, f64::max)
 }
 
-/// Returns the machine with discs as they are bought: radii and places in steps of 0.1 mm, and the masses that follow
-/// from the plate. Its bars are cut for these; what is left of (7) and (8) is its residual.
+/// Returns the machine with counterweights as they are bought: radii, lengths and places in steps of 0.1 mm, and the
+/// masses that follow from their plate. Its bars are cut for these; what is left of (7) and (8) is its residual.
 ///
 /// # Errors
 /// If the machine is not valid.
-pub fn as_bought(machine: &CutMachine, disc: &Disc, stock: &BarStock) -> Result<CutMachine, MachineError> {
+pub fn as_bought(
+    machine: &CutMachine,
+    plate: &CounterweightStock,
+    stock: &BarStock,
+) -> Result<CutMachine, MachineError> {
     let mut spec = machine.placed.machine.spec().clone();
     let round = |x: f64| (x / STEP_M).round() * STEP_M;
     for weight in spec.counterweights.iter_mut().filter(|weight| !weight.fixed) {
-        weight.radius = round(disc.radius(weight.mass)).max(STEP_M);
-        weight.mass = disc.mass(weight.radius);
-        (weight.at, weight.across) = (round(weight.at), round(weight.across));
+        let (circle, outward) = (round(weight.circle_at()), weight.outward());
+        let shape = plate.shape(weight.mass).rounded(STEP_M);
+        (weight.at, weight.across) = (circle + outward * shape.from_circle(), round(weight.across));
+        weight.mass = plate.mass(shape);
+        weight.set_shape(shape);
     }
     let rounded = Machine::new(spec)?;
     let reach: Vec<[f64; 2]> = (0..rounded.links().len()).map(|link| rounded.extent_with(link, |_| true)).collect();

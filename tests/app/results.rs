@@ -410,7 +410,8 @@ fn a_report_is_in_the_units_and_names_of_the_window() {
     let mut app_state = app_state("case-1");
     let mut spec = app_state.session().scenario().machine.spec().clone();
     let link = spec.links[0].name.clone();
-    let disc = |at, mass| Counterweight { link: link.clone(), mass, at, across: 0.0, radius: 0.05, fixed: false };
+    let disc =
+        |at, mass| Counterweight { link: link.clone(), mass, at, across: 0.0, radius: 0.05, ..Default::default() };
     spec.counterweights = vec![disc(-0.1, 1.25), disc(-0.2, 0.5)];
     let machine = Machine::new(spec).expect("a machine");
     let scenario = Scenario { machine, ..app_state.session().scenario().clone() };

@@ -11,7 +11,7 @@ use stillbase::mechanics::balance::{
     Body, BodyQuantity, Breakdown, Parameter, ParameterBounds, Preset, RebalanceRequest, rebalance,
 };
 use stillbase::mechanics::counterweights::{
-    CounterweightSite, CounterweightSpec, Disc, Objective, front, place_weights,
+    CounterweightSite, CounterweightSpec, CounterweightStock, Objective, front, place_weights,
 };
 use stillbase::mechanics::dynamics::{ExternalLoads, base_wrench, inverse_with_wrench};
 use stillbase::mechanics::joint_forces::Joints;
@@ -461,7 +461,7 @@ fn bare() -> (Machine, CounterweightSpec) {
     let machine = parse(include_str!("../reference/family/nine-link-bare.toml"), "bare").expect("a machine");
     let parts = machine.resolved_links().iter().enumerate();
     let sites = parts.map(|(link, part)| CounterweightSite::on_axis(link, -0.3, part.length)).collect();
-    let disc = Disc { density: 7850.0, thickness: 0.03 };
+    let disc = CounterweightStock::discs(7850.0, 0.03);
     (machine, CounterweightSpec::least(Objective::inertia(), sites, disc))
 }
 

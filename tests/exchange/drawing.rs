@@ -18,7 +18,7 @@ fn machines() -> Vec<Machine> {
                 at: -0.05,
                 across: 0.0,
                 radius,
-                fixed: false,
+                ..Default::default()
             });
         }
         Machine::new(spec).expect("a machine")
@@ -230,7 +230,8 @@ fn bars_are_as_long_as_what_they_hold() {
         let mut spec = machine.spec().clone();
         let link = spec.links[0].name.clone();
         let at = -2.0 * machine.reach();
-        spec.counterweights = vec![Counterweight { link, mass: 1.0, at, across: 0.0, radius: 0.05, fixed: false }];
+        spec.counterweights =
+            vec![Counterweight { link, mass: 1.0, at, across: 0.0, radius: 0.05, ..Default::default() }];
         let machine = Machine::new(spec).expect("a machine");
         let sheet = sheet(&machine);
         let bars = sheet.shapes.iter().filter_map(|shape| match shape {
@@ -303,7 +304,7 @@ fn a_disc_is_as_thick_as_its_mass_takes() {
         at: -0.2,
         across: 0.0,
         radius: 0.08,
-        fixed: false,
+        ..Default::default()
     });
     let machine = Machine::new(spec).expect("a machine");
     let told = |cut: &Cut| svg(&Sheet::of(&machine, cut).expect("a sheet"));

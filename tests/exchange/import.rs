@@ -21,7 +21,14 @@ fn machines() -> Vec<Machine> {
         spec.gravity = [0.3, -9.7];
         spec.payload = toml::from_str("mass = 0.4\ninertia = 0.003\noffset = [0.03, -0.02]").expect("a payload");
         let link = spec.links[0].name.clone();
-        spec.counterweights.push(Counterweight { link, mass: 1.5, at: -0.1, across: 0.0, radius: 0.05, fixed: false });
+        spec.counterweights.push(Counterweight {
+            link,
+            mass: 1.5,
+            at: -0.1,
+            across: 0.0,
+            radius: 0.05,
+            ..Default::default()
+        });
         machines.push(Machine::new(spec).expect("a machine"));
     }
     machines.extend((0..60).map(|_| a_machine(&mut noise)));

@@ -26,7 +26,14 @@ fn another_reader_finds_every_part() {
         spec.payload.mass = 0.25;
         spec.links.iter_mut().for_each(|link| link.com_normal = 0.01);
         let link = spec.links[0].name.clone();
-        spec.counterweights.push(Counterweight { link, mass: 1.5, at: -0.1, across: 0.0, radius: 0.05, fixed: false });
+        spec.counterweights.push(Counterweight {
+            link,
+            mass: 1.5,
+            at: -0.1,
+            across: 0.0,
+            radius: 0.05,
+            ..Default::default()
+        });
         let machine = Machine::new(spec).expect("a machine");
         let text = parts(&machine).csv();
         assert!(text.lines().count() > 8 && text.ends_with("\r\n"));
@@ -115,8 +122,14 @@ fn names_are_no_formulas() {
 #[test]
 fn a_disc_is_as_thick_in_every_export() {
     let mut spec = builtin("serial-3r").expect("built in").spec().clone();
-    let disc =
-        |link: &str, mass, at, radius| Counterweight { link: link.into(), mass, at, across: 0.0, radius, fixed: false };
+    let disc = |link: &str, mass, at, radius| Counterweight {
+        link: link.into(),
+        mass,
+        at,
+        across: 0.0,
+        radius,
+        ..Default::default()
+    };
     spec.counterweights = vec![disc("1", 10.737, -0.12, 0.1204), disc("2", 0.105, -0.46, 0.0119)];
     let machine = &Machine::new(spec).expect("a machine");
     let weights = &machine.spec().counterweights;

@@ -29,7 +29,7 @@ fn with_discs(machine: &Machine) -> Machine {
             at: -0.02,
             across,
             radius: 0.05,
-            fixed: false,
+            ..Default::default()
         });
     }
     Machine::new(spec).expect("a machine")

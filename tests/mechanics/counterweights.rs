@@ -1,8 +1,8 @@
 //! Counterweights: against a conic solver of others, against the laws, and what is refused.
 
 use stillbase::mechanics::counterweights::{
-    Bound, BoundRelaxation, CounterweightError, CounterweightSite, CounterweightSpec, Disc, FreeRotor, Objective,
-    PlacementTolerance, RotorFreedom, front, over_payloads, place_weights, worst_residual,
+    Bound, BoundRelaxation, CounterweightError, CounterweightSite, CounterweightSpec, CounterweightStock, FreeRotor,
+    Objective, PlacementTolerance, RotorFreedom, front, over_payloads, place_weights, worst_residual,
 };
 use stillbase::mechanics::dynamics::mass_matrix;
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse, to_toml};
@@ -11,7 +11,7 @@ use stillbase::mechanics::planar::{DriveAngles, PerDrive};
 use crate::support::{Noise, family_machine};
 
 /// Steel, 30 mm.
-const STEEL: Disc = Disc { density: 7850.0, thickness: 0.03 };
+const STEEL: CounterweightStock = CounterweightStock::discs(7850.0, 0.03);
 
 /// Every link from 0.30 m behind its root to its tip.
 fn anywhere(machine: &Machine) -> Vec<CounterweightSite> {

@@ -2,7 +2,9 @@
 
 use std::f64::consts::PI;
 
-use stillbase::mechanics::counterweights::{CounterweightSite, CounterweightSpec, Disc, Objective, place_weights};
+use stillbase::mechanics::counterweights::{
+    CounterweightSite, CounterweightSpec, CounterweightStock, Objective, place_weights,
+};
 use stillbase::mechanics::machine::{
     FileError, Inertia, Lump, Machine, MachineError, MachineSpec, Part, PlaceOnLink, PlaneBody, builtins, parse,
     to_toml,
@@ -323,7 +325,7 @@ fn designs_leave_lumps_where_they_are() {
     let machine = arm();
     // The motor sits off the axis, and so must what balances it.
     let sites = CounterweightSite::anywhere(&machine).into_iter().map(|site| CounterweightSite { across: 0.1, ..site });
-    let spec = CounterweightSpec::least(Objective::mass(), sites.collect(), Disc::STEEL);
+    let spec = CounterweightSpec::least(Objective::mass(), sites.collect(), CounterweightStock::STEEL);
     let placed = place_weights(&machine, &spec).expect("counterweights").machine;
     let bodies = |spec: &MachineSpec| (spec.parts.clone(), spec.lumps.clone(), spec.links.clone());
     assert!(!placed.spec().counterweights.is_empty() && Inertia::of(&placed).is_balanced());

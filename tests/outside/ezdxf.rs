@@ -27,7 +27,7 @@ fn with_discs(machine: &Machine) -> Machine {
             at: -0.1,
             across: 0.0,
             radius,
-            fixed: false,
+            ..Default::default()
         });
     }
     Machine::new(spec).expect("a machine")

@@ -119,7 +119,14 @@ fn every_machine_weighs_and_pulls_the_same() {
         let payload = [("payload.mass", "0.4"), ("payload.inertia", "0.003"), ("payload.offset", "0.03,-0.02")];
         let mut spec = other.set_all(payload).expect("in range").spec().clone();
         let link = spec.links[0].name.clone();
-        spec.counterweights.push(Counterweight { link, mass: 1.5, at: -0.1, across: 0.04, radius: 0.05, fixed: false });
+        spec.counterweights.push(Counterweight {
+            link,
+            mass: 1.5,
+            at: -0.1,
+            across: 0.04,
+            radius: 0.05,
+            ..Default::default()
+        });
         machines.push(Machine::new(spec).expect("a machine"));
     }
     let motions: Vec<Vec<Motion>> = machines

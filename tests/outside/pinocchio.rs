@@ -128,7 +128,7 @@ fn every_machine_weighs_and_pulls_the_same() {
                 at,
                 across: 0.5 * at,
                 radius,
-                fixed: false,
+                ..Default::default()
             });
         }
         machines.push(Machine::new(spec).expect("a machine"));

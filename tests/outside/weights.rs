@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 use stillbase::mechanics::counterweights::{
-    CounterweightError, CounterweightSite, CounterweightSpec, Disc, FreeRotor, Objective, PlacedCounterweights,
-    RotorFreedom, place_weights,
+    CounterweightError, CounterweightSite, CounterweightSpec, CounterweightStock, FreeRotor, Objective,
+    PlacedCounterweights, RotorFreedom, place_weights,
 };
 use stillbase::mechanics::machine::{Machine, parse, to_toml};
 
@@ -69,7 +69,7 @@ fn a_question(noise: &mut Noise) -> (Machine, CounterweightSpec) {
         let most = if is_so(noise, 0.5) { noise.between(1.0, 60.0) } else { f64::INFINITY };
         sites.push(CounterweightSite { most, ..CounterweightSite::on_axis(link, from, to) });
     }
-    let disc = Disc { density: 7850.0, thickness: noise.between(0.005, 0.05) };
+    let disc = CounterweightStock::discs(7850.0, noise.between(0.005, 0.05));
     let mut asked = CounterweightSpec::least(objective, sites, disc);
     asked.max_added_mass = is_so(noise, 0.2).then(|| noise.between(2.0, 60.0));
     asked.max_inertia = is_so(noise, 0.2).then(|| noise.between(0.5, 8.0));
@@ -131,7 +131,7 @@ fn line(machine: &Machine, asked: &CounterweightSpec, found: Option<&PlacedCount
     json!({
         "machine": to_toml(machine),
         "sites": sites.collect::<Vec<_>>(),
-        "spread": asked.disc.radius(1.0),
+        "spread": asked.stock.shape(1.0).reach()[0],
         "objective": objective,
         "most_mass": asked.max_added_mass,
         "most_inertia": asked.max_inertia,

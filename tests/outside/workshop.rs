@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use stillbase::exchange::cut::Cut;
 use stillbase::exchange::drawing::{Sheet, dxf};
-use stillbase::mechanics::counterweights::{CounterweightSite, CounterweightSpec, Disc, Objective};
+use stillbase::mechanics::counterweights::{CounterweightSite, CounterweightSpec, CounterweightStock, Objective};
 use stillbase::mechanics::machine::{BarStock, Lump, Machine, PartSource, PlaceOnLink, builtins};
 use stillbase::study::workshop::{NoCut, balance_as_cut};
 
@@ -16,7 +16,7 @@ pub const TESTS: &[Test] = tests![what_is_cut_is_balanced];
 const SCRIPT: &str = include_str!("workshop.py");
 
 /// A machine of the gallery without motors in its joints that is cut from random bars, with discs on or off the axes.
-fn cut(machine: &Machine, noise: &mut Noise) -> Option<(Machine, BarStock, Disc)> {
+fn cut(machine: &Machine, noise: &mut Noise) -> Option<(Machine, BarStock, CounterweightStock)> {
     let material = ["aluminium", "steel"][usize::from(noise.between(0.0, 1.0) > 0.7)];
     let stock = BarStock {
         width: noise.between(0.012, 0.04),
@@ -24,7 +24,7 @@ fn cut(machine: &Machine, noise: &mut Noise) -> Option<(Machine, BarStock, Disc)
         material: material.into(),
         pin_diameter: noise.between(0.004, 0.01),
     };
-    let disc = Disc { density: 7850.0, thickness: noise.between(0.01, 0.04) };
+    let disc = CounterweightStock::discs(7850.0, noise.between(0.01, 0.04));
     let across = if noise.between(0.0, 1.0) < 0.5 { 0.0 } else { noise.between(0.02, 0.1) };
     let mut spec = machine.spec().clone();
     if across > 0.0 {
@@ -53,7 +53,7 @@ fn cut(machine: &Machine, noise: &mut Noise) -> Option<(Machine, BarStock, Disc)
     }
 }
 
-fn question(machine: &Machine, stock: &BarStock, disc: &Disc) -> Value {
+fn question(machine: &Machine, stock: &BarStock, disc: &CounterweightStock) -> Value {
     let density = if stock.material == "steel" { 7850.0 } else { 2700.0 };
     let links = machine.resolved_links().iter().enumerate().map(|(j, link)| {
         let root: Vec<f64> = (0..machine.drives()).map(|k| link.root[k]).collect();

@@ -2,7 +2,9 @@
 
 use super::*;
 use stillbase::mechanics::balance::Condition;
-use stillbase::mechanics::counterweights::{CounterweightSite, CounterweightSpec, Disc, Objective, place_weights};
+use stillbase::mechanics::counterweights::{
+    CounterweightSite, CounterweightSpec, CounterweightStock, Objective, place_weights,
+};
 use stillbase::mechanics::machine::{Inertia, builtin};
 use stillbase::session::{DesignVersion, designs};
 
@@ -30,7 +32,8 @@ fn session() -> Scenario {
 /// The nine bars with the counterweights of least inertia, on a plane that reaches both ends.
 fn heavy() -> Scenario {
     let bare = builtin("nine-link-bare").expect("built in");
-    let asked = CounterweightSpec::least(Objective::inertia(), CounterweightSite::anywhere(bare), Disc::STEEL);
+    let asked =
+        CounterweightSpec::least(Objective::inertia(), CounterweightSite::anywhere(bare), CounterweightStock::STEEL);
     let mut scenario = short("nine-link-bare");
     scenario.machine = place_weights(bare, &asked).expect("it can be balanced").machine;
     scenario.task.b = 3.4;

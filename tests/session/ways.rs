@@ -519,7 +519,7 @@ fn a_brief_fits_the_counterweights_of_its_machine() {
         at: -0.1,
         across,
         radius: 0.01,
-        fixed: false,
+        ..Default::default()
     };
     spec.counterweights = vec![weight(0.02), weight(-0.03)];
     let off = Machine::new(spec).expect("a machine");

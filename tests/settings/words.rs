@@ -62,7 +62,7 @@ fn parts_are_written_as_their_rows_say() {
     states_little::<PlantDifferences>(PlantDifferences::KEYS, &[]);
     states_little::<LinkDifference>(LinkDifference::KEYS, &[]);
     states_little::<DesignBrief>(DesignBrief::KEYS, &[]);
-    assert_eq!(DesignBrief::default().disc(), Disc::STEEL);
+    assert_eq!(DesignBrief::default().plate(), CounterweightStock::STEEL);
     assert_eq!(Wheel::default().inertia, 0.02);
     assert_eq!(Base::default().stiffness, [2e4, 2e4, 2e3]);
 }

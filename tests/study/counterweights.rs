@@ -1,6 +1,8 @@
 //! A machine balanced by counterweights: what the answer says is what the machine that comes out is.
 
-use stillbase::mechanics::counterweights::{CounterweightSite, CounterweightSpec, Disc, Objective, place_weights};
+use stillbase::mechanics::counterweights::{
+    CounterweightSite, CounterweightSpec, CounterweightStock, Objective, place_weights,
+};
 use stillbase::mechanics::machine::Inertia;
 use stillbase::query::{Portion, Query, Shared, answer_now};
 use stillbase::study::balance_constants::BalanceConstants;
@@ -11,7 +13,7 @@ use crate::support::family_machine;
 
 fn weighing() -> CounterweightSpec {
     let bare = family_machine("nine-link-bare");
-    CounterweightSpec::least(Objective::inertia(), CounterweightSite::anywhere(&bare), Disc::STEEL)
+    CounterweightSpec::least(Objective::inertia(), CounterweightSite::anywhere(&bare), CounterweightStock::STEEL)
 }
 
 fn lengths(starts: usize) -> LengthSearch {

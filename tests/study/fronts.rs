@@ -1,7 +1,7 @@
 //! The fronts of several machines side by side are those of each alone.
 
 use stillbase::mechanics::counterweights::{
-    CounterweightError, CounterweightSite, CounterweightSpec, Disc, Objective, front,
+    CounterweightError, CounterweightSite, CounterweightSpec, CounterweightStock, Objective, front,
 };
 use stillbase::planning::Motion;
 use stillbase::query::{ByIdentity, Portion, Query, answer_now};
@@ -22,7 +22,7 @@ fn asked(names: &[&str], most: f64) -> FrontsRequest {
         let machine = family_machine(name);
         let sites =
             CounterweightSite::anywhere(&machine).into_iter().map(|site| CounterweightSite { most, ..site }).collect();
-        let spec = CounterweightSpec::least(Objective::mass(), sites, Disc::STEEL);
+        let spec = CounterweightSpec::least(Objective::mass(), sites, CounterweightStock::STEEL);
         FrontCase { name: (*name).to_owned(), machine, spec }
     };
     FrontsRequest { machines: names.iter().map(of).collect(), count: COUNT, motion: None, workspace: true }

@@ -1,6 +1,8 @@
 //! Lengths that are sought: what a search finds holds what is asked for, and a grid of all lengths finds nothing better.
 
-use stillbase::mechanics::counterweights::{CounterweightSite, CounterweightSpec, Disc, Objective, place_weights};
+use stillbase::mechanics::counterweights::{
+    CounterweightSite, CounterweightSpec, CounterweightStock, Objective, place_weights,
+};
 use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::study::lengths::{FreeLength, LengthSearch, NoLengths, search};
 
@@ -9,7 +11,11 @@ use crate::support::family_machine;
 fn asked(machine: &Machine, lengths: &[(&str, [f64; 2])]) -> LengthSearch {
     LengthSearch {
         lengths: lengths.iter().map(|(name, ends)| FreeLength { name: (*name).into(), bounds: *ends }).collect(),
-        spec: CounterweightSpec::least(Objective::inertia(), CounterweightSite::anywhere(machine), Disc::STEEL),
+        spec: CounterweightSpec::least(
+            Objective::inertia(),
+            CounterweightSite::anywhere(machine),
+            CounterweightStock::STEEL,
+        ),
         anywhere: true,
         least_reach: Some(1.26),
         least_workspace: None,

@@ -1,7 +1,9 @@
 //! Trim balancing: machines with hidden errors are found from what their bases feel, within what is said of it.
 
 use stillbase::mechanics::balance::{Body, BodyQuantity, Condition, Parameter, ParameterBounds, RebalanceRequest};
-use stillbase::mechanics::counterweights::{CounterweightSite, CounterweightSpec, Disc, Objective, place_weights};
+use stillbase::mechanics::counterweights::{
+    CounterweightSite, CounterweightSpec, CounterweightStock, Objective, place_weights,
+};
 use stillbase::mechanics::dynamics::{ExternalLoads, base_wrench};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, builtins};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
@@ -348,7 +350,7 @@ fn weighed() -> Machine {
     let bare = builtin("nine-link-bare").expect("built in");
     let sites = bare.resolved_links().iter().enumerate();
     let sites = sites.map(|(link, part)| CounterweightSite::on_axis(link, -0.3, part.length)).collect();
-    let asked = CounterweightSpec::least(Objective::inertia(), sites, Disc::STEEL);
+    let asked = CounterweightSpec::least(Objective::inertia(), sites, CounterweightStock::STEEL);
     place_weights(bare, &asked).expect("counterweights").machine
 }
 
@@ -538,7 +540,7 @@ fn new_counterweights_mend_what_has_none() {
     let taken = adopt_parameters(&fitted(machine, &recording, false));
     let sites = machine.resolved_links().iter().enumerate();
     let sites = sites.map(|(link, p)| CounterweightSite::on_axis(link, -p.length, p.length)).collect();
-    let asked = CounterweightSpec::least(Objective::mass(), sites, Disc::STEEL);
+    let asked = CounterweightSpec::least(Objective::mass(), sites, CounterweightStock::STEEL);
     let mended = correct_machine(machine, &taken, &TrimMethod::Add(asked)).expect("new ones");
     let mut after = hidden.spec().clone();
     after.counterweights = mended.machine.spec().counterweights.clone();

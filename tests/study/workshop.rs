@@ -2,7 +2,7 @@
 
 use stillbase::exchange::cut::Cut;
 use stillbase::exchange::solids::{SolidKind, link_solids};
-use stillbase::mechanics::counterweights::{CounterweightSite, CounterweightSpec, Disc, Objective};
+use stillbase::mechanics::counterweights::{CounterweightSite, CounterweightSpec, CounterweightStock, Objective};
 use stillbase::mechanics::machine::{BarStock, Inertia, Machine, MachineError, Part, Shape, builtin};
 use stillbase::study::workshop::{CutMachine, CutRequest, NoCut, as_bought, balance_as_cut};
 
@@ -11,7 +11,7 @@ fn bare() -> Machine {
 }
 
 fn lightest(machine: &Machine) -> CounterweightSpec {
-    let disc = Disc { density: 7850.0, thickness: 0.02 };
+    let disc = CounterweightStock::discs(7850.0, 0.02);
     CounterweightSpec::least(Objective::mass(), CounterweightSite::anywhere(machine), disc)
 }
 

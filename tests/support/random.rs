@@ -173,7 +173,7 @@ pub fn with_counterweights(noise: &mut Noise) -> Machine {
             at,
             across: noise.between(-0.1, 0.1),
             radius,
-            fixed: false,
+            ..Default::default()
         });
     }
     Machine::new(spec).expect("still a machine")

@@ -4,9 +4,10 @@ use std::time::Instant;
 
 use clap::Args;
 use stillbase_mechanics::counterweights::{
-    BoundRelaxation, CounterweightError, CounterweightSpec, Disc, FreeRotor, MATERIALS, Objective, RotorFreedom,
+    BoundRelaxation, CounterweightError, CounterweightForm, CounterweightSpec, CounterweightStock, FreeRotor,
+    MATERIALS, Objective, RotorFreedom,
 };
-use stillbase_mechanics::machine::{BarStock, Machine};
+use stillbase_mechanics::machine::{BarStock, Counterweight, CounterweightShape, Machine};
 use stillbase_planning::Motion;
 use stillbase_settings::number::{counted, fixed, nine_digits, significant};
 use stillbase_study::counterweights::{
@@ -39,20 +40,25 @@ pub struct WeightArguments {
     /// Maximum distance of a counterweight from the axis of its link, to either side, m; by default it lies on the axis
     #[arg(long, value_parser = number, value_name = "METRES", requires = "counterweights", default_value_t = 0.0)]
     across: f64,
-    /// Material of the discs: aluminium, steel, brass, lead, tungsten, or a density, kg/m³
+    /// Shape of the counterweights: disc; ring,A or half-ring,A with an inner radius, m; box,W with a width across the
+    /// link, m, as long as its mass takes. Half a ring has its round side away from the root of its link
+    #[arg(long, value_parser = shape, value_name = "disc|ring,A|half-ring,A|box,W", requires = "counterweights", default_value = "disc")]
+    shape: CounterweightForm,
+    /// Material of the counterweights: aluminium, steel, brass, lead, tungsten, or a density, kg/m³
     #[arg(long, value_parser = density, value_name = "MATERIAL", requires = "counterweights", default_value = "steel")]
     material: f64,
-    /// Thickness of the discs, m
-    #[arg(long, value_parser = number, value_name = "T", requires = "counterweights", default_value_t = Disc::STEEL.thickness)]
+    /// Thickness of the counterweights, m
+    #[arg(long, value_parser = number, value_name = "T", requires = "counterweights", default_value_t = CounterweightStock::STEEL.thickness)]
     thickness: f64,
     /// Maximum mass of a counterweight, kg: M for every link, or LINK=M for one
     #[arg(long, value_name = "[LINK=]M", requires = "counterweights")]
     max_mass: Vec<String>,
-    /// Maximum radius of a disc, m
+    /// Maximum outer radius of a disc, a ring or half a ring, m
     #[arg(long, value_parser = number, value_name = "R", requires = "counterweights")]
     max_radius: Option<f64>,
-    /// Minimum distance from the edge of a disc to the centre of every pin of its link, m; by default discs may cover
-    /// pins
+    /// Minimum distance from the edge of a counterweight to the centre of every pin of its link, m; by default it may
+    /// cover pins. Half a ring and a box count as the rectangle around them. A pin may lie in the bore of a ring, and on
+    /// the axis also in that of half a ring
     #[arg(long, value_parser = number, value_name = "C", requires = "counterweights")]
     clearance: Option<f64>,
     /// Minimum and maximum payload, kg. First the largest residual over this range is minimised, then the objective.
@@ -127,12 +133,19 @@ impl WeightArguments {
                 site.most = site.most.min(most);
             }
         }
-        let disc = Disc { density: self.material, thickness: self.thickness };
+        let stock = CounterweightStock { density: self.material, thickness: self.thickness, form: self.shape };
         if let Some(radius) = self.max_radius {
             if !(radius.is_finite() && radius > 0.0) {
                 return Err(Failure::wrong_input(format!("--max-radius {radius}: want a radius above 0 in m")));
             }
-            sites.iter_mut().for_each(|site| site.most = site.most.min(disc.mass(radius)));
+            let Some(most) = stock.mass_of_radius(radius) else {
+                let want = match self.shape {
+                    CounterweightForm::Box(_) => "a box has no radius: want --max-mass".to_owned(),
+                    _ => format!("want more than the inner radius, {} m", nine_digits(stock.inner_radius())),
+                };
+                return Err(Failure::wrong_input(format!("--max-radius {radius}: {want}")));
+            };
+            sites.iter_mut().for_each(|site| site.most = site.most.min(most));
         }
         let mut objective = self.objective.clone().unwrap_or_else(Objective::mass);
         match motion {
@@ -150,7 +163,7 @@ impl WeightArguments {
             clearance: self.clearance,
             rotors: self.rotors(machine)?,
             payload: self.payload,
-            ..CounterweightSpec::least(objective, sites, disc)
+            ..CounterweightSpec::least(objective, sites, stock)
         })
     }
 
@@ -174,7 +187,7 @@ impl WeightArguments {
 
     /// Converts the reason why there are no counterweights into a failure. If radii are bounded, feasible masses are
     /// also given as radii.
-    fn refusal(&self, why: CounterweightError, disc: &Disc) -> Failure {
+    fn refusal(&self, why: CounterweightError, stock: &CounterweightStock) -> Failure {
         let (CounterweightError::Conflict { reliefs, .. } | CounterweightError::Reaches { reliefs, .. }, Some(_)) =
             (&why, self.max_radius)
         else {
@@ -183,7 +196,8 @@ impl WeightArguments {
         let mut said = why.to_string();
         for relief in reliefs.iter().flatten() {
             if let BoundRelaxation::Most(most) = relief {
-                let radius = (disc.radius(*most) * 1e6 * (1.0 + 1e-9)).ceil() * 1e-6;
+                let (_, radius) = Counterweight::new("", *most, [0.0; 2], stock.shape(*most)).free_size();
+                let radius = (radius * 1e6 * (1.0 + 1e-9)).ceil() * 1e-6;
                 said.push_str(&format!("; {most:.6} kg takes a radius of {radius:.6} m"));
             }
         }
@@ -215,7 +229,7 @@ impl WeightArguments {
             }
             seconds => seconds.unwrap_or(f64::INFINITY),
         };
-        let disc = spec.disc;
+        let stock = spec.stock;
         let bars = self.bars.clone().map(|stock| CutRequest {
             stock: BarStock { pin_diameter: self.pin_diameter.unwrap_or(stock.pin_diameter), ..stock },
             bought: self.bought,
@@ -225,9 +239,9 @@ impl WeightArguments {
         let mut go_on = |_| begun.elapsed().as_secs_f64() < within;
         balance_by_weights(machine, &request, motion, &mut go_on).map_err(|why| match why {
             NoCounterweights::Lengths(why) => lengths_failure(why),
-            NoCounterweights::Weights(why) => self.refusal(why, &disc),
+            NoCounterweights::Weights(why) => self.refusal(why, &stock),
             NoCounterweights::Front(why) => request_failure(why),
-            NoCounterweights::Cut(NoCut::Weights(why)) => self.refusal(why, &disc),
+            NoCounterweights::Cut(NoCut::Weights(why)) => self.refusal(why, &stock),
             NoCounterweights::Cut(why @ NoCut::Bars(_)) => Failure::wrong_input(why),
             NoCounterweights::Cut(why) => Failure::no_answer(why),
             NoCounterweights::Machine(why) => why.into(),
@@ -280,6 +294,22 @@ fn density(text: &str) -> Result<f64, String> {
     let known = MATERIALS.iter().find(|(name, _)| name.eq_ignore_ascii_case(text.trim()));
     let want = || format!("want a density in kg/m³, or {}", MATERIALS.map(|(name, _)| name).join(", "));
     known.map_or_else(|| text.trim().parse().map_err(|_| want()), |(_, density)| Ok(*density))
+}
+
+/// Parses the shape of counterweights.
+fn shape(text: &str) -> Result<CounterweightForm, String> {
+    let want = || "want disc, or ring,A, half-ring,A or box,W with a length in m, as ring,0.01".to_owned();
+    let size = |size: &str| size.trim().parse().map_err(|_| want());
+    match text.split_once(',') {
+        None if text.trim() == "disc" => Ok(CounterweightForm::Disc),
+        None => Err(want()),
+        Some((kind, given)) => match kind.trim() {
+            "ring" => size(given).map(CounterweightForm::Ring),
+            "half-ring" => size(given).map(CounterweightForm::HalfRing),
+            "box" => size(given).map(CounterweightForm::Box),
+            _ => Err(want()),
+        },
+    }
 }
 
 /// Parses a number; its range is checked where it is used.
@@ -341,10 +371,15 @@ pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
     let off_axis = report.weights.iter().any(|weight| weight.across != 0.0);
     let some =
         |cells: [String; 5]| cells.into_iter().enumerate().filter(move |(i, _)| off_axis || *i != 3).map(|(_, c)| c);
-    let heads = ["counterweight on link", "kg", "at m", "left of axis m", "radius m"].map(String::from);
+    let size = match report.weights.first().map(Counterweight::shape) {
+        Some(CounterweightShape::Box { .. }) => "length m",
+        _ => "radius m",
+    };
+    let heads = ["counterweight on link", "kg", "at m", "left of axis m", size].map(String::from);
     let mut table = TextTable::new(some(heads));
     for w in &report.weights {
-        table.row(some([w.link.clone(), fixed(w.mass, 6), fixed(w.at, 6), fixed(w.across, 6), fixed(w.radius, 6)]));
+        let (_, size) = w.free_size();
+        table.row(some([w.link.clone(), fixed(w.mass, 6), fixed(w.at, 6), fixed(w.across, 6), fixed(size, 6)]));
     }
     let sure = match report.certified {
         true => format!("within {:.1e} of the best", report.gap),

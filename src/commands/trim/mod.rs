@@ -8,7 +8,7 @@ use clap::Args;
 use stillbase_files::table::motions;
 use stillbase_files::{finish_all, write_temporary};
 use stillbase_mechanics::balance::RebalanceRequest;
-use stillbase_mechanics::counterweights::{CounterweightSpec, Disc, Objective};
+use stillbase_mechanics::counterweights::{CounterweightSpec, CounterweightStock, Objective};
 use stillbase_mechanics::machine::{Machine, to_toml};
 use stillbase_mechanics::planar::Vector;
 use stillbase_query::{Shared, answer_now};
@@ -175,7 +175,7 @@ impl TrimArguments {
         let named = !(self.fix.is_empty() && self.free.is_empty() && self.bound.is_empty());
         if weights == 0 && !named {
             let sites = sites(machine, &self.range, self.across)?;
-            return Ok(TrimMethod::Add(CounterweightSpec::least(Objective::mass(), sites, Disc::STEEL)));
+            return Ok(TrimMethod::Add(CounterweightSpec::least(Objective::mass(), sites, CounterweightStock::STEEL)));
         }
         if !self.range.is_empty() || self.across != 0.0 {
             let why = "--range and --across are for new counterweights on a machine that has none: want --fix, --free or --bound alone";

@@ -99,9 +99,7 @@ impl Parameter {
             (Body::Link(j), BodyQuantity::Along) => spec.links[j].com = value,
             (Body::Link(j), BodyQuantity::Across) => spec.links[j].com_normal = value,
             (Body::Counterweight(i), BodyQuantity::Mass) => {
-                let weight = &mut spec.counterweights[i];
-                weight.radius *= (value / weight.mass).sqrt();
-                weight.mass = value;
+                spec.counterweights[i] = spec.counterweights[i].with_mass(value);
             }
             (Body::Counterweight(i), BodyQuantity::Along) => spec.counterweights[i].at = value,
             (Body::Counterweight(i), BodyQuantity::Across) => spec.counterweights[i].across = value,

@@ -1,8 +1,8 @@
 //! [`SearchCell`]: a range of mass w and position (x, y) of a counterweight, and upper bounds of its inertia there.
 //!
 //! If D_k is negative, more inertia reduces |D_k|, so (s² + t²)/w and w² need upper bounds. For x from a to b,
-//! s²/w ≤ (a + b) s − a b w, and likewise t²/w for y. For w from a to b, w² ≤ (a + b) w − a b. All are equalities at a
-//! and at b.
+//! s²/w ≤ (a + b) s − a b w, and likewise t²/w for y. For w from a to b, the disc's own inertia lies below its
+//! chord. All are equalities at a and at b.
 
 use super::spec::{CounterweightSite, CounterweightSpec};
 use super::unknowns::UnknownIndices;
@@ -64,9 +64,14 @@ impl SearchCell {
             most(&[(w, -1.0)], -light);
         }
         if heavy.is_finite() {
-            let own = request.disc.own();
             most(&[(w, 1.0)], heavy);
-            most(&[(v, 1.0), (w, -own * (light + heavy))], -own * light * heavy);
+            // The chord of the own inertia, which is convex in the mass.
+            let [least, greatest] = [light, heavy].map(|mass| request.stock.own(mass));
+            let slope = match heavy > light {
+                true => (greatest - least) / (heavy - light),
+                false => request.stock.own_slope(light),
+            };
+            most(&[(v, 1.0), (w, -slope)], least - slope * light);
         }
     }
 

@@ -27,6 +27,7 @@ mod search;
 mod search_node;
 mod solution;
 mod spec;
+mod stock;
 mod task;
 mod tolerance;
 mod unknowns;
@@ -37,7 +38,8 @@ pub use front::{Front, FrontSearch, front};
 pub use payload::{PayloadResidual, over_payloads};
 pub use place::{PlacedCounterweights, place_weights, place_weights_with, unreachable_by_weights};
 pub use refusal::{Bound, BoundRelaxation, CounterweightError};
-pub use spec::{
-    ACROSS_RANGE, CounterweightSite, CounterweightSpec, Disc, FreeRotor, Objective, RotorFreedom, THICKNESS_RANGE,
+pub use spec::{ACROSS_RANGE, CounterweightSite, CounterweightSpec, FreeRotor, Objective, RotorFreedom};
+pub use stock::{
+    BOX_WIDTH_RANGE, CounterweightForm, CounterweightKind, CounterweightStock, INNER_RADIUS_RANGE, THICKNESS_RANGE,
 };
 pub use tolerance::{PlacementTolerance, WorstResidual, worst_residual};

@@ -16,6 +16,12 @@ use stillbase_convex::{LinearRow, NoOptimum, Optimum, Program, infeasible_bounds
 /// minimised: the solver's rounding.
 pub(super) const SOLVER_ROUNDING: [f64; 2] = [1e-7, 1e-10];
 
+/// Maximum number of times that tangents are added.
+const MAX_TANGENTS: usize = 12;
+
+/// An own inertia this close to its bound is exact, kg m².
+const TANGENT_TOLERANCE: f64 = 1e-11;
+
 impl CounterweightProblem {
     /// Solves the cone program of one subproblem.
     pub fn least(
@@ -24,7 +30,7 @@ impl CounterweightProblem {
         request: &CounterweightSpec,
         node: &SearchNode,
     ) -> Result<Optimum, NoOptimum> {
-        let solve = |node: &SearchNode| self.program(machine, request, &self.bounds(machine, request), node).solve();
+        let solve = |node: &SearchNode| self.with_tangents(machine, request, node);
         let first = solve(node)?;
         if request.objective.momentum == 0.0 || node.balance == BalanceGoal::Nearest || node.least.is_some() {
             return Ok(first);
@@ -34,6 +40,36 @@ impl CounterweightProblem {
         let most = first.value + SOLVER_ROUNDING[0] * first.value.abs() + SOLVER_ROUNDING[1];
         let second = solve(&SearchNode { most: Some(most), ..node.clone() });
         Ok(second.map_or(first.clone(), |second| Optimum { x: second.x, ..first }))
+    }
+
+    /// Solves the cone program, and adds tangents of own inertias until they are exact.
+    fn with_tangents(
+        &self,
+        machine: &Machine,
+        request: &CounterweightSpec,
+        node: &SearchNode,
+    ) -> Result<Optimum, NoOptimum> {
+        let (bounds, unknowns) = (self.bounds(machine, request), UnknownIndices::of(request, self.drives()));
+        let mut found = self.program(machine, request, &bounds, node).solve()?;
+        if !(request.stock.has_remainder() && unknowns.inertia) {
+            return Ok(found);
+        }
+        let mut node = node.clone();
+        for _ in 0..MAX_TANGENTS {
+            let mut is_exact = true;
+            for (j, masses) in node.own_tangents.iter_mut().enumerate() {
+                let mass = found.x[unknowns.w(j)].max(0.0);
+                if request.stock.own(mass) - request.stock.own_above_tangents(mass, masses) > TANGENT_TOLERANCE {
+                    masses.push(mass);
+                    is_exact = false;
+                }
+            }
+            if is_exact {
+                break;
+            }
+            found = self.program(machine, request, &bounds, &node).solve()?;
+        }
+        Ok(found)
     }
 
     /// Returns a minimal set of bounds that contradict each other even if clearances are ignored. It is a
@@ -71,7 +107,7 @@ impl CounterweightProblem {
         }
         self.enter_rotors(machine, request, &unknowns, &mut program);
         if unknowns.inertia {
-            self.enter_inertia(request, &unknowns, &mut program);
+            self.enter_inertia(request, &unknowns, node, &mut program);
             self.cost(machine, request, &unknowns, &mut program);
             self.enter_motion(machine, request, &unknowns, node, &mut program);
         }
@@ -90,7 +126,7 @@ impl CounterweightProblem {
         }
         self.enter_balance(&unknowns, node.balance, &mut program);
         for (j, sectors) in node.sectors.iter().enumerate() {
-            PinSector::enter(sectors, request, [unknowns.w(j), unknowns.s(j)], unknowns.t(j), &mut program);
+            PinSector::enter(sectors, request, j, &unknowns, &mut program);
         }
         let firm = bounds.iter().filter(|(bound, _)| !bound.kind().is_some_and(|kind| node.loose.contains(&kind)));
         program.at_most.extend(firm.clone().map(|(_, row)| row.clone()));
@@ -186,12 +222,18 @@ impl CounterweightProblem {
     }
 
     /// Adds the equations for the diagonal H_kk of the mass matrix without free rotors.
-    fn enter_inertia(&self, request: &CounterweightSpec, unknowns: &UnknownIndices, program: &mut Program) {
+    fn enter_inertia(
+        &self,
+        request: &CounterweightSpec,
+        unknowns: &UnknownIndices,
+        node: &SearchNode,
+        program: &mut Program,
+    ) {
         let parts = self.bare.resolved_links();
         for j in 0..request.sites.len() {
             let moments = std::iter::once(unknowns.s(j)).chain(unknowns.t(j));
             program.add_rotated_cone(unknowns.u(j), unknowns.w(j), moments);
-            program.above_square(unknowns.v(j), request.disc.own(), unknowns.w(j));
+            request.stock.enter_own(unknowns.w(j), unknowns.v(j), &node.own_tangents[j], program);
         }
         for k in 0..self.drives() {
             let mut terms = vec![(unknowns.h(k), 1.0)];

@@ -56,10 +56,8 @@ pub(super) fn search(
         }
         let children = match search.worst_site(&least, &node) {
             Some((j, pin)) => {
-                let sectors = match request.sites[j].across > 0.0 {
-                    true => PinSector::refined(&node.sectors[j], pin),
-                    false => PinSector::intervals(search.pins(j)),
-                };
+                let site = &request.sites[j];
+                let sectors = PinSector::choices(request, site, search.pins(j), &node.sectors[j], pin);
                 choices += sectors.len();
                 if choices > MAX_CHOICES {
                     return Err(CounterweightError::TooMany(MAX_CHOICES));
@@ -132,7 +130,10 @@ impl Search<'_> {
         let clearance = self.request.clearance?;
         let missed = |j: usize| {
             let disc = self.problem.disc(self.request, &least.x, j, MIN_MASS_KG)?;
-            let (pin, missed) = worst_pin(self.pins(j), clearance, self.request.disc.radius(disc.mass), disc)?;
+            let settled = |pin: f64| node.sectors[j].iter().any(|sector| sector.settles(pin));
+            let pins = self.pins(j).iter().copied().filter(|pin| !settled(*pin));
+            let on_axis = self.request.sites[j].across == 0.0;
+            let (pin, missed) = worst_pin(pins, clearance, &self.request.stock, disc, on_axis)?;
             Some((j, pin, missed))
         };
         let is_open = |j: &usize| self.request.sites[*j].across > 0.0 || node.sectors[*j].is_empty();

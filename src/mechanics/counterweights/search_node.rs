@@ -33,6 +33,9 @@ pub(super) struct SearchNode {
     /// Discs at which H_kk is linearised in −D_k ≤ |D_k|, so that this bound is convex. The
     /// linearised inertia is a lower bound, so |D_k| is not underestimated.
     pub tangents: Option<Vec<DiscPlace>>,
+    /// Masses, kg, at which the own inertia of each counterweight is bounded by tangents, where it has a remainder
+    /// beyond its powers of the mass.
+    pub own_tangents: Vec<Vec<f64>>,
 }
 
 impl SearchNode {
@@ -46,6 +49,7 @@ impl SearchNode {
             least: None,
             cells: request.sites.iter().map(|site| SearchCell::of(request, site)).collect(),
             tangents: None,
+            own_tangents: vec![vec![0.0]; request.sites.len()],
         }
     }
 }

@@ -38,7 +38,7 @@ impl CounterweightProblem {
         let places: Vec<DiscPlace> = places.collect();
         for (j, DiscPlace { mass, at, across }) in places.iter().enumerate() {
             x[unknowns.u(j)] = mass * (at * at + across * across);
-            x[unknowns.v(j)] = request.disc.own() * mass * mass;
+            x[unknowns.v(j)] = request.stock.own(*mass);
         }
         let of = |sum: &AffineForm, x: &[f64]| sum.constant + sum.terms.iter().map(|(i, by)| by * x[*i]).sum::<f64>();
         let mut torque = 0.0_f64;
@@ -109,13 +109,9 @@ impl CounterweightProblem {
             self.refine(request, &mut found);
         }
         let mut spec = self.bare.spec().clone();
-        let weight = |(site, [w, s, t]): &(CounterweightSite, [f64; 3])| Counterweight {
-            link: self.bare.links()[site.link].name.clone(),
-            mass: *w,
-            at: s / w,
-            across: t / w,
-            radius: request.disc.radius(*w),
-            fixed: false,
+        let weight = |(site, [w, s, t]): &(CounterweightSite, [f64; 3])| {
+            let link = self.bare.links()[site.link].name.clone();
+            Counterweight::new(link, *w, [s / w, t / w], request.stock.shape(*w))
         };
         spec.counterweights.extend(found.iter().map(weight));
         for (i, rotor) in request.rotors.iter().enumerate() {

@@ -1,8 +1,7 @@
 //! [`CounterweightSpec`]: a request for counterweights.
 
-use std::f64::consts::PI;
-
 use super::refusal::CounterweightError;
+use super::stock::CounterweightStock;
 use crate::machine::{Machine, ranges};
 use stillbase_settings::range::Range;
 
@@ -31,43 +30,6 @@ impl CounterweightSite {
     /// Allows a counterweight of any mass on the axis of a link, in a range of positions, m from the root.
     pub const fn on_axis(link: usize, from: f64, to: f64) -> Self {
         Self { link, from, to, across: 0.0, most: f64::INFINITY }
-    }
-}
-
-/// Material of the counterweights: discs cut from one plate.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Disc {
-    /// Density ρ, kg/m³.
-    pub density: f64,
-    /// Thickness d, m.
-    pub thickness: f64,
-}
-
-/// Range of the thickness of a plate.
-pub const THICKNESS_RANGE: Range = Range::new(1e-4, 1.0, "m");
-
-impl Disc {
-    /// Steel, 30 mm thick.
-    pub const STEEL: Self = Self { density: 7850.0, thickness: 0.03 };
-
-    /// Returns the radius, m, of a disc of a mass, kg.
-    pub fn radius(&self, mass: f64) -> f64 {
-        self.spread() * mass.sqrt()
-    }
-
-    /// Returns the mass, kg, of a disc of a radius, m.
-    pub fn mass(&self, radius: f64) -> f64 {
-        (radius / self.spread()).powi(2)
-    }
-
-    /// Returns the ratio of a disc's radius to the square root of its mass, 1/√(π ρ d), m/√kg.
-    pub(super) fn spread(&self) -> f64 {
-        1.0 / (PI * self.density * self.thickness).sqrt()
-    }
-
-    /// Returns the ratio of a disc's own inertia to its squared mass, 1/(2 π ρ d), m²/kg.
-    pub(super) fn own(&self) -> f64 {
-        0.5 * self.spread().powi(2)
     }
 }
 
@@ -128,14 +90,16 @@ pub struct CounterweightSpec {
     /// Links that may carry a counterweight.
     pub sites: Vec<CounterweightSite>,
     /// Material of the counterweights.
-    pub disc: Disc,
+    pub stock: CounterweightStock,
     /// The objective that is minimised.
     pub objective: Objective,
     /// Upper bound of the added mass, kg.
     pub max_added_mass: Option<f64>,
     /// Upper bound of Σ D_k, kg m².
     pub max_inertia: Option<f64>,
-    /// Clearance between the edge of a disc and the centre of every pin of its link, m; `None`: discs may cover pins.
+    /// Clearance between the edge of a counterweight and the centre of every pin of its link, m; `None`: it may cover
+    /// pins. Half a ring and a box count as the rectangle around them. A pin may lie in the bore of a ring, and on the
+    /// axis also in the bore of half a ring.
     pub clearance: Option<f64>,
     /// Rotors with a free parameter, which is optimised with the counterweights.
     pub rotors: Vec<FreeRotor>,
@@ -150,9 +114,9 @@ const CLEARANCE: Range = Range::new(0.0, 1e3, "m");
 
 impl CounterweightSpec {
     /// Makes a request that minimises an objective, without bounds other than those of the sites.
-    pub fn least(objective: Objective, sites: Vec<CounterweightSite>, disc: Disc) -> Self {
+    pub fn least(objective: Objective, sites: Vec<CounterweightSite>, stock: CounterweightStock) -> Self {
         let (max_added_mass, max_inertia, clearance, payload) = (None, None, None, None);
-        Self { sites, disc, objective, max_added_mass, max_inertia, clearance, rotors: Vec::new(), payload }
+        Self { sites, stock, objective, max_added_mass, max_inertia, clearance, rotors: Vec::new(), payload }
     }
 
     /// Checks that the request is valid for a machine.
@@ -167,8 +131,7 @@ impl CounterweightSpec {
             }
             _ => Ok(()),
         };
-        within("density", self.disc.density, ranges::DENSITY)?;
-        within("thickness", self.disc.thickness, THICKNESS_RANGE)?;
+        self.stock.check()?;
         positive("the most Σ D_k may be, kg m²,", self.max_inertia)?;
         positive("the most that may be added, kg,", self.max_added_mass)?;
         if let Some(clearance) = self.clearance {

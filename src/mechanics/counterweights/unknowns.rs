@@ -145,14 +145,14 @@ impl CounterweightProblem {
         let mut sum = AffineForm { terms: Vec::new(), constant: self.inertia.diagonal(k) };
         for (j, (site, tangent)) in request.sites.iter().zip(tangents).enumerate() {
             let DiscPlace { mass, at, across } = *tangent;
-            let (part, own) = (&parts[site.link], request.disc.own());
+            let (part, own) = (&parts[site.link], request.stock.own_slope(mass));
             let (root, (w, s)) = (part.root[k], (unknowns.w(j), unknowns.s(j)));
             sum.terms.push((w, root * root));
             if part.drive == k {
                 sum.terms.push((s, 2.0 * part.sign * root + 2.0 * at));
                 sum.terms.extend(unknowns.t(j).map(|t| (t, 2.0 * across)));
-                sum.terms.push((w, 2.0 * own * mass - at * at - across * across));
-                sum.constant -= own * mass * mass;
+                sum.terms.push((w, own - at * at - across * across));
+                sum.constant += request.stock.own(mass) - own * mass;
             }
         }
         sum

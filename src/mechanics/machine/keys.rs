@@ -59,7 +59,7 @@ const NOT_OF_THE_SHAPE: &str = "the part has a shape that has none";
 
 /// Every key of a machine that can be set on its own. Keys name links, drives and angles by their names,
 /// counterweights, parts and lumps by their numbers, from 1.
-pub(super) const MACHINE_KEYS: [KeyRow; 37] = [
+pub(super) const MACHINE_KEYS: [KeyRow; 41] = [
     row(
         Key::number(
             "link.*.com",
@@ -216,8 +216,34 @@ pub(super) const MACHINE_KEYS: [KeyRow; 37] = [
         at!(Number, |spec, i| spec.counterweights[i].across),
     ),
     row(
-        Key::number("counterweight.*.radius", RADIUS, "0", "Radius of a counterweight, a disc; 0 for a point."),
+        Key::number(
+            "counterweight.*.radius",
+            RADIUS,
+            "0",
+            "Radius of a counterweight, a disc or a ring; 0 for a point.",
+        ),
         at!(Number, |spec, i| spec.counterweights[i].radius),
+    ),
+    row(
+        Key::number("counterweight.*.inner_radius", RADIUS, "0", "Inner radius of a counterweight that is a ring."),
+        at!(Number, |spec, i| spec.counterweights[i].inner_radius),
+    ),
+    row(
+        Key::new(
+            "counterweight.*.half",
+            KeyType::Switch,
+            "false",
+            "Whether a counterweight is half a ring or disc: flat towards its link's root, round away from it.",
+        ),
+        at!(Switch, |spec, i| spec.counterweights[i].half),
+    ),
+    row(
+        Key::number("counterweight.*.length", RADIUS, "0", "Length of a counterweight along its link, if it is a box."),
+        at!(Number, |spec, i| spec.counterweights[i].length),
+    ),
+    row(
+        Key::number("counterweight.*.width", RADIUS, "0", "Width of a counterweight across its link, if it is a box."),
+        at!(Number, |spec, i| spec.counterweights[i].width),
     ),
     row(
         Key::new(

@@ -16,6 +16,7 @@ mod caps;
 mod catalog;
 mod chain;
 mod check;
+mod counterweight;
 mod error;
 mod faults;
 mod file;
@@ -35,6 +36,7 @@ pub use caps::{MAX_CHAIN_LINKS, MAX_COUNTERWEIGHTS, MAX_LINKS, MAX_PARTS, MAX_PE
 pub use catalog::{builtin, builtins, named, unknown};
 pub use chain::{Chain, place_of};
 pub use check::CLOSURE_TOLERANCE;
+pub use counterweight::{Counterweight, CounterweightShape};
 pub use error::{KeyPath, KeyStep, MachineError};
 pub use faults::read as read_stated;
 pub use file::{FileError, parse, to_toml};
@@ -50,7 +52,5 @@ pub use parts::{
 pub(crate) use parts::{sum_of, weigh};
 pub use ranges::{ANGLE, MAX_ANGLE};
 pub use set::{MACHINE_TABLES, is_of_machine};
-pub use spec::{
-    Angle, Attach, Closure, Counterweight, Drive, Length, Link, LinkPoint, MachineSpec, Payload, PlaceOnLink, Rotor,
-};
+pub use spec::{Angle, Attach, Closure, Drive, Length, Link, LinkPoint, MachineSpec, Payload, PlaceOnLink, Rotor};
 pub use words::{MachineWords, SMALLEST, pattern_of};

@@ -1,5 +1,6 @@
 //! [`check_numbers`] checks that every number of a specification is finite and within its range.
 
+use super::counterweight::Counterweight;
 use super::error::{KeyPath, MachineError};
 use super::keys::rows_of;
 use super::ranges::{ANGLE, LENGTH, MIN_POSITIVE, within};
@@ -40,6 +41,7 @@ pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
         }
     }
     check("counterweight", spec.counterweights.len())?;
+    check_shapes(spec)?;
     for (i, angle) in spec.angles.iter().enumerate() {
         for (key, value) in [("offset", Some(angle.offset)), ("min", angle.min), ("max", angle.max)] {
             value.map_or(Ok(()), |value| within(ANGLE, value, || KeyPath::new(&[&"angle", &i, &key])))?;
@@ -57,6 +59,33 @@ pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
                 });
             }
             _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// Checks that the sizes of each counterweight give one shape.
+fn check_shapes(spec: &MachineSpec) -> Result<(), MachineError> {
+    for (i, weight) in spec.counterweights.iter().enumerate() {
+        let Counterweight { radius, inner_radius, half, length, width, .. } = *weight;
+        let want = |key: &str, value, want| {
+            let place = KeyPath::new(&[&"counterweight", &i, &key]);
+            Err(MachineError::OutOfRange { place, value, want: Requirement::Words(want) })
+        };
+        if inner_radius > 0.0 && inner_radius >= radius {
+            return want("inner_radius", inner_radius, "less than the radius");
+        }
+        if half && radius == 0.0 {
+            return want("radius", radius, "a radius above 0, of which it is half");
+        }
+        if radius > 0.0 && (length > 0.0 || width > 0.0) {
+            return want("radius", radius, "a radius, or a length and a width, not both");
+        }
+        if (length > 0.0) != (width > 0.0) {
+            return match length > 0.0 {
+                true => want("width", width, "a width above 0 beside its length"),
+                false => want("length", length, "a length above 0 beside its width"),
+            };
         }
     }
     Ok(())

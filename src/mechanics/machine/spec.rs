@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::counterweight::Counterweight;
 use super::parts::{DerivedNumbers, LinkInFile, Lump, Material, Part};
 
 /// The content of a machine file. [`Machine::new`](super::Machine::new) checks it.
@@ -176,62 +177,6 @@ pub struct Link {
     pub axial: f64,
     /// Which of its numbers follow from its parts.
     pub derived: DerivedNumbers,
-}
-
-/// A disc on a link, in the plane of the link's own centre of mass. It moves with the link; the mass of the link
-/// excludes it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Counterweight {
-    /// The link that carries it.
-    pub link: String,
-    /// Mass, kg.
-    pub mass: f64,
-    /// Position of its centre along the link, from the root towards the tip, m.
-    pub at: f64,
-    /// Distance of its centre from the link's axis, to the left of the direction root to tip, m.
-    #[serde(default, skip_serializing_if = "is_nought")]
-    pub across: f64,
-    /// Radius, m; 0 for a point. Its inertia about its own centre is half of mass times radius squared.
-    #[serde(default, skip_serializing_if = "is_nought")]
-    pub radius: f64,
-    /// Whether it serves another purpose than balance, as a motor does. A fixed counterweight is neither removed nor
-    /// changed to balance the machine.
-    #[serde(default, skip_serializing_if = "is_false")]
-    pub fixed: bool,
-}
-
-fn is_false(fixed: &bool) -> bool {
-    !fixed
-}
-
-impl Counterweight {
-    /// Returns its inertia about its own centre, kg m².
-    pub fn inertia(&self) -> f64 {
-        0.5 * self.mass * self.radius * self.radius
-    }
-
-    /// Returns the thickness, m, that gives it its mass in a material of this density, kg/m³; `None` for a point.
-    pub fn thickness(&self, density: f64) -> Option<f64> {
-        let area = std::f64::consts::PI * self.radius * self.radius;
-        (self.radius > 0.0).then(|| self.mass / (density * area))
-    }
-}
-
-impl Link {
-    /// Returns the link and a counterweight combined to one body, with its inertia about the common centre of mass.
-    #[must_use]
-    pub(super) fn with(&self, weight: &Counterweight) -> Self {
-        let mass = self.mass + weight.mass;
-        let com = (self.mass * self.com + weight.mass * weight.at) / mass;
-        let com_normal = (self.mass * self.com_normal + weight.mass * weight.across) / mass;
-        let away = |x: f64, y: f64| (x - com).powi(2) + (y - com_normal).powi(2);
-        let inertia = self.inertia
-            + weight.inertia()
-            + self.mass * away(self.com, self.com_normal)
-            + weight.mass * away(weight.at, weight.across);
-        Self { mass, com, com_normal, inertia, ..self.clone() }
-    }
 }
 
 pub(super) fn forwards() -> i8 {

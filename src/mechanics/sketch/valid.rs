@@ -178,7 +178,10 @@ impl Sketch {
             let limits = [drive.torque_limit, drive.speed_limit, drive.acceleration_limit, drive.jerk_limit];
             rotor.into_iter().chain(limits.into_iter().flatten())
         });
-        let weights = self.counterweights.iter().flat_map(|w| [w.mass, w.at, w.across, w.radius]);
+        let weights = self
+            .counterweights
+            .iter()
+            .flat_map(|w| [w.mass, w.at, w.across, w.radius, w.inner_radius, w.length, w.width]);
         let angles = self.angles.iter().flat_map(|angle| [angle.offset].into_iter().chain(angle.min).chain(angle.max));
         let payload = [self.payload.mass, self.payload.inertia, self.payload.axial];
         let rest = payload.into_iter().chain(self.payload.offset).chain(self.gravity);

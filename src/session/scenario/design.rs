@@ -8,7 +8,10 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use stillbase_mechanics::balance::{ParameterBounds, Preset};
-use stillbase_mechanics::counterweights::{ACROSS_RANGE, DENSITY_RANGE, Disc, THICKNESS_RANGE};
+use stillbase_mechanics::counterweights::{
+    ACROSS_RANGE, BOX_WIDTH_RANGE, CounterweightForm, CounterweightKind, CounterweightStock, DENSITY_RANGE,
+    INNER_RADIUS_RANGE, THICKNESS_RANGE,
+};
 use stillbase_mechanics::machine::{Drive, Machine, ranges};
 use stillbase_settings::change;
 use stillbase_settings::key::{self, HOLD_WORDS, Key, KeyType};
@@ -17,6 +20,8 @@ use stillbase_settings::range::{Range, RangeCheck, quote_clipped};
 
 const LINK: &str = "a link of this name";
 const SOUGHT: &str = "a length that is sought";
+const RINGS: &str = "counterweights are rings or half rings";
+const BOXES: &str = "counterweights are boxes";
 const AS_CUT: &str = "bars are weighed as they are cut";
 /// Range of the dimensions of bars and holes.
 const BAR_RANGE: Range = Range::new(1e-4, 10.0, "m");
@@ -39,11 +44,17 @@ keyed! {
         keep_balanced: bool = "false";
         /// Penalty on moving each centre of mass while the balance is kept, Eq. (10).
         penalties: Preset = "minimum-norm", when: "nine links and no counterweights";
-        // The defaults of density and thickness are those of `Disc::STEEL`.
-        /// Density of the plate from which the discs of counterweights are cut.
+        // The defaults of density and thickness are those of `CounterweightStock::STEEL`.
+        /// Density of the plate from which counterweights are cut.
         density: f64 = "7850", range: DENSITY_RANGE;
-        /// Thickness of the plate from which the discs are cut.
+        /// Thickness of the plate from which counterweights are cut.
         thickness: f64 = "0.03", range: THICKNESS_RANGE;
+        /// Shape of the counterweights.
+        shape: CounterweightKind = "disc";
+        /// Inner radius of rings and half rings.
+        inner_radius: f64 = "0.01", range: INNER_RADIUS_RANGE, when: RINGS;
+        /// Width of boxes across their links; their mass gives their length.
+        box_width: f64 = "0.04", range: BOX_WIDTH_RANGE, when: BOXES;
         /// Maximum distance of a counterweight behind the root of its link.
         behind_root: Option<f64> = Key::NONE, range: Range::new(0.0, 100.0, "m"),
             instead: "as far as the link is long";
@@ -51,8 +62,8 @@ keyed! {
         across: f64 = "0", range: ACROSS_RANGE;
         /// Maximum mass of a counterweight.
         heaviest: Option<f64> = Key::NONE, range: Range::new(1e-3, 1e5, "kg"), instead: "any mass";
-        /// Minimum distance between the edge of a disc and the centre of every pin of its link.
-        clearance: Option<f64> = Key::NONE, range: Range::new(0.0, 1.0, "m"), instead: "discs may cover pins";
+        /// Minimum distance between the edge of a counterweight and the centre of every pin of its link.
+        clearance: Option<f64> = Key::NONE, range: Range::new(0.0, 1.0, "m"), instead: "they may cover pins";
         /// Whether links are cut from flat bars: tails, arms and holes are weighed with the counterweights that they
         /// carry. Links with parts of their own keep these.
         as_cut: bool = "false";
@@ -112,9 +123,10 @@ fn bare(key: &Key) -> &'static str {
 }
 
 impl DesignBrief {
-    /// Returns density and thickness of counterweights.
-    pub fn disc(&self) -> Disc {
-        Disc { density: self.density, thickness: self.thickness }
+    /// Returns the plate of the counterweights, and what is cut from it.
+    pub fn plate(&self) -> CounterweightStock {
+        let form = CounterweightForm::of(self.shape, self.inner_radius, self.box_width);
+        CounterweightStock { density: self.density, thickness: self.thickness, form }
     }
 
     /// Returns whether a key of this part has an effect in the design view of a machine.

@@ -101,7 +101,7 @@ pub fn correct_machine(
                 for value in [&mut weight.mass, &mut weight.at, &mut weight.across] {
                     *value = to_step(*value);
                 }
-                weight.radius = request.disc.radius(weight.mass);
+                weight.set_shape(request.stock.shape(weight.mass));
             }
             let heaviest = spec.counterweights.iter().map(|weight| weight.mass).fold(0.0, f64::max);
             spec.counterweights.retain(|weight| weight.mass > NEGLIGIBLE_MASS * heaviest);

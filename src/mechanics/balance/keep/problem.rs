@@ -28,17 +28,20 @@ pub struct RebalancedMachine {
 }
 
 impl RebalancedMachine {
-    /// Returns the keys and values of all settings in which this machine differs from `of`, including the radii of
-    /// discs.
+    /// Returns the keys and values of all settings in which this machine differs from `of`, including the sizes of
+    /// counterweights.
     pub fn settings(&self, of: &Machine) -> Vec<(String, f64)> {
         let (now, was) = (self.machine.spec(), of.spec());
         let changed = Parameter::all(&self.machine).into_iter().filter_map(|parameter| {
             let value = parameter.value(now)?;
             (parameter.value(was) != Some(value)).then(|| (parameter.key(of), value))
         });
-        let discs = now.counterweights.iter().zip(&was.counterweights).enumerate();
-        let discs = discs.filter(|(_, (now, was))| now.radius != was.radius);
-        changed.chain(discs.map(|(i, (now, _))| (format!("counterweight.{}.radius", i + 1), now.radius))).collect()
+        let weights = now.counterweights.iter().zip(&was.counterweights).enumerate();
+        let sizes = weights.filter_map(|(i, (now, was))| {
+            let ((key, now), (_, was)) = (now.free_size(), was.free_size());
+            (now != was).then(|| (format!("counterweight.{}.{key}", i + 1), now))
+        });
+        changed.chain(sizes).collect()
     }
 }
 

@@ -1,8 +1,9 @@
 //! [`BarStock`]: bars of one section, cut to the lengths that pins and counterweights of a machine ask for.
 
+use super::super::counterweight::Counterweight;
 use super::super::error::MachineError;
 use super::super::model::Machine;
-use super::super::spec::{Counterweight, PlaceOnLink};
+use super::super::spec::PlaceOnLink;
 use super::derived::LinkNumber;
 use super::part::{Hole, Part, Shape};
 use super::weigh::{PartBody, PartSource};

@@ -58,6 +58,25 @@ impl PlaneBody {
         Self::centred(area, 0.5 * area * radius * radius)
     }
 
+    /// Returns a ring between two radii, m.
+    pub fn ring(radius: f64, inner: f64) -> Self {
+        let area = PI * (radius - inner) * (radius + inner);
+        Self::centred(area, 0.5 * area * (radius * radius + inner * inner))
+    }
+
+    /// Returns half a ring between two radii, m, about its centre of mass.
+    pub fn half_ring(radius: f64, inner: f64) -> Self {
+        let area = 0.5 * PI * (radius - inner) * (radius + inner);
+        let away = Self::from_half_ring(radius, inner);
+        Self::centred(area, area * (0.5 * (radius * radius + inner * inner) - away * away))
+    }
+
+    /// Returns the distance of the centre of mass of half a ring from the centre of its circles, m.
+    pub fn from_half_ring(radius: f64, inner: f64) -> f64 {
+        let sum = radius + inner;
+        if sum > 0.0 { 4.0 / (3.0 * PI) * (sum - radius * inner / sum) } else { 0.0 }
+    }
+
     /// Returns a rectangle of a length along the link and a width across it, m.
     pub fn rectangle(length: f64, width: f64) -> Self {
         let area = length * width;
