@@ -15,6 +15,17 @@ def resolved(spec, length):
     return sign * spec["lengths"][name]
 
 
+def gyration(weight):
+    """Inertia of a counterweight about its centre of mass per mass, m^2, by areas of half planes of rings and boxes."""
+    r, a = weight.get("radius", 0.0), weight.get("inner_radius", 0.0)
+    if weight.get("length", 0.0) > 0:
+        return (weight["length"] ** 2 + weight["width"] ** 2) / 12
+    if not weight.get("half", False):
+        return (r**2 + a**2) / 2
+    area, first, polar = np.pi * (r**2 - a**2) / 2, 2 * (r**3 - a**3) / 3, np.pi * (r**4 - a**4) / 4
+    return polar / area - (first / area) ** 2
+
+
 class Machine:
     def __init__(self, text):
         self.spec = spec = tomllib.loads(text)
@@ -65,7 +76,7 @@ class Machine:
             yield link["mass"], link["inertia"], self.on(j, com), self.of[j]
         for weight in self.weights() if weights is None else weights:
             j, mass = self.names.index(weight["link"]), weight["mass"]
-            yield mass, 0.5 * mass * weight.get("radius", 0.0) ** 2, self.on(j, complex(weight["at"], weight.get("across", 0.0))), self.of[j]
+            yield mass, mass * gyration(weight), self.on(j, complex(weight["at"], weight.get("across", 0.0))), self.of[j]
         held = self.spec.get("payload", {})
         mass = held.get("mass", 0.0) if payload is None else payload
         arms = self.tip.astype(complex)

@@ -11,6 +11,73 @@ import itertools
 from scipy.optimize import linprog, minimize
 
 
+class Stock:
+    """What a mass of it weighs about its own centre, and how far it reaches, as functions of w; complex w for slopes."""
+
+    def __init__(self, stock):
+        self.kind, self.size, self.by = stock["kind"], stock["size"], stock["area_per_mass"]
+
+    def sizes(self, w):
+        """Outer radius, and distance of the centre of mass from that of the circles; half length and half width of a box."""
+        area, a = w * self.by, self.size
+        if self.kind == "box":
+            return 0.5 * area / a, 0.5 * a
+        if self.kind == "half-ring":
+            r = np.sqrt(a**2 + 2 * area / np.pi)
+            return r, 2 * (r**3 - a**3) / 3 / area
+        return np.sqrt(a**2 + area / np.pi), 0.0
+
+    def own(self, w):
+        w = w + 1e-13
+        (r, c), a = self.sizes(w), self.size
+        if self.kind == "box":
+            return w * (r**2 + c**2) / 3
+        if self.kind == "half-ring":
+            return (np.pi / 4 * (r**4 - a**4) - 2 * (r**3 - a**3) / 3 * c) / self.by
+        return w * (r**2 + a**2) / 2
+
+    def reach(self, w):
+        """From the centre of mass to the flat side, to the round side, and across."""
+        r, c = self.sizes(w + 1e-13)
+        return {"box": (r, r, c), "half-ring": (c, r - c, r)}.get(self.kind, (r, r, r))
+
+    def spans(self, w):
+        flat, round_, _ = self.reach(w)
+        return flat * w, round_ * w
+
+    @staticmethod
+    def slope(f, w):
+        return f(max(w, 0.0) + 1e-30j).imag / 1e-30
+
+    def bore(self):
+        return self.size if self.kind in ("ring", "half-ring") else 0.0
+
+    def choices(self, pins, gap):
+        """Lists of rows for a counterweight on its axis: (sign, pin, side of the counterweight), or a pin in the bore."""
+        flat, round_ = 0, 1
+        between = lambda i, j: [(1, pins[i - 1]) if i else None, (-1, pins[j]) if j < len(pins) else None]
+        if self.kind != "half-ring":
+            all = [[(n, pin, round_) for n, pin in filter(None, between(i, i))] for i in range(len(pins) + 1)]
+            if self.bore() > gap and self.kind == "ring":
+                for i, j in itertools.combinations(range(len(pins) + 1), 2):
+                    all.append([(n, pin, round_) for n, pin in filter(None, between(i, j))]
+                               + [(0, pins[i], None), (0, pins[j - 1], None)])
+            return all
+        # A pin nearer to the root lies on the flat side of a half ring towards the tip, and the other way round.
+        return [[(n, pin, flat if n == side else round_) for n, pin in filter(None, between(i, i))] + [(side, None, None)]
+                for side in (-1, 1) for i in range(len(pins) + 1)]
+
+    def missed(self, w, x, y, pin, gap):
+        """By how much a pin is not clear, m."""
+        flat, round_, wide = self.reach(w)
+        bore = self.bore()
+        if self.kind in ("disc", "ring"):
+            away = np.hypot(pin - x, y)
+            return min(gap + wide - away, gap + away - bore if bore else np.inf)
+        out = (pin - x) * (1 if x >= 0 else -1)
+        return min(flat - (bore if y == 0 else 0.0) + gap + out, round_ + gap - out, wide + gap - abs(y))
+
+
 class Asked:
     def __init__(self, asked):
         self.__dict__.update(asked)
@@ -24,7 +91,7 @@ class Asked:
         ends = self.payload
         if ends is not None:
             spec.setdefault("payload", {})["mass"] = 0.5 * (ends[0] + ends[1])
-        self.own = 0.5 * self.spread**2
+        self.stock = Stock(self.stock)
         self.part = [machine.of[site[0]] for site in self.sites]
         self.root = [machine.roots[site[0]] for site in self.sites]
         self.sign = [machine.sign[site[0]] for site in self.sites]
@@ -64,7 +131,7 @@ class Asked:
         for j in range(self.count):
             part = w[j] * self.root[j] ** 2
             k = self.part[j]
-            part[k] = w[j] * abs(self.root[j][k] + self.sign[j] * complex(x[j], y[j])) ** 2 + self.own * w[j] ** 2
+            part[k] = w[j] * abs(self.root[j][k] + self.sign[j] * complex(x[j], y[j])) ** 2 + self.stock.own(w[j])
             turned = turned + part
         h, d = self.h + turned, self.d + turned
         for rotor, value in zip(self.rotors, rotors):
@@ -83,9 +150,8 @@ class Asked:
     def rooms(self):
         """For each site the pins between which its disc may be."""
         if self.clearance is None or self.is_beside:
-            return [[(-np.inf, np.inf)]] * self.count
-        pins = [[-np.inf, *self.machine.pins(site[0]), np.inf] for site in self.sites]
-        return [list(zip(own, own[1:])) for own in pins]
+            return [[[]]] * self.count
+        return [self.stock.choices(self.machine.pins(site[0]), self.clearance) for site in self.sites]
 
     def residual(self, w, x, y):
         """The largest residual of (7) and (8), kg m."""
@@ -100,7 +166,7 @@ class Linear:
 
     def __init__(self, asked):
         self.asked, c, n = asked, asked.count, asked.n
-        sizes = {"w": c, "s": c, "b": c, "u": c, "v": c, "z": c, "x": len(asked.rotors), "t": len(asked.rotors),
+        sizes = {"w": c, "s": c, "b": c, "u": c, "v": c, "z0": c, "z1": c, "x": len(asked.rotors), "t": len(asked.rotors),
                  "d": n, "torque": 1, "worst": 1}
         starts = np.cumsum([0, *sizes.values()])
         self.at = {name: start for name, start in zip(sizes, starts)}
@@ -132,10 +198,12 @@ class Linear:
         self.cut([("s", j, 2 * x), ("b", j, 2 * y), ("w", j, -x * x - y * y), ("u", j, -1)], 0.0)
 
     def mass(self, j, w):
-        own, root = self.asked.own, max(w, 0.0) ** 0.5
-        # v >= own w^2 and z >= w^1.5
-        self.cut([("w", j, 2 * own * w), ("v", j, -1)], own * w * w)
-        self.cut([("w", j, 1.5 * root), ("z", j, -1)], 0.5 * root * w)
+        # v, z0 and z1 lie above the tangents of what is convex in w.
+        stock, w = self.asked.stock, max(w, 0.0)
+        bounded = {"v": stock.own, "z0": lambda w: stock.spans(w)[0], "z1": lambda w: stock.spans(w)[1]}
+        for name, f in bounded.items():
+            slope = stock.slope(f, w)
+            self.cut([("w", j, slope), (name, j, -1)], slope * w - f(w).real)
 
     def ratio(self, i, value):
         rotor = self.asked.rotors[i]
@@ -195,12 +263,16 @@ class Linear:
             most(self.row([("s", j, 1), ("w", j, -high)]), 0.0)
             most(self.row([("b", j, 1), ("w", j, -beside)]), 0.0)
             most(self.row([("b", j, -1), ("w", j, -beside)]), 0.0)
-            low, high = rooms[j]
-            gap = asked.clearance or 0.0
-            if np.isfinite(low):
-                most(self.row([("w", j, low + gap), ("z", j, asked.spread), ("s", j, -1)]), 0.0)
-            if np.isfinite(high):
-                most(self.row([("s", j, 1), ("z", j, asked.spread), ("w", j, gap - high)]), 0.0)
+            gap, bore = asked.clearance or 0.0, asked.stock.bore()
+            for sign, pin, side in rooms[j]:
+                if pin is None:
+                    most(self.row([("s", j, -sign)]), 0.0)
+                elif side is None:
+                    for sign in (1, -1):
+                        most(self.row([("s", j, sign), ("w", j, -sign * pin - bore + gap)]), 0.0)
+                else:
+                    less = bore if asked.stock.kind == "half-ring" and side == 0 else 0.0
+                    most(self.row([("w", j, sign * pin + gap - less), (f"z{side}", j, 1), ("s", j, -sign)]), 0.0)
         sums = np.zeros((len(asked.left), self.size))
         for j in range(asked.count):
             for i, name in enumerate("wsb"):
@@ -226,8 +298,13 @@ class Linear:
         cost, above, right, equal, side, bounds = self.program(rooms, worst)
         base, asked, last = self.constant(worst), self.asked, -np.inf
         for _ in range(200):
-            found = linprog(cost, np.array(above + self.cuts), np.array(right + self.right), equal, side, bounds,
-                            options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10})
+            # HiGHS calls a bounded program unbounded now and then; without presolve it does not.
+            for presolve in (True, False):
+                found = linprog(cost, np.array(above + self.cuts), np.array(right + self.right), equal, side, bounds,
+                                options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10,
+                                         "presolve": presolve})
+                if found.status in (0, 2):
+                    break
             if found.status == 2:
                 return np.inf, None
             assert found.status == 0, found.message
@@ -238,9 +315,9 @@ class Linear:
                 w, s, b = get("w", j), get("s", j), get("b", j)
                 if w > 1e-12:
                     if asked.turns:
-                        off = max(off, (s * s + b * b) / w - get("u", j), asked.own * w * w - get("v", j))
+                        off = max(off, (s * s + b * b) / w - get("u", j), asked.stock.own(w) - get("v", j))
                     if asked.clearance is not None and not asked.is_beside:
-                        off = max(off, w**1.5 - get("z", j))
+                        off = max(off, *(span - get(f"z{i}", j) for i, span in enumerate(asked.stock.spans(w))))
                     self.place(j, s / w, b / w)
                     self.mass(j, w)
             for i, rotor in enumerate(asked.rotors):
@@ -300,16 +377,21 @@ def tried(asked, random, worst, rooms, starts):
                 left = (end + asked.changes @ both) / asked.per
                 rows += [worst * (1 + 1e-7) + 1e-10 - left, worst * (1 + 1e-7) + 1e-10 + left]
         if asked.clearance is not None:
-            radius = asked.spread * np.sqrt(np.maximum(w, 0) + 1e-14)
-            for j, (low, high) in enumerate(rooms):
+            gap, bore = asked.clearance, asked.stock.bore()
+            for j, room in enumerate(rooms):
+                mass = max(w[j], 0.0)
                 if asked.is_beside:
-                    away = lambda pin: np.hypot(x[j] - pin, beside[j]) - asked.clearance - radius[j]
+                    away = lambda pin: -asked.stock.missed(mass, x[j], beside[j], pin, gap)
                     rows.append([w[j] * away(pin) for pin in asked.machine.pins(asked.sites[j][0])])
                     continue
-                if np.isfinite(low):
-                    rows.append([w[j] * (x[j] - low - asked.clearance - radius[j])])
-                if np.isfinite(high):
-                    rows.append([w[j] * (high - asked.clearance - radius[j] - x[j])])
+                for sign, pin, side in room:
+                    if pin is None:
+                        rows.append([w[j] * sign * x[j]])
+                    elif side is None:
+                        rows.append([w[j] * (bore - gap - abs(x[j] - pin))])
+                    else:
+                        less = bore if asked.stock.kind == "half-ring" and side == 0 else 0.0
+                        rows.append([w[j] * (sign * (x[j] - pin) - gap + less - asked.stock.reach(mass)[side])])
         return np.concatenate(rows)
 
     def equal(y):
@@ -371,12 +453,13 @@ for line in sys.stdin:
     if found is not None:
         machine = Machine(found)
         own = [weight for weight in machine.weights() if not weight.get("fixed")]
-        w, y, r = np.zeros((3, asked.count))
+        w, y, off = np.zeros((3, asked.count))
         x = np.array([0.5 * (site[1] + site[2]) for site in asked.sites])
         links = [machine.names[site[0]] for site in asked.sites]
         for weight in own:
             j = links.index(weight["link"])
-            w[j], x[j], r[j] = weight["mass"], weight["at"], weight.get("radius", 0.0)
+            w[j], x[j] = weight["mass"], weight["at"]
+            off[j] = abs(asked.stock.own(w[j]) - w[j] * gyration(weight))
             y[j] = weight.get("across", 0.0)
         rotors = []
         for rotor in asked.rotors:
@@ -386,9 +469,11 @@ for line in sys.stdin:
         past = [0.0]
         for j, (_, low, high, _, beside) in enumerate(asked.sites):
             if w[j] > 0:
-                past += [low - x[j], x[j] - high, abs(y[j]) - beside, w[j] - asked.most[j], abs(r[j] - asked.spread * w[j] ** 0.5)]
+                past += [low - x[j], x[j] - high, abs(y[j]) - beside, w[j] - asked.most[j], 1e3 * off[j] / w[j]]
                 if asked.clearance is not None:
-                    past.append(max(asked.clearance + r[j] - np.hypot(pin - x[j], y[j]) for pin in machine.pins(asked.sites[j][0])))
+                    across = y[j] if beside else 0.0
+                    pins = machine.pins(asked.sites[j][0])
+                    past.append(max(asked.stock.missed(w[j], x[j], across, pin, asked.clearance) for pin in pins))
         past += [mass - asked.most_mass] if asked.most_mass is not None else []
         past += [d.sum() - asked.most_inertia] if asked.most_inertia is not None else []
         past += [max(rotor["ends"][0] - value, value - rotor["ends"][1]) for rotor, value in zip(asked.rotors, rotors)]
