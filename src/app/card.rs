@@ -4,6 +4,7 @@ use egui::{RichText, Ui};
 
 use super::notation;
 use super::theme::{bold, colour, plain};
+use stillbase_mechanics::machine::CounterweightShape;
 use stillbase_picture::notation::Notation;
 use stillbase_picture::numbers::{degrees, signed, three_digits};
 use stillbase_picture::scene::course::target_handle;
@@ -111,21 +112,25 @@ impl Card {
             }
             Handle::Weight(i) => {
                 let weight = scenario.machine.spec().counterweights.get(i)?;
-                let rows = vec![
+                let mut rows = vec![
                     format!("{} kg, {} m from its root", three_digits(weight.mass), signed(weight.at, 4)),
                     match weight.across {
                         0.0 => "on its link's axis".into(),
                         across if across > 0.0 => format!("{} m left of its link's axis", signed(across, 4)),
                         across => format!("{} m right of its link's axis", signed(-across, 4)),
                     },
-                    format!("radius {} m", signed(weight.radius, 4)),
                 ];
+                rows.extend(weight.sizes().map(|(name, size)| format!("{name} {} m", signed(size, 4))));
                 let way = if scenario.design.across > 0.0 || weight.across != 0.0 {
                     "drag: along and across its link"
                 } else {
                     "drag: along its link"
                 };
-                Self::new(format!("counterweight of link {}", weight.link), rows, way)
+                let shape = match weight.shape() {
+                    CounterweightShape::Disc { .. } => String::new(),
+                    shape => format!(", a {}", shape.name()),
+                };
+                Self::new(format!("counterweight of link {}{shape}", weight.link), rows, way)
             }
             Handle::End(i) => {
                 let part = scenario.machine.resolved_links().get(i)?;

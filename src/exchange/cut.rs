@@ -1,7 +1,7 @@
 //! [`Cut`]: dimensions of bars and holes, and the material of discs.
 
 use super::look::DRAWN_BAR_RADIUS;
-use stillbase_mechanics::machine::{Counterweight, Machine};
+use stillbase_mechanics::machine::{Counterweight, CounterweightShape, Machine};
 use stillbase_settings::number::{ShortNumber, fixed};
 
 /// Dimensions of bars, holes and discs, and the density of discs.
@@ -172,15 +172,30 @@ impl Cut {
         weight.thickness(self.density).map(|own| self.thickness.unwrap_or(own))
     }
 
-    /// Returns radius and thickness of a counterweight in a model, m. A point is drawn as wide as a bar.
-    pub(super) fn drawn_disc(&self, weight: &Counterweight) -> [f64; 2] {
-        let point = [DRAWN_BAR_RADIUS, 2.0 * DRAWN_BAR_RADIUS];
-        self.thickness_of(weight).map_or(point, |thickness| [weight.radius, thickness])
+    /// Returns the solid as which a counterweight is drawn in a model. A point is drawn as wide as a bar, half a ring as
+    /// the box around it.
+    pub(super) fn drawn_weight(&self, weight: &Counterweight) -> DrawnWeight {
+        let height = self.thickness_of(weight).unwrap_or(2.0 * DRAWN_BAR_RADIUS);
+        let at = [weight.at, weight.across];
+        match weight.shape() {
+            CounterweightShape::Point => DrawnWeight { at, height, size: DrawnSize::Disc(DRAWN_BAR_RADIUS) },
+            CounterweightShape::Disc { radius } | CounterweightShape::Ring { radius, .. } => {
+                DrawnWeight { at, height, size: DrawnSize::Disc(radius) }
+            }
+            CounterweightShape::HalfRing { radius, .. } => DrawnWeight {
+                at: [weight.circle_at() + 0.5 * weight.outward() * radius, weight.across],
+                height,
+                size: DrawnSize::Box([radius, 2.0 * radius]),
+            },
+            CounterweightShape::Box { length, width } => {
+                DrawnWeight { at, height, size: DrawnSize::Box([length, width]) }
+            }
+        }
     }
 
-    /// Returns the mass of a disc, kg, for its radius and thickness, m.
-    pub fn disc_mass(&self, radius: f64, thickness: f64) -> f64 {
-        disc_area(radius) * thickness * self.density
+    /// Returns the mass of a counterweight, kg, for its shape and thickness, m.
+    pub fn mass_of(&self, weight: &Counterweight, thickness: f64) -> f64 {
+        weight.shape().body().mass * thickness * self.density
     }
 }
 
@@ -200,8 +215,22 @@ fn measure(what: &'static str, value: Option<f64>, unit: &'static str) -> Result
     }
 }
 
-fn disc_area(radius: f64) -> f64 {
-    std::f64::consts::PI * radius * radius
+/// The solid as which a counterweight is drawn in a model, in the axes of its link, m.
+pub(super) struct DrawnWeight {
+    /// Its middle.
+    pub at: [f64; 2],
+    /// Its height, normal to the plane of the motion.
+    pub height: f64,
+    /// Its size in this plane.
+    pub size: DrawnSize,
+}
+
+/// Size of a solid in the plane of the motion, m.
+pub(super) enum DrawnSize {
+    /// A disc of this radius.
+    Disc(f64),
+    /// A box of this length along its link and width across it.
+    Box([f64; 2]),
 }
 
 /// Returns the greatest length by which drawn bars reach beyond the pins of their links, m, although the masses of these

@@ -27,6 +27,9 @@ fn of_both(machine: &Machine) -> Vec<String> {
         list.push(format!(
             "{count}: mass and inertia became those of the links that carry them; shapes are drawn only"
         ));
+        if spec.counterweights.iter().any(|weight| weight.inner_radius > 0.0 || weight.half) {
+            list.push("rings and half rings: drawn as discs, and as the boxes around them".to_owned());
+        }
     }
     if spec.payload.mass > 0.0 || spec.payload.inertia > 0.0 {
         let link = &spec.links[machine.end_link()].name;

@@ -10,7 +10,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use super::cut::Cut;
+use super::cut::{Cut, DrawnSize, DrawnWeight};
 use super::look::{DRAWN_BAR_RADIUS, DRIVE_COLOURS};
 use super::tree::{Tree, TreePart};
 use super::turn::PinAngleSum;
@@ -180,11 +180,16 @@ impl<'a> Model<'a> {
             line!(self, depth + 1, "<geom fromto=\"{from} 0 0 {to} 0 0\" rgba=\"{colour}\"/>");
         }
         for weight in self.machine.spec().counterweights.iter().filter(|weight| weight.link == link.name) {
-            let [x, y] = [weight.at, weight.across].map(|x| part.sign * x);
-            let [radius, thickness] = cut.drawn_disc(weight);
-            // MuJoCo wants half the height of a cylinder.
-            let size = format!("{radius} {}", 0.5 * thickness);
-            line!(self, depth + 1, "<geom type=\"cylinder\" pos=\"{x} {y} 0\" size=\"{size}\" rgba=\"{colour}\"/>");
+            let DrawnWeight { at, height, size } = cut.drawn_weight(weight);
+            let [x, y] = at.map(|x| part.sign * x);
+            // MuJoCo wants half of each size but the radius.
+            let (kind, size) = match size {
+                DrawnSize::Disc(radius) => ("cylinder", format!("{radius} {}", 0.5 * height)),
+                DrawnSize::Box([length, width]) => {
+                    ("box", format!("{} {} {}", 0.5 * length, 0.5 * width, 0.5 * height))
+                }
+            };
+            line!(self, depth + 1, "<geom type=\"{kind}\" pos=\"{x} {y} 0\" size=\"{size}\" rgba=\"{colour}\"/>");
         }
         for (number, pinned) in self.machine.loops().iter().enumerate() {
             for (side, of, at) in [("a", pinned.a, pinned.at_a), ("b", pinned.b, pinned.at_b)] {

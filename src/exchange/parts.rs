@@ -274,10 +274,14 @@ fn counterweights(machine: &Machine, cut: &Cut) -> PartTable {
             PartCell::Number(weight.mass, 3),
             PartCell::Number(weight.at, 4),
             PartCell::Number(weight.across, 4),
-            PartCell::Number(weight.radius, 4),
+            PartCell::words(weight.shape().name()),
+            PartCell::some((weight.radius > 0.0).then_some(weight.radius), 4),
+            PartCell::some((weight.inner_radius > 0.0).then_some(weight.inner_radius), 4),
+            PartCell::some((weight.length > 0.0).then_some(weight.length), 4),
+            PartCell::some((weight.width > 0.0).then_some(weight.width), 4),
             PartCell::some(thickness, 4),
             PartCell::some(thickness.map(|_| cut.density), 0),
-            PartCell::some(thickness.map(|thickness| cut.disc_mass(weight.radius, thickness)), 3),
+            PartCell::some(thickness.map(|thickness| cut.mass_of(weight, thickness)), 3),
         ]
     };
     PartTable {
@@ -289,10 +293,14 @@ fn counterweights(machine: &Machine, cut: &Cut) -> PartTable {
             "mass kg",
             "place m",
             "left of axis m",
+            "shape",
             "radius m",
+            "inner radius m",
+            "length m",
+            "width m",
             "thickness m",
             "density kg/m³",
-            "mass of the disc kg",
+            "mass as cut kg",
         ],
         rows: machine.spec().counterweights.iter().enumerate().map(row).collect(),
     }

@@ -18,7 +18,7 @@
 //! motion of the base belong to a scenario. Inertias about axes in the plane do not affect a plane motion; their values
 //! are made up.
 
-use super::cut::Cut;
+use super::cut::{Cut, DrawnSize, DrawnWeight};
 use super::look::{DRAWN_BAR_RADIUS, DRIVE_COLOURS};
 use super::tree::{Tree, TreeJoint, TreePart, Turns};
 use super::xml::{XmlWriter, quoted, remark};
@@ -252,9 +252,12 @@ impl<'a> Model<'a> {
         let bar = format!("<box size=\"{length} {} {}\"/>", 2.0 * DRAWN_BAR_RADIUS, 0.5 * DRAWN_BAR_RADIUS);
         self.visual(part.drive, [middle, 0.0], &bar);
         for weight in machine.spec().counterweights.iter().filter(|weight| weight.link == link.name) {
-            let [radius, thickness] = self.cut.drawn_disc(weight);
-            let disc = format!("<cylinder radius=\"{radius}\" length=\"{thickness}\"/>");
-            self.visual(part.drive, [part.sign * weight.at, part.sign * weight.across], &disc);
+            let DrawnWeight { at, height, size } = self.cut.drawn_weight(weight);
+            let solid = match size {
+                DrawnSize::Disc(radius) => format!("<cylinder radius=\"{radius}\" length=\"{height}\"/>"),
+                DrawnSize::Box([length, width]) => format!("<box size=\"{length} {width} {height}\"/>"),
+            };
+            self.visual(part.drive, at.map(|x| part.sign * x), &solid);
         }
     }
 

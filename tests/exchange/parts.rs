@@ -164,7 +164,7 @@ fn a_disc_is_as_thick_in_every_export() {
                     (radius - weight.radius).abs() < 1e-12 && (thickness - listed).abs() < 1e-12
                 };
                 assert!(discs.iter().any(near), "{tag}: {discs:?}, want {} by {listed}", weight.radius);
-                let mass = cut.disc_mass(weight.radius, listed);
+                let mass = cut.mass_of(weight, listed);
                 assert_eq!((mass - weight.mass).abs() < 1e-12, cut.thickness.is_none(), "{mass}");
             }
         }

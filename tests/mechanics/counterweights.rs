@@ -5,7 +5,7 @@ use stillbase::mechanics::counterweights::{
     Objective, PlacementTolerance, RotorFreedom, front, over_payloads, place_weights, worst_residual,
 };
 use stillbase::mechanics::dynamics::mass_matrix;
-use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse, to_toml};
+use stillbase::mechanics::machine::{CounterweightShape, Inertia, Machine, builtin, parse, to_toml};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
 
 use crate::support::{Noise, family_machine};
@@ -315,8 +315,8 @@ fn what_cannot_be_is_refused() {
         change(&mut asked);
         words(&asked)
     };
-    assert!(with(&|a| a.disc.density = 0.0).contains("density"));
-    assert!(with(&|a| a.disc.thickness = f64::NAN).contains("thickness"));
+    assert!(with(&|a| a.stock.density = 0.0).contains("density"));
+    assert!(with(&|a| a.stock.thickness = f64::NAN).contains("thickness"));
     assert!(with(&|a| a.sites[2].to = -1.0).contains("link 3"));
     for most in [-1.0, 0.0, f64::NAN] {
         assert!(with(&|a| a.sites[2].most = most).contains("link 3: at most"), "{most}");
@@ -858,10 +858,12 @@ fn the_points_of_a_front_are_spread() {
 fn discs_weigh_what_their_volume_does() {
     let mut noise = Noise::of(91);
     for _ in 0..20 {
-        let disc = Disc { density: noise.between(1e3, 2e4), thickness: noise.between(1e-3, 0.1) };
+        let disc = CounterweightStock::discs(noise.between(1e3, 2e4), noise.between(1e-3, 0.1));
         let radius = noise.between(1e-3, 0.5);
         let mass = std::f64::consts::PI * radius * radius * disc.thickness * disc.density;
-        assert!((disc.mass(radius) - mass).abs() < 1e-12 * mass && (disc.radius(mass) - radius).abs() < 1e-12);
+        let shape = CounterweightShape::Disc { radius };
+        assert!((disc.mass(shape) - mass).abs() < 1e-12 * mass);
+        assert!((disc.shape(mass).reach()[0] - radius).abs() < 1e-12);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use stillbase::mechanics::balance::Preset;
-use stillbase::mechanics::counterweights::Disc;
+use stillbase::mechanics::counterweights::CounterweightStock;
 use stillbase::planning::posture::Posture;
 use stillbase::planning::timing::TimeLaw;
 use stillbase::session::scenario::{Corners, DesignBrief, PathShape, ReactionObjective, Task, TaskKind};

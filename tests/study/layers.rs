@@ -157,7 +157,7 @@ fn weighted(noise: &mut Noise, drives: usize) -> Machine {
             at: noise.between(-0.2, 0.1),
             across: if noise.between(0.0, 1.0) < 0.3 { noise.between(-0.1, 0.1) } else { 0.0 },
             radius: noise.between(0.02, 0.06),
-            fixed: false,
+            ..Default::default()
         });
     }
     Machine::new(spec).expect("a machine")

@@ -90,14 +90,14 @@ fn what_was_cut_is_cut_the_same_again() {
 #[test]
 fn discs_as_bought_leave_what_is_said() {
     let found = cut(&bare());
-    let (disc, stock) = (lightest(&bare()).disc, BarStock::default());
+    let (disc, stock) = (lightest(&bare()).stock, BarStock::default());
     let bought = as_bought(&found, &disc, &stock).expect("a machine");
     let machine = &bought.placed.machine;
     for weight in &machine.spec().counterweights {
         for length in [weight.radius, weight.at] {
             assert!((1e4 * length - (1e4 * length).round()).abs() < 1e-6, "{length} m");
         }
-        assert!((weight.mass - disc.mass(weight.radius)).abs() < 1e-12);
+        assert!((weight.mass - disc.mass(weight.shape())).abs() < 1e-12);
     }
     let inertia = Inertia::of(machine);
     assert_eq!(bought.residual, [inertia.force_residual(), inertia.invariance_residual()]);

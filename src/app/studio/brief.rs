@@ -5,8 +5,7 @@ use egui::{Align, Layout, RichText, Ui};
 use crate::theme::{bold, colour, plain};
 use crate::widgets::{NumberRow, heading, name, send, tip_of, undoable_edit, unit};
 use crate::{Command, SessionCommand};
-use stillbase_mechanics::balance::Preset;
-use stillbase_mechanics::counterweights::MATERIALS;
+use stillbase_mechanics::counterweights::{CounterweightKind, MATERIALS};
 use stillbase_mechanics::machine::{Drive, ranges};
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::Palette;
@@ -23,10 +22,12 @@ pub fn show(ui: &mut Ui, scenario: &Scenario, is_balanced: bool, p: &Palette, co
     ui.add_space(10.0);
     keeping(ui, p, brief.keep_balanced, has_weights, is_balanced, commands);
     if !has_weights && spec.links.len() == 9 {
-        penalties(ui, brief.penalties, commands);
+        // The penalties for moving the centres of mass, as in the paper.
+        words(ui, ("penalties p", "penalties on centres of mass"), "design.penalties", brief.penalties, commands);
     }
     ui.add_space(8.0);
-    heading(ui, p, "Counterweights are discs", "");
+    heading(ui, p, "Counterweights", "");
+    words(ui, ("shape", "shape of the counterweights"), "design.shape", brief.shape, commands);
     ui.horizontal(|ui| {
         ui.label("material").on_hover_text(tip_of("design.density"));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -46,6 +47,18 @@ pub fn show(ui: &mut Ui, scenario: &Scenario, is_balanced: bool, p: &Palette, co
     let row = millimetres("thickness", "design.thickness", 0.5..=1000.0);
     let response = row.show(ui, p, &mut thickness);
     send(commands, &[response], || Edit::set("design.thickness", 1e-3 * thickness));
+    let size = match brief.shape {
+        CounterweightKind::Disc => None,
+        CounterweightKind::Ring | CounterweightKind::HalfRing => {
+            Some(("inner radius", "design.inner_radius", brief.inner_radius, 0.0..=10_000.0))
+        }
+        CounterweightKind::Box => Some(("width", "design.box_width", brief.box_width, 0.1..=10_000.0)),
+    };
+    if let Some((label, path, metres, range)) = size {
+        let mut size = 1e3 * metres;
+        let response = millimetres(label, path, range).show(ui, p, &mut size);
+        send(commands, &[response], || Edit::set(path, 1e-3 * size));
+    }
     let row = NumberRow::of("behind the root", "design.behind_root").with(3, 0.002);
     draw_bound(
         ui,
@@ -182,22 +195,21 @@ fn keeping(ui: &mut Ui, p: &Palette, keeps: bool, has_weights: bool, is_balanced
     });
 }
 
-/// Draws the choice of the penalties for moving the centres of mass, as in the paper.
-fn penalties(ui: &mut Ui, now: Preset, commands: &mut Vec<Command>) {
-    let path = "design.penalties";
+/// Draws a choice among the words of a setting; `read` is its name for a screen reader.
+fn words<T: Choice>(ui: &mut Ui, (label, read): (&str, &str), path: &str, now: T, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        ui.label("penalties p").on_hover_text(tip_of(path));
+        ui.label(label).on_hover_text(tip_of(path));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let shown = now.words().screen;
-            let list = egui::ComboBox::from_id_salt("penalties").selected_text(shown).width(172.0).show_ui(ui, |ui| {
-                for preset in Preset::ALL {
-                    let ChoiceWords { screen, meaning, .. } = preset.words();
-                    if ui.selectable_label(*preset == now, screen).on_hover_text(meaning).clicked() {
-                        undoable_edit(commands, Edit::set(path, preset.name()));
+            let list = egui::ComboBox::from_id_salt(path).selected_text(shown).width(172.0).show_ui(ui, |ui| {
+                for one in T::ALL {
+                    let ChoiceWords { file, screen, meaning } = one.words();
+                    if ui.selectable_label(*one == now, screen).on_hover_text(meaning).clicked() {
+                        undoable_edit(commands, Edit::set(path, file));
                     }
                 }
             });
-            name(&list.response, "penalties on centres of mass");
+            name(&list.response, read);
         });
     });
 }

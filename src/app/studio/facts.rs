@@ -10,6 +10,7 @@ use stillbase_mechanics::counterweights::{
     CounterweightError, Front, FrontSearch, PayloadResidual, PlacedCounterweights, over_payloads,
 };
 use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_picture::scene::mesh::SEGMENTS;
 use stillbase_picture::scene::options::WeightOption;
 use stillbase_planning::Motion;
 use stillbase_planning::pose_space::{Planes, PoseSpace};
@@ -361,7 +362,7 @@ impl DesignFacts {
         let weights = spec.iter().flat_map(|spec| {
             spec.counterweights.iter().filter_map(|weight| {
                 let link = spec.links.iter().position(|link| link.name == weight.link)?;
-                Some(WeightOption { link, at: [weight.at, weight.across], radius: weight.radius })
+                Some(WeightOption { link, outline: weight.polygon(SEGMENTS) })
             })
         });
         weights.collect()

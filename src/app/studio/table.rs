@@ -84,11 +84,8 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
                     p,
                     commands,
                     |mass| {
-                        // The disc keeps its thickness and density, so its radius is proportional to the square root
-                        // of its mass.
-                        let radius = weight.radius * (mass / weight.mass).max(0.0).sqrt();
-                        let both =
-                            TaskChange::from_iter([("mass".into(), mass.into()), ("radius".into(), radius.into())]);
+                        let (key, size) = weight.with_mass(mass).free_size();
+                        let both = TaskChange::from_iter([("mass".into(), mass.into()), (key.into(), size.into())]);
                         Edit::of("counterweight", TaskChange::from_iter([(place.clone(), Value::from(both))]))
                     },
                 );

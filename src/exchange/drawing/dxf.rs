@@ -23,7 +23,10 @@ fn named((name, _): (&str, u8), layer: Option<usize>) -> String {
 /// its own.
 fn layers(sheet: &Sheet) -> Vec<(String, u8)> {
     let layer = |shape: &SheetShape| match shape {
-        SheetShape::Bar { layer, .. } | SheetShape::Hole { layer, .. } | SheetShape::Disc { layer, .. } => *layer,
+        SheetShape::Bar { layer, .. }
+        | SheetShape::Hole { layer, .. }
+        | SheetShape::Disc { layer, .. }
+        | SheetShape::Weight { layer, .. } => *layer,
         _ => None,
     };
     let stacked: BTreeSet<usize> = sheet.shapes.iter().filter_map(layer).collect();
@@ -167,7 +170,11 @@ impl Tags {
             }
             SheetShape::Outline { corners, layer, .. } => self.outline(&named(OUTLINE, *layer), corners),
             SheetShape::Hole { at, radius, layer } => self.circle(&named(HOLES, *layer), *at, *radius),
-            SheetShape::Disc { at, radius, layer, .. } => self.circle(&named(COUNTERWEIGHT, *layer), *at, *radius),
+            SheetShape::Disc { at, radius, inner_radius, layer, .. } => {
+                let circles = [radius, inner_radius].into_iter().filter(|radius| **radius > 0.0);
+                circles.for_each(|radius| self.circle(&named(COUNTERWEIGHT, *layer), *at, *radius));
+            }
+            SheetShape::Weight { corners, layer, .. } => self.outline(&named(COUNTERWEIGHT, *layer), corners),
             SheetShape::Line(ends) => self.line(*ends),
             SheetShape::Mark { at: [x, y], radius: r } => {
                 self.line([[x - r, *y], [x + r, *y]]);

@@ -1,9 +1,9 @@
 //! Outlines of the parts of links, as they are cut.
 
-use stillbase_mechanics::machine::{Ends, Machine, Part, PartSource, Shape};
+use stillbase_mechanics::machine::{Counterweight, CounterweightShape, Ends, Machine, Part, PartSource, Shape};
 
 /// A corner of an outline, and the curve to the next: bulge 0 for a straight side, 1 for a half circle to the right of
-/// the way round.
+/// the way round, −1 for one to the left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
     /// Position.
@@ -62,6 +62,32 @@ pub fn pieces_of(machine: &Machine, link: usize) -> Vec<PieceOutline> {
             }
         })
         .collect()
+}
+
+/// Returns the corners of a counterweight that is half a ring or a box, counter-clockwise in the axes of its link, m;
+/// none for other shapes.
+pub fn weight_corners(weight: &Counterweight) -> Vec<Corner> {
+    let across = weight.across;
+    match weight.shape() {
+        CounterweightShape::HalfRing { radius, inner_radius } => {
+            let (x, turn) = (weight.circle_at(), weight.outward());
+            let mut corners = vec![
+                Corner { at: [x, across - turn * radius], bulge: 1.0 },
+                Corner::straight(x, across + turn * radius),
+            ];
+            if inner_radius > 0.0 {
+                corners.push(Corner { at: [x, across + turn * inner_radius], bulge: -1.0 });
+                corners.push(Corner::straight(x, across - turn * inner_radius));
+            }
+            corners
+        }
+        CounterweightShape::Box { length, width } => {
+            let [x, y] = [0.5 * length, 0.5 * width];
+            let corner = |[along, left]: [f64; 2]| Corner::straight(weight.at + along, across + left);
+            [[-x, -y], [x, -y], [x, y], [-x, y]].map(corner).into()
+        }
+        _ => Vec::new(),
+    }
 }
 
 fn xs(part: &Part) -> impl Iterator<Item = f64> {

@@ -5,9 +5,9 @@
 
 use std::f64::consts::PI;
 
-use super::outline::{Corner, PieceOutline, pieces_of};
+use super::outline::{Corner, PieceOutline, pieces_of, weight_corners};
 use crate::cut::{Cut, CutError, SAME_PIN_DISTANCE, bar_extent};
-use stillbase_mechanics::machine::{Counterweight, Machine, PartSource, Shape};
+use stillbase_mechanics::machine::{Counterweight, CounterweightShape, Machine, PartSource, Shape};
 use stillbase_settings::number::{counted, fixed};
 
 /// A drawing as plain shapes.
@@ -55,12 +55,23 @@ pub enum SheetShape {
         /// The layer of its link; `None` if links lie in no layers.
         layer: Option<usize>,
     },
-    /// The outline of a counterweight.
+    /// The outline of a counterweight that is half a ring or a box.
+    Weight {
+        /// Its corners, counter-clockwise.
+        corners: Vec<Corner>,
+        /// The drive that it follows, counted from 0.
+        drive: usize,
+        /// The layer of its link; `None` if links lie in no layers.
+        layer: Option<usize>,
+    },
+    /// The outline of a counterweight that is a disc or a ring.
     Disc {
         /// Its centre.
         at: [f64; 2],
         /// Its radius.
         radius: f64,
+        /// Its inner radius; 0 for a disc.
+        inner_radius: f64,
         /// The drive that it follows, counted from 0.
         drive: usize,
         /// The layer of its link; `None` if links lie in no layers.
@@ -222,10 +233,20 @@ impl Piece {
 
     fn discs(&mut self, machine: &Machine, j: usize) {
         let drive = machine.resolved_links()[j].drive;
-        for weight in weights_of(machine, j).filter(|weight| weight.radius > 0.0) {
-            let (at, radius) = ([1e3 * weight.at, 1e3 * weight.across], 1e3 * weight.radius);
-            self.include([at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius]);
-            self.shapes.push(SheetShape::Disc { at, radius, drive, layer: self.layer });
+        let layer = self.layer;
+        for weight in weights_of(machine, j) {
+            let ([from, to], radius) = weight.around();
+            let [x, y] = [[from.re, to.re], [from.im, to.im]].map(|ends| ends.map(|x| 1e3 * x));
+            let radius = 1e3 * radius;
+            self.include([x[0] - radius, y[0] - radius, x[1] + radius, y[1] + radius]);
+            let corners = weight_corners(weight);
+            if !corners.is_empty() {
+                let corners = corners.into_iter().map(|Corner { at, bulge }| Corner { at: at.map(|x| 1e3 * x), bulge });
+                self.shapes.push(SheetShape::Weight { corners: corners.collect(), drive, layer });
+            } else if radius > 0.0 {
+                let inner_radius = 1e3 * weight.inner_radius;
+                self.shapes.push(SheetShape::Disc { at: [x[0], y[0]], radius, inner_radius, drive, layer });
+            }
         }
     }
 
@@ -410,13 +431,25 @@ fn disc(cut: &Cut, weight: &Counterweight) -> String {
     let Some(thickness) = cut.thickness_of(weight) else {
         return format!("counterweight at {at}: a point of {mass} kg");
     };
-    let across = mm(2.0 * weight.radius);
-    let own = cut.disc_mass(weight.radius, thickness);
+    let own = cut.mass_of(weight, thickness);
     let wanted = match (own - weight.mass).abs() <= 5e-4 {
         true => String::new(),
         false => format!(", not {mass} kg"),
     };
-    format!("counterweight Ø {across} mm at {at}: {} mm thick {} kg{wanted}", mm(thickness), fixed(own, 3))
+    let size = match weight.shape() {
+        CounterweightShape::Box { length, width } => format!("box {} × {} mm", mm(length), mm(width)),
+        CounterweightShape::Ring { radius, inner_radius } => {
+            format!("ring Ø {} mm, bore Ø {} mm", mm(2.0 * radius), mm(2.0 * inner_radius))
+        }
+        CounterweightShape::HalfRing { radius, inner_radius } => {
+            let (away, circle) = (mm(2.0 * radius), signed(weight.circle_at()));
+            let bore =
+                if inner_radius > 0.0 { format!(", bore Ø {} mm", mm(2.0 * inner_radius)) } else { String::new() };
+            format!("{} Ø {away} mm{bore} about {circle} mm", weight.shape().name())
+        }
+        CounterweightShape::Point | CounterweightShape::Disc { .. } => format!("Ø {} mm", mm(2.0 * weight.radius)),
+    };
+    format!("counterweight {size} at {at}: {} mm thick {} kg{wanted}", mm(thickness), fixed(own, 3))
 }
 
 /// Arranges the pieces in rows from the top down, with a width that makes the sheet a little wider than high.
@@ -521,7 +554,9 @@ impl SheetShape {
         let move_it = |p: &mut [f64; 2]| *p = [p[0] + x, p[1] + y];
         match self {
             Self::Bar { from, .. } => move_it(from),
-            Self::Outline { corners, .. } => corners.iter_mut().for_each(|corner| move_it(&mut corner.at)),
+            Self::Outline { corners, .. } | Self::Weight { corners, .. } => {
+                corners.iter_mut().for_each(|corner| move_it(&mut corner.at))
+            }
             Self::Hole { at, .. } | Self::Disc { at, .. } | Self::Mark { at, .. } | Self::Words { at, .. } => {
                 move_it(at)
             }

@@ -72,13 +72,25 @@ fn element(lines: &mut XmlWriter, shape: &SheetShape, top: f64) {
                 ),
             );
         }
-        SheetShape::Disc { at: centre, radius, drive, .. } => {
-            let ([x, y], r, colour) = (at(*centre), n(*radius), COLOURS[drive % COLOURS.len()]);
-            let round = format!("cx=\"{x}\" cy=\"{y}\" r=\"{r}\"");
+        SheetShape::Disc { at: centre, radius, inner_radius, drive, .. } => {
+            let ([x, y], colour) = (at(*centre), COLOURS[drive % COLOURS.len()]);
+            for (radius, fill) in [(radius, colour), (inner_radius, "none")].into_iter().filter(|(r, _)| **r > 0.0) {
+                let round = format!("cx=\"{x}\" cy=\"{y}\" r=\"{}\"", n(*radius));
+                lines.add(
+                    1,
+                    format_args!(
+                        "<circle class=\"counterweight\" {round} fill=\"{fill}\" fill-opacity=\"0.08\" \
+                         stroke=\"{colour}\" stroke-width=\"0.5\"/>"
+                    ),
+                );
+            }
+        }
+        SheetShape::Weight { corners, drive, .. } => {
+            let (path, colour) = (path(corners, top), COLOURS[drive % COLOURS.len()]);
             lines.add(
                 1,
                 format_args!(
-                    "<circle class=\"counterweight\" {round} fill=\"{colour}\" fill-opacity=\"0.08\" \
+                    "<path class=\"counterweight\" d=\"{path}\" fill=\"{colour}\" fill-opacity=\"0.08\" \
                      stroke=\"{colour}\" stroke-width=\"0.5\"/>"
                 ),
             );
@@ -129,7 +141,8 @@ fn path(corners: &[Corner], top: f64) -> String {
             path.push_str(&format!("L{x} {y}"));
         } else {
             let radius = n(0.5 * (next.at[0] - corner.at[0]).hypot(next.at[1] - corner.at[1]));
-            path.push_str(&format!("A{radius} {radius} 0 0 0 {x} {y}"));
+            let sweep = i32::from(corner.bulge < 0.0);
+            path.push_str(&format!("A{radius} {radius} 0 0 {sweep} {x} {y}"));
         }
     }
     path + "Z"

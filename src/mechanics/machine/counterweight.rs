@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::parts::PlaneBody;
 use super::spec::{Link, is_nought};
+use crate::planar::{Vector, unit};
 
 /// A body on a link, in the plane of the link's own centre of mass. It moves with the link; the mass of the link
 /// excludes it.
@@ -225,6 +226,21 @@ impl Counterweight {
         }
     }
 
+    /// Returns its sizes that are not 0, m, by [names](Self::SIZES).
+    pub fn sizes(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let sizes = [self.radius, self.inner_radius, self.length, self.width];
+        Self::SIZES.into_iter().zip(sizes).filter(|(_, size)| *size > 0.0)
+    }
+
+    /// Names of sizes.
+    pub const SIZES: [&'static str; 4] = ["radius", "inner radius", "length", "width"];
+
+    /// Returns the names of the sizes that at least one of some counterweights has.
+    pub fn sizes_of(weights: &[Self]) -> Vec<&'static str> {
+        let has = |name: &&str| weights.iter().any(|weight| weight.sizes().any(|(own, _)| own == *name));
+        Self::SIZES.into_iter().filter(has).collect()
+    }
+
     /// Returns the thickness, m, that gives it its mass in a material of this density, kg/m³; `None` for a point.
     pub fn thickness(&self, density: f64) -> Option<f64> {
         let area = self.shape().body().mass;
@@ -264,6 +280,66 @@ impl Counterweight {
     pub fn circle_at(&self) -> f64 {
         self.at - self.outward() * self.shape().from_circle()
     }
+}
+
+impl Counterweight {
+    /// Returns pairs of opposite points of the long sides of half a ring or a box, in the axes of its link, m; the first
+    /// side runs counter-clockwise. Empty for other shapes. A whole circle would have `sides` chords, and its area.
+    pub fn rails(&self, sides: usize) -> Vec<[Vector; 2]> {
+        match self.shape() {
+            CounterweightShape::HalfRing { radius, inner_radius } => {
+                let (centre, chords) = (Vector::new(self.circle_at(), self.across), (sides / 2).max(1));
+                let [radius, inner_radius] = [radius, inner_radius].map(|r| r * equal_area(sides));
+                let way = |k: usize| unit(std::f64::consts::PI * (k as f64 / chords as f64 - 0.5)) * self.outward();
+                (0..=chords).map(|k| [radius, inner_radius].map(|r| centre + way(k) * r)).collect()
+            }
+            CounterweightShape::Box { length, width } => {
+                let (at, [x, y]) = (Vector::new(self.at, self.across), [0.5 * length, 0.5 * width]);
+                [-x, x].map(|x| [-y, y].map(|y| at + Vector::new(x, y))).into()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Returns its outer outline, counter-clockwise in the axes of its link, m; empty for a point. A whole circle has
+    /// `sides` chords, and its area.
+    pub fn polygon(&self, sides: usize) -> Vec<Vector> {
+        let (at, radius) = (Vector::new(self.at, self.across), self.radius * equal_area(sides));
+        match self.shape() {
+            CounterweightShape::Point => Vec::new(),
+            CounterweightShape::Disc { .. } | CounterweightShape::Ring { .. } => {
+                let turn = std::f64::consts::TAU / sides as f64;
+                (0..sides).map(|k| at + unit(turn * k as f64) * radius).collect()
+            }
+            CounterweightShape::HalfRing { .. } | CounterweightShape::Box { .. } => {
+                let rails = self.rails(sides);
+                let back = rails.iter().rev().map(|[_, inner]| *inner);
+                let mut all: Vec<Vector> = rails.iter().map(|[outer, _]| *outer).chain(back).collect();
+                all.dedup();
+                all
+            }
+        }
+    }
+
+    /// Returns the ends of a segment in the axes of its link, and a distance from it, m, within which it lies.
+    pub fn around(&self) -> ([Vector; 2], f64) {
+        let at = Vector::new(self.at, self.across);
+        match self.shape() {
+            CounterweightShape::HalfRing { radius, .. } => ([Vector::new(self.circle_at(), self.across); 2], radius),
+            CounterweightShape::Box { length, width } => {
+                let [x, y] = [length - width, width - length].map(|d| 0.5 * d.max(0.0));
+                let end = Vector::new(x, y);
+                ([at - end, at + end], std::f64::consts::FRAC_1_SQRT_2 * length.min(width))
+            }
+            _ => ([at; 2], self.radius),
+        }
+    }
+}
+
+/// Returns the ratio of the radius of a polygon of so many sides to that of the circle with its area.
+fn equal_area(sides: usize) -> f64 {
+    let step = std::f64::consts::TAU / sides as f64;
+    (step / step.sin()).sqrt()
 }
 
 impl Link {

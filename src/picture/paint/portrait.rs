@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use egui::{Painter, Pos2, Rect, Stroke};
+use egui::{Painter, Pos2, Rect, Shape, Stroke};
 
 use super::colour;
 use crate::scene::linkage::{FlatLink, LinkageModel};
@@ -57,7 +57,8 @@ impl Portrait {
         let mut bounds = [Vector::new(-foot, -foot), Vector::new(foot, foot)];
         let discs = links.iter().flat_map(|link| {
             let ends = link.ends.map(|at| (at, link.radius));
-            ends.into_iter().chain(link.weights.iter().copied())
+            let weights = link.weights.iter().flat_map(|weight| weight.ends.map(|end| (end, weight.radius)));
+            ends.into_iter().chain(weights)
         });
         for (at, radius) in discs.chain([(tip, 0.03 * linkage.reach())]) {
             bounds[0] = Vector::new(bounds[0].re.min(at.re - radius), bounds[0].im.min(at.im - radius));
@@ -111,8 +112,14 @@ impl Portrait {
             painter.line_segment(ends, Stroke::new(2.0 * radius + 1.6, colour(p.background)));
             painter.line_segment(ends, Stroke::new(2.0 * radius, colour(tone)));
             ends.into_iter().for_each(|end| disc(end, radius, tone));
-            for (at, size) in &link.weights {
-                disc(spot(*at), long(*size), tone);
+            for weight in &link.weights {
+                if weight.rails.is_empty() {
+                    disc(spot(weight.ends[0]), long(weight.radius), tone);
+                }
+                for pair in weight.rails.windows(2) {
+                    let corners = [pair[0][0], pair[1][0], pair[1][1], pair[0][1]].map(spot);
+                    painter.add(Shape::convex_polygon(corners.to_vec(), colour(tone), Stroke::NONE));
+                }
             }
         }
         if self.path.len() > 1 {

@@ -6,7 +6,7 @@ use super::quantity::headed;
 use super::table::{NO_VALUE, PageTable};
 use crate::columns::RunColumn;
 use crate::notation::Notation;
-use stillbase_mechanics::machine::{Inertia, MachineSpec};
+use stillbase_mechanics::machine::{Counterweight, Inertia, MachineSpec};
 use stillbase_session::verdict::{Statements, Verdict};
 use stillbase_settings::change;
 use stillbase_settings::key::Key;
@@ -172,12 +172,14 @@ fn lengths(spec: &MachineSpec, notation: Notation) -> String {
 /// Returns the table of counterweights, counted from 1 as in their settings.
 fn counterweights(spec: &MachineSpec, notation: Notation) -> String {
     let heads = ["counterweight", "on link", "mass (kg)"].map(String::from).into_iter();
-    let lengths = ["place along it", "left of its axis", "radius"].map(|name| notation.head(name, "m"));
-    let mut table = PageTable::new(2, heads.chain(lengths));
+    let sizes = Counterweight::sizes_of(&spec.counterweights);
+    let lengths = ["place along it", "left of its axis"].into_iter().chain(sizes.clone());
+    let mut table = PageTable::new(2, heads.chain(lengths.map(|name| notation.head(name, "m"))));
     for (i, weight) in spec.counterweights.iter().enumerate() {
-        let lengths = [weight.at, weight.across, weight.radius].map(|x| notation.nine_digits(x, "m"));
+        let size = |name: &&str| weight.sizes().find(|(own, _)| own == name).map_or(0.0, |(_, size)| size);
+        let lengths = [weight.at, weight.across].into_iter().chain(sizes.iter().map(size));
         let names = [(i + 1).to_string(), weight.link.clone(), nine_digits(weight.mass)];
-        table.row(names.into_iter().chain(lengths));
+        table.row(names.into_iter().chain(lengths.map(|x| notation.nine_digits(x, "m"))));
     }
     table.html()
 }

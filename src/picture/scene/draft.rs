@@ -1,7 +1,5 @@
 //! The design view of a machine: links with draggable centres of mass and ends, and counterweights with their masses.
 
-use std::f64::consts::TAU;
-
 use super::grid::Grid;
 use super::linkage::LinkageModel;
 use super::options::{Handle, ViewOptions, WeightOption};
@@ -10,13 +8,11 @@ use super::pick::{DragAction, PICK_RADIUS, Pick};
 use super::pointer::Pointer;
 use super::{Anchor, Label, Marker, Polyline, Scene, point};
 use stillbase_mechanics::machine::{Length, Machine};
-use stillbase_mechanics::planar::{UnitVectors, Vector, unit};
+use stillbase_mechanics::planar::{UnitVectors, Vector};
 use stillbase_simulation::frame::Frame;
 
 /// Half the size of the cross at a centre of mass, as a fraction of the reach.
 const CROSS_HALF_SIZE: f64 = 0.0105;
-/// Number of vertices of a circle.
-const CIRCLE_VERTICES: u32 = 64;
 /// Fraction of the background colour in links that are neither under the pointer nor in [`ViewOptions::links`].
 const DIMMING: f32 = 0.42;
 /// Distance within which the pointer picks the end of a link, px.
@@ -112,7 +108,7 @@ impl DesignDrawing {
         }
     }
 
-    /// Draws the counterweights to choose from, as circles.
+    /// Draws the counterweights to choose from, as outlines.
     fn draw_choice(
         &self,
         scene: &mut Scene,
@@ -122,13 +118,12 @@ impl DesignDrawing {
         weights: &[WeightOption],
     ) {
         let e = frame.q.units();
-        let circle = |WeightOption { link, at, radius }: &WeightOption| {
+        let outline = |WeightOption { link, outline }: &WeightOption| {
             let (root, along, _) = linkage.bars().get(*link)?.pose(&e);
-            let middle = frame.base.at + root + along * Vector::new(at[0], at[1]);
-            let corner = |i: u32| middle + unit(TAU * f64::from(i) / f64::from(CIRCLE_VERTICES)) * *radius;
-            Some((0..=CIRCLE_VERTICES).map(|i| point(corner(i), linkage.top())).collect::<Vec<_>>())
+            let placed = |p: &Vector| point(frame.base.at + root + along * *p, linkage.top());
+            Some(outline.iter().chain(outline.first()).map(placed).collect::<Vec<_>>())
         };
-        let circles: Vec<_> = weights.iter().filter_map(circle).collect();
+        let circles: Vec<_> = weights.iter().filter_map(outline).collect();
         if !circles.is_empty() {
             scene.lines.push(Polyline::new("design/choice", circles, 2.2, palette.amber).on_top());
         }

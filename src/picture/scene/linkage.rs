@@ -10,10 +10,10 @@ use std::sync::Arc;
 
 use heights::Heights;
 
-use super::mesh::{bar, cylinder};
+use super::mesh::{SEGMENTS, bar, cylinder, ribbon, ring};
 use super::palette::{Palette, faded, mix};
 use super::{ItemChanges, Mesh, MeshSet, Name, Rgba, Shadow, Solid, posed};
-use stillbase_mechanics::machine::{Chain, Machine, ResolvedLink, place_of};
+use stillbase_mechanics::machine::{Chain, Counterweight, Machine, ResolvedLink, place_of};
 use stillbase_mechanics::planar::{Pose2, UnitVectors, Vector, unit};
 
 /// The meshes of a machine, and their placement in a pose.
@@ -61,12 +61,18 @@ pub struct Bar {
 }
 
 /// A counterweight of a link, in the mesh of the link.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Weight {
-    /// Position along the link, and to the left of its axis, m.
+    /// Position of its centre of mass along the link, and to the left of its axis, m.
     at: Vector,
-    /// Radius, m.
+    /// Ends of a segment about which it lies, m; equal for a round one.
+    ends: [Vector; 2],
+    /// Distance from the segment within which it lies, m: the radius of a round one.
     radius: f64,
+    /// Pairs of opposite points of its long sides, m; empty for a round one.
+    rails: Vec<[Vector; 2]>,
+    /// Radius of its bore, m.
+    inner_radius: f64,
     /// Height of its lower face above that of the link, m; negative, because it is thicker.
     z: f64,
     /// Height from its lower to its upper face, m.
@@ -107,10 +113,20 @@ pub struct FlatLink {
     pub ends: [Vector; 2],
     /// Half its width, m.
     pub radius: f64,
-    /// Position and radius of each counterweight, m.
-    pub weights: Vec<(Vector, f64)>,
+    /// Its counterweights.
+    pub weights: Vec<FlatWeight>,
     /// Index of the drive that it follows, from 0.
     pub drive: usize,
+}
+
+/// A counterweight seen from straight above.
+pub struct FlatWeight {
+    /// Ends of a segment about which it lies, m; equal for a round one.
+    pub ends: [Vector; 2],
+    /// Distance from the segment within which it lies, m: the radius of a round one.
+    pub radius: f64,
+    /// Pairs of opposite points of its long sides, m; empty for a round one.
+    pub rails: Vec<[Vector; 2]>,
 }
 
 #[derive(Clone, Debug)]
@@ -164,14 +180,24 @@ impl LinkageModel {
             let weights = machine.spec().counterweights.iter().filter(|weight| weight.link == link.name);
             let disc = |at: Vector, size: f64, thickness: f64| Weight {
                 at,
+                ends: [at; 2],
                 radius: size.max(1.5 * radius),
+                rails: Vec::new(),
+                inner_radius: 0.0,
                 z: 0.5 * (height - thickness),
                 height: thickness,
             };
             let usual = 1.6 * height;
-            let mut discs: Vec<Weight> = weights
-                .map(|w| disc(Vector::new(w.at, w.across), w.radius, heights.thickness(w).unwrap_or(usual)))
-                .collect();
+            let shaped = |weight: &Counterweight| {
+                let (ends, size) = weight.around();
+                let at = Vector::new(weight.at, weight.across);
+                let of = disc(at, size, heights.thickness(weight).unwrap_or(usual));
+                match weight.rails(SEGMENTS) {
+                    rails if rails.is_empty() => Weight { inner_radius: weight.inner_radius, ..of },
+                    rails => Weight { ends, radius: size, rails, ..of },
+                }
+            };
+            let mut discs: Vec<Weight> = weights.map(shaped).collect();
             if discs.is_empty() && (link.com < from || link.com > to) {
                 // If the centre of mass is beyond the ends, a disc there suggests a counterweight; area ∝ mass of the
                 // link.
@@ -185,7 +211,16 @@ impl LinkageModel {
             let mut mesh = bar(span[0], span[1], radius, height, 0.2 * height);
             for disc in &discs {
                 let at = [disc.at.re, disc.at.im, disc.z];
-                append(&mut mesh, &cylinder(disc.radius, disc.height, 0.2 * height), at);
+                match disc.rails.is_empty() {
+                    true if disc.inner_radius > 0.0 => {
+                        append(&mut mesh, &ring(disc.radius, disc.inner_radius, disc.height), at);
+                    }
+                    true => append(&mut mesh, &cylinder(disc.radius, disc.height, 0.2 * height), at),
+                    false => {
+                        let rails = disc.rails.iter().map(|pair| pair.map(|p| [p.re, p.im]));
+                        append(&mut mesh, &ribbon(&rails.collect::<Vec<_>>(), disc.height), [0.0, 0.0, disc.z]);
+                    }
+                }
                 if disc.at.im.abs() > disc.radius {
                     // An arm across joins a disc beside the bar to it.
                     let arm = bar(disc.at.im.min(0.0), disc.at.im.max(0.0), radius, height, 0.2 * height);
@@ -311,7 +346,7 @@ impl LinkageModel {
             FlatLink {
                 ends: bar.span.map(|s| root + along * s),
                 radius: bar.radius,
-                weights: bar.weights.iter().map(|disc| (root + along * disc.at, disc.radius)).collect(),
+                weights: bar.weights.iter().map(|weight| weight.flat(root, along)).collect(),
                 drive: bar.drive,
             }
         };
@@ -515,6 +550,18 @@ fn quarter_turned(mut mesh: Mesh) -> Mesh {
     }
     mesh.coarse = mesh.coarse.map(|coarse| Box::new(quarter_turned(*coarse)));
     mesh
+}
+
+impl Weight {
+    /// Returns it seen from above, on a link with its root at a point, m, in a direction.
+    fn flat(&self, root: Vector, along: Vector) -> FlatWeight {
+        let placed = |p: Vector| root + along * p;
+        FlatWeight {
+            ends: self.ends.map(placed),
+            radius: self.radius,
+            rails: self.rails.iter().map(|pair| pair.map(placed)).collect(),
+        }
+    }
 }
 
 /// Adds the mesh `other`, shifted by `shift`, m, to the mesh `to`. A coarse mesh of `to` receives that of `other`.

@@ -57,6 +57,50 @@ pub fn ring(outer: f64, inner: f64, height: f64) -> Mesh {
     })
 }
 
+/// A plate with straight edges between two sides, given as pairs of opposite points from one end to the other; the first
+/// side runs counter-clockwise.
+pub fn ribbon(rails: &[[[f64; 2]; 2]], height: f64) -> Mesh {
+    let height = size(height);
+    let mut mesh = Mesh::default();
+    if height == 0.0 || rails.len() < 2 {
+        return mesh;
+    }
+    let at = |[x, y]: [f64; 2], z: f64| [x, y, z];
+    for pair in rails.windows(2) {
+        let [[a, d], [b, c]] = [pair[0], pair[1]];
+        quad(&mut mesh, [at(a, height), at(b, height), at(c, height), at(d, height)]);
+        quad(&mut mesh, [at(d, 0.0), at(c, 0.0), at(b, 0.0), at(a, 0.0)]);
+        wall(&mut mesh, a, b, height);
+        wall(&mut mesh, c, d, height);
+    }
+    let [first, last] = [rails[0], rails[rails.len() - 1]];
+    wall(&mut mesh, first[1], first[0], height);
+    wall(&mut mesh, last[0], last[1], height);
+    mesh
+}
+
+/// Adds the wall over a side, from z = 0 to the height; outside is to the right of the way from a to b.
+fn wall(mesh: &mut Mesh, [ax, ay]: [f64; 2], [bx, by]: [f64; 2], height: f64) {
+    quad(mesh, [[ax, ay, 0.0], [bx, by, 0.0], [bx, by, height], [ax, ay, height]]);
+}
+
+/// Adds a flat face with corners counter-clockwise; a face without area is left out.
+fn quad(mesh: &mut Mesh, corners: [[f64; 3]; 4]) {
+    let side = |i: usize, j: usize| [0, 1, 2].map(|k| corners[j][k] - corners[i][k]);
+    let ([u, v, w], [x, y, z]) = (side(0, 2), side(1, 3));
+    let normal = [v * z - w * y, w * x - u * z, u * y - v * x];
+    let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if length == 0.0 {
+        return;
+    }
+    let first = mesh.positions.len() as u32;
+    for corner in corners {
+        mesh.positions.push(corner.map(|x| x as f32));
+        mesh.normals.push(normal.map(|x| (x / length) as f32));
+    }
+    mesh.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+}
+
 /// A vertex of an outline: x of the centre that it is offset from, and the outward unit vector.
 struct Spoke {
     centre: f64,

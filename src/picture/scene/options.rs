@@ -155,14 +155,12 @@ impl Handle {
 }
 
 /// A counterweight to choose from.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct WeightOption {
     /// Index of its link, from 0.
     pub link: usize,
-    /// Position along the link, and to the left of its axis, m.
-    pub at: [f64; 2],
-    /// Radius, m.
-    pub radius: f64,
+    /// Its outline in the axes of its link, m.
+    pub outline: Vec<Vector>,
 }
 
 /// Another run at the displayed instant.

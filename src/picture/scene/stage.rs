@@ -335,6 +335,7 @@ impl Stage {
         let ends = self.linkage.bars().iter().flat_map(|bar| bar.ends(&e));
         let ends = ends.map(|[x, y, z]| [x + at.re, y + at.im, z]);
         let discs = self.linkage.flat(&e).into_iter().flat_map(|flat| flat.weights);
+        let discs = discs.flat_map(|weight| weight.ends.map(|end| (end, weight.radius)));
         let discs = discs.flat_map(|(p, radius)| [1.0, -1.0].map(|s| (p + at, s * radius)));
         let discs = discs.flat_map(|(p, r)| [[p.re + r, p.im, 0.0], [p.re, p.im + r, 0.0]]);
         ViewContent { first: ends.chain(discs).collect(), then: Vec::new() }

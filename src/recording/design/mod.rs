@@ -144,7 +144,8 @@ fn above<'a>(machines: impl Iterator<Item = &'a Machine>, e: &UnitVectors) -> Ey
     let mut seen = [wider(none, 0.0, 0.0); 2];
     for machine in machines {
         for bar in LinkageModel::of(machine).flat(e) {
-            for (p, r) in bar.ends.map(|end| (end, bar.radius)).into_iter().chain(bar.weights) {
+            let weights = bar.weights.iter().flat_map(|weight| weight.ends.map(|end| (end, weight.radius)));
+            for (p, r) in bar.ends.map(|end| (end, bar.radius)).into_iter().chain(weights) {
                 seen = [wider(seen[0], p.re, r), wider(seen[1], p.im, r)];
             }
         }

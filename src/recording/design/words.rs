@@ -2,7 +2,7 @@
 
 use super::state::DesignState;
 use stillbase_mechanics::balance::{BalanceTerm, Breakdown};
-use stillbase_mechanics::machine::{Inertia, LinkNumber, Machine, PartBody, PartSource};
+use stillbase_mechanics::machine::{Counterweight, Inertia, LinkNumber, Machine, PartBody, PartSource};
 use stillbase_mechanics::planar::Vector;
 use stillbase_picture::numbers::signed;
 use stillbase_settings::number::counted;
@@ -68,16 +68,18 @@ pub(super) fn links(machine: &Machine) -> String {
     let spec = machine.spec();
     let has_weights = !spec.counterweights.is_empty();
     let off_axis = spec.counterweights.iter().any(|weight| weight.across != 0.0);
+    let size_names = Counterweight::sizes_of(&spec.counterweights);
+    let sizes: Vec<String> = size_names.iter().map(|name| format!("{name} m")).collect();
     let mut heads = vec!["link", "drive", "mass kg", "CM m"];
     if spec.links.iter().any(|link| link.com_normal != 0.0) {
         heads.push("across m");
     }
     if has_weights {
-        heads.extend(["disc kg", "at m"]);
+        heads.extend(["weight kg", "at m"]);
         if off_axis {
             heads.push("left of axis m");
         }
-        heads.push("radius m");
+        heads.extend(sizes.iter().map(String::as_str));
     }
     let mut rows = Vec::new();
     for (link, part) in spec.links.iter().zip(machine.resolved_links()) {
@@ -104,7 +106,8 @@ pub(super) fn links(machine: &Machine) -> String {
             if off_axis {
                 row.push(signed(weight.across, 4));
             }
-            row.push(signed(weight.radius, 4));
+            let size = |name: &&str| weight.sizes().find(|(own, _)| own == name).map(|(_, size)| signed(size, 4));
+            row.extend(size_names.iter().map(|name| size(name).unwrap_or_else(|| "–".into())));
             rows.push(row);
         }
     }

@@ -18,8 +18,8 @@ impl LinkageModel {
             let (root, along, z) = bar.pose(&e);
             let link = body(bar.span.map(|s| (root + along * s, z)), bar.radius, bar.height);
             let discs = bar.weights.iter().map(move |disc| {
-                let at = (root + along * disc.at, z + disc.z);
-                body([at; 2], disc.radius, disc.height)
+                let ends = disc.ends.map(|end| (root + along * end, z + disc.z));
+                body(ends, disc.radius, disc.height)
             });
             discs.chain([link])
         });
