@@ -10,6 +10,9 @@ use super::weigh::{PartBody, PartSource};
 
 /// Places closer than this are one, m.
 const SAME_PLACE: f64 = 1e-9;
+/// A counterweight beyond the end of a part by at most this still lies on it, m: places of light ones have an error of
+/// the solver.
+const CARRIED: f64 = 1e-6;
 /// Name of a bar that is cut anew with every design.
 const CUT_BAR: &str = "cut bar";
 /// How the name of an arm begins, which carries a counterweight off the axis of its link.
@@ -154,7 +157,7 @@ impl Machine {
                 return Err(not_carried());
             };
             let (bar, [from, to]) = spine;
-            if weight.at < from - SAME_PLACE || weight.at > to + SAME_PLACE {
+            if weight.at < from - CARRIED || weight.at > to + CARRIED {
                 return Err(not_carried());
             }
             let half = 0.5 * bar.breadth().unwrap_or(stock.width);
@@ -179,7 +182,7 @@ impl Machine {
         self.part_bodies().iter().any(|body| match body.source {
             PartSource::Part(i) if body.link == j => {
                 let part = &self.spec().parts[i];
-                part.depth([weight.at, weight.across - part.across], body.ends) >= -SAME_PLACE
+                part.depth([weight.at, weight.across - part.across], body.ends) >= -CARRIED
             }
             _ => false,
         })
