@@ -179,11 +179,12 @@ pub fn balance_by_weights(
     go_on: &mut dyn FnMut(SearchProgress) -> bool,
 ) -> Result<(Machine, CounterweightReport), NoCounterweights> {
     let mut weighing = request.spec.clone();
-    let mut bars = None;
+    let (mut bars, mut on_bars) = (None, None);
     let (placed, sought) = match &request.lengths {
         None if let Some(cut) = &request.bars => {
             let found = cut.balance(machine, &weighing).map_err(NoCounterweights::Cut)?;
             bars = Some(BarsReport::of(&found));
+            on_bars = Some((found.on_bars(&weighing), found.bars));
             (found.placed, None)
         }
         None => (place_weights(machine, &weighing).map_err(NoCounterweights::Weights)?, None),
@@ -196,10 +197,13 @@ pub fn balance_by_weights(
             (found.placed, Some(sought))
         }
     };
-    // If lengths were optimised, the front is that of the machine with these lengths.
-    let base = if sought.is_some() { &placed.machine } else { machine };
+    // If lengths were optimised, the front is that of the machine with these lengths, and on bars that of these bars.
+    let (spec, base) = match &on_bars {
+        Some((spec, bars)) => (spec, bars),
+        None => (&weighing, if sought.is_some() { &placed.machine } else { machine }),
+    };
     let front = match request.front {
-        Some(count) => front(base, &weighing, count).map_err(NoCounterweights::Front)?.points,
+        Some(count) => front(base, spec, count).map_err(NoCounterweights::Front)?.points,
         None => Vec::new(),
     };
     let front = front.iter().map(|placed| FrontPoint::of(placed, motion, true)).collect();

@@ -4,7 +4,8 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use super::front_point::FrontPoint;
-use stillbase_mechanics::counterweights::{CounterweightError, CounterweightSpec, Front, FrontSearch};
+use super::workshop::{CutRequest, NoCut};
+use stillbase_mechanics::counterweights::{CounterweightSpec, Front, FrontSearch};
 use stillbase_mechanics::machine::Machine;
 use stillbase_planning::Motion;
 use stillbase_query::{ByIdentity, Portion, ProgressCallback, Query};
@@ -19,14 +20,33 @@ pub struct FrontCase {
     pub machine: Machine,
     /// Bounds on the counterweights: the same for all machines, applied to the links of this one.
     pub spec: CounterweightSpec,
+    /// Bars of which its links are cut, if they are: its counterweights are those on these bars.
+    pub bars: Option<CutRequest>,
 }
 
 impl FrontCase {
-    /// Builds the request from a brief, which states the same bounds for machines with different links.
+    /// Builds the request from a brief, which states the same bounds and bars for machines with different links.
     pub fn of(name: impl Into<String>, machine: &Machine, brief: &DesignBrief) -> Self {
         // Counterweights are removed here, so that changing them does not change the request.
-        let machine = machine.without_counterweights().unwrap_or_else(|_| machine.clone());
-        Self { name: name.into(), spec: brief.lightest_problem(&machine), machine }
+        let mut machine = machine.without_counterweights().unwrap_or_else(|_| machine.clone());
+        let mut bars = None;
+        if let (true, Ok((with_material, stock))) = (brief.as_cut, brief.stock(&machine)) {
+            (machine, bars) = (with_material, Some(CutRequest { stock, bought: false }));
+        }
+        Self { name: name.into(), spec: brief.lightest_problem(&machine), machine, bars }
+    }
+
+    /// Begins the search for its front with so many machines, on the bars of which it is cut.
+    fn search(&self, count: usize) -> Result<FrontSearch, NoCut> {
+        let (machine, spec) = match &self.bars {
+            None => (self.machine.clone(), self.spec.clone()),
+            Some(bars) => {
+                let found = bars.balance(&self.machine, &self.spec)?;
+                let spec = found.on_bars(&self.spec);
+                (found.bars, spec)
+            }
+        };
+        Ok(FrontSearch::begin((machine, spec, count)))
     }
 }
 
@@ -49,7 +69,7 @@ pub struct MachineFront {
     /// Name of the machine.
     pub name: String,
     /// Its Pareto front, or why it has none.
-    pub outcome: Result<MeasuredFront, CounterweightError>,
+    pub outcome: Result<MeasuredFront, NoCut>,
 }
 
 /// A Pareto front with the measures of its machines.
@@ -95,6 +115,8 @@ pub struct Fronts {
 /// Progress on the front of one machine.
 #[derive(Debug)]
 enum Stage {
+    /// Its bars are being cut, if it has any.
+    Begin,
     /// The machines of the front are being computed.
     Search(Box<FrontSearch>),
     /// The measures of these machines are being computed.
@@ -106,7 +128,7 @@ impl Query for Fronts {
     type Answer = Vec<MachineFront>;
 
     fn begin(request: FrontsRequest) -> Self {
-        Self { now: Stage::of(&request, 0), done: Vec::with_capacity(request.machines.len()), request }
+        Self { now: Stage::Begin, done: Vec::with_capacity(request.machines.len()), request }
     }
 
     /// Computes one machine of a front, or its measures.
@@ -118,10 +140,17 @@ impl Query for Fronts {
         // For each machine, the search is one half of the work and the measures are the other.
         let share = |half: f64| (known as f64 + 0.5 * half) / all;
         let outcome = match &mut self.now {
+            Stage::Begin => match of.search(self.request.count) {
+                Ok(search) => {
+                    self.now = Stage::Search(Box::new(search));
+                    return Portion::More(share(0.0));
+                }
+                Err(why) => Err(why),
+            },
             Stage::Search(search) => match search.go_on(&mut |found| goes_on(share(found))) {
                 Portion::More(found) => return Portion::More(share(found)),
                 Portion::Stopped => return Portion::Stopped,
-                Portion::Done(Err(why)) => Err(why),
+                Portion::Done(Err(why)) => Err(why.into()),
                 Portion::Done(Ok(front)) => {
                     self.now = Stage::Telling(front, Vec::new());
                     return Portion::More(share(1.0));
@@ -141,20 +170,7 @@ impl Query for Fronts {
             },
         };
         self.done.push(MachineFront { name: of.name.clone(), outcome });
-        self.now = Stage::of(&self.request, known + 1);
+        self.now = Stage::Begin;
         Portion::More(share(2.0))
-    }
-}
-
-impl Stage {
-    /// Returns the first stage for machine `i`; after the last machine, an empty stage that is never run.
-    fn of(request: &FrontsRequest, i: usize) -> Self {
-        match request.machines.get(i) {
-            Some(of) => {
-                let search = FrontSearch::begin((of.machine.clone(), of.spec.clone(), request.count));
-                Self::Search(Box::new(search))
-            }
-            None => Self::Telling(Front { points: Vec::new() }, Vec::new()),
-        }
     }
 }

@@ -8,9 +8,9 @@ use serde::Serialize;
 use thiserror::Error;
 
 use stillbase_mechanics::counterweights::{
-    CounterweightError, CounterweightSpec, CounterweightStock, PlacedCounterweights, place_weights,
+    CounterweightError, CounterweightSite, CounterweightSpec, CounterweightStock, PlacedCounterweights, place_weights,
 };
-use stillbase_mechanics::machine::{BarStock, Inertia, Machine, MachineError};
+use stillbase_mechanics::machine::{BarStock, Inertia, Machine, MachineError, Part};
 use stillbase_query::QuickQuery;
 
 /// Shares of the greatest tails that are tried first, for all links alike.
@@ -40,6 +40,10 @@ pub struct CutMachine {
     pub tail: f64,
     /// Largest residual of (7), kg m, and of (8), kg m².
     pub residual: [f64; 2],
+    /// The machine with its bars alone, without counterweights and arms.
+    pub bars: Machine,
+    /// Ends of the bar of each link, m from its root.
+    pub reach: Vec<[f64; 2]>,
 }
 
 /// Reason that no machine can be cut so that it is balanced.
@@ -148,7 +152,33 @@ pub fn balance_as_cut(machine: &Machine, request: &CounterweightSpec, stock: &Ba
     search.trim(&mut best);
     let machine = &best.placed.machine;
     let (residual, tail) = (residual(machine), longest_tail(machine));
-    Ok(CutMachine { placed: best.placed, tried: search.tried, tail, residual })
+    let bars = bare.with_bars(stock, &best.reach)?;
+    Ok(CutMachine { placed: best.placed, tried: search.tried, tail, residual, bars, reach: best.reach })
+}
+
+impl CutMachine {
+    /// Returns the request for other counterweights on the same bars: their places are those of `request` that lie on
+    /// the bar of their link, so that none needs an arm.
+    pub fn on_bars(&self, request: &CounterweightSpec) -> CounterweightSpec {
+        let mut request = request.clone();
+        on_reach(&mut request.sites, &self.reach);
+        for site in &mut request.sites {
+            let spine = self.bars.spine(site.link).map(|i| &self.bars.spec().parts[i]);
+            let breadth = spine.and_then(Part::breadth).unwrap_or_default();
+            site.across = site.across.min(0.5 * breadth);
+        }
+        request
+    }
+}
+
+/// Limits the places of counterweights to the bars of their links with these ends, m.
+fn on_reach(sites: &mut Vec<CounterweightSite>, reach: &[[f64; 2]]) {
+    sites.retain_mut(|site| {
+        // A site on a link that does not exist is refused later.
+        let Some([from, to]) = reach.get(site.link) else { return true };
+        (site.from, site.to) = (site.from.max(*from), site.to.min(*to));
+        site.from <= site.to
+    });
 }
 
 /// Discs on bars of known lengths.
@@ -217,12 +247,7 @@ impl TailSearch<'_> {
     /// Places discs on bars with these ends; the arms of discs beside their bars are weighed.
     fn placed(&self, reach: &[[f64; 2]]) -> Result<PlacedCounterweights, NoCut> {
         let mut request = self.request.clone();
-        request.sites.retain_mut(|site| {
-            // Sites on links that do not exist are refused below.
-            let Some([from, to]) = reach.get(site.link) else { return true };
-            (site.from, site.to) = (site.from.max(*from), site.to.min(*to));
-            site.from <= site.to
-        });
+        on_reach(&mut request.sites, reach);
         let mut bars = self.bare.with_bars(self.stock, reach)?;
         let mut off = f64::INFINITY;
         for _ in 0..MAX_ROUNDS {

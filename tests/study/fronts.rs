@@ -12,6 +12,9 @@ use stillbase::study::counterweights::{CounterweightRequest, balance_by_weights}
 use stillbase::study::front_point::FrontMeasure;
 use stillbase::study::fronts::{FrontCase, Fronts, FrontsRequest};
 
+use stillbase::mechanics::machine::{BarStock, Inertia};
+use stillbase::study::workshop::{CutRequest, NoCut};
+
 use crate::support::family_machine;
 
 const COUNT: usize = 5;
@@ -23,7 +26,7 @@ fn asked(names: &[&str], most: f64) -> FrontsRequest {
         let sites =
             CounterweightSite::anywhere(&machine).into_iter().map(|site| CounterweightSite { most, ..site }).collect();
         let spec = CounterweightSpec::least(Objective::mass(), sites, CounterweightStock::STEEL);
-        FrontCase { name: (*name).to_owned(), machine, spec }
+        FrontCase { name: (*name).to_owned(), machine, spec, bars: None }
     };
     FrontsRequest { machines: names.iter().map(of).collect(), count: COUNT, motion: None, workspace: true }
 }
@@ -78,7 +81,7 @@ fn a_machine_that_nothing_balances_says_why_and_the_others_stand() {
     let mut request = asked(&names, f64::INFINITY);
     request.machines[0].spec.max_added_mass = Some(1e-3);
     let fronts = answer_now::<Fronts>(request.clone());
-    assert!(matches!(fronts[0].outcome, Err(CounterweightError::Conflict { .. })));
+    assert!(matches!(fronts[0].outcome, Err(NoCut::Weights(CounterweightError::Conflict { .. }))));
     assert!(fronts[1].outcome.is_ok() && fronts[2].outcome.is_ok());
     let said = serde_json::to_value(&fronts).expect("plain data");
     let alone = front(&request.machines[0].machine, &request.machines[0].spec, COUNT).expect_err("too light");
@@ -101,4 +104,31 @@ fn progress_rises_from_portion_to_portion() {
     }
     // A portion finds or tells one machine of a front.
     assert!(shares.len() >= 2 * COUNT && shares.is_sorted() && shares.ends_with(&[1.0]), "{shares:?}");
+}
+
+/// With bars, each machine of the front carries its counterweights on the bars of the lightest one.
+#[test]
+fn a_front_on_bars_keeps_the_bars() {
+    let mut request = asked(&["nine-link-bare", "two-drive"], f64::INFINITY);
+    let bars = CutRequest { stock: BarStock::default(), bought: false };
+    for case in &mut request.machines {
+        case.bars = Some(bars.clone());
+    }
+    for (case, found) in request.machines.iter().zip(answer_now::<Fronts>(request.clone())) {
+        let measured = found.outcome.expect("a front");
+        let cut = bars.balance(&case.machine, &case.spec).expect("bars");
+        let points = &measured.front.points;
+        assert_eq!(points.len(), COUNT);
+        // On these bars, the lightest counterweights are those of the machine as it is cut.
+        assert!((points[0].added_mass - cut.placed.added_mass).abs() < 1e-6, "{}", points[0].added_mass);
+        for placed in points {
+            assert!(Inertia::of(&placed.machine).is_balanced());
+            assert_eq!(placed.machine.spec().parts, cut.bars.spec().parts);
+            for weight in &placed.machine.spec().counterweights {
+                let link = placed.machine.links().iter().position(|link| link.name == weight.link).expect("a link");
+                let [from, to] = cut.reach[link];
+                assert!((from - 1e-6..=to + 1e-6).contains(&weight.at), "{weight:?} is not on its bar");
+            }
+        }
+    }
 }

@@ -257,8 +257,10 @@ impl DesignFacts {
             let request = FrontsRequest { machines, count: FRONT_POINTS, motion: None, workspace: false };
             queries.ask_in_background::<Fronts>(&request)
         });
-        let Some(bare) = &queries.ask::<QuickWork<Sums>>(&session.scenario().machine).bare else { return facts };
-        let front = queries.ask_in_background::<FrontSearch>(&front_request(bare, &brief_of(session)));
+        let bare = &queries.ask::<QuickWork<Sums>>(&session.scenario().machine).bare;
+        let cut = facts.cut.as_ref().map(|cut| cut.known().map(|found| &**found));
+        let Some(request) = front_request(session, bare.as_ref(), cut) else { return facts };
+        let front = queries.ask_in_background::<FrontSearch>(&request);
         let points = front.last.map(|front| queries.ask::<QuickWork<FrontPoints>>(&ByIdentity(front)));
         // A run that waits has no motion.
         let motion = session.run().shared_motion().filter(|_| session.run().waiting().is_none());
@@ -372,7 +374,9 @@ impl DesignFacts {
 /// Returns a machine of the Pareto front for the present machine and brief, by its index.
 pub fn of_front(queries: &Queries, session: &Session, i: usize) -> Option<Machine> {
     let sums = queries.ask::<QuickWork<Sums>>(&session.scenario().machine);
-    let front = queries.ask::<FrontSearch>(&front_request(sums.bare.as_ref()?, &brief_of(session)));
+    let cut = as_cut(queries, session);
+    let request = front_request(session, sums.bare.as_ref(), cut.as_ref().map(|cut| Some(&**cut)))?;
+    let front = queries.ask::<FrontSearch>(&request);
     Some(front.as_ref().as_ref().ok()?.points.get(i)?.machine.clone())
 }
 
@@ -404,9 +408,22 @@ fn brief_of(session: &Session) -> DesignBrief {
     session.scenario().design.fitting(&session.scenario().machine)
 }
 
-/// Returns the request for a Pareto front.
-fn front_request(bare: &Machine, brief: &DesignBrief) -> <FrontSearch as Query>::Input {
-    (bare.clone(), brief.lightest_problem(bare), FRONT_POINTS)
+/// Returns the request for a Pareto front of a machine without counterweights; on the bars of `cut`, if links are cut
+/// from bars. `None` if there is no such machine, or its bars are not known yet.
+fn front_request(
+    session: &Session,
+    bare: Option<&Machine>,
+    cut: Option<Option<&Result<CutMachine, NoCut>>>,
+) -> Option<<FrontSearch as Query>::Input> {
+    let (bare, brief) = (bare?, brief_of(session));
+    let request = brief.lightest_problem(bare);
+    match cut {
+        None => Some((bare.clone(), request, FRONT_POINTS)),
+        Some(cut) => {
+            let cut = cut?.as_ref().ok()?;
+            Some((cut.bars.clone(), cut.on_bars(&request), FRONT_POINTS))
+        }
+    }
 }
 
 fn terms(machine: &Machine) -> Vec<BalanceBars> {

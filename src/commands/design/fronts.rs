@@ -11,7 +11,7 @@ use super::super::failure::Failure;
 use super::super::input::task_run;
 use super::super::output::TextTable;
 use super::DesignArguments;
-use super::weighed::{FRONT_HEADINGS, front_cells, report_removed, request_failure};
+use super::weighed::{FRONT_HEADINGS, cut_failure, front_cells, report_removed};
 
 #[derive(Serialize)]
 struct Answer {
@@ -28,14 +28,14 @@ impl DesignArguments {
             // The Pareto front trades mass against inertia, neither of which depends on a motion.
             let spec = self.weighing.spec(&machine, None).map_err(|why| why.with_context(&name))?;
             report_removed(&machine, &format!("{name}: "));
-            Ok(FrontCase { name, machine, spec })
+            Ok(FrontCase { name, machine, spec, bars: self.weighing.bars() })
         };
         let machines = machines.into_iter().map(of).collect::<Result<_, Failure>>()?;
         let motion = task.as_ref().and_then(|run| run.shared_motion());
         let request = FrontsRequest { machines, count: self.weighing.front_count(), motion, workspace: true };
         let answer = Answer { fronts: answer_now::<Fronts>(request) };
         let mut refused = answer.fronts.iter().filter_map(|of| Some((of, of.outcome.as_ref().err()?)));
-        let mut refusals = refused.clone().map(|(of, why)| request_failure(why.clone()).with_context(&of.name));
+        let mut refusals = refused.clone().map(|(of, why)| cut_failure(why.clone()).with_context(&of.name));
         if let Some(wrong) = refusals.find(|why| matches!(why, Failure::WrongInput(_))) {
             return Err(wrong);
         }

@@ -108,8 +108,9 @@ pub struct WeightArguments {
     #[arg(long, value_name = "N", requires = "counterweights", value_parser = clap::value_parser!(u16).range(2..=1000))]
     front: Option<u16>,
     /// Cut the links from flat bars of this width and thickness, m, of a material; default: aluminium. Tails, arms and
-    /// holes are weighed, and the design repeated until bars and discs agree. A link with parts keeps them
-    #[arg(long, value_name = "WIDTH,THICKNESS[,MATERIAL]", requires = "counterweights", value_parser = bars, conflicts_with_all = ["length", "front"])]
+    /// holes are weighed, and the design repeated until bars and discs agree. A link with parts keeps them. A front is
+    /// that of counterweights on these bars
+    #[arg(long, value_name = "WIDTH,THICKNESS[,MATERIAL]", requires = "counterweights", value_parser = bars, conflicts_with = "length")]
     bars: Option<BarStock>,
     /// Diameter of the hole for each pin of these bars, m; default: 0.008
     #[arg(long, value_name = "D", requires = "bars", value_parser = number)]
@@ -172,6 +173,14 @@ impl WeightArguments {
         self.front.map_or(2, usize::from)
     }
 
+    /// Returns the bars of which links are cut, if they are.
+    pub fn bars(&self) -> Option<CutRequest> {
+        self.bars.clone().map(|stock| CutRequest {
+            stock: BarStock { pin_diameter: self.pin_diameter.unwrap_or(stock.pin_diameter), ..stock },
+            bought: self.bought,
+        })
+    }
+
     fn rotors(&self, machine: &Machine) -> Result<Vec<FreeRotor>, Failure> {
         let drives = &machine.spec().drives;
         let find = |name: &str| {
@@ -230,11 +239,7 @@ impl WeightArguments {
             seconds => seconds.unwrap_or(f64::INFINITY),
         };
         let stock = spec.stock;
-        let bars = self.bars.clone().map(|stock| CutRequest {
-            stock: BarStock { pin_diameter: self.pin_diameter.unwrap_or(stock.pin_diameter), ..stock },
-            bought: self.bought,
-        });
-        let request = CounterweightRequest { spec, lengths, front: self.front.map(usize::from), bars };
+        let request = CounterweightRequest { spec, lengths, front: self.front.map(usize::from), bars: self.bars() };
         let begun = Instant::now();
         let mut go_on = |_| begun.elapsed().as_secs_f64() < within;
         balance_by_weights(machine, &request, motion, &mut go_on).map_err(|why| match why {
@@ -242,8 +247,7 @@ impl WeightArguments {
             NoCounterweights::Weights(why) => self.refusal(why, &stock),
             NoCounterweights::Front(why) => request_failure(why),
             NoCounterweights::Cut(NoCut::Weights(why)) => self.refusal(why, &stock),
-            NoCounterweights::Cut(why @ NoCut::Bars(_)) => Failure::wrong_input(why),
-            NoCounterweights::Cut(why) => Failure::no_answer(why),
+            NoCounterweights::Cut(why) => cut_failure(why),
             NoCounterweights::Machine(why) => why.into(),
         })
     }
@@ -286,6 +290,15 @@ pub fn request_failure(why: CounterweightError) -> Failure {
         | CounterweightError::FreeRotorOfFront(_)
         | CounterweightError::NoRotor(_) => Failure::wrong_input(why),
         why => Failure::no_answer(why),
+    }
+}
+
+/// Converts the reason why no machine can be cut into a failure: wrong input, or no answer.
+pub fn cut_failure(why: NoCut) -> Failure {
+    match why {
+        NoCut::Weights(why) => request_failure(why),
+        NoCut::Bars(_) => Failure::wrong_input(why),
+        NoCut::Unsettled { .. } => Failure::no_answer(why),
     }
 }
 
