@@ -7,11 +7,13 @@ use toml::{Table, Value};
 
 use super::older;
 use super::waypoints::{self, POINT_KEYS};
+use crate::scenario::words::ScenarioWords;
 use crate::scenario::{MAX_STEPS, POINT_RANGE, POSE_CONSTANT_RANGE, effect_in, effect_of, key_of, name_of};
-use stillbase_mechanics::machine::{ANGLE, MACHINE_TABLES, is_of_machine};
+use stillbase_mechanics::machine::{ANGLE, KeyPath, MACHINE_TABLES, is_of_machine};
 use stillbase_mechanics::sketch::SketchStep;
 use stillbase_settings::change;
 use stillbase_settings::key::{Effect, Key};
+use stillbase_settings::mending::{Problem, Wrong};
 use stillbase_settings::number::at_most_digits;
 use stillbase_settings::range::{RangeCheck, shortened};
 
@@ -82,6 +84,26 @@ pub struct TimedEdit {
     pub edit: Edit,
 }
 
+/// Reads an edit without its step; the error is what the reader says.
+fn edit_of(table: &Table) -> Result<Edit, String> {
+    Edit::deserialize(table.clone()).map_err(|error| error.message().to_owned())
+}
+
+/// Returns the key whose value the reader refuses, because it reads on without it. The reader itself names none.
+fn wrong_key<'a>(table: &'a Table, why: &str) -> Option<&'a str> {
+    if why.starts_with("missing field") || why.starts_with("unknown field") {
+        return None;
+    }
+    let reads_on = |key: &&String| {
+        let rest: Table = table.iter().filter(|(own, _)| own != key).map(|(k, v)| (k.clone(), v.clone())).collect();
+        edit_of(&rest).err().is_none_or(|other| other != why)
+    };
+    // Without its kind, an edit is another one.
+    let kinds = ["do", "draw"];
+    let found = table.keys().filter(|key| !kinds.contains(&key.as_str())).find(reads_on);
+    found.map(String::as_str).or_else(|| kinds.into_iter().rev().find(|kind| table.contains_key(*kind)))
+}
+
 impl<'de> Deserialize<'de> for TimedEdit {
     /// Written by hand, because a flattened enum would accept unknown keys.
     fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
@@ -94,13 +116,25 @@ impl TimedEdit {
     ///
     /// # Errors
     /// If it is not a valid edit; the error states what is wrong, and what is valid.
-    pub fn from_table(mut table: Table) -> Result<Self, String> {
-        let step = table.remove("step").ok_or("missing field `step`")?;
-        let step = step.as_integer().and_then(|n| u64::try_from(n).ok()).filter(|n| *n <= MAX_STEPS);
-        let step = step.ok_or_else(|| format!("step: want a whole number of steps, 0 to {MAX_STEPS}"))?;
-        let edit = match older::settings(&mut table)? {
+    pub fn from_table(table: Table) -> Result<Self, String> {
+        Self::read(table).map_err(|problem| problem.text(&ScenarioWords))
+    }
+
+    /// Reads an `[[edit]]` entry of a file.
+    ///
+    /// # Errors
+    /// If it is not a valid edit; places are those within the entry.
+    pub(crate) fn read(mut table: Table) -> Result<Self, Problem> {
+        let whole = |said: &str| Problem::said(KeyPath::default(), said);
+        let step = table.remove("step").ok_or_else(|| whole("missing field `step`"))?;
+        let number = step.as_integer().and_then(|n| u64::try_from(n).ok()).filter(|n| *n <= MAX_STEPS);
+        let step = number.ok_or_else(|| {
+            let said = format!("is {step}: want a whole number of steps since the start, 0 to {MAX_STEPS}");
+            Problem { path: KeyPath::new(&[&"step"]), wrong: Wrong::Value(said) }
+        })?;
+        let edit = match older::settings(&mut table).map_err(|why| whole(&why))? {
             Some(change) => Edit::Set { change },
-            None => Edit::deserialize(table).map_err(|e| e.message().to_owned())?,
+            None => edit_of(&table).map_err(|why| Problem::said(KeyPath::of(wrong_key(&table, &why)), &why))?,
         };
         Ok(Self { step, edit })
     }

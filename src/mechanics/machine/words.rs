@@ -3,22 +3,8 @@
 use super::error::{KeyPath, KeyStep};
 use super::keys::KeyRow;
 use stillbase_settings::mending::{Meant, Vocabulary, called, with_key};
-use stillbase_settings::range::quote_clipped;
+use stillbase_settings::word_row::WordRow;
 
-/// A key of machine files, in which `*` stands for the name or number of a link, a drive and so on.
-struct WordRow {
-    path: &'static str,
-    /// Plain name, with `*` for the name or number.
-    name: &'static str,
-    /// What would be right; empty for a key whose range says so.
-    want: &'static str,
-    /// A value that would be right, in TOML.
-    example: &'static str,
-}
-
-const fn row(path: &'static str, name: &'static str, want: &'static str, example: &'static str) -> WordRow {
-    WordRow { path, name, want, example }
-}
 
 const OF_DRIVE: &str = "the name of a drive";
 const OF_LINK: &str = "the name of a link";
@@ -27,123 +13,123 @@ const ALONG: &str = "a place along the link: \"tip\", \"root\", a number in m, o
 const OWN_NAME: &str = "a text in quotes, a name of its own";
 
 const ROWS: &[WordRow] = &[
-    row("name", "name of the machine", "a text in quotes", "\"my-arm\""),
-    row("summary", "summary", "a text in quotes", "\"two links\""),
-    row("gravity", "gravity", "", "[0.0, -9.81]"),
-    row("lengths", "named lengths", "a table of lengths in m", "{ l1 = 0.5 }"),
-    row("lengths.*", "length *", "1e-6 to 1000000 m", "0.5"),
-    row("length.*", "length *", "", "0.5"),
-    row("payload", "payload", "a table", "{ mass = 0.5 }"),
-    row("payload.mass", "mass of the payload", "", "0.5"),
-    row("payload.inertia", "inertia of the payload", "", "0.001"),
-    row("payload.offset", "centre of mass of the payload", "", "[0.0, 0.0]"),
-    row("payload.axial", "height of the payload", "", "0.0"),
-    row("drive", "list of drives", "one [[drive]] for each drive", "[{ name = \"1\" }]"),
-    row("drive.*", "drive *", "", ""),
-    row("drive.*.name", "name of drive *", OWN_NAME, "\"1\""),
-    row("drive.*.on", "drive that carries the motor of drive *", OF_DRIVE, "\"1\""),
-    row(
+    WordRow::new("name", "name of the machine", "a text in quotes", "\"my-arm\""),
+    WordRow::new("summary", "summary", "a text in quotes", "\"two links\""),
+    WordRow::new("gravity", "gravity", "", "[0.0, -9.81]"),
+    WordRow::new("lengths", "named lengths", "a table of lengths in m", "{ l1 = 0.5 }"),
+    WordRow::new("lengths.*", "length *", "1e-6 to 1000000 m", "0.5"),
+    WordRow::new("length.*", "length *", "", "0.5"),
+    WordRow::new("payload", "payload", "a table", "{ mass = 0.5 }"),
+    WordRow::new("payload.mass", "mass of the payload", "", "0.5"),
+    WordRow::new("payload.inertia", "inertia of the payload", "", "0.001"),
+    WordRow::new("payload.offset", "centre of mass of the payload", "", "[0.0, 0.0]"),
+    WordRow::new("payload.axial", "height of the payload", "", "0.0"),
+    WordRow::new("drive", "list of drives", "one [[drive]] for each drive", "[{ name = \"1\" }]"),
+    WordRow::new("drive.*", "drive *", "", ""),
+    WordRow::new("drive.*.name", "name of drive *", OWN_NAME, "\"1\""),
+    WordRow::new("drive.*.on", "drive that carries the motor of drive *", OF_DRIVE, "\"1\""),
+    WordRow::new(
         "drive.*.rotor",
         "rotor of drive *",
         "a table: { inertia = 1e-4, ratio = 50 }",
         "{ inertia = 1e-4, ratio = 50 }",
     ),
-    row("drive.*.rotor.inertia", "rotor inertia of drive *", "", "1e-4"),
-    row("drive.*.rotor.ratio", "gear ratio of drive *", "", "50"),
-    row("drive.*.torque_limit", "torque limit of drive *", "", "20.0"),
-    row("drive.*.speed_limit", "rate limit of drive *", "", "6.0"),
-    row("drive.*.acceleration_limit", "acceleration limit of drive *", "", "50.0"),
-    row("drive.*.jerk_limit", "jerk limit of drive *", "", "1000.0"),
-    row("link", "list of links", "one [[link]] for each link", LINK),
-    row("link.*", "link *", "", ""),
-    row("link.*.name", "name of link *", OWN_NAME, "\"1\""),
-    row("link.*.drive", "drive that link * follows", OF_DRIVE, "\"1\""),
-    row(
+    WordRow::new("drive.*.rotor.inertia", "rotor inertia of drive *", "", "1e-4"),
+    WordRow::new("drive.*.rotor.ratio", "gear ratio of drive *", "", "50"),
+    WordRow::new("drive.*.torque_limit", "torque limit of drive *", "", "20.0"),
+    WordRow::new("drive.*.speed_limit", "rate limit of drive *", "", "6.0"),
+    WordRow::new("drive.*.acceleration_limit", "acceleration limit of drive *", "", "50.0"),
+    WordRow::new("drive.*.jerk_limit", "jerk limit of drive *", "", "1000.0"),
+    WordRow::new("link", "list of links", "one [[link]] for each link", LINK),
+    WordRow::new("link.*", "link *", "", ""),
+    WordRow::new("link.*.name", "name of link *", OWN_NAME, "\"1\""),
+    WordRow::new("link.*.drive", "drive that link * follows", OF_DRIVE, "\"1\""),
+    WordRow::new(
         "link.*.attach",
         "where link * is pinned",
         "\"base\", or a point of another link: { link = \"…\", at = \"tip\" }",
         "\"base\"",
     ),
-    row("link.*.attach.link", "link to which link * is pinned", OF_LINK, "\"1\""),
-    row("link.*.attach.at", "where link * is pinned", ALONG, "\"tip\""),
-    row("link.*.direction", "direction of link *", "1 or -1", "1"),
-    row("link.*.length", "length of link *", "a number in m, or a name under [lengths]", "0.5"),
-    row("link.*.mass", "mass of link *", "", "1.2"),
-    row("link.*.inertia", "inertia of link *", "", "0.02"),
-    row("link.*.com", "centre of mass along link *", "", "0.25"),
-    row("link.*.com_normal", "centre of mass off link *", "", "0.0"),
-    row("link.*.axial", "height of link *", "", "0.0"),
-    row("material", "list of materials", "one [[material]] for each", "[{ name = \"bronze\", density = 8800.0 }]"),
-    row("material.*", "material *", "", ""),
-    row("material.*.name", "name of material *", OWN_NAME, "\"bronze\""),
-    row("material.*.density", "density of *", "", "8800.0"),
-    row("part", "list of parts", "one [[part]] for each", ""),
-    row("part.*", "part *", "", ""),
-    row("part.*.link", "link of part *", OF_LINK, "\"1\""),
-    row("part.*.name", "name of part *", "a text in quotes", "\"bar\""),
-    row("part.*.shape", "shape of part *", "\"flat\", \"tube\", \"profile\" or \"plate\"", "\"flat\""),
-    row("part.*.material", "material of part *", "the name of a material", "\"steel\""),
-    row("part.*.from", "beginning of part *", ALONG, "\"root\""),
-    row("part.*.to", "end of part *", ALONG, "\"tip\""),
-    row("part.*.across", "distance of part * off its link", "", "0.0"),
-    row("part.*.width", "width of part *", "", "0.03"),
-    row("part.*.thickness", "thickness of part *", "", "0.006"),
-    row("part.*.diameter", "diameter of part *", "", "0.03"),
-    row("part.*.height", "height of part *", "", "0.02"),
-    row("part.*.wall", "wall of part *", "", "0.002"),
-    row("part.*.ends", "ends of part *", "\"round\" or \"square\"", "\"round\""),
-    row(
+    WordRow::new("link.*.attach.link", "link to which link * is pinned", OF_LINK, "\"1\""),
+    WordRow::new("link.*.attach.at", "where link * is pinned", ALONG, "\"tip\""),
+    WordRow::new("link.*.direction", "direction of link *", "1 or -1", "1"),
+    WordRow::new("link.*.length", "length of link *", "a number in m, or a name under [lengths]", "0.5"),
+    WordRow::new("link.*.mass", "mass of link *", "", "1.2"),
+    WordRow::new("link.*.inertia", "inertia of link *", "", "0.02"),
+    WordRow::new("link.*.com", "centre of mass along link *", "", "0.25"),
+    WordRow::new("link.*.com_normal", "centre of mass off link *", "", "0.0"),
+    WordRow::new("link.*.axial", "height of link *", "", "0.0"),
+    WordRow::new("material", "list of materials", "one [[material]] for each", "[{ name = \"bronze\", density = 8800.0 }]"),
+    WordRow::new("material.*", "material *", "", ""),
+    WordRow::new("material.*.name", "name of material *", OWN_NAME, "\"bronze\""),
+    WordRow::new("material.*.density", "density of *", "", "8800.0"),
+    WordRow::new("part", "list of parts", "one [[part]] for each", ""),
+    WordRow::new("part.*", "part *", "", ""),
+    WordRow::new("part.*.link", "link of part *", OF_LINK, "\"1\""),
+    WordRow::new("part.*.name", "name of part *", "a text in quotes", "\"bar\""),
+    WordRow::new("part.*.shape", "shape of part *", "\"flat\", \"tube\", \"profile\" or \"plate\"", "\"flat\""),
+    WordRow::new("part.*.material", "material of part *", "the name of a material", "\"steel\""),
+    WordRow::new("part.*.from", "beginning of part *", ALONG, "\"root\""),
+    WordRow::new("part.*.to", "end of part *", ALONG, "\"tip\""),
+    WordRow::new("part.*.across", "distance of part * off its link", "", "0.0"),
+    WordRow::new("part.*.width", "width of part *", "", "0.03"),
+    WordRow::new("part.*.thickness", "thickness of part *", "", "0.006"),
+    WordRow::new("part.*.diameter", "diameter of part *", "", "0.03"),
+    WordRow::new("part.*.height", "height of part *", "", "0.02"),
+    WordRow::new("part.*.wall", "wall of part *", "", "0.002"),
+    WordRow::new("part.*.ends", "ends of part *", "\"round\" or \"square\"", "\"round\""),
+    WordRow::new(
         "part.*.polygon",
         "corners of part *",
         "a list of corners [x, y] in m",
         "[[0.0, -0.02], [0.3, -0.02], [0.3, 0.02]]",
     ),
-    row("part.*.holes", "holes of part *", "a list of holes", "[{ at = \"tip\", diameter = 0.008 }]"),
-    row("part.*.holes.*", "hole of part *", "", ""),
-    row("part.*.holes.*.at", "place of a hole of part *", ALONG, "\"tip\""),
-    row("part.*.holes.*.across", "distance of a hole of part * off its line", "", "0.0"),
-    row("part.*.holes.*.diameter", "diameter of a hole of part *", "a number in m", "0.008"),
-    row("lump", "list of lumps", "one [[lump]] for each", "[{ link = \"1\", mass = 0.3, at = \"tip\" }]"),
-    row("lump.*", "lump *", "", ""),
-    row("lump.*.link", "link that carries lump *", OF_LINK, "\"1\""),
-    row("lump.*.name", "name of lump *", "a text in quotes", "\"motor\""),
-    row("lump.*.mass", "mass of lump *", "", "0.3"),
-    row("lump.*.at", "place of lump *", ALONG, "\"tip\""),
-    row("lump.*.across", "distance of lump * off its link", "", "0.0"),
-    row("lump.*.inertia", "inertia of lump *", "", "0.001"),
-    row(
+    WordRow::new("part.*.holes", "holes of part *", "a list of holes", "[{ at = \"tip\", diameter = 0.008 }]"),
+    WordRow::new("part.*.holes.*", "hole of part *", "", ""),
+    WordRow::new("part.*.holes.*.at", "place of a hole of part *", ALONG, "\"tip\""),
+    WordRow::new("part.*.holes.*.across", "distance of a hole of part * off its line", "", "0.0"),
+    WordRow::new("part.*.holes.*.diameter", "diameter of a hole of part *", "a number in m", "0.008"),
+    WordRow::new("lump", "list of lumps", "one [[lump]] for each", "[{ link = \"1\", mass = 0.3, at = \"tip\" }]"),
+    WordRow::new("lump.*", "lump *", "", ""),
+    WordRow::new("lump.*.link", "link that carries lump *", OF_LINK, "\"1\""),
+    WordRow::new("lump.*.name", "name of lump *", "a text in quotes", "\"motor\""),
+    WordRow::new("lump.*.mass", "mass of lump *", "", "0.3"),
+    WordRow::new("lump.*.at", "place of lump *", ALONG, "\"tip\""),
+    WordRow::new("lump.*.across", "distance of lump * off its link", "", "0.0"),
+    WordRow::new("lump.*.inertia", "inertia of lump *", "", "0.001"),
+    WordRow::new(
         "counterweight",
         "list of counterweights",
         "one [[counterweight]] for each",
         "[{ link = \"1\", mass = 0.5, at = -0.1 }]",
     ),
-    row("counterweight.*", "counterweight *", "", ""),
-    row("counterweight.*.link", "link that carries counterweight *", OF_LINK, "\"1\""),
-    row("counterweight.*.mass", "mass of counterweight *", "", "0.5"),
-    row("counterweight.*.at", "place of counterweight *", "", "-0.1"),
-    row("counterweight.*.across", "distance of counterweight * off its link", "", "0.0"),
-    row("counterweight.*.radius", "radius of counterweight *", "", "0.03"),
-    row("counterweight.*.fixed", "counterweight * stays", "", "true"),
-    row("closure", "list of closures", "one [[closure]] for each", "[{ a = { link = \"1\" }, b = { link = \"2\" } }]"),
-    row("closure.*", "closure *", "", ""),
-    row("closure.*.a", "first point of closure *", POINT, "{ link = \"1\", at = \"tip\" }"),
-    row("closure.*.b", "second point of closure *", POINT, "{ link = \"2\", at = \"tip\" }"),
-    row("closure.*.a.link", "first link of closure *", OF_LINK, "\"1\""),
-    row("closure.*.b.link", "second link of closure *", OF_LINK, "\"2\""),
-    row("closure.*.a.at", "first point of closure *", ALONG, "\"tip\""),
-    row("closure.*.b.at", "second point of closure *", ALONG, "\"tip\""),
-    row("end_effector", "end effector", POINT, "{ link = \"1\", at = \"tip\" }"),
-    row("end_effector.link", "link of the end effector", OF_LINK, "\"1\""),
-    row("end_effector.at", "place of the end effector", ALONG, "\"tip\""),
-    row("angle", "list of angles", "one [[angle]] for each", "[{ name = \"a1\", to = \"2\", from = \"1\" }]"),
-    row("angle.*", "angle *", "", ""),
-    row("angle.*.name", "name of angle *", OWN_NAME, "\"a1\""),
-    row("angle.*.to", "drive whose angle counts positive in angle *", OF_DRIVE, "\"2\""),
-    row("angle.*.from", "drive whose angle counts negative in angle *", OF_DRIVE, "\"1\""),
-    row("angle.*.offset", "offset of angle *", "-25.2 to 25.2 rad, four turns", "0.0"),
-    row("angle.*.min", "lower limit of angle *", "-25.2 to 25.2 rad, four turns", "0.2"),
-    row("angle.*.max", "upper limit of angle *", "-25.2 to 25.2 rad, four turns", "2.9"),
-    row("limits.*", "limits of angle *", "", "[0.2, 2.9]"),
+    WordRow::new("counterweight.*", "counterweight *", "", ""),
+    WordRow::new("counterweight.*.link", "link that carries counterweight *", OF_LINK, "\"1\""),
+    WordRow::new("counterweight.*.mass", "mass of counterweight *", "", "0.5"),
+    WordRow::new("counterweight.*.at", "place of counterweight *", "", "-0.1"),
+    WordRow::new("counterweight.*.across", "distance of counterweight * off its link", "", "0.0"),
+    WordRow::new("counterweight.*.radius", "radius of counterweight *", "", "0.03"),
+    WordRow::new("counterweight.*.fixed", "counterweight * stays", "", "true"),
+    WordRow::new("closure", "list of closures", "one [[closure]] for each", "[{ a = { link = \"1\" }, b = { link = \"2\" } }]"),
+    WordRow::new("closure.*", "closure *", "", ""),
+    WordRow::new("closure.*.a", "first point of closure *", POINT, "{ link = \"1\", at = \"tip\" }"),
+    WordRow::new("closure.*.b", "second point of closure *", POINT, "{ link = \"2\", at = \"tip\" }"),
+    WordRow::new("closure.*.a.link", "first link of closure *", OF_LINK, "\"1\""),
+    WordRow::new("closure.*.b.link", "second link of closure *", OF_LINK, "\"2\""),
+    WordRow::new("closure.*.a.at", "first point of closure *", ALONG, "\"tip\""),
+    WordRow::new("closure.*.b.at", "second point of closure *", ALONG, "\"tip\""),
+    WordRow::new("end_effector", "end effector", POINT, "{ link = \"1\", at = \"tip\" }"),
+    WordRow::new("end_effector.link", "link of the end effector", OF_LINK, "\"1\""),
+    WordRow::new("end_effector.at", "place of the end effector", ALONG, "\"tip\""),
+    WordRow::new("angle", "list of angles", "one [[angle]] for each", "[{ name = \"a1\", to = \"2\", from = \"1\" }]"),
+    WordRow::new("angle.*", "angle *", "", ""),
+    WordRow::new("angle.*.name", "name of angle *", OWN_NAME, "\"a1\""),
+    WordRow::new("angle.*.to", "drive whose angle counts positive in angle *", OF_DRIVE, "\"2\""),
+    WordRow::new("angle.*.from", "drive whose angle counts negative in angle *", OF_DRIVE, "\"1\""),
+    WordRow::new("angle.*.offset", "offset of angle *", "-25.2 to 25.2 rad, four turns", "0.0"),
+    WordRow::new("angle.*.min", "lower limit of angle *", "-25.2 to 25.2 rad, four turns", "0.2"),
+    WordRow::new("angle.*.max", "upper limit of angle *", "-25.2 to 25.2 rad, four turns", "2.9"),
+    WordRow::new("limits.*", "limits of angle *", "", "[0.2, 2.9]"),
 ];
 
 const LINK: &str = "[{ name = \"1\", drive = \"1\", attach = \"base\", length = 0.5, mass = 1.2, inertia = 0.02, \
@@ -172,9 +158,11 @@ at = \"tip\"";
 const BELT: &str = "a belt from the base is a drive of its own: want a [[drive]] without \"on\", named in drive by the \
                     link that the belt turns; its ratio is the motor's, rotor = { inertia = 1e-4, ratio = 3 } there";
 
+const BELT_LINES: &str = "[[drive]]\nname = \"2\"\nrotor = { inertia = 1e-4, ratio = 3 }";
+
 /// Words that people write, with what they mean in a table: the table, the words, and the meaning.
 const MEANT: &[(&str, &[&str], Meant)] = &[
-    ("", &["belts", "belt", "pulley", "pulleys", "transmission", "transmissions", "gear", "gears"], Meant::Else(BELT)),
+    ("", &["belts", "belt", "pulley", "pulleys", "transmission", "transmissions", "gear", "gears"], Meant::Else(BELT, BELT_LINES)),
     ("", &["drives", "motor", "motors", "actuator", "actuators"], Meant::Key("drive")),
     ("", &["links", "body", "bodies", "bar", "bars"], Meant::Key("link")),
     ("", &["length"], Meant::Key("lengths")),
@@ -186,9 +174,12 @@ const MEANT: &[(&str, &[&str], Meant)] = &[
     (
         "",
         &["joint", "joints"],
-        Meant::Else("pins are stated where links meet: attach of a [[link]], and [[closure]] where a loop closes"),
+        Meant::Else(
+            "pins are stated where links meet: attach of a [[link]], and [[closure]] where a loop closes",
+            "attach = { link = \"1\", at = \"tip\" }",
+        ),
     ),
-    ("link.*", &["belt", "pulley", "transmission", "gear", "ratio"], Meant::Else(BELT)),
+    ("link.*", &["belt", "pulley", "transmission", "gear", "ratio"], Meant::Else(BELT, BELT_LINES)),
     ("link.*", &["weight", "m"], Meant::Key("mass")),
     ("link.*", &["moi", "moment_of_inertia", "izz", "i"], Meant::Key("inertia")),
     ("link.*", &["cm", "cog", "centre_of_mass", "center_of_mass", "com_x", "lc", "l_c"], Meant::Key("com")),
@@ -198,11 +189,14 @@ const MEANT: &[(&str, &[&str], Meant)] = &[
     ("link.*", &["sign"], Meant::Key("direction")),
     ("link.*", &["l"], Meant::Key("length")),
     ("link.*", &["height", "z"], Meant::Key("axial")),
-    ("drive.*", &["belt", "pulley", "transmission"], Meant::Else(BELT)),
+    ("drive.*", &["belt", "pulley", "transmission"], Meant::Else(BELT, BELT_LINES)),
     (
         "drive.*",
         &["gear", "ratio", "gear_ratio", "reduction", "inertia", "rotor_inertia"],
-        Meant::Else("gear and rotor of a motor are stated together: rotor = { inertia = 1e-4, ratio = 50 }"),
+        Meant::Else(
+            "gear and rotor of a motor are stated together: rotor = { inertia = 1e-4, ratio = 50 }",
+            "rotor = { inertia = 1e-4, ratio = 50 }",
+        ),
     ),
     ("drive.*", &["parent", "stator", "carrier", "attach"], Meant::Key("on")),
     ("drive.*", &["torque", "max_torque", "effort"], Meant::Key("torque_limit")),
@@ -216,18 +210,12 @@ const MEANT: &[(&str, &[&str], Meant)] = &[
 pub struct MachineWords;
 
 fn row_of(path: &KeyPath) -> Option<&'static WordRow> {
-    ROWS.iter().find(|row| path.fits(row.path))
+    WordRow::of(ROWS, path)
 }
 
 impl Vocabulary for MachineWords {
     fn name(&self, path: &KeyPath) -> Option<String> {
-        let row = row_of(path)?;
-        let at = row.path.split('.').position(|word| word == "*");
-        Some(match at.and_then(|at| path.0.get(at)) {
-            Some(KeyStep::Key(name) | KeyStep::Named(_, name)) => row.name.replacen('*', &quote_clipped(name), 1),
-            Some(KeyStep::At(i)) => row.name.replacen('*', &(i + 1).to_string(), 1),
-            None => row.name.to_owned(),
-        })
+        row_of(path).map(|row| row.name_at(path))
     }
 
     fn want(&self, path: &KeyPath) -> Option<String> {

@@ -298,6 +298,11 @@ fn free_name(is_taken: impl Fn(&str) -> bool) -> String {
 
 /// Returns a length for a message: millimetres to a tenth.
 pub(super) fn mm(metres: f64) -> String {
-    let tenths = (metres * 1e4).round() / 10.0;
-    format!("{tenths} mm")
+    format!("{} mm", tenths(metres))
+}
+
+/// Returns a length in whole tenths of a millimetre, mm.
+pub(super) fn tenths(metres: f64) -> f64 {
+    // Adding zero makes a negative zero positive.
+    (metres * 1e4).round() / 10.0 + 0.0
 }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::body::Body;
-use super::drawing::{BarId, PinId, Sketch, mm};
+use super::drawing::{BarId, PinId, Sketch, mm, tenths};
 use super::template::Template;
 use crate::machine::{Lump, Part, Rotor};
 
@@ -251,7 +251,7 @@ impl SketchStep {
             Self::New { template } => format!("new drawing: {}", template.title()),
             Self::Bar { name: Some(name), .. } => format!("draw bar {name}"),
             Self::Bar { .. } => "draw a bar".into(),
-            Self::MovePin { to: [x, y], .. } => format!("move pin to {x:.3}, {y:.3} m"),
+            Self::MovePin { to: [x, y], .. } => format!("move pin to {}, {}", tenths(*x), mm(*y)),
             Self::Split { along, .. } => format!("split bar at {}", mm(*along)),
             Self::Join { .. } => "make two bars one".into(),
             Self::Weld { .. } => "make two pins one".into(),
