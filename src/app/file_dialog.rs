@@ -72,17 +72,13 @@ impl FilePurpose {
         }
     }
 
-    /// Returns the title of the dialog. For a machine or an export it lists the file extensions to choose from.
-    pub(super) fn title(&self) -> String {
-        let [title, ..] = self.words();
-        match self {
-            Self::Machine => format!("{title}: .toml .{}", form::endings().join(" .")),
-            Self::Export(wanted) => match &wanted.naming().1[..] {
-                [] => format!("{title}: a folder"),
-                endings => format!("{title}: .{}", endings.join(" .")),
-            },
-            _ => title.into(),
-        }
+    /// Says how the name may end, if there is a choice that the dialog does not list otherwise.
+    pub(super) fn endings(&self) -> Option<String> {
+        let Self::Export(wanted) = self else { return None };
+        Some(match &wanted.naming().1[..] {
+            [] => "a folder".into(),
+            endings => format!("the name ends in .{}", endings.join(" or .")),
+        })
     }
 }
 

@@ -30,9 +30,9 @@ pub enum Framing {
     /// To be framed in the next pass.
     #[default]
     Pending,
-    /// Framed to this content, in a scene of this size, points. A scene of another size is framed anew; motion of the
-    /// content does not change the view.
-    Framed(Arc<ViewContent>, [f32; 2]),
+    /// Framed to this content, in a scene of this width and height under a message of this height, points. A scene of
+    /// another size is framed anew; motion of the content does not change the view.
+    Framed(Arc<ViewContent>, [f32; 3]),
     /// Moved by the user.
     Manual,
 }

@@ -326,6 +326,15 @@ impl Edit {
         self.title_after(None)
     }
 
+    /// Whether it changes the machine, and nothing else.
+    pub(super) fn is_of_machine(&self) -> bool {
+        match self {
+            Self::Sketch(_) => true,
+            Self::Set { change } => change.keys().all(|key| is_of_machine(key)),
+            _ => false,
+        }
+    }
+
     /// Describes the edit; `inverse` undoes it, and tells from where points are moved.
     pub(super) fn title_after(&self, inverse: Option<&Self>) -> String {
         match self {
@@ -365,6 +374,9 @@ fn list_of(kind: &str, value: &Value) -> String {
 /// Maximum number of significant digits of a number in the description of a change.
 const TITLE_DIGITS: usize = 5;
 
+/// Maximum number of settings in the description of a change.
+const MOST_IN_TITLE: usize = 4;
+
 /// Describes a change of settings; `before` is the task before it, if it is known.
 fn title_of(change: &Table, before: Option<&Table>) -> String {
     let task = change.get("task").and_then(Value::as_table).filter(|_| change.len() == 1);
@@ -400,5 +412,15 @@ fn title_of(change: &Table, before: Option<&Table>) -> String {
         let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
         format!("{words} to {typed}{unit}")
     };
-    format!("set {}", change::leaves(change).into_iter().map(one).collect::<Vec<_>>().join(", "))
+    // The lists of parts and counterweights say most about a change of many settings.
+    let mut all = change::leaves(change);
+    if all.len() > MOST_IN_TITLE {
+        all.sort_by_key(|(path, _)| path.contains('.'));
+    }
+    let rest = match all.len() {
+        n if n > MOST_IN_TITLE => format!(" and {} more", n - MOST_IN_TITLE + 1),
+        _ => String::new(),
+    };
+    let shown = if rest.is_empty() { all.len() } else { MOST_IN_TITLE - 1 };
+    format!("set {}{rest}", all.into_iter().take(shown).map(one).collect::<Vec<_>>().join(", "))
 }

@@ -72,7 +72,7 @@ impl AppState {
             keys::read(ui.ctx(), &self.session, &self.view_state, &mut commands);
         }
         let presents = self.view_state.arrangement.layout == Layout::Present;
-        let facts = ScenarioFacts::of(&queries, &self.session);
+        let facts = ScenarioFacts::of(&queries, &self.session, self.machine_of_file());
         if !presents {
             let line = (&marks, self.pace.lagging_rate());
             top::show(ui, &self.session, &facts, &self.saving.recent, line, &self.view_state, &mut commands);
@@ -149,7 +149,7 @@ impl AppState {
             intro: self.intro.as_ref().filter(|_| !presents),
             other: other.as_deref(),
             weights: &chosen,
-            has_news: news.is_some(),
+            news: news.as_ref(),
         };
         let scene = match &drawing {
             Some(facts) => {

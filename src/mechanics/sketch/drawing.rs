@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::body::Body;
 use crate::machine::{Angle, Counterweight, Drive, Lump, Material, Part, Payload};
 use crate::planar::{Vector, dot};
+use stillbase_settings::number::plain;
 
 /// Least distance of two pins of one bar, m.
 pub(super) const MIN_DISTANCE: f64 = 1e-4;
@@ -259,14 +260,14 @@ impl Sketch {
     /// Puts a pin at a place, m.
     pub(super) fn put(&mut self, id: PinId, to: Vector) {
         if let Some(pin) = self.pin_mut(id) {
-            pin.at = [to.re, to.im];
+            pin.at = [to.re, to.im].map(plain);
         }
     }
 
     /// Adds a pin at a place, m.
     pub(super) fn add_pin(&mut self, at: Vector) -> PinId {
         let id = PinId(self.next_id());
-        self.pins.push(Pin { id, at: [at.re, at.im] });
+        self.pins.push(Pin { id, at: [at.re, at.im].map(plain) });
         id
     }
 
