@@ -89,6 +89,28 @@ fn edit_of(table: &Table) -> Result<Edit, String> {
     Edit::deserialize(table.clone()).map_err(|error| error.message().to_owned())
 }
 
+/// Keys that say which other keys an edit has.
+const KINDS: [&str; 2] = ["do", "draw"];
+
+/// Returns the problem of an edit, without its step, of which the reader says `why`.
+fn problem_of(mut table: Table, why: &str) -> Problem {
+    let lacks = KINDS.into_iter().find(|kind| why == format!("missing field `{kind}`"));
+    if let Some(kind) = lacks {
+        // The reader lists the kinds where it is given none of them.
+        table.insert(kind.into(), "".into());
+        let known = edit_of(&table).err().unwrap_or_default();
+        let known = known.split_once("one of ").map_or_else(String::new, |(_, known)| known.replace('`', ""));
+        let wrong = Wrong::Kind(format!("is missing: want one of {known}"));
+        return Problem { path: KeyPath::of(Some(kind)), wrong };
+    }
+    let key = wrong_key(&table, why);
+    let is_kind = key.is_some_and(|key| KINDS.contains(&key));
+    match Problem::said(KeyPath::of(key), why) {
+        Problem { path, wrong: Wrong::Value(said) } if is_kind => Problem { path, wrong: Wrong::Kind(said) },
+        problem => problem,
+    }
+}
+
 /// Returns the key whose value the reader refuses, because it reads on without it. The reader itself names none.
 fn wrong_key<'a>(table: &'a Table, why: &str) -> Option<&'a str> {
     if why.starts_with("missing field") || why.starts_with("unknown field") {
@@ -99,9 +121,8 @@ fn wrong_key<'a>(table: &'a Table, why: &str) -> Option<&'a str> {
         edit_of(&rest).err().is_none_or(|other| other != why)
     };
     // Without its kind, an edit is another one.
-    let kinds = ["do", "draw"];
-    let found = table.keys().filter(|key| !kinds.contains(&key.as_str())).find(reads_on);
-    found.map(String::as_str).or_else(|| kinds.into_iter().rev().find(|kind| table.contains_key(*kind)))
+    let found = table.keys().filter(|key| !KINDS.contains(&key.as_str())).find(reads_on);
+    found.map(String::as_str).or_else(|| KINDS.into_iter().rev().find(|kind| table.contains_key(*kind)))
 }
 
 impl<'de> Deserialize<'de> for TimedEdit {
@@ -134,7 +155,7 @@ impl TimedEdit {
         })?;
         let edit = match older::settings(&mut table).map_err(|why| whole(&why))? {
             Some(change) => Edit::Set { change },
-            None => edit_of(&table).map_err(|why| Problem::said(KeyPath::of(wrong_key(&table, &why)), &why))?,
+            None => edit_of(&table).map_err(|why| problem_of(table, &why))?,
         };
         Ok(Self { step, edit })
     }

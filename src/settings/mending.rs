@@ -38,6 +38,9 @@ pub enum Wrong {
     UnknownKey(Vec<String>),
     /// The value is wrong, in words that follow the name of the key.
     Value(String),
+    /// The value, by which its table has other keys, is wrong or missing, in words that follow the name of the key.
+    /// Without it nothing else of the table can be judged.
+    Kind(String),
     /// The value is wrong, in a whole sentence.
     Said(String),
     /// The value is a name that nothing has: a whole sentence, and the names that would be right.
@@ -121,7 +124,7 @@ impl Problem {
                 format!("{} is missing{}", called(&path, words), want(&path))
             }
             Wrong::UnknownKey(known) => self.unknown_key(known, words),
-            Wrong::Value(said) => {
+            Wrong::Value(said) | Wrong::Kind(said) => {
                 let want = if said.contains("want ") { String::new() } else { want(&self.path) };
                 let verb = if said.starts_with("is ") || said.starts_with("has ") { " " } else { ": " };
                 match self.path.0.is_empty() {
@@ -405,6 +408,7 @@ impl Mending<'_> {
                 None => self.leave_out(&key),
             },
             Wrong::Value(_) | Wrong::Said(_) => self.leave_out(&key),
+            Wrong::Kind(_) => key.parent().is_some_and(|table| self.leave_out(&table)),
         }
     }
 

@@ -400,7 +400,6 @@ fn a_bar_by_numbers_closes_a_loop_without_the_pointer() {
         }
         h.run_steps(2);
     }
-    h.get_by_label("add the new bar").click();
     h.run_steps(4);
     let closed = sketch(&h);
     assert_eq!((closed.bars.len(), closed.bars[3].tip), (4, closed.bars[2].tip), "on the pin that is there");

@@ -182,10 +182,10 @@ fn older_sessions_still_open() {
     let hidden = TimedEdit::from_table(hidden).expect("an edit").edit;
     assert_eq!(hidden, Edit::set("compare_b", DEFAULT_WORD));
     for (entry, words) in [
-        ("do = \"set-plant\"", "missing field `change`"),
+        ("do = \"set-plant\"", "change is missing"),
         ("do = \"set-plant\"\nchange = 3", "want a table"),
         ("do = \"set-machine\"\nkey = 3\nvalue = \"1\"", "key: want a text"),
-        ("do = \"set-time\"\ntime = 1.0\nmore = 2", "unknown field `more`"),
+        ("do = \"set-time\"\ntime = 1.0\nmore = 2", "has no key \"more\""),
     ] {
         let table: Table = format!("step = 0\n{entry}").parse().expect("TOML");
         let message = TimedEdit::from_table(table).expect_err(entry);

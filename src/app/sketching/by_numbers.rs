@@ -80,16 +80,16 @@ fn row<T>(ui: &mut Ui, p: &Palette, words: &str, add: impl FnOnce(&mut Ui) -> T)
 /// one then begins at its end.
 fn bar(ui: &mut Ui, sketch: &Sketch, p: &Palette, numbers: &mut Numbers, commands: &mut Vec<Command>) {
     row(ui, p, "from", |ui| pin_list(ui, sketch, &mut numbers.from, fields::BAR_FROM, commands));
-    let mut number = |words, label, own_unit, speed, range: RangeInclusive<f64>, value: &mut f64| -> Response {
+    let mut number = |words, label, (own_unit, decimals), speed, range: RangeInclusive<f64>, value: &mut f64| {
         let tip = "Of the bar that is added; Enter goes on";
-        let field = NumberRow { label, unit: own_unit, tip, decimals: 4, speed, slide: range.clone(), range };
+        let field = NumberRow { label, unit: own_unit, tip, decimals, speed, slide: range.clone(), range };
         row(ui, p, words, |ui| {
             write_unit(ui, p, own_unit);
             field.number(ui, value)
         })
     };
-    let length = number("length", fields::BAR_LENGTH, "m", 1e-3, SHORTEST_M..=LONGEST_M, &mut numbers.metres);
-    let angle = number("angle from x", fields::BAR_ANGLE, "rad", 1e-2, -TAU..=TAU, &mut numbers.radians);
+    let length = number("length", fields::BAR_LENGTH, ("m", 4), 1e-3, SHORTEST_M..=LONGEST_M, &mut numbers.metres);
+    let angle = number("angle from x", fields::BAR_ANGLE, ("rad", 3), 1e-2, -TAU..=TAU, &mut numbers.radians);
     let add = row(ui, p, "Enter adds it", |ui| {
         let add = ui.button("add");
         name(&add, "add the new bar");

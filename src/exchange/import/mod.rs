@@ -21,6 +21,8 @@ pub use refusal::ImportError;
 
 use roxmltree::{Document, ParsingOptions};
 
+use stillbase_settings::fault::Faults;
+
 /// Maximum number of XML nodes of a file: more would take gigabytes.
 const MAX_NODES: u32 = 400_000;
 
@@ -41,4 +43,26 @@ pub fn import(text: &str) -> Result<ImportedMachine, ImportError> {
         _ => Err(refusal::element_error(root, "neither a robot nor a model", "<robot> of URDF or <mujoco> of MJCF")),
     };
     linkage.and_then(|linkage| family::imported(&linkage)).map_err(|error| error.located(text))
+}
+
+/// Maximum number of times that a file is read to find its faults.
+const MAX_ROUNDS: usize = 100;
+
+/// Returns the faults of a text that [`import`] has refused for `first`. Values that are wrong or missing are all told.
+/// What else is wrong is told if it is the first: behind values that were made up it might follow from these.
+pub fn faults(text: &str, first: ImportError) -> Faults {
+    let mut found = vec![first.fault()];
+    let mut mended = first.mended(text);
+    for _ in 0..MAX_ROUNDS {
+        let Some(text) = mended.take() else { break };
+        let Err(error) = import(&text) else { return Faults::of(found, false) };
+        mended = error.mended(&text);
+        let fault = error.fault();
+        if mended.is_none() || found.contains(&fault) {
+            return Faults::of(found, true);
+        }
+        found.push(fault);
+    }
+    let is_cut = found.len() > 1;
+    Faults::of(found, is_cut)
 }

@@ -105,7 +105,7 @@ impl Sketch {
             drive: String::new(),
             attach: Attach::Base("base".into()),
             direction: 1,
-            length: Length::Metres(self.length(bar)),
+            length: Length::Metres(rounded(self.length(bar))),
             mass: 1.0,
             inertia: 1.0,
             com: 0.0,
