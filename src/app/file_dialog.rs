@@ -65,7 +65,7 @@ impl FilePurpose {
             Self::Save => ["Save the session", "Save", "session.toml"],
             Self::Record => ["Record for the Rerun viewer", "Record", "run.rrd"],
             Self::Export(wanted) => [wanted.title(), "Save", wanted.example()],
-            Self::Machine => ["Take along", "Save", "machine.urdf"],
+            Self::Machine => ["Take the machine along", "Save", "machine.urdf"],
             Self::Plot(_, PlotFile::Csv) => ["Save the values of the time shown", "Save", "plot.csv"],
             Self::Plot(_, PlotFile::Svg) => ["Save the plot as a drawing", "Save", "plot.svg"],
             Self::Plot(_, PlotFile::Png) => ["Save the plot as a picture", "Save", "plot.png"],

@@ -3,12 +3,12 @@
 use egui::{Popup, PopupCloseBehavior, RectAlign, RichText, ScrollArea, Ui, Vec2, vec2};
 
 use super::actions::key_of_switch;
-use super::{fit, focus};
 use super::icon::{Icon, IconButton, dot};
 use super::notation;
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, SessionCommand, Switch, ViewChange, ViewState};
+use super::{fit, focus};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::{Fork, Session};
 

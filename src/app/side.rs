@@ -16,7 +16,8 @@ use super::notation;
 use super::theme::{bold, colour, plain};
 use super::widgets::{NumberRow, name, note, section, send, unit};
 use super::{
-    Command, GuidePage, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, fit, focus, guide, path, place, set_b,
+    Command, GuidePage, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, fit, focus, guide, path, place,
+    set_b,
 };
 use stillbase_mechanics::machine::MAX_ANGLE;
 use stillbase_picture::scene::course::target_handle;

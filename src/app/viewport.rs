@@ -179,7 +179,13 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
 pub fn still(content: SceneContent<'_>, size: [f32; 2], view_state: &mut ViewState) -> (Scene, Camera) {
     let SceneContent { session, views, .. } = content;
     let rect = Rect::from_min_size(egui::Pos2::ZERO, size.into());
-    framing::keep_framed(rect, (&[], None), views, |view| views.content(view, session.frame(), &motion(session)), view_state);
+    framing::keep_framed(
+        rect,
+        (&[], None),
+        views,
+        |view| views.content(view, session.frame(), &motion(session)),
+        view_state,
+    );
     let options = ViewOptions { show_hints: false, ..options(content, view_state) };
     let camera = *view_state.camera();
     (views.scene(view_state.view, session.frame(), &options, &camera), camera)

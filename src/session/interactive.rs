@@ -202,7 +202,8 @@ impl Session {
     /// Returns whether a file of the machine holds all that the user has changed: no edit concerns anything else, there is
     /// no bookmark, note or branch, and a drawing is complete.
     pub fn changes_machine_only(&self) -> bool {
-        let kept = [self.document.bookmarks.is_empty(), self.document.notes.is_empty(), self.document.branches.is_empty()];
+        let kept =
+            [self.document.bookmarks.is_empty(), self.document.notes.is_empty(), self.document.branches.is_empty()];
         let scenario = self.scenario();
         let is_drawn = || match &scenario.sketch {
             Some(sketch) => resolve(sketch).machine.as_ref() == Some(&scenario.machine),

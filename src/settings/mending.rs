@@ -317,10 +317,14 @@ impl Mending<'_> {
     /// Returns the fault of a problem, with its place in the file as stated.
     fn fault(&self, problem: &Problem) -> Fault {
         // Elements of lists that were left out have changed the positions of others.
-        let stated = |path: &KeyPath| {
+        let found = |path: &KeyPath| {
             let span = self.file.span(path).filter(|_| self.file.at(path).is_some());
-            let found = span.map(|span| self.stated.path(&span)).filter(|found| found.0.len() == path.0.len());
-            self.stated.named(&found.unwrap_or_else(|| path.clone()))
+            span.map(|span| self.stated.path(&span)).filter(|found| found.0.len() == path.0.len())
+        };
+        let stated = |path: &KeyPath| {
+            // A key that is missing belongs to a table that is there.
+            let in_table = || Some(found(&path.parent()?)?.key(path.last_key()?));
+            self.stated.named(&found(path).or_else(in_table).unwrap_or_else(|| path.clone()))
         };
         let said = Problem { path: stated(&problem.path), wrong: problem.wrong.clone() };
         let place = match problem.wrong {
@@ -408,7 +412,7 @@ impl Mending<'_> {
                 None => self.leave_out(&key),
             },
             Wrong::Value(_) | Wrong::Said(_) => self.leave_out(&key),
-            Wrong::Kind(_) => key.parent().is_some_and(|table| self.leave_out(&table)),
+            Wrong::Kind(_) => key.parent().is_some_and(|table| self.file.remove(&table)),
         }
     }
 

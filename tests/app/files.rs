@@ -653,7 +653,7 @@ fn a_machine_from_a_file_is_its_own_and_keeps_the_time() {
     assert_eq!(shown(&h, "Machine"), "two-drive");
     h.state_mut().app_state_mut().carry_out(SessionCommand::Seek(0.25));
     h.run_steps(4);
-    let mut look = |h: &mut Window| {
+    let look = |h: &mut Window| {
         h.state_mut().app_state_mut().look_at_file(1.0);
         h.run_steps(6);
     };

@@ -26,7 +26,7 @@ fn all_faults_of_a_scenario_are_told_at_once() {
         CASE.replace("time = 1.0", "tiem = 1.0")
     );
     let found = faults(&text);
-    let want = ["tilte", "task.tiem", "control.kp", "control.law", "base.mass", "edit[1].do", "edit[3].c", "edit[3].b"];
+    let want = ["tilte", "task.tiem", "control.kp", "control.law", "base.mass", "edit[1].do", "edit[3].b", "edit[3].c"];
     assert_eq!(keys(&found), want, "{:#?}", found.list);
     let of = |key: &str| found.list.iter().find(|fault| fault.key == key).expect("it is told");
     assert!(of("tilte").text.contains("title (nearest)"));
@@ -114,7 +114,12 @@ fn faults_of_edits_and_tolerances_are_named_plainly() {
             "draw = \"length\"",
         ),
         ("edit[5].bar", "bar = \"a\"", "bar of edit 5 (edit[5].bar) is the text \"a\": want a whole number", "bar = 1"),
-        ("edit[6].b", "[[edit]]\nstep = 1\ndo = \"slide-b\"", "pose constant of edit 6 (edit[6].b) is missing", "b = 2.4"),
+        (
+            "edit[6].b",
+            "[[edit]]\nstep = 1\ndo = \"slide-b\"",
+            "pose constant of edit 6 (edit[6].b) is missing",
+            "b = 2.4",
+        ),
         ("edit[7].do", "[[edit]]\nstep = 7", "kind of edit 7 (edit[7].do) is missing: want one of drag-target", ""),
     ];
     assert_eq!(keys(&found), wanted.map(|(key, ..)| key), "{:#?}", found.list);

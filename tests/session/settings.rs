@@ -15,7 +15,8 @@ fn case_3() -> Scenario {
 
 /// The names of keys in the words of whoever reads a file and finds another.
 fn expected(message: &str) -> BTreeSet<String> {
-    message.split('`').skip(3).step_by(2).map(str::to_owned).collect()
+    let listed = message.split_once("one of ").map_or("", |(_, list)| list);
+    listed.split(" (").next().unwrap_or_default().split(", ").map(str::to_owned).collect()
 }
 
 /// The next parts of all keys that begin with a path.

@@ -95,9 +95,8 @@ fn bar(ui: &mut Ui, sketch: &Sketch, p: &Palette, numbers: &mut Numbers, command
         name(&add, "add the new bar");
         add
     });
-    let enters = |field: &Response| {
-        field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)) && !has_refused(ui.ctx())
-    };
+    let enters =
+        |field: &Response| field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)) && !has_refused(ui.ctx());
     if enters(&length) {
         focus::ask(ui.ctx(), fields::BAR_ANGLE);
     }

@@ -51,18 +51,29 @@ const MAX_ROUNDS: usize = 100;
 /// Returns the faults of a text that [`import`] has refused for `first`. Values that are wrong or missing are all told.
 /// What else is wrong is told if it is the first: behind values that were made up it might follow from these.
 pub fn faults(text: &str, first: ImportError) -> Faults {
-    let mut found = vec![first.fault()];
-    let mut mended = first.mended(text);
+    let (mut found, mut mended) = (vec![first.fault()], first.mended(text));
+    let mut is_cut = false;
     for _ in 0..MAX_ROUNDS {
-        let Some(text) = mended.take() else { break };
-        let Err(error) = import(&text) else { return Faults::of(found, false) };
-        mended = error.mended(&text);
-        let fault = error.fault();
-        if mended.is_none() || found.contains(&fault) {
-            return Faults::of(found, true);
+        let Some(Err(error)) = mended.take().map(|text| import(&text).map_err(|error| (error.mended(&text), error)))
+        else {
+            break;
+        };
+        let fault = error.1.fault();
+        is_cut = error.0.is_none() || found.contains(&fault);
+        if is_cut {
+            break;
         }
+        mended = error.0;
         found.push(fault);
     }
-    let is_cut = found.len() > 1;
+    let options = ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, ..ParsingOptions::default() };
+    let document = Document::parse_with_options(text, options).ok();
+    let robot = document.as_ref().map(Document::root_element).filter(|root| root.has_tag_name("robot"));
+    for error in robot.map(urdf::wrong_values).unwrap_or_default() {
+        let fault = error.located(text).fault();
+        if !found.contains(&fault) {
+            found.push(fault);
+        }
+    }
     Faults::of(found, is_cut)
 }

@@ -5,7 +5,6 @@ use super::keys::KeyRow;
 use stillbase_settings::mending::{Meant, Vocabulary, called, with_key};
 use stillbase_settings::word_row::WordRow;
 
-
 const OF_DRIVE: &str = "the name of a drive";
 const OF_LINK: &str = "the name of a link";
 const POINT: &str = "a point of a link: { link = \"…\", at = \"tip\" }";
@@ -59,7 +58,12 @@ const ROWS: &[WordRow] = &[
     WordRow::new("link.*.com", "centre of mass along link *", "", "0.25"),
     WordRow::new("link.*.com_normal", "centre of mass off link *", "", "0.0"),
     WordRow::new("link.*.axial", "height of link *", "", "0.0"),
-    WordRow::new("material", "list of materials", "one [[material]] for each", "[{ name = \"bronze\", density = 8800.0 }]"),
+    WordRow::new(
+        "material",
+        "list of materials",
+        "one [[material]] for each",
+        "[{ name = \"bronze\", density = 8800.0 }]",
+    ),
     WordRow::new("material.*", "material *", "", ""),
     WordRow::new("material.*.name", "name of material *", OWN_NAME, "\"bronze\""),
     WordRow::new("material.*.density", "density of *", "", "8800.0"),
@@ -110,7 +114,12 @@ const ROWS: &[WordRow] = &[
     WordRow::new("counterweight.*.across", "distance of counterweight * off its link", "", "0.0"),
     WordRow::new("counterweight.*.radius", "radius of counterweight *", "", "0.03"),
     WordRow::new("counterweight.*.fixed", "counterweight * stays", "", "true"),
-    WordRow::new("closure", "list of closures", "one [[closure]] for each", "[{ a = { link = \"1\" }, b = { link = \"2\" } }]"),
+    WordRow::new(
+        "closure",
+        "list of closures",
+        "one [[closure]] for each",
+        "[{ a = { link = \"1\" }, b = { link = \"2\" } }]",
+    ),
     WordRow::new("closure.*", "closure *", "", ""),
     WordRow::new("closure.*.a", "first point of closure *", POINT, "{ link = \"1\", at = \"tip\" }"),
     WordRow::new("closure.*.b", "second point of closure *", POINT, "{ link = \"2\", at = \"tip\" }"),
@@ -162,7 +171,11 @@ const BELT_LINES: &str = "[[drive]]\nname = \"2\"\nrotor = { inertia = 1e-4, rat
 
 /// Words that people write, with what they mean in a table: the table, the words, and the meaning.
 const MEANT: &[(&str, &[&str], Meant)] = &[
-    ("", &["belts", "belt", "pulley", "pulleys", "transmission", "transmissions", "gear", "gears"], Meant::Else(BELT, BELT_LINES)),
+    (
+        "",
+        &["belts", "belt", "pulley", "pulleys", "transmission", "transmissions", "gear", "gears"],
+        Meant::Else(BELT, BELT_LINES),
+    ),
     ("", &["drives", "motor", "motors", "actuator", "actuators"], Meant::Key("drive")),
     ("", &["links", "body", "bodies", "bar", "bars"], Meant::Key("link")),
     ("", &["length"], Meant::Key("lengths")),

@@ -326,7 +326,13 @@ impl Stage {
         let target = [(DrawnFrame::from(frame).target, z), (base.at, 0.0)];
         let points = |(p, z): (Vector, f64)| [p.re, p.im, z];
         ViewContent {
-            first: links.chain(discs).chain(workspace(frame.b_reference)).chain(waypoints).chain(target).map(points).collect(),
+            first: links
+                .chain(discs)
+                .chain(workspace(frame.b_reference))
+                .chain(waypoints)
+                .chain(target)
+                .map(points)
+                .collect(),
             then: self.compared.into_iter().flat_map(workspace).map(points).collect(),
         }
     }

@@ -85,7 +85,7 @@ impl Scenario {
                     // The part has said so with the names of its keys.
                     why if why.contains(&format!("{part}.")) => SettingError::Said(why),
                     why if why.starts_with("unknown field") => {
-                        SettingError::Said(Problem::said(KeyPath::of(Some(part)), &why).text(&ScenarioWords))
+                        SettingError::Said(Problem::said(table_of(part, value, &why), &why).text(&ScenarioWords))
                     }
                     why => SettingError::Part { part: part.clone(), why },
                 })
@@ -349,6 +349,18 @@ fn none_as_default(at: &str, change: &Table) -> Table {
         (key.clone(), value)
     };
     change.iter().map(none_as_default).collect()
+}
+
+/// Returns the table of a part that has a key which a reader does not know: the reader names the key alone.
+fn table_of(part: &str, value: &Value, why: &str) -> KeyPath {
+    let unknown = why.split('`').nth(1).unwrap_or_default();
+    let leaves = change::single_change(part, value.clone());
+    let mut above = change::leaves(&leaves).into_iter().filter_map(|(path, _)| {
+        let words: Vec<&str> = path.split('.').collect();
+        let at = words.iter().position(|word| *word == unknown).filter(|at| *at > 0)?;
+        Some(KeyPath::of_key(&words[..at].join(".")))
+    });
+    above.next().unwrap_or_else(|| KeyPath::of(Some(part)))
 }
 
 /// Returns an error for the first value in a part that its key does not accept.

@@ -352,7 +352,8 @@ fn no_spread(key: &str, value: &toml::Value) -> Wrong {
     }
 }
 
-const WANT_IN_FILE: &str = "want { normal = 0.0005 }, a standard deviation, or { uniform = \"1%\" }, a half-width, 0 or more";
+const WANT_IN_FILE: &str =
+    "want { normal = 0.0005 }, a standard deviation, or { uniform = \"1%\" }, a half-width, 0 or more";
 
 /// Returns a spread of a file as it is written on the command line: `normal:0.0005`.
 fn in_words(value: &toml::Value) -> Option<String> {
@@ -378,9 +379,7 @@ fn whole(key: &Key, value: &toml::Value) -> Result<u64, String> {
         true => format!(" from {} to {}", range.low(), range.high()),
         false => format!(", {} or more", range.low()),
     };
-    whole.ok_or_else(|| {
-        format!("is {}: want a whole number{}", quote_clipped(&change::typed(value)), ends())
-    })
+    whole.ok_or_else(|| format!("is {}: want a whole number{}", quote_clipped(&change::typed(value)), ends()))
 }
 
 /// Reads a number in the range of its key.
