@@ -8,7 +8,6 @@ use egui::{Align2, Id, RichText};
 use super::theme::{colour, plain};
 use super::{Command, ViewState, WindowCommand};
 use stillbase_files::stamp::FileStamp;
-use stillbase_mechanics::machine::Machine;
 use stillbase_query::Shared;
 use stillbase_session::Session;
 use stillbase_session::scenario::Scenario;
@@ -42,9 +41,9 @@ impl WatchedFile {
         Self { file, since, stated, stamp, changing: None, unseen_s: 0.0, asks: false }
     }
 
-    /// Returns the machine as the file states it.
-    pub fn machine(&self) -> &Machine {
-        &self.stated.0.machine
+    /// Returns the scenario as the file states it.
+    pub fn stated(&self) -> &Scenario {
+        &self.stated.0
     }
 
     /// Returns the file.

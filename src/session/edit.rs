@@ -14,7 +14,7 @@ use stillbase_mechanics::sketch::SketchStep;
 use stillbase_settings::change;
 use stillbase_settings::key::{Effect, Key};
 use stillbase_settings::mending::{Problem, Wrong};
-use stillbase_settings::number::at_most_digits;
+use stillbase_settings::number::{at_most_digits, counted};
 use stillbase_settings::range::{RangeCheck, shortened};
 
 /// One change. It can be saved, replayed and undone.
@@ -378,7 +378,9 @@ impl Edit {
 fn counterweights(value: &Value) -> String {
     let mass = |weight: &Value| weight.get("mass").and_then(change::number).unwrap_or_default();
     match value.as_array() {
-        Some(all) => format!("counterweights to {:.2} kg on {} links", all.iter().map(mass).sum::<f64>(), all.len()),
+        Some(all) => {
+            format!("counterweights to {:.2} kg on {}", all.iter().map(mass).sum::<f64>(), counted(all.len(), "link"))
+        }
         None => "counterweights to none".into(),
     }
 }

@@ -310,7 +310,8 @@ impl Mending<'_> {
             Some([]) => *at == span,
             // What stands within something that was made up was made up, too.
             Some(_) => self.file.at(path).is_some(),
-            None => false,
+            // What is said of an entry of a list may follow from what was made up in it.
+            None => matches!(key.0.last(), Some(KeyStep::At(_))) && path.0.starts_with(&key.0),
         })
     }
 

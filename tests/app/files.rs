@@ -645,6 +645,7 @@ fn a_machine_from_a_file_is_its_own_and_keeps_the_time() {
     drop_on(&mut h, &file);
     h.run_steps(4);
     assert_eq!(shown(&h, "Machine"), "two-drive");
+    assert!(!shown(&h, "Scenario").contains("edited"), "{}", shown(&h, "Scenario"));
     h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::set("link.1.mass", 2.5)));
     h.run_steps(4);
     assert_eq!(shown(&h, "Machine"), "two-drive (edited)");

@@ -72,7 +72,7 @@ impl AppState {
             keys::read(ui.ctx(), &self.session, &self.view_state, &mut commands);
         }
         let presents = self.view_state.arrangement.layout == Layout::Present;
-        let facts = ScenarioFacts::of(&queries, &self.session, self.machine_of_file());
+        let facts = ScenarioFacts::of(&queries, &self.session, self.stated_in_file());
         if !presents {
             let line = (&marks, self.pace.lagging_rate());
             top::show(ui, &self.session, &facts, &self.saving.recent, line, &self.view_state, &mut commands);

@@ -7,7 +7,7 @@ use crate::Activity;
 use crate::background::{Opening, SessionFile};
 use crate::change::SessionSource;
 use crate::watched_file::WatchedFile;
-use stillbase_mechanics::machine::Machine;
+use stillbase_session::scenario::Scenario;
 
 /// Title of the change in the history, and message.
 const TAKEN: &str = "taken from the file";
@@ -30,10 +30,10 @@ impl AppState {
         self.watched.as_ref().map(WatchedFile::file)
     }
 
-    /// Returns the machine as the file of the session states it, if the session has one.
-    pub(super) fn machine_of_file(&self) -> Option<&Machine> {
+    /// Returns the scenario as the file of the session states it, if the session has one.
+    pub(super) fn stated_in_file(&self) -> Option<&Scenario> {
         let own = self.watched.as_ref().filter(|watched| watched.is_of(self.session.undo_count()));
-        own.map(WatchedFile::machine)
+        own.map(WatchedFile::stated)
     }
 
     /// Looks about once a second whether another program has changed the file of the session, `elapsed` s after the
