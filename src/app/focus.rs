@@ -1,6 +1,6 @@
 //! The keyboard's focus: a field is asked for by its name, and panels scroll to what has the focus.
 
-use egui::{Context, Id, Ui};
+use egui::{Context, Id, Ui, vec2};
 
 /// Key under which egui stores the name of the field that is asked for.
 fn asked_id() -> Id {
@@ -24,6 +24,9 @@ pub fn is_asked(ctx: &Context, name: &str) -> bool {
     })
 }
 
+/// Room that is shown above and below what has the focus, where the content fades out, points.
+const AROUND_PT: f32 = 24.0;
+
 /// The widget that had the focus, and its distance from the top of the content of its scroll area, points.
 #[derive(Clone, Copy, PartialEq)]
 struct Seen {
@@ -46,6 +49,6 @@ pub fn keep_in_view(ui: &Ui) {
     });
     let is_pressed = ui.input(|i| i.pointer.any_down() || i.pointer.any_released());
     if let Some(own) = own.filter(|_| seen != last && !is_pressed) {
-        ui.scroll_to_rect(own.rect.expand(ui.spacing().item_spacing.y), None);
+        ui.scroll_to_rect(own.rect.expand2(vec2(0.0, AROUND_PT)), None);
     }
 }
