@@ -5,6 +5,7 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::command::CameraMove;
 use super::export::Export;
+use super::sketching::fields;
 use super::theme::other;
 use super::{
     BottomPanel, Command, FileDialog, FilePurpose, Layout, NoteDraft, PlotFile, SessionCommand, Switch, ViewChange,
@@ -190,6 +191,11 @@ fn view_of_planes(session: &Session, view_state: &ViewState, kind: ViewKind) -> 
     view(view_state, kind)
 }
 
+/// Draws the machine, with the keyboard's focus in a field.
+fn draw_at(session: &Session, view_state: &ViewState, field: &'static str) -> Option<Command> {
+    view_state.has(Switch::Sketching, session).then_some(Command::View(ViewChange::DrawAt(field)))
+}
+
 /// Returns the command if the present view shows the machine.
 fn of_machine(view_state: &ViewState, command: Command) -> Option<Command> {
     view_state.view.shows_machine().then_some(command)
@@ -282,6 +288,18 @@ pub const ACTIONS: &[Action] = actions![
     };
     View, "Equations of the paper with today's numbers, beside the design view" = "learn formulas theory math mathematics", [on(PLAIN, Key::E)], "design view, tab" turns Equations;
     View, "Draw the machine: bars, motors, end effector" = "sketch edit new link pin", [on(SHIFT, Key::D)], "design view, Draw" turns Sketching;
+    View, "Draw a bar by numbers: from a pin, length and angle" = "sketch new link keyboard add type", [], "drawing, left panel", |s, v| {
+        draw_at(s, v, fields::BAR_LENGTH)
+    };
+    View, "Hang a motor on a pin, by name" = "sketch draw new drive keyboard add joint actuator", [], "drawing, left panel", |s, v| {
+        draw_at(s, v, fields::MOTOR_PIN)
+    };
+    View, "Put the end effector on a pin, by name" = "sketch draw tip tool keyboard", [], "drawing, left panel", |s, v| {
+        draw_at(s, v, fields::END_PIN)
+    };
+    View, "Choose a bar or a pin of the drawing, by name" = "sketch draw card select edit link joint keyboard length angle", [], "drawing, left panel", |s, v| {
+        draw_at(s, v, fields::CARD)
+    };
     View, "Show everything" = "fit frame zoom home centre center reset camera view lost find", [on(PLAIN, Key::F)], "tool bar", |_, _| Some(Command::View(ViewChange::Fit));
     View, "Zoom in" = "bigger nearer magnify", [on(PLAIN, Key::Plus), on(PLAIN, Key::Equals)], "scene, wheel", |_, _| {
         Some(Command::View(ViewChange::Look(CameraMove::Zoom(ZOOM_FACTOR))))

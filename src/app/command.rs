@@ -217,6 +217,8 @@ pub enum ViewChange {
     Dexterity(Option<Measure>),
     /// Change the state of drawing.
     Pen(PenChange),
+    /// Draw the machine, with the keyboard's focus in the field of this name.
+    DrawAt(&'static str),
     /// Frame the camera to show everything.
     Fit,
     /// Move the camera.

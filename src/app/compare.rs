@@ -6,7 +6,7 @@ use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{
     Command, ComparisonCommand, GuidePage, GuidePlace, SessionCommand, Switch, ViewChange, ViewState, WindowCommand,
-    fit, guide, notation,
+    fit, focus, guide, notation,
 };
 use egui::{Align, Button, CursorIcon, Frame, Grid, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui};
 use stillbase_picture::charts::figure::{dashes, run_colour};
@@ -44,7 +44,10 @@ pub fn show(ui: &mut Ui, comparison: &Comparison, view_state: &ViewState, comman
             });
         });
         ui.add_space(2.0);
-        ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| table(ui, &p, comparison, commands));
+        ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| {
+            table(ui, &p, comparison, commands);
+            focus::keep_in_view(ui);
+        });
     });
 }
 

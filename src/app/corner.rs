@@ -23,7 +23,7 @@ pub fn show(ui: &mut Ui, rect: Rect, view_state: &ViewState, views: &Views, comm
     let grid = ui.painter().text(
         pos2(rect.right() - 14.0, low),
         Align2::RIGHT_CENTER,
-        view_state.arrangement.notation.sentence(&views.grid(view_state.view)),
+        view_state.notation().sentence(&views.grid(view_state.view)),
         plain(11.5),
         colour(p.dim),
     );

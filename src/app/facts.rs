@@ -135,9 +135,10 @@ impl QuickQuery for Settings {
 pub(super) struct ScenarioFacts<'a> {
     pub queries: &'a Queries,
     scenario: Shared<Scenario>,
-    /// Whether the machine differs from the built-in one of its name.
+    /// Whether the machine differs from the built-in one of its name, and from that of the session's file.
     pub machine_differs: bool,
-    /// Whether task, plant, base or control differ from those of the built-in scenario of its name.
+    /// Whether task, plant, base or control differ from those of the built-in scenario of its name, and from those of
+    /// the session's file.
     pub work_differs: bool,
     pub balance: Arc<BalanceSummary>,
     /// Base moment that a change of b causes while time runs, N m.
@@ -150,8 +151,8 @@ pub(super) struct ScenarioFacts<'a> {
 }
 
 impl<'a> ScenarioFacts<'a> {
-    /// Queries the values of a session.
-    pub fn of(queries: &'a Queries, session: &Session) -> Self {
+    /// Queries the values of a session; `stated` is the scenario as the file of the session states it.
+    pub fn of(queries: &'a Queries, session: &Session, stated: Option<&Scenario>) -> Self {
         let (run, frame) = (session.run(), session.frame());
         let scenario = run.shared_scenario();
         let differs = queries.ask::<QuickWork<Differs>>(&scenario);
@@ -163,8 +164,8 @@ impl<'a> ScenarioFacts<'a> {
         // With several shapes for each point the search takes longer than a repaint.
         let ways_out = |missed| queries.ask_in_background::<QuickWork<TargetProposals>>(&missed).known().cloned();
         Self {
-            machine_differs: differs.machine,
-            work_differs: differs.work,
+            machine_differs: differs.machine && stated.is_none_or(|stated| stated.machine != scenario.0.machine),
+            work_differs: differs.work && stated.is_none_or(|stated| !same_work(stated, &scenario.0)),
             price: balance.pose_inertia * scenario.0.pose_acceleration,
             balance,
             standing: run.planes().map(stands),

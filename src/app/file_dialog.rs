@@ -65,24 +65,20 @@ impl FilePurpose {
             Self::Save => ["Save the session", "Save", "session.toml"],
             Self::Record => ["Record for the Rerun viewer", "Record", "run.rrd"],
             Self::Export(wanted) => [wanted.title(), "Save", wanted.example()],
-            Self::Machine => ["Take along", "Save", "machine.urdf"],
+            Self::Machine => ["Take the machine along", "Save", "machine.urdf"],
             Self::Plot(_, PlotFile::Csv) => ["Save the values of the time shown", "Save", "plot.csv"],
             Self::Plot(_, PlotFile::Svg) => ["Save the plot as a drawing", "Save", "plot.svg"],
             Self::Plot(_, PlotFile::Png) => ["Save the plot as a picture", "Save", "plot.png"],
         }
     }
 
-    /// Returns the title of the dialog. For a machine or an export it lists the file extensions to choose from.
-    pub(super) fn title(&self) -> String {
-        let [title, ..] = self.words();
-        match self {
-            Self::Machine => format!("{title}: .toml .{}", form::endings().join(" .")),
-            Self::Export(wanted) => match &wanted.naming().1[..] {
-                [] => format!("{title}: a folder"),
-                endings => format!("{title}: .{}", endings.join(" .")),
-            },
-            _ => title.into(),
-        }
+    /// Says how the name may end, if there is a choice that the dialog does not list otherwise.
+    pub(super) fn endings(&self) -> Option<String> {
+        let Self::Export(wanted) = self else { return None };
+        Some(match &wanted.naming().1[..] {
+            [] => "a folder".into(),
+            endings => format!("the name ends in .{}", endings.join(" or .")),
+        })
     }
 }
 

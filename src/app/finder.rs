@@ -284,7 +284,7 @@ pub fn show(
     let known = Known { session, signals, settings: &settings, recent, sections: &sections, improvements };
     let found = found(entries(known, view_state), &finder.search_text);
     let list: Vec<Entry<'_>> =
-        typed(&settings, &finder.search_text, view_state.arrangement.notation).into_iter().chain(found).collect();
+        typed(&settings, &finder.search_text, view_state.notation()).into_iter().chain(found).collect();
     finder.chosen = finder.chosen.min(list.len().saturating_sub(1));
     let pressed = |key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
     let (up, down, enter) = (pressed(Key::ArrowUp), pressed(Key::ArrowDown), pressed(Key::Enter));

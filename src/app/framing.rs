@@ -10,19 +10,20 @@ use stillbase_picture::scene::framing::{PictureArea, ViewContent};
 use stillbase_picture::scene::views::{ViewKind, Views};
 
 /// Frames the camera of the present view, if the view must show everything. `rect` is the scene on the screen,
-/// `covered` its covered parts.
+/// `covered` its covered parts; where the last one appears, changes or goes, the view is framed anew.
 pub fn keep_framed(
     rect: Rect,
-    covered: &[Rect],
+    (covered, lasting): (&[Rect], Option<Rect>),
     views: &Views,
     content: impl FnOnce(ViewKind) -> ViewContent,
     view_state: &mut ViewState,
 ) {
     let view = view_state.view;
     let size = [rect.width(), rect.height()];
+    let room = [size[0], size[1], lasting.map_or(0.0, |rect| rect.height().round())];
     let content = match &view_state.framing[view as usize] {
         Framing::Manual => return,
-        Framing::Framed(_, last) if *last == size => return,
+        Framing::Framed(_, last) if *last == room => return,
         Framing::Framed(content, _) => content.clone(),
         // During a drag the view stays still; it is framed after the release.
         Framing::Pending if view_state.gesture.grabbed.is_some() => return,
@@ -32,7 +33,7 @@ pub fn keep_framed(
         let part = part.intersect(rect).translate(-rect.min.to_vec2());
         part.is_positive().then(|| [part.left(), part.top(), part.right(), part.bottom()].map(f64::from))
     };
-    let room = PictureArea { size: size.map(f64::from), covered: covered.iter().filter_map(part).collect() };
-    view_state.cameras[view as usize] = content.framed(views.camera(view), &room);
-    view_state.framing[view as usize] = Framing::Framed(content, size);
+    let area = PictureArea { size: size.map(f64::from), covered: covered.iter().filter_map(part).collect() };
+    view_state.cameras[view as usize] = content.framed(views.camera(view), &area);
+    view_state.framing[view as usize] = Framing::Framed(content, room);
 }

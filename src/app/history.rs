@@ -3,12 +3,12 @@
 use egui::{Popup, PopupCloseBehavior, RectAlign, RichText, ScrollArea, Ui, Vec2, vec2};
 
 use super::actions::key_of_switch;
-use super::fit;
 use super::icon::{Icon, IconButton, dot};
 use super::notation;
 use super::theme::{bold, colour, plain};
 use super::widgets::name;
 use super::{Command, SessionCommand, Switch, ViewChange, ViewState};
+use super::{fit, focus};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::{Fork, Session};
 
@@ -92,6 +92,7 @@ fn list(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Command>
             commands.push(SessionCommand::GoTo(i).into());
         }
     }
+    focus::keep_in_view(ui);
 }
 
 /// Draws each branch, titled by its first gesture that the run on display lacks; the newest branch is on top. A click

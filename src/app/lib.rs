@@ -22,6 +22,7 @@ mod file_menu;
 mod file_report;
 mod finder;
 mod fit;
+mod focus;
 mod framing;
 mod gallery;
 mod gesture;

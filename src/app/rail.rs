@@ -5,7 +5,7 @@ use egui::{Frame, Margin, Panel, ScrollArea, Ui, vec2};
 
 use super::actions::{key_of, key_of_switch};
 use super::icon::{Icon, IconButton, SEPARATOR_HEIGHT, disabled_word_button, rule, word_button};
-use super::{Command, Switch, ViewChange, ViewState, arrangement, history, sketching};
+use super::{Command, Switch, ViewChange, ViewState, arrangement, focus, history, sketching};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_picture::scene::views::{ViewKind, Views};
 use stillbase_session::{Fork, Session};
@@ -118,6 +118,7 @@ pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &View
             }
             arrangement::show(ui, view_state, size, commands);
             history::show(ui, session, branches, view_state, size, commands);
+            focus::keep_in_view(ui);
         });
     });
 }

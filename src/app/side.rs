@@ -16,7 +16,8 @@ use super::notation;
 use super::theme::{bold, colour, plain};
 use super::widgets::{NumberRow, name, note, section, send, unit};
 use super::{
-    Command, GuidePage, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, fit, guide, path, place, set_b,
+    Command, GuidePage, SessionCommand, Switch, ViewChange, ViewState, WindowCommand, fit, focus, guide, path, place,
+    set_b,
 };
 use stillbase_mechanics::machine::MAX_ANGLE;
 use stillbase_picture::scene::course::target_handle;
@@ -76,6 +77,7 @@ pub fn show(
             control::show(ui, session, &p, commands);
             balance(ui, session, facts, &p, commands);
             all::show(ui, facts, &p, view_state.open.settings, commands);
+            focus::keep_in_view(ui);
         });
     });
     view_state.arrangement.now().side.stored_width(shown.response.rect.width(), usual)

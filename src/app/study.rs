@@ -4,11 +4,10 @@
 use egui::{Align, Color32, Frame, Label, Layout, Margin, Panel, RichText, ScrollArea, Sense, Ui, vec2};
 use egui_plot::{Bar, BarChart, FilledArea, GridMark, Line, LineStyle, Plot, PlotPoints, VLine};
 
-use super::fit;
 use super::plots::{base_plot, marks, small_axes, spaced};
 use super::theme::{bold, colour, plain};
 use super::widgets::{NumberRow, name, send};
-use super::{Command, GuidePage, Switch, ViewChange, ViewState, guide};
+use super::{Command, GuidePage, Switch, ViewChange, ViewState, fit, focus, guide};
 use stillbase_picture::numbers::{at_step, round_up, signed};
 use stillbase_picture::scene::palette::{Palette, faded};
 use stillbase_session::Edit;
@@ -157,6 +156,7 @@ fn spreads(ui: &mut Ui, p: &Palette, study: &Study, commands: &mut Vec<Command>)
             let value = if limit > 0.0 { Value::from(limit) } else { Value::from("default") };
             Edit::set("tolerance.moment_limit", value)
         });
+        focus::keep_in_view(ui);
     });
 }
 

@@ -234,7 +234,7 @@ fn formats(ui: &mut Ui, dialog: &mut FileDialog) {
 /// Draws the file dialog.
 pub fn dialog(ctx: &egui::Context, view_state: &mut ViewState, commands: &mut Vec<Command>) {
     let Some(mut dialog) = view_state.open.dialog.clone() else { return };
-    let ([_, verb, hint], title) = (dialog.purpose.words(), dialog.purpose.title());
+    let [title, verb, hint] = dialog.purpose.words();
     let mut open = true;
     egui::Window::new(title)
         .open(&mut open)
@@ -250,9 +250,9 @@ pub fn dialog(ctx: &egui::Context, view_state: &mut ViewState, commands: &mut Ve
             }
             let enter = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
             let folder = stillbase_files::absolute_path(std::path::Path::new("."));
-            if let Some(folder) = folder {
-                let words = format!("in {}, unless the name says another folder", folder.display());
-                ui.add(egui::Label::new(RichText::new(words).font(plain(11.5)).weak()).truncate());
+            let folder = folder.map(|folder| format!("in {}, unless the name says another folder", folder.display()));
+            for words in dialog.purpose.endings().into_iter().chain(folder) {
+                ui.add(egui::Label::new(RichText::new(words).font(plain(11.5)).weak()).wrap());
             }
             formats(ui, &mut dialog);
             ui.horizontal(|ui| {

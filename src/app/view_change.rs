@@ -176,6 +176,13 @@ impl ViewState {
                 self.put_away.extend(problems);
             }
             ViewChange::Pen(change) => self.pen.iter_mut().for_each(|pen| pen.apply(change.clone())),
+            ViewChange::DrawAt(field) => {
+                if self.drawing_pen().is_none() {
+                    self.begin_drawing(PenTool::Move);
+                }
+                self.arrangement.now_mut().side.shown = true;
+                self.asked_field = Some(field);
+            }
             ViewChange::Speed(speed) => self.speed = speed,
             ViewChange::Dexterity(shown) => self.dexterity = shown,
             ViewChange::Fit => self.framing[self.view as usize] = Framing::Pending,

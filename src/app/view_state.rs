@@ -11,6 +11,7 @@ use super::pair::Pair;
 use super::sketching::{Pen, PenTool};
 use super::status_message::StatusMessage;
 use stillbase_picture::charts::choice::{Plot, PlotChoice};
+use stillbase_picture::notation::Notation;
 use stillbase_picture::scene::Measure;
 use stillbase_picture::scene::camera::Camera;
 use stillbase_picture::scene::framing::ViewContent;
@@ -29,9 +30,9 @@ pub enum Framing {
     /// To be framed in the next pass.
     #[default]
     Pending,
-    /// Framed to this content, in a scene of this size, points. A scene of another size is framed anew; motion of the
-    /// content does not change the view.
-    Framed(Arc<ViewContent>, [f32; 2]),
+    /// Framed to this content, in a scene of this width and height under a message of this height, points. A scene of
+    /// another size is framed anew; motion of the content does not change the view.
+    Framed(Arc<ViewContent>, [f32; 3]),
     /// Moved by the user.
     Manual,
 }
@@ -80,6 +81,8 @@ pub struct ViewState {
     pub revealed: Option<Handle>,
     /// The path of the setting that the list of all settings must show.
     pub looked_up: Option<String>,
+    /// The name of the field that must get the keyboard's focus.
+    pub asked_field: Option<&'static str>,
     /// The measure of dexterity that shades the workspace.
     pub dexterity: Option<Measure>,
     /// Requested playback rate, simulated seconds per second.
@@ -129,6 +132,7 @@ impl ViewState {
             pair: None,
             revealed: None,
             looked_up: None,
+            asked_field: None,
             dexterity: None,
             speed: 1.0,
             loops: false,
@@ -154,6 +158,12 @@ impl ViewState {
     /// Returns the state of drawing, if the view on display draws the machine.
     pub fn drawing_pen(&self) -> Option<&Pen> {
         self.pen.as_ref().filter(|_| self.view == ViewKind::Design && self.arrangement.layout != Layout::Present)
+    }
+
+    /// Returns how numbers are shown: as the user has chosen, but in the units of a drawing while a machine is drawn.
+    pub fn notation(&self) -> Notation {
+        let chosen = self.arrangement.notation;
+        if self.drawing_pen().is_some() { chosen.of_drawings() } else { chosen }
     }
 
     /// Begins to draw the machine with a tool.

@@ -18,7 +18,7 @@ use super::{
     Command, Layout, SessionCommand, Switch, Tool, ViewChange, ViewState, coordinates, corner, framing, measuring,
     menu, notes, pair, present,
 };
-use crate::status::news;
+use crate::status::{self, news::News};
 use stillbase_mechanics::planar::{DriveAngles, Vector};
 use stillbase_picture::paint::labels::draw_labels;
 use stillbase_picture::paint::{SceneViewport, paint};
@@ -46,13 +46,13 @@ pub struct SceneContent<'a> {
     pub other: Option<&'a Result<Beside, String>>,
     /// Counterweights of the point of the Pareto front that is under the pointer.
     pub weights: &'a [WeightOption],
-    /// Whether a problem message covers the scene.
-    pub has_news: bool,
+    /// The problem message that covers the scene.
+    pub news: Option<&'a News>,
 }
 
 /// Draws the scene and handles the pointer; returns the rectangle of the scene.
 pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, commands: &mut Vec<Command>) -> Rect {
-    let SceneContent { session, views, exaggeration, comparison, intro, other, has_news, .. } = content;
+    let SceneContent { session, views, exaggeration, comparison, intro, other, news, .. } = content;
     let shown = CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let intro = intro.filter(|_| view_state.view.shows_machine());
@@ -78,9 +78,12 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
         covered.extend(presents.then(|| present::covers(rect)));
         covered.extend(both.filter(|_| !presents).map(|_| pair::caption_covers(rect)));
         covered.extend(view_state.open.tour.as_ref().map(|_| Tour::covers(ui.ctx(), rect)));
+        // A run that waits does so until something changes: its message must not cover the machine.
+        let wait = news.filter(|news| news.says_wait()).and_then(|_| status::news::rect(ui.ctx()));
+        covered.extend(wait);
         framing::keep_framed(
             rect,
-            &covered,
+            (&covered, wait),
             views,
             |view| views.content(view, session.frame(), &motion(session)),
             view_state,
@@ -129,8 +132,8 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
         let scene = Arc::new(views.scene(view_state.view, session.frame(), &options, view_state.camera()));
         paint(ui, 0, rect, &scene, view_state.camera());
         let spot = SceneViewport { rect, camera: *view_state.camera() };
-        // The problem message covers the scene while it lasts.
-        covered.extend(has_news.then(|| news::rect(ui.ctx())).flatten());
+        // Any other message covers the scene while it lasts.
+        covered.extend(news.filter(|news| !news.says_wait()).and_then(|_| status::news::rect(ui.ctx())));
         if let Some((pair, _)) = both.filter(|_| !presents) {
             covered.push(pair::own_caption(ui, rect, session, pair, view_state));
         }
@@ -176,7 +179,13 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
 pub fn still(content: SceneContent<'_>, size: [f32; 2], view_state: &mut ViewState) -> (Scene, Camera) {
     let SceneContent { session, views, .. } = content;
     let rect = Rect::from_min_size(egui::Pos2::ZERO, size.into());
-    framing::keep_framed(rect, &[], views, |view| views.content(view, session.frame(), &motion(session)), view_state);
+    framing::keep_framed(
+        rect,
+        (&[], None),
+        views,
+        |view| views.content(view, session.frame(), &motion(session)),
+        view_state,
+    );
     let options = ViewOptions { show_hints: false, ..options(content, view_state) };
     let camera = *view_state.camera();
     (views.scene(view_state.view, session.frame(), &options, &camera), camera)

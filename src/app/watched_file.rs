@@ -8,6 +8,9 @@ use egui::{Align2, Id, RichText};
 use super::theme::{colour, plain};
 use super::{Command, ViewState, WindowCommand};
 use stillbase_files::stamp::FileStamp;
+use stillbase_query::Shared;
+use stillbase_session::Session;
+use stillbase_session::scenario::Scenario;
 
 /// A file that other programs may change.
 #[derive(Clone, Debug)]
@@ -15,6 +18,8 @@ pub(super) struct WatchedFile {
     file: PathBuf,
     /// Number of undo entries right after the file was opened; undo leads back to a session without this file.
     since: usize,
+    /// The scenario as the file states it.
+    stated: Shared<Scenario>,
     /// Stamp of the file as it was taken up or written last.
     stamp: Option<FileStamp>,
     /// Stamp of a change that may still be under way.
@@ -29,10 +34,16 @@ pub(super) struct WatchedFile {
 const INTERVAL_S: f64 = 1.0;
 
 impl WatchedFile {
-    /// Begins to watch a file that belongs to a session with this number of undo entries.
-    pub fn of(file: PathBuf, since: usize) -> Self {
-        let stamp = FileStamp::of(&file);
-        Self { file, since, stamp, changing: None, unseen_s: 0.0, asks: false }
+    /// Begins to watch a file that a session has just been opened from or saved to.
+    pub fn of(file: PathBuf, session: &Session) -> Self {
+        let (stamp, since) = (FileStamp::of(&file), session.undo_count());
+        let stated = session.run().shared_scenario();
+        Self { file, since, stated, stamp, changing: None, unseen_s: 0.0, asks: false }
+    }
+
+    /// Returns the scenario as the file states it.
+    pub fn stated(&self) -> &Scenario {
+        &self.stated.0
     }
 
     /// Returns the file.

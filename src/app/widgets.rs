@@ -7,7 +7,7 @@ use egui::response::Flags;
 use egui::{Align, DragValue, EventFilter, Key, Layout, Modifiers, Response, RichText, Slider, SliderClamping, Ui};
 
 use super::theme::{bold, colour, plain};
-use super::{Command, SessionCommand, notation, pointing};
+use super::{Command, SessionCommand, focus, notation, pointing};
 use stillbase_picture::notation::ShownUnit;
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::Palette;
@@ -24,6 +24,9 @@ pub(super) const CLICK_PAYLOAD: f64 = 0.3;
 /// Sets the name of a widget for screen readers.
 pub fn name(response: &Response, label: &str) {
     pointing::drawn(response, label);
+    if focus::is_asked(&response.ctx, label) {
+        response.request_focus();
+    }
     let label = label.to_owned();
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(label));
 }
@@ -175,6 +178,10 @@ impl NumberRow<'_> {
             .clamp_existing_to_range(false)
             .fixed_decimals(self.decimals)
             .update_while_editing(false);
+        // A number that has the focus before it is drawn is ready to be typed over.
+        if focus::is_asked(ui.ctx(), self.label) {
+            ui.memory_mut(|memory| memory.request_focus(ui.next_auto_id()));
+        }
         let mut response = ui.add(drag).on_hover_text(self.tip);
         // The factor is 1, because egui itself slows the drag with Shift.
         restrict(&mut response, value, before, &self.range, 1.0, self.round());
@@ -392,6 +399,11 @@ impl TakenNumber {
 /// Key of a [`TakenNumber`] of the widget `id`.
 fn taken_id(id: egui::Id) -> egui::Id {
     id.with("taken")
+}
+
+/// Whether an entry was refused in this pass.
+pub(super) fn has_refused(ctx: &egui::Context) -> bool {
+    ctx.data(|data| data.get_temp::<RefusedEntry>(refused_id())).is_some()
 }
 
 /// Takes the entry that was refused in this pass, and returns it.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
-use stillbase_exchange::import::{BaseBody, ImportedMachine, import};
+use stillbase_exchange::import::{BaseBody, ImportedMachine};
 use stillbase_files::{is_same_place, write_new};
 use stillbase_mechanics::machine::{Inertia, Machine, to_toml};
 use stillbase_session::gentle_motion;
@@ -92,8 +92,7 @@ impl ImportModelArguments {
             return Err(Failure::wrong_input("-o and --scenario name one file: want two"));
         }
         let name = self.file.display();
-        let found = import(&read(&self.file, &["urdf", "xml", "mjcf"])?)
-            .map_err(|e| Failure::wrong_input(e).with_context(&name))?;
+        let found = stillbase_files::model(&read(&self.file, &["urdf", "xml", "mjcf"])?, &name.to_string())?;
         let ImportedMachine { machine, pose, base, mut notes } = found;
         let machine = self.settings.apply(machine)?;
         if let Some(base) = base.filter(|_| self.scenario.is_none()) {

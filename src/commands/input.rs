@@ -173,8 +173,13 @@ impl MachineArgument {
 /// If there is no such machine, or it is not valid.
 pub fn machine(name: &str) -> Result<Machine, Failure> {
     let FoundMachine { machine, left_out: notes } = stillbase_files::found_machine(name, None)?;
-    left_out(name, &notes).for_each(|note| print_message(format!("note: {note}")));
+    report_left_out(name, &notes);
     Ok(machine)
+}
+
+/// Prints what was left out of a file.
+pub fn report_left_out(name: &str, notes: &[String]) {
+    left_out(name, notes).for_each(|note| print_message(format!("note: {note}")));
 }
 
 /// Returns what was left out of a file, each with the name of the file.

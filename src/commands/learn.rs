@@ -14,7 +14,7 @@ use stillbase_study::equations::{
 };
 
 use super::failure::Failure;
-use super::input::{DEFAULT_SCENARIO, Settings, no_use, overlay_used};
+use super::input::{DEFAULT_SCENARIO, Settings, machine, no_use, overlay_used, report_left_out};
 use super::output::Format;
 use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
 
@@ -123,11 +123,12 @@ impl LearnArguments {
 
     /// Returns the scenario or the machine that the command line names.
     fn find(&self) -> Result<Subject, Failure> {
-        let machine = || self.settings.apply(stillbase_files::machine(&self.what, None)?);
+        let machine = || self.settings.apply(machine(&self.what)?);
         match stillbase_files::scenario(&self.what) {
             // For the name of a machine, the scenario made for it is not used.
             Ok(found) if found.note.is_some() => Ok(Subject::Machine(Box::new(machine()?))),
             Ok(found) => {
+                report_left_out(&self.what, &found.left_out);
                 let scenario = overlay_used(found.scenario, &self.settings)?;
                 self.settings.refuse_tolerances()?;
                 Ok(Subject::Scenario(Box::new(scenario)))

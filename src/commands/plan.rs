@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use stillbase_files::{text, write_new};
+use stillbase_files::{FoundMachine, text, write_new};
 use stillbase_mechanics::planar::Vector;
 use stillbase_planning::common::starting_b;
 use stillbase_planning::off_plane::least_reaction::FixedB;
@@ -20,7 +20,7 @@ use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{
     DEFAULT_SCENARIO, Settings, above_zero, change_task, choice, no_use, overlay_settings, overlay_unchecked, point,
-    pose_constant, pose_space, refuse_ineffective, report_idle, report_tolerance,
+    pose_constant, pose_space, refuse_ineffective, report_idle, report_left_out, report_tolerance,
 };
 use super::output::{Format, TextTable, check_output};
 use stillbase_settings::number::{counted, fixed};
@@ -170,13 +170,14 @@ impl PlanArguments {
 
     /// Returns the scenario that the arguments define.
     fn scenario(&self) -> Result<Scenario, Failure> {
-        let as_machine = stillbase_files::machine(&self.name, None);
+        let as_machine = stillbase_files::found_machine(&self.name, None);
         let known = Scenario::builtin(&self.name).is_some();
         if self.output.is_none() {
             self.settings.refuse_tolerances()?;
         }
         let mut scenario = match as_machine {
-            Ok(machine) if !known => {
+            Ok(FoundMachine { machine, left_out }) if !known => {
+                report_left_out(&self.name, &left_out);
                 if self.points.is_empty() {
                     return Err(Failure::wrong_input("a machine alone is no task: want points X,Y, or a scenario"));
                 }

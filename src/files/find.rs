@@ -4,7 +4,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use super::text::read;
-use stillbase_exchange::import::{ImportedMachine, import};
+use stillbase_exchange::import::{ImportedMachine, faults, import};
 use stillbase_mechanics::machine::{self, FileError, Machine, MachineError};
 use stillbase_session::gentle_motion;
 use stillbase_session::scenario::{FileContent, Scenario, ScenarioError, TaskKind, content};
@@ -43,13 +43,12 @@ pub fn found_machine(name: &str, folder: Option<&Path>) -> Result<FoundMachine, 
         return Ok(own(machine.clone()));
     }
     let file = folder.map_or_else(|| name.into(), |folder| folder.join(name));
-    let other = |file: String| wrong_file(&file, whole_file(IS_SCENARIO));
+    let other = |file: String| wrong_file(&file, Faults::one(whole_file(IS_SCENARIO)));
     match read(&file) {
         Ok(text) => {
             let file = file.display().to_string();
             if is_model(&text) {
-                let ImportedMachine { machine, notes, .. } =
-                    import(&text).map_err(|why| wrong_file(&file, why.fault()))?;
+                let ImportedMachine { machine, notes, .. } = model(&text, &file)?;
                 return Ok(FoundMachine { machine, left_out: notes });
             }
             machine::parse(&text, &file).map(own).map_err(|why| match content(&text) {
@@ -64,6 +63,14 @@ pub fn found_machine(name: &str, folder: Option<&Path>) -> Result<FoundMachine, 
     }
 }
 
+/// Reads a machine from the text of a URDF or MJCF file, which errors name.
+///
+/// # Errors
+/// If it is no planar machine; the error has all values that are wrong, or the first other fault.
+pub fn model(text: &str, file: &str) -> Result<ImportedMachine, FileError> {
+    import(text).map_err(|why| wrong_file(file, faults(text, why)))
+}
+
 /// Returns whether a text is a model of another program; TOML cannot begin with this character.
 fn is_model(text: &str) -> bool {
     text.trim_start().starts_with('<')
@@ -74,10 +81,10 @@ fn whole_file(why: impl Into<String>) -> Fault {
     Fault { line: None, column: None, key: String::new(), text: why.into(), example: String::new() }
 }
 
-/// Returns the error of a file with one fault.
-fn wrong_file(file: &str, fault: Fault) -> FileError {
-    let (line, error) = (fault.line, MachineError::Syntax(fault.text.clone()));
-    FileError::Wrong { file: shortened(file, 300), line, error, faults: Box::new(Faults::one(fault)) }
+/// Returns the error of a file with faults.
+fn wrong_file(file: &str, faults: Faults) -> FileError {
+    let (line, text) = faults.list.first().map_or((None, String::new()), |fault| (fault.line, fault.text.clone()));
+    FileError::Wrong { file: shortened(file, 300), line, error: MachineError::Syntax(text), faults: Box::new(faults) }
 }
 
 /// A scenario, with notes on its origin.
@@ -115,7 +122,7 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
         Err(source) => return Err(ScenarioError::Unreadable { file: shortened(name, 300), source }),
     };
     if is_model(&text) {
-        let ImportedMachine { machine, notes, .. } = import(&text).map_err(|why| wrong_file(name, why.fault()))?;
+        let ImportedMachine { machine, notes, .. } = model(&text, name)?;
         return Ok(FoundScenario { left_out: notes, ..scenario_for(name, &machine)? });
     }
     if content(&text) == Some(FileContent::Machine) {

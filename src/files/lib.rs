@@ -36,7 +36,7 @@ pub mod video;
 
 #[doc(hidden)]
 pub use draft::{WriteBlock, abandon};
-pub use find::{FoundMachine, FoundScenario, found_machine, machine, scenario};
+pub use find::{FoundMachine, FoundScenario, found_machine, machine, model, scenario};
 pub use new_file::{NewFile, WriteError, write_new};
 #[doc(hidden)]
 pub use new_file::{check_new, finish_all, free_name, is_same_place, write_temporary};

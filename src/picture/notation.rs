@@ -113,6 +113,12 @@ impl ShownUnit {
 const DEGREES_PER_RADIAN: f64 = 180.0 / std::f64::consts::PI;
 
 impl Notation {
+    /// Returns this notation in the units of a drawing of a machine: millimetres and degrees.
+    #[must_use]
+    pub fn of_drawings(self) -> Self {
+        Self { angle: AngleUnit::Degrees, length: LengthUnit::Millimetres, ..self }
+    }
+
     /// Returns the unit in which values with the unit `unit` are shown; `None` if they are shown as they are.
     pub fn shown_unit(self, unit: &str) -> Option<ShownUnit> {
         let angle = match (self.angle, unit) {

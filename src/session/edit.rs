@@ -7,12 +7,14 @@ use toml::{Table, Value};
 
 use super::older;
 use super::waypoints::{self, POINT_KEYS};
+use crate::scenario::words::ScenarioWords;
 use crate::scenario::{MAX_STEPS, POINT_RANGE, POSE_CONSTANT_RANGE, effect_in, effect_of, key_of, name_of};
-use stillbase_mechanics::machine::{ANGLE, MACHINE_TABLES, is_of_machine};
+use stillbase_mechanics::machine::{ANGLE, KeyPath, MACHINE_TABLES, is_of_machine};
 use stillbase_mechanics::sketch::SketchStep;
 use stillbase_settings::change;
 use stillbase_settings::key::{Effect, Key};
-use stillbase_settings::number::at_most_digits;
+use stillbase_settings::mending::{Problem, Wrong};
+use stillbase_settings::number::{at_most_digits, counted};
 use stillbase_settings::range::{RangeCheck, shortened};
 
 /// One change. It can be saved, replayed and undone.
@@ -82,6 +84,47 @@ pub struct TimedEdit {
     pub edit: Edit,
 }
 
+/// Reads an edit without its step; the error is what the reader says.
+fn edit_of(table: &Table) -> Result<Edit, String> {
+    Edit::deserialize(table.clone()).map_err(|error| error.message().to_owned())
+}
+
+/// Keys that say which other keys an edit has.
+const KINDS: [&str; 2] = ["do", "draw"];
+
+/// Returns the problem of an edit, without its step, of which the reader says `why`.
+fn problem_of(mut table: Table, why: &str) -> Problem {
+    let lacks = KINDS.into_iter().find(|kind| why == format!("missing field `{kind}`"));
+    if let Some(kind) = lacks {
+        // The reader lists the kinds where it is given none of them.
+        table.insert(kind.into(), "".into());
+        let known = edit_of(&table).err().unwrap_or_default();
+        let known = known.split_once("one of ").map_or_else(String::new, |(_, known)| known.replace('`', ""));
+        let wrong = Wrong::Kind(format!("is missing: want one of {known}"));
+        return Problem { path: KeyPath::of(Some(kind)), wrong };
+    }
+    let key = wrong_key(&table, why);
+    let is_kind = key.is_some_and(|key| KINDS.contains(&key));
+    match Problem::said(KeyPath::of(key), why) {
+        Problem { path, wrong: Wrong::Value(said) } if is_kind => Problem { path, wrong: Wrong::Kind(said) },
+        problem => problem,
+    }
+}
+
+/// Returns the key whose value the reader refuses, because it reads on without it. The reader itself names none.
+fn wrong_key<'a>(table: &'a Table, why: &str) -> Option<&'a str> {
+    if why.starts_with("missing field") || why.starts_with("unknown field") {
+        return None;
+    }
+    let reads_on = |key: &&String| {
+        let rest: Table = table.iter().filter(|(own, _)| own != key).map(|(k, v)| (k.clone(), v.clone())).collect();
+        edit_of(&rest).err().is_none_or(|other| other != why)
+    };
+    // Without its kind, an edit is another one.
+    let found = table.keys().filter(|key| !KINDS.contains(&key.as_str())).find(reads_on);
+    found.map(String::as_str).or_else(|| KINDS.into_iter().rev().find(|kind| table.contains_key(*kind)))
+}
+
 impl<'de> Deserialize<'de> for TimedEdit {
     /// Written by hand, because a flattened enum would accept unknown keys.
     fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
@@ -94,13 +137,25 @@ impl TimedEdit {
     ///
     /// # Errors
     /// If it is not a valid edit; the error states what is wrong, and what is valid.
-    pub fn from_table(mut table: Table) -> Result<Self, String> {
-        let step = table.remove("step").ok_or("missing field `step`")?;
-        let step = step.as_integer().and_then(|n| u64::try_from(n).ok()).filter(|n| *n <= MAX_STEPS);
-        let step = step.ok_or_else(|| format!("step: want a whole number of steps, 0 to {MAX_STEPS}"))?;
-        let edit = match older::settings(&mut table)? {
+    pub fn from_table(table: Table) -> Result<Self, String> {
+        Self::read(table).map_err(|problem| problem.text(&ScenarioWords))
+    }
+
+    /// Reads an `[[edit]]` entry of a file.
+    ///
+    /// # Errors
+    /// If it is not a valid edit; places are those within the entry.
+    pub(crate) fn read(mut table: Table) -> Result<Self, Problem> {
+        let whole = |said: &str| Problem::said(KeyPath::default(), said);
+        let step = table.remove("step").ok_or_else(|| whole("missing field `step`"))?;
+        let number = step.as_integer().and_then(|n| u64::try_from(n).ok()).filter(|n| *n <= MAX_STEPS);
+        let step = number.ok_or_else(|| {
+            let said = format!("is {step}: want a whole number of steps since the start, 0 to {MAX_STEPS}");
+            Problem { path: KeyPath::new(&[&"step"]), wrong: Wrong::Value(said) }
+        })?;
+        let edit = match older::settings(&mut table).map_err(|why| whole(&why))? {
             Some(change) => Edit::Set { change },
-            None => Edit::deserialize(table).map_err(|e| e.message().to_owned())?,
+            None => edit_of(&table).map_err(|why| problem_of(table, &why))?,
         };
         Ok(Self { step, edit })
     }
@@ -292,6 +347,15 @@ impl Edit {
         self.title_after(None)
     }
 
+    /// Whether it changes the machine, and nothing else.
+    pub(super) fn is_of_machine(&self) -> bool {
+        match self {
+            Self::Sketch(_) => true,
+            Self::Set { change } => change.keys().all(|key| is_of_machine(key)),
+            _ => false,
+        }
+    }
+
     /// Describes the edit; `inverse` undoes it, and tells from where points are moved.
     pub(super) fn title_after(&self, inverse: Option<&Self>) -> String {
         match self {
@@ -314,7 +378,9 @@ impl Edit {
 fn counterweights(value: &Value) -> String {
     let mass = |weight: &Value| weight.get("mass").and_then(change::number).unwrap_or_default();
     match value.as_array() {
-        Some(all) => format!("counterweights to {:.2} kg on {} links", all.iter().map(mass).sum::<f64>(), all.len()),
+        Some(all) => {
+            format!("counterweights to {:.2} kg on {}", all.iter().map(mass).sum::<f64>(), counted(all.len(), "link"))
+        }
         None => "counterweights to none".into(),
     }
 }
@@ -330,6 +396,9 @@ fn list_of(kind: &str, value: &Value) -> String {
 
 /// Maximum number of significant digits of a number in the description of a change.
 const TITLE_DIGITS: usize = 5;
+
+/// Maximum number of settings in the description of a change.
+const MOST_IN_TITLE: usize = 4;
 
 /// Describes a change of settings; `before` is the task before it, if it is known.
 fn title_of(change: &Table, before: Option<&Table>) -> String {
@@ -366,5 +435,15 @@ fn title_of(change: &Table, before: Option<&Table>) -> String {
         let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
         format!("{words} to {typed}{unit}")
     };
-    format!("set {}", change::leaves(change).into_iter().map(one).collect::<Vec<_>>().join(", "))
+    // The lists of parts and counterweights say most about a change of many settings.
+    let mut all = change::leaves(change);
+    if all.len() > MOST_IN_TITLE {
+        all.sort_by_key(|(path, _)| path.contains('.'));
+    }
+    let rest = match all.len() {
+        n if n > MOST_IN_TITLE => format!(" and {} more", n - MOST_IN_TITLE + 1),
+        _ => String::new(),
+    };
+    let shown = if rest.is_empty() { all.len() } else { MOST_IN_TITLE - 1 };
+    format!("set {}{rest}", all.into_iter().take(shown).map(one).collect::<Vec<_>>().join(", "))
 }

@@ -23,6 +23,7 @@ use super::events::{EventLog, Gestures};
 use super::machines::Machines;
 use super::run::Run;
 use crate::scenario::{MAX_FRAMES, MAX_TIME, Scenario};
+use stillbase_mechanics::sketch::resolve;
 use stillbase_query::{IncrementalAnswer, Queries, Sequence};
 use stillbase_simulation::frame::Frame;
 
@@ -196,6 +197,19 @@ impl Session {
     /// Returns whether the user can drag the machine: it has a b to hold, and the run does not wait.
     pub fn can_be_dragged(&self) -> bool {
         self.run.waiting().is_none() && self.run.pose_space().is_ok()
+    }
+
+    /// Returns whether a file of the machine holds all that the user has changed: no edit concerns anything else, there is
+    /// no bookmark, note or branch, and a drawing is complete.
+    pub fn changes_machine_only(&self) -> bool {
+        let kept =
+            [self.document.bookmarks.is_empty(), self.document.notes.is_empty(), self.document.branches.is_empty()];
+        let scenario = self.scenario();
+        let is_drawn = || match &scenario.sketch {
+            Some(sketch) => resolve(sketch).machine.as_ref() == Some(&scenario.machine),
+            None => true,
+        };
+        kept == [true; 3] && self.edits.iter().all(|timed| timed.edit.is_of_machine()) && is_drawn()
     }
 
     /// Returns the session as a scenario, which gives equal frames when it is replayed or opened again. At step 0 the

@@ -36,6 +36,11 @@ impl KeyPath {
         Self(steps.collect())
     }
 
+    /// Makes the place of a key in a table; without one it is the table.
+    pub fn of(key: Option<&str>) -> Self {
+        Self(key.map(|key| KeyStep::Key(key.into())).into_iter().collect())
+    }
+
     /// Returns the same place relative to an outer table, in which the present table has the key `key`.
     #[must_use]
     pub fn under(self, key: &str) -> Self {

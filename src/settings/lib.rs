@@ -23,3 +23,4 @@ pub mod stated;
 #[doc(hidden)]
 pub mod text;
 pub mod word;
+pub mod word_row;

@@ -1,6 +1,7 @@
 //! [`faults_of`]: all faults of a file. Reading stops at the first fault; so each fault is told, mended, and the file is
 //! read again. What was made up to mend one fault is never told as another.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use toml::de::Error;
@@ -37,6 +38,9 @@ pub enum Wrong {
     UnknownKey(Vec<String>),
     /// The value is wrong, in words that follow the name of the key.
     Value(String),
+    /// The value, by which its table has other keys, is wrong or missing, in words that follow the name of the key.
+    /// Without it nothing else of the table can be judged.
+    Kind(String),
     /// The value is wrong, in a whole sentence.
     Said(String),
     /// The value is a name that nothing has: a whole sentence, and the names that would be right.
@@ -67,17 +71,22 @@ pub trait Vocabulary {
 pub enum Meant {
     /// Another key.
     Key(&'static str),
-    /// Something that other keys say, as a sentence tells.
-    Else(&'static str),
+    /// Something that other keys say: a sentence, and lines that may stand in the file instead.
+    Else(&'static str, &'static str),
 }
 
 impl Problem {
     /// Makes the problem that a reader of TOML has found in a file.
     pub fn of(file: &StatedFile, error: &Error) -> Self {
-        let path = error.span().map_or_else(KeyPath::default, |span| file.path(&span));
-        let message = shortened(error.message(), MAX_SAID);
-        let mut quoted = error.message().split('`').skip(1).step_by(2);
-        let wrong = match error.message() {
+        Self::said(error.span().map_or_else(KeyPath::default, |span| file.path(&span)), error.message())
+    }
+
+    /// Makes the problem of which a reader of TOML says this at a place.
+    pub fn said(path: KeyPath, message: &str) -> Self {
+        let whole = message;
+        let message = shortened(whole, MAX_SAID);
+        let mut quoted = whole.split('`').skip(1).step_by(2);
+        let wrong = match whole {
             said if said.starts_with("missing field") => match quoted.next() {
                 Some(key) => Wrong::Missing(key.into()),
                 None => Wrong::Value(message),
@@ -100,6 +109,12 @@ impl Problem {
         Self { path: self.path.under(key), ..self }
     }
 
+    /// Returns the problem of an entry, counted from 0, of the list that is the value of `key`.
+    #[must_use]
+    pub fn in_list(self, key: &str, entry: usize) -> Self {
+        Self { path: KeyPath(KeyPath::new(&[&key, &entry]).0.into_iter().chain(self.path.0).collect()), ..self }
+    }
+
     /// Returns what is wrong in words, with names and with what would be right.
     pub fn text(&self, words: &dyn Vocabulary) -> String {
         let want = |path: &KeyPath| words.want(path).map(|want| format!(": want {want}")).unwrap_or_default();
@@ -109,7 +124,7 @@ impl Problem {
                 format!("{} is missing{}", called(&path, words), want(&path))
             }
             Wrong::UnknownKey(known) => self.unknown_key(known, words),
-            Wrong::Value(said) => {
+            Wrong::Value(said) | Wrong::Kind(said) => {
                 let want = if said.contains("want ") { String::new() } else { want(&self.path) };
                 let verb = if said.starts_with("is ") || said.starts_with("has ") { " " } else { ": " };
                 match self.path.0.is_empty() {
@@ -134,7 +149,7 @@ impl Problem {
         };
         let all = || shortened(&known.join(", "), MAX_SAID);
         let advice = match (words.meant(&self.path), &self.nearest(known)[..]) {
-            (Some(Meant::Else(said)), _) => said.to_owned(),
+            (Some(Meant::Else(said, _)), _) => said.to_owned(),
             (Some(Meant::Key(meant)), _) => format!("want {}", called(&table.key(meant), words)),
             (None, []) => format!("want one of {}", all()),
             (None, nearest) => {
@@ -179,6 +194,13 @@ pub fn with_key(name: &str, key: &str) -> String {
 
 /// Returns the message of the TOML reader on a value in plain words: what the value is.
 fn value_in_words(said: &str) -> Option<String> {
+    if said.starts_with("unknown variant") {
+        let mut quoted = said.split('`').skip(1).step_by(2);
+        let (given, known) = (quoted.next()?, quoted.collect::<Vec<_>>());
+        let nearest = nearest_words(given, known.iter().copied());
+        let nearest = nearest.first().map(|word| format!("{word:?} (nearest), or ")).unwrap_or_default();
+        return Some(format!("is {:?}: want {nearest}one of {}", quote_clipped(given), known.join(", ")));
+    }
     let rest = ["invalid type: ", "invalid value: "].iter().find_map(|begin| said.strip_prefix(begin));
     let Some(rest) = rest else {
         let count = said.strip_prefix("invalid length ")?.split(',').next()?.trim();
@@ -288,17 +310,22 @@ impl Mending<'_> {
             Some([]) => *at == span,
             // What stands within something that was made up was made up, too.
             Some(_) => self.file.at(path).is_some(),
-            None => false,
+            // What is said of an entry of a list may follow from what was made up in it.
+            None => matches!(key.0.last(), Some(KeyStep::At(_))) && path.0.starts_with(&key.0),
         })
     }
 
     /// Returns the fault of a problem, with its place in the file as stated.
     fn fault(&self, problem: &Problem) -> Fault {
         // Elements of lists that were left out have changed the positions of others.
-        let stated = |path: &KeyPath| {
+        let found = |path: &KeyPath| {
             let span = self.file.span(path).filter(|_| self.file.at(path).is_some());
-            let found = span.map(|span| self.stated.path(&span)).filter(|found| found.0.len() == path.0.len());
-            self.stated.named(&found.unwrap_or_else(|| path.clone()))
+            span.map(|span| self.stated.path(&span)).filter(|found| found.0.len() == path.0.len())
+        };
+        let stated = |path: &KeyPath| {
+            // A key that is missing belongs to a table that is there.
+            let in_table = || Some(found(&path.parent()?)?.key(path.last_key()?));
+            self.stated.named(&found(path).or_else(in_table).unwrap_or_else(|| path.clone()))
         };
         let said = Problem { path: stated(&problem.path), wrong: problem.wrong.clone() };
         let place = match problem.wrong {
@@ -319,7 +346,7 @@ impl Mending<'_> {
         let words = self.words;
         let line = |path: &KeyPath, value: &str| match (path.last_key(), &path.0[..]) {
             (Some(key), [_]) => in_a_table(key, value),
-            (Some(key), _) => format!("{key} = {value}"),
+            (Some(key), _) => format!("{} = {value}", bare(key)),
             (None, _) => String::new(),
         };
         let usual = |path: &KeyPath| words.example(path).map(|value| line(path, value)).unwrap_or_default();
@@ -341,7 +368,10 @@ impl Mending<'_> {
                         None => usual(&path),
                     }
                 }
-                None => String::new(),
+                None => match words.meant(&problem.path) {
+                    Some(Meant::Else(_, example)) => example.to_owned(),
+                    _ => String::new(),
+                },
             },
             _ => usual(&self.whole_value(&Self::key(problem))),
         }
@@ -383,6 +413,7 @@ impl Mending<'_> {
                 None => self.leave_out(&key),
             },
             Wrong::Value(_) | Wrong::Said(_) => self.leave_out(&key),
+            Wrong::Kind(_) => key.parent().is_some_and(|table| self.file.remove(&table)),
         }
     }
 
@@ -404,6 +435,12 @@ impl Mending<'_> {
         self.mark(key);
         self.file.remove(key)
     }
+}
+
+/// Returns a key as TOML wants it: in quotes unless it is one plain word.
+fn bare(key: &str) -> Cow<'_, str> {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
+    if !key.is_empty() && key.chars().all(is_plain) { key.into() } else { format!("{key:?}").into() }
 }
 
 /// Returns a key of the file with its value, tables under their headers.

@@ -71,6 +71,30 @@ pub fn at_most_digits(x: f64, digits: usize) -> String {
     ShortNumber(rounded).to_string()
 }
 
+/// Returns the shortest decimal for a length, m, as a person would write it: 0.2 for the 0.19999999999999996 that is left
+/// of 0.7 less 0.5. The rounding of such a sum is that of its largest length, so that a part of 1e-16 of 1 m counts.
+pub fn plain(metres: f64) -> f64 {
+    shortest_within(metres, PLAIN_M * (1.0 + metres.abs()))
+}
+
+/// Returns the shortest decimal that differs from a number by no more than a part `within` of it.
+pub fn shortest(x: f64, within: f64) -> f64 {
+    shortest_within(x, within * x.abs())
+}
+
+fn shortest_within(x: f64, most: f64) -> f64 {
+    if x.abs() <= most {
+        return 0.0;
+    }
+    let decimals = (0..MOST_DECIMALS).map(|n| format!("{x:.n$e}").parse().unwrap_or(x));
+    decimals.into_iter().find(|short: &f64| (short - x).abs() <= most).unwrap_or(x)
+}
+
+/// Rounding of a sum of lengths of about 1 m.
+const PLAIN_M: f64 = 3e-16;
+/// Decimals behind the first digit with which a number is no other one.
+const MOST_DECIMALS: usize = 17;
+
 /// Returns a symbol without subscript digits at its end: τ₁₂ as τ.
 pub fn without_subscript(symbol: &str) -> &str {
     symbol.trim_end_matches(|c| ('₀'..='₉').contains(&c))

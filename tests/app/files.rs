@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use egui::{Key, Modifiers};
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::app::{Layout, Message, SessionCommand, ViewChange};
 use stillbase::picture::charts::choice::PlotChange;
 use stillbase::picture::scene::palette::Theme;
@@ -35,6 +35,8 @@ pub const TESTS: &[Test] = tests![
     all_faults_of_a_file_are_listed,
     what_is_left_out_of_a_model_is_listed,
     a_file_that_changes_is_taken_up,
+    a_machine_from_a_file_is_its_own_and_keeps_the_time,
+    a_saved_machine_leaves_nothing_to_ask,
 ];
 
 /// A file that is dropped: its name.
@@ -625,4 +627,63 @@ fn a_dialog_that_is_left_does_nothing() {
         }
     }
     assert!(folder.names().is_empty());
+}
+
+/// What a list at the top shows.
+fn shown(h: &Window, list: &str) -> String {
+    h.get_by_label(list).accesskit_node().value().unwrap_or_default()
+}
+
+/// A file's machine with the name of a built-in one is not "(edited)" before it is; and where its file changes, the run
+/// stays at its time.
+fn a_machine_from_a_file_is_its_own_and_keeps_the_time() {
+    let folder = Folder::new("own-machine");
+    let own = include_str!("../../assets/machines/two-drive.toml");
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let file = folder.file("two-drive.toml", own.replacen("mass = 2.0", "mass = 2.125", 1));
+    drop_on(&mut h, &file);
+    h.run_steps(4);
+    assert_eq!(shown(&h, "Machine"), "two-drive");
+    assert!(!shown(&h, "Scenario").contains("edited"), "{}", shown(&h, "Scenario"));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Seek(0.25));
+    h.run_steps(4);
+    let look = |h: &mut Window| {
+        h.state_mut().app_state_mut().look_at_file(1.0);
+        h.run_steps(6);
+    };
+    look(&mut h);
+    folder.file("two-drive.toml", own.replacen("mass = 2.0", "mass = 2.25", 1));
+    look(&mut h);
+    look(&mut h);
+    assert_eq!(session(&h).scenario().machine.spec().links[0].mass, 2.25);
+    assert_eq!((session(&h).frame().time, shown(&h, "Machine").as_str()), (0.25, "two-drive"));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::set("link.1.mass", 2.5)));
+    h.run_steps(4);
+    assert_eq!(shown(&h, "Machine"), "two-drive (edited)");
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(4);
+    assert_eq!(shown(&h, "Machine"), "two-drive");
+}
+
+/// Saved as a machine, a session that changes only its machine closes without a question.
+fn a_saved_machine_leaves_nothing_to_ask() {
+    let folder = Folder::new("saved-machine");
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    let edit = |h: &mut Window, path: &str, value: f64| {
+        h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::set(path, value)));
+        h.state_mut().app_state_mut().carry_out(SessionCommand::EndGesture);
+        h.run_steps(3);
+    };
+    edit(&mut h, "link.9.mass", 0.3);
+    assert!(h.state().app_state().changes().1, "unsaved");
+    h.state_mut().app_state_mut().carry_out(SessionCommand::TakeElsewhere(folder.path("own.toml")));
+    h.run_steps(4);
+    done(&h, "saved");
+    assert!(!h.state().app_state().changes().1, "all of it is in the file");
+    edit(&mut h, "plant.payload.mass", 0.3);
+    h.state_mut().app_state_mut().carry_out(SessionCommand::TakeElsewhere(folder.path("other.toml")));
+    h.run_steps(4);
+    assert!(h.state().app_state().changes().1, "a machine holds no payload of the plant");
 }

@@ -2,10 +2,10 @@
 
 use egui::{Key, Modifiers, Pos2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use stillbase::app::{PenTool, SessionCommand, ViewChange};
+use stillbase::app::{PenChange, PenTool, SessionCommand, ViewChange};
 use stillbase::mechanics::sketch::{BarEnd, Sketch, SketchStep, Template, resolve};
 use stillbase::picture::scene::palette::Theme;
-use stillbase::picture::scene::sketching::DrawnArc;
+use stillbase::picture::scene::sketching::{DrawnArc, SketchItem};
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::Edit;
 
@@ -25,6 +25,11 @@ pub const TESTS: &[Test] = tests![
     the_balance_follows_the_pin_under_the_pointer,
     a_bar_by_numbers_closes_a_loop_without_the_pointer,
     numbers_off_the_axis_are_found_in_the_design_view,
+    bars_are_drawn_by_the_keyboard_alone,
+    what_is_typed_near_a_pin_stands_as_typed,
+    a_field_with_the_focus_is_in_view,
+    commands_lead_to_the_fields_of_a_drawing,
+    lengths_and_angles_of_a_drawing_are_in_mm_and_degrees,
 ];
 
 /// A window in which a template is drawn.
@@ -386,7 +391,7 @@ fn a_bar_by_numbers_closes_a_loop_without_the_pointer() {
     let pin = sketch(&h).bars[1].tip;
     h.get_all_by_label(&format!("pin {}", pin.0)).last().expect("in the list").click();
     h.run_steps(3);
-    h.get_by_label("angle from x rad").click();
+    h.get_by_label("angle of the new bar °").click();
     h.run_steps(2);
     for key in [Key::Num0, Key::Enter] {
         h.key_press(key);
@@ -395,7 +400,6 @@ fn a_bar_by_numbers_closes_a_loop_without_the_pointer() {
         }
         h.run_steps(2);
     }
-    h.get_by_label("add the new bar").click();
     h.run_steps(4);
     let closed = sketch(&h);
     assert_eq!((closed.bars.len(), closed.bars[3].tip), (4, closed.bars[2].tip), "on the pin that is there");
@@ -419,4 +423,134 @@ fn numbers_off_the_axis_are_found_in_the_design_view() {
     h.state_mut().app_state_mut().carry_out(ViewChange::LookUp("task.time".to_owned()));
     h.run_steps(4);
     assert_ne!(h.state().app_state().view_state().view, ViewKind::Design);
+}
+
+/// Types a text and ends it with a key.
+fn types(h: &mut Window, text: &str, end: Key) {
+    h.event(egui::Event::Text(text.into()));
+    h.run_steps(2);
+    h.key_press(end);
+    h.run_steps(4);
+}
+
+/// Calls a command by words from its name.
+fn calls(h: &mut Window, words: &str) {
+    h.key_press_modifiers(Modifiers::COMMAND, Key::K);
+    h.run_steps(3);
+    types(h, words, Key::Enter);
+}
+
+fn bars_are_drawn_by_the_keyboard_alone() {
+    let mut h = drawing(Template::Blank, Theme::Dark);
+    calls(&mut h, "bar by numbers");
+    assert!(h.get_by_label("length of the new bar mm").is_focused());
+    types(&mut h, "300", Key::Enter);
+    assert!(h.get_by_label("angle of the new bar °").is_focused());
+    types(&mut h, "90", Key::Enter);
+    // The next bar begins at the end of the last one.
+    assert!(h.get_by_label("length of the new bar mm").is_focused());
+    types(&mut h, "250", Key::Tab);
+    types(&mut h, "-30", Key::Enter);
+    let drawn = sketch(&h);
+    assert_eq!(drawn.bars.len(), 2);
+    assert_eq!((drawn.bars[0].root, drawn.bars[1].root), (drawn.base, drawn.bars[0].tip));
+    let said: Vec<[f64; 2]> =
+        drawn.bars.iter().map(|bar| [drawn.length(bar), drawn.span(bar).arg().to_degrees()]).collect();
+    for (bar, wanted) in said.iter().zip([[0.3, 90.0], [0.25, -30.0]]) {
+        assert!((bar[0] - wanted[0]).abs() < 1e-12 && (bar[1] - wanted[1]).abs() < 1e-9, "{bar:?} {wanted:?}");
+    }
+    // What is refused adds nothing, and keeps the number.
+    types(&mut h, "1e9", Key::Tab);
+    types(&mut h, "720", Key::Enter);
+    assert_eq!(sketch(&h), drawn);
+    // From another pin, chosen by the arrow keys.
+    h.get_by_label("new bar from").focus();
+    h.run_steps(2);
+    h.key_press(Key::ArrowUp);
+    h.run_steps(3);
+    let chosen = h.state().app_state().view_state().pen.as_ref().and_then(|pen| pen.chosen);
+    assert_eq!(chosen, Some(SketchItem::Pin(drawn.bars[0].tip)), "lit in the drawing");
+}
+
+fn what_is_typed_near_a_pin_stands_as_typed() {
+    let mut h = drawing(Template::SerialOfTwo, Theme::Dark);
+    tool(&mut h, "draw: bar");
+    let before = sketch(&h);
+    let (base, end) = (before.at(before.base), before.at(before.bars[1].tip));
+    let away = (end - base).norm();
+    let start = at(&h, base.re, base.im);
+    let goal = at(&h, end.re, end.im);
+    for off in [3e-4, 2e-3, 5e-3] {
+        click(&mut h, start);
+        h.run_steps(2);
+        h.hover_at(goal);
+        h.run_steps(2);
+        types(&mut h, &format!("{:.1}", 1e3 * (away - off)), Key::Enter);
+        let drawn = sketch(&h);
+        assert_eq!(drawn.bars.len(), 3, "off by {off} m");
+        let length = drawn.length(&drawn.bars[2]);
+        let typed = (1e4 * (away - off)).round() * 1e-4;
+        assert!((length - typed).abs() < 1e-9, "typed {typed} m, drawn {length} m");
+        h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        h.run_steps(4);
+        assert_eq!(sketch(&h), before);
+    }
+}
+
+fn a_field_with_the_focus_is_in_view() {
+    for (key, is_drawn) in [(None, true), (Some(Key::D), false)] {
+        let mut h = window("case-3", Theme::Dark);
+        h.run_steps(2);
+        if is_drawn {
+            h.state_mut().app_state_mut().carry_out(SessionCommand::NewDrawing(Template::Pantograph));
+        }
+        key.iter().for_each(|key| h.key_press(*key));
+        h.run_steps(6);
+        let mut seen = 0;
+        for _ in 0..120 {
+            h.key_press(Key::Tab);
+            h.run_steps(24);
+            let Some(rect) = focused(&h) else { continue };
+            let height = h.ctx.content_rect().height();
+            assert!(rect.top() >= 0.0 && rect.bottom() <= height, "{rect:?} is out of view");
+            seen += 1;
+        }
+        assert!(seen > 60, "{seen}");
+    }
+}
+
+/// Where the widget with the keyboard's focus is.
+fn focused(h: &Window) -> Option<egui::Rect> {
+    let id = h.ctx.memory(egui::Memory::focused)?;
+    h.ctx.read_response(id).map(|response| response.rect)
+}
+
+fn commands_lead_to_the_fields_of_a_drawing() {
+    let mut h = window("case-3", Theme::Light);
+    h.run_steps(2);
+    for (words, field) in [
+        ("hang a motor", "pin of the new motor"),
+        ("put the end effector", "pin of the end effector"),
+        ("choose a bar or a pin", "bar or pin in the card"),
+    ] {
+        calls(&mut h, words);
+        assert!(h.state().app_state().view_state().drawing_pen().is_some(), "{words}");
+        assert!(h.get_by_label(field).is_focused(), "{words}");
+        h.key_press_modifiers(Modifiers::SHIFT, Key::D);
+        h.run_steps(3);
+    }
+}
+
+fn lengths_and_angles_of_a_drawing_are_in_mm_and_degrees() {
+    let mut h = drawing(Template::Pantograph, Theme::Light);
+    let first = sketch(&h).bars[0].id;
+    h.state_mut().app_state_mut().carry_out(ViewChange::Pen(PenChange::Choose(Some(SketchItem::Bar(first)))));
+    h.run_steps(4);
+    let shown = h.query_all_by_role(egui::accesskit::Role::SpinButton);
+    let labels: Vec<String> = shown.filter_map(|field| field.accesskit_node().label()).collect();
+    assert!(labels.iter().any(|label| label.ends_with(" mm")) && labels.iter().any(|label| label.ends_with(" °")));
+    let other = labels.iter().find(|label| label.ends_with(" m") || label.ends_with(" rad"));
+    assert_eq!(other, None);
+    let step = SketchStep::MovePin { pin: sketch(&h).bars[0].tip, to: [0.12345, -0.2] };
+    assert_eq!(step.title(), "move pin to 123.5, -200 mm");
 }

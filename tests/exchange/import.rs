@@ -2,7 +2,7 @@
 //! textbooks say, and all else is refused by name.
 
 use stillbase::exchange::cut::Cut;
-use stillbase::exchange::import::{ImportedMachine, import};
+use stillbase::exchange::import::{ImportedMachine, faults, import};
 use stillbase::exchange::mjcf::{middle, mjcf};
 use stillbase::exchange::urdf::urdf;
 use stillbase::mechanics::dynamics::mass_matrix;
@@ -617,4 +617,30 @@ fn limits_may_be_anywhere() {
     let round =
         limited(-2.0, 1.0).replacen("name=\"elbow\" type=\"revolute\"", "name=\"elbow\" type=\"continuous\"", 1);
     assert!(import(&round).expect("an arm").machine.spec().angles.is_empty());
+}
+
+/// All values that are wrong or missing are told at once, each with its line; behind them nothing that might follow.
+#[test]
+fn all_wrong_values_of_a_model_are_told_at_once() {
+    let text = "<robot name=\"arm\">\n<link name=\"base\"/>\n<link name=\"a\"><inertial>\n<origin xyz=\"0.1 0 zero\"/>\n\
+                <mass value=\"-2\"/>\n<inertia ixx=\"0.01\" ixy=\"0\" ixz=\"0\" iyy=\"0.01\" iyz=\"0\" izz=\"1e99\"/>\n\
+                </inertial></link>\n<joint name=\"ja\" type=\"revolute\">\n<parent link=\"base\"/>\n<child link=\"a\"/>\n\
+                <origin xyz=\"0 0\"/>\n<axis xyz=\"0 0 1\"/>\n\
+                <limit lower=\"-1\" upper=\"one\" effort=\"10\" velocity=\"5\"/>\n</joint>\n<link name=\"tip\"/>\n\
+                <joint name=\"jt\" type=\"fixed\">\n<parent/>\n<child link=\"tip\"/>\n<origin xyz=\"0.3 0 0\"/>\n</joint>\n\
+                </robot>\n";
+    let first = import(text).expect_err("it has faults");
+    let found = faults(text, first);
+    let mut told: Vec<(usize, &str)> =
+        found.list.iter().map(|fault| (fault.line.expect("a line"), fault.text.as_str())).collect();
+    told.sort_unstable();
+    let lines: Vec<usize> = told.iter().map(|(line, _)| *line).collect();
+    assert_eq!(lines, [4, 5, 6, 11, 13, 17], "{told:#?}");
+    for ((_, said), part) in told.iter().zip(["zero", "-2 kg", "1e99", "xyz has 2 numbers", "one", "it has no link"]) {
+        assert!(said.contains(part), "{said}: {part}");
+    }
+    // A single fault that no value mends is told alone.
+    let other = "<robot name=\"arm\"><link name=\"base\"/></robot>";
+    let alone = faults(other, import(other).expect_err("no joint"));
+    assert_eq!((alone.count(), alone.is_cut), (1, false));
 }

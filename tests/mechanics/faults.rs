@@ -65,8 +65,13 @@ min = 0.2
     all_are(
         text,
         &[
-            ("belt = 2", "belt", "a belt from the base is a drive of its own", ""),
-            ("gear = 50", "drive.1.gear", "rotor = { inertia", ""),
+            (
+                "belt = 2",
+                "belt",
+                "a belt from the base is a drive of its own",
+                "[[drive]]\nname = \"2\"\nrotor = { inertia = 1e-4, ratio = 3 }",
+            ),
+            ("gear = 50", "drive.1.gear", "rotor = { inertia", "rotor = { inertia = 1e-4, ratio = 50 }"),
             ("torqe", "drive.2.torqe_limit", "torque_limit (nearest)", "torque_limit = 20.0"),
             (
                 "[[link]]",

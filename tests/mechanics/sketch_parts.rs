@@ -261,3 +261,35 @@ fn parts_that_do_not_fit_are_refused() {
     let free = draw(&typed, [mass(None)]);
     assert_eq!(free.body(&free.bars[0]), draw(&arm, [made]).body(&arm.bars[0]));
 }
+
+/// What drawing adds and subtracts is written as a person would write it, and weighs the same.
+#[test]
+fn computed_numbers_are_written_as_a_person_would() {
+    let drawn = draw(&Template::Blank.sketch(), [bar(pin(0), at(1.8e-17, 0.8))]);
+    let own = drawn.bars[0].clone();
+    assert_eq!(drawn.at(own.tip).re, 0.0);
+    let lumps = [0.7, 0.65, 0.3].map(|x| lump(&own.name, 0.1, PlaceOnLink::Metres(x)));
+    let holes = [0.6, 0.75].map(|x| Hole { at: PlaceOnLink::Metres(x), across: 0.0, diameter: 0.004 });
+    let parts = vec![Part { holes: holes.to_vec(), ..part(&own.name, Shape::Flat) }];
+    let step = SketchStep::Parts { bar: own.id, parts, lumps: lumps.to_vec() };
+    let split = draw(&drawn, [step, SketchStep::Split { bar: own.id, along: 0.5 }]);
+    let all = split.lumps.iter().map(|lump| &lump.at);
+    let all = all.chain(split.parts.iter().flat_map(|part| part.holes.iter().map(|hole| &hole.at)));
+    let places: Vec<f64> =
+        all.filter_map(|place| if let PlaceOnLink::Metres(x) = place { Some(*x) } else { None }).collect();
+    assert!(0.7 - 0.5 != 0.2 && places.contains(&0.2) && places.contains(&0.15) && places.contains(&0.1), "{places:?}");
+    assert!(places.iter().all(|x| x.to_string().len() < 8), "{places:?}");
+    // Joined again, everything is where it was.
+    let other = split.bars.last().expect("cut off").id;
+    let joined = draw(&split, [SketchStep::Join { bar: own.id, with: other }]);
+    assert_eq!(
+        joined.lumps,
+        draw(&drawn, [SketchStep::Parts { bar: own.id, parts: vec![], lumps: lumps.to_vec() }]).lumps
+    );
+    // A step that a person has not typed is written plainly, too.
+    let turned = [1.8e-17, 0.7 - 0.5];
+    let step = SketchStep::MovePin { pin: own.tip, to: turned }.plainly();
+    assert_eq!(step, SketchStep::MovePin { pin: own.tip, to: [0.0, 0.2] });
+    let limits = |range| SketchStep::Limits { to: "2".into(), from: "1".into(), offset: 0.0, range: Some(range) };
+    assert_eq!(limits([30_f64.to_radians(), 1.2]).plainly(), limits([0.523598775598, 1.2]));
+}

@@ -125,7 +125,7 @@ fn what_is_shown_as_a_default_is_taken() {
         }
     }
     // Where something stands by default, nothing is no value.
-    fails(&["simulate", case, "--set", "control.kp=none"], 2, &["control.kp is \"none\""]);
+    fails(&["simulate", case, "--set", "control.kp=none"], 2, &["(control.kp) is \"none\""]);
     assert!(prints(&["keys", "tolerance.samples"]).contains("Without it: 100000, or 1000 that are simulated."));
     assert!(prints(&["keys", "wheel.inertia"]).contains("Without it: 0.02 if another key of the wheel is given"));
     assert!(prints(&["keys", "tolerance.link.*.mass"]).contains("Without it: normal:0.5%"));
@@ -135,9 +135,12 @@ fn what_is_shown_as_a_default_is_taken() {
 #[test]
 fn parts_are_named_once() {
     for (pair, words) in [
-        ("tolerance.samples=0", "--set: tolerance.samples is 0: want a whole number from 1"),
-        ("tolerance.moment_limit=-1", "--set: tolerance.moment_limit is -1: want a number"),
-        ("tolerance.link.5.com=normal:-1", "tolerance.link.5.com is "),
+        ("tolerance.samples=0", "--set: how many machines (tolerance.samples) is 0: want a whole number from 1"),
+        (
+            "tolerance.moment_limit=-1",
+            "--set: moment on the base that will do (tolerance.moment_limit) is -1: want a number",
+        ),
+        ("tolerance.link.5.com=normal:-1", "centre of mass along link 5 (tolerance.link.5.com) is "),
     ] {
         let out = stillbase(&["tolerance", "case-3", "--set", pair]);
         let said = text(&out.stderr).lines().next().expect("the reason, before ways out");

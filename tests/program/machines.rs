@@ -585,7 +585,11 @@ fn a_machine_comes_from_elsewhere() {
     fails(&["import-model", &file("nowhere.urdf")], 2, &["nowhere.urdf", "can be read"]);
     let broken = fs::read_to_string(file("arm.urdf")).expect("a file").replacen("continuous", "prismatic", 1);
     fs::write(file("broken.urdf"), broken).expect("written");
-    fails(&["import-model", &file("broken.urdf")], 2, &["broken.urdf: line ", "prismatic", "want revolute"]);
+    fails(
+        &["import-model", &file("broken.urdf")],
+        2,
+        &["broken.urdf:", ": joint \"drive_1\"", "prismatic", "want revolute"],
+    );
 }
 
 /// A base that weighs something is no part of a machine: it is said, and goes into a scenario that runs.

@@ -108,8 +108,8 @@ proptest! {
             ("do = \"slide-b\"\nb = 1e300", "b is 1e300: want -1000 to 1000 rad"),
             ("do = \"slide-b\"\nb = nan", "b is not a number: want -1000 to 1000 rad"),
             ("do = \"drag-target\"\nx = -2e7\ny = 0.0", "x is -2e7: want -1000000 to 1000000 m"),
-            ("do = \"slide-c\"\nb = 1.0", "slide-c"),
-            ("do = \"slide-b\"\nc = 1.0", "unknown field `c`"),
+            ("do = \"slide-c\"\nb = 1.0", "is \"slide-c\": want \"slide-b\" (nearest)"),
+            ("do = \"slide-b\"\nc = 1.0", "has no key \"c\""),
             ("do = \"set-plant\"\nchange = { payload = { mass = -1.0 } }", "plant.payload.mass) is -1: want 0 to 10000 kg"),
             ("do = \"set-plant\"\nchange = { payload = { weight = 1.0 } }", "weight"),
             ("do = \"set-control\"\nchange = { kp = 1e99 }", "control.kp) is 1e99"),
@@ -127,7 +127,13 @@ proptest! {
         }
         let error = Scenario::parse(&text, "saved.toml", None).expect_err("a bad entry").to_string();
         let ending = ["st", "nd", "rd"].get(place).copied().unwrap_or("th");
-        let head = format!("saved.toml:{line}: the {}{ending} [[edit]]: ", place + 1);
+        // What the entry cannot hold is named at its key, what the scenario cannot, by the entry.
+        let n = place + 1;
+        let head = match bad.lines().next() {
+            Some("do = \"slide-c\"") => format!("saved.toml:{}: kind of edit {n} (edit[{n}].do) ", line + 2),
+            _ if bad.contains("\nc = ") => format!("saved.toml:{}: edit {n} ", line + 3),
+            _ => format!("saved.toml:{line}: the {n}{ending} [[edit]]: "),
+        };
         prop_assert!(error.starts_with(&head) && error.contains(words), "{error}, not {head}{words}");
         prop_assert!(error.len() < 400, "{error}");
     }

@@ -26,16 +26,16 @@ fn all_faults_of_a_scenario_are_told_at_once() {
         CASE.replace("time = 1.0", "tiem = 1.0")
     );
     let found = faults(&text);
-    let want = ["tilte", "task.tiem", "control.kp", "control.law", "base.mass", "edit[1]", "edit[3]"];
+    let want = ["tilte", "task.tiem", "control.kp", "control.law", "base.mass", "edit[1].do", "edit[3].b", "edit[3].c"];
     assert_eq!(keys(&found), want, "{:#?}", found.list);
     let of = |key: &str| found.list.iter().find(|fault| fault.key == key).expect("it is told");
     assert!(of("tilte").text.contains("title (nearest)"));
     assert_eq!(of("task.tiem").example, "time = 1.0");
     assert!(of("control.kp").text.starts_with("position gain (control.kp) is -1: want 0 to"), "{:?}", of("control.kp"));
     assert!(of("base.mass").text.starts_with("mass of the base (base.mass) is the text \"heavy\""));
-    assert!(of("edit[3]").text.starts_with("edit 3: "), "{:?}", of("edit[3]"));
+    assert!(of("edit[3].c").text.starts_with("edit 3 has no key \"c\""), "{:?}", of("edit[3].c"));
     let line = |part: &str| text[..text.find(part).expect("it is there")].matches('\n').count() + 1;
-    for (key, part) in [("task.tiem", "tiem"), ("control.law", "law = \"magic"), ("edit[3]", "[[edit]]\nstep = 3")] {
+    for (key, part) in [("task.tiem", "tiem"), ("control.law", "law = \"magic"), ("edit[3].c", "c = 2.5")] {
         assert_eq!(of(key).line, Some(line(part)), "{key}");
     }
 }
@@ -78,4 +78,54 @@ fn faults_of_a_named_machine_are_those_of_its_file() {
     let (file, faults) = error.faults().expect("they are told");
     assert!(file == "arm.toml" && faults.count() > 3, "{faults:?}");
     assert!(faults.list.iter().all(|fault| fault.text.contains("missing")), "{faults:?}");
+}
+
+/// Edits and tolerances are named plainly, each fault at the line of its key.
+#[test]
+fn faults_of_edits_and_tolerances_are_named_plainly() {
+    let text = format!(
+        "{CASE}\n[tolerance]\nsede = 7\nsamples = 0\n\"link.*.com\" = {{ normal = -1 }}\n\
+         [[edit]]\nstep = \"a\"\ndo = \"push\"\nx = 1.0\ny = 0.0\n\
+         [[edit]]\nstep = 1\ndo = \"push\"\nx = \"left\"\ny = 0.0\n\
+         [[edit]]\nstep = 1\ndo = \"shove\"\n\
+         [[edit]]\nstep = 0\ndo = \"sketch\"\ndraw = \"lenght\"\nbar = 1\nmetres = 0.3\n\
+         [[edit]]\nstep = 0\ndo = \"sketch\"\ndraw = \"length\"\nbar = \"a\"\nmetres = 0.3\n\
+         [[edit]]\nstep = 1\ndo = \"slide-b\"\n\
+         [[edit]]\nstep = 7\nx = 1.0\ny = 0.0\n"
+    );
+    let found = faults(&text);
+    let line = |part: &str| text[..text.find(part).expect("it is there")].matches('\n').count() + 1;
+    let wanted = [
+        ("tolerance.sede", "sede", "table of tolerances has no key \"sede\": want seed (nearest)", ""),
+        ("tolerance.samples", "samples = 0", "how many machines (tolerance.samples) is 0: want a whole number", ""),
+        (
+            "tolerance.link.*.com",
+            "\"link.*.com\"",
+            "centre of mass along every link (tolerance.link.*.com) is { normal = -1 }: want { normal = 0.0005 }",
+            "\"link.*.com\" = { normal = 0.0005 }",
+        ),
+        ("edit[1].step", "step = \"a\"", "step of edit 1 (edit[1].step) is \"a\": want a whole number", "step = 0"),
+        ("edit[2].x", "x = \"left\"", "x of edit 2 (edit[2].x) is the text \"left\": want a number", "x = 0.5"),
+        ("edit[3].do", "do = \"shove\"", "kind of edit 3 (edit[3].do) is \"shove\": want one of drag-target", ""),
+        (
+            "edit[4].draw",
+            "draw = \"lenght\"",
+            "step of drawing in edit 4 (edit[4].draw) is \"lenght\": want \"length\" (nearest), or one of new",
+            "draw = \"length\"",
+        ),
+        ("edit[5].bar", "bar = \"a\"", "bar of edit 5 (edit[5].bar) is the text \"a\": want a whole number", "bar = 1"),
+        (
+            "edit[6].b",
+            "[[edit]]\nstep = 1\ndo = \"slide-b\"",
+            "pose constant of edit 6 (edit[6].b) is missing",
+            "b = 2.4",
+        ),
+        ("edit[7].do", "[[edit]]\nstep = 7", "kind of edit 7 (edit[7].do) is missing: want one of drag-target", ""),
+    ];
+    assert_eq!(keys(&found), wanted.map(|(key, ..)| key), "{:#?}", found.list);
+    for (fault, (key, part, said, example)) in found.list.iter().zip(wanted) {
+        assert_eq!(fault.line, Some(line(part)), "{key}");
+        assert!(fault.text.starts_with(said), "{key}: {}", fault.text);
+        assert!(example.is_empty() || fault.example == example, "{key}: {}", fault.example);
+    }
 }

@@ -277,3 +277,17 @@ fn switching_scenarios_is_undone() {
     assert!(session.switch(never).is_err());
     assert!(state(&session) == before);
 }
+
+/// A change of many settings, as a machine that is cut, is told by its lists and the number of the others.
+#[test]
+fn a_change_of_many_settings_has_a_short_title() {
+    let numbers = (1..=9).map(|link| format!("{link} = {{ mass = 0.5, com = 0.1 }}")).collect::<Vec<_>>().join(", ");
+    let text = format!(
+        "link = {{ {numbers} }}\ncounterweight = [{{ link = \"1\", mass = 0.5, at = -0.1 }}]\n\
+         lump = [{{ link = \"1\", mass = 0.5, at = 0.1 }}]\n"
+    );
+    let edit = Edit::Set { change: text.parse().expect("TOML") };
+    let title = edit.title();
+    assert!(title.starts_with("set counterweights to 0.50 kg on 1 link, one lump, "), "{title}");
+    assert!(title.ends_with(" and 17 more") && title.len() < 100, "{title}");
+}

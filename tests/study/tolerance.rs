@@ -508,7 +508,7 @@ fn a_scenario_keeps_its_tolerances() {
         ("\"link.*.com\" = { normal = 1, uniform = 1 }", "link.*.com"),
     ] {
         let error = parse(section).expect_err(section).to_string();
-        assert!(error.contains("mine.toml:7") && error.contains(words), "{section}: {error}");
+        assert!(error.contains("mine.toml:8") && error.contains(words), "{section}: {error}");
     }
 }
 

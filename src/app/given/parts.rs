@@ -4,7 +4,7 @@ use egui::{Align, Button, Layout, RichText, ScrollArea, Ui, vec2};
 
 use super::assess::{OpenedTable, TableAction, TableAssessment, TableContent, TableOptions};
 use crate::theme::{bold, colour, plain};
-use crate::{Command, SessionCommand, WindowCommand, fit};
+use crate::{Command, SessionCommand, WindowCommand, fit, focus};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_planning::curves::Coordinates;
 use stillbase_study::advice::{Advice, Remedy};
@@ -59,6 +59,7 @@ pub(super) fn column(ui: &mut Ui, id: &str, width: f32, add: impl FnOnce(&mut Ui
             // Leaves room for the scroll bar.
             ui.set_max_width(width - 10.0);
             add(ui);
+            focus::keep_in_view(ui);
         });
     });
     ui.add_space(COLUMN_GAP);

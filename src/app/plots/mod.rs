@@ -21,7 +21,7 @@ use egui::{Frame, Margin, Panel, Rect, Ui, vec2};
 
 use self::header::{HEADER_HEIGHT, STATISTICS_HEIGHT};
 use super::side::is_narrow;
-use super::{Command, Layout};
+use super::{Command, Layout, focus};
 use stillbase_picture::charts::choice::Plot;
 use stillbase_picture::charts::drawn::PlotLines;
 use stillbase_picture::charts::figure::BOTTOM_MARGIN;
@@ -88,6 +88,7 @@ pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, has_panel: bool, commands: &
             let lines = prepared::of_width(ui.ctx(), what, &plots, 0.0);
             let over = window::show(ui.ctx(), what, &plots, &lines, commands);
             hover::remember(ui, over);
+            focus::keep_in_view(ui);
         }
         return stored;
     }

@@ -9,7 +9,7 @@ use crate::facts::{ScenarioFacts, Setting};
 use crate::place::fold_id;
 use crate::theme::{bold, colour};
 use crate::widgets::{name, note};
-use crate::{Command, Switch, ViewChange, ViewState};
+use crate::{Command, Switch, ViewChange, ViewState, focus};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::scenario::part_of;
 
@@ -97,6 +97,7 @@ pub fn window(ctx: &egui::Context, facts: &ScenarioFacts<'_>, view_state: &ViewS
                 if found.is_empty() {
                     note(ui, &p, "no setting contains this");
                 }
+                focus::keep_in_view(ui);
             });
         });
     if !open {

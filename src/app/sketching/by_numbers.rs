@@ -1,72 +1,141 @@
-//! A bar by numbers: the pin where it begins, its length and its angle, without the pointer.
+//! A drawing by numbers and names, without the pointer: a bar from a pin, by its length and angle; a motor and the end
+//! effector on a pin.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 use std::ops::RangeInclusive;
 
-use egui::{Align, ComboBox, Layout, RichText, Ui};
+use egui::{Align, Key, Layout, Response, RichText, Ui};
 
 use super::hand::typed;
-use super::{Pen, SketchFacts, draw};
+use super::motors::motor_at;
+use super::pin_list::pin_list;
+use super::{Pen, SketchFacts, draw, fields};
 use crate::Command;
+use crate::focus;
 use crate::theme::{colour, plain};
-use crate::widgets::{NumberRow, name, section};
+use crate::widgets::{NumberRow, has_refused, name, section, unit as write_unit};
 use stillbase_mechanics::planar::unit;
 use stillbase_mechanics::sketch::{BarEnd, PinId, Sketch, SketchStep};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_picture::scene::sketching::SketchItem;
 
-/// The bar to be added, as typed so far.
+/// Length of the first bar, and the longest one, m.
+const FIRST_M: f64 = 0.3;
+const LONGEST_M: f64 = 100.0;
+/// Shortest bar, m.
+const SHORTEST_M: f64 = 1e-3;
+
+/// What is to be added, as chosen and typed so far.
 #[derive(Clone, Copy)]
 struct Numbers {
     from: PinId,
     metres: f64,
     radians: f64,
+    motor: PinId,
+    /// What was chosen in the drawing when the pins were taken from there.
+    chosen: Option<SketchItem>,
 }
 
-/// Returns how a pin is called.
-pub fn pin_title(sketch: &Sketch, pin: PinId) -> String {
-    if pin == sketch.base { "pin B".to_owned() } else { format!("pin {}", pin.0) }
+impl Numbers {
+    /// Returns the numbers so far, on pins that exist. A pin that has just been chosen in the drawing is taken.
+    fn of(known: Option<Self>, sketch: &Sketch, pen: &Pen) -> Self {
+        let base = sketch.base;
+        let first = Self { from: base, metres: FIRST_M, radians: FRAC_PI_2, motor: base, chosen: None };
+        let mut own = known.unwrap_or(first);
+        if let Some(SketchItem::Pin(pin)) = pen.chosen.filter(|_| pen.chosen != own.chosen) {
+            (own.from, own.motor) = (pin, pin);
+        }
+        own.chosen = pen.chosen;
+        for pin in [&mut own.from, &mut own.motor] {
+            if sketch.pin(*pin).is_none() {
+                *pin = base;
+            }
+        }
+        own
+    }
 }
 
-/// Draws the row. It begins at the chosen pin, if a pin is chosen.
+/// Draws the rows.
 pub fn show(ui: &mut Ui, facts: &SketchFacts, pen: &Pen, p: &Palette, commands: &mut Vec<Command>) {
-    let sketch = &facts.sketch;
-    section(ui, p, "A bar by numbers");
     let id = egui::Id::unique("bar by numbers");
     let known = ui.data(|data| data.get_temp::<Numbers>(id));
-    let mut numbers = known.unwrap_or(Numbers { from: sketch.base, metres: 0.3, radians: FRAC_PI_2 });
-    if let Some(SketchItem::Pin(pin)) = pen.chosen {
-        numbers.from = pin;
-    }
-    if sketch.pin(numbers.from).is_none() {
-        numbers.from = sketch.base;
-    }
-    let mut adds = false;
+    let mut numbers = Numbers::of(known, &facts.sketch, pen);
+    section(ui, p, "A bar by numbers");
+    bar(ui, &facts.sketch, p, &mut numbers, commands);
+    section(ui, p, "Motor and end effector");
+    at_pins(ui, facts, p, &mut numbers, commands);
+    ui.data_mut(|data| data.insert_temp(id, numbers));
+}
+
+/// Draws a row: what it is about on the left, fields and buttons on the right.
+fn row<T>(ui: &mut Ui, p: &Palette, words: &str, add: impl FnOnce(&mut Ui) -> T) -> T {
     ui.horizontal(|ui| {
-        ui.label(RichText::new("from").font(plain(12.5)).color(colour(p.dim)));
-        let list = ComboBox::from_id_salt("from pin").selected_text(pin_title(sketch, numbers.from)).width(90.0);
-        let list = list.show_ui(ui, |ui| {
-            for pin in &sketch.pins {
-                ui.selectable_value(&mut numbers.from, pin.id, pin_title(sketch, pin.id));
-            }
-        });
-        name(&list.response, "new bar from");
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let add = ui.button("add");
-            name(&add, "add the new bar");
-            adds = add.clicked();
-        });
-    });
-    let row = |label, unit, speed, range: RangeInclusive<f64>| {
-        let tip = "Of the bar that is added";
-        NumberRow { label, unit, tip, decimals: 3, speed, slide: range.clone(), range }
+        ui.label(RichText::new(words).font(plain(12.5)).color(colour(p.dim)));
+        ui.with_layout(Layout::right_to_left(Align::Center), add).inner
+    })
+    .inner
+}
+
+/// Draws the numbers of a bar in the order in which a person thinks. Enter in the last of them adds the bar; the next
+/// one then begins at its end.
+fn bar(ui: &mut Ui, sketch: &Sketch, p: &Palette, numbers: &mut Numbers, commands: &mut Vec<Command>) {
+    row(ui, p, "from", |ui| pin_list(ui, sketch, &mut numbers.from, fields::BAR_FROM, commands));
+    let mut number = |words, label, (own_unit, decimals), speed, range: RangeInclusive<f64>, value: &mut f64| {
+        let tip = "Of the bar that is added; Enter goes on";
+        let field = NumberRow { label, unit: own_unit, tip, decimals, speed, slide: range.clone(), range };
+        row(ui, p, words, |ui| {
+            write_unit(ui, p, own_unit);
+            field.number(ui, value)
+        })
     };
-    row("length", "m", 1e-3, 1e-3..=100.0).show(ui, p, &mut numbers.metres);
-    row("angle from x", "rad", 1e-2, -4.0..=4.0).show(ui, p, &mut numbers.radians);
-    if adds {
+    let length = number("length", fields::BAR_LENGTH, ("m", 4), 1e-3, SHORTEST_M..=LONGEST_M, &mut numbers.metres);
+    let angle = number("angle from x", fields::BAR_ANGLE, ("rad", 3), 1e-2, -TAU..=TAU, &mut numbers.radians);
+    let add = row(ui, p, "Enter adds it", |ui| {
+        let add = ui.button("add");
+        name(&add, "add the new bar");
+        add
+    });
+    let enters =
+        |field: &Response| field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)) && !has_refused(ui.ctx());
+    if enters(&length) {
+        focus::ask(ui.ctx(), fields::BAR_ANGLE);
+    }
+    let by_keys = enters(&angle);
+    if by_keys || add.clicked() {
         let to = sketch.at(numbers.from) + unit(numbers.radians) * numbers.metres;
         let (from, to) = (BarEnd::pin(numbers.from), typed(sketch, [to.re, to.im]).end());
-        draw(sketch, SketchStep::Bar { from, to, name: None }, commands);
+        let step = SketchStep::Bar { from, to, name: None };
+        if let Ok(next) = sketch.with(&step)
+            && let Some(bar) = next.bars.last()
+        {
+            numbers.from = if bar.root == numbers.from { bar.tip } else { bar.root };
+        }
+        draw(sketch, step, commands);
+        if by_keys || add.has_focus() {
+            focus::ask(ui.ctx(), fields::BAR_LENGTH);
+        }
     }
-    ui.data_mut(|data| data.insert_temp(id, numbers));
+}
+
+/// Draws the rows of the next motor and of the end effector, each with its pin.
+fn at_pins(ui: &mut Ui, facts: &SketchFacts, p: &Palette, numbers: &mut Numbers, commands: &mut Vec<Command>) {
+    let sketch = &facts.sketch;
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("motor on").font(plain(12.5)).color(colour(p.dim)));
+        pin_list(ui, sketch, &mut numbers.motor, fields::MOTOR_PIN, commands);
+        let hang = ui.button("hang").on_hover_text("A motor there turns the bar that follows no drive yet");
+        name(&hang, "hang a motor on the pin");
+        if hang.clicked() {
+            draw(sketch, motor_at(facts, numbers.motor), commands);
+        }
+    });
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("end effector on").font(plain(12.5)).color(colour(p.dim)));
+        let own = sketch.end_effector.as_ref().map_or(sketch.base, |end| end.pin);
+        let mut pin = own;
+        pin_list(ui, sketch, &mut pin, fields::END_PIN, commands);
+        if pin != own {
+            draw(sketch, SketchStep::EndEffector { pin, bar: None }, commands);
+        }
+    });
 }

@@ -1,5 +1,6 @@
 //! The card of the chosen bar or pin.
 
+use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
 use egui::{Align, ComboBox, Id, Layout, RichText, TextEdit, Ui};
@@ -99,8 +100,8 @@ fn of_bar(ui: &mut Ui, facts: &SketchFacts, bar: &Bar, p: &Palette, commands: &m
         draw(sketch, SketchStep::Length { bar: id, metres }, commands);
     }
     let label = format!("angle of bar {}", bar.name);
-    let field = NumberField { label: &label, words: "angle from x", unit: "rad", decimals: 4, speed: 5e-3 };
-    if let Some(radians) = field.show(ui, p, sketch.span(bar).arg(), -4.0..=4.0) {
+    let field = NumberField { label: &label, words: "angle from x", unit: "rad", decimals: 3, speed: 5e-3 };
+    if let Some(radians) = field.show(ui, p, sketch.span(bar).arg(), -TAU..=TAU) {
         draw(sketch, SketchStep::Angle { bar: id, radians }, commands);
     }
     renamed(ui, &format!("name of bar {}", bar.name), &bar.name, p, |name| {

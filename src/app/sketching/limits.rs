@@ -11,10 +11,10 @@ use stillbase_mechanics::machine::{Angle, MAX_ANGLE};
 use stillbase_mechanics::sketch::SketchStep;
 use stillbase_picture::scene::palette::Palette;
 
-/// Limits that a new pair has about the angle as it is drawn, rad.
-const ROOM_RAD: f64 = 1.5;
-/// Step to which new limits are rounded, rad.
-const ROUND_RAD: f64 = 0.05;
+/// Limits that a new pair has about the angle as it is drawn, °.
+const ROOM_DEG: f64 = 85.0;
+/// Step to which new limits are rounded, °.
+const ROUND_DEG: f64 = 5.0;
 
 /// Draws the limits of every angle that a drive has from another.
 pub fn show(ui: &mut Ui, facts: &SketchFacts, drive: &str, p: &Palette, commands: &mut Vec<Command>) {
@@ -31,9 +31,9 @@ pub fn show(ui: &mut Ui, facts: &SketchFacts, drive: &str, p: &Palette, commands
                     ui.small_button("limit it").on_hover_text("Limits that its motion keeps; drag the arc's ends");
                 name(&limit, &format!("limit the angle of drive {to} from drive {from}"));
                 if limit.clicked() {
-                    let round = |x: f64| (x / ROUND_RAD).round() * ROUND_RAD;
-                    let now = sketch.drawn_angle(to, from).unwrap_or_default() + offset;
-                    draw(sketch, set(Some([round(now - ROOM_RAD), round(now + ROOM_RAD)])), commands);
+                    let now = (sketch.drawn_angle(to, from).unwrap_or_default() + offset).to_degrees();
+                    let round = |degrees: f64| ((degrees / ROUND_DEG).round() * ROUND_DEG).to_radians();
+                    draw(sketch, set(Some([now - ROOM_DEG, now + ROOM_DEG].map(round))), commands);
                 }
             });
             continue;

@@ -4,12 +4,14 @@ mod bubble;
 mod by_numbers;
 mod card;
 mod facts;
+pub mod fields;
 mod hand;
 mod limits;
 mod missing;
 mod motors;
 mod panel;
 mod pen;
+mod pin_list;
 mod rail;
 mod scene;
 mod section;
@@ -29,6 +31,7 @@ use stillbase_session::Edit;
 
 /// Sends a step of drawing; a step that does not fit is told where it does not.
 fn draw(sketch: &Sketch, step: SketchStep, commands: &mut Vec<Command>) {
+    let step = step.plainly();
     match sketch.with(&step) {
         Ok(_) => undoable_edit(commands, Edit::Sketch(step)),
         Err(refusal) => commands.push(ViewChange::Pen(PenChange::Refuse(refusal)).into()),

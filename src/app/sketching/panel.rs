@@ -2,11 +2,11 @@
 
 use egui::{Button, ComboBox, RichText, Ui};
 
-use super::by_numbers::pin_title;
 use super::card::renamed;
-use super::{Pen, PenChange, SketchFacts, by_numbers, card, draw, missing, motors};
+use super::pin_list::pin_title;
+use super::{Pen, PenChange, SketchFacts, by_numbers, card, draw, fields, missing, motors};
 use crate::theme::{bold, colour, plain};
-use crate::widgets::{heading, name, note, section};
+use crate::widgets::{heading, name, note, section, stepped};
 use crate::{Command, FileDialog, SessionCommand, Switch, ViewChange, ViewState};
 use stillbase_mechanics::sketch::{Sketch, SketchStep};
 use stillbase_picture::scene::sketching::SketchItem;
@@ -73,16 +73,19 @@ fn card_of(ui: &mut Ui, sketch: &Sketch, pen: &Pen, commands: &mut Vec<Command>)
         _ => "no bar or pin".to_owned(),
     };
     let list = ComboBox::from_id_salt("card of").selected_text(title(pen.chosen)).width(120.0);
+    let bars = sketch.bars.iter().map(|bar| Some(SketchItem::Bar(bar.id)));
+    let pins = sketch.pins.iter().map(|pin| Some(SketchItem::Pin(pin.id)));
+    let all: Vec<Option<SketchItem>> = [None].into_iter().chain(bars).chain(pins).collect();
     let list = list.show_ui(ui, |ui| {
-        let bars = sketch.bars.iter().map(|bar| Some(SketchItem::Bar(bar.id)));
-        let pins = sketch.pins.iter().map(|pin| Some(SketchItem::Pin(pin.id)));
-        for item in [None].into_iter().chain(bars).chain(pins) {
-            if ui.selectable_label(item == pen.chosen, title(item)).clicked() {
-                commands.push(ViewChange::Pen(PenChange::Choose(item)).into());
-            }
-        }
+        let picked = |item: &&Option<SketchItem>| ui.selectable_label(**item == pen.chosen, title(**item)).clicked();
+        all.iter().filter(picked).last().copied()
     });
-    name(&list.response.on_hover_text("The bar or pin whose card is shown"), "bar or pin in the card");
+    let response = list.response.on_hover_text("The bar or pin whose card is shown");
+    name(&response, fields::CARD);
+    let next = list.inner.flatten().or_else(|| stepped(ui, &response, all.iter(), &pen.chosen));
+    if let Some(item) = next {
+        commands.push(ViewChange::Pen(PenChange::Choose(item)).into());
+    }
 }
 
 /// Offers a task for a machine whose present task it cannot do.

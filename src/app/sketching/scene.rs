@@ -31,7 +31,7 @@ pub fn show(ui: &mut Ui, scene: SketchScene<'_>, view_state: &mut ViewState, com
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         name(&response, "Scene: the drawing of the machine");
         let strip = corner::strip(rect);
-        framing::keep_framed(rect, &[strip], scene.views, |_| content(&scene.facts.sketch), view_state);
+        framing::keep_framed(rect, (&[strip], None), scene.views, |_| content(&scene.facts.sketch), view_state);
         let spot = SceneViewport { rect, camera: *view_state.camera() };
         let under_way = Hand { ui, response: &response, spot: &spot, facts: scene.facts }.points(&mut pen, commands);
         let holds = pen.from.is_some() || pen.drag.is_some() || pen.tool == PenTool::Bar;

@@ -84,6 +84,7 @@ impl AppState {
                 let designs = matches!(
                     change,
                     ViewChange::Kind(ViewKind::Design)
+                        | ViewChange::DrawAt(_)
                         | ViewChange::Switch(Switch::Equations | Switch::Sketching, true)
                 );
                 self.view_state.apply(change);

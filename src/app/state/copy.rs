@@ -69,7 +69,7 @@ impl AppState {
             intro: None,
             other: None,
             weights: &weights,
-            has_news: false,
+            news: None,
         };
         viewport::still(content, size, &mut self.view_state)
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::AppState;
 use crate::background::{Opening, SessionFile};
-use crate::change::{NotOpened, Opened, OpenedSession, SessionSource};
+use crate::change::{NotOpened, Opened, OpenedSession, SessionChange, SessionSource};
 use crate::saving::LeftSession;
 use crate::{Activity, Framing, Recovery};
 use stillbase_mechanics::machine::Machine;
@@ -96,6 +96,7 @@ impl AppState {
             None => {}
         }
         let old = self.session.clone();
+        let again = title.map(|_| old.frame().time);
         match title {
             Some(title) => self.session.take_over_as(next, title.into()),
             None => self.session.take_over(next),
@@ -104,9 +105,10 @@ impl AppState {
         self.view_state.open.note = None;
         // A scenario without a drawing is not drawn on.
         self.view_state.pen = self.view_state.pen.take().filter(|_| self.session.scenario().sketch.is_some());
-        // Points of another machine may not exist.
+        // Points of another machine may not exist, and it has another size.
         if old.scenario().machine != self.session.scenario().machine {
             self.view_state.measurements.clear();
+            self.view_state.framing = Default::default();
         }
         // The measurements of an open table now refer to the newly opened machine.
         if let Some(given) = &mut self.opened_table {
@@ -115,6 +117,10 @@ impl AppState {
         self.view_state.framing.iter_mut().for_each(Framing::renew);
         self.background.free(old, &self.session);
         self.run_ahead();
+        // A file that is taken up again stays at its time, as far as its run goes.
+        if let Some(time) = again.filter(|time| *time > 0.0 && self.session.run().waiting().is_none()) {
+            self.change(SessionChange::Seek(time.min(self.session.length())));
+        }
         if plays {
             self.session.play();
         }

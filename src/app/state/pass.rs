@@ -12,7 +12,7 @@ use crate::sketching::{SketchFacts, SketchScene};
 use crate::status::news::News;
 use crate::{
     BottomPanel, Command, DrawingGuard, Intro, Layout, SessionCommand, StatusMessage, ViewChange, WindowCommand,
-    compare, file_report, finder, given, guide, keys, notation, notes, order, place, plots, rail, saving, side,
+    compare, file_report, finder, focus, given, guide, keys, notation, notes, order, place, plots, rail, saving, side,
     sketching, status, studio, study, theme, top, viewport, watched_file, widgets,
 };
 use stillbase_picture::scene::views::ViewKind;
@@ -33,7 +33,10 @@ impl AppState {
     /// Runs one pass of the user interface; the commands of its panels are carried out at the end.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         self.apply_style(ui.ctx());
-        notation::set(ui.ctx(), self.view_state.arrangement.notation);
+        notation::set(ui.ctx(), self.view_state.notation());
+        if let Some(field) = self.view_state.asked_field.take() {
+            focus::ask(ui.ctx(), field);
+        }
         // Panels have no fill; content that fades out at their edges needs the background colour.
         let behind = egui::Frame::new().fill(ui.visuals().panel_fill);
         let info = egui::UiStackInfo::new(egui::UiKind::Frame).with_frame(behind);
@@ -69,7 +72,7 @@ impl AppState {
             keys::read(ui.ctx(), &self.session, &self.view_state, &mut commands);
         }
         let presents = self.view_state.arrangement.layout == Layout::Present;
-        let facts = ScenarioFacts::of(&queries, &self.session);
+        let facts = ScenarioFacts::of(&queries, &self.session, self.stated_in_file());
         if !presents {
             let line = (&marks, self.pace.lagging_rate());
             top::show(ui, &self.session, &facts, &self.saving.recent, line, &self.view_state, &mut commands);
@@ -146,7 +149,7 @@ impl AppState {
             intro: self.intro.as_ref().filter(|_| !presents),
             other: other.as_deref(),
             weights: &chosen,
-            has_news: news.is_some(),
+            news: news.as_ref(),
         };
         let scene = match &drawing {
             Some(facts) => {

@@ -7,6 +7,7 @@ use crate::Activity;
 use crate::background::{Opening, SessionFile};
 use crate::change::SessionSource;
 use crate::watched_file::WatchedFile;
+use stillbase_session::scenario::Scenario;
 
 /// Title of the change in the history, and message.
 const TAKEN: &str = "taken from the file";
@@ -21,13 +22,18 @@ impl AppState {
 
     /// Begins to watch the file of the session, or ends it with `None`.
     pub(super) fn watch(&mut self, file: Option<PathBuf>) {
-        let undo_count = self.session.undo_count();
-        self.watched = file.map(|file| WatchedFile::of(file, undo_count));
+        self.watched = file.map(|file| WatchedFile::of(file, &self.session));
     }
 
     /// Returns the file that is watched.
     pub fn watched_file(&self) -> Option<&Path> {
         self.watched.as_ref().map(WatchedFile::file)
+    }
+
+    /// Returns the scenario as the file of the session states it, if the session has one.
+    pub(super) fn stated_in_file(&self) -> Option<&Scenario> {
+        let own = self.watched.as_ref().filter(|watched| watched.is_of(self.session.undo_count()));
+        own.map(WatchedFile::stated)
     }
 
     /// Looks about once a second whether another program has changed the file of the session, `elapsed` s after the

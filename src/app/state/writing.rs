@@ -19,8 +19,9 @@ pub(super) enum AfterWriting {
     Nothing,
     /// This number of changes of the session is saved, in this file.
     Saved(u64, PathBuf),
-    /// The file is one of the user's own.
-    Used(PathBuf),
+    /// The machine is in this file of the user's own; this number of changes of the session is saved with it, if all of
+    /// them are changes of the machine.
+    Machine(Option<u64>, PathBuf),
     /// A list is shown of what the file leaves out, if it leaves out anything.
     List(Option<FileReport>),
 }
@@ -63,7 +64,10 @@ impl AppState {
                     app_state.watch(Some(file.clone()));
                     app_state.saving.keep_file(app_state.own_session().undo_count(), file);
                 }
-                (Ok(_), AfterWriting::Used(file)) => app_state.saving.uses(&file),
+                (Ok(_), AfterWriting::Machine(changes, file)) => {
+                    app_state.saving.saved = changes.unwrap_or(app_state.saving.saved);
+                    app_state.saving.uses(&file);
+                }
                 (Ok(_), AfterWriting::List(report)) => app_state.view_state.open.report = report,
                 _ => {}
             }
@@ -118,7 +122,9 @@ impl AppState {
     pub(super) fn take_elsewhere(&mut self, path: &Path) -> Result<(), String> {
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         if ending.eq_ignore_ascii_case(MACHINE_EXTENSION) {
-            return self.write_content(path, FILE_BEING_SAVED, AfterWriting::Used(path.to_owned()), |app_state| {
+            let changes = self.session.changes_machine_only().then_some(self.saving.changes);
+            let then = AfterWriting::Machine(changes, path.to_owned());
+            return self.write_content(path, FILE_BEING_SAVED, then, |app_state| {
                 let text = to_toml(&app_state.session.scenario().machine);
                 Ok(Box::new(move || Ok(text.into_bytes())))
             });

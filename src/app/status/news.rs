@@ -94,6 +94,11 @@ impl News {
         !matches!(self.reason, Reason::Message(_))
     }
 
+    /// Whether it says that the run waits.
+    pub fn says_wait(&self) -> bool {
+        matches!(self.reason, Reason::Waits(_))
+    }
+
     /// Returns what is wrong, in a sentence.
     fn text(&self) -> &str {
         match &self.reason {

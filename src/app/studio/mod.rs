@@ -27,7 +27,7 @@ use super::side::SCROLL_BAR_WIDTH;
 use super::sketching::{self, SketchFacts};
 use super::theme::{colour, plain};
 use super::widgets::name;
-use super::{Command, FileDialog, FilePurpose, Switch, ViewChange, ViewState};
+use super::{Command, FileDialog, FilePurpose, Switch, ViewChange, ViewState, focus};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Session;
 
@@ -139,5 +139,6 @@ fn scrolled(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.set_width(ui.available_width() - SCROLL_BAR_WIDTH);
         add(ui);
+        focus::keep_in_view(ui);
     });
 }

@@ -106,7 +106,7 @@ type DialogFuture = std::pin::Pin<Box<dyn Future<Output = Option<FileHandle>> + 
 
 /// Creates the dialog of the system, in front of the window.
 fn system_dialog(dialog: &FileDialog, folder: Option<&Path>, window: &Window) -> DialogFuture {
-    let (title, endings) = (dialog.purpose.title(), endings(&dialog.purpose));
+    let ([title, ..], endings) = (dialog.purpose.words(), endings(&dialog.purpose));
     let kind = match &dialog.purpose {
         FilePurpose::Open => "Sessions, machines, models and tables",
         FilePurpose::Save => "Sessions",

@@ -21,6 +21,8 @@ pub use refusal::ImportError;
 
 use roxmltree::{Document, ParsingOptions};
 
+use stillbase_settings::fault::Faults;
+
 /// Maximum number of XML nodes of a file: more would take gigabytes.
 const MAX_NODES: u32 = 400_000;
 
@@ -41,4 +43,37 @@ pub fn import(text: &str) -> Result<ImportedMachine, ImportError> {
         _ => Err(refusal::element_error(root, "neither a robot nor a model", "<robot> of URDF or <mujoco> of MJCF")),
     };
     linkage.and_then(|linkage| family::imported(&linkage)).map_err(|error| error.located(text))
+}
+
+/// Maximum number of times that a file is read to find its faults.
+const MAX_ROUNDS: usize = 100;
+
+/// Returns the faults of a text that [`import`] has refused for `first`. Values that are wrong or missing are all told.
+/// What else is wrong is told if it is the first: behind values that were made up it might follow from these.
+pub fn faults(text: &str, first: ImportError) -> Faults {
+    let (mut found, mut mended) = (vec![first.fault()], first.mended(text));
+    let mut is_cut = false;
+    for _ in 0..MAX_ROUNDS {
+        let Some(Err(error)) = mended.take().map(|text| import(&text).map_err(|error| (error.mended(&text), error)))
+        else {
+            break;
+        };
+        let fault = error.1.fault();
+        is_cut = error.0.is_none() || found.contains(&fault);
+        if is_cut {
+            break;
+        }
+        mended = error.0;
+        found.push(fault);
+    }
+    let options = ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, ..ParsingOptions::default() };
+    let document = Document::parse_with_options(text, options).ok();
+    let robot = document.as_ref().map(Document::root_element).filter(|root| root.has_tag_name("robot"));
+    for error in robot.map(urdf::wrong_values).unwrap_or_default() {
+        let fault = error.located(text).fault();
+        if !found.contains(&fault) {
+            found.push(fault);
+        }
+    }
+    Faults::of(found, is_cut)
 }

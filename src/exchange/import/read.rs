@@ -3,8 +3,8 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use roxmltree::Node;
 
-use super::refusal::{ImportError, element_error};
-use stillbase_settings::number::ShortNumber;
+use super::refusal::{ImportError, Mend, element_error};
+use stillbase_settings::number::{ShortNumber, counted};
 use stillbase_settings::range::quote_clipped;
 
 /// Maximum magnitude of a number in a file: products of larger numbers could overflow.
@@ -12,6 +12,9 @@ const MAX_MAGNITUDE: f64 = 1e9;
 
 /// Maximum number of numbers in an attribute: a pose has one for each hinge.
 const MAX_NUMBERS: usize = 1000;
+
+/// What stands for a value that is wrong or missing, so that the rest of the file can be judged.
+const STAND_IN: &str = "1";
 
 /// A source of attributes: an element, or an element with the defaults of its class.
 pub trait AttributeSource<'a> {
@@ -51,9 +54,23 @@ pub fn child<'a>(node: Node<'a, 'a>, name: &'static str) -> Option<Node<'a, 'a>>
     each(node, name).next()
 }
 
+/// Makes the error of the value of an attribute, instead of which `with` may stand in the file.
+fn wrong_value(node: Node<'_, '_>, name: &str, what: String, want: String, with: String) -> ImportError {
+    // The value of a default stands elsewhere, and may be wrong in many elements.
+    let own = node.attribute_node(name).map(|own| Mend { span: own.range_value(), with });
+    element_error(node, what, want).mended_by(own)
+}
+
 /// Returns a required attribute.
 pub fn word<'a>(node: impl AttributeSource<'a>, name: &'static str) -> Result<&'a str, ImportError> {
-    node.get(name).ok_or_else(|| element_error(node.node(), format!("it has no {name}"), format!("{name}=\"…\"")))
+    node.get(name).ok_or_else(|| {
+        let node = node.node();
+        let tag = node.range().start + 1;
+        let rest = node.document().input_text().get(tag..).unwrap_or_default();
+        let end = rest.find(|c: char| c.is_whitespace() || matches!(c, '/' | '>')).map(|length| tag + length);
+        let mend = end.map(|end| Mend { span: end..end, with: format!(" {name}=\"{STAND_IN}\"") });
+        element_error(node, format!("it has no {name}"), format!("{name}=\"…\"")).mended_by(mend)
+    })
 }
 
 /// Returns the numbers of an attribute; `None` if it is absent.
@@ -63,7 +80,10 @@ pub fn numbers<'a>(node: impl AttributeSource<'a>, name: &'static str) -> Result
         let value = word.parse::<f64>().ok().filter(|x| x.is_finite() && x.abs() <= MAX_MAGNITUDE);
         value.ok_or_else(|| {
             let what = format!("{name} has \"{}\"", quote_clipped(word));
-            element_error(node.node(), what, "numbers from -1e9 to 1e9")
+            let sound = |word: &str| word.parse::<f64>().is_ok_and(|x| x.abs() <= MAX_MAGNITUDE);
+            let all = text.split_whitespace().take(MAX_NUMBERS).map(|own| if sound(own) { own } else { STAND_IN });
+            let with = all.collect::<Vec<_>>().join(" ");
+            wrong_value(node.node(), name, what, "numbers from -1e9 to 1e9".into(), with)
         })
     };
     let words = text.split_whitespace().take(MAX_NUMBERS + 1);
@@ -83,9 +103,11 @@ pub fn several<'a, const N: usize>(
 ) -> Result<Option<[f64; N]>, ImportError> {
     let Some(all) = numbers(&node, name)? else { return Ok(None) };
     let count = all.len();
-    all.try_into()
-        .map(Some)
-        .map_err(|_| element_error(node.node(), format!("{name} has {count} numbers"), format!("{N}")))
+    all.try_into().map(Some).map_err(|all: Vec<f64>| {
+        let written = all.iter().map(ToString::to_string).chain(std::iter::repeat(STAND_IN.to_owned()));
+        let with = written.take(N).collect::<Vec<_>>().join(" ");
+        wrong_value(node.node(), name, format!("{name} has {}", counted(count, "number")), format!("{N}"), with)
+    })
 }
 
 /// Returns the number of an attribute; `None` if it is absent.
@@ -109,7 +131,8 @@ pub fn mass<'a>(node: impl AttributeSource<'a>, name: &'static str) -> Result<f6
     match required_number(&node, name)? {
         mass if mass >= 0.0 => Ok(mass),
         mass => {
-            Err(element_error(node.node(), format!("a mass of {} kg", ShortNumber(mass)), "one that is not below 0"))
+            let what = format!("a mass of {} kg", ShortNumber(mass));
+            Err(wrong_value(node.node(), name, what, "one that is not below 0".into(), STAND_IN.into()))
         }
     }
 }

@@ -1,5 +1,7 @@
 //! [`ImportError`]: the reason why a file cannot be imported as a machine.
 
+use std::ops::Range;
+
 use roxmltree::Node;
 
 use stillbase_settings::fault::Fault;
@@ -15,18 +17,29 @@ pub struct ImportError {
     element: String,
     what: String,
     want: String,
+    /// What may stand in the text instead, so that the rest of the file can be judged.
+    mend: Option<Mend>,
+}
+
+/// A replacement in the text of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Mend {
+    /// The bytes that are replaced.
+    pub span: Range<usize>,
+    /// What stands there then.
+    pub with: String,
 }
 
 impl ImportError {
     /// Makes the error of an element, by its name and byte offset.
     pub fn of(at: usize, element: &str, what: impl Into<String>, want: impl Into<String>) -> Self {
         let element = format!("{}: ", shortened(element, 100));
-        Self { at: Some(at), line: None, element, what: what.into(), want: want.into() }
+        Self { at: Some(at), line: None, element, what: what.into(), want: want.into(), mend: None }
     }
 
     /// Makes an error of the whole file.
     pub fn of_file(what: impl Into<String>, want: impl Into<String>) -> Self {
-        Self { at: None, line: None, element: String::new(), what: what.into(), want: want.into() }
+        Self { at: None, line: None, element: String::new(), what: what.into(), want: want.into(), mend: None }
     }
 
     /// Returns the error as a fault of the file.
@@ -34,6 +47,18 @@ impl ImportError {
         let Self { line, element, what, want, .. } = self;
         let key = element.trim_end_matches(": ").to_owned();
         Fault { line: *line, column: None, key, text: format!("{element}{what}: want {want}"), example: String::new() }
+    }
+
+    /// Adds what may stand in the text instead.
+    pub(super) fn mended_by(self, mend: Option<Mend>) -> Self {
+        Self { mend, ..self }
+    }
+
+    /// Returns the text with what is wrong mended, on the same line; `None` if only its author can mend it.
+    pub(super) fn mended(&self, text: &str) -> Option<String> {
+        let Mend { span, with } = self.mend.as_ref()?;
+        let (before, after) = (text.get(..span.start)?, text.get(span.end..)?);
+        Some([before, with, after].concat())
     }
 
     /// Adds the line of the element.

@@ -69,6 +69,37 @@ pub fn linkage(robot: Node<'_, '_>) -> Result<ImportedLinkage, ImportError> {
     })
 }
 
+/// Numbers of attributes, by the names of elements, and how many of them an attribute has.
+const VALUES: [(&str, &[&str], usize); 6] = [
+    ("origin", &["xyz", "rpy"], 3),
+    ("axis", &["xyz"], 3),
+    ("mass", &["value"], 1),
+    ("inertia", &["ixx", "ixy", "ixz", "iyy", "iyz", "izz"], 1),
+    ("limit", &["lower", "upper", "effort", "velocity"], 1),
+    ("mimic", &["multiplier", "offset"], 1),
+];
+
+/// Returns what is wrong with the values of links and joints, wherever these belong.
+pub fn wrong_values(robot: Node<'_, '_>) -> Vec<ImportError> {
+    let own = |node: &Node| {
+        node.is_element() && !node.ancestors().any(|node| node.has_tag_name("visual") || node.has_tag_name("collision"))
+    };
+    robot.descendants().filter(own).flat_map(wrong_values_of).collect()
+}
+
+fn wrong_values_of(node: Node<'_, '_>) -> Vec<ImportError> {
+    let is_end = node.has_tag_name("parent") || node.has_tag_name("child");
+    let lacks = is_end.then(|| word(node, "link").err()).flatten();
+    let of_tag = VALUES.into_iter().filter(|(tag, ..)| node.has_tag_name(*tag));
+    let values = of_tag.flat_map(|(_, names, count)| names.iter().map(move |name| (*name, count)));
+    let wrong = values.filter_map(|(name, count)| match count {
+        1 if name == "value" => node.attribute(name).and_then(|_| mass(node, name).err()),
+        1 => number(node, name).err(),
+        _ => vector(node, name).err(),
+    });
+    wrong.chain(lacks).collect()
+}
+
 /// Returns notes on elements of the file that are omitted or belong to a scenario.
 fn left_out(robot: Node<'_, '_>) -> Vec<String> {
     let is_other = |node: &Node, name: &str, usual: f64| {

@@ -3,21 +3,10 @@
 use super::error::{KeyPath, KeyStep};
 use super::keys::KeyRow;
 use stillbase_settings::mending::{Meant, Vocabulary, called, with_key};
-use stillbase_settings::range::quote_clipped;
-
-/// A key of machine files, in which `*` stands for the name or number of a link, a drive and so on.
-struct WordRow {
-    path: &'static str,
-    /// Plain name, with `*` for the name or number.
-    name: &'static str,
-    /// What would be right; empty for a key whose range says so.
-    want: &'static str,
-    /// A value that would be right, in TOML.
-    example: &'static str,
-}
+use stillbase_settings::word_row::WordRow;
 
 const fn row(path: &'static str, name: &'static str, want: &'static str, example: &'static str) -> WordRow {
-    WordRow { path, name, want, example }
+    WordRow::new(path, name, want, example)
 }
 
 const OF_DRIVE: &str = "the name of a drive";
@@ -176,9 +165,15 @@ at = \"tip\"";
 const BELT: &str = "a belt from the base is a drive of its own: want a [[drive]] without \"on\", named in drive by the \
                     link that the belt turns; its ratio is the motor's, rotor = { inertia = 1e-4, ratio = 3 } there";
 
+const BELT_LINES: &str = "[[drive]]\nname = \"2\"\nrotor = { inertia = 1e-4, ratio = 3 }";
+
 /// Words that people write, with what they mean in a table: the table, the words, and the meaning.
 const MEANT: &[(&str, &[&str], Meant)] = &[
-    ("", &["belts", "belt", "pulley", "pulleys", "transmission", "transmissions", "gear", "gears"], Meant::Else(BELT)),
+    (
+        "",
+        &["belts", "belt", "pulley", "pulleys", "transmission", "transmissions", "gear", "gears"],
+        Meant::Else(BELT, BELT_LINES),
+    ),
     ("", &["drives", "motor", "motors", "actuator", "actuators"], Meant::Key("drive")),
     ("", &["links", "body", "bodies", "bar", "bars"], Meant::Key("link")),
     ("", &["length"], Meant::Key("lengths")),
@@ -190,9 +185,12 @@ const MEANT: &[(&str, &[&str], Meant)] = &[
     (
         "",
         &["joint", "joints"],
-        Meant::Else("pins are stated where links meet: attach of a [[link]], and [[closure]] where a loop closes"),
+        Meant::Else(
+            "pins are stated where links meet: attach of a [[link]], and [[closure]] where a loop closes",
+            "attach = { link = \"1\", at = \"tip\" }",
+        ),
     ),
-    ("link.*", &["belt", "pulley", "transmission", "gear", "ratio"], Meant::Else(BELT)),
+    ("link.*", &["belt", "pulley", "transmission", "gear", "ratio"], Meant::Else(BELT, BELT_LINES)),
     ("link.*", &["weight", "m"], Meant::Key("mass")),
     ("link.*", &["moi", "moment_of_inertia", "izz", "i"], Meant::Key("inertia")),
     ("link.*", &["cm", "cog", "centre_of_mass", "center_of_mass", "com_x", "lc", "l_c"], Meant::Key("com")),
@@ -202,11 +200,14 @@ const MEANT: &[(&str, &[&str], Meant)] = &[
     ("link.*", &["sign"], Meant::Key("direction")),
     ("link.*", &["l"], Meant::Key("length")),
     ("link.*", &["height", "z"], Meant::Key("axial")),
-    ("drive.*", &["belt", "pulley", "transmission"], Meant::Else(BELT)),
+    ("drive.*", &["belt", "pulley", "transmission"], Meant::Else(BELT, BELT_LINES)),
     (
         "drive.*",
         &["gear", "ratio", "gear_ratio", "reduction", "inertia", "rotor_inertia"],
-        Meant::Else("gear and rotor of a motor are stated together: rotor = { inertia = 1e-4, ratio = 50 }"),
+        Meant::Else(
+            "gear and rotor of a motor are stated together: rotor = { inertia = 1e-4, ratio = 50 }",
+            "rotor = { inertia = 1e-4, ratio = 50 }",
+        ),
     ),
     ("drive.*", &["parent", "stator", "carrier", "attach"], Meant::Key("on")),
     ("drive.*", &["torque", "max_torque", "effort"], Meant::Key("torque_limit")),
@@ -220,18 +221,12 @@ const MEANT: &[(&str, &[&str], Meant)] = &[
 pub struct MachineWords;
 
 fn row_of(path: &KeyPath) -> Option<&'static WordRow> {
-    ROWS.iter().find(|row| path.fits(row.path))
+    WordRow::of(ROWS, path)
 }
 
 impl Vocabulary for MachineWords {
     fn name(&self, path: &KeyPath) -> Option<String> {
-        let row = row_of(path)?;
-        let at = row.path.split('.').position(|word| word == "*");
-        Some(match at.and_then(|at| path.0.get(at)) {
-            Some(KeyStep::Key(name) | KeyStep::Named(_, name)) => row.name.replacen('*', &quote_clipped(name), 1),
-            Some(KeyStep::At(i)) => row.name.replacen('*', &(i + 1).to_string(), 1),
-            None => row.name.to_owned(),
-        })
+        row_of(path).map(|row| row.name_at(path))
     }
 
     fn want(&self, path: &KeyPath) -> Option<String> {

@@ -14,6 +14,7 @@ impl Sketch {
     pub fn with(&self, step: &SketchStep) -> Result<Self, SketchRefusal> {
         let mut next = self.stepped(step)?;
         next.follow_pins(self);
+        next.write_plainly();
         next.check()?;
         Ok(next)
     }

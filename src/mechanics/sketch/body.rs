@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::drawing::{Bar, Sketch};
 use crate::machine::{Link, LinkNumber, PlaneBody, sum_of};
+use stillbase_settings::number::shortest;
 
 /// Typed numbers of a bar. Those that are not given follow from its parts, or without parts from its length.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -30,6 +31,9 @@ fn is_nought(x: &f64) -> bool {
     *x == 0.0
 }
 
+/// Part of a number that a sum of the numbers of a few bodies is off by.
+const SUMMED: f64 = 1e-14;
+
 impl Body {
     /// Returns the typed numbers of a link.
     pub(super) fn of(link: &Link) -> Self {
@@ -40,7 +44,7 @@ impl Body {
 
     /// Returns all numbers of a body as typed.
     pub(super) fn typed(body: &PlaneBody, axial: f64) -> Self {
-        let PlaneBody { mass, at, across, inertia } = *body;
+        let [mass, at, across, inertia] = [body.mass, body.at, body.across, body.inertia].map(|x| shortest(x, SUMMED));
         let com_normal = Some(across).filter(|across| *across != 0.0);
         Self { mass: Some(mass), inertia: Some(inertia), com: Some(at), com_normal, axial }
     }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::body::Body;
 use crate::machine::{Angle, Counterweight, Drive, Lump, Material, Part, Payload};
 use crate::planar::{Vector, dot};
+use stillbase_settings::number::plain;
 
 /// Least distance of two pins of one bar, m.
 pub(super) const MIN_DISTANCE: f64 = 1e-4;
@@ -259,14 +260,14 @@ impl Sketch {
     /// Puts a pin at a place, m.
     pub(super) fn put(&mut self, id: PinId, to: Vector) {
         if let Some(pin) = self.pin_mut(id) {
-            pin.at = [to.re, to.im];
+            pin.at = [to.re, to.im].map(plain);
         }
     }
 
     /// Adds a pin at a place, m.
     pub(super) fn add_pin(&mut self, at: Vector) -> PinId {
         let id = PinId(self.next_id());
-        self.pins.push(Pin { id, at: [at.re, at.im] });
+        self.pins.push(Pin { id, at: [at.re, at.im].map(plain) });
         id
     }
 
@@ -298,6 +299,11 @@ fn free_name(is_taken: impl Fn(&str) -> bool) -> String {
 
 /// Returns a length for a message: millimetres to a tenth.
 pub(super) fn mm(metres: f64) -> String {
-    let tenths = (metres * 1e4).round() / 10.0;
-    format!("{tenths} mm")
+    format!("{} mm", tenths(metres))
+}
+
+/// Returns a length in whole tenths of a millimetre, mm.
+pub(super) fn tenths(metres: f64) -> f64 {
+    // Adding zero makes a negative zero positive.
+    (metres * 1e4).round() / 10.0 + 0.0
 }

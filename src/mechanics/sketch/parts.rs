@@ -7,8 +7,16 @@ use crate::machine::{
     Attach, DerivedNumbers, Length, Link, Lump, MachineError, MachineSpec, Part, PartBody, PlaceOnLink, weigh,
 };
 
+use stillbase_settings::number::plain;
+
 /// Distance along a bar below which a place is at a pin, m.
 const AT_PIN: f64 = 1e-9;
+
+fn place_plainly(place: &mut PlaceOnLink) {
+    if let PlaceOnLink::Metres(x) = place {
+        *x = plain(*x);
+    }
+}
 
 impl Sketch {
     /// Returns whether a bar has parts or lumps, from which its numbers can follow.
@@ -56,6 +64,21 @@ impl Sketch {
         }
     }
 
+    /// Writes the numbers of parts and lumps as a person would: splitting and joining bars adds and subtracts lengths.
+    pub(super) fn write_plainly(&mut self) {
+        for part in &mut self.parts {
+            let corners = part.polygon.iter_mut().flatten();
+            let holes = part.holes.iter_mut().map(|hole| &mut hole.across);
+            corners.chain(holes).chain([&mut part.across]).for_each(|x| *x = plain(*x));
+            let places = part.holes.iter_mut().map(|hole| &mut hole.at).chain([&mut part.from, &mut part.to]);
+            places.for_each(place_plainly);
+        }
+        for lump in &mut self.lumps {
+            lump.across = plain(lump.across);
+            place_plainly(&mut lump.at);
+        }
+    }
+
     /// Returns the drawing with other parts and lumps of a bar.
     pub(super) fn with_parts(&self, id: BarId, parts: &[Part], lumps: &[Lump]) -> Result<Self, SketchRefusal> {
         let name = self.known_bar(id)?.name.clone();
@@ -82,7 +105,7 @@ impl Sketch {
             drive: String::new(),
             attach: Attach::Base("base".into()),
             direction: 1,
-            length: Length::Metres(self.length(bar)),
+            length: Length::Metres(rounded(self.length(bar))),
             mass: 1.0,
             inertia: 1.0,
             com: 0.0,

@@ -3,9 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::body::Body;
-use super::drawing::{BarId, PinId, Sketch, mm};
+use super::drawing::{BarId, PinId, Sketch, mm, tenths};
 use super::template::Template;
 use crate::machine::{Lump, Part, Rotor};
+use stillbase_settings::number::{plain, shortest};
 
 /// Where an end of a new bar is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -251,7 +252,7 @@ impl SketchStep {
             Self::New { template } => format!("new drawing: {}", template.title()),
             Self::Bar { name: Some(name), .. } => format!("draw bar {name}"),
             Self::Bar { .. } => "draw a bar".into(),
-            Self::MovePin { to: [x, y], .. } => format!("move pin to {x:.3}, {y:.3} m"),
+            Self::MovePin { to: [x, y], .. } => format!("move pin to {}, {}", tenths(*x), mm(*y)),
             Self::Split { along, .. } => format!("split bar at {}", mm(*along)),
             Self::Join { .. } => "make two bars one".into(),
             Self::Weld { .. } => "make two pins one".into(),
@@ -284,6 +285,29 @@ impl SketchStep {
             Self::Mass { body: Some(Body { mass: Some(mass), .. }), .. } => format!("mass of bar to {mass} kg"),
             Self::Mass { body: Some(_), .. } => "numbers of bar".into(),
             Self::Mass { per_metre, .. } => format!("mass of bar to {per_metre} kg/m"),
+        }
+    }
+
+    /// Returns the step with its numbers written as a person would: lengths without the rounding of sums, angles to
+    /// 1e-12 of them.
+    #[must_use]
+    pub fn plainly(self) -> Self {
+        let end = |end: BarEnd| match end {
+            BarEnd::At(at) => BarEnd::At(at.map(plain)),
+            BarEnd::On(on) => BarEnd::on(on.bar, plain(on.along)),
+            BarEnd::Pin(_) => end,
+        };
+        let angle = |radians: f64| shortest(radians, 1e-12);
+        match self {
+            Self::Bar { from, to, name } => Self::Bar { from: end(from), to: end(to), name },
+            Self::MovePin { pin, to } => Self::MovePin { pin, to: to.map(plain) },
+            Self::Split { bar, along } => Self::Split { bar, along: plain(along) },
+            Self::Length { bar, metres } => Self::Length { bar, metres: plain(metres) },
+            Self::Angle { bar, radians } => Self::Angle { bar, radians: angle(radians) },
+            Self::Limits { to, from, offset, range } => {
+                Self::Limits { to, from, offset, range: range.map(|ends| ends.map(angle)) }
+            }
+            step => step,
         }
     }
 

@@ -36,7 +36,7 @@ use limits::LimitArcs;
 use path::PlannedPath;
 use pins::Pins;
 use ring::BaseRing;
-use stillbase_mechanics::planar::{DriveAngles, Vector, unit};
+use stillbase_mechanics::planar::{DriveAngles, UnitVectors, Vector, unit};
 use stillbase_planning::pose_space::{Planes, PoseSpace};
 use stillbase_query::{Queries, Shared};
 use stillbase_session::Run;
@@ -316,6 +316,8 @@ impl Stage {
             self.linkage.bars().iter().flat_map(move |bar| bar.ends(&e))
         });
         let links = links.map(|[x, y, z]| (on_base(Vector::new(x, y)), z));
+        let discs = poses.iter().chain([&frame.q]).flat_map(|q| self.discs(&q.units()));
+        let discs = discs.map(|p| (on_base(p), z));
         let workspace = |b: f64| {
             let points = self.outlined().map_or_else(Vec::new, |workspace| workspace.points(b, frame));
             points.into_iter().map(|p| (p, self.linkage.floor()))
@@ -324,9 +326,22 @@ impl Stage {
         let target = [(DrawnFrame::from(frame).target, z), (base.at, 0.0)];
         let points = |(p, z): (Vector, f64)| [p.re, p.im, z];
         ViewContent {
-            first: links.chain(workspace(frame.b_reference)).chain(waypoints).chain(target).map(points).collect(),
+            first: links
+                .chain(discs)
+                .chain(workspace(frame.b_reference))
+                .chain(waypoints)
+                .chain(target)
+                .map(points)
+                .collect(),
             then: self.compared.into_iter().flat_map(workspace).map(points).collect(),
         }
+    }
+
+    /// Returns the outermost points of the discs of counterweights on both axes, at the units of the drives.
+    fn discs(&self, units: &UnitVectors) -> impl Iterator<Item = Vector> + use<> {
+        let discs = self.linkage.flat(units).into_iter().flat_map(|flat| flat.weights);
+        let discs = discs.flat_map(|weight| weight.ends.map(|end| (end, weight.radius)));
+        discs.flat_map(|(p, r)| [[r, 0.0], [-r, 0.0], [0.0, r], [0.0, -r]].map(|[x, y]| p + Vector::new(x, y)))
     }
 
     /// Returns the points that the camera has to show for the machine alone.
@@ -334,10 +349,7 @@ impl Stage {
         let (e, at) = (frame.q.units(), frame.base.at);
         let ends = self.linkage.bars().iter().flat_map(|bar| bar.ends(&e));
         let ends = ends.map(|[x, y, z]| [x + at.re, y + at.im, z]);
-        let discs = self.linkage.flat(&e).into_iter().flat_map(|flat| flat.weights);
-        let discs = discs.flat_map(|weight| weight.ends.map(|end| (end, weight.radius)));
-        let discs = discs.flat_map(|(p, radius)| [1.0, -1.0].map(|s| (p + at, s * radius)));
-        let discs = discs.flat_map(|(p, r)| [[p.re + r, p.im, 0.0], [p.re, p.im + r, 0.0]]);
+        let discs = self.discs(&e).map(|p| [p.re + at.re, p.im + at.im, 0.0]);
         ViewContent { first: ends.chain(discs).collect(), then: Vec::new() }
     }
 

@@ -84,7 +84,7 @@ enum MachineRef {
 const PRINTABLE: &str = "want printable characters";
 
 /// Maximum length of an error of the TOML reader, characters.
-const MAX_MESSAGE_CHARS: usize = 300;
+const MAX_MESSAGE_CHARS: usize = 400;
 
 /// Content of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -203,6 +203,10 @@ impl Reading<'_> {
             let error = ScenarioError::Syntax { file: label.into(), line: None, message: said };
             return Err(Box::new((Problem { path: KeyPath::default(), wrong }, error)));
         }
+        let tolerances = self.file.inner("tolerance").and_then(|inner| inner.read().ok());
+        if let Some(problem) = tolerances.and_then(|stated| Tolerance::try_from_stated(stated).err()) {
+            return Err(self.syntax(problem));
+        }
         let (file, own_machine) = self.parts()?;
         let stated: toml::Table = self.file.read().unwrap_or_default();
         // Missing keys of the task are derived from given ones, which have to be finite.
@@ -253,7 +257,7 @@ impl Reading<'_> {
             Box::new((Problem { path, wrong: Wrong::Value(message) }, error))
         };
         for (i, entry) in file.edits.into_iter().enumerate() {
-            edits.push(TimedEdit::from_table(entry).map_err(|why| wrong_edit((i, why)))?);
+            edits.push(TimedEdit::read(entry).map_err(|problem| self.syntax(problem.in_list("edit", i)))?);
         }
         let mut scenario = Scenario {
             name: file.name.unwrap_or(stem),

@@ -21,7 +21,7 @@ mod sketched;
 mod snap_point;
 mod task;
 mod tolerance;
-mod words;
+pub(crate) mod words;
 
 pub(crate) use bounds::{MAX_FRAMES, ordinal};
 pub use bounds::{MAX_STEPS, MAX_TIME, STEP_RANGE};

@@ -8,13 +8,16 @@ use super::bounds::STEP_RANGE;
 use super::choices::TaskKind;
 use super::definition::Scenario;
 use super::keys::{SCENARIO_TABLES, key_of, keys};
+use super::names::with_name;
 use super::own::ScenarioSettings;
 use super::task::Task;
 use super::tolerance::Tolerance;
-use stillbase_mechanics::machine::{self, MACHINE_TABLES, is_of_machine};
+use super::words::ScenarioWords;
+use stillbase_mechanics::machine::{self, KeyPath, MACHINE_TABLES, is_of_machine};
 use stillbase_planning::curves::Samples;
 use stillbase_settings::change::{self, DEFAULT_WORD};
 use stillbase_settings::key::{self, Effect, Key, KeyType};
+use stillbase_settings::mending::Problem;
 use stillbase_settings::range::{RangeCheck, quote_clipped};
 
 /// Reason why settings cannot be applied to a scenario.
@@ -32,7 +35,7 @@ pub enum SettingError {
     #[error("{0}")]
     Said(String),
     /// A value that a key does not accept.
-    #[error("{path} is {value:?}: want {want}")]
+    #[error("{} is {value:?}: want {want}", with_name(path))]
     Value {
         /// The key.
         path: String,
@@ -78,9 +81,13 @@ impl Scenario {
         }
         for (part, value) in &own {
             let wrong = |why: String| {
-                first_value_error(part, value).unwrap_or_else(|| match why.starts_with(&format!("{part}.")) {
-                    true => SettingError::Said(why),
-                    false => SettingError::Part { part: part.clone(), why },
+                first_value_error(part, value).unwrap_or_else(|| match why {
+                    // The part has said so with the names of its keys.
+                    why if why.contains(&format!("{part}.")) => SettingError::Said(why),
+                    why if why.starts_with("unknown field") => {
+                        SettingError::Said(Problem::said(table_of(part, value, &why), &why).text(&ScenarioWords))
+                    }
+                    why => SettingError::Part { part: part.clone(), why },
                 })
             };
             match (part.as_str(), value) {
@@ -342,6 +349,18 @@ fn none_as_default(at: &str, change: &Table) -> Table {
         (key.clone(), value)
     };
     change.iter().map(none_as_default).collect()
+}
+
+/// Returns the table of a part that has a key which a reader does not know: the reader names the key alone.
+fn table_of(part: &str, value: &Value, why: &str) -> KeyPath {
+    let unknown = why.split('`').nth(1).unwrap_or_default();
+    let leaves = change::single_change(part, value.clone());
+    let mut above = change::leaves(&leaves).into_iter().filter_map(|(path, _)| {
+        let words: Vec<&str> = path.split('.').collect();
+        let at = words.iter().position(|word| *word == unknown).filter(|at| *at > 0)?;
+        Some(KeyPath::of_key(&words[..at].join(".")))
+    });
+    above.next().unwrap_or_else(|| KeyPath::of(Some(part)))
 }
 
 /// Returns an error for the first value in a part that its key does not accept.

@@ -6,10 +6,12 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use stillbase_mechanics::machine::{Machine, MachineSpec};
+use super::words::ScenarioWords;
+use stillbase_mechanics::machine::{KeyPath, Machine, MachineSpec};
 use stillbase_settings::change;
-use stillbase_settings::key::{Key, KeyType};
+use stillbase_settings::key::{Key, KeyType, names};
 use stillbase_settings::keyed::ANY_NUMBER;
+use stillbase_settings::mending::{Problem, Wrong};
 use stillbase_settings::range::{Range, quote_clipped};
 
 /// Maximum number of samples of one study.
@@ -309,20 +311,29 @@ impl TryFrom<Section> for Tolerance {
     type Error = String;
 
     fn try_from(section: Section) -> Result<Self, String> {
+        Self::try_from_stated(section).map_err(|problem| problem.text(&ScenarioWords))
+    }
+}
+
+impl Tolerance {
+    /// Reads the table of a file.
+    ///
+    /// # Errors
+    /// The problem of the first key that is wrong, in its place in the scenario.
+    pub(super) fn try_from_stated(section: Section) -> Result<Self, Problem> {
         let mut tolerance = Self::default();
         for (key, value) in section {
+            let wrong = |wrong| Problem { path: KeyPath::new(&[&"tolerance", &key]), wrong };
             match row(&key) {
-                Some(Row { key, at: At::Whole(_, of) }) => *of(&mut tolerance) = Some(whole(key, &value)?),
-                Some(Row { key, at: At::Number(_, of) }) => *of(&mut tolerance) = Some(number(key, &value)?),
+                Some(Row { key, at: At::Whole(_, of) }) => {
+                    *of(&mut tolerance) = Some(whole(key, &value).map_err(|said| wrong(Wrong::Value(said)))?);
+                }
+                Some(Row { key, at: At::Number(_, of) }) => {
+                    *of(&mut tolerance) = Some(number(key, &value).map_err(|said| wrong(Wrong::Value(said)))?);
+                }
                 None => {
-                    let spread = in_words(&value).and_then(|text| text.parse().ok()).ok_or_else(|| {
-                        let known = ROWS.map(|row| row.key.path.trim_start_matches(PREFIX)).join(", ");
-                        format!(
-                            "tolerance.{} is {}: {SECTION} {known}",
-                            quote_clipped(&key),
-                            quote_clipped(&change::typed(&value))
-                        )
-                    })?;
+                    let spread = in_words(&value).and_then(|text| text.parse().ok());
+                    let spread = spread.ok_or_else(|| wrong(no_spread(&key, &value)))?;
                     tolerance.spreads.insert(key, spread);
                 }
             }
@@ -331,8 +342,18 @@ impl TryFrom<Section> for Tolerance {
     }
 }
 
-const SECTION: &str =
-    "want { normal = 0.0005 } or { uniform = \"1%\" }, 0 or more, for a key such as \"link.*.com\"; or";
+/// Returns what is wrong with a key whose value is no spread: the value, or the key, if no setting varies by it.
+fn no_spread(key: &str, value: &toml::Value) -> Wrong {
+    let known = || KEYS.iter().map(|key| key.path.trim_start_matches(PREFIX));
+    let is_known = known().any(|pattern| names(pattern, key)) || key.split('.').count() > 2;
+    match is_known {
+        true => Wrong::Value(format!("is {}: {WANT_IN_FILE}", quote_clipped(&change::typed(value)))),
+        false => Wrong::UnknownKey(known().map(Into::into).collect()),
+    }
+}
+
+const WANT_IN_FILE: &str =
+    "want { normal = 0.0005 }, a standard deviation, or { uniform = \"1%\" }, a half-width, 0 or more";
 
 /// Returns a spread of a file as it is written on the command line: `normal:0.0005`.
 fn in_words(value: &toml::Value) -> Option<String> {
@@ -358,9 +379,7 @@ fn whole(key: &Key, value: &toml::Value) -> Result<u64, String> {
         true => format!(" from {} to {}", range.low(), range.high()),
         false => format!(", {} or more", range.low()),
     };
-    whole.ok_or_else(|| {
-        format!("{} is {}: want a whole number{}", key.path, quote_clipped(&change::typed(value)), ends())
-    })
+    whole.ok_or_else(|| format!("is {}: want a whole number{}", quote_clipped(&change::typed(value)), ends()))
 }
 
 /// Reads a number in the range of its key.
@@ -368,7 +387,7 @@ fn number(key: &Key, value: &toml::Value) -> Result<f64, String> {
     let range = key.range().unwrap_or(ANY_NUMBER);
     change::number(value)
         .filter(|x| range.contains(*x))
-        .ok_or_else(|| format!("{} is {}: want a number, {range}", key.path, quote_clipped(&change::typed(value))))
+        .ok_or_else(|| format!("is {}: want a number, {range}", quote_clipped(&change::typed(value))))
 }
 
 impl From<Tolerance> for Section {
