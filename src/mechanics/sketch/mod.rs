@@ -38,6 +38,7 @@ mod removal;
 mod resolve;
 mod snap;
 mod step;
+mod stock;
 mod template;
 mod trace;
 mod valid;

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_4;
 use super::body::Body;
 use super::drawing::{Bar, BarId, EndEffector, Motor, PinId, Sketch};
 use crate::machine::{Drive, Length, Machine, MachineSpec, RelativeAngle, place_of};
-use crate::planar::{DriveAngles, PerDrive, Vector};
+use crate::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
 
 /// Distance along a link below which two points are one, m.
 const SAME: f64 = 1e-9;
@@ -165,7 +165,15 @@ impl Sketch {
         }
         // Where the drawing measures a bar from another end than its machine does, it is drawn anew.
         let is_same = |own: Machine| own.links() == machine.links() && own.resolved_links() == machine.resolved_links();
-        if next.machine().is_some_and(is_same) { next } else { Self::of(machine, None) }
+        if next.machine().is_some_and(is_same) { next } else { Self::of(machine, self.pose().as_ref()) }
+    }
+
+    /// Returns the drive angles of the pose in which it is drawn, rad, in the order of the motors; `None` while a drive
+    /// turns no bar.
+    pub fn pose(&self) -> Option<DriveAngles> {
+        let angles = self.motors.iter().map(|motor| Some(self.arm(&motor.drive.name)?.0.arg()));
+        let angles: Vec<f64> = angles.collect::<Option<_>>()?;
+        (angles.len() <= MAX_DRIVES).then(|| DriveAngles(PerDrive::from_fn(angles.len(), |k| angles[k])))
     }
 
     /// Returns the drawing with the lengths of another machine of the same bars.
