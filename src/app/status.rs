@@ -105,7 +105,9 @@ pub fn show(
                 facts.push(format!("b {:.3} rad", f.b));
             }
             let bad_news = view_state.status.problem().is_some();
-            if let Some((poses, distance)) = found.standing.filter(|_| unfinished.is_none() && !bad_news && ui.available_width() > 460.0) {
+            if let Some((poses, distance)) =
+                found.standing.filter(|_| unfinished.is_none() && !bad_news && ui.available_width() > 460.0)
+            {
                 let many = if poses == 1 { "one pose".into() } else { format!("{poses} poses") };
                 // A narrow window keeps the space for the hint.
                 facts.push(match ui.available_width() > 900.0 {

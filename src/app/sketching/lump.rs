@@ -27,13 +27,7 @@ pub fn lump_title(bar: &Bar, number: usize) -> String {
 }
 
 /// Draws the card of a lump of a bar, counted from 1.
-pub fn show(
-    ui: &mut Ui,
-    facts: &SketchFacts,
-    (bar, number): (&Bar, usize),
-    p: &Palette,
-    commands: &mut Vec<Command>,
-) {
+pub fn show(ui: &mut Ui, facts: &SketchFacts, (bar, number): (&Bar, usize), p: &Palette, commands: &mut Vec<Command>) {
     // While it is dragged, its place is that of the pointer.
     let shown = facts.shown().0;
     let Some(lump) = shown.lumps_of(bar).nth(number - 1) else { return };

@@ -51,7 +51,9 @@ pub fn show(
     card_of(ui, sketch, pen, commands);
     match pen.chosen {
         Some(chosen) => card::show(ui, facts, chosen, p, commands),
-        None => note(ui, p, "Click a bar for its drive, its length and its angle; click a pin or a lump for its place."),
+        None => {
+            note(ui, p, "Click a bar for its drive, its length and its angle; click a pin or a lump for its place.")
+        }
     }
     missing::show(ui, facts, p, commands);
     task(ui, session, facts, view_state, commands);
@@ -110,7 +112,11 @@ fn task(ui: &mut Ui, session: &Session, facts: &SketchFacts, view_state: &ViewSt
 
 /// Says that the table of links stands here once the drawing is a machine, and what is missing.
 pub fn links_wait(ui: &mut Ui, unfinished: &UnfinishedDrawing, p: &Palette) {
-    note(ui, p, &format!("The links of {:?} stand here as soon as it is a machine. Still missing:", unfinished.drawing));
+    note(
+        ui,
+        p,
+        &format!("The links of {:?} stand here as soon as it is a machine. Still missing:", unfinished.drawing),
+    );
     for one in &unfinished.missing {
         let words = RichText::new(format!("• {one}")).font(plain(12.5)).color(colour(p.ink));
         ui.add(egui::Label::new(words).wrap());

@@ -25,8 +25,7 @@ pub enum PenTool {
 
 impl PenTool {
     /// All of them, in the order of the tool bar.
-    pub const ALL: [Self; 6] =
-        [Self::Bar, Self::Move, Self::Motor, Self::Lump, Self::EndEffector, Self::Delete];
+    pub const ALL: [Self; 6] = [Self::Bar, Self::Move, Self::Motor, Self::Lump, Self::EndEffector, Self::Delete];
 
     /// Returns its icon, its name, and what it does.
     pub fn words(self) -> (Icon, &'static str, &'static str) {

@@ -136,6 +136,7 @@ impl Sketch {
             name: self.name.clone(),
             summary: String::new(),
             gravity: [0.0; 2],
+            pose: None,
             lengths: std::collections::BTreeMap::new(),
             payload: self.payload,
             drives: Vec::new(),

@@ -300,8 +300,12 @@ impl SketchStep {
                 ([one], []) => format!("bar of {}", one.title()),
                 _ => format!("bar of {} parts", parts.len() + lumps.len()),
             },
-            Self::Lump { number: None, lump: Some(lump), .. } => format!("put {} of {} kg on bar", lump.title(), lump.mass),
-            Self::Lump { lump: Some(lump), .. } => format!("{} of {} kg at {}", lump.title(), lump.mass, along(&lump.at)),
+            Self::Lump { number: None, lump: Some(lump), .. } => {
+                format!("put {} of {} kg on bar", lump.title(), lump.mass)
+            }
+            Self::Lump { lump: Some(lump), .. } => {
+                format!("{} of {} kg at {}", lump.title(), lump.mass, along(&lump.at))
+            }
             Self::Lump { lump: None, .. } => "take lump away".into(),
             Self::Mass { body: Some(Body { mass: Some(mass), .. }), .. } => format!("mass of bar to {mass} kg"),
             Self::Mass { body: Some(_), .. } => "numbers of bar".into(),

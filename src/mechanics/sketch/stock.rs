@@ -27,7 +27,8 @@ impl Sketch {
     pub fn drawn_over(&self, bar: &Bar, section: &Part) -> Part {
         let drawn = Part::drawn(&bar.name);
         let holes = if section.shape == Shape::Flat { drawn.holes } else { Vec::new() };
-        let part = Part { link: drawn.link, name: drawn.name, from: drawn.from, to: drawn.to, holes, ..section.clone() };
+        let part =
+            Part { link: drawn.link, name: drawn.name, from: drawn.from, to: drawn.to, holes, ..section.clone() };
         self.followed(bar, &part, &Self::blank(), &[])
     }
 

@@ -44,11 +44,14 @@ impl Pins {
 }
 
 impl Sketch {
-    /// Returns the drawing of a machine at drive angles, rad; by default in a pose near the middle of its limits.
+    /// Returns the drawing of a machine at drive angles, rad; by default in the pose in which it was drawn or,
+    /// without one, near the middle of its limits.
     /// [`resolve`](super::resolve) makes the same machine of it again, except for the names of its lengths.
     pub fn of(machine: &Machine, at: Option<&DriveAngles>) -> Self {
-        let middle = middle(machine);
-        let e = at.filter(|q| q.len() == machine.drives()).unwrap_or(&middle).units();
+        let drawn = machine.spec().pose.as_ref().filter(|pose| pose.len() == machine.drives());
+        let usual =
+            drawn.map_or_else(|| middle(machine), |pose| DriveAngles(PerDrive::from_fn(pose.len(), |k| pose[k])));
+        let e = at.filter(|q| q.len() == machine.drives()).unwrap_or(&usual).units();
         let (spec, links) = (machine.spec(), machine.resolved_links());
         let mut pins = Pins { groups: vec![Vec::new()] };
         for (i, link) in links.iter().enumerate() {
