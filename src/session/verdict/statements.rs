@@ -3,7 +3,7 @@
 //!
 //! | statement | good | bad | open |
 //! |---|---|---|---|
-//! | machine | every g_k and C_kl vanishes, (7) and (8), with what it carries | one does not | it is not drawn to the end |
+//! | machine | every g_k and C_kl vanishes, (7) and (8), with what it carries | one does not | it is not drawn whole |
 //! | plan | b stays constant, (13) | b changes, or a drive limit is exceeded | there is no plan, or no b |
 //! | run | f_B and n_B vanish, or a wheel took n_B up | they do not, or an audit failed | nothing has moved |
 //!
