@@ -46,7 +46,8 @@ impl Hand<'_> {
         let lump = self.facts.sketch.lumps_of(bar).nth(number.checked_sub(1)?)?;
         let (at, across) = self.place_on(bar, pos)?;
         let moved = Lump { at, across, ..lump.clone() };
-        Some((moved != *lump).then(|| SketchStep::Lump { bar: id, number: Some(number), lump: Some(moved) }))
+        let is_moved = moved != *lump;
+        Some(is_moved.then_some(SketchStep::Lump { bar: id, number: Some(number), lump: Some(moved) }))
     }
 
     /// Returns the place of the pointer along a bar and to its left, m: at a pin or on the axis if it is near, else in
