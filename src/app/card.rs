@@ -132,6 +132,12 @@ impl Card {
                 };
                 Self::new(format!("counterweight of link {}{shape}", weight.link), rows, way)
             }
+            Handle::Lump(i) => {
+                let (lump, part) = scenario.machine.lump_body(i)?;
+                let rows = vec![format!("{} kg, {} m from its root", three_digits(lump.mass), signed(part.body.at, 4))];
+                let title = format!("{} of link {}", lump.title(), lump.link);
+                Self::new(title, rows, "drag: along and across its link")
+            }
             Handle::End(i) => {
                 let part = scenario.machine.resolved_links().get(i)?;
                 let name = &scenario.machine.links().get(i)?.name;

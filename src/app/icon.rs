@@ -56,6 +56,8 @@ pub enum Icon {
     Bar,
     /// A motor about a pin.
     Motor,
+    /// A known mass: the sign of a centre of mass.
+    Lump,
     /// The end effector at the end of a bar.
     Tip,
 }
@@ -178,6 +180,15 @@ impl Icon {
                 pen.ring([0.0, 0.0], 6.5);
                 pen.ring([0.0, 0.0], 3.4);
                 pen.dot([0.0, 0.0], 1.4);
+            }
+            Self::Lump => {
+                pen.ring([0.0, 0.0], 6.5);
+                for side in [1.0, -1.0] {
+                    let arc = (0..=4).map(|i| on_circle([0.0, 0.0], 6.5, 0.0625 * i as f32));
+                    let quarter: Vec<[f32; 2]> =
+                        std::iter::once([0.0, 0.0]).chain(arc).map(|[x, y]| [side * x, side * y]).collect();
+                    pen.solid(&quarter);
+                }
             }
             Self::Tip => {
                 pen.line(&[[-7.0, 6.0], [0.5, -0.5]]);

@@ -106,7 +106,7 @@ fn guide_of(thing: Option<Handle>) -> GuidePlace {
         Some(Handle::Payload) => GuidePlace::under(GuidePage::Plants, "What a payload is"),
         Some(Handle::Ring | Handle::Boundary) => GuidePlace::under(GuidePage::Planning, "Which b reaches a point"),
         Some(Handle::Waypoint(_)) => GuidePlace::under(GuidePage::Planning, "A motion through points"),
-        Some(Handle::Mass(_) | Handle::Weight(_) | Handle::End(_)) => GuidePage::Design.into(),
+        Some(Handle::Mass(_) | Handle::Weight(_) | Handle::Lump(_) | Handle::End(_)) => GuidePage::Design.into(),
         _ => GuidePlace::under(GuidePage::FirstRun, "What you see"),
     }
 }

@@ -12,6 +12,7 @@ use stillbase_picture::scene::options::Handle;
 use stillbase_picture::scene::pick::{DragAction, Pick};
 use stillbase_picture::scene::views::{ViewKind, Views};
 use stillbase_session::design::length_edit;
+use stillbase_session::parts::move_lump;
 use stillbase_session::{Edit, Session};
 
 /// Distance from the target within which it can be grabbed during the demonstration, points.
@@ -270,6 +271,7 @@ fn edit_of(aim: DragAction, session: &Session, view_state: &ViewState) -> Option
         }
         DragAction::Mass { link, to } => Edit::at(&["link", &machine.links().get(link)?.name, "com"], to),
         DragAction::Weight { weight, to } => session.scenario().design.weight_edit(machine, weight, to),
+        DragAction::Lump { lump, to } => move_lump(lump, to),
         DragAction::Length { link, to } => length_edit(machine.spec().links.get(link)?, to),
         DragAction::Payload(offset) => Edit::set("plant.payload.offset", offset.to_vec()),
         DragAction::Waypoint(i, [x, y]) => Edit::of("task", session.scenario().task.moving(i, Vector::new(x, y))?),

@@ -75,7 +75,10 @@ pub fn show(
             plant::show(ui, session, &p, commands);
             base::show(ui, session, view_state, commands);
             control::show(ui, session, &p, commands);
-            balance(ui, session, facts, &p, commands);
+            // While a drawing is unfinished, the balance would be that of the machine before.
+            if session.run().unfinished().is_none() {
+                balance(ui, session, facts, &p, commands);
+            }
             all::show(ui, facts, &p, view_state.open.settings, commands);
             focus::keep_in_view(ui);
         });

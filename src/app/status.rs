@@ -87,26 +87,36 @@ pub fn show(
             let f = session.frame();
             ui.spacing_mut().item_spacing.x = 14.0;
             let statements = lamp::statements(session);
+            let unfinished = session.run().unfinished();
             for named in statements.named() {
-                lamp::button(ui, named, 12.5, improvements, &p, commands);
+                match unfinished {
+                    Some(_) => lamp::show(ui, named, 12.5, &p),
+                    None => lamp::button(ui, named, 12.5, improvements, &p, commands),
+                }
             }
-            if ui.available_width() > DOTS_WIDTH_PT {
+            if unfinished.is_none() && ui.available_width() > DOTS_WIDTH_PT {
                 audit_dots(ui, f, &p);
             }
             let mut facts: Vec<String> = Vec::new();
-            let remarks = Verdict::of(session.scenario(), f).so_far();
+            // Nothing is said of the machine before a drawing.
+            let remarks = unfinished.map_or_else(|| Verdict::of(session.scenario(), f).so_far(), |_| Vec::new());
             facts.extend(remarks.iter().filter(|_| ui.available_width() > 460.0).map(|remark| remark.short.clone()));
-            if session.run().pose_space().is_ok() {
+            if unfinished.is_none() && session.run().pose_space().is_ok() {
                 facts.push(format!("b {:.3} rad", f.b));
             }
             let bad_news = view_state.status.problem().is_some();
-            if let Some((poses, distance)) = found.standing.filter(|_| !bad_news && ui.available_width() > 460.0) {
+            if let Some((poses, distance)) =
+                found.standing.filter(|_| unfinished.is_none() && !bad_news && ui.available_width() > 460.0)
+            {
                 let many = if poses == 1 { "one pose".into() } else { format!("{poses} poses") };
                 // A narrow window keeps the space for the hint.
                 facts.push(match ui.available_width() > 900.0 {
                     true => format!("{many}, {} m from the boundary", signed(distance.abs(), 3)),
                     false => many,
                 });
+            }
+            if let Some(drawing) = unfinished {
+                fit::label(ui, &drawing.first_of(), plain(12.0), colour(p.dim));
             }
             let facts: Vec<_> = facts.iter().map(|fact| notation::sentence(ui.ctx(), fact)).collect();
             let facts = fitting(ui, facts.iter().map(|fact| &**fact), ui.available_width());
@@ -143,6 +153,13 @@ pub fn show(
                     }
                     (None, _) if session.is_full() => {
                         ("this session is full: save or record it, then start over".into(), p.reaction)
+                    }
+                    (None, _) if unfinished.is_some() => {
+                        let words = match view_state.drawing_pen() {
+                            Some(_) => "the list on the left mends what is missing  ·  F1 keys",
+                            None => "Shift D draws on  ·  F1 keys",
+                        };
+                        (words.into(), p.dim)
                     }
                     (None, Reach::Outside { feasible_b, other_sheet, .. }) => {
                         for way_out in found.target_proposals.iter().rev() {

@@ -281,6 +281,7 @@ impl From<Refusal> for Failure {
             | Refusal::Full { .. }
             | Refusal::Diverged { .. }
             | Refusal::Stopped
+            | Refusal::Unfinished(_)
             | Refusal::Untrusted { .. } => Self::no_answer(e),
             Refusal::Machine(_)
             | Refusal::OutOfRange { .. }

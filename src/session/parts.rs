@@ -68,15 +68,20 @@ pub fn set_length(part: &mut Part, key: &str, metres: f64) {
 /// Returns the edit that adds a lump to the tip of a link, counted from 0.
 pub fn add_lump(machine: &Machine, link: usize) -> Edit {
     let mut lumps = machine.spec().lumps.clone();
-    lumps.push(Lump {
-        link: machine.spec().links[link].name.clone(),
-        name: String::new(),
-        mass: LUMP_KG,
-        at: PlaceOnLink::Named("tip".into()),
-        across: 0.0,
-        inertia: 0.0,
-    });
+    lumps.push(new_lump(&machine.spec().links[link].name, PlaceOnLink::Named("tip".into()), 0.0));
     Edit::Set { change: list("lump", &lumps) }
+}
+
+/// Returns a new lump on a link, along it and to the left of its axis, m.
+pub fn new_lump(link: &str, at: PlaceOnLink, across: f64) -> Lump {
+    Lump { link: link.to_owned(), name: String::new(), mass: LUMP_KG, at, across, inertia: 0.0 }
+}
+
+/// Returns the edit that moves a lump, counted from 0, to a position along its link and to the left of the link's axis,
+/// m.
+pub fn move_lump(lump: usize, [at, across]: [f64; 2]) -> Edit {
+    let place = Table::from_iter([("at".into(), at.into()), ("across".into(), across.into())]);
+    Edit::of("lump", Table::from_iter([((lump + 1).to_string(), Value::from(place))]))
 }
 
 /// Returns the edit that removes a part or a lump. With the last one of a link, the numbers that followed from it are

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::scenario::{MAX_FRAMES, MAX_STEPS, MAX_TIME, SettingError, ordinal, with_name};
+use crate::scenario::{MAX_FRAMES, MAX_STEPS, MAX_TIME, SettingError, UnfinishedDrawing, ordinal, with_name};
 use stillbase_mechanics::machine::MachineError;
 use stillbase_mechanics::sketch::SketchRefusal;
 use stillbase_planning::curves::{CurveError, PathError};
@@ -76,6 +76,9 @@ pub enum Refusal {
     /// A step of drawing does not fit the drawing.
     #[error(transparent)]
     Sketch(#[from] SketchRefusal),
+    /// The drawing is no machine yet.
+    #[error(transparent)]
+    Unfinished(#[from] UnfinishedDrawing),
     /// The simulation diverges.
     #[error(
         "the simulation diverges at {time:.3} s: want smaller gains, a smaller step, a lighter payload, or softer springs, dampers and \

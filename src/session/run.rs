@@ -7,7 +7,7 @@ use super::edit::{Edit, TimedEdit};
 use super::planner::{Plan, plan};
 use super::refusal::Refusal;
 use crate::changes::{after_start_edit, changed, checked};
-use crate::scenario::{MAX_STEPS, Scenario};
+use crate::scenario::{MAX_STEPS, Scenario, UnfinishedDrawing};
 use stillbase_mechanics::machine::{Chain, Inertia};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase_planning::Motion;
@@ -22,7 +22,7 @@ use stillbase_settings::key::Effect;
 use stillbase_simulation::frame::Frame;
 use stillbase_simulation::{Guide, Simulation};
 
-/// Reason why a run waits: its task does not fit its machine.
+/// Reason why a run waits: its task does not fit its machine, or its machine is not drawn to the end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaitReason {
     /// Reason why the task cannot be planned.
@@ -35,7 +35,8 @@ pub struct WaitReason {
 impl WaitReason {
     fn of(scenario: &Scenario, space: Option<&PoseSpace>, why: Refusal) -> Self {
         let task = &scenario.task;
-        let Some(space) = space else { return Self { why, points: Vec::new() } };
+        let is_of_points = !matches!(why, Refusal::Unfinished(_));
+        let Some(space) = space.filter(|_| is_of_points) else { return Self { why, points: Vec::new() } };
         let unserved = |(i, p): (usize, Vector)| {
             let nearest_b = || {
                 let set = space.reach(p).ok()?;
@@ -99,7 +100,11 @@ impl Run {
     fn patient(scenario: &Scenario, queries: &Queries) -> Result<Self, Refusal> {
         let space = space_of(scenario, queries);
         let known = space.as_deref();
-        let (plan, waiting) = match plan(scenario, known) {
+        let planned = match scenario.unfinished() {
+            Some(unfinished) => Err(unfinished.into()),
+            None => plan(scenario, known),
+        };
+        let (plan, waiting) = match planned {
             Ok(plan) => (plan, None),
             Err(why) => (Plan::rest(scenario, known.ok()), Some(WaitReason::of(scenario, known.ok(), why))),
         };
@@ -109,9 +114,18 @@ impl Run {
         Ok(Self { scenario, space, plan, waiting, simulation, queries: queries.clone() })
     }
 
-    /// Returns the reason why the run waits, if its task does not fit its machine.
+    /// Returns the reason why the run waits, if its task does not fit its machine or the drawing is no machine yet.
     pub fn waiting(&self) -> Option<&WaitReason> {
         self.waiting.as_ref()
+    }
+
+    /// Returns what the drawing of the machine lacks, if the run waits for that. The machine of the scenario is then
+    /// the one before.
+    pub fn unfinished(&self) -> Option<&UnfinishedDrawing> {
+        match &self.waiting.as_ref()?.why {
+            Refusal::Unfinished(unfinished) => Some(unfinished),
+            _ => None,
+        }
     }
 
     /// Returns the scenario with all settings of its edits.

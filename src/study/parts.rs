@@ -115,10 +115,15 @@ impl LinkParts {
 
     /// Returns the sentence that says which typed numbers overrule the parts; `None` if there are none.
     pub fn overruled(&self) -> Option<String> {
-        let words: Vec<&str> = self.typed.iter().map(|number| number.words()).collect();
-        let (last, others) = words.split_last()?;
-        let all = if others.is_empty() { (*last).to_owned() } else { format!("{} and {last}", others.join(", ")) };
-        let verb = if others.is_empty() { "is typed and overrules" } else { "are typed and overrule" };
-        Some(format!("link {}: {all} {verb} its parts", self.sum.link))
+        overruled(&self.typed).map(|words| format!("link {}: {words}", self.sum.link))
     }
+}
+
+/// Returns the words that say which typed numbers overrule the parts of a link; `None` if there are none.
+pub fn overruled(typed: &[LinkNumber]) -> Option<String> {
+    let words: Vec<&str> = typed.iter().map(|number| number.words()).collect();
+    let (last, others) = words.split_last()?;
+    let all = if others.is_empty() { (*last).to_owned() } else { format!("{} and {last}", others.join(", ")) };
+    let verb = if others.is_empty() { "is typed and overrules" } else { "are typed and overrule" };
+    Some(format!("{all} {verb} its parts"))
 }

@@ -3,6 +3,7 @@
 use egui::{Key, Modifiers, Pos2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::app::{PenChange, PenTool, SessionCommand, ViewChange};
+use stillbase::mechanics::machine::PlaceOnLink;
 use stillbase::mechanics::sketch::{BarEnd, Sketch, SketchStep, Template, resolve};
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::sketching::{DrawnArc, SketchItem};
@@ -20,6 +21,10 @@ pub const TESTS: &[Test] = tests![
     a_refused_step_is_told_at_its_pin,
     a_machine_grows_from_nothing_by_the_pointer,
     a_bar_is_made_of_a_section,
+    lumps_are_put_dragged_typed_and_deleted,
+    typed_numbers_that_overrule_a_lump_are_told_at_once,
+    an_unfinished_drawing_is_told_in_every_view,
+    things_that_are_gone_are_chosen_no_more,
     limits_are_dragged_at_their_arcs_and_typed,
     a_pin_dropped_on_another_becomes_one_with_it,
     the_balance_follows_the_pin_under_the_pointer,
@@ -104,7 +109,7 @@ fn a_bar_is_drawn_follows_a_drive_and_is_undone() {
     let drawn = sketch(&h);
     assert_eq!(drawn.bars.len(), 3);
     assert_eq!(drawn.bars[2].root, before.bars[1].tip, "it hangs on the pin where it began");
-    assert!(h.query_by_label_contains("bar 3 follows no drive").is_some());
+    assert!(h.query_all_by_label_contains("bar 3 follows no drive").count() > 0);
     // A click on the bar shows its card, which says its drive.
     let middle = from + 0.5 * (tip(&h, 2) - from);
     click(&mut h, middle);
@@ -245,22 +250,121 @@ fn a_bar_is_made_of_a_section() {
     let (from, to) = (at(&h, 0.0, 0.0), tip(&h, 0));
     click(&mut h, from + 0.5 * (to - from));
     h.run_steps(3);
-    assert!(h.query_by_label_contains("kg, by a slender bar").is_some());
+    assert!(h.query_by_label_contains("kg, by its parts").is_some());
+    assert!(h.query_by_label_contains("hole diameter of bar 1").is_some());
     choose(&mut h, "section of bar 1", "tube");
     choose(&mut h, "material of bar 1", "steel");
     let made = sketch(&h);
-    assert_eq!((made.parts.len(), made.parts[0].material.as_str()), (1, "steel"));
-    assert!(h.query_by_label_contains("kg, by its parts").is_some());
+    assert_eq!((made.parts.len(), made.parts[0].material.as_str()), (2, "steel"));
     let mass = made.body(&made.bars[0]).mass;
     assert_eq!(session(&h).scenario().machine.links()[0].mass, mass);
     assert!((mass - before.body(&before.bars[0]).mass).abs() > 0.01);
     choose(&mut h, "section of bar 1", "no section");
-    assert_eq!(sketch(&h).body(&made.bars[0]), before.body(&before.bars[0]));
+    assert!(h.query_by_label_contains("kg, by a slender bar").is_some());
     for _ in 0..3 {
         h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
         h.run_steps(4);
     }
     assert_eq!(sketch(&h), before);
+}
+
+fn lumps_are_put_dragged_typed_and_deleted() {
+    let mut h = drawing(Template::SerialOfTwo, Theme::Dark);
+    let before = sketch(&h);
+    tool(&mut h, "draw: lump");
+    let (from, to) = (at(&h, 0.0, 0.0), tip(&h, 0));
+    click(&mut h, from + 0.6 * (to - from));
+    h.run_steps(4);
+    let put = sketch(&h);
+    let along = |h: &Window| {
+        let sketch = sketch(h);
+        (sketch.lump_at(&sketch.bars[0], &sketch.lumps[0]).0, sketch.lumps[0].across)
+    };
+    assert_eq!((put.lumps.len(), put.lumps[0].mass, along(&h).1), (1, 0.1, 0.0));
+    assert!((along(&h).0 - 0.24).abs() < 0.01, "{:?}", along(&h));
+    assert!(h.query_by_label("mass of lump 1 of bar 1 kg").is_some(), "its card");
+    egui_kittest::image_snapshot(&h.render().expect("drawn"), "lump-dark");
+    let heavier = put.body(&put.bars[0]).mass - before.body(&before.bars[0]).mass;
+    assert!((heavier - 0.1).abs() < 1e-12, "it counts at once");
+    assert_eq!(session(&h).scenario().machine.links()[0].mass, put.body(&put.bars[0]).mass);
+    // Dragged off the axis; undone; onto the tip, where it stays at the pin.
+    tool(&mut h, "draw: move");
+    let spot = |h: &Window| {
+        let sketch = sketch(h);
+        let place = sketch.lump_at(&sketch.bars[0], &sketch.lumps[0]).1;
+        at(h, place.re, place.im)
+    };
+    let held = spot(&h);
+    drag(&mut h, held, held + egui::vec2(60.0, 0.0));
+    h.run_steps(4);
+    assert!(along(&h).1 < -0.02, "{:?}", along(&h));
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(4);
+    assert_eq!(sketch(&h), put);
+    let held = spot(&h);
+    drag(&mut h, held, to + egui::vec2(3.0, 0.0));
+    h.run_steps(4);
+    assert_eq!(sketch(&h).lumps[0].at, PlaceOnLink::Named("tip".into()));
+    super::type_into(&mut h, "mass of lump 1 of bar 1 kg", "0.4");
+    assert_eq!(sketch(&h).lumps[0].mass, 0.4);
+    h.get_by_label("delete lump 1 of bar 1").click_accesskit();
+    h.run_steps(4);
+    assert_eq!(sketch(&h).lumps, []);
+    assert!(h.state().app_state().view_state().pen.as_ref().is_some_and(|pen| pen.chosen.is_none()));
+}
+
+fn typed_numbers_that_overrule_a_lump_are_told_at_once() {
+    let mut h = drawing(Template::NineLinks, Theme::Light);
+    let paper = session(&h).scenario().machine.clone();
+    let bar = sketch(&h).bars[0].id;
+    let choose = PenChange::Choose(Some(SketchItem::Bar(bar)));
+    h.state_mut().app_state_mut().carry_out(ViewChange::Pen(choose));
+    h.run_steps(3);
+    assert!(h.query_by_label_contains("overrule its parts").is_none(), "it has no parts yet");
+    h.get_by_label("add a lump to bar 1").click_accesskit();
+    h.run_steps(4);
+    assert_eq!(session(&h).scenario().machine.links()[0].mass, paper.links()[0].mass);
+    assert!(h.query_by_label_contains("overrule its parts").is_some(), "beside the lump");
+    h.get_by_label("back to the parts: bar 1").click_accesskit();
+    h.run_steps(4);
+    assert_eq!(session(&h).scenario().machine.links()[0].mass, 0.1);
+    assert!(h.query_by_label_contains("overrule its parts").is_none());
+}
+
+fn an_unfinished_drawing_is_told_in_every_view() {
+    let mut h = drawing(Template::Blank, Theme::Dark);
+    let said = |h: &Window, words: &str| h.query_all_by_label_contains(words).count() > 0;
+    assert!(said(&h, "machine: 3 things missing") && said(&h, "no bar yet, and 2 more"));
+    assert!(!said(&h, "off balance by") && !said(&h, "holds b"), "nothing of the machine before");
+    h.get_by_label("Done drawing").click();
+    h.run_steps(4);
+    assert!(said(&h, "machine: 3 things missing") && said(&h, "stand here as soon as it is a machine"));
+    assert!(h.query_by_label("mass of link 1 kg").is_none(), "no table of the links of another machine");
+    h.state_mut().app_state_mut().carry_out(ViewChange::Kind(ViewKind::Flat));
+    h.run_steps(4);
+    assert!(said(&h, "What is seen here is nine-link, the machine before."));
+    h.get_by_label("draw on").click();
+    h.run_steps(4);
+    assert!(h.state().app_state().view_state().pen.is_some());
+}
+
+/// After a step is undone or two pins became one, nothing that is gone is chosen.
+fn things_that_are_gone_are_chosen_no_more() {
+    let mut h = drawing(Template::SerialOfTwo, Theme::Dark);
+    tool(&mut h, "draw: bar");
+    let (from, to) = (tip(&h, 1), tip(&h, 1) + egui::vec2(70.0, 40.0));
+    drag(&mut h, from, to);
+    h.run_steps(4);
+    tool(&mut h, "draw: move");
+    let end = tip(&h, 2);
+    click(&mut h, end);
+    h.run_steps(3);
+    let chosen = |h: &Window| h.state().app_state().view_state().pen.as_ref().and_then(|pen| pen.chosen);
+    let pin = sketch(&h).bars[2].tip;
+    assert_eq!(chosen(&h), Some(SketchItem::Pin(pin)));
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(4);
+    assert_eq!((sketch(&h).bars.len(), chosen(&h)), (2, None));
 }
 
 /// Where the end of the first arc is on the screen.
@@ -308,13 +412,19 @@ fn limits_are_dragged_at_their_arcs_and_typed() {
     h.step();
     h.drag_at(from);
     h.step();
+    let least = |h: &Window| {
+        let node = h.get_by_label("least angle of drive 2 from drive 1 rad");
+        node.accesskit_node().value().expect("a number")
+    };
+    let was = least(&h);
     h.hover_at(to);
-    h.run_steps(2);
+    h.run_steps(3);
+    assert_ne!(least(&h), was, "the field follows the arc");
     h.key_press(Key::Escape);
     h.run_steps(2);
     h.drop_at(to);
     h.run_steps(4);
-    assert_eq!(sketch(&h), limited);
+    assert_eq!((sketch(&h), least(&h)), (limited, was));
 }
 
 fn a_pin_dropped_on_another_becomes_one_with_it() {
@@ -324,7 +434,7 @@ fn a_pin_dropped_on_another_becomes_one_with_it() {
     drag(&mut h, from, to);
     h.run_steps(4);
     let loose = sketch(&h);
-    assert!(h.query_by_label_contains("bar 3 is not connected to the base").is_some());
+    assert!(h.query_all_by_label_contains("bar 3 is not connected to the base").count() > 0);
     tool(&mut h, "draw: move");
     let (held, onto) = (loose.bars[2].root, loose.bars[1].tip);
     let [from, to] = [held, onto].map(|pin| at(&h, loose.at(pin).re, loose.at(pin).im));

@@ -56,6 +56,7 @@ errors! {
     session::Refusal,
     session::scenario::ScenarioError,
     session::scenario::SettingError,
+    session::scenario::UnfinishedDrawing,
     study::base_spectrum::NoBaseSpectrum,
     study::counterweights::NoCounterweights,
     study::equations::NoInstant,

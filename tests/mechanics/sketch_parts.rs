@@ -1,11 +1,13 @@
 //! Drawings of machines that are made of parts: nothing is lost on the way to a drawing and back, and bars that are
 //! split, joined, turned and lengthened keep what they weigh.
 
+use std::f64::consts::PI;
+
 use stillbase::mechanics::machine::{
-    Hole, LinkNumber, Lump, Machine, Material, Part, PlaceOnLink, PlaneBody, Shape, parse, to_toml,
+    Ends, Hole, LinkNumber, Lump, MATERIALS, Machine, Material, Part, PlaceOnLink, PlaneBody, Shape, parse, to_toml,
 };
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
-use stillbase::mechanics::sketch::{Bar, BarId, Body, PinId, Sketch, SketchStep, Template, resolve};
+use stillbase::mechanics::sketch::{Bar, BarEnd, BarId, Body, PinId, Sketch, SketchStep, Template, resolve};
 
 use super::sketch::{at, bar, complete, draw, motor, pin};
 use crate::support::Noise;
@@ -148,9 +150,38 @@ fn all(sketch: &Sketch, bars: &[&Bar]) -> PlaneBody {
     bars.iter().map(of).reduce(PlaneBody::and).expect("a bar")
 }
 
+/// The discs that a cut adds: each half of a flat bar with round ends has an end of its own there.
+fn round_ends(sketch: &Sketch, own: &Bar, along: f64) -> Vec<PlaneBody> {
+    let length = sketch.length(own);
+    let metres = |place: &PlaceOnLink| match place {
+        PlaceOnLink::Metres(x) => *x,
+        PlaceOnLink::Named(word) => {
+            if word == "tip" {
+                length
+            } else {
+                0.0
+            }
+        }
+    };
+    let is_cut = |part: &&Part| {
+        let is_round = part.shape == Shape::Flat && part.ends != Some(Ends::Square);
+        part.link == own.name && is_round && metres(&part.from) < along && metres(&part.to) > along
+    };
+    let density = |name: &str| {
+        let own = sketch.materials.iter().map(|material| (material.name.as_str(), material.density));
+        own.chain(MATERIALS).find(|(known, _)| *known == name).expect("known").1
+    };
+    let disc = |part: &Part| {
+        let [width, thickness] = [part.width, part.thickness].map(|length| length.expect("a flat bar"));
+        PlaneBody::disc(0.5 * width).times(thickness * density(&part.material)).moved(along, part.across)
+    };
+    let follows = own.body.is_none_or(|body| body.follows());
+    sketch.parts.iter().filter(|_| follows).filter(is_cut).map(disc).collect()
+}
+
 #[test]
 fn split_and_joined_bars_keep_what_they_weigh() {
-    let (mut noise, mut splits, mut joins) = (Noise::of(41), 0, 0);
+    let (mut noise, mut splits, mut joins, mut rounds) = (Noise::of(41), 0, 0, 0);
     for i in 0..300 {
         let machine = made_of_parts(&mut noise);
         let sketch = Sketch::of(&machine, None);
@@ -160,7 +191,11 @@ fn split_and_joined_bars_keep_what_they_weigh() {
         let Ok(split) = sketch.with(&SketchStep::Split { bar: own.id, along }) else { continue };
         splits += 1;
         let (first, second) = (split.bar(own.id).expect("kept"), split.bars.last().expect("cut off"));
-        alike(&format!("split {i}"), &all(&split, &[first, second]), &all(&sketch, &[&own]));
+        let follows = [first, second].iter().all(|bar| bar.body.is_none_or(|body| body.follows()));
+        let ends = if follows { round_ends(&sketch, &own, along) } else { Vec::new() };
+        rounds += ends.len();
+        let whole = ends.into_iter().fold(all(&sketch, &[&own]), PlaneBody::and);
+        alike(&format!("split {i}"), &all(&split, &[first, second]), &whole);
         let what = (split.lumps.len(), split.counterweights.len());
         assert_eq!(what, (sketch.lumps.len(), sketch.counterweights.len()));
         let before = all(&split, &[first, second]);
@@ -173,10 +208,10 @@ fn split_and_joined_bars_keep_what_they_weigh() {
         let shift = (whole.at(joined.root) - root) * (whole.span(joined) / whole.length(joined)).conj();
         alike(&format!("join {i}"), &PlaneBody { at: after.at + shift.re, ..after }, &before);
     }
-    assert!(splits > 150 && joins > 150, "{splits} and {joins}");
+    assert!(splits > 150 && joins > 150 && rounds > 5, "{splits}, {joins} and {rounds}");
 }
 
-/// A tube is cut in two tubes, which add up; round ends at the cut do not, so that numbers are typed.
+/// A part over the cut becomes two; of a flat bar, each has a round end of its own at the cut.
 #[test]
 fn a_part_over_the_cut_becomes_two() {
     let arm = Template::SerialOfTwo.sketch();
@@ -187,11 +222,13 @@ fn a_part_over_the_cut_becomes_two() {
         let whole = tube.body(&tube.bars[0]);
         let split = draw(&tube, [SketchStep::Split { bar: own.id, along: 0.15 }]);
         let cut = split.bars.last().expect("cut off").clone();
-        assert_eq!(split.parts.iter().map(|part| part.link.as_str()).collect::<Vec<_>>(), ["1", cut.name.as_str()]);
+        let links: Vec<&str> = split.parts.iter().map(|part| part.link.as_str()).collect();
+        assert_eq!(links, ["1", cut.name.as_str(), "2"]);
         assert!(split.parts.iter().all(|part| part.to == PlaceOnLink::default()), "{:?}", split.parts);
-        assert_eq!(split.bars[0].body.is_none(), shape == Shape::Tube);
+        assert!(split.bars[0].body.is_none() && cut.body.is_none(), "both follow from their parts");
         let both = split.body(&split.bars[0]).mass + split.body(&cut).mass;
-        assert!((both - whole.mass).abs() < 1e-12 * whole.mass);
+        let ends = if shape == Shape::Flat { PI * 0.015 * 0.015 * 0.006 * 2700.0 } else { 0.0 };
+        assert!((both - whole.mass - ends).abs() < 1e-12 * whole.mass);
         complete(&resolve(&split));
     }
 }
@@ -224,9 +261,9 @@ fn what_spans_a_bar_grows_with_it_and_what_lies_at_a_pin_follows_it() {
     assert!((at_pin - x).abs() < 1e-12 && other == 0.05);
     // Renamed, its parts go along; deleted, they go.
     let named = draw(&moved, [SketchStep::NameBar { bar: BarId(2), name: "arm".into() }]);
-    assert!(named.parts.iter().all(|part| part.link == "arm") && named.lumps.iter().all(|lump| lump.link == "arm"));
+    assert!(named.parts[0].link == "arm" && named.lumps.iter().all(|lump| lump.link == "arm"));
     let gone = draw(&named, [SketchStep::DeleteBar { bar: BarId(2) }]);
-    assert!(gone.parts.is_empty() && gone.lumps.is_empty());
+    assert!(gone.parts.iter().all(|part| part.link != "arm") && gone.lumps.is_empty());
     // The end pin deleted: the bar ends at the next, and so does what spanned it.
     let short = draw(&arm, [SketchStep::DeletePin { pin: PinId(1) }]);
     assert_eq!(short.bars[0].tip, middle);
@@ -292,4 +329,157 @@ fn computed_numbers_are_written_as_a_person_would() {
     assert_eq!(step, SketchStep::MovePin { pin: own.tip, to: [0.0, 0.2] });
     let limits = |range| SketchStep::Limits { to: "2".into(), from: "1".into(), offset: 0.0, range: Some(range) };
     assert_eq!(limits([30_f64.to_radians(), 1.2]).plainly(), limits([0.523598775598, 1.2]));
+}
+
+/// Every bar of a drawing has one drawn part, from its first pin to its last, with a hole for each pin that has room.
+#[track_caller]
+pub fn reaches_over_its_pins(sketch: &Sketch) {
+    for own in &sketch.bars {
+        let length = sketch.length(own);
+        let metres = |place: &PlaceOnLink| match place {
+            PlaceOnLink::Metres(x) => *x,
+            PlaceOnLink::Named(word) => {
+                if word == "tip" {
+                    length
+                } else {
+                    0.0
+                }
+            }
+        };
+        let parts: Vec<&Part> = sketch.parts.iter().filter(|part| part.link == own.name).collect();
+        let [part] = parts.as_slice() else { panic!("bar {} of {parts:?}", own.name) };
+        let pins: Vec<f64> = own.all_pins().map(|pin| sketch.along(own, pin)).collect();
+        let [low, high] = [f64::min, f64::max].map(|of| pins.iter().copied().fold(0.0, of));
+        let ends = [metres(&part.from), metres(&part.to)];
+        assert!((ends[0] - low).abs() < 1e-9 && (ends[1] - high).abs() < 1e-9, "bar {}: {ends:?}, {pins:?}", own.name);
+        for hole in &part.holes {
+            assert!(pins.iter().any(|pin| (pin - metres(&hole.at)).abs() < 1e-9), "{part:?} and {pins:?}");
+        }
+        let is_near = |a: f64, b: f64| (a - b).abs() < 0.008;
+        for (i, pin) in pins.iter().enumerate() {
+            let is_close = pins.iter().enumerate().any(|(k, other)| k != i && is_near(*pin, *other));
+            let has = part.holes.iter().any(|hole| (pin - metres(&hole.at)).abs() < 1e-9);
+            assert!(has || is_close, "no hole at {pin} in {part:?}");
+        }
+        let body = sketch.body(own);
+        assert!(own.body.is_none() && body.mass > 0.0);
+    }
+}
+
+/// Bars that are drawn, cut, joined, moved and shortened at random reach over their pins all the time.
+#[test]
+fn drawn_bars_follow_their_pins_through_all_steps() {
+    let (mut noise, mut done) = (Noise::of(51), [0; 7]);
+    for _ in 0..120 {
+        let mut sketch = Sketch::blank();
+        for _ in 0..14 {
+            let pick = |noise: &mut Noise, n: usize| (noise.between(0.0, n as f64) as usize).min(n.saturating_sub(1));
+            let any_pin = |noise: &mut Noise| sketch.pins[pick(noise, sketch.pins.len())].id;
+            let to = [noise.between(-0.6, 0.6), noise.between(-0.2, 0.8)];
+            let kind = if sketch.bars.is_empty() { 0 } else { pick(&mut noise, 7) };
+            let own = sketch.bars.get(pick(&mut noise, sketch.bars.len())).map(|bar| (bar.id, sketch.length(bar)));
+            let (id, length) = own.unwrap_or((BarId(0), 0.0));
+            let step = match kind {
+                0 => bar(BarEnd::pin(any_pin(&mut noise)), at(to[0], to[1])),
+                1 => bar(BarEnd::on(id, noise.between(-0.3, 1.3) * length), at(to[0], to[1])),
+                2 => SketchStep::MovePin { pin: any_pin(&mut noise), to },
+                3 => SketchStep::Split { bar: id, along: noise.between(0.1, 0.9) * length },
+                4 => SketchStep::Join { bar: id, with: sketch.bars[pick(&mut noise, sketch.bars.len())].id },
+                5 => SketchStep::DeletePin { pin: any_pin(&mut noise) },
+                _ => SketchStep::Weld { pin: any_pin(&mut noise), onto: any_pin(&mut noise) },
+            };
+            let Ok(next) = sketch.with(&step) else { continue };
+            done[kind] += 1;
+            sketch = next;
+            reaches_over_its_pins(&sketch);
+        }
+    }
+    assert!(done.iter().all(|count| *count > 4), "{done:?}");
+}
+
+/// What is cut in two and joined again is as it was, as one bar; a hole of its own stays where it is, and so does a tail.
+#[test]
+fn a_drawn_bar_keeps_its_section_its_own_holes_and_its_tail() {
+    let arm = draw(&Sketch::blank(), [bar(pin(0), at(0.3, 0.0)), motor(0, None, 2)]);
+    let split = draw(&arm, [SketchStep::Split { bar: BarId(2), along: 0.1 }]);
+    let second = split.bars[1].id;
+    let joined = draw(&split, [SketchStep::Join { bar: BarId(2), with: second }]);
+    assert_eq!(joined.parts.len(), 1);
+    let middle = joined.bars[0].pins[0];
+    let again = draw(&joined, [SketchStep::DeletePin { pin: middle }]);
+    assert_eq!(again.parts, arm.parts);
+    let mut own = arm.parts[0].clone();
+    own.width = Some(0.05);
+    own.material = "steel".into();
+    own.from = PlaceOnLink::Metres(-0.08);
+    own.holes.push(Hole { at: PlaceOnLink::Metres(0.12), across: 0.0, diameter: 0.008 });
+    let own = draw(&arm, [SketchStep::Parts { bar: BarId(2), parts: vec![own], lumps: vec![] }]);
+    let longer = draw(&own, [SketchStep::Length { bar: BarId(2), metres: 0.5 }]);
+    assert_eq!(longer.parts, own.parts, "its tip is a word");
+    let wider = draw(&longer, [bar(BarEnd::on(BarId(2), 0.2), at(0.2, 0.3))]);
+    let part = &wider.parts[0];
+    assert_eq!((part.width, part.from.clone(), part.holes.len()), (Some(0.05), PlaceOnLink::Metres(-0.08), 4));
+    assert!(part.holes.contains(&Hole { at: PlaceOnLink::Metres(0.12), across: 0.0, diameter: 0.008 }));
+}
+
+#[test]
+fn lumps_are_put_moved_and_taken_away_and_count_at_once() {
+    let arm = draw(&Sketch::blank(), [bar(pin(0), at(0.3, 0.0)), motor(0, None, 2)]);
+    let put = |number, lump| SketchStep::Lump { bar: BarId(2), number, lump };
+    let mass = |sketch: &Sketch| sketch.body(&sketch.bars[0]).mass;
+    let one = draw(&arm, [put(None, Some(lump("1", 0.5, PlaceOnLink::default())))]);
+    assert!((mass(&one) - mass(&arm) - 0.5).abs() < 1e-12);
+    let two = draw(&one, [put(None, Some(lump("1", 0.2, PlaceOnLink::Metres(0.1))))]);
+    let moved = draw(&two, [put(Some(2), Some(lump("1", 0.3, PlaceOnLink::Metres(0.2))))]);
+    assert_eq!((moved.lumps[0].mass, moved.lumps[1].mass), (0.5, 0.3));
+    assert_eq!(draw(&moved, [put(Some(1), None), put(Some(1), None)]).lumps, []);
+    // The place of a lump at a pin is a word or follows it.
+    let own = &two.bars[0];
+    assert_eq!(two.place_along(own, 0.3), PlaceOnLink::default());
+    let longer = draw(&two, [SketchStep::Length { bar: BarId(2), metres: 0.4 }]);
+    assert!((longer.lump_at(&longer.bars[0], &longer.lumps[0]).0 - 0.4).abs() < 1e-12);
+    for (step, words) in [
+        (put(Some(3), None), "has 2 lumps, and no number 3"),
+        (put(Some(0), None), "no number 0"),
+        (put(None, None), "no lump is named"),
+        (put(None, Some(lump("7", 0.1, PlaceOnLink::default()))), "parts of bar 1"),
+        (put(None, Some(lump("1", -0.1, PlaceOnLink::default()))), "mass"),
+    ] {
+        let why = two.with(&step).expect_err("refused").to_string();
+        assert!(why.contains(words), "{why}");
+    }
+    // A typed mass overrules it, until the numbers are freed; the height stays.
+    let body = Body { mass: Some(1.0), axial: 0.02, ..Body::default() };
+    let typed = draw(&two, [SketchStep::Mass { bar: BarId(2), body: Some(body), per_metre: 1.0 }]);
+    assert_eq!(mass(&draw(&typed, [put(None, Some(lump("1", 5.0, PlaceOnLink::default())))])), 1.0);
+    let freed = typed.bars[0].body.and_then(|body| body.freed());
+    let freed = draw(&typed, [SketchStep::Mass { bar: BarId(2), body: freed, per_metre: 1.0 }]);
+    assert_eq!((mass(&freed), freed.bars[0].body.map(|body| body.axial)), (mass(&two), Some(0.02)));
+}
+
+/// A drawing whose machine is drawn anew keeps its pose.
+#[test]
+fn a_drawing_that_follows_its_machine_keeps_its_pose() {
+    for template in Template::ALL.into_iter().filter(|template| *template != Template::Blank) {
+        let sketch = template.sketch();
+        let machine = sketch.machine().expect("a machine");
+        let pose = sketch.pose().expect("drives");
+        let turned = DriveAngles(PerDrive::from_fn(pose.len(), |k| pose[k] + 0.3 * (k as f64 + 1.0)));
+        let drawn = Sketch::of(&machine, Some(&turned));
+        let mut spec = machine.spec().clone();
+        spec.payload.mass = 0.1;
+        let next = drawn.following_machine(&machine, &Machine::new(spec).expect("a payload"));
+        for (a, b) in next.pins.iter().zip(&drawn.pins) {
+            assert!((next.at(a.id) - drawn.at(b.id)).norm() < 1e-9, "{template:?}");
+        }
+        // So does one that is read from the file of its machine.
+        let text = to_toml(&drawn.machine().expect("a machine"));
+        let read = Sketch::of(&parse(&text, "drawn.toml").expect("a machine file"), None);
+        for (a, b) in read.bars.iter().zip(&drawn.bars) {
+            assert!((read.span(a) - drawn.span(b)).norm() < 1e-9, "{template:?}: {text}");
+        }
+        let wrong = text.replace("pose = [", "pose = [0.0, ");
+        let why = parse(&wrong, "drawn.toml").expect_err("one too many").to_string();
+        assert!(why.contains("angles in the pose of the drawing"), "{why}");
+    }
 }

@@ -1,5 +1,7 @@
 //! Steps of drawing: corners, moving, snapping, and random drawings.
 
+use std::f64::consts::PI;
+
 use stillbase::mechanics::machine::place_of;
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use stillbase::mechanics::sketch::{
@@ -7,6 +9,7 @@ use stillbase::mechanics::sketch::{
 };
 
 use super::sketch::{at, bar, complete, draw, motor, pin};
+use super::sketch_parts::reaches_over_its_pins;
 use crate::support::Noise;
 
 fn follow(bar: u32, drive: &str) -> SketchStep {
@@ -162,8 +165,12 @@ fn bars_may_be_drawn_from_either_end() {
     let middle = draw(&middle, [motor(carried.0, Some(middle.bars[1].id.0), cross.id.0)]);
     let middle = draw(&middle, [SketchStep::EndEffector { pin: cross.tip, bar: None }]);
     let machine = complete(&resolve(&middle)).clone();
-    let link = &machine.links()[0];
-    assert_eq!((machine.resolved_links()[0].length, link.mass, link.com), (0.3, 0.4, 0.1));
+    assert_eq!(machine.resolved_links()[0].length, 0.3);
+    // Its bar reaches over the pin behind its root, and has a hole for each of the three.
+    let (part, ends) = (&machine.spec().parts[0], machine.part_ends(0).expect("a bar"));
+    assert_eq!((part.link.as_str(), ends, part.holes.len()), ("1", [-0.1, 0.3], 3));
+    let area = 0.4 * 0.03 + PI * (0.015 * 0.015 - 3.0 * 0.004 * 0.004);
+    assert!((machine.links()[0].mass - area * 0.006 * 2700.0).abs() < 1e-12);
 }
 
 #[test]
@@ -224,6 +231,7 @@ fn random_drawings_become_the_machines_that_are_drawn() {
             let Some(steps) = grown(&mut noise, &sketch) else { continue };
             let grown = steps.iter().try_fold(sketch.clone(), |sketch, step| sketch.with(step));
             sketch = grown.unwrap_or(sketch);
+            reaches_over_its_pins(&sketch);
         }
         for _ in 0..40 {
             let resolved = resolve(&sketch);

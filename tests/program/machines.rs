@@ -218,11 +218,14 @@ fn an_incomplete_drawing_lists_what_is_missing() {
                  [[edit]]\nstep = 0\ndo = \"sketch\"\ndraw = \"bar\"\nfrom = { pin = 0 }\nto = [0.3, 0.1]\n";
     let drawn = word(folder.file("drawn.toml", format!("{scenario}{blank}")));
     let words = [
-        "the drawing is no machine yet; still missing: no motor yet (hang a motor that turns bar 1)",
-        "bar 1 follows no drive (hang",
+        "the drawing is no machine yet; still missing: no motor turns bar 1 yet (hang a motor that turns bar 1)",
         "no end effector yet (place",
     ];
     fails(&["check", &drawn], 1, &words);
+    // Nothing is said of the machine before.
+    let words = ["the drawing \"my arm\" is no machine yet: no motor turns bar 1 yet, and 1 more"];
+    fails(&["simulate", &drawn], 1, &words);
+    fails(&["headless", &drawn, "-o", &word(folder.path("drawn.rrd"))], 1, &words);
     // One that is complete is a scenario like any other.
     fails(&["check", &word(folder.file("whole.toml", scenario))], 2, &["this is a scenario, not a machine"]);
 }

@@ -5,10 +5,10 @@ use std::collections::BTreeSet;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
 use proptest::test_runner::TestRunner;
-use stillbase::mechanics::machine::Shape;
+use stillbase::mechanics::machine::{Lump, PlaceOnLink, Shape};
 use stillbase::mechanics::planar::PerDrive;
 use stillbase::mechanics::sketch::{BarEnd, BarId, Body, PinId, SketchStep, Template};
-use stillbase::session::parts::{new_part, set_length};
+use stillbase::session::parts::{new_lump, new_part, set_length};
 use stillbase::session::scenario::{Note, NoteTime, Scenario, keys};
 use stillbase::session::{Edit, Session, TimedEdit};
 use stillbase::settings::key::Key;
@@ -207,6 +207,16 @@ pub fn any_sketch() -> impl Strategy<Value = Edit> {
             set_length(&mut part, if is_flat { "width" } else { "diameter" }, width);
             SketchStep::Parts { bar: BarId(bar), parts: vec![part], lumps: vec![] }
         }),
+        2 => (bar_id(), prop::option::of(1..3usize), prop::option::of((0.01..1.0, 0.0..0.3, -0.05..0.05)))
+            .prop_map(|(bar, number, lump)| SketchStep::Lump {
+                bar,
+                number,
+                lump: lump.map(|(mass, at, across)| Lump {
+                    mass,
+                    ..new_lump(&(bar.0 - 8).to_string(), PlaceOnLink::Metres(at), across)
+                })
+            }),
+        1 => Just(SketchStep::New { template: Template::Pantograph }),
         1 => Just(SketchStep::New { template: Template::NineLinks }),
         1 => Just(SketchStep::New { template: Template::Blank }),
     ]

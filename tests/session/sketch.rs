@@ -4,7 +4,8 @@ use proptest::prelude::*;
 use stillbase::mechanics::machine::builtin;
 use stillbase::mechanics::sketch::{BarEnd, BarId, PinId, Sketch, SketchStep, Template, resolve};
 use stillbase::session::scenario::Scenario;
-use stillbase::session::{Edit, Session};
+use stillbase::session::verdict::{Statements, StatusLight};
+use stillbase::session::{Edit, Refusal, Session, replay};
 
 use super::sitting::any_sketch;
 use super::{coarse, drag, one_path, open, replayed, set, settle};
@@ -175,4 +176,44 @@ proptest! {
         let again = open(read);
         prop_assert_eq!(again.scenario(), session.scenario());
     }
+}
+
+/// While a drawing lacks something, the run waits for it, and nothing is said of the machine before.
+#[test]
+fn an_unfinished_drawing_is_not_judged_by_the_machine_before() {
+    let mut session = open(coarse());
+    draw(&mut session, SketchStep::New { template: Template::Blank });
+    draw(&mut session, bar(BarEnd::pin(PinId(0)), BarEnd::At([0.3, 0.2])));
+    let unfinished = session.run().unfinished().expect("a bar alone").clone();
+    assert_eq!(unfinished.missing, ["no motor turns bar 1 yet", "no end effector yet"]);
+    assert_eq!((unfinished.drawing.as_str(), unfinished.former.as_str()), ("my arm", "nine-link"));
+    let statements = Statements::of(session.run(), session.frame());
+    assert!(statements.named().iter().all(|(_, one)| one.outcome == StatusLight::Open), "{statements:?}");
+    assert_eq!(statements.line(), "machine: 2 things missing · plan: none yet · run: none yet");
+    assert!(statements.machine.why.contains("no motor turns bar 1 yet; no end effector yet"), "{statements:?}");
+    // It moves by no means, and no recording is made of it.
+    session.play();
+    assert!(!session.is_moving());
+    assert!(
+        session
+            .apply(drag(0.5, 0.6))
+            .expect_err("it waits")
+            .to_string()
+            .contains("no motor turns bar 1 yet, and 1 more")
+    );
+    let saved = session.to_scenario();
+    let why = replay(&saved, |_, _| ()).map(drop).expect_err("no machine");
+    assert!(matches!(why, Refusal::Unfinished(_)), "{why}");
+    // It is opened as it was left, from its edits or as a scenario with a drawing.
+    assert_eq!(open(saved).run().unfinished(), Some(&unfinished));
+    let plain = Scenario { sketch: session.scenario().sketch.clone(), ..coarse() };
+    assert_eq!(open(plain).run().unfinished(), Some(&unfinished));
+    // Once nothing is missing, it is judged by itself.
+    for _ in 0..2 {
+        let mend = resolve(sketch(&session)).missing[0].mends[0].step.clone();
+        draw(&mut session, mend);
+    }
+    assert_eq!(session.run().unfinished(), None);
+    let statements = Statements::of(session.run(), session.frame());
+    assert!(statements.machine.words.starts_with("off balance by"), "{statements:?}");
 }

@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use egui::{Align, ComboBox, Id, Layout, RichText, TextEdit, Ui};
 
 use super::motors::motor_at;
-use super::{PenChange, SketchFacts, draw, section};
+use super::{PenChange, SketchFacts, draw, lump, section};
 use crate::theme::{bold, colour, plain};
 use crate::widgets::{NumberRow, name};
 use crate::{Command, ViewChange};
@@ -77,6 +77,11 @@ pub fn show(ui: &mut Ui, facts: &SketchFacts, chosen: SketchItem, p: &Palette, c
             }
         }
         SketchItem::Pin(id) if facts.sketch.pin(id).is_some() => of_pin(ui, facts, id, p, commands),
+        SketchItem::Lump(id, number) => {
+            if let Some(bar) = facts.sketch.bar(id) {
+                lump::show(ui, facts, (bar, number), p, commands);
+            }
+        }
         SketchItem::Pin(_) | SketchItem::Limit(..) => {}
     }
 }
@@ -94,20 +99,24 @@ fn of_bar(ui: &mut Ui, facts: &SketchFacts, bar: &Bar, p: &Palette, commands: &m
         (None, _) => "follows no drive yet".to_owned(),
     };
     ui.label(RichText::new(words).font(plain(11.5)).color(colour(p.dim)));
+    // While something is dragged, length and angle are those under the pointer.
+    let (shown, now) = (facts.shown().0, facts.shown().0.bar(id).unwrap_or(bar));
     let label = format!("length of bar {}", bar.name);
     let field = NumberField { label: &label, words: "length", unit: "m", decimals: 4, speed: 1e-3 };
-    if let Some(metres) = field.show(ui, p, sketch.length(bar), 1e-3..=LONGEST_M) {
+    if let Some(metres) = field.show(ui, p, shown.length(now), 1e-3..=LONGEST_M) {
         draw(sketch, SketchStep::Length { bar: id, metres }, commands);
     }
     let label = format!("angle of bar {}", bar.name);
     let field = NumberField { label: &label, words: "angle from x", unit: "rad", decimals: 3, speed: 5e-3 };
-    if let Some(radians) = field.show(ui, p, sketch.span(bar).arg(), -TAU..=TAU) {
+    if let Some(radians) = field.show(ui, p, shown.span(now).arg(), -TAU..=TAU) {
         draw(sketch, SketchStep::Angle { bar: id, radians }, commands);
     }
     renamed(ui, &format!("name of bar {}", bar.name), &bar.name, p, |name| {
         draw(sketch, SketchStep::NameBar { bar: id, name }, commands);
     });
     section::show(ui, facts, bar, p, commands);
+    lump::of_bar(ui, facts, bar, p, commands);
+    section::weight(ui, facts, bar, p, commands);
     ui.horizontal_wrapped(|ui| {
         let split = SketchStep::Split { bar: id, along: 0.5 * sketch.length(bar) };
         for (words, tip, step) in [

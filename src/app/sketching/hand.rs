@@ -12,10 +12,10 @@ use stillbase_picture::paint::SceneViewport;
 use stillbase_picture::scene::sketching::{DrawnArc, GRID_M, Rubber, SketchItem, metres_per_px, pick};
 
 /// Distance within which the pointer snaps, points.
-const SNAP_PT: f64 = 10.0;
+pub(super) const SNAP_PT: f64 = 10.0;
 /// Step of angles, and grid with Ctrl.
 const ANGLE_STEP_RAD: f64 = std::f64::consts::PI / 12.0;
-const CTRL_GRID_M: f64 = 0.01;
+pub(super) const CTRL_GRID_M: f64 = 0.01;
 /// Step of joint limits.
 const LIMIT_STEP_RAD: f64 = std::f64::consts::PI / 180.0;
 /// Distance within which a typed end lies on a pin or bar, m.
@@ -66,6 +66,7 @@ impl Hand<'_> {
                     draw(&self.facts.sketch, motor_at(self.facts, pin), commands);
                 }
             }
+            PenTool::Lump => self.puts_lump(pen, pos, clicked, commands),
             PenTool::EndEffector => {
                 if let (true, Some(SketchItem::Pin(pin))) = (clicked, pen.hot) {
                     draw(&self.facts.sketch, SketchStep::EndEffector { pin, bar: None }, commands);
@@ -84,6 +85,10 @@ impl Hand<'_> {
         match thing {
             Some(SketchItem::Pin(pin)) => draw(&self.facts.sketch, SketchStep::DeletePin { pin }, commands),
             Some(SketchItem::Bar(bar)) => draw(&self.facts.sketch, SketchStep::DeleteBar { bar }, commands),
+            Some(SketchItem::Lump(bar, number)) => {
+                let step = SketchStep::Lump { bar, number: Some(number), lump: None };
+                draw(&self.facts.sketch, step, commands);
+            }
             Some(SketchItem::Limit(arc, _)) => {
                 if let Some(LimitArc { to, from, .. }) = self.facts.sketch.limit_arcs().into_iter().nth(arc) {
                     draw(&self.facts.sketch, SketchStep::Limits { to, from, offset: 0.0, range: None }, commands);
@@ -160,7 +165,7 @@ impl Hand<'_> {
         Some(Snap { length, angle, ..typed(&self.facts.sketch, [to.re, to.im]) })
     }
 
-    /// Chooses things, and drags pins and limits.
+    /// Chooses things, and drags pins, lumps and limits.
     fn moves(&self, pen: &mut Pen, pos: Option<Pos2>, commands: &mut Vec<Command>) {
         if self.response.clicked_by(PointerButton::Primary) {
             pen.chosen = pen.hot.filter(|hot| !matches!(hot, SketchItem::Limit(..)));
@@ -169,7 +174,7 @@ impl Hand<'_> {
             let press = self.ui.input(|i| i.pointer.press_origin()).or(pos);
             let held = press.and_then(|pos| pick(&self.facts.sketch, &self.spot.pointer(pos)));
             match held {
-                Some(item @ SketchItem::Pin(_)) => {
+                Some(item @ (SketchItem::Pin(_) | SketchItem::Lump(..))) => {
                     pen.chosen = held;
                     pen.drag = Some(Drag { item, step: None, onto: None });
                 }
@@ -183,6 +188,7 @@ impl Hand<'_> {
         let next = pos.and_then(|pos| match drag.item {
             SketchItem::Pin(pin) => self.pin_dragged(pin, pos),
             SketchItem::Limit(arc, end) => self.limit_dragged(arc, end, pos),
+            SketchItem::Lump(bar, number) => self.lump_dragged(bar, number, pos).map(|step| (step, None)),
             SketchItem::Bar(_) => None,
         });
         if let Some((step, onto)) = next {
@@ -191,6 +197,9 @@ impl Hand<'_> {
         if self.response.drag_stopped_by(PointerButton::Primary)
             && let Some(step) = pen.drag.take().and_then(|drag| drag.step)
         {
+            if let SketchStep::Weld { onto, .. } = step {
+                pen.chosen = Some(SketchItem::Pin(onto));
+            }
             draw(&self.facts.sketch, step, commands);
         }
     }

@@ -18,8 +18,9 @@ const ROUND_DEG: f64 = 5.0;
 
 /// Draws the limits of every angle that a drive has from another.
 pub fn show(ui: &mut Ui, facts: &SketchFacts, drive: &str, p: &Palette, commands: &mut Vec<Command>) {
-    let sketch = &facts.sketch;
-    for angle in sketch.angles.iter().filter(|angle| angle.to == drive) {
+    // While an arc is dragged, its limits are those under the pointer.
+    let (sketch, shown) = (&facts.sketch, facts.shown().0);
+    for angle in shown.angles.iter().filter(|angle| angle.to == drive) {
         let Angle { to, from, offset, min, max, .. } = angle;
         let set =
             |range: Option<[f64; 2]>| SketchStep::Limits { to: to.clone(), from: from.clone(), offset: *offset, range };

@@ -7,6 +7,8 @@ mod facts;
 pub mod fields;
 mod hand;
 mod limits;
+mod lump;
+mod lump_hand;
 mod missing;
 mod motors;
 mod panel;
@@ -19,7 +21,7 @@ mod typed;
 
 pub use card::{NumberField, renamed};
 pub use facts::SketchFacts;
-pub use panel::{balance_waits, show as panel};
+pub use panel::{balance_waits, links_wait, show as panel};
 pub use pen::{Pen, PenChange, PenTool};
 pub use rail::show as rail;
 pub use scene::{SketchScene, show};

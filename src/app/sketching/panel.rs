@@ -3,13 +3,16 @@
 use egui::{Button, ComboBox, RichText, Ui};
 
 use super::card::renamed;
+use super::lump::lump_title;
 use super::pin_list::pin_title;
 use super::{Pen, PenChange, SketchFacts, by_numbers, card, draw, fields, missing, motors};
 use crate::theme::{bold, colour, plain};
 use crate::widgets::{heading, name, note, section, stepped};
 use crate::{Command, FileDialog, SessionCommand, Switch, ViewChange, ViewState};
 use stillbase_mechanics::sketch::{Sketch, SketchStep};
+use stillbase_picture::scene::palette::Palette;
 use stillbase_picture::scene::sketching::SketchItem;
+use stillbase_session::scenario::UnfinishedDrawing;
 use stillbase_session::{Session, with_own_task};
 
 /// Draws the panel.
@@ -48,7 +51,9 @@ pub fn show(
     card_of(ui, sketch, pen, commands);
     match pen.chosen {
         Some(chosen) => card::show(ui, facts, chosen, p, commands),
-        None => note(ui, p, "Click a bar for its drive, its length and its angle; click a pin for its place."),
+        None => {
+            note(ui, p, "Click a bar for its drive, its length and its angle; click a pin or a lump for its place.")
+        }
     }
     missing::show(ui, facts, p, commands);
     task(ui, session, facts, view_state, commands);
@@ -70,12 +75,17 @@ fn card_of(ui: &mut Ui, sketch: &Sketch, pen: &Pen, commands: &mut Vec<Command>)
             sketch.bar(id).map_or_else(|| "no bar or pin".to_owned(), |bar| format!("bar {}", bar.name))
         }
         Some(SketchItem::Pin(id)) => pin_title(sketch, id),
+        Some(SketchItem::Lump(id, number)) => sketch.bar(id).map_or_else(String::new, |bar| lump_title(bar, number)),
         _ => "no bar or pin".to_owned(),
     };
     let list = ComboBox::from_id_salt("card of").selected_text(title(pen.chosen)).width(120.0);
     let bars = sketch.bars.iter().map(|bar| Some(SketchItem::Bar(bar.id)));
     let pins = sketch.pins.iter().map(|pin| Some(SketchItem::Pin(pin.id)));
-    let all: Vec<Option<SketchItem>> = [None].into_iter().chain(bars).chain(pins).collect();
+    let lumps = sketch.bars.iter().flat_map(|bar| {
+        let count = sketch.lumps_of(bar).count();
+        (1..=count).map(|number| Some(SketchItem::Lump(bar.id, number)))
+    });
+    let all: Vec<Option<SketchItem>> = [None].into_iter().chain(bars).chain(pins).chain(lumps).collect();
     let list = list.show_ui(ui, |ui| {
         let picked = |item: &&Option<SketchItem>| ui.selectable_label(**item == pen.chosen, title(**item)).clicked();
         all.iter().filter(picked).last().copied()
@@ -103,13 +113,23 @@ fn task(ui: &mut Ui, session: &Session, facts: &SketchFacts, view_state: &ViewSt
     }
 }
 
+/// Says that the table of links stands here once the drawing is a machine, and what is missing.
+pub fn links_wait(ui: &mut Ui, unfinished: &UnfinishedDrawing, p: &Palette) {
+    note(
+        ui,
+        p,
+        &format!("The links of {:?} stand here as soon as it is a machine. Still missing:", unfinished.drawing),
+    );
+    for one in &unfinished.missing {
+        let words = RichText::new(format!("• {one}")).font(plain(12.5)).color(colour(p.ink));
+        ui.add(egui::Label::new(words).wrap());
+    }
+}
+
 /// Says that the balance stands here once the drawing is a machine.
-pub fn balance_waits(ui: &mut Ui, facts: &SketchFacts, view_state: &ViewState) {
-    let p = &view_state.palette();
+pub fn balance_waits(ui: &mut Ui, unfinished: &UnfinishedDrawing, p: &Palette) {
     heading(ui, p, "What is out of balance", "once it is a machine");
-    let n = facts.resolved.missing.len();
-    let things = if n == 1 { "1 thing is".to_owned() } else { format!("{n} things are") };
     let words =
         "Balance, counterweights and the Pareto front of what you draw stand here as soon as nothing is missing.";
-    note(ui, p, &format!("{words} {things} missing: see the list on the other side."));
+    note(ui, p, &format!("{words} {}: see the list on the other side.", unfinished.count()));
 }

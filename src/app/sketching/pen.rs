@@ -2,7 +2,7 @@
 
 use super::typed::Typed;
 use crate::icon::Icon;
-use stillbase_mechanics::sketch::{BarEnd, SketchRefusal, SketchStep};
+use stillbase_mechanics::sketch::{BarEnd, Sketch, SketchRefusal, SketchStep};
 use stillbase_picture::scene::sketching::SketchItem;
 
 /// What a click or drag in a drawing does.
@@ -15,6 +15,8 @@ pub enum PenTool {
     Bar,
     /// Hangs motors on pins.
     Motor,
+    /// Puts lumps on bars.
+    Lump,
     /// Puts the end effector on a pin.
     EndEffector,
     /// Deletes pins and bars.
@@ -23,16 +25,17 @@ pub enum PenTool {
 
 impl PenTool {
     /// All of them, in the order of the tool bar.
-    pub const ALL: [Self; 5] = [Self::Bar, Self::Move, Self::Motor, Self::EndEffector, Self::Delete];
+    pub const ALL: [Self; 6] = [Self::Bar, Self::Move, Self::Motor, Self::Lump, Self::EndEffector, Self::Delete];
 
     /// Returns its icon, its name, and what it does.
     pub fn words(self) -> (Icon, &'static str, &'static str) {
         match self {
             Self::Bar => (Icon::Bar, "bar", "Draw a bar from pin to pin: drag, or click both ends"),
-            Self::Move => (Icon::Pointer, "move", "Click a bar or pin for its card; drag a pin to move it"),
+            Self::Move => (Icon::Pointer, "move", "Click a thing for its card; drag a pin or a lump to move it"),
             Self::Motor => (Icon::Motor, "motor", "Click a pin: a motor there turns the bar that follows no drive yet"),
+            Self::Lump => (Icon::Lump, "lump", "Click a bar: a known mass there, such as a motor or screws"),
             Self::EndEffector => (Icon::Tip, "end effector", "Click the pin that does the work"),
-            Self::Delete => (Icon::Cross, "delete", "Click a bar or a pin to delete it"),
+            Self::Delete => (Icon::Cross, "delete", "Click a bar, a pin or a lump to delete it"),
         }
     }
 
@@ -46,8 +49,9 @@ impl PenTool {
                 "drag a pin; onto another pin joins both · drag the end of an arc: a limit · click a bar: its drive · Delete"
             }
             Self::Motor => "click a pin to hang a motor on it",
+            Self::Lump => "click a bar to put a known mass there · then drag it, and type what it weighs",
             Self::EndEffector => "click the pin that does the work",
-            Self::Delete => "click a bar or a pin to delete it · Ctrl Z brings it back",
+            Self::Delete => "click a bar, a pin or a lump to delete it · Ctrl Z brings it back",
         }
     }
 }
@@ -64,7 +68,7 @@ pub struct Start {
 /// A drag under way, which is one step once it ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drag {
-    /// The pin or the limit that is dragged.
+    /// The pin, the lump or the limit that is dragged.
     pub item: SketchItem,
     /// The step that it would be if it ended now; `None` where it began.
     pub step: Option<SketchStep>,
@@ -85,7 +89,7 @@ pub struct Pen {
     pub from: Option<Start>,
     /// What is typed about it.
     pub typed: Typed,
-    /// The drag of a pin or of a limit.
+    /// The drag of a pin, a lump or a limit.
     pub drag: Option<Drag>,
     /// Why the last step was refused.
     pub refused: Option<SketchRefusal>,
@@ -108,6 +112,21 @@ impl Pen {
     /// Whether Esc has something to give up.
     pub fn is_busy(&self) -> bool {
         self.from.is_some() || self.drag.is_some() || self.refused.is_some() || self.chosen.is_some()
+    }
+
+    /// Forgets things that a drawing does not have, as after a step was undone.
+    pub fn keep_to(&mut self, sketch: &Sketch) {
+        let is_there = |item: &SketchItem| match *item {
+            SketchItem::Pin(pin) => sketch.pin(pin).is_some(),
+            SketchItem::Bar(bar) => sketch.bar(bar).is_some(),
+            SketchItem::Lump(bar, number) => {
+                sketch.bar(bar).is_some_and(|bar| (1..=sketch.lumps_of(bar).count()).contains(&number))
+            }
+            SketchItem::Limit(arc, _) => arc < sketch.angles.len(),
+        };
+        self.chosen = self.chosen.filter(is_there);
+        self.hot = self.hot.filter(is_there);
+        self.drag = self.drag.take().filter(|drag| is_there(&drag.item));
     }
 
     /// Applies a change.

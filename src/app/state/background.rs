@@ -80,7 +80,9 @@ impl AppState {
     fn refused(&self) -> Option<RefusedChange> {
         let refused = self.view_state.status.refused.as_ref().and_then(|refused| refused.refused.clone());
         let run = self.session.run();
-        let waiting = || Some(RefusedChange::of(run.shared_scenario(), run.waiting()?.why.clone()));
+        // No other setting finishes a drawing.
+        let waits = run.waiting().filter(|_| run.unfinished().is_none());
+        let waiting = || Some(RefusedChange::of(run.shared_scenario(), waits?.why.clone()));
         refused.or_else(waiting)
     }
 
@@ -102,7 +104,7 @@ impl AppState {
     /// refused, there are none.
     pub(super) fn improvements(&self) -> Option<Arc<Vec<Proposal>>> {
         let run = self.session.run();
-        let asks = self.refused().is_none() && is_improvable(run);
+        let asks = self.refused().is_none() && run.unfinished().is_none() && is_improvable(run);
         let input = asks.then(|| RefusedChange::to_improve(run.shared_scenario()))?;
         self.queries().ask_in_background::<ProposalsQuery>(&input).known().cloned()
     }

@@ -97,6 +97,9 @@ impl AppState {
         let contrasts = self.view_state.pair.as_ref().is_some_and(|pair| pair.hides_settings(width));
         let designs = self.view_state.view == ViewKind::Design && !presents;
         let drawing = self.view_state.drawing_pen().map(|pen| SketchFacts::of(&queries, &self.session, pen));
+        if let Some((drawing, pen)) = drawing.as_ref().zip(self.view_state.pen.as_mut()) {
+            pen.keep_to(&drawing.sketch);
+        }
         let draws = drawing.is_some();
         let mut chosen = Vec::new();
         if designs {

@@ -52,6 +52,10 @@ fn link_of(handle: Handle, session: &Session) -> Option<usize> {
             let weight = spec.counterweights.get(i)?;
             spec.links.iter().position(|link| link.name == weight.link)
         }
+        Handle::Lump(i) => {
+            let lump = spec.lumps.get(i)?;
+            spec.links.iter().position(|link| link.name == lump.link)
+        }
         _ => None,
     }
 }

@@ -69,6 +69,10 @@ pub fn show(
                     return;
                 }
                 draw_button(ui, &p, commands);
+                if let Some(unfinished) = session.run().unfinished() {
+                    sketching::links_wait(ui, unfinished, &p);
+                    return;
+                }
                 table::show(ui, session, view_state, commands);
                 let is_balanced = facts.terms.iter().all(|term| term.is_balanced);
                 brief::show(ui, session.scenario(), is_balanced, &p, commands);
@@ -81,8 +85,8 @@ pub fn show(
     }
     if view_state.arrangement.now().plots.shown {
         other.exact_size(balance).frame(frame).show(ui, |ui| {
-            if let Some(drawing) = drawing.filter(|drawing| !drawing.is_complete()) {
-                scrolled(ui, |ui| sketching::balance_waits(ui, drawing, view_state));
+            if let Some(unfinished) = session.run().unfinished() {
+                scrolled(ui, |ui| sketching::balance_waits(ui, unfinished, &p));
                 return;
             }
             tabs::show(ui, view_state, commands);

@@ -325,6 +325,7 @@ impl Builder<'_> {
             name: linkage.name.clone(),
             summary: String::new(),
             gravity: [gravity.re, gravity.im],
+            pose: None,
             lengths: std::collections::BTreeMap::new(),
             payload: stillbase_mechanics::machine::Payload::default(),
             drives,

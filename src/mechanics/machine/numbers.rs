@@ -14,6 +14,15 @@ pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
         (0..bodies).try_for_each(|i| rows.iter().try_for_each(|row| row.check(spec, i)))
     };
     check("gravity", 1)?;
+    if let Some(pose) = &spec.pose {
+        for (k, angle) in pose.iter().enumerate() {
+            within(ANGLE, *angle, || KeyPath::new(&[&"pose", &k]))?;
+        }
+        if pose.len() != spec.drives.len() {
+            let want = format!("one for each drive, {}", spec.drives.len());
+            return Err(MachineError::Count { what: "angles in the pose of the drawing", count: pose.len(), want });
+        }
+    }
     for (name, &value) in &spec.lengths {
         within(LENGTH, value, || KeyPath::new(&[&"lengths", name]))?;
     }

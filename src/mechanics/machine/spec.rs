@@ -17,6 +17,9 @@ pub struct MachineSpec {
     /// Acceleration of gravity in base axes, m/s².
     #[serde(default, skip_serializing_if = "is_zero")]
     pub gravity: [f64; 2],
+    /// Drive angles of the pose in which the machine is drawn, rad; no motion depends on it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pose: Option<Vec<f64>>,
     /// Named lengths, m; links that must have equal lengths share one.
     #[serde(default)]
     pub lengths: std::collections::BTreeMap<String, f64>,

@@ -19,6 +19,8 @@ const ROWS: &[WordRow] = &[
     row("name", "name of the machine", "a text in quotes", "\"my-arm\""),
     row("summary", "summary", "a text in quotes", "\"two links\""),
     row("gravity", "gravity", "", "[0.0, -9.81]"),
+    row("pose", "pose of the drawing", "the angle of each drive, rad", "[1.9, 0.6]"),
+    row("pose.*", "angle of drive * in the drawing", "-25.2 to 25.2 rad", "1.9"),
     row("lengths", "named lengths", "a table of lengths in m", "{ l1 = 0.5 }"),
     row("lengths.*", "length *", "1e-6 to 1000000 m", "0.5"),
     row("length.*", "length *", "", "0.5"),

@@ -13,7 +13,13 @@ impl Sketch {
     /// If the step does not fit the drawing, or would make a loop outside the family; says where, and what would do.
     pub fn with(&self, step: &SketchStep) -> Result<Self, SketchRefusal> {
         let mut next = self.stepped(step)?;
-        next.follow_pins(self);
+        if !matches!(step, SketchStep::New { .. }) {
+            next.follow_pins(self);
+        }
+        // Parts that someone states are as stated.
+        if !matches!(step, SketchStep::New { .. } | SketchStep::Parts { .. }) {
+            next.follow_with_bars(self);
+        }
         next.write_plainly();
         next.check()?;
         Ok(next)
@@ -56,6 +62,7 @@ impl Sketch {
                 Ok(next)
             }
             SketchStep::Parts { bar, parts, lumps } => self.with_parts(*bar, parts, lumps),
+            SketchStep::Lump { bar, number, lump } => self.with_lump(*bar, *number, lump.as_ref()),
         }
     }
 

@@ -59,8 +59,18 @@ impl Body {
         }
     }
 
+    /// Returns the numbers that are typed.
+    pub fn typed_numbers(&self) -> impl Iterator<Item = LinkNumber> {
+        LinkNumber::ALL.into_iter().filter(|number| self.number(*number).is_some())
+    }
+
+    /// Returns it without its typed numbers, which follow from parts again; `None` if nothing is left. Its height stays.
+    pub fn freed(&self) -> Option<Self> {
+        Some(Self { axial: self.axial, ..Self::default() }).filter(|rest| *rest != Self::default())
+    }
+
     /// Returns whether no number is typed but the height.
-    pub(super) fn follows(&self) -> bool {
+    pub fn follows(&self) -> bool {
         *self == Self { axial: self.axial, ..Self::default() }
     }
 }

@@ -4,9 +4,9 @@
 use super::body::Body;
 use super::drawing::{Bar, MIN_DISTANCE, Sketch};
 use super::recount::{Recount, metres};
-use crate::machine::{Ends, Part, PlaceOnLink, PlaneBody, Shape, sum_of};
+use crate::machine::{Ends, Part, PlaceOnLink, PlaneBody, Shape};
 
-/// Largest difference of mass, place and inertia that is a rounding error, as a fraction.
+/// Largest difference of two masses per metre that is a rounding error, as a fraction.
 const ROUNDING: f64 = 1e-9;
 
 /// Divides a body of a share `s` of the length before the cut, and of 1 − s behind it, as a slender bar divides: masses
@@ -22,20 +22,11 @@ fn halves(body: &PlaneBody, s: f64) -> [PlaneBody; 2] {
     [part(s, (s - 1.0) * apart), part(1.0 - s, s * apart)]
 }
 
-fn is_same(a: &PlaneBody, b: &PlaneBody) -> bool {
-    let size = a.at.abs() + a.across.abs() + (a.inertia / a.mass).abs().sqrt();
-    let near = |x: f64, y: f64, size: f64| (x - y).abs() <= ROUNDING * size;
-    near(a.mass, b.mass, a.mass)
-        && near(a.inertia, b.inertia, a.inertia)
-        && near(a.at, b.at, size)
-        && near(a.across, b.across, size)
-}
-
 impl Sketch {
     /// Divides parts, lumps, counterweights and typed numbers of a bar, as it was in the drawing `was`, between it and
-    /// the bar that is cut off `along` m from its root. A part that reaches over the cut becomes two; a plate goes to
-    /// the side of its centre. Where the parts do not add up to what the bar weighed, as with round ends at the cut,
-    /// both bars get typed numbers that do.
+    /// the bar that is cut off `along` m from its root. A part that reaches over the cut becomes two, each with ends of
+    /// its own; a plate goes to the side of its centre. Typed numbers are divided so that they add up, and so are all
+    /// numbers where a bar would be left without parts.
     pub(super) fn divide(&mut self, was: &Self, bar: &Bar, second: &str, along: f64) {
         let (first, length) = (bar.name.as_str(), was.length(bar));
         let bodies = was.part_bodies().unwrap_or_default();
@@ -103,16 +94,12 @@ impl Sketch {
         let both = [bar.name.as_str(), second];
         let index = both.map(|name| self.bars.iter().position(|own| own.name == name));
         let [Some(i), Some(j)] = index else { return };
-        let sum = self.part_bodies().ok().and_then(|bodies| {
-            let behind = sum_of(&bodies, j)?.moved(along, 0.0);
-            Some(sum_of(&bodies, i)?.and(behind))
-        });
-        let adds_up = stated.follows() && sum.is_some_and(|sum| is_same(&sum, &whole));
+        let follows = stated.follows() && both.iter().all(|name| self.has_parts(name));
         let [low, high] = was.extent(bar);
         let [near, far] = halves(&whole, (along - low) / (high - low));
         let axial = stated.axial;
         for (at, half) in [(i, near), (j, far.moved(-along, 0.0))] {
-            self.bars[at].body = match (is_slender, adds_up) {
+            self.bars[at].body = match (is_slender, follows) {
                 (true, _) => None,
                 (_, true) => Some(Body { axial, ..Body::default() }).filter(|body| *body != Body::default()),
                 _ => Some(Body::typed(&half, axial)),

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::classes::Classes;
 use super::drawing::{MIN_DISTANCE, PinId, Sketch};
 use super::graph::Graph;
-use super::lengths::Lengths;
+use super::lengths::{Lengths, rounded};
 use super::loops::Recognised;
 use crate::machine::{Attach, Closure, DerivedNumbers, Drive, Link, LinkNumber, LinkPoint, MachineSpec};
 
@@ -52,6 +52,7 @@ impl Sketch {
             name: own.name.clone(),
             summary: own.summary.clone(),
             gravity: own.gravity,
+            pose: self.pose().map(|q| q.iter().map(|angle| rounded(*angle)).collect()),
             payload: own.payload,
             drives: drives.collect(),
             links: links.collect(),

@@ -5,7 +5,7 @@ use super::graph::Graph;
 use super::loops::{LoopShape, LoopState};
 use super::refusal::SketchRefusal;
 use super::step::{BarEnd, SketchStep};
-use crate::machine::MAX_LINKS;
+use crate::machine::{MAX_LINKS, Part};
 use crate::planar::{Vector, cross};
 
 impl Sketch {
@@ -44,6 +44,7 @@ impl Sketch {
             per_metre: 1.0,
             body: None,
         });
+        next.parts.extend(next.bars.last().map(|bar| Part::drawn(&bar.name)));
         match next.outside_loop(id) {
             None => Ok(next),
             Some(state) => {

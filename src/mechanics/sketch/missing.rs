@@ -107,7 +107,8 @@ impl Sketch {
             missing.extend(self.loop_missing(&found.state));
         }
         missing.extend(self.loose(&graph, &far));
-        if self.motors.is_empty() {
+        // Of drawn bars each says that no motor turns it.
+        if self.motors.is_empty() && self.bars.is_empty() {
             missing.push(Missing::new(Lack::NoMotor, Place::Pin(self.base), "no motor yet".into()));
         }
         for first in (0..self.bars.len()).filter(|i| classes.class(*i) == *i) {
@@ -175,7 +176,11 @@ impl Sketch {
         let (bar, place) = (&self.bars[nearest], Place::Bar(self.bars[nearest].id));
         let stated = |bar: &Bar| bar.drive.clone();
         let Some(drive) = bars().find_map(stated) else {
-            return Some(Missing::new(Lack::NoDrive, place, format!("bar {} follows no drive", bar.name)));
+            let text = match self.motors.is_empty() {
+                true => format!("no motor turns bar {} yet", bar.name),
+                false => format!("bar {} follows no drive", bar.name),
+            };
+            return Some(Missing::new(Lack::NoDrive, place, text));
         };
         if let Some(other) = bars().find(|bar| bar.drive.as_ref().is_some_and(|own| *own != drive)) {
             let drives = [drive, other.drive.clone().unwrap_or_default()];

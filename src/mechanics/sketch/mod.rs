@@ -6,10 +6,11 @@
 //! the hand.
 //!
 //! # Mass
-//! A bar is slender, until parts say what it is made of, or someone types its mass; typed numbers overrule parts, as in
-//! a machine file. Where a bar becomes longer, what reaches from its root to its tip grows with it, and what lies at a
-//! pin follows that pin; else parts, lumps and counterweights stay where they are. A bar that is split divides what it
-//! has, and one that is joined keeps it: in the straight pose mass, centre of mass and inertia stay.
+//! A new bar is made of a drawn part, which reaches over its pins and has a hole for each; typed numbers overrule parts,
+//! as in a machine file, and a bar without either is slender. Where a bar becomes longer, what reaches from its root to
+//! its tip grows with it, and what lies at a pin follows that pin; else parts, lumps and counterweights stay where they
+//! are. A bar that is split divides what it has, and one that is joined keeps it: in the straight pose mass, centre of
+//! mass and inertia stay, but for round ends at the cut.
 //!
 //! # The family
 //! Every bar stays parallel to the arm of one drive. So loops are parallelograms, or sums of parallelograms.
@@ -38,6 +39,7 @@ mod removal;
 mod resolve;
 mod snap;
 mod step;
+mod stock;
 mod template;
 mod trace;
 mod valid;

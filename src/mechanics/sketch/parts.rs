@@ -2,10 +2,12 @@
 
 use super::drawing::{Bar, BarId, PinId, Place, Sketch};
 use super::lengths::{Lengths, rounded};
+use super::recount::{metres, place};
 use super::refusal::SketchRefusal;
 use crate::machine::{
     Attach, DerivedNumbers, Length, Link, Lump, MachineError, MachineSpec, Part, PartBody, PlaceOnLink, weigh,
 };
+use crate::planar::Vector;
 
 use stillbase_settings::number::plain;
 
@@ -98,6 +100,46 @@ impl Sketch {
         Ok(next)
     }
 
+    /// Returns the lumps of a bar, in their order.
+    pub fn lumps_of(&self, bar: &Bar) -> impl Iterator<Item = &Lump> {
+        self.lumps.iter().filter(move |lump| lump.link == bar.name)
+    }
+
+    /// Returns where a lump of a bar is: along it, m from its root, and in the drawing, m.
+    pub fn lump_at(&self, bar: &Bar, lump: &Lump) -> (f64, Vector) {
+        let along = metres(&lump.at, self.length(bar));
+        (along, self.at(bar.root) + self.direction(bar) * Vector::new(along, lump.across))
+    }
+
+    /// Returns the place along a bar as a lump or a hole states it: at a pin, it follows the pin.
+    pub fn place_along(&self, bar: &Bar, along: f64) -> PlaceOnLink {
+        place(along, self.length(bar))
+    }
+
+    /// Returns the drawing with a lump of a bar, counted from 1, changed or taken away, or with one more.
+    pub(super) fn with_lump(
+        &self,
+        id: BarId,
+        number: Option<usize>,
+        lump: Option<&Lump>,
+    ) -> Result<Self, SketchRefusal> {
+        let bar = self.known_bar(id)?;
+        let mut lumps: Vec<Lump> = self.lumps_of(bar).cloned().collect();
+        let refused = |what: String| Err(SketchRefusal::new(Place::Bar(id), what, "a lump that the bar has"));
+        match (number, lump) {
+            (None, Some(lump)) => lumps.push(lump.clone()),
+            (None, None) => return refused("no lump is named that goes".into()),
+            (Some(n), lump) => {
+                let Some(i) = n.checked_sub(1).filter(|i| *i < lumps.len()) else {
+                    return refused(format!("bar {} has {} lumps, and no number {n}", bar.name, lumps.len()));
+                };
+                lumps.splice(i..=i, lump.cloned());
+            }
+        }
+        let parts: Vec<Part> = self.parts.iter().filter(|part| part.link == bar.name).cloned().collect();
+        self.with_parts(id, &parts, &lumps)
+    }
+
     /// Returns every part and lump as a body on its bar.
     pub(super) fn part_bodies(&self) -> Result<Vec<PartBody>, MachineError> {
         let link = |bar: &Bar| Link {
@@ -117,6 +159,7 @@ impl Sketch {
             name: self.name.clone(),
             summary: String::new(),
             gravity: [0.0; 2],
+            pose: None,
             lengths: std::collections::BTreeMap::new(),
             payload: self.payload,
             drives: Vec::new(),

@@ -25,14 +25,8 @@ impl Recount {
     }
 
     /// Returns a place as it is counted now: the root, the tip, or metres from the root.
-    pub fn place(&self, place: &PlaceOnLink) -> PlaceOnLink {
-        let x = self.along(metres(place, self.was));
-        let named = |word: &str| PlaceOnLink::Named(word.into());
-        match x {
-            _ if x.abs() < SAME => named("root"),
-            _ if (x - self.length).abs() < SAME => named("tip"),
-            _ => PlaceOnLink::Metres(rounded(x)),
-        }
+    pub fn place(&self, at: &PlaceOnLink) -> PlaceOnLink {
+        place(self.along(metres(at, self.was)), self.length)
     }
 
     /// Counts the places of a part anew. It keeps the order of its ends along the bar.
@@ -50,6 +44,16 @@ impl Recount {
         for hole in &mut part.holes {
             (hole.at, hole.across) = (self.place(&hole.at), self.sense * hole.across);
         }
+    }
+}
+
+/// Returns a place on a bar of a length, m: the root, the tip, or metres from the root.
+pub(super) fn place(at: f64, length: f64) -> PlaceOnLink {
+    let named = |word: &str| PlaceOnLink::Named(word.into());
+    match at {
+        _ if at.abs() < SAME => named("root"),
+        _ if (at - length).abs() < SAME => named("tip"),
+        _ => PlaceOnLink::Metres(rounded(at)),
     }
 }
 

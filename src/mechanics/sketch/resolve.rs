@@ -52,6 +52,11 @@ pub fn resolve(sketch: &Sketch) -> Resolved {
 }
 
 impl Sketch {
+    /// Returns what is missing, in words, without the steps that mend it.
+    pub fn lacks(&self) -> Vec<String> {
+        self.diagnosed().missing.into_iter().map(|one| one.text).collect()
+    }
+
     /// Returns the machine of a complete drawing, without the list of what is missing.
     pub fn machine(&self) -> Option<Machine> {
         self.diagnosed().machine

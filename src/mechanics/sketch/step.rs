@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::body::Body;
 use super::drawing::{BarId, PinId, Sketch, mm, tenths};
 use super::template::Template;
-use crate::machine::{Lump, Part, Rotor};
+use crate::machine::{Lump, Part, PlaceOnLink, Rotor};
 use stillbase_settings::number::{plain, shortest};
 
 /// Where an end of a new bar is.
@@ -228,6 +228,17 @@ pub enum SketchStep {
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         lumps: Vec<Lump>,
     },
+    /// Puts a lump on a bar, changes it, or takes it away.
+    Lump {
+        /// The bar.
+        bar: BarId,
+        /// Which of its lumps, counted from 1; one more if it is not given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        number: Option<usize>,
+        /// What it is; if it is not given, the lump goes.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        lump: Option<Lump>,
+    },
     /// Sets the mass of a bar.
     Mass {
         /// The bar.
@@ -243,6 +254,14 @@ pub enum SketchStep {
 
 fn is_nought(x: &f64) -> bool {
     *x == 0.0
+}
+
+/// Returns a place along a bar for a message.
+fn along(place: &PlaceOnLink) -> String {
+    match place {
+        PlaceOnLink::Metres(metres) => mm(*metres),
+        PlaceOnLink::Named(word) => format!("its {word}"),
+    }
 }
 
 impl SketchStep {
@@ -282,6 +301,13 @@ impl SketchStep {
                 ([one], []) => format!("bar of {}", one.title()),
                 _ => format!("bar of {} parts", parts.len() + lumps.len()),
             },
+            Self::Lump { number: None, lump: Some(lump), .. } => {
+                format!("put {} of {} kg on bar", lump.title(), lump.mass)
+            }
+            Self::Lump { lump: Some(lump), .. } => {
+                format!("{} of {} kg at {}", lump.title(), lump.mass, along(&lump.at))
+            }
+            Self::Lump { lump: None, .. } => "take lump away".into(),
             Self::Mass { body: Some(Body { mass: Some(mass), .. }), .. } => format!("mass of bar to {mass} kg"),
             Self::Mass { body: Some(_), .. } => "numbers of bar".into(),
             Self::Mass { per_metre, .. } => format!("mass of bar to {per_metre} kg/m"),

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_4;
 use super::body::Body;
 use super::drawing::{Bar, BarId, EndEffector, Motor, PinId, Sketch};
 use crate::machine::{Drive, Length, Machine, MachineSpec, RelativeAngle, place_of};
-use crate::planar::{DriveAngles, PerDrive, Vector};
+use crate::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
 
 /// Distance along a link below which two points are one, m.
 const SAME: f64 = 1e-9;
@@ -44,11 +44,14 @@ impl Pins {
 }
 
 impl Sketch {
-    /// Returns the drawing of a machine at drive angles, rad; by default in a pose near the middle of its limits.
+    /// Returns the drawing of a machine at drive angles, rad; by default in the pose in which it was drawn or,
+    /// without one, near the middle of its limits.
     /// [`resolve`](super::resolve) makes the same machine of it again, except for the names of its lengths.
     pub fn of(machine: &Machine, at: Option<&DriveAngles>) -> Self {
-        let middle = middle(machine);
-        let e = at.filter(|q| q.len() == machine.drives()).unwrap_or(&middle).units();
+        let drawn = machine.spec().pose.as_ref().filter(|pose| pose.len() == machine.drives());
+        let usual =
+            drawn.map_or_else(|| middle(machine), |pose| DriveAngles(PerDrive::from_fn(pose.len(), |k| pose[k])));
+        let e = at.filter(|q| q.len() == machine.drives()).unwrap_or(&usual).units();
         let (spec, links) = (machine.spec(), machine.resolved_links());
         let mut pins = Pins { groups: vec![Vec::new()] };
         for (i, link) in links.iter().enumerate() {
@@ -165,7 +168,15 @@ impl Sketch {
         }
         // Where the drawing measures a bar from another end than its machine does, it is drawn anew.
         let is_same = |own: Machine| own.links() == machine.links() && own.resolved_links() == machine.resolved_links();
-        if next.machine().is_some_and(is_same) { next } else { Self::of(machine, None) }
+        if next.machine().is_some_and(is_same) { next } else { Self::of(machine, self.pose().as_ref()) }
+    }
+
+    /// Returns the drive angles of the pose in which it is drawn, rad, in the order of the motors; `None` while a drive
+    /// turns no bar.
+    pub fn pose(&self) -> Option<DriveAngles> {
+        let angles = self.motors.iter().map(|motor| Some(self.arm(&motor.drive.name)?.0.arg()));
+        let angles: Vec<f64> = angles.collect::<Option<_>>()?;
+        (angles.len() <= MAX_DRIVES).then(|| DriveAngles(PerDrive::from_fn(angles.len(), |k| angles[k])))
     }
 
     /// Returns the drawing with the lengths of another machine of the same bars.

@@ -6,8 +6,9 @@ use super::options::{Handle, ViewOptions, WeightOption};
 use super::palette::{Palette, faded, mix, palette};
 use super::pick::{DragAction, PICK_RADIUS, Pick};
 use super::pointer::Pointer;
+use super::sketching::lump_marker;
 use super::{Anchor, Label, Marker, Polyline, Scene, point};
-use stillbase_mechanics::machine::{Length, Machine};
+use stillbase_mechanics::machine::{Length, Machine, PartSource};
 use stillbase_mechanics::planar::{UnitVectors, Vector};
 use stillbase_simulation::frame::Frame;
 
@@ -26,6 +27,7 @@ pub struct DesignDrawing {
     /// All links, in the order of the machine.
     links: Vec<Link>,
     weights: Vec<Weight>,
+    lumps: Vec<Weight>,
 }
 
 #[derive(Clone, Debug)]
@@ -38,6 +40,7 @@ struct Link {
     shared: Option<String>,
 }
 
+/// A counterweight or a lump.
 #[derive(Clone, Debug)]
 struct Weight {
     /// Index of its link, from 0.
@@ -64,7 +67,14 @@ impl DesignDrawing {
             let link = spec.links.iter().position(|link| link.name == weight.link)?;
             Some(Weight { link, at: Vector::new(weight.at, weight.across), mass: weight.mass })
         });
-        Self { links: links.collect(), weights: weights.collect() }
+        let lumps = machine.part_bodies().iter().filter_map(|part| match part.source {
+            PartSource::Lump(_) => {
+                let at = Vector::new(part.body.at, part.body.across);
+                Some(Weight { link: part.link, at, mass: part.body.mass })
+            }
+            PartSource::Part(_) => None,
+        });
+        Self { links: links.collect(), weights: weights.collect(), lumps: lumps.collect() }
     }
 
     /// Returns the scene of the design view.
@@ -100,9 +110,10 @@ impl DesignDrawing {
         }
     }
 
-    /// Mass of a counterweight, kg; 0 for other handles.
+    /// Mass of a counterweight or a lump, kg; 0 for other handles.
     fn kilograms(&self, handle: Handle) -> f64 {
         match handle {
+            Handle::Lump(i) => self.lumps.get(i).map_or(0.0, |lump| lump.mass),
             Handle::Weight(i) => self.weights.get(i).map_or(0.0, |weight| weight.mass),
             _ => 0.0,
         }
@@ -156,13 +167,14 @@ impl DesignDrawing {
         match handle {
             Handle::Link(i) | Handle::Mass(i) | Handle::End(i) => (i < self.links.len()).then_some(i),
             Handle::Weight(i) => self.weights.get(i).map(|weight| weight.link),
+            Handle::Lump(i) => self.lumps.get(i).map(|lump| lump.link),
             _ => None,
         }
     }
 
     fn handles(&self) -> impl Iterator<Item = Handle> + use<> {
-        let (links, weights) = (self.links.len(), self.weights.len());
-        let ends = (0..links).map(Handle::End);
+        let (links, weights, lumps) = (self.links.len(), self.weights.len(), self.lumps.len());
+        let ends = (0..links).map(Handle::End).chain((0..lumps).map(Handle::Lump));
         ends.chain((0..links).map(Handle::Mass)).chain((0..weights).map(Handle::Weight))
     }
 
@@ -172,6 +184,7 @@ impl DesignDrawing {
             Handle::Mass(i) => self.links.get(i)?.com,
             Handle::End(i) => Vector::new(self.links.get(i)?.length, 0.0),
             Handle::Weight(i) => self.weights.get(i)?.at,
+            Handle::Lump(i) => self.lumps.get(i)?.at,
             _ => return None,
         };
         let (root, along, _) = linkage.bars().get(self.link_of(handle)?)?.pose(&frame.q.units());
@@ -192,8 +205,8 @@ impl DesignDrawing {
         self.handles().filter_map(near).min_by(|s, t| s.1.total_cmp(&t.1)).map(|(pick, _)| pick)
     }
 
-    /// Returns the change that dragging a handle to the pointer requests. Only counterweights may leave the axis of their
-    /// link.
+    /// Returns the change that dragging a handle to the pointer requests. Only counterweights and lumps may leave the axis
+    /// of their link.
     pub fn aim(&self, pick: &Pick, linkage: &LinkageModel, frame: &Frame, pointer: &Pointer) -> Option<DragAction> {
         let link = self.link_of(pick.handle)?;
         let [x, y] = pointer.ray()?.at_height(linkage.top())?;
@@ -203,6 +216,7 @@ impl DesignDrawing {
         match pick.handle {
             Handle::Mass(_) => Some(DragAction::Mass { link, to }),
             Handle::Weight(weight) => Some(DragAction::Weight { weight, to: [place.re, place.im] }),
+            Handle::Lump(lump) => Some(DragAction::Lump { lump, to: [place.re, place.im] }),
             Handle::End(_) => Some(DragAction::Length { link, to: to.max(MIN_LENGTH_M) }),
             _ => None,
         }
@@ -239,6 +253,10 @@ fn draw_handle(
             scene.markers.push(Marker::disc("design/weights", at, size, palette.background).edged(edge, 1.6));
             let label = Label::new("design/weights/kg", at, [0.0, -13.0], text, palette.ink, 11.5, Anchor::Centre);
             scene.labels.push(label);
+        }
+        Handle::Lump(_) => {
+            let lump = lump_marker("design/lumps", at, kilograms, palette);
+            scene.markers.push(if hot { lump.edged(palette.amber, 2.0) } else { lump });
         }
         Handle::End(_) if hot => {
             scene.markers.push(Marker::disc("design/ends", at, 7.0, palette.background).edged(edge, 2.0));

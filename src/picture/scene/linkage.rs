@@ -6,6 +6,7 @@
 mod bodies;
 mod heights;
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use heights::Heights;
@@ -13,7 +14,7 @@ use heights::Heights;
 use super::mesh::{SEGMENTS, bar, cylinder, ribbon, ring};
 use super::palette::{Palette, faded, mix};
 use super::{ItemChanges, Mesh, MeshSet, Name, Rgba, Shadow, Solid, posed};
-use stillbase_mechanics::machine::{Chain, Counterweight, Machine, ResolvedLink, place_of};
+use stillbase_mechanics::machine::{Chain, Counterweight, Machine, PartSource, ResolvedLink, place_of};
 use stillbase_mechanics::planar::{Pose2, UnitVectors, Vector, unit};
 
 /// The meshes of a machine, and their placement in a pose.
@@ -159,6 +160,9 @@ const THIN_BAR_RADIUS: f64 = 0.0085;
 const WEIGHT_RADIUS: f64 = 0.05;
 const DRIVE_RADIUS: f64 = 0.042;
 
+/// Density with which a lump is drawn, kg/m³: that of steel.
+const LUMP_DENSITY: f64 = 7850.0;
+
 /// Horizontal shift of a shadow per height of the bar above the floor, and opacity of the shadow of a bar on the floor.
 const SHADOW_SHIFT: Vector = Vector::new(0.45, -0.6);
 const SHADOW_OPACITY: f64 = 0.5;
@@ -206,6 +210,13 @@ impl LinkageModel {
                     reach * WEIGHT_RADIUS * (link.mass / heaviest).sqrt(),
                     usual,
                 ));
+            }
+            // A lump lies on its link, as a cylinder as high as its radius.
+            for lump in machine.part_bodies().iter().filter(|part| part.link == j) {
+                let PartSource::Lump(_) = lump.source else { continue };
+                let size = (lump.body.mass / (PI * LUMP_DENSITY)).cbrt();
+                let at = Vector::new(lump.body.at, lump.body.across);
+                discs.push(Weight { radius: size, z: height, ..disc(at, size, size) });
             }
             let span = discs.iter().fold([from, to], |[from, to], disc| [from.min(disc.at.re), to.max(disc.at.re)]);
             let mut mesh = bar(span[0], span[1], radius, height, 0.2 * height);

@@ -115,6 +115,8 @@ pub enum Handle {
     Mass(usize),
     /// A counterweight; its index in the machine.
     Weight(usize),
+    /// A lump in the design view; its index in the machine.
+    Lump(usize),
     /// The end of a link in the design view; index of the link.
     End(usize),
     /// A pin between links; its index in the [`LinkageModel`](super::linkage::LinkageModel).
@@ -147,6 +149,7 @@ impl Handle {
             | Self::Payload
             | Self::Mass(_)
             | Self::Weight(_)
+            | Self::Lump(_)
             | Self::End(_)
             | Self::Link(_) => true,
             Self::Joint(_) | Self::Base | Self::Boundary | Self::Force | Self::Moment => false,

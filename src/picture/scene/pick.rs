@@ -112,6 +112,7 @@ impl DragAction {
             Self::Pull { link, along, at } => Self::Pull { link, along, at: both(at, POSITION_GRID_M) },
             Self::Mass { link, to } => Self::Mass { link, to: round(to, POSITION_GRID_M) },
             Self::Weight { weight, to } => Self::Weight { weight, to: both(to, POSITION_GRID_M) },
+            Self::Lump { lump, to } => Self::Lump { lump, to: both(to, POSITION_GRID_M) },
             Self::Length { link, to } => Self::Length { link, to: round(to, POSITION_GRID_M).max(POSITION_GRID_M) },
             // Already snapped, if `LinkHold::snaps` is set.
             Self::Angles(a) => Self::Angles(a),
@@ -165,6 +166,13 @@ pub enum DragAction {
         link: usize,
         /// Distance from the root of the link, m.
         to: f64,
+    },
+    /// Position of a lump.
+    Lump {
+        /// Index of the lump, from 0.
+        lump: usize,
+        /// Position along its link, and to the left of the link's axis, m.
+        to: [f64; 2],
     },
     /// Position of a counterweight.
     Weight {

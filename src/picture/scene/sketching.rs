@@ -1,6 +1,7 @@
 //! The scene of a drawing: bars in the colours of their drives, pins, motors, the end effector, and the bar under way.
 
 mod limits;
+mod lumps;
 mod pick;
 
 use std::sync::Arc;
@@ -12,6 +13,7 @@ use stillbase_mechanics::planar::Vector;
 use stillbase_mechanics::sketch::{Bar, BarId, PinId, Resolved, Sketch};
 
 pub use limits::DrawnArc;
+pub use lumps::lump_marker;
 pub use pick::{metres_per_px, pick};
 
 /// Width of a square of the grid, m.
@@ -35,6 +37,8 @@ pub enum SketchItem {
     Pin(PinId),
     /// A bar.
     Bar(BarId),
+    /// A lump: its bar, and which of the lumps of the bar, counted from 1.
+    Lump(BarId, usize),
     /// A joint limit: the number of its arc, from 0, and 0 for the lower or 1 for the upper limit.
     Limit(usize, usize),
 }
@@ -78,6 +82,7 @@ pub fn scene(model: Arc<MeshSet>, sketch: &Sketch, resolved: &Resolved, options:
     grid(&mut scene, sketch, &palette);
     let drawing = Drawing { sketch, resolved, options, palette: &palette };
     drawing.bars(&mut scene);
+    lumps::draw(&mut scene, sketch, options, &palette);
     drawing.motors(&mut scene);
     limits::draw(&mut scene, sketch, options.hot, &palette);
     drawing.pins(&mut scene);

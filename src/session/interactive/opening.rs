@@ -25,8 +25,8 @@ impl Session {
     /// # Errors
     /// As [`open`](Self::open), and if `watch` cancels it.
     pub fn open_while(scenario: Scenario, watch: ProgressCallback<'_>) -> Result<Self, Refusal> {
-        // Only a scenario with edits can be a session that was saved while it waited.
-        let patient = !scenario.edits.is_empty();
+        // Only a scenario with edits or a drawing can be a session that was saved while it waited.
+        let patient = !scenario.edits.is_empty() || scenario.unfinished().is_some();
         Self::opened(scenario, patient, watch)
     }
 

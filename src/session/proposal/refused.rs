@@ -105,6 +105,10 @@ pub fn proposals(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal> {
 
 /// Does the same as [`proposals`]; `None` if `goes_on` stops the search. It receives the fraction done, from 0 to 1.
 pub fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: ProgressCallback<'_>) -> Option<Vec<Proposal>> {
+    if matches!(refusal, Refusal::Unfinished(_)) {
+        // No setting finishes a drawing.
+        return Some(Vec::new());
+    }
     let bare = scenario.without_edits();
     let candidates = candidates(&bare, refusal);
     let count = candidates.len() + 2;

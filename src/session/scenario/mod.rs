@@ -38,6 +38,7 @@ pub use names::{name_of, search_words};
 pub use note::{MAX_NOTE, MAX_NOTES, Note, NoteTime};
 pub(crate) use points::name_of_point;
 pub use settings::SettingError;
+pub use sketched::UnfinishedDrawing;
 pub use snap_point::{PathPoint, SnapPoint};
 pub use task::{MAX_POINTS, MOTION_TIME_RANGE, POINT_RANGE, POSE_CONSTANT_RANGE, Task, TaskChange, Value};
 pub use tolerance::{Amount, MAX_SAMPLES, Spread, Tolerance, default_spreads};

@@ -3,7 +3,7 @@
 //!
 //! | statement | good | bad | open |
 //! |---|---|---|---|
-//! | machine | every g_k and C_kl vanishes, (7) and (8), with what it carries | one does not | |
+//! | machine | every g_k and C_kl vanishes, (7) and (8), with what it carries | one does not | it is not drawn whole |
 //! | plan | b stays constant, (13) | b changes, or a drive limit is exceeded | there is no plan, or no b |
 //! | run | f_B and n_B vanish, or a wheel took n_B up | they do not, or an audit failed | nothing has moved |
 //!
@@ -18,6 +18,7 @@ use serde::Serialize;
 
 use super::Verdict;
 use crate::Run;
+use crate::scenario::UnfinishedDrawing;
 use stillbase_mechanics::machine::Inertia;
 use stillbase_settings::number::significant;
 use stillbase_simulation::Guide;
@@ -259,12 +260,27 @@ impl Statements {
     /// Name of the statement on the run.
     pub const RUN: &str = "run";
 
-    /// Makes the statements on a run up to a frame.
+    /// Makes the statements on a run up to a frame. While the machine is not drawn to the end, they say what is missing
+    /// and judge nothing.
     pub fn of(run: &Run, frame: &Frame) -> Self {
+        if let Some(unfinished) = run.unfinished() {
+            return Self::of_drawing(unfinished);
+        }
         let machine = Statement::clone(&of_moving_machine(run, frame));
         let plan = Statement::of_plan(run, frame, &inertia_of(run));
         let run = Statement::of_run(run, frame, &machine);
         Self { machine, plan, run }
+    }
+
+    fn of_drawing(unfinished: &UnfinishedDrawing) -> Self {
+        let open = |words: String, why: String| Statement::new(StatusLight::Open, words, why);
+        let none = || open("none yet".into(), format!("the drawing {:?} is no machine yet", unfinished.drawing));
+        let missing = unfinished.missing.join("; ");
+        Self {
+            machine: open(unfinished.count(), format!("still missing in {:?}: {missing}", unfinished.drawing)),
+            plan: none(),
+            run: none(),
+        }
     }
 
     /// Returns each statement with the name of its subject.

@@ -15,6 +15,8 @@ const SAME_PLACE: f64 = 1e-9;
 const CARRIED: f64 = 1e-6;
 /// Name of a bar that is cut anew with every design.
 const CUT_BAR: &str = "cut bar";
+/// Name of the bar of a drawing, which keeps its section and follows its pins.
+const DRAWN_BAR: &str = "drawn bar";
 /// How the name of an arm begins, which carries a counterweight off the axis of its link.
 const ARM: &str = "arm to counterweight";
 
@@ -38,15 +40,41 @@ impl Default for BarStock {
     }
 }
 
+impl BarStock {
+    /// Returns a bar of this stock from one place on a link to another, with holes at places.
+    fn bar(&self, link: &str, [from, to]: [PlaceOnLink; 2], holes: impl IntoIterator<Item = PlaceOnLink>) -> Part {
+        let hole = |at| Hole { at, across: 0.0, diameter: self.pin_diameter };
+        Part {
+            from,
+            to,
+            holes: holes.into_iter().map(hole).collect(),
+            width: Some(self.width),
+            material: self.material.clone(),
+            ..Part::flat(link, self.thickness)
+        }
+    }
+}
+
 impl Part {
+    /// Returns the bar of the usual stock that a drawn link is: from root to tip, with a hole for each of both pins.
+    pub fn drawn(link: &str) -> Self {
+        let ends = || ["root", "tip"].map(|word| PlaceOnLink::Named(word.into()));
+        Self { name: DRAWN_BAR.into(), ..BarStock::default().bar(link, ends(), ends()) }
+    }
+
+    /// Returns whether it is the bar of a drawing, which follows the pins of its link.
+    pub fn is_drawn(&self) -> bool {
+        self.name == DRAWN_BAR && self.shape != Shape::Plate
+    }
+
     /// Returns whether it is an arm that [`Machine::with_bars`] added to carry a counterweight.
     pub fn is_arm(&self) -> bool {
         self.name.starts_with(ARM)
     }
 
-    /// Returns whether it has a name of its own; a bar that is cut anew is named after its section.
+    /// Returns whether it has a name of its own; a bar that is drawn or cut anew is named after its section.
     pub(super) fn has_own_name(&self) -> bool {
-        !(self.name.is_empty() || self.name == CUT_BAR)
+        !["", CUT_BAR, DRAWN_BAR].contains(&self.name.as_str())
     }
 }
 
@@ -106,18 +134,10 @@ impl Machine {
     }
 
     /// Returns the bar of a link, with a hole for each pin.
-    fn bar(&self, j: usize, stock: &BarStock, [from, to]: [PlaceOnLink; 2]) -> Part {
+    fn bar(&self, j: usize, stock: &BarStock, ends: [PlaceOnLink; 2]) -> Part {
         let (link, length) = (&self.links()[j], self.resolved_links()[j].length);
-        let hole = |at: f64| Hole { at: place(at, length), across: 0.0, diameter: stock.pin_diameter };
-        Part {
-            name: CUT_BAR.into(),
-            from,
-            to,
-            holes: self.pin_places(j).into_iter().map(hole).collect(),
-            width: Some(stock.width),
-            material: stock.material.clone(),
-            ..Part::flat(&link.name, stock.thickness)
-        }
+        let pins = self.pin_places(j).into_iter().map(|at| place(at, length));
+        Part { name: CUT_BAR.into(), ..stock.bar(&link.name, ends, pins) }
     }
 
     /// Returns the bar along the axis of a link that reaches from its root to its tip, as index of the part; it is cut

@@ -8,7 +8,7 @@ use super::super::ranges::{LENGTH, PLACE, within};
 use super::super::spec::MachineSpec;
 use super::body::PlaneBody;
 use super::hole::{self, PlacedHole};
-use super::part::{Hole, Part};
+use super::part::{Hole, Lump, Part};
 use super::section::Section;
 use super::{derived, material};
 
@@ -58,6 +58,12 @@ pub fn weigh(spec: &mut MachineSpec) -> Result<Vec<PartBody>, MachineError> {
 }
 
 impl Machine {
+    /// Returns a lump, counted from 0, and what it brings; `None` for one that does not exist.
+    pub fn lump_body(&self, lump: usize) -> Option<(&Lump, &PartBody)> {
+        let body = self.part_bodies().iter().find(|body| body.source == PartSource::Lump(lump))?;
+        Some((self.spec().lumps.get(lump)?, body))
+    }
+
     /// Returns the centre of each hole of a part, m along the link from its root and to the left of the part's line,
     /// and its diameter, m.
     pub fn part_holes(&self, part: usize) -> Vec<([f64; 2], f64)> {

@@ -1,5 +1,6 @@
 //! What the pointer is on in a drawing.
 
+use super::lumps::{all, radius};
 use super::{DrawnArc, SketchItem};
 use crate::scene::pointer::Pointer;
 use stillbase_mechanics::sketch::{PinId, Sketch};
@@ -8,15 +9,24 @@ use stillbase_mechanics::sketch::{PinId, Sketch};
 const PIN_PICK_PX: f64 = 11.0;
 const BAR_PICK_PX: f64 = 8.0;
 
-/// Returns the thing of a drawing under the pointer: a pin comes before the grip of a limit, a grip before a bar, and of
-/// several the nearest.
+/// Distance within which the pointer is on a pin that a lump lies at, px.
+const COVERED_PICK_PX: f64 = 6.5;
+
+/// Returns the thing of a drawing under the pointer: a pin comes before a lump, a lump before the grip of a limit, a grip
+/// before a bar, and of several the nearest.
 pub fn pick(sketch: &Sketch, pointer: &Pointer) -> Option<SketchItem> {
     let at = |pin: PinId| {
         let at = sketch.at(pin);
         [at.re, at.im, 0.0]
     };
     let pins = sketch.pins.iter().filter_map(|pin| Some((SketchItem::Pin(pin.id), pointer.distance(at(pin.id))?)));
-    let near = pins.filter(|(_, far)| *far < PIN_PICK_PX).min_by(|a, b| a.1.total_cmp(&b.1));
+    let lumps = all(sketch).filter_map(|(bar, number, lump, at)| {
+        let far = pointer.distance([at.re, at.im, 0.0]).filter(|far| *far < radius(lump.mass))?;
+        Some((SketchItem::Lump(bar.id, number), far))
+    });
+    let lump = lumps.min_by(|a, b| a.1.total_cmp(&b.1));
+    let most = if lump.is_some() { COVERED_PICK_PX } else { PIN_PICK_PX };
+    let near = pins.filter(|(_, far)| *far < most).min_by(|a, b| a.1.total_cmp(&b.1));
     let grips = || {
         let all = DrawnArc::all(sketch);
         let ends = all.iter().enumerate().flat_map(|(i, drawn)| [(i, 0, drawn), (i, 1, drawn)]);
@@ -34,7 +44,7 @@ pub fn pick(sketch: &Sketch, pointer: &Pointer) -> Option<SketchItem> {
         })
     };
     let on = || bars().filter(|(_, far)| *far < BAR_PICK_PX).min_by(|a, b| a.1.total_cmp(&b.1));
-    near.or_else(grips).or_else(on).map(|(item, _)| item)
+    near.or(lump).or_else(grips).or_else(on).map(|(item, _)| item)
 }
 
 /// Returns the size of a pixel in the plane of the drawing, m; 0 if the pointer does not see the plane.
