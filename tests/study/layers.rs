@@ -57,7 +57,7 @@ fn bodies(machine: &Machine, cut: &Cut, q: &[f64]) -> Vec<Body> {
             let at = Vector::new(weight.at, weight.across);
             all.push(body(format!("counterweight {} on link {}", i + 1, link.name), [at; 2], weight.radius, thick));
             if weight.across.abs() > 0.5 * cut.bar_width {
-                let name = format!("arm of counterweight {} on link {}", i + 1, link.name);
+                let name = format!("arm to counterweight {} on link {}", i + 1, link.name);
                 all.push(body(name, [x(weight.at), at], 0.5 * cut.bar_width, cut.plate_thickness));
             }
         }

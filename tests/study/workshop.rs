@@ -144,8 +144,8 @@ fn dimensions_fit_the_parts() {
     assert_eq!([fitted.bar_width, fitted.plate_thickness, fitted.pin_diameter], [0.024, 0.004, 0.006]);
     assert_eq!(Cut::default().fitting(&bare()), Cut::default());
     for solid in link_solids(machine, &Cut::default()).iter().filter(|solid| solid.kind == SolidKind::Bar) {
-        assert_eq!([solid.radius, solid.thickness], [0.012, 0.004]);
+        assert_eq!([solid.plan.radius, solid.thickness], [0.012, 0.004]);
         let ends = machine.part_ends(machine.spine(solid.link).expect("a bar")).expect("its ends");
-        assert_eq!(solid.ends.map(|end| end.re), ends);
+        assert_eq!(solid.plan.corners.iter().map(|end| end.re).collect::<Vec<_>>(), ends);
     }
 }

@@ -11,7 +11,6 @@
 
 use super::contact::{Between, Contact, Solids, layers_between};
 use stillbase_exchange::cut::Cut;
-use stillbase_exchange::solids::SolidKind;
 
 /// Greatest number of layers: one bit of a number for each.
 pub const MAX_LAYERS: usize = 128;
@@ -83,9 +82,10 @@ impl Stack {
         let pins =
             solids.axles.iter().map(|axle| (axle.links.iter().map(|(link, _)| *link).collect(), axle.is_on_base()));
         let mut floor = vec![0; links];
-        for solid in solids.links.iter().filter(|solid| matches!(solid.kind, SolidKind::Disc(_))) {
+        for solid in &solids.links {
             // The base plate lies below layer 0 as another layer would.
-            let above = layers_between(cut, solid.thickness, cut.plate_thickness) - 1;
+            let sunk = [solid.thickness, solid.rise.min(0.0)];
+            let above = layers_between(cut, sunk, [cut.plate_thickness, 0.0]) - 1;
             floor[solid.link] = above.max(floor[solid.link]);
         }
         Self { apart, over, pins: pins.collect(), floor }
