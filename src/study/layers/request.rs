@@ -17,7 +17,7 @@ use super::stack::{Ended, MAX_LAYERS, Stack};
 use super::tilt::{LeastTilt, TiltMeasure, largest_tilt, tilt_coefficient};
 use super::way::TaskPoses;
 
-/// Partial orders that are examined to find the fewest layers, to explain a conflict, and to tilt the base least.
+/// Partial orders, of machines of a few links, that are examined to find the fewest layers, to explain a conflict, and to tilt the base least.
 const ORDERS: usize = 400_000;
 
 /// What layers are asked for.
@@ -205,7 +205,7 @@ fn conflict(machine: &Machine, cut: &Cut, solids: &Solids, stack: &Stack, contac
     let mut left: Vec<Contact> = contacts.iter().filter(is_among).cloned().collect();
     // What can be left out without an order coming up explains nothing.
     let mut i = 0;
-    while i < left.len() {
+    while i < left.len() && budget > 0 {
         let mut without = left.clone();
         without.remove(i);
         let lacks = Stack::of(machine.links().len(), solids, cut, &without).has_order(&mut budget) == Some(false);
