@@ -1,18 +1,16 @@
 //! `stillbase layers`
 
-use std::path::PathBuf;
-
 use clap::Args;
 use stillbase_mechanics::machine::Machine;
 use stillbase_query::ByIdentity;
 use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
 use stillbase_study::layers::{Between, Contact, LayersReport, LayersRequest, find_layers};
 
-use super::design::save;
 use super::dimensions::Dimensions;
 use super::failure::Failure;
 use super::input::{MachineArgument, task_run};
-use super::output::{Format, TextTable, check_output};
+use super::new_machine::NewMachine;
+use super::output::{Format, TextTable};
 
 /// Stack the links of a machine in layers so that it turns without running into itself
 ///
@@ -42,12 +40,8 @@ pub struct LayersArguments {
     along_task: bool,
     #[command(flatten)]
     dimensions: Dimensions,
-    /// Write the machine with these heights to this file
-    #[arg(short, long, value_name = "NEW.toml")]
-    output: Option<PathBuf>,
-    /// Replace the file if it exists
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    new_machine: NewMachine,
     #[command(flatten)]
     format: Format,
 }
@@ -56,17 +50,13 @@ impl LayersArguments {
     /// Prints the layers, and writes the machine.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
-        if let Some(file) = &self.output {
-            check_output(file, self.force, &["toml"])?;
-        }
+        self.new_machine.check()?;
         let task = self.task.as_ref().map(|name| task_run(name, &[&machine])).transpose()?;
         let motion = task.as_ref().map(|run| ByIdentity(run.plan().motion.clone()));
         let cut = self.dimensions.cut(&machine);
         let request = LayersRequest { machine: machine.clone(), cut, motion, along_task: self.along_task };
         let report = find_layers(&request).map_err(|why| Failure::from(why).with_context(machine.name()))?;
-        if let Some(file) = &self.output {
-            save(&report.machine, file, self.force, format!("{}, stacked in layers", machine.name()))?;
-        }
+        self.new_machine.save(&report.machine, format!("{}, stacked in layers", machine.name()))?;
         self.format.print(&report, |report| text(report, &machine))
     }
 }

@@ -170,7 +170,9 @@ fn pin_meshes(
         let own = links.iter().filter(|solid| solid.link == j);
         let covering = own.filter(|solid| solid.plan.distance(Vector::new(along, 0.0)) < 0.0);
         let height = machine.spec().links[j].axial;
-        covering.map(|solid| solid.faces(machine)).fold([height; 2], |[low, high], own| [low.min(own[0]), high.max(own[1])])
+        covering
+            .map(|solid| solid.faces(machine))
+            .fold([height; 2], |[low, high], own| [low.min(own[0]), high.max(own[1])])
     };
     let mut below = axle.is_on_base().then_some(low);
     for (i, j) in joined.into_iter().enumerate() {

@@ -31,8 +31,7 @@ pub fn of_templates() -> Vec<Sketch> {
 pub fn tree(noise: &mut Noise, bars: usize) -> Sketch {
     let mut sketch = Sketch { name: format!("{bars} bars at random"), ..Sketch::blank() };
     for n in 0..bars {
-        let on: Option<Bar> =
-            (n > 0).then(|| sketch.bars[(noise.between(0.0, n as f64) as usize).min(n - 1)].clone());
+        let on: Option<Bar> = (n > 0).then(|| sketch.bars[(noise.between(0.0, n as f64) as usize).min(n - 1)].clone());
         let (from, start) = match &on {
             None => (BarEnd::pin(sketch.base), sketch.at(sketch.base)),
             Some(bar) if is_so(noise, 0.6) => (BarEnd::pin(bar.tip), sketch.at(bar.tip)),

@@ -27,13 +27,20 @@ fn stacked(machine: &Machine, noise: &mut Noise) -> Machine {
     let mut spec = machine.spec().clone();
     for (j, link) in spec.links.iter_mut().enumerate() {
         link.axial = 0.08 * j as f64;
-        let pipe = Part { name: "pipe".into(), across: 0.05, wall: Some(0.002), thickness: None, ..Part::flat(&link.name, 0.0) };
+        let pipe = Part {
+            name: "pipe".into(),
+            across: 0.05,
+            wall: Some(0.002),
+            thickness: None,
+            ..Part::flat(&link.name, 0.0)
+        };
         spec.parts.push(match j % 2 {
             0 => Part { shape: Shape::Tube, diameter: Some(0.02), ..pipe },
             _ => Part { shape: Shape::Profile, width: Some(0.03), height: Some(0.02), ..pipe },
         });
         let (mass, at) = (noise.between(0.3, 2.0), noise.between(-0.2, 0.1));
-        let counterweight = Counterweight { link: link.name.clone(), mass, at, across: 0.0, radius: 0.04, fixed: false };
+        let counterweight =
+            Counterweight { link: link.name.clone(), mass, at, across: 0.0, radius: 0.04, fixed: false };
         spec.counterweights.push(counterweight);
     }
     (spec.payload.mass, spec.payload.inertia, spec.payload.offset) = (0.4, 2e-4, [0.02, 0.01]);
@@ -80,11 +87,15 @@ fn solids_weigh_what_links_weigh() {
         let q = PerDrive::from_slice(&middle(machine)).expect("a pose");
         let e = DriveAngles(q).units();
         let solids = link_solids(machine, &Cut::default());
-        let found: Vec<&Vec<Value>> = found.as_array().expect("solids").iter().map(|x| x.as_array().expect("numbers")).collect();
+        let found: Vec<&Vec<Value>> =
+            found.as_array().expect("solids").iter().map(|x| x.as_array().expect("numbers")).collect();
         for (j, link) in machine.links().iter().enumerate() {
             let mut weighed = Weighed::default();
             for (solid, found) in solids.iter().zip(&found).filter(|(solid, _)| solid.link == j) {
-                assert_eq!(found[0].as_str(), Some(solid.name(machine).replace(|c: char| !c.is_ascii_graphic(), "_").as_str()));
+                assert_eq!(
+                    found[0].as_str(),
+                    Some(solid.name(machine).replace(|c: char| !c.is_ascii_graphic(), "_").as_str())
+                );
                 if solid.kind == SolidKind::Payload {
                     continue;
                 }
@@ -112,11 +123,8 @@ fn solids_weigh_what_links_weigh() {
                 weighed = if weighed.0 == 0.0 { own } else { weighed.and(own) };
             }
             let com: Vector = machine.com_chain(j).iter().zip(&e).map(|(a, e)| a * *e).sum();
-            let off = [
-                (weighed.0 - link.mass).abs(),
-                link.mass * (weighed.1 - com).norm(),
-                (weighed.2 - link.inertia).abs(),
-            ];
+            let off =
+                [(weighed.0 - link.mass).abs(), link.mass * (weighed.1 - com).norm(), (weighed.2 - link.inertia).abs()];
             assert!(off.iter().all(|off| *off < 1e-6), "{name}, link {j}: {weighed:?}, {off:?}");
             greatest = [0, 1, 2].map(|i| greatest[i].max(off[i]));
         }

@@ -17,11 +17,8 @@ use super::python::answers;
 use crate::noise::Noise;
 use crate::{Test, count};
 
-pub const TESTS: &[Test] = tests![
-    what_is_cut_is_balanced,
-    a_template_is_weighed_or_its_list_says_why_not,
-    drawings_at_random_are_weighed,
-];
+pub const TESTS: &[Test] =
+    tests![what_is_cut_is_balanced, a_template_is_weighed_or_its_list_says_why_not, drawings_at_random_are_weighed,];
 
 const SCRIPT: &str = include_str!("workshop.py");
 
@@ -188,7 +185,8 @@ fn come_back(machine: &Machine) {
     let own = Inertia::of(machine);
     for ending in ["urdf", "xml"] {
         let form = Form::of(ending).expect("a form");
-        let text = form.written(machine, &middle(machine), &Cut::default()).unwrap_or_else(|why| panic!("{name}: {why}"));
+        let text =
+            form.written(machine, &middle(machine), &Cut::default()).unwrap_or_else(|why| panic!("{name}: {why}"));
         let back = import(&text).unwrap_or_else(|why| panic!("{name}, {ending}: {why}")).machine;
         let drive = |k: usize| {
             let of = &machine.spec().drives[k].name;
@@ -205,7 +203,9 @@ fn come_back(machine: &Machine) {
             off("coupling", theirs.coupling(drive(k), drive(l)).norm(), own.coupling(k, l).norm());
         }
         let listed = form.left_out(machine);
-        for (count, word) in [(machine.spec().parts.len(), "part"), (machine.spec().counterweights.len(), "counterweight")] {
+        for (count, word) in
+            [(machine.spec().parts.len(), "part"), (machine.spec().counterweights.len(), "counterweight")]
+        {
             assert!(count == 0 || listed.iter().any(|text| text.contains(word)), "{name}, {ending}: {listed:?}");
         }
     }

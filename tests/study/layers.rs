@@ -498,7 +498,6 @@ fn the_work_for_a_machine_of_many_solids_is_bounded() {
     let begun = std::time::Instant::now();
     let contacts = find_contacts(&request(&machine, thin())).expect("contacts");
     assert!(contacts.len() > 500, "{}", contacts.len());
-    eprintln!("CONTACTS {} {:?}", contacts.len(), begun.elapsed());
     assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
     assert!(matches!(find_layers(&request(&machine, thin())), Err(NoLayers::NoOrder(_) | NoLayers::NotFound)));
     assert!(begun.elapsed().as_secs() < 60, "{:?}", begun.elapsed());

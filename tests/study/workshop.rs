@@ -4,7 +4,9 @@ use stillbase::exchange::cut::Cut;
 use stillbase::exchange::solids::{SolidKind, link_solids};
 use stillbase::mechanics::counterweights::{CounterweightSite, CounterweightSpec, Disc, Objective};
 use stillbase::mechanics::machine::{BarStock, Inertia, Machine, MachineError, Part, Shape, builtin};
-use stillbase::study::workshop::{CutMachine, CutRequest, NoCut, as_bought, balance_as_cut};
+use stillbase::study::workshop::{
+    BarsReport, CutMachine, CutRequest, NoCut, as_bought, balance_as_cut, replaced_links,
+};
 
 fn bare() -> Machine {
     builtin("nine-link-bare").expect("built in").clone()
@@ -148,4 +150,18 @@ fn dimensions_fit_the_parts() {
         let ends = machine.part_ends(machine.spine(solid.link).expect("a bar")).expect("its ends");
         assert_eq!(solid.plan.corners.iter().map(|end| end.re).collect::<Vec<_>>(), ends);
     }
+}
+
+#[test]
+fn links_whose_typed_numbers_give_way_are_named() {
+    let once = cut(&bare());
+    let names: Vec<String> = bare().spec().links.iter().map(|link| link.name.clone()).collect();
+    assert_eq!(once.replaced_links, names);
+    let sentence = BarsReport::of(&once).replaced().expect("all links are typed");
+    assert!(sentence.contains("typed for links 1, 2, 3") && sentence.contains("their bars"), "{sentence}");
+    // Bars that were cut have nothing typed, and links with parts of their own keep their numbers.
+    let twice = cut(&once.placed.machine);
+    assert_eq!((twice.replaced_links.len(), BarsReport::of(&twice).replaced()), (0, None));
+    let plated = replaced_links(&with_plate("4", [-0.1, 0.6]));
+    assert!(!plated.contains(&"4".to_owned()) && plated.len() == names.len() - 1, "{plated:?}");
 }

@@ -19,8 +19,7 @@ impl Cylinder {
             return None;
         }
         // J = m r² / 2 and m = ρ π r² h; with h = 2 r, r³ = m / (2 π ρ).
-        let radius =
-            if inertia > 0.0 { (2.0 * inertia / mass).sqrt() } else { (mass / (2.0 * PI * density)).cbrt() };
+        let radius = if inertia > 0.0 { (2.0 * inertia / mass).sqrt() } else { (mass / (2.0 * PI * density)).cbrt() };
         Some(Self { radius, height: mass / (density * PI * radius * radius) })
     }
 }

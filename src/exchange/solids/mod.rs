@@ -171,9 +171,8 @@ impl LinkSolids<'_> {
             }
             let disc = self.solid(SolidKind::Disc(i), Plan::disc(at, weight.radius), thickness);
             // An edge that a hole would cut through stays whole.
-            let is_within = |(pin, diameter): &(Vector, f64)| {
-                (pin - at).norm() + 0.5 * diameter < WHOLE_EDGE * weight.radius
-            };
+            let is_within =
+                |(pin, diameter): &(Vector, f64)| (pin - at).norm() + 0.5 * diameter < WHOLE_EDGE * weight.radius;
             let holes = solids.first().map_or_else(Vec::new, |bar| bar.holes.clone());
             solids.push(disc.drilled(holes.into_iter().filter(is_within).collect()));
         }

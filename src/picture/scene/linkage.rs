@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use heights::Heights;
 
-use super::mesh::{bar, cylinder};
+use super::mesh::{bar, cylinder, ring};
 use super::palette::{Palette, faded, mix};
 use super::{ItemChanges, Mesh, MeshSet, Name, Rgba, Shadow, Solid, posed};
 use stillbase_mechanics::machine::{Chain, Machine, ResolvedLink, place_of};
@@ -25,6 +25,8 @@ pub struct LinkageModel {
     pins: Vec<Pin>,
     /// Mesh of all pins; each is stretched to the length between its layers.
     pin: usize,
+    /// Mesh of all spacers; each is stretched to the gap between two links.
+    spacer: usize,
     hole: usize,
     motors: Vec<Motor>,
     plate: Disc,
@@ -122,6 +124,8 @@ struct Pin {
     z: [f64; 2],
     /// Ratio of its length to that of the mesh.
     stretch: f64,
+    /// Heights of the lower end of each spacer around it, m, and the ratio of its length to that of the mesh.
+    spacers: Vec<[f64; 2]>,
 }
 
 #[derive(Clone, Debug)]
@@ -212,12 +216,14 @@ impl LinkageModel {
         let radius = 0.62 * THIN_BAR_RADIUS * reach;
         let shortest = height + 2.0 * gap;
         let pin = added(&mut meshes, cylinder(1.25 * radius, shortest, 0.15 * radius));
+        let spacer = added(&mut meshes, ring(1.9 * radius, 1.25 * radius, shortest));
         let hole = added(&mut meshes, cylinder(0.7 * radius, 0.2 * gap, 0.0));
         for (at, links) in joints(machine) {
             let faces = links.iter().map(|j| heights.z[*j]);
             let (low, high) = faces.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), z| (l.min(z), h.max(z)));
             let z = [low - gap, high + height + gap];
-            pins.push(Pin { at, links, z, stretch: (z[1] - z[0]) / shortest });
+            let spacers = heights.spacers(&links).map(|[low, high]| [low, (high - low) / shortest]).collect();
+            pins.push(Pin { at, links, z, stretch: (z[1] - z[0]) / shortest, spacers });
         }
         let n = machine.drives();
         let (drive_height, drive_radius) = (0.05 * reach, DRIVE_RADIUS * reach);
@@ -249,7 +255,7 @@ impl LinkageModel {
         let body = Slab { mesh, half_length, radius: width, height: plate_height };
         let top = heights.top;
         let cap = Disc::of(&mut meshes, 0.6 * drive_radius, top + 2.0 * gap, 0.2 * gap);
-        Self { model: Arc::new(MeshSet { meshes }), bars, pins, pin, hole, motors, plate, body, cap, reach }
+        Self { model: Arc::new(MeshSet { meshes }), bars, pins, pin, spacer, hole, motors, plate, body, cap, reach }
     }
 
     /// Upper bound of the end effector's distance from B, m.
@@ -320,7 +326,7 @@ impl LinkageModel {
 
     /// Returns all solids of the machine on a base in the given pose; `moves` says whether the base can move.
     pub fn solids(&self, e: &UnitVectors, base: Pose2, moves: bool, palette: &Palette) -> Vec<Solid> {
-        let mut solids = Vec::with_capacity(self.bars.len() + 2 * self.pins.len() + self.motors.len() + 2);
+        let mut solids = Vec::with_capacity(self.bars.len() + 3 * self.pins.len() + self.motors.len() + 2);
         let upright = |name: Name, mesh, at: Vector, z, colour, changes| {
             let world_from_item = posed(base.at + at, Vector::new(1.0, 0.0), z);
             Solid { name, mesh, world_from_item, colour, changes }
@@ -354,6 +360,12 @@ impl LinkageModel {
             let mut solid = upright("machine/joints".into(), self.pin, at, pin.z[0], palette.ink, ItemChanges::Pose);
             solid.world_from_item[2][2] = pin.stretch as f32;
             solids.push(solid);
+            for [low, stretch] in &pin.spacers {
+                let name = "machine/joints/spacers".into();
+                let mut solid = upright(name, self.spacer, at, *low, grey, ItemChanges::Pose);
+                solid.world_from_item[2][2] = *stretch as f32;
+                solids.push(solid);
+            }
             let colour = palette.background;
             solids.push(upright("machine/joints/holes".into(), self.hole, at, pin.z[1], colour, ItemChanges::Pose));
         }

@@ -82,8 +82,7 @@ pub fn nearness(a: &PlanSolid, b: &PlanSolid, e: &UnitVectors) -> Nearness {
         return Nearness { gap: -radii.max(CROSSED), at: p };
     }
     // The middle of the gap, or of the overlap along the line between both.
-    let share =
-        if apart > 0.0 { (0.5 * (apart + a.plan.radius - b.plan.radius) / apart).clamp(0.0, 1.0) } else { 0.5 };
+    let share = if apart > 0.0 { (0.5 * (apart + a.plan.radius - b.plan.radius) / apart).clamp(0.0, 1.0) } else { 0.5 };
     Nearness { gap: apart - radii, at: p + (q - p) * share }
 }
 
