@@ -25,7 +25,7 @@ pub struct NewMachine {
 impl NewMachine {
     /// Checks, before any work is done, that the file may be written.
     pub fn check(&self) -> Result<(), Failure> {
-        self.output.as_ref().map_or(Ok(()), |file| check_output(file, self.force, &["toml"]))
+        self.output.as_ref().map_or(Ok(()), |file| check_output(file, self.force, &["toml"]).map(|_| ()))
     }
 
     /// Writes a machine, if a file is asked for, named after its file because it differs from the original machine.

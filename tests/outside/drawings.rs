@@ -57,7 +57,7 @@ pub fn tree(noise: &mut Noise, bars: usize) -> Sketch {
 pub fn machine(sketch: &Sketch) -> Machine {
     let found = resolve(sketch);
     let missing: Vec<&str> = found.missing.iter().map(|one| one.text.as_str()).collect();
-    found.machine().unwrap_or_else(|| panic!("{}: {missing:?}", sketch.name))
+    found.machine.unwrap_or_else(|| panic!("{}: {missing:?}", sketch.name))
 }
 
 /// The drawing with bars of flat stock over all their pins, plates beside them and lumps on them, from which all numbers
