@@ -7,7 +7,7 @@ use stillbase::mechanics::sketch::{Bar, BarEnd, Sketch, SketchStep, Template, re
 use crate::noise::Noise;
 
 /// The least distance of two holes, m.
-const APART: f64 = 0.02;
+const APART: f64 = 0.012;
 
 fn is_so(noise: &mut Noise, share: f64) -> bool {
     noise.between(0.0, 1.0) < share
@@ -36,13 +36,14 @@ pub fn tree(noise: &mut Noise, bars: usize) -> Sketch {
             None => (BarEnd::pin(sketch.base), sketch.at(sketch.base)),
             Some(bar) if is_so(noise, 0.6) => (BarEnd::pin(bar.tip), sketch.at(bar.tip)),
             Some(bar) => {
-                let share = noise.between(0.3, 0.7);
+                // Two bars on one never begin in neighbouring holes.
+                let share = 0.3 + 0.4 * (n as f64 / bars as f64);
                 let (root, tip) = (sketch.at(bar.root), sketch.at(bar.tip));
                 let start = root + (tip - root) * share;
                 (BarEnd::on(bar.id, (start - root).norm()), start)
             }
         };
-        let (length, angle) = (noise.between(0.15, 0.5), noise.between(-3.1, 3.1));
+        let (length, angle) = (noise.between(0.2, 0.5), noise.between(-3.1, 3.1));
         let to = BarEnd::At([start.re + length * angle.cos(), start.im + length * angle.sin()]);
         sketch = drawn(&sketch, &SketchStep::Bar { from, to, name: None });
         let own = sketch.bars.last().expect("a bar").clone();

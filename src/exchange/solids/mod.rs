@@ -164,8 +164,9 @@ impl LinkSolids<'_> {
         for (i, weight) in weights {
             let Some(thickness) = self.cut.thickness_of(weight) else { continue };
             let at = Vector::new(weight.at, weight.across);
-            if solids.iter().all(|solid| solid.plan.distance(at) > CARRIED) {
-                let [width, own] = self.bar_section(solids);
+            let [width, own] = self.bar_section(solids);
+            let is_carried = solids.iter().any(|solid| solid.plan.distance(at) <= CARRIED);
+            if weight.across.abs() > 0.5 * width && !is_carried {
                 let arm = Plan::bar([Vector::new(weight.at, 0.0), at], 0.5 * width);
                 solids.push(self.solid(SolidKind::Arm(i), arm, own));
             }
