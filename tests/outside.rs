@@ -20,8 +20,12 @@ macro_rules! tests {
 mod arms;
 #[path = "outside/drags.rs"]
 mod drags;
+#[path = "outside/drawings.rs"]
+mod drawings;
 #[path = "outside/ezdxf.rs"]
 mod ezdxf;
+#[path = "outside/mesh.rs"]
+mod mesh;
 #[path = "outside/mujoco.rs"]
 mod mujoco;
 #[path = "support/noise.rs"]
@@ -54,8 +58,9 @@ fn count(word: &str, usual: u64) -> u64 {
 }
 
 fn main() -> ExitCode {
-    let packages: [(&str, &[Test]); 9] = [
+    let packages: [(&str, &[Test]); 10] = [
         ("ezdxf", ezdxf::TESTS),
+        ("numpy", mesh::TESTS),
         ("mujoco", mujoco::TESTS),
         ("mujoco", planar::TESTS),
         ("pinocchio", pinocchio::TESTS),

@@ -1,25 +1,26 @@
 //! `stillbase layers`
 
-use std::path::PathBuf;
-
 use clap::Args;
 use stillbase_mechanics::machine::Machine;
 use stillbase_query::ByIdentity;
 use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
-use stillbase_study::layers::{Contact, LayersReport, LayersRequest, find_layers};
+use stillbase_study::layers::{Between, Contact, LayersReport, LayersRequest, find_layers};
 
-use super::design::save;
 use super::dimensions::Dimensions;
 use super::failure::Failure;
 use super::input::{MachineArgument, task_run};
-use super::output::{Format, TextTable, check_output};
+use super::new_machine::NewMachine;
+use super::output::{Format, TextTable};
 
 /// Stack the links of a machine in layers so that it turns without running into itself
 ///
-/// Bars, discs of counterweights and pins that overlap in plan in some pose within the joint limits lie in different
-/// layers, and nothing passes between the links of a pin over which it sweeps. The answer has the fewest layers; of
-/// several such orders it is the one with the least tilting moment. Without any order, the answer names the fewest links
-/// that have none, and where they meet. Motors and the payload have no shape here.
+/// Bars, plates, counterweights with their arms, lumps, the payload and pins that overlap in plan in some pose within
+/// the joint limits lie in different layers. Nothing passes between the links of a pin over which it sweeps. The answer
+/// has the fewest layers; of several such orders it is the one with the least tilting moment. Without any order, the
+/// answer names the fewest links that have none, and where they meet.
+///
+/// A lump and the payload are cylinders of the material of the discs: as wide as gives them their inertia, and without
+/// inertia as high as wide. A motor has a shape if it is a lump.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -39,12 +40,8 @@ pub struct LayersArguments {
     along_task: bool,
     #[command(flatten)]
     dimensions: Dimensions,
-    /// Write the machine with these heights to this file
-    #[arg(short, long, value_name = "NEW.toml")]
-    output: Option<PathBuf>,
-    /// Replace the file if it exists
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    new_machine: NewMachine,
     #[command(flatten)]
     format: Format,
 }
@@ -53,25 +50,21 @@ impl LayersArguments {
     /// Prints the layers, and writes the machine.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
-        if let Some(file) = &self.output {
-            check_output(file, self.force, &["toml"])?;
-        }
+        self.new_machine.check()?;
         let task = self.task.as_ref().map(|name| task_run(name, &[&machine])).transpose()?;
         let motion = task.as_ref().map(|run| ByIdentity(run.plan().motion.clone()));
         let cut = self.dimensions.cut(&machine);
         let request = LayersRequest { machine: machine.clone(), cut, motion, along_task: self.along_task };
         let report = find_layers(&request).map_err(|why| Failure::from(why).with_context(machine.name()))?;
-        if let Some(file) = &self.output {
-            save(&report.machine, file, self.force, format!("{}, stacked in layers", machine.name()))?;
-        }
+        self.new_machine.save(&report.machine, format!("{}, stacked in layers", machine.name()))?;
         self.format.print(&report, |report| text(report, &machine))
     }
 }
 
 fn text(report: &LayersReport, machine: &Machine) -> String {
     let mut table = TextTable::new(["link", "drive", "layer", "height mm", "meets in plan"]).with_words(4);
-    for (own, link) in report.layers.iter().zip(&machine.spec().links) {
-        let met = others(&report.meetings, &format!("link {}", link.name));
+    for (j, (own, link)) in report.layers.iter().zip(&machine.spec().links).enumerate() {
+        let met = others(&report.meetings, j);
         let (layer, height) = (own.layer.to_string(), fixed(1e3 * own.height, 3));
         table.row([own.link.clone(), link.drive.clone(), layer, height, met]);
     }
@@ -107,12 +100,18 @@ fn text(report: &LayersReport, machine: &Machine) -> String {
     text
 }
 
-/// Returns the names of what a solid meets.
-fn others(meetings: &[Contact], name: &str) -> String {
-    let met = meetings.iter().filter_map(|contact| match () {
-        () if contact.a == name => Some(contact.b.as_str()),
-        () if contact.b == name => Some(contact.a.as_str()),
-        () => None,
+/// Returns the names of what the solids of a link meet, each once.
+fn others(meetings: &[Contact], link: usize) -> String {
+    let met = meetings.iter().filter_map(|contact| match contact.between {
+        Between::Links(a, _) | Between::Pin(a, _) if a == link => Some(contact.b.as_str()),
+        Between::Links(_, b) if b == link => Some(contact.a.as_str()),
+        _ => None,
     });
-    met.collect::<Vec<_>>().join(", ")
+    let mut names: Vec<&str> = Vec::new();
+    for name in met {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names.join(", ")
 }

@@ -30,6 +30,7 @@ mod layers;
 mod learn;
 mod machines;
 mod misnamed;
+mod new_machine;
 mod open;
 mod output;
 mod plan;

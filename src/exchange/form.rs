@@ -17,7 +17,7 @@ pub struct Form {
     /// The part of a machine that it shows.
     pub shows: ModelContent,
     write: fn(&Machine, &[f64], &Cut) -> Result<String, ExchangeError>,
-    /// Returns what a model leaves out; empty for what is no model.
+    /// Returns what a file leaves out of a machine.
     leaves_out: fn(&Machine) -> Vec<String>,
 }
 
@@ -71,7 +71,7 @@ pub const FORMS: [Form; 7] = [
         ending: "stl",
         shows: ModelContent::Solids,
         write: |machine, pose, cut| Ok(stl(machine, pose, cut)?),
-        leaves_out: left_out::of_drawing,
+        leaves_out: left_out::of_solids,
     },
     // For a spreadsheet.
     Form {
@@ -137,7 +137,7 @@ impl Form {
         own.ok_or_else(|| ExchangeError::Ending { ending: ending.chars().take(40).collect() })
     }
 
-    /// Returns what a model of the machine leaves out, in sentences; empty for drawings and lists, which are no models.
+    /// Returns what a file of the machine leaves out, or shows otherwise than it is weighed, in sentences.
     pub fn left_out(&self, machine: &Machine) -> Vec<String> {
         (self.leaves_out)(machine)
     }

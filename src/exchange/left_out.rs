@@ -2,7 +2,8 @@
 
 use super::cut::unweighed_tail;
 use super::mjcf::{MIN_MASS_OR_INERTIA, parallel};
-use stillbase_mechanics::machine::{Length, Machine, MachineSpec};
+use stillbase_mechanics::machine::{Counterweight, Length, Link, LinkNumber, Machine, MachineSpec};
+use stillbase_mechanics::planar::Vector;
 use stillbase_settings::number::{counted, fixed};
 
 /// Returns what both formats leave out.
@@ -108,15 +109,44 @@ pub fn of_mjcf(machine: &Machine) -> Vec<String> {
     list
 }
 
-/// Returns what the masses of a machine leave out of a drawing of it: tails that only the drawing adds.
+/// Returns what solids show otherwise than it is weighed.
+pub fn of_solids(machine: &Machine) -> Vec<String> {
+    let (spec, mut list) = (machine.spec(), of_drawing(machine));
+    let covers_pin = |weight: &&Counterweight| {
+        let link = spec.links.iter().position(|link| link.name == weight.link);
+        let pins = link.map_or_else(Vec::new, |link| machine.pin_places(link));
+        pins.iter().any(|pin| weight.covers(Vector::new(*pin, 0.0)))
+    };
+    if spec.counterweights.iter().any(|weight| covers_pin(&weight)) {
+        list.push("the mass of holes in counterweights: those over a pin are drilled, but weighed whole".to_owned());
+    }
+    if spec.lumps.iter().any(|lump| lump.inertia == 0.0) {
+        list.push("points: a lump without inertia is shown as a cylinder of its mass, as high as wide".to_owned());
+    }
+    list
+}
+
+/// Returns what a drawing shows otherwise than it is weighed: bars of links whose numbers are typed, and tails that only
+/// the drawing adds.
 pub fn of_drawing(machine: &Machine) -> Vec<String> {
+    let is_typed = |link: &&Link| LinkNumber::ALL.iter().any(|number| !link.follows(*number));
+    let typed: Vec<&str> = machine.spec().links.iter().filter(is_typed).map(|link| link.name.as_str()).collect();
+    let mut list = Vec::new();
+    if !typed.is_empty() {
+        list.push(format!(
+            "what drawn bars weigh: mass, centre of mass or inertia of link {} is typed; design --counterweights --bars \
+             weighs what is cut",
+            typed.join(", ")
+        ));
+    }
     let tail = unweighed_tail(machine);
     if tail <= 0.0 {
-        return Vec::new();
+        return list;
     }
-    vec![format!(
+    list.push(format!(
         "the mass of tails: bars are drawn up to {} mm beyond their pins, to carry counterweights, and no link counts \
          that; design --counterweights --bars weighs what is cut",
         fixed(1e3 * tail, 1)
-    )]
+    ));
+    list
 }

@@ -20,12 +20,25 @@ pub(super) fn circle(centre: Vector, radius: f64) -> Vec<Vector> {
     (0..SIDES).map(|i| centre + turned(i) * radius).collect()
 }
 
-/// Returns the outline of a bar with round ends, counter-clockwise, m: half a polygon of a circle at each end.
+/// Returns the outline of a bar with round ends, counter-clockwise, m: half a polygon at each end, with the area of half a
+/// circle.
 pub(super) fn bar([from, to]: [Vector; 2], radius: f64) -> Vec<Vector> {
     let along = to - from;
     let way = if along.norm_sqr() > 0.0 { along / along.norm() } else { Vector::new(1.0, 0.0) };
-    let half = |centre: Vector, first: usize| (0..=SIDES / 2).map(move |i| centre + way * turned(first + i) * radius);
+    let (count, bulged) = (SIDES / 2, equal_half_area());
+    let half = |centre: Vector, first: usize| {
+        let out = move |i: usize| if i == 0 || i == count { radius } else { bulged * radius };
+        (0..=count).map(move |i| centre + way * turned(first + i) * out(i))
+    };
     half(to, 3 * SIDES / 4).chain(half(from, SIDES / 4)).collect()
+}
+
+/// Returns the ratio of the radius of half a polygon to that of the half circle with its area, if its ends stay on the
+/// circle: n sides have sin(step) (2 s + (n − 2) s²) = π.
+fn equal_half_area() -> f64 {
+    let (sides, step) = ((SIDES / 2) as f64, std::f64::consts::TAU / SIDES as f64);
+    let n = sides - 2.0;
+    ((1.0 + n * std::f64::consts::PI / step.sin()).sqrt() - 1.0) / n
 }
 
 fn turned(i: usize) -> Vector {
@@ -60,6 +73,17 @@ impl SolidMesh {
         wall(outline, true);
         drilled.into_iter().for_each(|hole| wall(hole, false));
         Self { name, triangles }
+    }
+
+    /// Returns a bar along x from one place to another, m, for the outer and the inner outline of its section, across and
+    /// up, both counter-clockwise, and the place of the middle of its section, m.
+    pub(super) fn pipe(name: String, section: &[Vec<Vector>], along: [f64; 2], [across, up]: [f64; 2]) -> Self {
+        let Some((outer, inner)) = section.split_first() else { return Self { name, triangles: Vec::new() } };
+        let mut upright = Self::prism(name, outer, inner, along);
+        for [x, y, z] in upright.triangles.iter_mut().flatten() {
+            (*x, *y, *z) = (*z, *x + across, *y + up);
+        }
+        upright
     }
 
     /// Returns the solid with its origin at a point, m, and its x axis along a direction.

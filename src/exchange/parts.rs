@@ -2,7 +2,7 @@
 
 use super::cut::{Cut, CutError};
 use super::solids::{Axle, axles};
-use stillbase_mechanics::machine::{Counterweight, Drive, Link, Machine, PartBody, PartSource, Shape};
+use stillbase_mechanics::machine::{Counterweight, Drive, Link, Machine, PartBody, PartSource, PlaneBody, Shape};
 use stillbase_settings::number::fixed;
 use stillbase_settings::text::sheet_cell;
 
@@ -160,6 +160,14 @@ fn plain(text: &str) -> String {
     text.replace('\\', "\\\\").replace('|', "\\|").replace('<', "&lt;")
 }
 
+/// Columns of a body in the axes of its link.
+const BODY: [&str; 4] = ["mass kg", "centre of mass m", "left of axis m", "inertia kg m²"];
+
+/// Returns the cells of these columns.
+fn of_body(body: PlaneBody) -> [PartCell; 4] {
+    [(body.mass, 3), (body.at, 4), (body.across, 4), (body.inertia, 6)].map(|(x, digits)| PartCell::Number(x, digits))
+}
+
 /// Lists the links, with their layers and heights if they have some.
 fn links(machine: &Machine, cut: &Cut) -> PartTable {
     let parts = machine.resolved_links();
@@ -168,35 +176,21 @@ fn links(machine: &Machine, cut: &Cut) -> PartTable {
         let pinned = parts[j].parent.map_or("base".into(), |p| on(machine, p, parts[j].at));
         let layer = layers.as_ref().map(|layers| layers[j] as f64);
         let stacked = [PartCell::some(layer, 0), PartCell::Number(link.axial, 4)];
-        let cells = vec![
-            PartCell::words(&link.name),
-            PartCell::words(&link.drive),
-            PartCell::Number(parts[j].length, 4),
-            PartCell::Number(link.mass, 3),
-            PartCell::Number(link.com, 4),
-            PartCell::Number(link.com_normal, 4),
-            PartCell::Number(link.inertia, 6),
-            PartCell::words(pinned),
-        ];
-        cells.into_iter().chain(stacked.into_iter().filter(|_| has_heights)).collect()
+        let cells = [PartCell::words(&link.name), PartCell::words(&link.drive), PartCell::Number(parts[j].length, 4)];
+        let (at, across) = (link.com, link.com_normal);
+        let body = of_body(PlaneBody { mass: link.mass, at, across, inertia: link.inertia });
+        cells
+            .into_iter()
+            .chain(body)
+            .chain([PartCell::words(pinned)])
+            .chain(stacked.into_iter().filter(|_| has_heights))
+            .collect()
     };
     let stacked = ["layer", "height m"].into_iter().filter(|_| has_heights);
     PartTable {
         kind: "link",
         title: "Links",
-        head: [
-            "name",
-            "drive",
-            "length m",
-            "mass kg",
-            "centre of mass m",
-            "left of axis m",
-            "inertia kg m²",
-            "root pinned to",
-        ]
-        .into_iter()
-        .chain(stacked)
-        .collect(),
+        head: ["name", "drive", "length m"].into_iter().chain(BODY).chain(["root pinned to"]).chain(stacked).collect(),
         rows: machine.spec().links.iter().enumerate().map(row).collect(),
     }
 }
@@ -210,32 +204,19 @@ fn parts(machine: &Machine) -> PartTable {
             Shape::Plate => None,
             _ => machine.part_ends(i).map(|[from, to]| to - from),
         };
-        Some(vec![
+        let cells = [
             PartCell::words(part.title()),
             PartCell::words(&part.link),
             PartCell::words(&part.material),
             PartCell::some(part.thickness, 4),
             PartCell::some(length, 4),
-            PartCell::Number(body.body.mass, 3),
-            PartCell::Number(body.body.at, 4),
-            PartCell::Number(body.body.across, 4),
-            PartCell::Number(body.body.inertia, 6),
-        ])
+        ];
+        Some(cells.into_iter().chain(of_body(body.body)).collect())
     };
     PartTable {
         kind: "part",
         title: "Parts of links",
-        head: vec![
-            "name",
-            "on link",
-            "material",
-            "thickness m",
-            "length m",
-            "mass kg",
-            "centre of mass m",
-            "left of axis m",
-            "inertia kg m²",
-        ],
+        head: ["name", "on link", "material", "thickness m", "length m"].into_iter().chain(BODY).collect(),
         rows: machine.part_bodies().iter().filter_map(row).collect(),
     }
 }
@@ -244,19 +225,16 @@ fn parts(machine: &Machine) -> PartTable {
 fn lumps(machine: &Machine) -> PartTable {
     let row = |body: &PartBody| match body.source {
         PartSource::Part(_) => None,
-        PartSource::Lump(_) => Some(vec![
-            PartCell::words(body.title(machine.spec())),
-            PartCell::words(&machine.links()[body.link].name),
-            PartCell::Number(body.body.mass, 3),
-            PartCell::Number(body.body.at, 4),
-            PartCell::Number(body.body.across, 4),
-            PartCell::Number(body.body.inertia, 6),
-        ]),
+        PartSource::Lump(_) => {
+            let name = PartCell::words(body.title(machine.spec()));
+            let on_link = PartCell::words(&machine.links()[body.link].name);
+            Some([name, on_link].into_iter().chain(of_body(body.body)).collect())
+        }
     };
     PartTable {
         kind: "lump",
         title: "Lumps",
-        head: vec!["name", "on link", "mass kg", "centre of mass m", "left of axis m", "inertia kg m²"],
+        head: ["name", "on link"].into_iter().chain(BODY).collect(),
         rows: machine.part_bodies().iter().filter_map(row).collect(),
     }
 }
@@ -312,14 +290,13 @@ fn payload(machine: &Machine) -> Option<PartTable> {
     (payload.mass > 0.0 || payload.inertia > 0.0).then(|| PartTable {
         kind: "payload",
         title: "Payload",
-        head: vec!["on link", "mass kg", "centre of mass m", "left of axis m", "inertia kg m²"],
-        rows: vec![vec![
-            PartCell::words(&machine.links()[machine.end_link()].name),
-            PartCell::Number(payload.mass, 3),
-            PartCell::Number(along, 4),
-            PartCell::Number(left, 4),
-            PartCell::Number(payload.inertia, 6),
-        ]],
+        head: ["on link"].into_iter().chain(BODY).collect(),
+        rows: vec![
+            [PartCell::words(&machine.links()[machine.end_link()].name)]
+                .into_iter()
+                .chain(of_body(PlaneBody { mass: payload.mass, at: along, across: left, inertia: payload.inertia }))
+                .collect(),
+        ],
     })
 }
 

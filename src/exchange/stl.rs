@@ -1,12 +1,13 @@
-//! Solids of a machine as STL: bars with round ends and holes, discs, pins and spacers, at their heights in a pose.
+//! Solids of a machine as STL: bars and plates with holes, counterweights, lumps, the payload, pins and spacers, at their
+//! heights in a pose.
 
 use std::fmt::Write as _;
 
 use super::cut::{Cut, CutError, SAME_PIN_DISTANCE};
 use super::mesh::{bar, circle};
-use super::solids::{Axle, LinkSolid, SolidKind, axles, link_solids};
-use stillbase_mechanics::machine::{Machine, place_of};
-use stillbase_mechanics::planar::{UnitVectors, Vector, unit};
+use super::solids::{Axle, LinkSolid, Plan, axles, link_solids};
+use stillbase_mechanics::machine::{Machine, Part, Shape, place_of};
+use stillbase_mechanics::planar::{UnitVectors, Vector, cross, unit};
 
 pub use super::mesh::SolidMesh;
 
@@ -54,7 +55,7 @@ pub fn solids(machine: &Machine, pose: &[f64], cut: &Cut) -> Result<Vec<SolidMes
     }
     let e: UnitVectors = std::array::from_fn(|k| unit(pose.get(k).copied().unwrap_or_default()));
     let (links, axles) = (link_solids(machine, cut), axles(machine));
-    let mut solids: Vec<SolidMesh> = links.iter().map(|solid| link_mesh(machine, cut, solid, &e)).collect();
+    let mut solids: Vec<SolidMesh> = links.iter().map(|solid| link_mesh(machine, solid, &e)).collect();
     for axle in axles.iter().filter(|axle| axle.is_pin()) {
         pin_meshes(machine, cut, (axle, &links), &e, &mut solids)?;
     }
@@ -93,27 +94,55 @@ fn normal([a, b, c]: &[[f64; 3]; 3]) -> [f64; 3] {
     n.map(|x| if length > 0.0 { x / length + 0.0 } else { 0.0 })
 }
 
-/// Returns a bar, an arm or a disc.
-fn link_mesh(machine: &Machine, cut: &Cut, solid: &LinkSolid, e: &UnitVectors) -> SolidMesh {
-    let part = &machine.resolved_links()[solid.link];
-    let is_disc = matches!(solid.kind, SolidKind::Disc(_));
-    let drilled = |along: &f64| {
-        let p = Vector::new(*along, 0.0);
-        match solid.kind {
-            SolidKind::Bar => true,
-            // An edge that a hole would cut through stays whole.
-            SolidKind::Disc(_) => (p - solid.ends[0]).norm() + 0.5 * cut.pin_diameter < 0.98 * solid.radius,
-            SolidKind::Arm(_) => false,
+/// Returns a solid of a link in a pose.
+fn link_mesh(machine: &Machine, solid: &LinkSolid, e: &UnitVectors) -> SolidMesh {
+    let link = &machine.resolved_links()[solid.link];
+    let name = solid.name(machine);
+    let [low, high] = solid.faces(machine);
+    let mesh = match solid.part.map(|i| (i, &machine.spec().parts[i])) {
+        Some((i, part)) if matches!(part.shape, Shape::Tube | Shape::Profile) => {
+            let along = machine.part_ends(i).unwrap_or_default();
+            SolidMesh::pipe(name, &section(part), along, [part.across, 0.5 * (low + high)])
+        }
+        _ => {
+            let holes: Vec<Vec<Vector>> =
+                solid.holes.iter().map(|(at, diameter)| circle(*at, 0.5 * diameter)).collect();
+            SolidMesh::prism(name, &outline(&solid.plan), &holes, [low, high])
         }
     };
-    let mut pins = part.pins.clone();
-    pins.dedup_by(|b, a| *b - *a <= SAME_PIN_DISTANCE);
-    let holes = pins.iter().filter(|along| drilled(along));
-    let holes: Vec<Vec<Vector>> = holes.map(|along| circle(Vector::new(*along, 0.0), 0.5 * cut.pin_diameter)).collect();
-    let outline = if is_disc { circle(solid.ends[0], solid.radius) } else { bar(solid.ends, solid.radius) };
-    let (middle, half) = (machine.spec().links[solid.link].axial, 0.5 * solid.thickness);
-    SolidMesh::prism(solid.name(machine), &outline, &holes, [middle - half, middle + half])
-        .placed(place_of(&part.root, e), e[part.drive] * part.sign)
+    mesh.placed(place_of(&link.root, e), e[link.drive] * link.sign)
+}
+
+/// Returns the outline of an area, counter-clockwise, m.
+fn outline(plan: &Plan) -> Vec<Vector> {
+    match plan.corners[..] {
+        [at] => circle(at, plan.radius),
+        [from, to] if from == to => circle(from, plan.radius),
+        [from, to] => bar([from, to], plan.radius),
+        _ => {
+            let twice_area: f64 = plan.sides(|corner| corner).map(|[a, b]| cross(a, b)).sum();
+            let mut corners = plan.corners.clone();
+            if twice_area < 0.0 {
+                corners.reverse();
+            }
+            corners
+        }
+    }
+}
+
+/// Returns the outer and the inner outline of the section of a tube or a profile about its middle, across and up, m; no
+/// inner one if it is not hollow.
+fn section(part: &Part) -> Vec<Vec<Vector>> {
+    let [width, _, diameter, height, wall] = part.lengths().map(|(_, given)| given.unwrap_or_default());
+    let rings = [0.0, 2.0 * wall].into_iter().filter_map(|less| match part.shape {
+        Shape::Tube => (diameter > less).then(|| circle(Vector::default(), 0.5 * (diameter - less))),
+        _ => {
+            let (x, y) = (0.5 * (width - less), 0.5 * (height - less));
+            let corners = [[-x, -y], [x, -y], [x, y], [-x, y]].map(|[x, y]| Vector::new(x, y));
+            (x > 0.0 && y > 0.0).then(|| corners.to_vec())
+        }
+    });
+    rings.collect()
 }
 
 /// Adds a pin and the spacers around it, from one link to the next.
@@ -135,18 +164,19 @@ fn pin_meshes(
     let Some([low, high]) = axle.faces(machine, cut) else { return Ok(()) };
     let pin = circle(at, 0.5 * cut.pin_diameter);
     solids.push(SolidMesh::prism(axle.name(machine), &pin, &[], [low, high]));
-    // A disc around the pin is thicker than its bar.
-    let half = |j: usize| {
-        let around = links.iter().filter(|solid| solid.link == j).filter(|solid| {
-            let along = axle.links.iter().find(|(own, _)| *own == j).map_or(0.0, |(_, along)| *along);
-            let apart = (Vector::new(along, 0.0) - solid.ends[0]).norm();
-            matches!(solid.kind, SolidKind::Bar) || solid.ends[0] == solid.ends[1] && apart < solid.radius
-        });
-        0.5 * around.map(|solid| solid.thickness).fold(0.0, f64::max)
+    // A disc or a lump around the pin is thicker than its bar.
+    let around = |j: usize| {
+        let along = axle.links.iter().find(|(own, _)| *own == j).map_or(0.0, |(_, along)| *along);
+        let own = links.iter().filter(|solid| solid.link == j);
+        let covering = own.filter(|solid| solid.plan.distance(Vector::new(along, 0.0)) < 0.0);
+        let height = machine.spec().links[j].axial;
+        covering
+            .map(|solid| solid.faces(machine))
+            .fold([height; 2], |[low, high], own| [low.min(own[0]), high.max(own[1])])
     };
     let mut below = axle.is_on_base().then_some(low);
     for (i, j) in joined.into_iter().enumerate() {
-        let (bottom, top) = (height(j) - half(j), height(j) + half(j));
+        let [bottom, top] = around(j);
         if let Some(below) = below.filter(|below| bottom - below > SAME_PIN_DISTANCE) {
             let ring = circle(at, cut.spacer_radius());
             let called = format!("spacer {} on the {}", i + 1, axle.name(machine));

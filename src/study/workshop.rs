@@ -10,7 +10,7 @@ use thiserror::Error;
 use stillbase_mechanics::counterweights::{
     CounterweightError, CounterweightSite, CounterweightSpec, CounterweightStock, PlacedCounterweights, place_weights,
 };
-use stillbase_mechanics::machine::{BarStock, Inertia, Machine, MachineError, Part};
+use stillbase_mechanics::machine::{BarStock, Inertia, Link, LinkNumber, Machine, MachineError, Part};
 use stillbase_query::QuickQuery;
 
 /// Shares of the greatest tails that are tried first, for all links alike.
@@ -44,6 +44,17 @@ pub struct CutMachine {
     pub bars: Machine,
     /// Ends of the bar of each link, m from its root.
     pub reach: Vec<[f64; 2]>,
+    /// Names of the links whose typed numbers gave way to those of their bars.
+    pub replaced_links: Vec<String>,
+}
+
+/// Returns the names of the links whose typed numbers give way to those of the bars that are cut for them: links that
+/// have no parts, or only such bars.
+pub fn replaced_links(machine: &Machine) -> Vec<String> {
+    let keeps_parts = |link: &Link| machine.spec().parts.iter().any(|part| part.link == link.name && !part.is_cut());
+    let is_typed = |link: &Link| LinkNumber::ALL.iter().any(|number| !link.follows(*number));
+    let replaced = machine.spec().links.iter().filter(|link| !keeps_parts(link) && is_typed(link));
+    replaced.map(|link| link.name.clone()).collect()
 }
 
 /// Reason that no machine can be cut so that it is balanced.
@@ -88,6 +99,8 @@ pub struct BarsReport {
     pub force_residual: f64,
     /// Largest residual of (8), kg m².
     pub coupling_residual: f64,
+    /// Names of the links whose typed mass, centre of mass and inertia gave way to those of their bars.
+    pub replaced_links: Vec<String>,
 }
 
 impl BarsReport {
@@ -95,7 +108,19 @@ impl BarsReport {
     pub fn of(cut: &CutMachine) -> Self {
         let [force_residual, coupling_residual] = cut.residual;
         let mass = cut.placed.machine.part_bodies().iter().map(|part| part.body.mass).sum();
-        Self { mass, tail: cut.tail, tried: cut.tried, force_residual, coupling_residual }
+        let replaced_links = cut.replaced_links.clone();
+        Self { mass, tail: cut.tail, tried: cut.tried, force_residual, coupling_residual, replaced_links }
+    }
+
+    /// Says which typed numbers gave way to those of bars; `None` if none did.
+    pub fn replaced(&self) -> Option<String> {
+        let links = match self.replaced_links.as_slice() {
+            [] => return None,
+            [one] => format!("link {one}"),
+            [first @ .., last] => format!("links {} and {last}", first.join(", ")),
+        };
+        let bars = if self.replaced_links.len() == 1 { "its bar" } else { "their bars" };
+        Some(format!("Mass, centre of mass and inertia typed for {links} are replaced by those of {bars}."))
     }
 }
 
@@ -152,8 +177,8 @@ pub fn balance_as_cut(machine: &Machine, request: &CounterweightSpec, stock: &Ba
     search.trim(&mut best);
     let machine = &best.placed.machine;
     let (residual, tail) = (residual(machine), longest_tail(machine));
-    let bars = bare.with_bars(stock, &best.reach)?;
-    Ok(CutMachine { placed: best.placed, tried: search.tried, tail, residual, bars, reach: best.reach })
+    let (replaced_links, bars) = (replaced_links(&bare), bare.with_bars(stock, &best.reach)?);
+    Ok(CutMachine { placed: best.placed, tried: search.tried, tail, residual, bars, reach: best.reach, replaced_links })
 }
 
 impl CutMachine {

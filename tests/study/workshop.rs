@@ -4,7 +4,9 @@ use stillbase::exchange::cut::Cut;
 use stillbase::exchange::solids::{SolidKind, link_solids};
 use stillbase::mechanics::counterweights::{CounterweightSite, CounterweightSpec, CounterweightStock, Objective};
 use stillbase::mechanics::machine::{BarStock, Inertia, Machine, MachineError, Part, Shape, builtin};
-use stillbase::study::workshop::{CutMachine, CutRequest, NoCut, as_bought, balance_as_cut};
+use stillbase::study::workshop::{
+    BarsReport, CutMachine, CutRequest, NoCut, as_bought, balance_as_cut, replaced_links,
+};
 
 fn bare() -> Machine {
     builtin("nine-link-bare").expect("built in").clone()
@@ -144,8 +146,22 @@ fn dimensions_fit_the_parts() {
     assert_eq!([fitted.bar_width, fitted.plate_thickness, fitted.pin_diameter], [0.024, 0.004, 0.006]);
     assert_eq!(Cut::default().fitting(&bare()), Cut::default());
     for solid in link_solids(machine, &Cut::default()).iter().filter(|solid| solid.kind == SolidKind::Bar) {
-        assert_eq!([solid.radius, solid.thickness], [0.012, 0.004]);
+        assert_eq!([solid.plan.radius, solid.thickness], [0.012, 0.004]);
         let ends = machine.part_ends(machine.spine(solid.link).expect("a bar")).expect("its ends");
-        assert_eq!(solid.ends.map(|end| end.re), ends);
+        assert_eq!(solid.plan.corners.iter().map(|end| end.re).collect::<Vec<_>>(), ends);
     }
+}
+
+#[test]
+fn links_whose_typed_numbers_give_way_are_named() {
+    let once = cut(&bare());
+    let names: Vec<String> = bare().spec().links.iter().map(|link| link.name.clone()).collect();
+    assert_eq!(once.replaced_links, names);
+    let sentence = BarsReport::of(&once).replaced().expect("all links are typed");
+    assert!(sentence.contains("typed for links 1, 2, 3") && sentence.contains("their bars"), "{sentence}");
+    // Bars that were cut have nothing typed, and links with parts of their own keep their numbers.
+    let twice = cut(&once.placed.machine);
+    assert_eq!((twice.replaced_links.len(), BarsReport::of(&twice).replaced()), (0, None));
+    let plated = replaced_links(&with_plate("4", [-0.1, 0.6]));
+    assert!(!plated.contains(&"4".to_owned()) && plated.len() == names.len() - 1, "{plated:?}");
 }

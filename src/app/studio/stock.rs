@@ -63,7 +63,8 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, p: &Palette, co
 
 /// Draws the masses and what is left of the balance, with the button that makes the machine so.
 fn result(ui: &mut Ui, session: &Session, found: &CutMachine, p: &Palette, commands: &mut Vec<Command>) {
-    let BarsReport { mass, tail, tried, force_residual, coupling_residual } = BarsReport::of(found);
+    let report = BarsReport::of(found);
+    let BarsReport { mass, tail, tried, force_residual, coupling_residual, .. } = report;
     let added = signed(found.placed.added_mass, 3);
     let text =
         format!("bars {} kg, counterweights {added} kg, longest tail {} mm", signed(mass, 3), signed(1e3 * tail, 1));
@@ -73,6 +74,9 @@ fn result(ui: &mut Ui, session: &Session, found: &CutMachine, p: &Palette, comma
          Lengths of bars: the best of {tried} tried; the counterweights on them are the lightest."
     );
     note(ui, p, &proof);
+    if let Some(sentence) = report.replaced() {
+        ui.label(RichText::new(sentence).font(plain(12.0)));
+    }
     let [is, of] = [&session.scenario().machine, &found.placed.machine].map(|machine| machine.spec());
     if (&is.parts, &is.counterweights) == (&of.parts, &of.counterweights) {
         return note(ui, p, "The machine is cut like this.");

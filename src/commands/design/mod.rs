@@ -5,20 +5,16 @@ mod kept;
 mod measures;
 mod weighed;
 
-use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
-
 use clap::Args;
-use stillbase_files::write_new;
 use stillbase_mechanics::balance::Preset;
-use stillbase_mechanics::machine::{Machine, to_toml};
+use stillbase_mechanics::machine::Machine;
 use stillbase_study::centres::design_centres;
 
 use super::check::balance_tables;
-use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{MachineArgument, choice, task_run};
-use super::output::{Format, TextTable, check_output};
+use super::new_machine::NewMachine;
+use super::output::{Format, TextTable};
 use kept::RebalanceArguments;
 use stillbase_planning::Motion;
 use stillbase_settings::number::fixed;
@@ -75,12 +71,8 @@ pub struct DesignArguments {
     /// the ratio of force, moment or torque (root mean squares along this motion) to its value before
     #[arg(long, value_name = "SCENARIO")]
     task: Option<String>,
-    /// Write the new machine to this file
-    #[arg(short, long, value_name = "NEW.toml")]
-    output: Option<PathBuf>,
-    /// Replace the file if it exists
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    new_machine: NewMachine,
     #[command(flatten)]
     format: Format,
 }
@@ -107,13 +99,9 @@ impl DesignArguments {
         if self.rebalance.keep {
             return self.keep(&machine, motion, &penalty, &by);
         }
-        if let Some(file) = &self.output {
-            check_output(file, self.force, &["toml"])?;
-        }
+        self.new_machine.check()?;
         let (designed, answer) = design_centres(&machine, &penalty, motion)?;
-        if let Some(file) = &self.output {
-            save(&designed, file, self.force, format!("{}, balanced with {by}", machine.name()))?;
-        }
+        self.new_machine.save(&designed, format!("{}, balanced with {by}", machine.name()))?;
         self.format.print(&answer, |answer| {
             let mut table = TextTable::new(["link", "penalty", "l_c before m", "l_c m"]);
             for (j, link) in machine.links().iter().enumerate() {
@@ -126,25 +114,17 @@ impl DesignArguments {
 
     /// Prints the least change, and writes the machine.
     fn keep(&self, machine: &Machine, motion: Option<&Motion>, penalty: &[f64], by: &str) -> Result<(), Failure> {
-        if let Some(file) = &self.output {
-            check_output(file, self.force, &["toml"])?;
-        }
+        self.new_machine.check()?;
         let (machine_now, answer) = self.rebalance.run(machine, motion, penalty)?;
-        if let Some(file) = &self.output {
-            save(&machine_now, file, self.force, format!("{}, kept balanced with {by}", machine.name()))?;
-        }
+        self.new_machine.save(&machine_now, format!("{}, kept balanced with {by}", machine.name()))?;
         self.format.print(&answer, |answer| kept::text(answer, machine, by))
     }
 
     /// Prints counterweights and their measures, and writes the machine that carries them.
     fn weigh(&self, machine: &Machine, motion: Option<&Motion>) -> Result<(), Failure> {
-        if let Some(file) = &self.output {
-            check_output(file, self.force, &["toml"])?;
-        }
+        self.new_machine.check()?;
         let (weighed, answer) = self.weighing.run(machine, motion)?;
-        if let Some(file) = &self.output {
-            save(&weighed, file, self.force, format!("{}, balanced by counterweights", machine.name()))?;
-        }
+        self.new_machine.save(&weighed, format!("{}, balanced by counterweights", machine.name()))?;
         self.format.print(&answer, |answer| weighed::text(answer, machine))
     }
 
@@ -156,14 +136,4 @@ impl DesignArguments {
         let preset = self.preset.unwrap_or(usual);
         Ok((preset.penalty(links)?, format!("preset {}", preset.name())))
     }
-}
-
-/// Writes a machine, named after its file because it differs from the original machine.
-pub(super) fn save(machine: &Machine, file: &Path, force: bool, summary: String) -> Result<(), Failure> {
-    let mut spec = machine.spec().clone();
-    spec.name = file.file_stem().unwrap_or(OsStr::new("machine")).to_string_lossy().into_owned();
-    spec.summary = summary;
-    write_new(file, to_toml(&Machine::new(spec)?).as_bytes(), force)?;
-    print_message(format!("wrote {}", file.display()));
-    Ok(())
 }

@@ -427,6 +427,7 @@ pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
             bars.force_residual,
             bars.coupling_residual
         ));
+        text.extend(bars.replaced().map(|sentence| format!("{sentence}\n")));
     }
     if !report.rotors.is_empty() {
         let mut table = TextTable::new(["rotor of drive", "inertia kg m²", "ratio"]);

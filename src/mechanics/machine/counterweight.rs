@@ -321,6 +321,22 @@ impl Counterweight {
         }
     }
 
+    /// Returns whether a point in the axes of its link, m, lies in its material.
+    pub fn covers(&self, p: Vector) -> bool {
+        let from = p - Vector::new(self.at, self.across);
+        let is_between = |away: f64, inner: f64, outer: f64| inner < away && away < outer;
+        match self.shape() {
+            CounterweightShape::Point => false,
+            CounterweightShape::Disc { radius } => from.norm() < radius,
+            CounterweightShape::Ring { radius, inner_radius } => is_between(from.norm(), inner_radius, radius),
+            CounterweightShape::HalfRing { radius, inner_radius } => {
+                let from = p - Vector::new(self.circle_at(), self.across);
+                self.outward() * from.re > 0.0 && is_between(from.norm(), inner_radius, radius)
+            }
+            CounterweightShape::Box { length, width } => from.re.abs() < 0.5 * length && from.im.abs() < 0.5 * width,
+        }
+    }
+
     /// Returns the ends of a segment in the axes of its link, and a distance from it, m, within which it lies.
     pub fn around(&self) -> ([Vector; 2], f64) {
         let at = Vector::new(self.at, self.across);

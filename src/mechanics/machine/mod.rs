@@ -46,8 +46,8 @@ pub use keys::KEYS;
 pub use model::{Machine, RelativeAngle, ResolvedClosure, ResolvedLink};
 pub use motors::Motors;
 pub use parts::{
-    BarStock, DerivedNumbers, Ends, Hole, LinkNumber, Lump, MATERIALS, Material, Part, PartBody, PartSource, PlaneBody,
-    Shape,
+    BarStock, Cylinder, DerivedNumbers, Ends, Hole, LinkNumber, Lump, MATERIALS, Material, Part, PartBody, PartSource,
+    PlaneBody, Shape,
 };
 pub(crate) use parts::{sum_of, weigh};
 pub use ranges::{ANGLE, MAX_ANGLE};

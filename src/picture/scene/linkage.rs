@@ -6,7 +6,6 @@
 mod bodies;
 mod heights;
 
-use std::f64::consts::PI;
 use std::sync::Arc;
 
 use heights::Heights;
@@ -14,7 +13,7 @@ use heights::Heights;
 use super::mesh::{SEGMENTS, bar, cylinder, ribbon, ring};
 use super::palette::{Palette, faded, mix};
 use super::{ItemChanges, Mesh, MeshSet, Name, Rgba, Shadow, Solid, posed};
-use stillbase_mechanics::machine::{Chain, Counterweight, Machine, PartSource, ResolvedLink, place_of};
+use stillbase_mechanics::machine::{Chain, Counterweight, Cylinder, Machine, PartSource, ResolvedLink, place_of};
 use stillbase_mechanics::planar::{Pose2, UnitVectors, Vector, unit};
 
 /// The meshes of a machine, and their placement in a pose.
@@ -26,6 +25,8 @@ pub struct LinkageModel {
     pins: Vec<Pin>,
     /// Mesh of all pins; each is stretched to the length between its layers.
     pin: usize,
+    /// Mesh of all spacers; each is stretched to the gap between two links.
+    spacer: usize,
     hole: usize,
     motors: Vec<Motor>,
     plate: Disc,
@@ -139,6 +140,8 @@ struct Pin {
     z: [f64; 2],
     /// Ratio of its length to that of the mesh.
     stretch: f64,
+    /// Heights of the lower end of each spacer around it, m, and the ratio of its length to that of the mesh.
+    spacers: Vec<[f64; 2]>,
 }
 
 #[derive(Clone, Debug)]
@@ -211,12 +214,13 @@ impl LinkageModel {
                     usual,
                 ));
             }
-            // A lump lies on its link, as a cylinder as high as its radius.
+            // A lump lies on its link.
             for lump in machine.part_bodies().iter().filter(|part| part.link == j) {
                 let PartSource::Lump(_) = lump.source else { continue };
-                let size = (lump.body.mass / (PI * LUMP_DENSITY)).cbrt();
+                let own = Cylinder::of(lump.body.mass, lump.body.inertia, LUMP_DENSITY);
                 let at = Vector::new(lump.body.at, lump.body.across);
-                discs.push(Weight { radius: size, z: height, ..disc(at, size, size) });
+                let solid = |own: Cylinder| Weight { radius: own.radius, z: height, ..disc(at, 0.0, own.height) };
+                discs.extend(own.map(solid));
             }
             let span = discs.iter().fold([from, to], |[from, to], disc| [from.min(disc.at.re), to.max(disc.at.re)]);
             let mut mesh = bar(span[0], span[1], radius, height, 0.2 * height);
@@ -258,12 +262,14 @@ impl LinkageModel {
         let radius = 0.62 * THIN_BAR_RADIUS * reach;
         let shortest = height + 2.0 * gap;
         let pin = added(&mut meshes, cylinder(1.25 * radius, shortest, 0.15 * radius));
+        let spacer = added(&mut meshes, ring(1.9 * radius, 1.25 * radius, shortest));
         let hole = added(&mut meshes, cylinder(0.7 * radius, 0.2 * gap, 0.0));
         for (at, links) in joints(machine) {
             let faces = links.iter().map(|j| heights.z[*j]);
             let (low, high) = faces.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), z| (l.min(z), h.max(z)));
             let z = [low - gap, high + height + gap];
-            pins.push(Pin { at, links, z, stretch: (z[1] - z[0]) / shortest });
+            let spacers = heights.spacers(&links).map(|[low, high]| [low, (high - low) / shortest]).collect();
+            pins.push(Pin { at, links, z, stretch: (z[1] - z[0]) / shortest, spacers });
         }
         let n = machine.drives();
         let (drive_height, drive_radius) = (0.05 * reach, DRIVE_RADIUS * reach);
@@ -295,7 +301,7 @@ impl LinkageModel {
         let body = Slab { mesh, half_length, radius: width, height: plate_height };
         let top = heights.top;
         let cap = Disc::of(&mut meshes, 0.6 * drive_radius, top + 2.0 * gap, 0.2 * gap);
-        Self { model: Arc::new(MeshSet { meshes }), bars, pins, pin, hole, motors, plate, body, cap, reach }
+        Self { model: Arc::new(MeshSet { meshes }), bars, pins, pin, spacer, hole, motors, plate, body, cap, reach }
     }
 
     /// Upper bound of the end effector's distance from B, m.
@@ -366,7 +372,7 @@ impl LinkageModel {
 
     /// Returns all solids of the machine on a base in the given pose; `moves` says whether the base can move.
     pub fn solids(&self, e: &UnitVectors, base: Pose2, moves: bool, palette: &Palette) -> Vec<Solid> {
-        let mut solids = Vec::with_capacity(self.bars.len() + 2 * self.pins.len() + self.motors.len() + 2);
+        let mut solids = Vec::with_capacity(self.bars.len() + 3 * self.pins.len() + self.motors.len() + 2);
         let upright = |name: Name, mesh, at: Vector, z, colour, changes| {
             let world_from_item = posed(base.at + at, Vector::new(1.0, 0.0), z);
             Solid { name, mesh, world_from_item, colour, changes }
@@ -400,6 +406,12 @@ impl LinkageModel {
             let mut solid = upright("machine/joints".into(), self.pin, at, pin.z[0], palette.ink, ItemChanges::Pose);
             solid.world_from_item[2][2] = pin.stretch as f32;
             solids.push(solid);
+            for [low, stretch] in &pin.spacers {
+                let name = "machine/joints/spacers".into();
+                let mut solid = upright(name, self.spacer, at, *low, grey, ItemChanges::Pose);
+                solid.world_from_item[2][2] = *stretch as f32;
+                solids.push(solid);
+            }
             let colour = palette.background;
             solids.push(upright("machine/joints/holes".into(), self.hole, at, pin.z[1], colour, ItemChanges::Pose));
         }

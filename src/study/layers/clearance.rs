@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use stillbase_exchange::cut::Cut;
+use stillbase_exchange::solids::Axle;
 use stillbase_mechanics::machine::Machine;
 
 use super::contact::Solids;
@@ -14,9 +15,9 @@ const SAME_HEIGHT: f64 = 1e-9;
 /// The least distance in plan between solids whose heights overlap.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Clearance {
-    /// Name of the first: a bar or a disc.
+    /// Name of the first: a solid of a link.
     pub a: String,
-    /// Name of the second: a bar, a disc or a pin.
+    /// Name of the second: a solid of a link, or a pin.
     pub b: String,
     /// The distance, m; below 0 if they overlap.
     pub distance: f64,
@@ -32,36 +33,32 @@ impl Clearance {
     /// different links share a height.
     pub fn least(machine: &Machine, cut: &Cut, task: &TaskPoses) -> Option<Self> {
         let solids = Solids::of(machine, cut);
-        let height = |link: usize| machine.spec().links[link].axial;
         let mut least: Option<Self> = None;
         let mut include = |pair: &Pair<'_>, names: &dyn Fn() -> [String; 2]| {
-            let Some((pose, near)) = task.nearest(pair) else { return };
-            if least.as_ref().is_none_or(|least| near.gap < least.distance) {
-                let [a, b] = names();
-                let at = [near.at.re, near.at.im];
-                least = Some(Self { a, b, distance: near.gap, time: pose.time, at });
-            }
+            let limit = least.as_ref().map_or(f64::INFINITY, |least| least.distance);
+            let Some((pose, near)) = task.nearest(pair, limit) else { return };
+            let [a, b] = names();
+            least = Some(Self { a, b, distance: near.gap, time: pose.time, at: [near.at.re, near.at.im] });
         };
+        let shares = |[low, high]: [f64; 2], [from, to]: [f64; 2]| high > from + SAME_HEIGHT && low < to - SAME_HEIGHT;
         for (i, a) in solids.links.iter().enumerate() {
-            let (own, half) = (height(a.link), 0.5 * a.thickness);
             for (j, b) in solids.links.iter().enumerate().skip(i + 1).filter(|(_, b)| b.link != a.link) {
-                if (own - height(b.link)).abs() < half + 0.5 * b.thickness - SAME_HEIGHT {
-                    let pair = Pair::of(&solids.plans[i], &solids.plans[j]);
-                    include(&pair, &|| [a.name(machine), b.name(machine)]);
+                if shares(a.faces(machine), b.faces(machine)) {
+                    include(&Pair::of(&solids.plans[i], &solids.plans[j]), &|| [a, b].map(|x| x.name(machine)));
                 }
             }
-            for (axle, plan) in
-                solids.axles.iter().zip(&solids.pins).filter(|(axle, _)| axle.is_pin() && !axle.joins(a.link))
-            {
-                let ends = axle.links.iter().map(|(j, _)| height(*j));
-                let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), z| (l.min(z), h.max(z)));
-                let low = if axle.is_on_base() { f64::NEG_INFINITY } else { low };
-                let reach = half + 0.5 * cut.plate_thickness - SAME_HEIGHT;
-                if own > low - reach && own < high + reach {
+            for (axle, plan) in solids.axles.iter().zip(&solids.pins).filter(|(axle, _)| !axle.joins(a.link)) {
+                if axle.is_pin() && shares(a.faces(machine), pin_faces(machine, cut, axle)) {
                     include(&Pair::of(&solids.plans[i], plan), &|| [a.name(machine), axle.name(machine)]);
                 }
             }
         }
         least
     }
+}
+
+/// Returns the heights of the ends of a pin, m, without end below if it stands on the base.
+fn pin_faces(machine: &Machine, cut: &Cut, axle: &Axle) -> [f64; 2] {
+    let [low, high] = axle.span(machine, cut);
+    [if axle.is_on_base() { f64::NEG_INFINITY } else { low }, high]
 }

@@ -10,16 +10,19 @@ use super::plan::{Nearness, PlanSolid};
 use super::range::PoseRange;
 use super::way::TaskPoses;
 
-/// Cells of poses that are examined for one pair of solids, and for all pairs together.
-const CELLS_PER_PAIR: usize = 100_000;
-const CELLS: usize = 2_000_000;
+/// Work within the joint limits for one pair of solids, and for all pairs together: a unit divides a cell of poses of two
+/// bars, or compares two sides of plates.
+const WORK_PER_PAIR: usize = 100_000;
+const WORK: usize = 2_000_000;
+/// Work along a task for all pairs together: a unit places two bars in a pose.
+const WORK_OF_TASK: usize = 40_000_000;
 
 /// Two solids that overlap in plan in some pose, so that they cannot lie in one layer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Contact {
-    /// Name of the first: a bar or a disc.
+    /// Name of the first: a solid of a link.
     pub a: String,
-    /// Name of the second: a bar, a disc or a pin.
+    /// Name of the second: a solid of a link, or a pin.
     pub b: String,
     /// A point of both, m, in the pose `q`.
     #[serde(rename = "where")]
@@ -64,6 +67,16 @@ pub enum Way<'a> {
     Task(&'a TaskPoses),
 }
 
+impl Way<'_> {
+    /// Returns the work for all pairs of solids.
+    fn work(&self) -> usize {
+        match self {
+            Self::Limits(_) => WORK,
+            Self::Task(_) => WORK_OF_TASK,
+        }
+    }
+}
+
 impl Solids {
     /// Returns the solids of a machine.
     pub fn of(machine: &Machine, cut: &Cut) -> Self {
@@ -73,37 +86,54 @@ impl Solids {
         Self { links, axles, plans, pins }
     }
 
-    /// Returns the contacts of a machine.
+    /// Returns the contacts of a machine. Once the work is used up, what is left counts as meeting, named once for each
+    /// two links and each distance.
     pub fn contacts(&self, machine: &Machine, cut: &Cut, way: &Way<'_>) -> Vec<Contact> {
-        let mut left = CELLS;
-        let mut contacts = Vec::new();
+        let mut contacts = Contacts { way, left: way.work(), found: Vec::new() };
         for (i, a) in self.links.iter().enumerate() {
             for (j, b) in self.links.iter().enumerate().skip(i + 1).filter(|(_, b)| b.link != a.link) {
-                let apart = layers_between(cut, a.thickness, b.thickness);
-                let contact = meeting(&Pair::of(&self.plans[i], &self.plans[j]), way, &mut left);
-                contacts.extend(
-                    contact.map(|met| {
-                        met.contact([a.name(machine), b.name(machine)], apart, Between::Links(a.link, b.link))
-                    }),
-                );
+                let pair = Pair::of(&self.plans[i], &self.plans[j]);
+                let apart = layers_between(cut, [a.thickness, a.rise], [b.thickness, b.rise]);
+                contacts.examine(&pair, apart, Between::Links(a.link, b.link), &|| [a, b].map(|x| x.name(machine)));
             }
             for (j, axle) in self.axles.iter().enumerate().filter(|(_, axle)| axle.is_pin() && !axle.joins(a.link)) {
-                let apart = layers_between(cut, a.thickness, cut.plate_thickness);
-                let contact = meeting(&Pair::of(&self.plans[i], &self.pins[j]), way, &mut left);
-                contacts.extend(
-                    contact
-                        .map(|met| met.contact([a.name(machine), axle.name(machine)], apart, Between::Pin(a.link, j))),
-                );
+                let pair = Pair::of(&self.plans[i], &self.pins[j]);
+                let apart = layers_between(cut, [a.thickness, a.rise], [cut.plate_thickness, 0.0]);
+                let names = || [a.name(machine), axle.name(machine)];
+                contacts.examine(&pair, apart, Between::Pin(a.link, j), &names);
             }
         }
-        contacts
+        contacts.found
     }
 }
 
-/// Returns how many layers further one solid must lie than another of these thicknesses, m, that it overlaps.
-pub fn layers_between(cut: &Cut, a: f64, b: f64) -> usize {
+/// Contacts as they are found.
+struct Contacts<'a> {
+    way: &'a Way<'a>,
+    /// Work that is left, in pairs of sides.
+    left: usize,
+    found: Vec<Contact>,
+}
+
+impl Contacts<'_> {
+    fn examine(&mut self, pair: &Pair<'_>, apart: usize, between: Between, names: &dyn Fn() -> [String; 2]) {
+        let is_known = |own: &Contact| own.between == between && own.apart >= apart;
+        if self.left < pair.cost() && self.found.iter().any(is_known) {
+            return;
+        }
+        self.left = self.left.saturating_sub(pair.cost());
+        let Some(met) = meeting(pair, self.way, &mut self.left) else { return };
+        let (at, [a, b]) = ([met.near.at.re, met.near.at.im], names());
+        self.found.push(Contact { a, b, at, q: met.q, time: met.time, decided: met.decided, apart, between });
+    }
+}
+
+/// Returns how many layers further one solid must lie than another that it overlaps, for thickness and rise above its
+/// link of each, m.
+pub fn layers_between(cut: &Cut, [a, rise_a]: [f64; 2], [b, rise_b]: [f64; 2]) -> usize {
+    let apart = 0.5 * (a + b) + (rise_a - rise_b).abs() + cut.spacer;
     // What rounding adds is no layer.
-    (((0.5 * (a + b) + cut.spacer) / cut.layer_pitch() - 1e-9).ceil() as usize).max(1)
+    ((apart / cut.layer_pitch() - 1e-9).ceil() as usize).max(1)
 }
 
 /// A pose in which two solids meet.
@@ -114,17 +144,10 @@ struct Met {
     decided: bool,
 }
 
-impl Met {
-    fn contact(self, [a, b]: [String; 2], apart: usize, between: Between) -> Contact {
-        let at = [self.near.at.re, self.near.at.im];
-        Contact { a, b, at, q: self.q, time: self.time, decided: self.decided, apart, between }
-    }
-}
-
 fn meeting(pair: &Pair<'_>, way: &Way<'_>, left: &mut usize) -> Option<Met> {
     match way {
         Way::Limits(range) => {
-            let given = CELLS_PER_PAIR.min(*left);
+            let given = WORK_PER_PAIR.min(*left);
             let mut budget = given;
             let overlap = pair.overlap(range, &mut budget);
             *left -= given - budget;
@@ -135,7 +158,7 @@ fn meeting(pair: &Pair<'_>, way: &Way<'_>, left: &mut usize) -> Option<Met> {
             }
         }
         Way::Task(task) => {
-            let (pose, near, decided) = task.first_meeting(pair)?;
+            let (pose, near, decided) = task.first_meeting(pair, left)?;
             Some(Met { q: pose.q.to_vec(), near, time: Some(pose.time), decided })
         }
     }

@@ -34,6 +34,8 @@ pub struct Pair<'a> {
     drives: Vec<usize>,
     /// Lever of each drive, m.
     levers: [f64; MAX_DRIVES],
+    /// Pairs of sides, of which each takes a share of the work.
+    cost: usize,
 }
 
 /// Angles of the drives relative to the one that is held.
@@ -77,13 +79,18 @@ impl<'a> Pair<'a> {
         let mut drives: Vec<usize> = (0..MAX_DRIVES).filter(|k| levers[*k] > 0.0).collect();
         // The drive with the longest lever is held, because the bound then changes least.
         drives.sort_by(|k, l| levers[*l].total_cmp(&levers[*k]).then(k.cmp(l)));
-        Self { a, b, drives, levers }
+        Self { a, b, drives, levers, cost: a.sides() * b.sides() }
     }
 
     /// Returns the most that a point of one solid moves relative to the other, m, if drives turn by `by`, rad.
     pub fn motion(&self, by: impl Fn(usize) -> f64) -> f64 {
         let Some((&held, others)) = self.drives.split_first() else { return 0.0 };
         others.iter().map(|&k| self.levers[k] * (by(k) - by(held)).abs()).sum()
+    }
+
+    /// Returns the work of [`at`](Self::at), in pairs of sides.
+    pub fn cost(&self) -> usize {
+        self.cost
     }
 
     /// Returns how near the solids are in a pose.
@@ -95,8 +102,8 @@ impl<'a> Pair<'a> {
         self.drives.get(1..).unwrap_or_default()
     }
 
-    /// Returns whether the solids overlap in a pose of the range; examines `budget` cells at most, and takes what it
-    /// needs from it.
+    /// Returns whether the solids overlap in a pose of the range; divides cells while there is work left in `budget`, in
+    /// pairs of sides, and takes what it needs from it.
     pub fn overlap(&self, range: &PoseRange, budget: &mut usize) -> Overlap {
         let Some(&held) = self.drives.first() else {
             let e = [Vector::new(1.0, 0.0); MAX_DRIVES];
@@ -133,7 +140,7 @@ impl<'a> Pair<'a> {
             let Some(k) = widest.filter(|k| reach(k) > 0.25 * TOLERANCE && *budget > 0) else {
                 return self.found(range, &cell, held, Overlap::Undecided);
             };
-            *budget -= 1;
+            *budget = budget.saturating_sub(self.cost);
             let half = 0.5 * cell.half[k];
             parts.extend([-half, half].map(|shift| {
                 let mut part = cell;

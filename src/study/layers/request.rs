@@ -17,7 +17,7 @@ use super::stack::{Ended, MAX_LAYERS, Stack};
 use super::tilt::{LeastTilt, TiltMeasure, largest_tilt, tilt_coefficient};
 use super::way::TaskPoses;
 
-/// Partial orders that are examined to find the fewest layers, to explain a conflict, and to tilt the base least.
+/// Partial orders, of machines of a few links, that are examined to find the fewest layers, to explain a conflict, and to tilt the base least.
 const ORDERS: usize = 400_000;
 
 /// What layers are asked for.
@@ -156,6 +156,8 @@ pub fn find_layers(request: &LayersRequest) -> Result<LayersReport, NoLayers> {
         height: layer as f64 * pitch,
     };
     let [low, high] = ends(&stacked, &solids);
+    // A payload above its link is kept as far away on both sides.
+    let is_exact = solids.links.iter().all(|solid| solid.rise == 0.0);
     Ok(LayersReport {
         layers: machine.spec().links.iter().zip(&layers).map(row).collect(),
         count,
@@ -164,8 +166,8 @@ pub fn find_layers(request: &LayersRequest) -> Result<LayersReport, NoLayers> {
             .as_ref()
             .map(|task| Change { before: largest_tilt(machine, task), after: largest_tilt(&stacked, task) }),
         tilt_coefficient: Change { before: tilt_coefficient(machine), after: tilt_coefficient(&stacked) },
-        minimal,
-        least_tilt,
+        minimal: minimal && is_exact,
+        least_tilt: least_tilt && is_exact,
         meetings,
         clearance: task.as_ref().and_then(|task| Clearance::least(&stacked, cut, task)),
         machine: stacked,
@@ -188,10 +190,7 @@ fn at_heights(machine: &Machine, heights: &[f64]) -> Result<Machine, MachineErro
 
 /// Returns the lowest and the uppermost face of the solids of a machine, m.
 fn ends(machine: &Machine, solids: &Solids) -> [f64; 2] {
-    let faces = solids.links.iter().flat_map(|solid| {
-        let (middle, half) = (machine.spec().links[solid.link].axial, 0.5 * solid.thickness);
-        [middle - half, middle + half]
-    });
+    let faces = solids.links.iter().flat_map(|solid| solid.faces(machine));
     faces.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], face| [low.min(face), high.max(face)])
 }
 
@@ -206,7 +205,7 @@ fn conflict(machine: &Machine, cut: &Cut, solids: &Solids, stack: &Stack, contac
     let mut left: Vec<Contact> = contacts.iter().filter(is_among).cloned().collect();
     // What can be left out without an order coming up explains nothing.
     let mut i = 0;
-    while i < left.len() {
+    while i < left.len() && budget > 0 {
         let mut without = left.clone();
         without.remove(i);
         let lacks = Stack::of(machine.links().len(), solids, cut, &without).has_order(&mut budget) == Some(false);

@@ -3,7 +3,7 @@
 use stillbase_exchange::cut::Cut;
 use stillbase_exchange::solids::SolidKind;
 use stillbase_mechanics::machine::{Machine, place_of};
-use stillbase_mechanics::planar::{UnitVectors, Vector};
+use stillbase_mechanics::planar::UnitVectors;
 
 use super::contact::Solids;
 
@@ -16,9 +16,9 @@ pub struct SideRow {
     pub drive: usize,
     /// Its layer, counted from 0.
     pub layer: usize,
-    /// Interval along x that its bar covers, m.
+    /// Interval along x that its bars and plates cover, m.
     pub bar: [f64; 2],
-    /// Intervals along x that its discs cover, m.
+    /// Intervals along x that its counterweights, its lumps and the payload cover, m.
     pub discs: Vec<[f64; 2]>,
 }
 
@@ -48,14 +48,14 @@ impl SideView {
         let solids = Solids::of(machine, cut);
         let mut rows: Vec<SideRow> = Vec::with_capacity(layers.len());
         for (solid, plan) in solids.links.iter().zip(&solids.plans) {
-            let ends = plan.placed(e).map(|end: Vector| end.re);
-            let covered = [ends[0].min(ends[1]) - plan.radius, ends[0].max(ends[1]) + plan.radius];
+            let covered = plan.plan.extent(plan.placed(e));
             let (link, drive) = (solid.link, plan.drive);
             let layer = layers.get(link).copied().unwrap_or_default();
-            match (solid.kind, rows.last_mut()) {
-                (SolidKind::Disc(_), Some(row)) => row.discs.push(covered),
-                (SolidKind::Bar, _) => rows.push(SideRow { link, drive, layer, bar: covered, discs: Vec::new() }),
-                _ => {}
+            let is_disc = matches!(solid.kind, SolidKind::Disc(_) | SolidKind::Lump(_) | SolidKind::Payload);
+            match rows.last_mut().filter(|row| row.link == link) {
+                Some(row) if is_disc => row.discs.push(covered),
+                Some(row) => row.bar = [row.bar[0].min(covered[0]), row.bar[1].max(covered[1])],
+                None => rows.push(SideRow { link, drive, layer, bar: covered, discs: Vec::new() }),
             }
         }
         let all = rows.iter().flat_map(|row| row.discs.iter().chain([&row.bar]));

@@ -9,12 +9,16 @@
 //! A pin takes all layers between the links that it joins, that at the base all from the base plate up. A link that
 //! passes over a pin of others lies above or below all of it.
 
+use std::collections::BTreeMap;
+
 use super::contact::{Between, Contact, Solids, layers_between};
 use stillbase_exchange::cut::Cut;
-use stillbase_exchange::solids::SolidKind;
 
 /// Greatest number of layers: one bit of a number for each.
 pub const MAX_LAYERS: usize = 128;
+
+/// Pairs of links, and of links and pins, that are one unit of work.
+const MEETINGS_PER_WORK: usize = 1000;
 
 /// What an order of the links must keep.
 #[derive(Clone, Debug)]
@@ -67,27 +71,29 @@ impl Stack {
     /// Returns what the contacts of a machine of `links` links ask.
     pub fn of<'a>(links: usize, solids: &Solids, cut: &Cut, contacts: impl IntoIterator<Item = &'a Contact>) -> Self {
         let mut apart = vec![vec![0; links]; links];
-        let mut over: Vec<(usize, usize, usize)> = Vec::new();
+        let mut over: BTreeMap<(usize, usize), usize> = BTreeMap::new();
         for contact in contacts {
             match contact.between {
                 Between::Links(a, b) => {
                     apart[a][b] = contact.apart.max(apart[a][b]);
                     apart[b][a] = apart[a][b];
                 }
-                Between::Pin(link, pin) => match over.iter_mut().find(|(a, b, _)| (*a, *b) == (link, pin)) {
-                    Some((_, _, own)) => *own = contact.apart.max(*own),
-                    None => over.push((link, pin, contact.apart)),
-                },
+                Between::Pin(link, pin) => {
+                    let own = over.entry((link, pin)).or_default();
+                    *own = contact.apart.max(*own);
+                }
             }
         }
         let pins =
             solids.axles.iter().map(|axle| (axle.links.iter().map(|(link, _)| *link).collect(), axle.is_on_base()));
         let mut floor = vec![0; links];
-        for solid in solids.links.iter().filter(|solid| matches!(solid.kind, SolidKind::Disc(_))) {
+        for solid in &solids.links {
             // The base plate lies below layer 0 as another layer would.
-            let above = layers_between(cut, solid.thickness, cut.plate_thickness) - 1;
+            let sunk = [solid.thickness, solid.rise.min(0.0)];
+            let above = layers_between(cut, sunk, [cut.plate_thickness, 0.0]) - 1;
             floor[solid.link] = above.max(floor[solid.link]);
         }
+        let over = over.into_iter().map(|((link, pin), apart)| (link, pin, apart)).collect();
         Self { apart, over, pins: pins.collect(), floor }
     }
 
@@ -111,6 +117,11 @@ impl Stack {
             pins,
             floor: links.iter().map(|link| self.floor[*link]).collect(),
         }
+    }
+
+    /// Returns the work of one partial order: 1, and more where very many solids meet.
+    fn work(&self) -> usize {
+        1 + (self.links() * self.links() + self.over.len()) / MEETINGS_PER_WORK
     }
 
     fn links(&self) -> usize {
@@ -194,7 +205,11 @@ impl Stack {
     /// Returns the fewest links that have no order among themselves, if all have none.
     pub fn conflict(&self, budget: &mut usize) -> Vec<usize> {
         let flat = self.flat();
-        let lacks = |links: &[usize], budget: &mut usize| flat.only(links).has_order(budget) == Some(false);
+        let lacks = |links: &[usize], budget: &mut usize| {
+            // To choose links costs about as much as a partial order of all.
+            *budget = budget.saturating_sub(flat.work());
+            flat.only(links).has_order(budget) == Some(false)
+        };
         let mut left: Vec<usize> = (0..self.links()).collect();
         // Without any one of these links there is an order, or it is not known that there is none.
         for link in 0..self.links() {
@@ -231,7 +246,7 @@ impl Stack {
         if *budget == 0 {
             return Ended::CutShort;
         }
-        *budget -= 1;
+        *budget = budget.saturating_sub(self.work());
         if !self.narrow(sets) || !visitor.is_worth(sets) {
             return Ended::Complete;
         }

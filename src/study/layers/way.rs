@@ -47,28 +47,60 @@ impl TaskPoses {
         &self.poses
     }
 
-    /// Returns the pose in which two solids are nearest, and how near they are.
-    pub fn nearest(&self, pair: &Pair<'_>) -> Option<(TaskPose, Nearness)> {
-        let near = self.poses.iter().map(|pose| (*pose, pair.at(&pose.e)));
-        near.reduce(|best, next| if next.1.gap < best.1.gap { next } else { best })
+    /// Returns the pose in which two solids are nearest, and how near they are, if they come nearer than `limit`, m.
+    pub fn nearest(&self, pair: &Pair<'_>, limit: f64) -> Option<(TaskPose, Nearness)> {
+        let mut best: Option<(TaskPose, Nearness)> = None;
+        // How far the two still must move until they can be nearer than the best.
+        let mut free = 0.0;
+        for (i, pose) in self.poses.iter().enumerate() {
+            free -= self.moved(pair, i);
+            if free > 0.0 {
+                continue;
+            }
+            let near = pair.at(&pose.e);
+            let least = best.map_or(limit, |(_, near)| near.gap);
+            if near.gap < least {
+                best = Some((*pose, near));
+            }
+            free = near.gap - least;
+        }
+        best
     }
 
     /// Returns the first pose in which two solids meet, and whether they meet for certain. Between two samples they
-    /// may come nearer by as much as their points move from one to the other.
-    pub(super) fn first_meeting(&self, pair: &Pair<'_>) -> Option<(TaskPose, Nearness, bool)> {
+    /// may come nearer by as much as their points move from one to the other. The work is taken from `budget`, in pairs
+    /// of sides; without any left, they may meet.
+    pub(super) fn first_meeting(&self, pair: &Pair<'_>, budget: &mut usize) -> Option<(TaskPose, Nearness, bool)> {
         let mut doubtful = None;
+        // A lower bound of the gap, m.
+        let mut least = 0.0;
         for (i, pose) in self.poses.iter().enumerate() {
+            let moved = self.moved(pair, i);
+            let close = moved.max(TOLERANCE);
+            least -= moved;
+            if least >= close {
+                continue;
+            }
             let near = pair.at(&pose.e);
             if near.gap < 0.0 {
                 return Some((*pose, near, true));
             }
-            let before = &self.poses[i.saturating_sub(1)];
-            let moved = pair
-                .motion(|k| pose.q.get(k).copied().unwrap_or_default() - before.q.get(k).copied().unwrap_or_default());
-            if doubtful.is_none() && near.gap < moved.max(TOLERANCE) {
+            least = near.gap;
+            if doubtful.is_none() && (near.gap < close || *budget < pair.cost()) {
                 doubtful = Some((*pose, near, false));
             }
+            if *budget < pair.cost() {
+                break;
+            }
+            *budget -= pair.cost();
         }
         doubtful
+    }
+
+    /// Returns the most that points of two solids move relative to each other from the pose before to pose i, m.
+    fn moved(&self, pair: &Pair<'_>, i: usize) -> f64 {
+        let (pose, before) = (&self.poses[i], &self.poses[i.saturating_sub(1)]);
+        let angle = |q: &PerDrive, k: usize| q.get(k).copied().unwrap_or_default();
+        pair.motion(|k| angle(&pose.q, k) - angle(&before.q, k))
     }
 }

@@ -72,6 +72,11 @@ impl Part {
         self.name.starts_with(ARM)
     }
 
+    /// Returns whether [`Machine::with_bars`] cuts it anew, or takes it off.
+    pub fn is_cut(&self) -> bool {
+        self.is_arm() || self.name == CUT_BAR
+    }
+
     /// Returns whether it has a name of its own; a bar that is drawn or cut anew is named after its section.
     pub(super) fn has_own_name(&self) -> bool {
         !["", CUT_BAR, DRAWN_BAR].contains(&self.name.as_str())
@@ -94,7 +99,7 @@ impl Machine {
             let [low, high] = reach.get(j).copied().unwrap_or([from, to]);
             [from.min(low), to.max(high)].map(|at| place(at, self.resolved_links()[j].length))
         };
-        let kept = self.spec().parts.iter().enumerate().filter(|(_, part)| !part.is_arm() && part.name != CUT_BAR);
+        let kept = self.spec().parts.iter().enumerate().filter(|(_, part)| !part.is_cut());
         let kept = kept.map(|(i, part)| match spines.iter().position(|spine| *spine == Some(i)) {
             Some(j) => {
                 let [from, to] = ends(j);

@@ -10,6 +10,7 @@
 
 mod bars;
 mod body;
+mod cylinder;
 mod derived;
 mod hole;
 mod material;
@@ -20,6 +21,7 @@ mod weigh;
 
 pub use bars::BarStock;
 pub use body::PlaneBody;
+pub use cylinder::Cylinder;
 pub use derived::{DerivedNumbers, LinkNumber};
 pub use material::{MATERIALS, Material};
 pub use part::{Ends, Hole, Lump, Part, Shape};

@@ -52,6 +52,15 @@ impl Heights {
         weight.thickness(DISC_DENSITY).filter(|_| self.are_own)
     }
 
+    /// Returns the heights of the ends of the spacers on a pin, m: from the upper face of each link that it joins to the
+    /// lower face of the next one. Links without heights of their own have none.
+    pub fn spacers(&self, links: &[usize]) -> impl Iterator<Item = [f64; 2]> {
+        let mut faces: Vec<f64> = links.iter().filter(|_| self.are_own).map(|link| self.z[*link]).collect();
+        faces.sort_by(f64::total_cmp);
+        let gaps: Vec<[f64; 2]> = faces.windows(2).map(|pair| [pair[0] + self.height, pair[1]]).collect();
+        gaps.into_iter().filter(|[low, high]| high > low)
+    }
+
     /// Returns the lower face of the link that carries a motor, m.
     pub fn carrier(&self, machine: &Machine, motor: usize) -> f64 {
         let parts = machine.resolved_links();
