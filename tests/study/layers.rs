@@ -229,7 +229,8 @@ fn built(noise: &mut Noise, drives: usize) -> Machine {
         let (width, thickness) = (noise.between(0.01, 0.03), noise.between(0.003, 0.008));
         let flat = Part { name: "bar".into(), width: Some(width), ..Part::flat(&link.name, thickness) };
         let (reach, side) = (noise.between(0.03, 0.15), noise.sign());
-        let polygon = vec![[0.02, 0.0], [0.02 + reach, 0.0], [0.02 + 0.5 * reach, 0.3 * side * reach], [0.0, side * reach]];
+        let polygon =
+            vec![[0.02, 0.0], [0.02 + reach, 0.0], [0.02 + 0.5 * reach, 0.3 * side * reach], [0.0, side * reach]];
         match j % 4 {
             0 => spec.parts.push(flat),
             1 => spec.parts.push(Part {
@@ -489,10 +490,23 @@ fn the_work_for_a_machine_of_many_solids_is_bounded() {
     for n in links.len()..60 {
         let (name, at) = (format!("n{n}"), PlaceOnLink::Metres(0.004 * n as f64));
         let attach = Attach::On(LinkPoint { link: links[n % drives].name.clone(), at });
-        spec.links.push(Link { name: name.clone(), attach, drive: format!("{}", 1 + (n + 1) % drives), ..links[0].clone() });
-        let polygon: Vec<[f64; 2]> = (0..40).map(|i| f64::from(i) * 0.157).map(|a| [0.1 * a.cos(), 0.06 * a.sin()]).collect();
+        spec.links.push(Link {
+            name: name.clone(),
+            attach,
+            drive: format!("{}", 1 + (n + 1) % drives),
+            ..links[0].clone()
+        });
+        let polygon: Vec<[f64; 2]> =
+            (0..40).map(|i| f64::from(i) * 0.157).map(|a| [0.1 * a.cos(), 0.06 * a.sin()]).collect();
         spec.parts.push(Part { name: "plate".into(), shape: Shape::Plate, polygon, ..Part::flat(&name, 0.006) });
-        spec.lumps.push(Lump { link: name, name: format!("motor {n}"), mass: 0.2, at: PlaceOnLink::Metres(0.1), across: 0.03, inertia: 0.0 });
+        spec.lumps.push(Lump {
+            link: name,
+            name: format!("motor {n}"),
+            mass: 0.2,
+            at: PlaceOnLink::Metres(0.1),
+            across: 0.03,
+            inertia: 0.0,
+        });
     }
     let machine = Machine::new(spec).expect("a machine of sixty links");
     let begun = std::time::Instant::now();
