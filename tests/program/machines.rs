@@ -633,7 +633,7 @@ fn a_machine_goes_elsewhere_by_the_ending_of_the_file() {
     assert!(read("arm.urdf").contains("<robot name=\"nine-link\">"));
     let wide = ["--bar-width", "0.04", "--pin-diameter", "0.01"];
     let answer = object(&[&["export-model", "nine-link", "-o", &file("arm.svg")], &wide[..]].concat());
-    assert_eq!((keys(&answer), answer["links"].as_u64()), (vec!["file", "links", "size"], Some(9)));
+    assert_eq!((keys(&answer), answer["links"].as_u64()), (vec!["file", "left_out", "links", "size"], Some(9)));
     assert!(read("arm.svg").contains("bars 40.0 wide with round ends · holes Ø 10.0"));
     assert!(prints(&["export-model", "nine-link", "-o", &file("arm.dxf")]).contains("9 links on a sheet"));
     assert!(read("arm.dxf").contains("AC1009"));
@@ -705,7 +705,7 @@ fn layers_are_told_written_and_refused() {
     let coefficient = &answer["tilt_coefficient"]["after"];
     assert_eq!((&again["layers"], &again["tilt_coefficient"]["before"]), (&answer["layers"], coefficient));
     let solids = object(&["export-model", &file("stacked.toml"), "-o", &file("arm.stl")]);
-    assert_eq!(keys(&solids), ["file", "pose", "solids", "volume"]);
+    assert_eq!(keys(&solids), ["file", "left_out", "pose", "solids", "volume"]);
     fails(&["export-model", "two-drive", "-o", &file("flat.stl")], 2, &["share a pin and a height", "layers"]);
     fails(&["layers", "two-drive", "-o", &file("stacked.toml")], 2, &["stacked.toml", "--force"]);
     fails(&["layers", "nine-link"], 1, &["no order of links 2, 3, 4 and 6", "link 4 meets axis of the base at"]);
