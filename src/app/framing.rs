@@ -21,12 +21,14 @@ pub fn keep_framed(
     let view = view_state.view;
     let size = [rect.width(), rect.height()];
     let room = [size[0], size[1], lasting.map_or(0.0, |rect| rect.height().round())];
+    // During a drag the view stays still; it is framed after the release.
+    if view_state.gesture.grabbed.is_some() {
+        return;
+    }
     let content = match &view_state.framing[view as usize] {
         Framing::Manual => return,
         Framing::Framed(_, last) if *last == room => return,
         Framing::Framed(content, _) => content.clone(),
-        // During a drag the view stays still; it is framed after the release.
-        Framing::Pending if view_state.gesture.grabbed.is_some() => return,
         Framing::Pending => Arc::new(content(view)),
     };
     let part = |part: &Rect| {

@@ -6,7 +6,7 @@ use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
 use crate::number::nine_digits;
-use crate::range::{quote_clipped, shortened};
+use crate::range::{MAX_SAID, quote_clipped, shortened};
 
 /// Word that removes a key, so that its default applies.
 pub const DEFAULT_WORD: &str = "default";
@@ -38,7 +38,7 @@ pub fn merged_keys<T: Serialize>(value: &T, change: &Table) -> Result<Table, Str
 /// # Errors
 /// Says which key or value is wrong, and what is accepted.
 pub fn read<T: DeserializeOwned>(table: &Table) -> Result<T, String> {
-    table.clone().try_into().map_err(|e: toml::de::Error| shortened(e.message(), 300))
+    table.clone().try_into().map_err(|e: toml::de::Error| shortened(e.message(), MAX_SAID))
 }
 
 /// Returns the current values of the keys of a change, so that [`with_changes`] restores them.

@@ -8,7 +8,7 @@ use toml::de::Error;
 
 use super::fault::{Fault, Faults};
 use super::key_path::{KeyPath, KeyStep};
-use super::range::{quote_clipped, shortened};
+use super::range::{MAX_SAID, quote_clipped, shortened};
 use super::spelling::{nearest_keys, nearest_words};
 use super::stated::{MendValue, StatedFile, TextPlace};
 
@@ -17,8 +17,6 @@ const MAX_ROUNDS: usize = 200;
 const MAX_READ_BYTES: usize = 20_000_000;
 /// Maximum number of times that one place is mended.
 const MAX_MENDED: usize = 3 * MAX_ROUNDS / 4;
-/// Maximum length of a text within a message, characters.
-const MAX_SAID: usize = 300;
 
 /// What is wrong in a file, as its reader finds it.
 #[derive(Clone, Debug, PartialEq)]

@@ -132,6 +132,10 @@ impl fmt::Display for Requirement {
     }
 }
 
+/// Maximum length of a text from a file or a reader within a message, characters: it holds the names of all keys of a
+/// part.
+pub const MAX_SAID: usize = 400;
+
 /// Maximum number of characters of given text that a message repeats.
 const MAX_CLIPPED: usize = 80;
 

@@ -413,7 +413,7 @@ fn limits_are_dragged_at_their_arcs_and_typed() {
     h.drag_at(from);
     h.step();
     let least = |h: &Window| {
-        let node = h.get_by_label("least angle of drive 2 from drive 1 rad");
+        let node = h.get_by_label("least angle of drive 2 from drive 1 °");
         node.accesskit_node().value().expect("a number")
     };
     let was = least(&h);

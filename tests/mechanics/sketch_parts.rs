@@ -328,7 +328,7 @@ fn computed_numbers_are_written_as_a_person_would() {
     let step = SketchStep::MovePin { pin: own.tip, to: turned }.plainly();
     assert_eq!(step, SketchStep::MovePin { pin: own.tip, to: [0.0, 0.2] });
     let limits = |range| SketchStep::Limits { to: "2".into(), from: "1".into(), offset: 0.0, range: Some(range) };
-    assert_eq!(limits([30_f64.to_radians(), 1.2]).plainly(), limits([0.523598775598, 1.2]));
+    assert_eq!(limits([0.1 + 0.2, 1.2]).plainly(), limits([0.3, 1.2]));
 }
 
 /// Every bar of a drawing has one drawn part, from its first pin to its last, with a hole for each pin that has room.

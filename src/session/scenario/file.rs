@@ -18,7 +18,7 @@ use stillbase_mechanics::machine::{self, FileError, KeyPath, KeyStep, Machine, M
 use stillbase_mechanics::sketch::{Sketch, SketchRefusal};
 use stillbase_settings::change;
 use stillbase_settings::mending::{Problem, Wrong, faults_of};
-use stillbase_settings::range::{quote_clipped, range_error, shortened};
+use stillbase_settings::range::{MAX_SAID, quote_clipped, range_error, shortened};
 use stillbase_settings::stated::{MendValue, StatedFile};
 use stillbase_settings::text::{control_character, plain};
 use stillbase_simulation::control::Control;
@@ -83,9 +83,6 @@ enum MachineRef {
 /// Requirement on name, title and summary.
 const PRINTABLE: &str = "want printable characters";
 
-/// Maximum length of an error of the TOML reader, characters.
-const MAX_MESSAGE_CHARS: usize = 400;
-
 /// Content of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileContent {
@@ -125,7 +122,7 @@ impl Reading<'_> {
     fn wrong(&self, path: KeyPath, message: String) -> FirstProblem {
         let (file, line) = (self.label.into(), self.line(&path));
         let problem = Problem { path, wrong: Wrong::Value(message) };
-        let message = shortened(&problem.text(&ScenarioWords), MAX_MESSAGE_CHARS);
+        let message = shortened(&problem.text(&ScenarioWords), MAX_SAID);
         Box::new((problem, ScenarioError::Syntax { file, line, message }))
     }
 
@@ -136,7 +133,7 @@ impl Reading<'_> {
     /// Makes the error of a problem that the TOML reader has found.
     fn syntax(&self, problem: Problem) -> FirstProblem {
         let (file, line) = (self.label.into(), self.line(&problem.path));
-        let message = shortened(&problem.text(&ScenarioWords), MAX_MESSAGE_CHARS);
+        let message = shortened(&problem.text(&ScenarioWords), MAX_SAID);
         Box::new((problem, ScenarioError::Syntax { file, line, message }))
     }
 
@@ -237,9 +234,8 @@ impl Reading<'_> {
         })?;
         let sketch = match file.sketch {
             Some(sketch) => {
-                let bent = |why: SketchRefusal| {
-                    self.wrong(KeyPath::new(&[&"sketch"]), shortened(&why.to_string(), MAX_MESSAGE_CHARS))
-                };
+                let bent =
+                    |why: SketchRefusal| self.wrong(KeyPath::new(&[&"sketch"]), shortened(&why.to_string(), MAX_SAID));
                 sketch.check().map_err(bent)?;
                 Some(match file.set.is_empty() {
                     true => sketch,
@@ -252,7 +248,7 @@ impl Reading<'_> {
         let wrong_edit = |(i, message): (usize, String)| {
             let path = KeyPath::new(&[&"edit", &i]);
             let (file, line) = (label.into(), self.line(&path));
-            let message = shortened(&message, MAX_MESSAGE_CHARS);
+            let message = shortened(&message, MAX_SAID);
             let error = ScenarioError::Edit { file, line, entry: i + 1, message: message.clone() };
             Box::new((Problem { path, wrong: Wrong::Value(message) }, error))
         };
@@ -283,7 +279,7 @@ impl Reading<'_> {
         scenario.check(label).map_err(|error| self.placed(error))?;
         check_edits(&scenario).map_err(wrong_edit)?;
         let wrong_entry = |of: &str, (i, message): (usize, String)| {
-            self.wrong(KeyPath::new(&[&of, &i]), shortened(&message, MAX_MESSAGE_CHARS))
+            self.wrong(KeyPath::new(&[&of, &i]), shortened(&message, MAX_SAID))
         };
         let sound = |edits: &[TimedEdit]| check_edits(&Scenario { edits: edits.to_vec(), ..scenario.without_edits() });
         check_bookmarks(&scenario.bookmarks).map_err(|wrong| wrong_entry("bookmark", wrong))?;
