@@ -42,12 +42,9 @@ impl PenTool {
     /// Says what can be done in the drawing.
     pub fn invitation(self) -> &'static str {
         match self {
-            Self::Bar => {
-                "drag from pin to pin · type length, Tab, angle · click a bar: its drive · Shift fine, Ctrl 10 mm and 15°"
-            }
-            Self::Move => {
-                "drag a pin; onto another pin joins both · drag the end of an arc: a limit · click a bar: its drive · Delete"
-            }
+            // Short enough for a window of 1280 points.
+            Self::Bar => "drag from pin to pin · type length, Tab, angle · Shift: freely · Ctrl: 10 mm",
+            Self::Move => "drag a pin; onto another pin joins both · drag the end of an arc: a limit",
             Self::Motor => "click a pin to hang a motor on it",
             Self::Lump => "click a bar to put a known mass there · then drag it, and type what it weighs",
             Self::EndEffector => "click the pin that does the work",
