@@ -7,7 +7,7 @@ use stillbase::exchange::cut::Cut;
 use stillbase::exchange::form::Form;
 use stillbase::exchange::mjcf::middle;
 use stillbase::exchange::solids::{LinkSolid, SolidKind, link_solids};
-use stillbase::mechanics::machine::{Counterweight, Machine, Part, Shape, place_of};
+use stillbase::mechanics::machine::{Counterweight, CounterweightShape, Machine, Part, Shape, place_of};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 
 use super::drawings;
@@ -39,8 +39,13 @@ fn stacked(machine: &Machine, noise: &mut Noise) -> Machine {
             _ => Part { shape: Shape::Profile, width: Some(0.03), height: Some(0.02), ..pipe },
         });
         let (mass, at) = (noise.between(0.3, 2.0), noise.between(-0.2, 0.1));
-        let counterweight = Counterweight { link: link.name.clone(), mass, at, radius: 0.04, ..Default::default() };
-        spec.counterweights.push(counterweight);
+        let shape = match j % 4 {
+            0 => CounterweightShape::Ring { radius: 0.04, inner_radius: 0.01 },
+            1 => CounterweightShape::HalfRing { radius: 0.05, inner_radius: 0.015 },
+            2 => CounterweightShape::Box { length: 0.08, width: 0.05 },
+            _ => CounterweightShape::Disc { radius: 0.04 },
+        };
+        spec.counterweights.push(Counterweight::new(link.name.clone(), mass, [at, 0.0], shape));
     }
     (spec.payload.mass, spec.payload.inertia, spec.payload.offset) = (0.4, 2e-4, [0.02, 0.01]);
     Machine::new(spec).expect("a machine")
@@ -110,9 +115,11 @@ fn solids_weigh_what_links_weigh() {
                 // Holes for pins are drilled through discs, whose masses do not count them.
                 if let SolidKind::Disc(i) = solid.kind {
                     let weight = &machine.spec().counterweights[i];
-                    drilled += solid.holes.len();
                     let part = &machine.resolved_links()[j];
-                    for (at, diameter) in &solid.holes {
+                    // The bore of a ring is not a hole for a pin.
+                    let bore = 2.0 * weight.inner_radius;
+                    for (at, diameter) in solid.holes.iter().filter(|(_, diameter)| *diameter != bore) {
+                        drilled += 1;
                         let hole = 0.25 * PI * diameter * diameter * solid.thickness * STEEL;
                         let centre = place_of(&part.root, &e) + e[part.drive] * part.sign * at;
                         own = own.and(Weighed(hole, centre, hole * diameter * diameter / 8.0));

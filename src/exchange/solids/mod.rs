@@ -213,4 +213,4 @@ const CARRIED: f64 = 1e-9;
 /// Width of the edge of a counterweight that is not drilled, as a fraction of its radius.
 const EDGE_SHARE: f64 = 0.02;
 /// Number of straight sides of a whole circle, in the outline of half a ring.
-const CURVE_SIDES: usize = 32;
+const CURVE_SIDES: usize = 64;
