@@ -2,7 +2,7 @@
 
 use super::cut::unweighed_tail;
 use super::mjcf::{MIN_MASS_OR_INERTIA, parallel};
-use stillbase_mechanics::machine::{Counterweight, Length, Link, LinkNumber, Machine, MachineSpec};
+use stillbase_mechanics::machine::{Counterweight, CounterweightShape, Length, Link, LinkNumber, Machine, MachineSpec};
 use stillbase_mechanics::planar::Vector;
 use stillbase_settings::number::{counted, fixed};
 
@@ -119,6 +119,13 @@ pub fn of_solids(machine: &Machine) -> Vec<String> {
     };
     if spec.counterweights.iter().any(|weight| covers_pin(&weight)) {
         list.push("the mass of holes in counterweights: those over a pin are drilled, but weighed whole".to_owned());
+    }
+    if spec.counterweights.iter().any(|weight| weight.shape() != CounterweightShape::Point) {
+        list.push(
+            "slots: a counterweight is one solid centred on its bar, which runs through it; build it as two halves, one \
+             on each side of the bar"
+                .to_owned(),
+        );
     }
     if spec.lumps.iter().any(|lump| lump.inertia == 0.0) {
         list.push("points: a lump without inertia is shown as a cylinder of its mass, as high as wide".to_owned());

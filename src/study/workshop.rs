@@ -310,10 +310,19 @@ pub fn residual(machine: &Machine) -> [f64; 2] {
     [inertia.force_residual(), inertia.invariance_residual()]
 }
 
-/// Returns a machine with arms for the discs beside its bars, which reach over `reach`, m, and the feet of their arms.
+/// Returns a machine with arms for the discs beside its bars, which reach over `reach`, m, the feet of their arms, and the
+/// walls of half rings.
 fn with_arms(machine: &Machine, stock: &BarStock, reach: &[[f64; 2]]) -> Result<Machine, MachineError> {
     let armed = machine.with_bars(stock, reach)?.with_arms(stock)?;
     let mut feet = reach.to_vec();
+    for weight in &machine.spec().counterweights {
+        let Some(link) = machine.links().iter().position(|link| link.name == weight.link) else { continue };
+        let at = weight.carried_at();
+        // A bar that reaches its centre of mass goes on to its wall.
+        if at != weight.at {
+            feet[link] = [feet[link][0].min(at), feet[link][1].max(at)];
+        }
+    }
     for arm in armed.spec().parts.iter().filter(|part| part.is_arm()) {
         let Some(link) = armed.links().iter().position(|link| link.name == arm.link) else { continue };
         for [at, _] in &arm.polygon {

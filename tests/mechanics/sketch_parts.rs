@@ -369,14 +369,14 @@ pub fn reaches_over_its_pins(sketch: &Sketch) {
 /// Bars that are drawn, cut, joined, moved and shortened at random reach over their pins all the time.
 #[test]
 fn drawn_bars_follow_their_pins_through_all_steps() {
-    let (mut noise, mut done) = (Noise::of(51), [0; 7]);
+    let (mut noise, mut done) = (Noise::of(51), [0; 8]);
     for _ in 0..120 {
         let mut sketch = Sketch::blank();
         for _ in 0..14 {
             let pick = |noise: &mut Noise, n: usize| (noise.between(0.0, n as f64) as usize).min(n.saturating_sub(1));
             let any_pin = |noise: &mut Noise| sketch.pins[pick(noise, sketch.pins.len())].id;
             let to = [noise.between(-0.6, 0.6), noise.between(-0.2, 0.8)];
-            let kind = if sketch.bars.is_empty() { 0 } else { pick(&mut noise, 7) };
+            let kind = if sketch.bars.is_empty() { 0 } else { pick(&mut noise, 8) };
             let own = sketch.bars.get(pick(&mut noise, sketch.bars.len())).map(|bar| (bar.id, sketch.length(bar)));
             let (id, length) = own.unwrap_or((BarId(0), 0.0));
             let step = match kind {
@@ -386,6 +386,7 @@ fn drawn_bars_follow_their_pins_through_all_steps() {
                 3 => SketchStep::Split { bar: id, along: noise.between(0.1, 0.9) * length },
                 4 => SketchStep::Join { bar: id, with: sketch.bars[pick(&mut noise, sketch.bars.len())].id },
                 5 => SketchStep::DeletePin { pin: any_pin(&mut noise) },
+                6 => SketchStep::Attach { pin: any_pin(&mut noise), bar: id },
                 _ => SketchStep::Weld { pin: any_pin(&mut noise), onto: any_pin(&mut noise) },
             };
             let Ok(next) = sketch.with(&step) else { continue };

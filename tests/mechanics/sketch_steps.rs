@@ -48,7 +48,7 @@ fn corners_are_refused_with_what_would_do() {
         draw(&two, [motor(0, None, 2), motor(1, Some(4), 4), SketchStep::EndEffector { pin: PinId(3), bar: None }]);
     let resolved = resolve(&own);
     assert!(
-        resolved.machine.is_none() && resolved.missing[0].text.contains("sits on itself"),
+        resolved.machine.is_none() && resolved.missing[0].text.contains("carry each other"),
         "{:?}",
         resolved.missing
     );
@@ -264,4 +264,50 @@ fn random_drawings_become_the_machines_that_are_drawn() {
         assert_eq!(toml::from_str::<Sketch>(&text).expect("read again"), sketch, "{text}");
     }
     assert!(loops > 40 && drawn == 150, "{loops}");
+}
+
+/// A pin that a bar runs over without joining it is told, with the step that joins both; no mend makes motors carry each
+/// other.
+#[test]
+fn a_bar_over_a_pin_is_told_and_joined() {
+    let bar = |from: BarEnd, to: [f64; 2]| SketchStep::Bar { from, to: BarEnd::At(to), name: None };
+    let mut sketch = Sketch::blank();
+    for step in [bar(BarEnd::pin(sketch.base), [0.0, 0.3]), bar(BarEnd::pin(sketch.base), [0.2, 0.0])] {
+        sketch = sketch.with(&step).expect("a bar");
+    }
+    let end = sketch.bars[1].tip;
+    sketch = sketch.with(&bar(BarEnd::pin(end), [0.2, 0.3])).expect("a bar");
+    let corner = sketch.bars[2].tip;
+    // Over the end of bar 1 and beyond.
+    sketch = sketch.with(&bar(BarEnd::pin(corner), [-0.2, 0.3])).expect("a bar");
+    let crossings = resolve(&sketch).crossings;
+    let [crossing] = crossings.as_slice() else { panic!("{crossings:?}") };
+    assert_eq!(crossing.text, "bar 4 runs over the pin of bar 1, and is not joined to it");
+    let joined = sketch.with(&crossing.mends[0].step).expect("joined");
+    let over = &joined.bars[3];
+    assert!(over.has(joined.bars[0].tip) && resolve(&joined).crossings.is_empty());
+    assert!(resolve(&joined).loops.iter().any(|state| state.bars.len() == 4), "a parallelogram");
+    let step = SketchStep::Attach { pin: joined.bars[0].tip, bar: over.id };
+    let again = joined.with(&step).expect_err("joined already");
+    assert!(again.to_string().contains("on bar 4 already"), "{again}");
+}
+
+/// A motor at the pin between two bars turns the outer one, and sits on the inner one.
+#[test]
+fn a_motor_between_two_bars_turns_the_outer_one() {
+    let bar = |from: BarEnd, to: [f64; 2]| SketchStep::Bar { from, to: BarEnd::At(to), name: None };
+    let mut sketch = Sketch::blank();
+    sketch = sketch.with(&bar(BarEnd::pin(sketch.base), [0.3, 0.0])).expect("a bar");
+    let elbow = sketch.bars[0].tip;
+    sketch = sketch.with(&bar(BarEnd::pin(elbow), [0.5, 0.2])).expect("a bar");
+    let [inner, outer] = [0, 1].map(|i| sketch.bars[i].id);
+    let step = sketch.motor_at(elbow, |_| true);
+    assert!(matches!(step, SketchStep::Motor { stator: Some(on), turns: Some(of), .. } if on == inner && of == outer));
+    let hung = sketch.with(&step).expect("a motor");
+    for missing in resolve(&hung).missing {
+        for mend in missing.mends {
+            let next = hung.with(&mend.step).expect("tried");
+            assert!(resolve(&next).missing.iter().all(|one| !one.text.contains("carry each other")), "{mend:?}");
+        }
+    }
 }

@@ -184,6 +184,7 @@ pub fn any_sketch() -> impl Strategy<Value = Edit> {
         1 => bar_id().prop_map(|bar| SketchStep::DeleteBar { bar }),
         1 => pin().prop_map(|pin| SketchStep::DeletePin { pin }),
         1 => (pin(), pin()).prop_map(|(pin, onto)| SketchStep::Weld { pin, onto }),
+        1 => (pin(), bar_id()).prop_map(|(pin, bar)| SketchStep::Attach { pin, bar }),
         2 => (bar_id(), 0.1..0.6).prop_map(|(bar, metres)| SketchStep::Length { bar, metres }),
         1 => (bar_id(), 1..4u32).prop_map(|(bar, k)| SketchStep::Follow { bar, drive: Some(k.to_string()) }),
         1 => (1..4u32, 0.0..1e-4, 1.0..50.0)

@@ -2,7 +2,9 @@
 
 use stillbase::exchange::cut::Cut;
 use stillbase::exchange::solids::{SolidKind, link_solids};
-use stillbase::mechanics::counterweights::{CounterweightSite, CounterweightSpec, CounterweightStock, Objective};
+use stillbase::mechanics::counterweights::{
+    CounterweightForm, CounterweightSite, CounterweightSpec, CounterweightStock, Objective,
+};
 use stillbase::mechanics::machine::{BarStock, Inertia, Machine, MachineError, Part, Shape, builtin};
 use stillbase::study::workshop::{
     BarsReport, CutMachine, CutRequest, NoCut, as_bought, balance_as_cut, replaced_links,
@@ -164,4 +166,25 @@ fn links_whose_typed_numbers_give_way_are_named() {
     assert_eq!((twice.replaced_links.len(), BarsReport::of(&twice).replaced()), (0, None));
     let plated = replaced_links(&with_plate("4", [-0.1, 0.6]));
     assert!(!plated.contains(&"4".to_owned()) && plated.len() == names.len() - 1, "{plated:?}");
+}
+
+/// Bars of thin half rings reach to their walls, and what is weighed balances with them.
+#[test]
+fn bars_reach_to_the_walls_of_half_rings() {
+    let machine = builtin("two-drive").expect("built in").without_counterweights().expect("a machine");
+    let form = CounterweightForm::HalfRing(0.1);
+    let stock = CounterweightStock { form, ..CounterweightStock::discs(7850.0, 0.02) };
+    let spec = CounterweightSpec::least(Objective::mass(), CounterweightSite::anywhere(&machine), stock);
+    let found = balance_as_cut(&machine, &spec, &BarStock::default()).expect("it can be balanced");
+    let machine = &found.placed.machine;
+    assert!(found.residual.iter().all(|x| *x <= 1e-9), "{:?}", found.residual);
+    let mut beyond = 0;
+    for weight in &machine.spec().counterweights {
+        let link = machine.links().iter().position(|link| link.name == weight.link).expect("a link");
+        let [from, to] = machine.part_ends(machine.spine(link).expect("a bar")).expect("its ends");
+        let wall = weight.circle_at() + weight.outward() * weight.inner_radius;
+        assert!(from < wall && wall < to, "link {}: {from} to {to}, wall at {wall}", weight.link);
+        beyond += usize::from((wall - weight.at) * weight.outward() > 0.0);
+    }
+    assert!(beyond > 0, "no centre of mass lies in a bore");
 }

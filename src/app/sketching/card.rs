@@ -160,20 +160,13 @@ fn follows(ui: &mut Ui, facts: &SketchFacts, bar: &Bar, commands: &mut Vec<Comma
                 draw(sketch, follow(Some(drive.clone())), commands);
             }
         }
-        if ui.selectable_label(false, "a new drive").clicked() {
-            draw(sketch, new_drive(facts, bar), commands);
+        if ui.selectable_label(false, "a new drive").clicked()
+            && let Some(step) = sketch.motor_for(bar.id)
+        {
+            draw(sketch, step, commands);
         }
     });
     name(&list.response.on_hover_text("The drive to whose arm the bar stays parallel"), "drive of the bar");
-}
-
-/// Returns the step that hangs a motor of a new drive on the pin of a bar next to the base.
-fn new_drive(facts: &SketchFacts, bar: &Bar) -> SketchStep {
-    let sketch = &facts.sketch;
-    let pin = bar.root;
-    let carriers = || sketch.bars_at(pin).filter(|other| other.id != bar.id);
-    let stator = (pin != sketch.base).then(|| carriers().map(|other| other.id).next()).flatten();
-    SketchStep::Motor { pin, stator, drive: None, rotor: None, turns: Some(bar.id) }
 }
 
 fn of_pin(ui: &mut Ui, facts: &SketchFacts, id: PinId, p: &Palette, commands: &mut Vec<Command>) {

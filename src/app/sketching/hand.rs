@@ -66,6 +66,9 @@ impl Hand<'_> {
                     draw(&self.facts.sketch, motor_at(self.facts, pin), commands);
                 }
             }
+            PenTool::Lump if !clicked && (pen.drag.is_some() || matches!(pen.hot, Some(SketchItem::Lump(..)))) => {
+                self.moves(pen, pos, commands);
+            }
             PenTool::Lump => self.puts_lump(pen, pos, clicked, commands),
             PenTool::EndEffector => {
                 if let (true, Some(SketchItem::Pin(pin))) = (clicked, pen.hot) {
@@ -210,6 +213,9 @@ impl Hand<'_> {
         Some(match end.onto {
             Onto::Pin(own) if own == pin => (None, None),
             Onto::Pin(onto) => (Some(SketchStep::Weld { pin, onto }), Some(end.point)),
+            Onto::Bar { bar, .. } if self.facts.sketch.with(&SketchStep::Attach { pin, bar }).is_ok() => {
+                (Some(SketchStep::Attach { pin, bar }), Some(end.point))
+            }
             _ => (Some(SketchStep::MovePin { pin, to: end.point }), None),
         })
     }

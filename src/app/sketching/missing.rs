@@ -11,6 +11,9 @@ use stillbase_picture::scene::palette::Palette;
 /// Most buttons for one thing.
 const MOST_MENDS: usize = 3;
 
+/// Most pins that a bar runs over and does not join.
+const MOST_CROSSINGS: usize = 4;
+
 /// Draws the list; nothing if nothing is missing.
 pub fn show(ui: &mut Ui, facts: &SketchFacts, p: &Palette, commands: &mut Vec<Command>) {
     section(ui, p, "Still missing");
@@ -18,7 +21,8 @@ pub fn show(ui: &mut Ui, facts: &SketchFacts, p: &Palette, commands: &mut Vec<Co
         let words = RichText::new("nothing: this is a machine").font(plain(12.5)).color(colour(p.zero));
         ui.label(words);
     }
-    for one in &facts.resolved.missing {
+    let crossings = facts.resolved.crossings.iter().take(MOST_CROSSINGS);
+    for one in facts.resolved.missing.iter().chain(crossings) {
         Frame::new().fill(colour(p.background)).corner_radius(6).inner_margin(8).show(ui, |ui| {
             ui.set_width(ui.available_width());
             let text = RichText::new(format!("• {}", one.text)).font(plain(12.5)).color(colour(p.ink));

@@ -35,7 +35,10 @@ use stillbase_session::Edit;
 fn draw(sketch: &Sketch, step: SketchStep, commands: &mut Vec<Command>) {
     let step = step.plainly();
     match sketch.with(&step) {
-        Ok(_) => undoable_edit(commands, Edit::Sketch(step)),
+        Ok(_) => {
+            undoable_edit(commands, Edit::Sketch(step));
+            commands.push(ViewChange::Pen(PenChange::Taken).into());
+        }
         Err(refusal) => commands.push(ViewChange::Pen(PenChange::Refuse(refusal)).into()),
     }
 }

@@ -11,14 +11,9 @@ use stillbase_mechanics::machine::Rotor;
 use stillbase_mechanics::sketch::{BarId, PinId, SketchStep};
 use stillbase_picture::scene::palette::Palette;
 
-/// Returns the step that hangs a motor on a pin. It turns a bar there that follows no drive yet; away from the base,
-/// another bar there carries its stator.
+/// Returns the step that hangs a motor on a pin.
 pub fn motor_at(facts: &SketchFacts, pin: PinId) -> SketchStep {
-    let sketch = &facts.sketch;
-    let bars = || sketch.bars_at(pin).map(|bar| bar.id);
-    let turns = bars().find(|bar| !facts.resolved.drives.contains_key(bar));
-    let stator = (pin != sketch.base).then(|| bars().find(|bar| Some(*bar) != turns)).flatten();
-    SketchStep::Motor { pin, stator, drive: None, rotor: None, turns }
+    facts.sketch.motor_at(pin, |bar| !facts.resolved.drives.contains_key(&bar))
 }
 
 /// Draws the motors: what carries the stator, the rotor and the gear.

@@ -101,6 +101,8 @@ pub enum PenChange {
     Choose(Option<SketchItem>),
     /// Say why a step is refused.
     Refuse(SketchRefusal),
+    /// A step is taken: no other is refused any more.
+    Taken,
     /// Give up what is under way.
     GiveUp,
 }
@@ -132,6 +134,7 @@ impl Pen {
             PenChange::Tool(tool) => *self = Self { tool, chosen: self.chosen, ..Self::default() },
             PenChange::Choose(chosen) => self.chosen = chosen,
             PenChange::Refuse(refusal) => self.refused = Some(refusal),
+            PenChange::Taken => self.refused = None,
             PenChange::GiveUp if self.from.is_some() || self.drag.is_some() || self.refused.is_some() => {
                 *self = Self { tool: self.tool, chosen: self.chosen, ..Self::default() };
             }

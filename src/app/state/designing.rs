@@ -102,8 +102,15 @@ impl AppState {
 
     /// Applies the counterweights of point `i` of the Pareto front.
     pub(super) fn take_of_front(&mut self, i: usize) {
-        if let Some(machine) = studio::of_front(self.queries(), &self.session, i) {
-            self.take_weights(&machine);
+        let Some(machine) = studio::of_front(self.queries(), &self.session, i) else { return };
+        // On bars that are cut, the machine is that of these bars.
+        match self.session.scenario().design.as_cut {
+            true => {
+                if let Some(edit) = machine_edit(self.session.scenario(), &machine) {
+                    self.change(SessionChange::Edit(edit));
+                }
+            }
+            false => self.take_weights(&machine),
         }
     }
 

@@ -33,7 +33,7 @@ pub fn show(ui: &mut Ui, facts: &DesignFacts, view_state: &ViewState, commands: 
     let delay = ui.ctx().animate_bool_with_time(Id::unique("front under way"), under_way.is_some(), PROGRESS_DELAY_S);
     match under_way.filter(|_| delay >= 1.0) {
         Some(share) => heading(ui, p, "Counterweights", &format!("looking for them: {:.0} %", 100.0 * share)),
-        None if facts.cut.is_some() => heading(ui, p, "Counterweights", "on the bars as cut; hover shows, click takes"),
+        None if facts.cut.is_some() => heading(ui, p, "Counterweights", "on cut bars; hover shows, click takes"),
         None => heading(ui, p, "Counterweights", "hover shows, click takes"),
     }
     let points = match facts.front() {

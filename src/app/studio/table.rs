@@ -30,7 +30,7 @@ pub fn show(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &m
     ui.spacing_mut().button_padding.x = 4.0;
     ui.horizontal(|ui| {
         cell(ui, NAME_WIDTH_PT, Align::Min, |ui| head(ui, p, "link"));
-        for words in ["mass kg", "CM m", "disc kg", "at m"] {
+        for words in ["mass kg", "CM m", "weight kg", "at m"] {
             cell(ui, NUMBER_WIDTH_PT, Align::Max, |ui| head(ui, p, words));
         }
     });
@@ -157,7 +157,7 @@ fn off_axis(ui: &mut Ui, session: &Session, at: usize, p: &Palette, commands: &m
         let shown = NumberCell { label: &label, path: &path, decimals: 4, value: link.com_normal };
         number(ui, shown, brief, p, commands, |x| Edit::at(&["link", &link.name, "com_normal"], x));
         for (n, weight) in weights {
-            head(ui, p, "disc m");
+            head(ui, p, "at m");
             let place = (n + 1).to_string();
             let label = format!("counterweight {place} off the axis of link {}", link.name);
             let path = format!("counterweight.{place}.across");

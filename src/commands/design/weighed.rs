@@ -384,9 +384,14 @@ pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
     let off_axis = report.weights.iter().any(|weight| weight.across != 0.0);
     let some =
         |cells: [String; 5]| cells.into_iter().enumerate().filter(move |(i, _)| off_axis || *i != 3).map(|(_, c)| c);
-    let size = match report.weights.first().map(Counterweight::shape) {
-        Some(CounterweightShape::Box { .. }) => "length m",
-        _ => "radius m",
+    let first = report.weights.first().map(Counterweight::shape).unwrap_or_default();
+    let size = if matches!(first, CounterweightShape::Box { .. }) { "length m" } else { "radius m" };
+    let shape = match first {
+        CounterweightShape::Ring { inner_radius, .. } | CounterweightShape::HalfRing { inner_radius, .. } => {
+            format!(" · {}, inner radius {} m", first.name(), nine_digits(inner_radius))
+        }
+        CounterweightShape::Box { width, .. } => format!(" · box, {} m wide", nine_digits(width)),
+        CounterweightShape::Point | CounterweightShape::Disc { .. } => String::new(),
     };
     let heads = ["counterweight on link", "kg", "at m", "left of axis m", size].map(String::from);
     let mut table = TextTable::new(some(heads));
@@ -399,7 +404,7 @@ pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
         false => format!("not certified: the best may lie {} below", significant(report.gap)),
     };
     let mut text = format!(
-        "{} · {} kg added · {sure}\n\n{table}\n{}\n{}",
+        "{} · {} kg added{shape} · {sure}\n\n{table}\n{}\n{}",
         machine.name(),
         fixed(report.measures.added_mass, 6),
         measures::text(&report.measures),

@@ -252,6 +252,18 @@ impl Counterweight {
         if self.at < 0.0 { -1.0 } else { 1.0 }
     }
 
+    /// Returns the place along its link, m, to which a bar must reach to carry it: its centre of mass, or the middle of
+    /// the wall of half a ring whose centre of mass lies in the bore.
+    pub fn carried_at(&self) -> f64 {
+        match self.shape() {
+            CounterweightShape::HalfRing { radius, inner_radius } => {
+                let wall = 0.5 * (radius + inner_radius);
+                self.circle_at() + self.outward() * wall.max(self.shape().from_circle())
+            }
+            _ => self.at,
+        }
+    }
+
     /// Returns the least distances along the link, m, from its centre of mass to a pin nearer to the root and to a pin
     /// nearer to the tip, at which its edge keeps a clearance, m, from the centres of these pins.
     ///

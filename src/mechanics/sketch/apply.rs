@@ -36,6 +36,7 @@ impl Sketch {
             SketchStep::Split { bar, along } => self.split(*bar, *along),
             SketchStep::Join { bar, with } => self.joined(*bar, *with),
             SketchStep::Weld { pin, onto } => self.welded(*pin, *onto),
+            SketchStep::Attach { pin, bar } => self.attached(*pin, *bar),
             SketchStep::DeleteBar { bar } => self.without_bar(*bar),
             SketchStep::DeletePin { pin } => self.without_pin(*pin),
             SketchStep::Motor { pin, stator, drive, rotor, turns } => {

@@ -78,6 +78,18 @@ impl Sketch {
         Ok(next)
     }
 
+    pub(super) fn attached(&self, pin: PinId, id: BarId) -> Result<Self, SketchRefusal> {
+        self.known_pin(pin)?;
+        let bar = self.known_bar(id)?;
+        if bar.has(pin) {
+            let what = format!("the pin is on bar {} already", bar.name);
+            return Err(SketchRefusal::new(Place::Pin(pin), what, "a pin of another bar"));
+        }
+        let mut next = self.clone();
+        let onto = next.pin_on(id, self.along(bar, pin))?;
+        next.welded(pin, onto)
+    }
+
     pub(super) fn welded(&self, pin: PinId, onto: PinId) -> Result<Self, SketchRefusal> {
         self.known_pin(pin)?;
         self.known_pin(onto)?;

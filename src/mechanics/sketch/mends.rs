@@ -10,6 +10,8 @@ use crate::planar::{MAX_DRIVES, dot};
 
 /// Length of the bar that an empty drawing proposes, m.
 const FIRST_LENGTH: f64 = 0.3;
+/// A pin this near to the axis of a bar lies on it, m.
+const SAME_PLACE: f64 = 1e-4;
 /// Largest change of a length that a label leaves out, m.
 const UNSEEN: f64 = 5e-5;
 
@@ -29,7 +31,10 @@ impl Sketch {
         for step in self.candidates(found, missing) {
             let Ok(next) = self.with(&step) else { continue };
             let after = next.diagnosed();
-            if after.missing.iter().any(|other| other.is_same(missing)) {
+            let is_invalid =
+                |found: &Diagnosis| found.missing.iter().any(|one| matches!(one.lack, Lack::Invalid { .. }));
+            let is_left = after.missing.iter().any(|other| other.is_same(missing));
+            if is_left || is_invalid(&after) && !is_invalid(found) {
                 continue;
             }
             tried.push((after.missing.len(), Mend { label: self.label(&step, &next), step }));
@@ -40,6 +45,29 @@ impl Sketch {
             tried.truncate(1);
         }
         tried.into_iter().map(|(_, mend)| mend).collect()
+    }
+
+    /// Returns pins that a bar runs over without joining them, each with the step that joins both.
+    pub(super) fn crossings(&self) -> Vec<Missing> {
+        let mut all = Vec::new();
+        for bar in &self.bars {
+            for pin in self.pins.iter().map(|pin| pin.id).filter(|pin| !bar.has(*pin)) {
+                let (at, along) = (self.at(pin) - self.at(bar.root), self.along(bar, pin));
+                let is_on = (at - self.direction(bar).scale(along)).norm() < SAME_PLACE
+                    && (0.0..=self.length(bar)).contains(&along);
+                let step = SketchStep::Attach { pin, bar: bar.id };
+                let of: Vec<&str> = self.bars_at(pin).map(|bar| bar.name.as_str()).collect();
+                if !is_on || of.is_empty() || self.with(&step).is_err() {
+                    continue;
+                }
+                let bars = if of.len() == 1 { "bar" } else { "bars" };
+                let text =
+                    format!("bar {} runs over the pin of {bars} {}, and is not joined to it", bar.name, of.join(", "));
+                let mends = vec![Mend { label: step.title_in(self), step }];
+                all.push(Missing { lack: Lack::Crossing, place: Place::Pin(pin), text, mends });
+            }
+        }
+        all
     }
 
     fn candidates(&self, found: &Diagnosis, missing: &Missing) -> Vec<SketchStep> {
@@ -95,16 +123,6 @@ impl Sketch {
             return corners.into_iter().map(|moves| SketchStep::Parallelogram { corners, moves }).collect();
         }
         of.bars.iter().max().map(|bar| SketchStep::DeleteBar { bar: *bar }).into_iter().collect()
-    }
-
-    /// Returns what a motor at the pin of a bar next to the base would sit on.
-    fn motor_for(&self, id: BarId) -> Option<SketchStep> {
-        let inner = self.bars.iter().zip(self.inner_pins()).find(|(bar, _)| bar.id == id)?.1;
-        let stator = match inner == self.base {
-            true => None,
-            false => Some(self.bars_at(inner).find(|bar| bar.id != id)?.id),
-        };
-        Some(SketchStep::Motor { pin: inner, stator, drive: None, rotor: None, turns: Some(id) })
     }
 
     /// Returns the drives that a bar could follow: those with parallel arms, then one of its own, then any.

@@ -46,6 +46,8 @@ pub enum Lack {
     NoBarOfDrive,
     /// There is no end effector.
     NoEndEffector,
+    /// A bar runs over a pin without joining it. It may be meant so, in another layer.
+    Crossing,
     /// All is drawn, but a number is wrong.
     Invalid {
         /// The machine's own error.
@@ -126,7 +128,13 @@ impl Sketch {
         let machine = missing.is_empty().then(|| Machine::new(self.spec()));
         let machine = match machine {
             Some(Err(error)) => {
-                let text = error.to_string();
+                let text = match &error {
+                    MachineError::StatorCycle { chain, .. } => format!(
+                        "the motors of drives carry each other, {chain}: want one of them on the base, or on a bar that \
+                         leads there"
+                    ),
+                    error => error.to_string(),
+                };
                 missing.push(Missing::new(Lack::Invalid { error }, Place::Whole, text));
                 None
             }

@@ -1,7 +1,7 @@
 //! Steps on motors, and which bars follow them.
 
 use super::classes::Classes;
-use super::drawing::{BarId, Motor, PinId, Place, Sketch};
+use super::drawing::{Bar, BarId, Motor, PinId, Place, Sketch};
 use super::graph::Graph;
 use super::refusal::SketchRefusal;
 use super::step::SketchStep;
@@ -9,6 +9,34 @@ use crate::machine::{Angle, Drive, Rotor};
 use crate::planar::MAX_DRIVES;
 
 impl Sketch {
+    /// Returns the step that hangs a motor on a pin. It turns the bar there that leads away from the base and follows
+    /// no drive yet, as `is_free` says; away from the base, the bar that leads to the pin carries its stator.
+    pub fn motor_at(&self, pin: PinId, is_free: impl Fn(BarId) -> bool) -> SketchStep {
+        let free = || self.bars_from(pin).filter(|(bar, _)| is_free(bar.id));
+        let turns = free().find(|(_, leads_away)| *leads_away).or_else(|| free().next()).map(|(bar, _)| bar.id);
+        self.motor_turning(pin, turns)
+    }
+
+    /// Returns the step that hangs a motor on the pin of a bar next to the base, which turns the bar; `None` if the bar
+    /// is not in the drawing.
+    pub fn motor_for(&self, id: BarId) -> Option<SketchStep> {
+        let inner = self.bars.iter().zip(self.inner_pins()).find(|(bar, _)| bar.id == id)?.1;
+        Some(self.motor_turning(inner, Some(id)))
+    }
+
+    fn motor_turning(&self, pin: PinId, turns: Option<BarId>) -> SketchStep {
+        let others = || self.bars_from(pin).filter(|(bar, _)| Some(bar.id) != turns);
+        let carrier = || others().find(|(_, leads_away)| !leads_away).or_else(|| others().next());
+        let stator = (pin != self.base).then(carrier).flatten().map(|(bar, _)| bar.id);
+        SketchStep::Motor { pin, stator, drive: None, rotor: None, turns }
+    }
+
+    /// Returns the bars at a pin, and whether each leads away from the base there.
+    fn bars_from(&self, pin: PinId) -> impl Iterator<Item = (&Bar, bool)> {
+        let all = self.bars.iter().zip(self.inner_pins()).filter(move |(bar, _)| bar.has(pin));
+        all.map(move |(bar, inner)| (bar, inner == pin))
+    }
+
     pub(super) fn known_drive(&self, name: &str) -> Result<&Motor, SketchRefusal> {
         self.motor(name).ok_or_else(|| {
             let names: Vec<&str> = self.motors.iter().map(|motor| motor.drive.name.as_str()).collect();

@@ -26,6 +26,8 @@ pub struct Resolved {
     pub machine: Option<Machine>,
     /// What is missing.
     pub missing: Vec<Missing>,
+    /// What may be meant as it is: pins that a bar runs over without joining them.
+    pub crossings: Vec<Missing>,
     /// Its loops.
     pub loops: Vec<LoopState>,
     /// The drive of each bar that follows one, by itself or because a loop forces it.
@@ -46,6 +48,7 @@ pub fn resolve(sketch: &Sketch) -> Resolved {
     Resolved {
         machine: found.machine,
         missing,
+        crossings: sketch.crossings(),
         drives: sketch.bars.iter().map(|bar| bar.id).enumerate().filter_map(follow).collect(),
         loops: found.loops.into_iter().map(|found| found.state).collect(),
     }

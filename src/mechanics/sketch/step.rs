@@ -97,6 +97,13 @@ pub enum SketchStep {
         /// The pin that stays.
         onto: PinId,
     },
+    /// Joins a pin to a bar that it lies on. The pin moves onto the axis of the bar.
+    Attach {
+        /// The pin.
+        pin: PinId,
+        /// The bar.
+        bar: BarId,
+    },
     /// Removes a bar, and what is then on nothing.
     DeleteBar {
         /// The bar.
@@ -275,6 +282,7 @@ impl SketchStep {
             Self::Split { along, .. } => format!("split bar at {}", mm(*along)),
             Self::Join { .. } => "make two bars one".into(),
             Self::Weld { .. } => "make two pins one".into(),
+            Self::Attach { .. } => "join a pin to a bar".into(),
             Self::DeleteBar { .. } => "delete bar".into(),
             Self::DeletePin { .. } => "delete pin".into(),
             Self::Motor { drive: Some(drive), .. } => format!("hang motor of drive {drive}"),
@@ -342,6 +350,7 @@ impl SketchStep {
         let name = |id: BarId| sketch.bar(id).map_or("?", |bar| bar.name.as_str());
         match self {
             Self::DeleteBar { bar } => format!("delete bar {}", name(*bar)),
+            Self::Attach { bar, .. } => format!("join it to bar {}", name(*bar)),
             Self::Follow { bar, drive: Some(drive) } => format!("bar {} follows drive {drive}", name(*bar)),
             Self::Length { bar, metres } => format!("bar {} becomes {}", name(*bar), mm(*metres)),
             Self::Angle { bar, radians } => format!("turn bar {} to {:.1}°", name(*bar), radians.to_degrees()),

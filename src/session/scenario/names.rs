@@ -56,6 +56,10 @@ const NAMES: &[(&str, &str)] = &[
     ("design.behind_root", "greatest distance behind a root"),
     ("design.across", "greatest distance off a link"),
     ("design.heaviest", "heaviest counterweight"),
+    ("design.as_cut", "links are flat bars, as they are cut"),
+    ("design.bar_width", "width of the bars that are cut"),
+    ("design.bar_thickness", "thickness of the bars that are cut"),
+    ("design.bar_density", "density of the bars that are cut"),
     ("design.shape", "shape of counterweights"),
     ("design.inner_radius", "inner radius of rings"),
     ("design.box_width", "width of boxes"),
@@ -70,6 +74,8 @@ const NAMES: &[(&str, &str)] = &[
 /// Further words by which people look for a setting, by the beginning of its path.
 const SEARCH_WORDS: &[(&str, &str)] = &[
     ("compare_b", "second workspace dashed"),
+    ("design.shape", "disc ring half ring box"),
+    ("design.as_cut", "flat bars tails links are cut"),
     ("task.kind", "mode motion reactionless minimum norm"),
     ("task.shape", "curve line arc spline circle straight"),
     ("task.from", "start begin"),

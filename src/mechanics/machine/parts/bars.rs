@@ -134,7 +134,7 @@ impl Machine {
     pub fn extent_with(&self, j: usize, is_carried: impl Fn(&Counterweight) -> bool) -> [f64; 2] {
         let (link, resolved) = (&self.links()[j], &self.resolved_links()[j]);
         let carried = self.spec().counterweights.iter().filter(|weight| weight.link == link.name && is_carried(weight));
-        let all = resolved.pins.iter().copied().chain(carried.map(|weight| weight.at));
+        let all = resolved.pins.iter().copied().chain(carried.map(Counterweight::carried_at));
         all.fold([0.0, resolved.length], |[from, to], at| [from.min(at), to.max(at)])
     }
 
