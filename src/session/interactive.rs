@@ -23,7 +23,7 @@ use super::events::{EventLog, Gestures};
 use super::machines::Machines;
 use super::run::Run;
 use crate::scenario::{MAX_FRAMES, MAX_TIME, Scenario};
-use stillbase_mechanics::sketch::resolve;
+use stillbase_mechanics::sketch::{SketchStep, resolve};
 use stillbase_query::{IncrementalAnswer, Queries, Sequence};
 use stillbase_simulation::frame::Frame;
 
@@ -200,7 +200,7 @@ impl Session {
     }
 
     /// Returns whether a file of the machine holds all that the user has changed: no edit concerns anything else, there is
-    /// no bookmark, note or branch, and a drawing is complete.
+    /// no bookmark, note or branch, a drawing is complete, and none was begun in place of another machine of the user.
     pub fn changes_machine_only(&self) -> bool {
         let kept =
             [self.document.bookmarks.is_empty(), self.document.notes.is_empty(), self.document.branches.is_empty()];
@@ -209,7 +209,11 @@ impl Session {
             Some(sketch) => resolve(sketch).machine.as_ref() == Some(&scenario.machine),
             None => true,
         };
-        kept == [true; 3] && self.edits.iter().all(|timed| timed.edit.is_of_machine()) && is_drawn()
+        let begins = |edit: &Edit| matches!(edit, Edit::Sketch(SketchStep::New { .. }));
+        kept == [true; 3]
+            && self.edits.iter().all(|timed| timed.edit.is_of_machine())
+            && !self.edits.iter().skip(1).any(|timed| begins(&timed.edit))
+            && is_drawn()
     }
 
     /// Returns the session as a scenario, which gives equal frames when it is replayed or opened again. At step 0 the

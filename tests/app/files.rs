@@ -7,6 +7,7 @@ use std::sync::Arc;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::app::{Layout, Message, SessionCommand, ViewChange};
+use stillbase::mechanics::sketch::{SketchStep, Template};
 use stillbase::picture::charts::choice::PlotChange;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::views::ViewKind;
@@ -686,4 +687,17 @@ fn a_saved_machine_leaves_nothing_to_ask() {
     h.state_mut().app_state_mut().carry_out(SessionCommand::TakeElsewhere(folder.path("other.toml")));
     h.run_steps(4);
     assert!(h.state().app_state().changes().1, "a machine holds no payload of the plant");
+    // A machine that was never saved is not in the file of a later drawing.
+    let mut h = window("case-3", Theme::Dark);
+    h.run_steps(2);
+    for template in [Template::SerialOfTwo, Template::Pantograph] {
+        let edit = Edit::Sketch(SketchStep::New { template });
+        h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(edit));
+        h.state_mut().app_state_mut().carry_out(SessionCommand::EndGesture);
+        h.run_steps(3);
+    }
+    h.state_mut().app_state_mut().carry_out(SessionCommand::TakeElsewhere(folder.path("second.toml")));
+    h.run_steps(4);
+    done(&h, "saved");
+    assert!(h.state().app_state().changes().1, "the first drawing is in no file");
 }

@@ -514,6 +514,14 @@ fn a_bar_by_numbers_closes_a_loop_without_the_pointer() {
     let closed = sketch(&h);
     assert_eq!((closed.bars.len(), closed.bars[3].tip), (4, closed.bars[2].tip), "on the pin that is there");
     assert_eq!(resolve(&closed).loops.len(), 1);
+    // Without the bar, the next one begins where it began.
+    h.get_by_label("add the new bar").click();
+    h.run_steps(3);
+    assert_eq!(sketch(&h).bars.len(), 5);
+    h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    h.run_steps(3);
+    let from = h.get_by_label("new bar from").accesskit_node().value();
+    assert_eq!((sketch(&h).bars.len(), from), (4, Some(format!("pin {}", closed.bars[3].tip.0))));
 }
 
 fn numbers_off_the_axis_are_found_in_the_design_view() {

@@ -29,6 +29,8 @@ const SHORTEST_M: f64 = 1e-3;
 #[derive(Clone, Copy)]
 struct Numbers {
     from: PinId,
+    /// Where the bar before began, if the pin goes at its end.
+    before: PinId,
     metres: f64,
     radians: f64,
     motor: PinId,
@@ -40,13 +42,16 @@ impl Numbers {
     /// Returns the numbers so far, on pins that exist. A pin that has just been chosen in the drawing is taken.
     fn of(known: Option<Self>, sketch: &Sketch, pen: &Pen) -> Self {
         let base = sketch.base;
-        let first = Self { from: base, metres: FIRST_M, radians: FRAC_PI_2, motor: base, chosen: None };
+        let first = Self { from: base, before: base, metres: FIRST_M, radians: FRAC_PI_2, motor: base, chosen: None };
         let mut own = known.unwrap_or(first);
         if let Some(SketchItem::Pin(pin)) = pen.chosen.filter(|_| pen.chosen != own.chosen) {
             (own.from, own.motor) = (pin, pin);
         }
         own.chosen = pen.chosen;
-        for pin in [&mut own.from, &mut own.motor] {
+        if sketch.pin(own.from).is_none() {
+            own.from = own.before;
+        }
+        for pin in [&mut own.from, &mut own.before, &mut own.motor] {
             if sketch.pin(*pin).is_none() {
                 *pin = base;
             }
@@ -108,6 +113,7 @@ fn bar(ui: &mut Ui, sketch: &Sketch, p: &Palette, numbers: &mut Numbers, command
         if let Ok(next) = sketch.with(&step)
             && let Some(bar) = next.bars.last()
         {
+            numbers.before = numbers.from;
             numbers.from = if bar.root == numbers.from { bar.tip } else { bar.root };
         }
         draw(sketch, step, commands);
@@ -127,6 +133,9 @@ fn at_pins(ui: &mut Ui, facts: &SketchFacts, p: &Palette, numbers: &mut Numbers,
         name(&hang, "hang a motor on the pin");
         if hang.clicked() {
             draw(sketch, motor_at(facts, numbers.motor), commands);
+            if hang.has_focus() {
+                focus::ask(ui.ctx(), fields::MOTOR_PIN);
+            }
         }
     });
     ui.horizontal(|ui| {
