@@ -213,6 +213,7 @@ fn value_in_words(said: &str) -> Option<String> {
     let is = match is.as_str() {
         "map" => "a table".to_owned(),
         "sequence" => "a list".to_owned(),
+        "the number NaN" | "the number -NaN" => "not a number".to_owned(),
         other => shortened(other, 120),
     };
     let want = match want {
