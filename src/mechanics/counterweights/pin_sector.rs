@@ -183,13 +183,8 @@ impl PinSector {
                         _ => 2,
                     }
                 }
-                _ => {
-                    if sector.middle[0] == 0.0 {
-                        2
-                    } else {
-                        0
-                    }
-                }
+                _ if sector.middle[0] == 0.0 => 2,
+                _ => 0,
             };
             let mut beyond = against(sector.middle);
             let cos = sector.half.cos();

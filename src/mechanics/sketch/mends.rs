@@ -55,9 +55,12 @@ impl Sketch {
                 let (at, along) = (self.at(pin) - self.at(bar.root), self.along(bar, pin));
                 let is_on = (at - self.direction(bar).scale(along)).norm() < SAME_PLACE
                     && (0.0..=self.length(bar)).contains(&along);
+                if !is_on {
+                    continue;
+                }
                 let step = SketchStep::Attach { pin, bar: bar.id };
                 let of: Vec<&str> = self.bars_at(pin).map(|bar| bar.name.as_str()).collect();
-                if !is_on || of.is_empty() || self.with(&step).is_err() {
+                if of.is_empty() || self.with(&step).is_err() {
                     continue;
                 }
                 let bars = if of.len() == 1 { "bar" } else { "bars" };
