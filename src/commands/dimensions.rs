@@ -2,7 +2,7 @@
 
 use clap::Args;
 use stillbase_exchange::cut::Cut;
-use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::machine::{MATERIALS, Machine};
 
 /// Dimensions of bars, pins and discs.
 #[derive(Args)]
@@ -13,8 +13,8 @@ pub struct Dimensions {
     /// Diameter of the pins and their holes, m; default: that of the machine's parts, or 0.008
     #[arg(long, value_name = "D")]
     pub pin_diameter: Option<f64>,
-    /// Density of the counterweights, kg/m³; default: that of steel, 7850
-    #[arg(long, value_name = "DENSITY")]
+    /// Material of the counterweights: aluminium, steel, brass, lead, tungsten, or a density, kg/m³; default: steel
+    #[arg(long, value_parser = density, value_name = "MATERIAL")]
     pub material: Option<f64>,
     /// Thickness of the counterweights, m; default: the thickness that gives each its mass
     #[arg(long, value_name = "T")]
@@ -40,4 +40,11 @@ impl Dimensions {
             spacer: self.spacer.unwrap_or(usual.spacer),
         }
     }
+}
+
+/// Parses a density, kg/m³, or the name of a material.
+pub fn density(text: &str) -> Result<f64, String> {
+    let known = MATERIALS.iter().find(|(name, _)| name.eq_ignore_ascii_case(text.trim()));
+    let want = || format!("want a density in kg/m³, or {}", MATERIALS.map(|(name, _)| name).join(", "));
+    known.map_or_else(|| text.trim().parse().map_err(|_| want()), |(_, density)| Ok(*density))
 }

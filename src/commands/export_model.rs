@@ -26,8 +26,8 @@ use super::output::{Format, TextTable, check_output};
 /// MJCF: sensors at the base read the force and moment that hold the machine; the reaction has the opposite sign. The
 /// pose is the keyframe "start". URDF: the joints drive_… are the motors, and all other joints follow them; the element
 /// `<stillbase>` contains what URDF cannot express. Both: data that plane motion does not need, such as inertias
-/// about other axes, are made up. Solids: bars, discs, pins and spacers at their heights, in mm; `stillbase layers`
-/// finds the heights.
+/// about other axes, are made up. Solids: bars, plates, counterweights, lumps, the payload, pins and spacers at their
+/// heights, in mm; `stillbase layers` finds the heights.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:

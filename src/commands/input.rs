@@ -172,7 +172,7 @@ impl MachineArgument {
 /// # Errors
 /// If there is no such machine, or it is not valid.
 pub fn machine(name: &str) -> Result<Machine, Failure> {
-    let FoundMachine { machine, left_out: notes } = stillbase_files::found_machine(name, None)?;
+    let FoundMachine { machine, left_out: notes } = stillbase_files::found_machine(name)?;
     report_left_out(name, &notes);
     Ok(machine)
 }

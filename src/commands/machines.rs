@@ -1,16 +1,30 @@
 //! `stillbase machines`
 
+use std::io::{self, Write};
+
 use clap::Args;
 use serde::Serialize;
-use stillbase_mechanics::machine::builtins;
+use stillbase_mechanics::machine::{Machine, builtins, to_toml};
+use stillbase_mechanics::sketch::Template;
 
 use super::failure::Failure;
-use super::input::Settings;
+use super::input::{Settings, machine};
+use super::new_machine::NewMachine;
 use super::output::{Format, TextTable};
 
-/// List the built-in machines
+/// List the built-in machines and the templates for drawings, or print one as TOML
 #[derive(Args)]
+#[command(after_help = "\
+Examples:
+  stillbase machines
+  stillbase machines pantograph -o my-arm.toml       a machine to begin with
+  stillbase machines nine-link --set length.l1=0.6")]
 pub struct MachinesArguments {
+    /// Print this machine as TOML: a built-in one, a template for drawings, or a file
+    #[arg(value_name = "MACHINE", conflicts_with = "json")]
+    name: Option<String>,
+    #[command(flatten)]
+    new: NewMachine,
     #[command(flatten)]
     settings: Settings,
     #[command(flatten)]
@@ -20,6 +34,8 @@ pub struct MachinesArguments {
 #[derive(Serialize)]
 struct Answer {
     machines: Vec<Row>,
+    /// Templates from which a person draws; each is a machine, too.
+    templates: Vec<Row>,
 }
 
 #[derive(Serialize)]
@@ -30,25 +46,50 @@ struct Row {
     summary: String,
 }
 
+impl Row {
+    fn of(name: &str, machine: &Machine, summary: &str) -> Self {
+        let (drives, links) = (machine.drives(), machine.links().len());
+        Self { name: name.into(), drives, links, summary: summary.into() }
+    }
+}
+
 impl MachinesArguments {
     /// Prints the machines.
     pub fn run(&self) -> Result<(), Failure> {
+        if let Some(name) = &self.name {
+            return self.print(&self.settings.apply(machine(name)?)?);
+        }
+        if self.new.is_wanted() {
+            return Err(Failure::wrong_input("--output: want the name of a machine to write"));
+        }
         let mut machines = Vec::new();
         for machine in builtins() {
             let machine = self.settings.apply(machine.clone()).map_err(|e| e.with_context(machine.name()))?;
-            machines.push(Row {
-                name: machine.name().into(),
-                drives: machine.drives(),
-                links: machine.links().len(),
-                summary: machine.spec().summary.clone(),
-            });
+            machines.push(Row::of(machine.name(), &machine, &machine.spec().summary));
         }
-        self.format.print(&Answer { machines }, |answer| {
-            let mut table = TextTable::new(["machine", "drives", "links", ""]).with_words(3);
-            for m in &answer.machines {
-                table.row([m.name.clone(), m.drives.to_string(), m.links.to_string(), m.summary.clone()]);
-            }
-            table.to_string()
+        let row =
+            |template: Template| Some(Row::of(template.word(), &template.sketch().machine()?, template.summary()));
+        let templates = Template::ALL.into_iter().filter_map(row).collect();
+        self.format.print(&Answer { machines, templates }, |answer| {
+            let list = |head: &str, rows: &[Row]| {
+                let mut table = TextTable::new([head, "drives", "links", ""]).with_words(3);
+                for m in rows {
+                    table.row([m.name.clone(), m.drives.to_string(), m.links.to_string(), m.summary.clone()]);
+                }
+                table.to_string()
+            };
+            format!("{}\n{}", list("machine", &answer.machines), list("template", &answer.templates))
         })
+    }
+
+    /// Prints a machine as TOML, or writes it to a file.
+    fn print(&self, machine: &Machine) -> Result<(), Failure> {
+        self.new.check()?;
+        if self.new.is_wanted() {
+            return self.new.save(machine, machine.spec().summary.clone());
+        }
+        let text = to_toml(machine);
+        let mut out = io::stdout().lock();
+        out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|e| Failure::standard_output(&e))
     }
 }

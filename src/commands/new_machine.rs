@@ -23,6 +23,11 @@ pub struct NewMachine {
 }
 
 impl NewMachine {
+    /// Whether a file is asked for.
+    pub fn is_wanted(&self) -> bool {
+        self.output.is_some()
+    }
+
     /// Checks, before any work is done, that the file may be written.
     pub fn check(&self) -> Result<(), Failure> {
         self.output.as_ref().map_or(Ok(()), |file| check_output(file, self.force, &["toml"]).map(|_| ()))

@@ -170,13 +170,14 @@ impl PlanArguments {
 
     /// Returns the scenario that the arguments define.
     fn scenario(&self) -> Result<Scenario, Failure> {
-        let as_machine = stillbase_files::found_machine(&self.name, None);
         let known = Scenario::builtin(&self.name).is_some();
+        let is_scenario = known || content_of(&self.name) == Some(FileContent::Scenario);
+        let as_machine = stillbase_files::found_machine(&self.name);
         if self.output.is_none() {
             self.settings.refuse_tolerances()?;
         }
         let mut scenario = match as_machine {
-            Ok(FoundMachine { machine, left_out }) if !known => {
+            Ok(FoundMachine { machine, left_out }) if !is_scenario => {
                 report_left_out(&self.name, &left_out);
                 if self.points.is_empty() {
                     return Err(Failure::wrong_input("a machine alone is no task: want points X,Y, or a scenario"));

@@ -25,7 +25,7 @@ pub struct Cut {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CutError {
     /// A dimension or density that is out of range.
-    #[error("{what} {} {unit}: want a number from {} to {}", ShortNumber(*value), ShortNumber(*MEASURES.start()), ShortNumber(*MEASURES.end()))]
+    #[error("{what} {}: want a number from {} to {}", stated(*value, unit), ShortNumber(*MEASURES.start()), ShortNumber(*MEASURES.end()))]
     Measure {
         /// Name of the quantity.
         what: &'static str,
@@ -62,6 +62,10 @@ pub enum CutError {
     },
 }
 
+fn stated(value: f64, unit: &str) -> String {
+    if value.is_nan() { "is not a number".into() } else { format!("{} {unit}", ShortNumber(value)) }
+}
+
 impl Default for Cut {
     /// Bars of 30 mm × 6 mm, pins of 8 mm, spacers of 1 mm, discs of steel.
     fn default() -> Self {
@@ -96,13 +100,17 @@ impl Cut {
         }
     }
 
-    /// Checks the material and thickness of discs.
+    /// Checks the range of each dimension and of the density.
     ///
     /// # Errors
     /// If one is out of range.
-    pub fn check_discs(&self) -> Result<(), CutError> {
+    pub fn check_ranges(&self) -> Result<(), CutError> {
         measure("material", Some(self.density), "kg/m³")?;
-        measure("thickness", self.thickness, "m")
+        measure("thickness", self.thickness, "m")?;
+        measure("bar width", Some(self.bar_width), "m")?;
+        measure("pin diameter", Some(self.pin_diameter), "m")?;
+        measure("plate thickness", Some(self.plate_thickness), "m")?;
+        measure("spacer", Some(self.spacer), "m")
     }
 
     /// Checks that the links of a machine can be cut.
@@ -110,9 +118,7 @@ impl Cut {
     /// # Errors
     /// If a dimension is out of range, or if holes overlap or are too wide.
     pub fn check(&self, machine: &Machine) -> Result<(), CutError> {
-        self.check_discs()?;
-        measure("bar width", Some(self.bar_width), "m")?;
-        measure("pin diameter", Some(self.pin_diameter), "m")?;
+        self.check_ranges()?;
         let (width, diameter) = (self.bar_width, self.pin_diameter);
         if diameter >= width {
             return Err(CutError::Narrow { width, diameter });
@@ -129,16 +135,6 @@ impl Cut {
             }
         }
         Ok(())
-    }
-
-    /// Checks that the links of a machine can be cut and stacked in layers.
-    ///
-    /// # Errors
-    /// If a dimension is out of range, or if holes overlap or are too wide.
-    pub fn check_stack(&self, machine: &Machine) -> Result<(), CutError> {
-        self.check(machine)?;
-        measure("plate thickness", Some(self.plate_thickness), "m")?;
-        measure("spacer", Some(self.spacer), "m")
     }
 
     /// Returns the distance between the middles of neighbouring layers, m.

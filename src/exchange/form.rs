@@ -147,7 +147,7 @@ impl Form {
     /// # Errors
     /// If the machine cannot be exported in this format.
     pub fn written(&self, machine: &Machine, pose: &[f64], cut: &Cut) -> Result<String, ExchangeError> {
-        cut.check_discs()?;
+        cut.check_ranges()?;
         (self.write)(machine, pose, cut)
     }
 }

@@ -146,6 +146,20 @@ pub fn of_drawing(machine: &Machine) -> Vec<String> {
             typed.join(", ")
         ));
     }
+    let floats = |weight: &Counterweight| {
+        let link = machine.spec().links.iter().position(|link| link.name == weight.link);
+        link.is_some_and(|link| machine.parts_of_link(link).is_some() && !machine.is_carried(link, weight))
+    };
+    let weights = machine.spec().counterweights.iter().enumerate();
+    let floating: Vec<String> =
+        weights.filter(|(_, weight)| floats(weight)).map(|(i, _)| (i + 1).to_string()).collect();
+    if !floating.is_empty() {
+        list.push(format!(
+            "what carries counterweight {}: no part of the link lies under its centre; design --counterweights --bars \
+             extends bars to it",
+            floating.join(", ")
+        ));
+    }
     let tail = unweighed_tail(machine);
     if tail <= 0.0 {
         return list;

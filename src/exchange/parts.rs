@@ -43,9 +43,9 @@ impl PartsList {
     /// Makes the parts list of a machine; `cut` gives density and thickness of discs.
     ///
     /// # Errors
-    /// If density or thickness of discs is out of range.
+    /// If a dimension or the density is out of range.
     pub fn of(machine: &Machine, cut: &Cut) -> Result<Self, CutError> {
-        cut.check_discs()?;
+        cut.check_ranges()?;
         let tables = [
             Some(links(machine, cut)),
             Some(parts(machine)),

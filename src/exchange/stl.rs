@@ -46,7 +46,7 @@ pub enum SolidsError {
 /// # Errors
 /// If the parts cannot be cut, the pose has the wrong number of angles or one that is no number, or two links on one pin share a height.
 pub fn solids(machine: &Machine, pose: &[f64], cut: &Cut) -> Result<Vec<SolidMesh>, SolidsError> {
-    cut.check_stack(machine)?;
+    cut.check(machine)?;
     if pose.len() != machine.drives() {
         return Err(SolidsError::Pose { given: pose.len(), wanted: machine.drives() });
     }

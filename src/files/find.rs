@@ -6,8 +6,10 @@ use std::path::Path;
 use super::text::read;
 use stillbase_exchange::import::{ImportedMachine, faults, import};
 use stillbase_mechanics::machine::{self, FileError, Machine, MachineError};
+use stillbase_mechanics::sketch::Template;
 use stillbase_session::gentle_motion;
 use stillbase_session::scenario::{FileContent, Scenario, ScenarioError, TaskKind, content};
+use stillbase_session::with_start_edits;
 use stillbase_settings::fault::{Fault, Faults};
 use stillbase_settings::number::ShortNumber;
 use stillbase_settings::range::shortened;
@@ -30,17 +32,33 @@ pub struct FoundMachine {
 /// # Errors
 /// If there is no such machine or file, or if the file is not a machine.
 pub fn machine(name: &str, folder: Option<&Path>) -> Result<Machine, FileError> {
-    found_machine(name, folder).map(|found| found.machine)
+    found(name, folder, false).map(|found| found.machine)
 }
 
-/// Returns a machine as [`machine()`] does, with what was left out of it. The file may be a model of another program.
+/// Returns a machine as [`machine()`] does, with what was left out of it. The file may be a model of another program, or
+/// a scenario: then its machine at the start is meant.
 ///
 /// # Errors
-/// As [`machine()`].
-pub fn found_machine(name: &str, folder: Option<&Path>) -> Result<FoundMachine, FileError> {
+/// As [`machine()`], and if the start of the scenario has no machine.
+pub fn found_machine(name: &str) -> Result<FoundMachine, FileError> {
+    found(name, None, true)
+}
+
+/// Returns the machine of a scenario at its start: after its edits at step 0, such as a drawing.
+fn machine_of(scenario: &Scenario, file: &str) -> Result<FoundMachine, FileError> {
+    let wrong = |why: String| wrong_file(file, Faults::one(whole_file(why)));
+    let (start, _) = with_start_edits(scenario).map_err(|why| wrong(why.to_string()))?;
+    if let Some(unfinished) = start.unfinished() {
+        return Err(wrong(unfinished.to_string()));
+    }
+    let note = format!("it is a scenario, taken is its machine {}", start.machine.name());
+    Ok(FoundMachine { machine: start.machine, left_out: vec![note] })
+}
+
+fn found(name: &str, folder: Option<&Path>, takes_scenarios: bool) -> Result<FoundMachine, FileError> {
     let own = |machine| FoundMachine { machine, left_out: Vec::new() };
-    if let Some(machine) = machine::builtin(name) {
-        return Ok(own(machine.clone()));
+    if let Some(machine) = known_machine(name) {
+        return Ok(own(machine));
     }
     let file = folder.map_or_else(|| name.into(), |folder| folder.join(name));
     let other = |file: String| wrong_file(&file, Faults::one(whole_file(IS_SCENARIO)));
@@ -51,16 +69,33 @@ pub fn found_machine(name: &str, folder: Option<&Path>) -> Result<FoundMachine, 
                 let ImportedMachine { machine, notes, .. } = model(&text, &file)?;
                 return Ok(FoundMachine { machine, left_out: notes });
             }
-            machine::parse(&text, &file).map(own).map_err(|why| match content(&text) {
-                Some(FileContent::Scenario) => other(file),
-                _ => why,
-            })
+            match content(&text) {
+                Some(FileContent::Scenario) if takes_scenarios => {
+                    let found = scenario(name).map_err(|why| match why {
+                        ScenarioError::MachineFile(why) => why,
+                        ScenarioError::Faulty { faults, .. } => wrong_file(&file, *faults),
+                        why => wrong_file(&file, Faults::one(whole_file(why.to_string()))),
+                    });
+                    machine_of(&found?.scenario, &file)
+                }
+                Some(FileContent::Scenario) => machine::parse(&text, &file).map(own).map_err(|_| other(file)),
+                _ => machine::parse(&text, &file).map(own),
+            }
         }
         Err(source) if source.kind() == ErrorKind::NotFound && !name.ends_with(".toml") => {
-            Err(if Scenario::builtin(name).is_some() { other(name.into()) } else { machine::unknown(name) })
+            match Scenario::builtin(name) {
+                Some(scenario) if takes_scenarios => machine_of(&scenario, name),
+                Some(_) => Err(other(name.into())),
+                None => Err(machine::unknown(name, &Template::ALL.map(Template::word))),
+            }
         }
         Err(source) => Err(FileError::Unreadable { file, source }),
     }
+}
+
+/// Returns a machine that everyone has: a built-in one, or that of a template for drawings.
+fn known_machine(name: &str) -> Option<Machine> {
+    machine::builtin(name).cloned().or_else(|| Template::of_word(name)?.sketch().machine())
 }
 
 /// Reads a machine from the text of a URDF or MJCF file, which errors name.
@@ -111,10 +146,11 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
     let text = match read(file) {
         Ok(text) => text,
         Err(source) if source.kind() == ErrorKind::NotFound && !name.ends_with(".toml") => {
-            return match machine::builtin(name) {
-                Some(machine) => scenario_for(name, machine),
+            return match known_machine(name) {
+                Some(machine) => scenario_for(name, &machine),
                 None => {
-                    let machines: Vec<&str> = machine::builtins().iter().map(Machine::name).collect();
+                    let builtin = machine::builtins().iter().map(Machine::name);
+                    let machines: Vec<&str> = builtin.chain(Template::ALL.map(Template::word)).collect();
                     Err(UnknownName::new(name, "scenario", Scenario::builtin_names().collect(), &machines).into())
                 }
             };

@@ -62,6 +62,10 @@ pub trait Vocabulary {
     fn example(&self, path: &KeyPath) -> Option<&'static str>;
     /// Returns the key that people mean by a word that is no key, and what to say of it.
     fn meant(&self, path: &KeyPath) -> Option<Meant>;
+    /// Returns an example with names that the file has in the place of made-up ones.
+    fn with_own_names(&self, example: String, _file: &StatedFile) -> String {
+        example
+    }
 }
 
 /// What people mean by a word that is no key.
@@ -336,7 +340,7 @@ impl Mending<'_> {
             column: place.map(|place| place.column),
             key: Self::key(&said).to_string(),
             text: said.text(self.words),
-            example: self.example(problem),
+            example: self.words.with_own_names(self.example(problem), &self.stated),
         }
     }
 
@@ -412,7 +416,14 @@ impl Mending<'_> {
                 None => self.leave_out(&key),
             },
             Wrong::Value(_) | Wrong::Said(_) => self.leave_out(&key),
-            Wrong::Kind(_) => key.parent().is_some_and(|table| self.file.remove(&table)),
+            Wrong::Kind(_) => match (key.parent(), self.words.example(&key)) {
+                (Some(table), Some(example)) => {
+                    self.mark(&table);
+                    self.file.set(&key, &MendValue::Toml(example))
+                }
+                (Some(table), None) => self.file.remove(&table),
+                (None, _) => false,
+            },
         }
     }
 

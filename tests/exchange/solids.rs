@@ -1,6 +1,6 @@
 //! Solids of stacked machines: closed, of the right volume, at their heights; layers in drawings and lists.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::f64::consts::PI;
 
 use stillbase::exchange::cut::{Cut, bar_extent};
@@ -10,6 +10,7 @@ use stillbase::exchange::mjcf::middle;
 use stillbase::exchange::parts::PartsList;
 use stillbase::exchange::stl::{SolidMesh, SolidsError, solids, stl};
 use stillbase::mechanics::machine::{Counterweight, Machine, builtin};
+use stillbase::mechanics::sketch::Template;
 use stillbase::study::layers::{LayersRequest, find_layers};
 
 use crate::support::Noise;
@@ -120,6 +121,27 @@ fn links_of_one_height_make_no_solids() {
     let stacked = stacked(machine, cut);
     assert_eq!(solids(&stacked, &[0.0], &cut), Err(SolidsError::Pose { given: 1, wanted: 2 }));
     assert!(Form::of("STL").expect("a form").written(&stacked, &[0.0, f64::NAN], &cut).is_err());
+}
+
+/// Every layer on which something lies is declared, for machines with and without parts.
+#[test]
+fn drawings_declare_their_layers() {
+    let templates = Template::ALL.into_iter().filter_map(|template| template.sketch().machine());
+    for flat in templates.chain(["two-drive", "nine-link"].map(|name| builtin(name).expect("built in").clone())) {
+        let cut = Cut::default().fitting(&flat);
+        let mut spec = flat.spec().clone();
+        for (i, link) in spec.links.iter_mut().enumerate() {
+            link.axial = i as f64 * cut.layer_pitch();
+        }
+        let text = dxf(&Sheet::of(&Machine::new(spec).expect("valid"), &cut).expect("a sheet"));
+        let (tables, entities) = text.split_once("ENTITIES").expect("two sections");
+        let lines: Vec<&str> = entities.lines().collect();
+        let used: BTreeSet<&str> = lines.windows(2).filter(|pair| pair[0] == "8").map(|pair| pair[1]).collect();
+        assert!(used.len() > 2 * flat.links().len(), "{used:?}");
+        for layer in used {
+            assert!(tables.contains(&format!("LAYER\n2\n{layer}\n")), "{}: {layer}", flat.name());
+        }
+    }
 }
 
 #[test]

@@ -23,10 +23,14 @@ fn machines_and_scenarios_are_told_apart() {
     // The scenario of that name comes first.
     let out = stillbase(&["simulate", "scara", "--every", "1000"]);
     assert!(out.status.success() && !text(&out.stderr).contains("was made for it"));
+    // Where a machine is wanted, a scenario gives its own, and says so.
     for command in [&["check"][..], &["design"], &["reach", "0.5,0.5"], &["workspace", "--b", "2.4"]] {
         for name in [scenario.as_str(), "case-3"] {
-            let args = [&command[..1], &[name], &command[1..]].concat();
-            fails(&args, 2, &[name, "this is a scenario, not a machine", "simulate", "take a SCENARIO"]);
+            let of = |name: &str| stillbase(&[&command[..1], &[name], &command[1..]].concat());
+            let (of_scenario, of_machine) = (of(name), of("nine-link"));
+            assert_eq!(of_scenario.stdout, of_machine.stdout, "{command:?}");
+            let said = text(&of_scenario.stderr);
+            assert!(said.contains(&format!("{name}: it is a scenario, taken is its machine nine-link")), "{said}");
         }
     }
     // A file that names a scenario as its machine.

@@ -226,8 +226,71 @@ fn an_incomplete_drawing_lists_what_is_missing() {
     let words = ["the drawing \"my arm\" is no machine yet: no motor turns bar 1 yet, and 1 more"];
     fails(&["simulate", &drawn], 1, &words);
     fails(&["headless", &drawn, "-o", &word(folder.path("drawn.rrd"))], 1, &words);
-    // One that is complete is a scenario like any other.
-    fails(&["check", &word(folder.file("whole.toml", scenario))], 2, &["this is a scenario, not a machine"]);
+    // One that is complete is checked as the machine that it is.
+    let template = "[[edit]]\nstep = 0\ndo = \"sketch\"\ndraw = \"new\"\ntemplate = \"pantograph\"\n";
+    let whole = word(folder.file("whole.toml", format!("{scenario}{template}")));
+    assert_eq!(object(&["check", &whole])["mass"], object(&["check", "pantograph"])["mass"]);
+}
+
+/// Every template is a machine that a file can hold, and `machines` writes it.
+#[test]
+fn a_template_is_a_machine_to_begin_with() {
+    let folder = Folder::new("templates");
+    let listed = object(&["machines"])["templates"].clone();
+    let names: Vec<&str> = listed.as_array().expect("a list").iter().filter_map(|row| row["name"].as_str()).collect();
+    assert_eq!(names.len(), 6, "all but the blank one: {names:?}");
+    for name in names {
+        let file = word(folder.path(&format!("{name}.toml")));
+        prints(&["machines", name, "-o", &file]);
+        assert_eq!(object(&["check", &file])["mass"], object(&["check", name])["mass"]);
+        assert_eq!(prints(&["machines", &file]), fs::read_to_string(&file).expect("a file"));
+    }
+    fails(&["machines", "pantograf"], 2, &["pantograph (nearest)"]);
+    fails(&["machines", "-o", &word(folder.path("x.toml"))], 2, &["want the name of a machine"]);
+}
+
+/// Everything that a part lacks is told at once, with examples in the names of the file.
+#[test]
+fn parts_tell_all_that_they_lack() {
+    let folder = Folder::new("parts");
+    let file = folder.file(
+        "arm.toml",
+        r#"
+name = "arm"
+drive = [{ name = "q1" }]
+link = [{ name = "upper", drive = "q1", attach = "base", length = 0.5 }]
+end_effector = { link = "upper", at = "tip" }
+part = [
+    { link = "upper", material = "steel", shape = "flat" },
+    { link = "upper", material = "steel", shape = "pipe" },
+    { link = "upper", material = "steel", shape = "profile" },
+    { link = "upper", material = "steel", shape = "plate" },
+    { link = "upper", material = "steel", shape = "plate", thickness = 0.006, polygon = [[0, 0], [1, 0], [1, 1], [0, 0]] },
+]
+lump = [{ mass = 0.3, at = "end" }]
+counterweight = [{ mass = 0.3, at = -0.1 }]
+"#,
+    );
+    let out = stillbase(&["check", &word(file)]);
+    let said = text(&out.stderr);
+    for lacks in [
+        "width of part 1",
+        "thickness of part 1",
+        "is "pipe": want one of flat, tube, profile, plate",
+        "width of part 3",
+        "height of part 3",
+        "wall of part 3",
+        "thickness of part 4",
+        "corners of part 4",
+        "corners 1 and 4 are one point",
+        "link that carries lump 1",
+        "names the length "end", which does not exist: want "tip", "root", or a number in m",
+        "link that carries counterweight 1",
+        "link = "upper"",
+    ] {
+        assert!(said.contains(lacks), "{lacks:?} in {said}");
+    }
+    assert!(said.contains("12 faults") && !said.contains("link = "1"") && !said.contains("part 2 is"), "{said}");
 }
 
 /// Two drives have no plane of (a1, a2): the questions about planes have no answer, the others do.

@@ -5,7 +5,7 @@ use std::time::Instant;
 use clap::Args;
 use stillbase_mechanics::counterweights::{
     BoundRelaxation, CounterweightError, CounterweightForm, CounterweightSpec, CounterweightStock, FreeRotor,
-    MATERIALS, Objective, RotorFreedom,
+    Objective, RotorFreedom,
 };
 use stillbase_mechanics::machine::{BarStock, Counterweight, CounterweightShape, Machine};
 use stillbase_planning::Motion;
@@ -19,6 +19,7 @@ use stillbase_study::measures::greatest_accelerations;
 use stillbase_study::workshop::{CutRequest, NoCut};
 
 use super::super::check::balance_tables;
+use super::super::dimensions::density;
 use super::super::ends::parse_bounds;
 use super::super::exit::print_message;
 use super::super::failure::Failure;
@@ -300,13 +301,6 @@ pub fn cut_failure(why: NoCut) -> Failure {
         NoCut::Bars(_) => Failure::wrong_input(why),
         NoCut::Unsettled { .. } => Failure::no_answer(why),
     }
-}
-
-/// Parses a density, kg/m³, or the name of a material.
-fn density(text: &str) -> Result<f64, String> {
-    let known = MATERIALS.iter().find(|(name, _)| name.eq_ignore_ascii_case(text.trim()));
-    let want = || format!("want a density in kg/m³, or {}", MATERIALS.map(|(name, _)| name).join(", "));
-    known.map_or_else(|| text.trim().parse().map_err(|_| want()), |(_, density)| Ok(*density))
 }
 
 /// Parses the shape of counterweights.

@@ -24,10 +24,11 @@ fn named((name, _): (&str, u8), layer: Option<usize>) -> String {
 fn layers(sheet: &Sheet) -> Vec<(String, u8)> {
     let layer = |shape: &SheetShape| match shape {
         SheetShape::Bar { layer, .. }
+        | SheetShape::Outline { layer, .. }
         | SheetShape::Hole { layer, .. }
         | SheetShape::Disc { layer, .. }
         | SheetShape::Weight { layer, .. } => *layer,
-        _ => None,
+        SheetShape::Line(_) | SheetShape::Mark { .. } | SheetShape::Words { .. } => None,
     };
     let stacked: BTreeSet<usize> = sheet.shapes.iter().filter_map(layer).collect();
     let own = match stacked.is_empty() {

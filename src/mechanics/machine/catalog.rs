@@ -39,10 +39,10 @@ pub fn builtin(name: &str) -> Option<&'static Machine> {
 /// # Errors
 /// If there is no machine of that name; the error lists the names.
 pub fn named(name: &str) -> Result<Machine, FileError> {
-    builtin(name).cloned().ok_or_else(|| unknown(name))
+    builtin(name).cloned().ok_or_else(|| unknown(name, &[]))
 }
 
-/// Returns the error for a name that no built-in machine has.
-pub fn unknown(name: &str) -> FileError {
-    UnknownName::new(name, "machine", builtins().iter().map(Machine::name).collect(), &[]).into()
+/// Returns the error for a name that no built-in machine has, and none of the templates `others`.
+pub fn unknown(name: &str, others: &[&'static str]) -> FileError {
+    UnknownName::new(name, "machine", builtins().iter().map(Machine::name).collect(), others).into()
 }

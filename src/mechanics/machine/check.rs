@@ -149,19 +149,28 @@ fn length_of(spec: &MachineSpec, i: usize) -> Result<f64, MachineError> {
     let place = || KeyPath::new(&[&"link", &i, &"length"]);
     match &spec.links[i].length {
         Length::Metres(l) => within(LENGTH, *l, place).map(|()| *l),
-        Length::Named(name) => named_length(spec, name, place),
+        Length::Named(name) => named_length(spec, name, place, LENGTHS),
     }
 }
 
-fn named_length(spec: &MachineSpec, name: &str, place: impl Fn() -> KeyPath) -> Result<f64, MachineError> {
+fn named_length(
+    spec: &MachineSpec,
+    name: &str,
+    place: impl Fn() -> KeyPath,
+    more: &'static str,
+) -> Result<f64, MachineError> {
     spec.lengths.get(name).copied().ok_or_else(|| MachineError::Unknown {
         place: place(),
         what: "length",
         name: name.into(),
         known: spec.lengths.keys().cloned().collect(),
-        more: ", or a number in m",
+        more,
     })
 }
+
+/// What states a length, and what a place along a link, besides a named length.
+const LENGTHS: &str = ", or a number in m";
+const PLACES: &str = ", \"tip\", \"root\", or a number in m";
 
 /// Resolves a point of a link: the index of the link, and the distance from its root, m.
 fn locate(
@@ -192,8 +201,8 @@ pub(super) fn place_on_link(
             "tip" => length_of(spec, link),
             "root" => Ok(0.0),
             name => match name.strip_prefix('-') {
-                Some(name) => Ok(-named_length(spec, name, place)?),
-                None => named_length(spec, name, place),
+                Some(name) => Ok(-named_length(spec, name, place, PLACES)?),
+                None => named_length(spec, name, place, PLACES),
             },
         },
     }

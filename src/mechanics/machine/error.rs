@@ -277,7 +277,8 @@ impl MachineError {
 /// Returns the names that exist, for messages that say what would be right.
 fn one_of(known: &[String], more: &str) -> String {
     match known {
-        [] => more.strip_prefix(", or ").unwrap_or("one that exists; there is none yet").into(),
+        [] if more.is_empty() => "one that exists; there is none yet".into(),
+        [] => more.trim_start_matches(", ").trim_start_matches("or ").into(),
         known => format!("one of {}{more}", quoted(known.iter().map(String::as_str))),
     }
 }

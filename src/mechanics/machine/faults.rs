@@ -24,11 +24,22 @@ pub fn read(file: &StatedFile) -> Result<Machine, Box<(Problem, MachineError)>> 
         return Err(Box::new((Problem { path: end, wrong: Wrong::Said(error.to_string()) }, error)));
     }
     let spec: MachineSpec = file.read().map_err(|error| {
-        let problem = Problem::of(file, &error);
+        let problem = match Problem::of(file, &error) {
+            // Without its shape, a part has no keys that can be judged.
+            Problem { path, wrong: Wrong::Value(said) } if path.fits("part.*.shape") => {
+                Problem { path, wrong: Wrong::Kind(said) }
+            }
+            other => other,
+        };
         let text = problem.text(&super::words::MachineWords);
         Box::new((problem, MachineError::Syntax(text)))
     })?;
     Machine::new(spec).map_err(|error| Box::new((problem(file, &error), error)))
+}
+
+/// Whether a part states its shape by a key.
+fn is_length_of_part(key: &str) -> bool {
+    ["width", "thickness", "diameter", "height", "wall", "polygon"].contains(&key)
 }
 
 /// Returns the problem of a file without a single part of a machine.
@@ -59,6 +70,13 @@ fn problem(file: &StatedFile, error: &MachineError) -> Problem {
         MachineError::Cycle { .. } => Problem { path, wrong: Wrong::Said(said) },
         MachineError::OpenLoop { .. } | MachineError::Massless { .. } => Problem { path, wrong: Wrong::Follows(said) },
         _ if path.0.is_empty() => Problem { path, wrong: Wrong::Whole(said, String::new()) },
+        // A length that the shape of a part has, and the file does not state.
+        MachineError::Part { .. } if file.at(&path).is_none() && path.last_key().is_some_and(is_length_of_part) => {
+            match (path.parent(), path.last_key()) {
+                (Some(table), Some(key)) => Problem { path: table, wrong: Wrong::Missing(key.into()) },
+                _ => Problem { path, wrong: Wrong::Said(said) },
+            }
+        }
         MachineError::HalfLimited { .. } => {
             let lacks = ["min", "max"].into_iter().find(|key| file.at(&path.key(key)).is_none());
             Problem { wrong: Wrong::Missing(lacks.unwrap_or("max").into()), path }

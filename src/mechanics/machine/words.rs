@@ -3,6 +3,7 @@
 use super::error::{KeyPath, KeyStep};
 use super::keys::KeyRow;
 use stillbase_settings::mending::{Meant, Vocabulary, called, with_key};
+use stillbase_settings::stated::StatedFile;
 use stillbase_settings::word_row::WordRow;
 
 const fn row(path: &'static str, name: &'static str, want: &'static str, example: &'static str) -> WordRow {
@@ -239,6 +240,23 @@ impl Vocabulary for MachineWords {
 
     fn example(&self, path: &KeyPath) -> Option<&'static str> {
         row_of(path).map(|row| row.example).filter(|example| !example.is_empty())
+    }
+
+    /// Examples are about the links and drives "1" and "2": these become the first two that the file names.
+    fn with_own_names(&self, example: String, file: &StatedFile) -> String {
+        // A whole table states its own names.
+        if example.contains("[[") {
+            return example;
+        }
+        let own = |list: &str, keys: &[&str], text: String| {
+            let names = file.names(list);
+            let pairs = ["1", "2"].into_iter().zip(names.iter().chain(names.last()));
+            pairs.filter(|(made_up, _)| !names.contains(made_up)).fold(text, |text, (made_up, name)| {
+                keys.iter()
+                    .fold(text, |text, key| text.replace(&format!("{key} = {made_up:?}"), &format!("{key} = {name:?}")))
+            })
+        };
+        own("drive", &["drive", "to", "from"], own("link", &["link"], example))
     }
 
     fn meant(&self, path: &KeyPath) -> Option<Meant> {

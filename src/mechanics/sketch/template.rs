@@ -46,6 +46,24 @@ impl Template {
         Self::NineLinks,
     ];
 
+    /// Its name in files and on the command line.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Blank => "blank",
+            Self::SerialOfTwo => "serial-of-two",
+            Self::SerialOfThree => "serial-of-three",
+            Self::ParallelogramArm => "parallelogram-arm",
+            Self::Pantograph => "pantograph",
+            Self::ScaraWithBelts => "scara-with-belts",
+            Self::NineLinks => "nine-links",
+        }
+    }
+
+    /// Returns the template with a name in files.
+    pub fn of_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|template| template.word() == word)
+    }
+
     /// Its name for people.
     pub fn title(self) -> &'static str {
         match self {

@@ -107,7 +107,7 @@ impl LayersRequest {
 
     fn contacts(&self, task: Option<&TaskPoses>) -> Result<(Solids, Vec<Contact>), NoLayers> {
         let (machine, cut) = (&self.machine, &self.cut);
-        cut.check_stack(machine)?;
+        cut.check(machine)?;
         let solids = Solids::of(machine, cut);
         let range = PoseRange::of(machine);
         let way = match task.filter(|_| self.along_task) {

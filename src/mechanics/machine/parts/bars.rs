@@ -203,7 +203,7 @@ impl Machine {
     }
 
     /// Returns whether a part of a link lies under the centre of a counterweight.
-    fn is_carried(&self, j: usize, weight: &Counterweight) -> bool {
+    pub fn is_carried(&self, j: usize, weight: &Counterweight) -> bool {
         self.part_bodies().iter().any(|body| match body.source {
             PartSource::Part(i) if body.link == j => {
                 let part = &self.spec().parts[i];

@@ -92,6 +92,12 @@ impl Section<'_> {
 
     fn plate(&self) -> Result<PlaneBody, MachineError> {
         let corners = &self.part.polygon;
+        let after = |i: usize| (i + 1) % corners.len();
+        if let Some(i) = (0..corners.len()).find(|i| corners[*i] == corners[after(*i)]) {
+            let [one, other] = [i.min(after(i)) + 1, i.max(after(i)) + 1];
+            let why = format!("its corners {one} and {other} are one point: want each corner once");
+            return self.refuse("polygon", why);
+        }
         if let Some((one, other)) = polygon::crossing(corners) {
             let why = format!("its sides {one} and {other} meet: want the corners in the order around the plate");
             return self.refuse("polygon", why);
