@@ -88,7 +88,7 @@ min = 0.2
             ("inertia = nan", "link.b.inertia", "is not a number", "inertia = 0.02"),
             ("colour", "link.b.colour", "want one of name, drive, attach", ""),
             ("[[angle]]", "limits.a1 (max)", "upper limit of angle a1 (limits.a1, max) is missing", "max = 2.9"),
-            ("", "end_effector", "is missing", "[end_effector]\nat = \"tip\"\nlink = \"1\""),
+            ("", "end_effector", "is missing", "[end_effector]\nat = \"tip\"\nlink = \"a\""),
         ],
     );
 }
