@@ -176,7 +176,7 @@ impl PlanArguments {
             self.settings.refuse_tolerances()?;
         }
         let mut scenario = match as_machine {
-            Ok(FoundMachine { machine, left_out }) if !known => {
+            Ok(FoundMachine { machine, design, left_out }) if !known => {
                 report_left_out(&self.name, &left_out);
                 if self.points.is_empty() {
                     return Err(Failure::wrong_input("a machine alone is no task: want points X,Y, or a scenario"));
@@ -184,6 +184,7 @@ impl PlanArguments {
                 let own = overlay_unchecked(DEFAULT_SCENARIO, &Settings::default())?;
                 let with = Scenario {
                     machine,
+                    design,
                     name: DEFAULT_NAME.into(),
                     title: String::new(),
                     summary: String::new(),

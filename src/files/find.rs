@@ -7,7 +7,7 @@ use super::text::read;
 use stillbase_exchange::import::{ImportedMachine, faults, import};
 use stillbase_mechanics::machine::{self, FileError, Machine, MachineError};
 use stillbase_session::gentle_motion;
-use stillbase_session::scenario::{FileContent, Scenario, ScenarioError, TaskKind, content};
+use stillbase_session::scenario::{DesignBrief, FileContent, MachineFile, Scenario, ScenarioError, TaskKind, content};
 use stillbase_settings::fault::{Fault, Faults};
 use stillbase_settings::number::ShortNumber;
 use stillbase_settings::range::shortened;
@@ -21,6 +21,8 @@ const IS_SCENARIO: &str = "this is a scenario, not a machine: want the machine t
 pub struct FoundMachine {
     /// The machine.
     pub machine: Machine,
+    /// The brief of its design that its file holds; the defaults if it holds none.
+    pub design: DesignBrief,
     /// What was left out of the model of another program; empty for a machine of this one.
     pub left_out: Vec<String>,
 }
@@ -38,9 +40,9 @@ pub fn machine(name: &str, folder: Option<&Path>) -> Result<Machine, FileError> 
 /// # Errors
 /// As [`machine()`].
 pub fn found_machine(name: &str, folder: Option<&Path>) -> Result<FoundMachine, FileError> {
-    let own = |machine| FoundMachine { machine, left_out: Vec::new() };
+    let own = |MachineFile { machine, design }| FoundMachine { machine, design, left_out: Vec::new() };
     if let Some(machine) = machine::builtin(name) {
-        return Ok(own(machine.clone()));
+        return Ok(own(machine.clone().into()));
     }
     let file = folder.map_or_else(|| name.into(), |folder| folder.join(name));
     let other = |file: String| wrong_file(&file, Faults::one(whole_file(IS_SCENARIO)));
@@ -49,9 +51,9 @@ pub fn found_machine(name: &str, folder: Option<&Path>) -> Result<FoundMachine, 
             let file = file.display().to_string();
             if is_model(&text) {
                 let ImportedMachine { machine, notes, .. } = model(&text, &file)?;
-                return Ok(FoundMachine { machine, left_out: notes });
+                return Ok(FoundMachine { left_out: notes, ..own(machine.into()) });
             }
-            machine::parse(&text, &file).map(own).map_err(|why| match content(&text) {
+            MachineFile::parse(&text, &file).map(own).map_err(|why| match content(&text) {
                 Some(FileContent::Scenario) => other(file),
                 _ => why,
             })
@@ -112,7 +114,7 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
         Ok(text) => text,
         Err(source) if source.kind() == ErrorKind::NotFound && !name.ends_with(".toml") => {
             return match machine::builtin(name) {
-                Some(machine) => scenario_for(name, machine),
+                Some(machine) => scenario_for(name, machine.clone().into()),
                 None => {
                     let machines: Vec<&str> = machine::builtins().iter().map(Machine::name).collect();
                     Err(UnknownName::new(name, "scenario", Scenario::builtin_names().collect(), &machines).into())
@@ -123,18 +125,23 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
     };
     if is_model(&text) {
         let ImportedMachine { machine, notes, .. } = model(&text, name)?;
-        return Ok(FoundScenario { left_out: notes, ..scenario_for(name, &machine)? });
+        return Ok(FoundScenario { left_out: notes, ..scenario_for(name, machine.into())? });
     }
     if content(&text) == Some(FileContent::Machine) {
-        return scenario_for(name, &machine::parse(&text, &shortened(name, 300))?);
+        return scenario_for(name, MachineFile::parse(&text, &shortened(name, 300))?);
     }
-    let scenario = Scenario::parse(&text, name, Some(&|name| machine(name, file.parent())))?;
+    let find = |name: &str| {
+        let FoundMachine { machine, design, .. } = found_machine(name, file.parent())?;
+        Ok(MachineFile { machine, design })
+    };
+    let scenario = Scenario::parse(&text, name, Some(&find))?;
     Ok(FoundScenario { scenario, note: None, left_out: Vec::new() })
 }
 
-/// Makes a scenario for a machine, whose name or file is `name`.
-fn scenario_for(name: &str, machine: &Machine) -> Result<FoundScenario, ScenarioError> {
-    let scenario = gentle_motion(machine)?;
+/// Makes a scenario for a machine, whose name or file is `name`. The scenario has the brief of the file.
+fn scenario_for(name: &str, of: MachineFile) -> Result<FoundScenario, ScenarioError> {
+    let MachineFile { machine, design } = of;
+    let scenario = Scenario { design, ..gentle_motion(&machine)? };
     let task = &scenario.task;
     let made = format!(
         "{} is a machine, so a task was made for it: {} from {:.3}, {:.3} to {:.3}, {:.3} m in {} s",
