@@ -353,8 +353,7 @@ fn what_nothing_changes_is_told_of_machines_of_every_size() {
         }
         let machine = Machine::new(spec).expect("a machine");
         let sites = CounterweightSite::anywhere(&machine);
-        let stock = CounterweightStock { thickness: 0.03 * size.min(10.0), ..STEEL };
-        let why = place_weights(&machine, &CounterweightSpec::least(Objective::mass(), sites, stock));
+        let why = place_weights(&machine, &CounterweightSpec::least(Objective::mass(), sites, STEEL));
         assert!(matches!(why, Err(CounterweightError::OffAxis { .. })), "{size}: {why:?}");
     }
 }

@@ -767,7 +767,7 @@ fn design_takes_the_brief_of_the_file() {
     assert!(made.ends_with("heaviest = 9.0\nclearance = 0.006\n"), "{made}");
     assert_eq!(object(&["check", &out])["invariant"], true);
     let said = prints(&["check", &out]);
-    assert!(said.contains("counterweight on link  shape") && said.contains("radius mm  inner radius mm"), "{said}");
+    assert!(said.contains("counterweight on link   shape") && said.contains("radius mm   inner radius mm"), "{said}");
     assert_eq!(object(&["check", &out])["counterweights"], of_flags["weights"]);
 }
 
@@ -787,5 +787,7 @@ fn design_keep_takes_the_brief_of_the_file() {
     let run = stillbase(&["design", &file, "--keep", "--free", "3.com", "-o", &out]);
     let said = text(&run.stderr);
     assert!(run.status.success() && said.contains("design.fixed.3=true") && said.contains("hold.link.2.com"), "{said}");
-    assert!(fs::read_to_string(&out).expect("written").contains("[design.hold.link.3]\ncom = \"free\""));
+    // What the options ask of this change alone is not asked of the next one.
+    let made = fs::read_to_string(&out).expect("written");
+    assert!(made.contains("[design.hold.link.2]") && !made.contains("\"free\""), "{made}");
 }

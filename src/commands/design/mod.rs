@@ -128,7 +128,7 @@ impl DesignArguments {
         let concerns = |key: &str| key.starts_with("fixed.") || key.starts_with("hold.");
         report_brief(self.machine.name(), design, &brief, concerns);
         let (machine_now, answer) = self.rebalance.run(machine, &brief, motion, penalty)?;
-        self.new_machine.save(&machine_now, &brief, format!("{}, kept balanced with {by}", machine.name()))?;
+        self.new_machine.save(&machine_now, design, format!("{}, kept balanced with {by}", machine.name()))?;
         self.format.print(&answer, |answer| kept::text(answer, machine, by))
     }
 

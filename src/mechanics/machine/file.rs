@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::faults;
+use super::faults::{self, FirstProblem};
 use super::words::MachineWords;
 use super::{Machine, MachineError};
 use stillbase_settings::fault::Faults;
-use stillbase_settings::mending::{Problem, Vocabulary, faults_of};
+use stillbase_settings::mending::{Vocabulary, faults_of};
 use stillbase_settings::range::shortened;
 use stillbase_settings::spelling::UnknownName;
 use stillbase_settings::stated::StatedFile;
@@ -87,7 +87,7 @@ pub fn parse_with<T>(
     text: &str,
     file: &str,
     words: &dyn Vocabulary,
-    read: &dyn Fn(&StatedFile) -> Result<T, Box<(Problem, MachineError)>>,
+    read: &dyn Fn(&StatedFile) -> Result<T, FirstProblem>,
 ) -> Result<T, FileError> {
     let first = match StatedFile::parse(text) {
         Ok(stated) => match read(&stated) {

@@ -38,7 +38,7 @@ pub use chain::{Chain, place_of};
 pub use check::CLOSURE_TOLERANCE;
 pub use counterweight::{Counterweight, CounterweightShape};
 pub use error::{KeyPath, KeyStep, MachineError};
-pub use faults::read as read_stated;
+pub use faults::{FirstProblem, read as read_stated};
 pub use file::{FileError, parse, parse_with, to_toml};
 pub use inertia::RotorCoupling;
 pub use inertia::{BALANCE_TOLERANCE, Inertia};

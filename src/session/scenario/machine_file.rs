@@ -6,7 +6,9 @@ use toml::{Table, Value};
 use super::design::{DesignBrief, is_default};
 use super::keys::key_of;
 use super::words::ScenarioWords;
-use stillbase_mechanics::machine::{self, FileError, KeyPath, KeyStep, Machine, MachineError, MachineWords};
+use stillbase_mechanics::machine::{
+    self, FileError, FirstProblem, KeyPath, KeyStep, Machine, MachineError, MachineWords,
+};
 use stillbase_settings::key;
 use stillbase_settings::mending::{Meant, Problem, Vocabulary, Wrong};
 use stillbase_settings::range::{RangeCheck, range_error};
@@ -66,14 +68,16 @@ impl From<Machine> for MachineFile {
     }
 }
 
-fn read(file: &StatedFile) -> Result<MachineFile, Box<(Problem, MachineError)>> {
+fn read(file: &StatedFile) -> Result<MachineFile, FirstProblem> {
     let wrong = |problem: Problem| {
         let text = problem.text(&MachineFileWords);
         Box::new((problem, MachineError::Syntax(text)))
     };
     let mut rest = file.clone();
     rest.remove(&KeyPath::new(&[&DESIGN]));
-    let machine = machine::read_stated(&rest).map_err(|first| match *first {
+    // A file with nothing but a brief does state something.
+    let of_machine = if rest.keys().next().is_some() { &rest } else { file };
+    let machine = machine::read_stated(of_machine).map_err(|first| match *first {
         (Problem { path, wrong: Wrong::UnknownKey(known) }, _) if path.0.len() == 1 => {
             let known = known.into_iter().chain([DESIGN.to_owned()]).collect();
             wrong(Problem { path, wrong: Wrong::UnknownKey(known) })
