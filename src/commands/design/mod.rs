@@ -35,6 +35,8 @@ use weighed::WeightArguments;
 /// With --counterweights the links stay unchanged, and discs on them balance the machine. A cone program finds the
 /// lightest discs, or those of least inertia. "gap" is the maximum amount by which the optimum may be lower.
 ///
+/// What the file of the machine asks for in its table [design] applies, too. The options overrule it, and a note says so.
+///
 /// With --counterweights --front and several machines, the answer compares their Pareto fronts under the same bounds.
 /// For a machine that no counterweights within the bounds balance, it gives the reason.
 #[derive(Args)]
