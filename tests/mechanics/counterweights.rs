@@ -340,7 +340,7 @@ fn what_cannot_be_is_refused() {
 #[test]
 fn what_nothing_changes_is_told_of_machines_of_every_size() {
     let slanted = family_machine("nine-link-bare").set("link.4.com_normal", "0.02").expect("in range");
-    for size in [1e-3, 1.0, 1e2] {
+    for size in [1e-3, 1.0, 10.0] {
         let mut spec = slanted.spec().clone();
         let mass = size * size * size;
         spec.lengths.values_mut().for_each(|length| *length *= size);
