@@ -172,7 +172,7 @@
 //! # Features
 //! The core builds without any feature: it needs no GPU, no window and no Rerun, and reads no clock. The last column
 //! counts all crates that are then built, including those of Stillbase. `cargo tree -e normal --no-default-features
-//! --features …` lists them; the numbers are those on Linux in version 0.1.0.
+//! --features …` lists them; the numbers are those on Linux in version 0.2.0.
 //!
 //! | feature | what it adds | crates |
 //! |---|---|---|

@@ -135,10 +135,10 @@ impl QuickQuery for Settings {
 pub(super) struct ScenarioFacts<'a> {
     pub queries: &'a Queries,
     scenario: Shared<Scenario>,
-    /// Whether the machine differs from the built-in one of its name, and from that of the session's file.
+    /// Whether the machine differs from that of the session's file; without a file, from the built-in one of its name.
     pub machine_differs: bool,
-    /// Whether task, plant, base or control differ from those of the built-in scenario of its name, and from those of
-    /// the session's file.
+    /// Whether task, plant, base or control differ from those of the session's file. They must differ from those of the
+    /// built-in scenario of its name, too.
     pub work_differs: bool,
     pub balance: Arc<BalanceSummary>,
     /// Base moment that a change of b causes while time runs, N m.
@@ -164,7 +164,7 @@ impl<'a> ScenarioFacts<'a> {
         // With several shapes for each point the search takes longer than a repaint.
         let ways_out = |missed| queries.ask_in_background::<QuickWork<TargetProposals>>(&missed).known().cloned();
         Self {
-            machine_differs: differs.machine && stated.is_none_or(|stated| stated.machine != scenario.0.machine),
+            machine_differs: stated.map_or(differs.machine, |stated| stated.machine != scenario.0.machine),
             work_differs: differs.work && stated.is_none_or(|stated| !same_work(stated, &scenario.0)),
             price: balance.pose_inertia * scenario.0.pose_acceleration,
             balance,

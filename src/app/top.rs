@@ -75,7 +75,7 @@ fn machines(
     let shown = drawn.unwrap_or(present.name());
     let (current, widest) = (edited(shown, changed), edited(shown, true));
     let tip = if changed {
-        "The machine; it differs from the built-in one of this name"
+        "The machine; it differs from that of its file, or from the built-in one of this name"
     } else {
         "The machine; choosing another one opens a task that shows its purpose"
     };

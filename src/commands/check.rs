@@ -2,11 +2,12 @@
 
 use clap::Args;
 use serde::Serialize;
-use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::machine::{Counterweight, Inertia, Machine};
 use stillbase_planning::off_plane::null_space::is_integrable;
 use stillbase_planning::pose_constant::PoseConstant;
 use stillbase_session::verdict::Statement;
 use stillbase_study::balance_constants::BalanceConstants;
+use stillbase_study::counterweights::all_numbers;
 use stillbase_study::parts::{LinkParts, PartRow};
 
 use super::failure::Failure;
@@ -65,6 +66,26 @@ fn parts_table(links: &[LinkParts]) -> String {
     format!("\n{table}{overruled}")
 }
 
+/// Formats the counterweights, one a row, with the sizes that some of them have.
+fn counterweights_table(weights: &[Counterweight]) -> String {
+    if weights.is_empty() {
+        return String::new();
+    }
+    let sizes = Counterweight::sizes_of(weights);
+    let heads = ["counterweight on link", "shape", "kg", "at mm", "across mm"].map(String::from);
+    let mut table =
+        TextTable::new(heads.into_iter().chain(sizes.iter().map(|size| format!("{size} mm")))).with_words(1);
+    for weight in weights {
+        let stays = if weight.fixed { ", stays" } else { "" };
+        let shape = format!("{}{stays}", weight.shape().name());
+        let [at, across] = [weight.at, weight.across].map(|metres| fixed(1e3 * metres, 3));
+        let size = |name: &&str| weight.sizes().find(|(own, _)| own == name).map(|(_, metres)| fixed(1e3 * metres, 3));
+        let sizes = sizes.iter().map(|name| size(name).unwrap_or_else(|| "–".into()));
+        table.row([weight.link.clone(), shape, fixed(weight.mass, 6), at, across].into_iter().chain(sizes));
+    }
+    format!("\n{table}")
+}
+
 #[derive(Serialize)]
 struct Answer {
     mass: f64,
@@ -81,6 +102,9 @@ struct Answer {
     /// What each part and lump of the links brings.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     parts: Vec<PartRow>,
+    /// The counterweights.
+    #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "all_numbers")]
+    counterweights: Vec<Counterweight>,
 }
 
 impl CheckArguments {
@@ -98,13 +122,14 @@ impl CheckArguments {
             integrable: is_integrable(&inertia),
             pose_constant: constant.word(),
             parts: parts.iter().flat_map(|link| &link.parts).map(|part| part.row.clone()).collect(),
+            counterweights: machine.spec().counterweights.clone(),
         };
         self.format.print(&answer, |answer| {
             let (force, coupling) = (inertia.force_residual(), inertia.invariance_residual());
             format!(
                 "{} · {}\n\nmachine          {}\nmass             {} kg\nforce balanced   {}, largest |g_k| {force:.1e} kg m\n\
                  invariant        {}, largest |C_kl| {coupling:.1e} kg m²\n\
-                 pose constant    {}\n\n{}{}",
+                 pose constant    {}\n\n{}{}{}",
                 machine.name(),
                 machine.spec().summary,
                 answer.machine.words,
@@ -114,6 +139,7 @@ impl CheckArguments {
                 constant,
                 balance_tables(&answer.balance, &machine),
                 parts_table(&parts),
+                counterweights_table(&answer.counterweights),
             )
         })
     }

@@ -11,7 +11,7 @@ use stillbase_files::table::{SampleTable, samples};
 use stillbase_files::{finish_all, write_temporary};
 use stillbase_planning::curves::Coordinates;
 use stillbase_query::{Shared, answer_now};
-use stillbase_session::scenario::Scenario;
+use stillbase_session::scenario::{MachineFile, Scenario};
 use stillbase_study::import::{GivenMotion, ImportQuery, ImportedMotion, MotionImportError, PreservedPath, Request};
 
 use super::exit::print_message;
@@ -111,7 +111,8 @@ impl ImportArguments {
         for file in files.iter().flatten() {
             check_output(file, self.force, &["toml"])?;
         }
-        let machine = self.settings.apply(input::machine(&self.machine)?)?;
+        let MachineFile { machine, design } = input::machine(&self.machine)?;
+        let machine = self.settings.apply(machine)?;
         let name = self.file.display().to_string();
         let wanted = self.columns.map(|columns| match columns {
             Columns::Drives => Coordinates::Drives,
@@ -142,7 +143,7 @@ impl ImportArguments {
             Kept::Tip => PreservedPath::Tip,
             Kept::Joints => PreservedPath::Joints,
         });
-        let scenario = Shared(Scenario { name: stem, title, summary: String::new(), machine, ..base }.into());
+        let scenario = Shared(Scenario { name: stem, title, summary: String::new(), machine, design, ..base }.into());
         let request = Request { scenario, motion: Shared(motion.into()), b: self.b, keep };
         let found = answer_now::<ImportQuery>(request)?;
         found.notes.iter().for_each(|note| print_message(format!("note: {}", note.worded(option))));

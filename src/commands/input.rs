@@ -12,7 +12,9 @@ use stillbase_mechanics::planar::Vector;
 use stillbase_mechanics::sketch::{Missing, resolve};
 use stillbase_planning::pose_constant::PoseConstant;
 use stillbase_planning::pose_space::PoseSpace;
-use stillbase_session::scenario::{POINT_RANGE, POSE_CONSTANT_RANGE, Scenario, TaskChange, key_of};
+use stillbase_session::scenario::{
+    DesignBrief, MachineFile, POINT_RANGE, POSE_CONSTANT_RANGE, Scenario, TaskChange, key_of,
+};
 use stillbase_session::{
     ReachablePoints, Run, proposals_for_machine, proposals_for_settings, proposals_for_values, with_start_edits,
 };
@@ -131,7 +133,21 @@ impl MachineArgument {
     /// # Errors
     /// If there is no such machine or it is not valid, or as [`Settings::apply`].
     pub fn load(&self) -> Result<Machine, Failure> {
-        self.settings.apply(machine(&self.name)?)
+        self.load_file().map(|file| file.machine)
+    }
+
+    /// Returns the machine with its settings changed, and the brief that its file holds.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn load_file(&self) -> Result<MachineFile, Failure> {
+        let MachineFile { machine, design } = machine(&self.name)?;
+        Ok(MachineFile { machine: self.settings.apply(machine)?, design })
+    }
+
+    /// Returns the name or file of the machine, as given.
+    pub fn name(&self) -> &str {
+        &self.name
     }
 
     /// Returns what the drawing lacks to be a machine, if the argument is a scenario with an incomplete drawing.
@@ -152,29 +168,33 @@ impl MachineArgument {
         format!("{}{}", shell_word(&self.name), self.settings.as_typed())
     }
 
-    /// Returns the machine and others, each with the same settings changed and with a distinct name.
+    /// Returns the machine and others, each with the same settings changed and with a distinct name, and the brief of
+    /// the first one.
     ///
     /// # Errors
     /// As [`load`](Self::load); the error names the machine as the command line does.
-    pub fn load_with(&self, others: &[String]) -> Result<Vec<(String, Machine)>, Failure> {
+    pub fn load_with(&self, others: &[String]) -> Result<(Vec<(String, Machine)>, DesignBrief), Failure> {
         let mut all: Vec<(String, Machine)> = Vec::new();
+        let mut brief = None;
         for called in std::iter::once(&self.name).chain(others) {
-            let machine = machine(called)?;
+            let MachineFile { machine, design } = machine(called)?;
+            brief.get_or_insert(design);
             let machine = self.settings.apply(machine).map_err(|why| why.with_context(called))?;
             all.push((distinct_name(machine.name(), |name| all.iter().any(|(known, _)| known == name)), machine));
         }
-        Ok(all)
+        Ok((all, brief.unwrap_or_default()))
     }
 }
 
-/// Returns a machine by name or file, and prints what was left out of the model of another program.
+/// Returns a machine by name or file with the brief of its design, and prints what was left out of the model of another
+/// program.
 ///
 /// # Errors
 /// If there is no such machine, or it is not valid.
-pub fn machine(name: &str) -> Result<Machine, Failure> {
-    let FoundMachine { machine, left_out: notes } = stillbase_files::found_machine(name)?;
+pub fn machine(name: &str) -> Result<MachineFile, Failure> {
+    let FoundMachine { machine, design, left_out: notes } = stillbase_files::found_machine(name)?;
     report_left_out(name, &notes);
-    Ok(machine)
+    Ok(MachineFile { machine, design })
 }
 
 /// Prints what was left out of a file.

@@ -13,7 +13,8 @@ use super::output::Format;
 /// List the settings with their meaning, unit, range and default, and the condition for an effect
 ///
 /// Each key is the same in a scenario's file, after `--set`, in an edit and in the window. `*` is a placeholder for the
-/// name of a link, a length, a drive or a relative angle of the machine.
+/// name of a link, a length, a drive or a relative angle of the machine. The keys of the design may also stand in a
+/// machine file, as the table `[design]`.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -117,7 +118,8 @@ fn page(rows: &[Row]) -> String {
         "# Every setting\n\nEach key is the same in a scenario's file, after `--set` on the command line, in an edit of a \
          saved session, and in the window under *All settings*. In a key, `*` stands for a name: of a link, a named length, \
          a drive or a relative angle of the machine. The word `default` removes a key, so that its default applies \
-         again; `none` does the same where it is the default. A number out of range is refused with its range, and a key without effect is reported.\n\n\
+         again; `none` does the same where it is the default. A number out of range is refused with its range, and a key without effect is reported. \
+         The keys of the design may also stand in a machine file, as the table `[design]`.\n\n\
          `stillbase keys WORD` prints these on the command line. This page is what `stillbase keys --markdown` writes.\n",
     );
     for rows in rows.chunk_by(|a, b| a.part == b.part) {

@@ -3,6 +3,7 @@
 use clap::Args;
 use stillbase_mechanics::machine::Machine;
 use stillbase_query::ByIdentity;
+use stillbase_session::scenario::MachineFile;
 use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
 use stillbase_study::layers::{Between, Contact, LayersReport, LayersRequest, find_layers};
 
@@ -49,14 +50,14 @@ pub struct LayersArguments {
 impl LayersArguments {
     /// Prints the layers, and writes the machine.
     pub fn run(&self) -> Result<(), Failure> {
-        let machine = self.machine.load()?;
+        let MachineFile { machine, design } = self.machine.load_file()?;
         self.new_machine.check()?;
         let task = self.task.as_ref().map(|name| task_run(name, &[&machine])).transpose()?;
         let motion = task.as_ref().map(|run| ByIdentity(run.plan().motion.clone()));
         let cut = self.dimensions.cut(&machine);
         let request = LayersRequest { machine: machine.clone(), cut, motion, along_task: self.along_task };
         let report = find_layers(&request).map_err(|why| Failure::from(why).with_context(machine.name()))?;
-        self.new_machine.save(&report.machine, format!("{}, stacked in layers", machine.name()))?;
+        self.new_machine.save(&report.machine, &design, format!("{}, stacked in layers", machine.name()))?;
         self.format.print(&report, |report| text(report, &machine))
     }
 }

@@ -123,7 +123,7 @@ impl LearnArguments {
 
     /// Returns the scenario or the machine that the command line names.
     fn find(&self) -> Result<Subject, Failure> {
-        let machine = || self.settings.apply(machine(&self.what)?);
+        let machine = || self.settings.apply(machine(&self.what)?.machine);
         match stillbase_files::scenario(&self.what) {
             // For the name of a machine, the scenario made for it is not used.
             Ok(found) if found.note.is_some() => Ok(Subject::Machine(Box::new(machine()?))),

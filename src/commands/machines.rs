@@ -4,8 +4,9 @@ use std::io::{self, Write};
 
 use clap::Args;
 use serde::Serialize;
-use stillbase_mechanics::machine::{Machine, builtins, to_toml};
+use stillbase_mechanics::machine::{Machine, builtins};
 use stillbase_mechanics::sketch::Template;
+use stillbase_session::scenario::MachineFile;
 
 use super::failure::Failure;
 use super::input::{Settings, machine};
@@ -57,7 +58,8 @@ impl MachinesArguments {
     /// Prints the machines.
     pub fn run(&self) -> Result<(), Failure> {
         if let Some(name) = &self.name {
-            return self.print(&self.settings.apply(machine(name)?)?);
+            let MachineFile { machine, design } = machine(name)?;
+            return self.print(&MachineFile { machine: self.settings.apply(machine)?, design });
         }
         if self.new.is_wanted() {
             return Err(Failure::wrong_input("--output: want the name of a machine to write"));
@@ -83,12 +85,12 @@ impl MachinesArguments {
     }
 
     /// Prints a machine as TOML, or writes it to a file.
-    fn print(&self, machine: &Machine) -> Result<(), Failure> {
+    fn print(&self, file: &MachineFile) -> Result<(), Failure> {
         self.new.check()?;
         if self.new.is_wanted() {
-            return self.new.save(machine, machine.spec().summary.clone());
+            return self.new.save(&file.machine, &file.design, file.machine.spec().summary.clone());
         }
-        let text = to_toml(machine);
+        let text = file.to_toml();
         let mut out = io::stdout().lock();
         out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|e| Failure::standard_output(&e))
     }

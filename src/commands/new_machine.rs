@@ -1,11 +1,12 @@
 //! [`NewMachine`]: the file for a machine that a command makes.
 
 use std::ffi::OsStr;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use stillbase_files::write_new;
-use stillbase_mechanics::machine::{Machine, to_toml};
+use stillbase_mechanics::machine::Machine;
+use stillbase_session::scenario::{DesignBrief, MachineFile};
 
 use super::exit::print_message;
 use super::failure::Failure;
@@ -33,14 +34,22 @@ impl NewMachine {
         self.output.as_ref().map_or(Ok(()), |file| check_output(file, self.force, &["toml"]).map(|_| ()))
     }
 
-    /// Writes a machine, if a file is asked for, named after its file because it differs from the original machine.
-    pub fn save(&self, machine: &Machine, summary: String) -> Result<(), Failure> {
+    /// Writes a machine with its brief, if a file is asked for.
+    pub fn save(&self, machine: &Machine, design: &DesignBrief, summary: String) -> Result<(), Failure> {
         let Some(file) = &self.output else { return Ok(()) };
-        let mut spec = machine.spec().clone();
-        spec.name = file.file_stem().unwrap_or(OsStr::new("machine")).to_string_lossy().into_owned();
-        spec.summary = summary;
-        write_new(file, to_toml(&Machine::new(spec)?).as_bytes(), self.force)?;
+        write_new(file, named_after(file, machine, design, summary)?.as_bytes(), self.force)?;
         print_message(format!("wrote {}", file.display()));
         Ok(())
     }
+}
+
+/// Returns a machine with its brief as TOML, named after its file because it differs from the original machine.
+///
+/// # Errors
+/// If the name of the file cannot be the name of a machine.
+pub fn named_after(file: &Path, machine: &Machine, design: &DesignBrief, summary: String) -> Result<String, Failure> {
+    let mut spec = machine.spec().clone();
+    spec.name = file.file_stem().unwrap_or(OsStr::new("machine")).to_string_lossy().into_owned();
+    spec.summary = summary;
+    Ok(MachineFile { machine: Machine::new(spec)?, design: design.clone() }.to_toml())
 }

@@ -177,7 +177,7 @@ impl PlanArguments {
             self.settings.refuse_tolerances()?;
         }
         let mut scenario = match as_machine {
-            Ok(FoundMachine { machine, left_out }) if !is_scenario => {
+            Ok(FoundMachine { machine, design, left_out }) if !is_scenario => {
                 report_left_out(&self.name, &left_out);
                 if self.points.is_empty() {
                     return Err(Failure::wrong_input("a machine alone is no task: want points X,Y, or a scenario"));
@@ -185,6 +185,7 @@ impl PlanArguments {
                 let own = overlay_unchecked(DEFAULT_SCENARIO, &Settings::default())?;
                 let with = Scenario {
                     machine,
+                    design,
                     name: DEFAULT_NAME.into(),
                     title: String::new(),
                     summary: String::new(),

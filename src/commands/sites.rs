@@ -16,9 +16,8 @@ pub fn range(text: &str) -> Result<(String, [f64; 2]), String> {
 /// # Errors
 /// If there is no such link.
 pub fn link(machine: &Machine, name: &str) -> Result<usize, Failure> {
-    let links = machine.links();
-    links.iter().position(|link| link.name == name).ok_or_else(|| {
-        let known: Vec<_> = links.iter().map(|link| link.name.as_str()).collect();
+    machine.spec().link_index(name).ok_or_else(|| {
+        let known: Vec<_> = machine.links().iter().map(|link| link.name.as_str()).collect();
         Failure::wrong_input(format!("no link {name}: want one of {}", known.join(", ")))
     })
 }

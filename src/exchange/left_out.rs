@@ -113,7 +113,7 @@ pub fn of_mjcf(machine: &Machine) -> Vec<String> {
 pub fn of_solids(machine: &Machine) -> Vec<String> {
     let (spec, mut list) = (machine.spec(), of_drawing(machine));
     let covers_pin = |weight: &&Counterweight| {
-        let link = spec.links.iter().position(|link| link.name == weight.link);
+        let link = spec.link_index(&weight.link);
         let pins = link.map_or_else(Vec::new, |link| machine.pin_places(link));
         pins.iter().any(|pin| weight.covers(Vector::new(*pin, 0.0)))
     };

@@ -8,7 +8,7 @@ use stillbase_exchange::import::{ImportedMachine, faults, import};
 use stillbase_mechanics::machine::{self, FileError, Machine, MachineError};
 use stillbase_mechanics::sketch::Template;
 use stillbase_session::gentle_motion;
-use stillbase_session::scenario::{FileContent, Scenario, ScenarioError, TaskKind, content};
+use stillbase_session::scenario::{DesignBrief, FileContent, MachineFile, Scenario, ScenarioError, TaskKind, content};
 use stillbase_session::with_start_edits;
 use stillbase_settings::fault::{Fault, Faults};
 use stillbase_settings::number::ShortNumber;
@@ -23,6 +23,8 @@ const IS_SCENARIO: &str = "this is a scenario, not a machine: want the machine t
 pub struct FoundMachine {
     /// The machine.
     pub machine: Machine,
+    /// The brief of its design that its file holds; the defaults if it holds none.
+    pub design: DesignBrief,
     /// What was left out of the model of another program; empty for a machine of this one.
     pub left_out: Vec<String>,
 }
@@ -52,13 +54,13 @@ fn machine_of(scenario: &Scenario, file: &str) -> Result<FoundMachine, FileError
         return Err(wrong(unfinished.to_string()));
     }
     let note = format!("it is a scenario, taken is its machine {}", start.machine.name());
-    Ok(FoundMachine { machine: start.machine, left_out: vec![note] })
+    Ok(FoundMachine { machine: start.machine, design: start.design, left_out: vec![note] })
 }
 
 fn found(name: &str, folder: Option<&Path>, takes_scenarios: bool) -> Result<FoundMachine, FileError> {
-    let own = |machine| FoundMachine { machine, left_out: Vec::new() };
+    let own = |MachineFile { machine, design }| FoundMachine { machine, design, left_out: Vec::new() };
     if let Some(machine) = known_machine(name) {
-        return Ok(own(machine));
+        return Ok(own(machine.into()));
     }
     let file = folder.map_or_else(|| name.into(), |folder| folder.join(name));
     let other = |file: String| wrong_file(&file, Faults::one(whole_file(IS_SCENARIO)));
@@ -67,7 +69,7 @@ fn found(name: &str, folder: Option<&Path>, takes_scenarios: bool) -> Result<Fou
             let file = file.display().to_string();
             if is_model(&text) {
                 let ImportedMachine { machine, notes, .. } = model(&text, &file)?;
-                return Ok(FoundMachine { machine, left_out: notes });
+                return Ok(FoundMachine { left_out: notes, ..own(machine.into()) });
             }
             match content(&text) {
                 Some(FileContent::Scenario) if takes_scenarios => {
@@ -78,8 +80,8 @@ fn found(name: &str, folder: Option<&Path>, takes_scenarios: bool) -> Result<Fou
                     });
                     machine_of(&found?.scenario, &file)
                 }
-                Some(FileContent::Scenario) => machine::parse(&text, &file).map(own).map_err(|_| other(file)),
-                _ => machine::parse(&text, &file).map(own),
+                Some(FileContent::Scenario) => MachineFile::parse(&text, &file).map(own).map_err(|_| other(file)),
+                _ => MachineFile::parse(&text, &file).map(own),
             }
         }
         Err(source) if source.kind() == ErrorKind::NotFound && !name.ends_with(".toml") => {
@@ -147,7 +149,7 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
         Ok(text) => text,
         Err(source) if source.kind() == ErrorKind::NotFound && !name.ends_with(".toml") => {
             return match known_machine(name) {
-                Some(machine) => scenario_for(name, &machine),
+                Some(machine) => scenario_for(name, machine.into()),
                 None => {
                     let builtin = machine::builtins().iter().map(Machine::name);
                     let machines: Vec<&str> = builtin.chain(Template::ALL.map(Template::word)).collect();
@@ -159,18 +161,23 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
     };
     if is_model(&text) {
         let ImportedMachine { machine, notes, .. } = model(&text, name)?;
-        return Ok(FoundScenario { left_out: notes, ..scenario_for(name, &machine)? });
+        return Ok(FoundScenario { left_out: notes, ..scenario_for(name, machine.into())? });
     }
     if content(&text) == Some(FileContent::Machine) {
-        return scenario_for(name, &machine::parse(&text, &shortened(name, 300))?);
+        return scenario_for(name, MachineFile::parse(&text, &shortened(name, 300))?);
     }
-    let scenario = Scenario::parse(&text, name, Some(&|name| machine(name, file.parent())))?;
+    let find = |name: &str| {
+        let FoundMachine { machine, design, .. } = found(name, file.parent(), false)?;
+        Ok(MachineFile { machine, design })
+    };
+    let scenario = Scenario::parse(&text, name, Some(&find))?;
     Ok(FoundScenario { scenario, note: None, left_out: Vec::new() })
 }
 
-/// Makes a scenario for a machine, whose name or file is `name`.
-fn scenario_for(name: &str, machine: &Machine) -> Result<FoundScenario, ScenarioError> {
-    let scenario = gentle_motion(machine)?;
+/// Makes a scenario for a machine, whose name or file is `name`. The scenario has the brief of the file.
+fn scenario_for(name: &str, of: MachineFile) -> Result<FoundScenario, ScenarioError> {
+    let MachineFile { machine, design } = of;
+    let scenario = Scenario { design, ..gentle_motion(&machine)? };
     let task = &scenario.task;
     let made = format!(
         "{} is a machine, so a task was made for it: {} from {:.3}, {:.3} to {:.3}, {:.3} m in {} s",

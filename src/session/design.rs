@@ -17,7 +17,7 @@ use stillbase_mechanics::counterweights::{
     PlacedCounterweights, RotorFreedom, front, place_weights,
 };
 use stillbase_mechanics::machine::{
-    BarStock, Counterweight, Drive, Inertia, Length, Link, MATERIALS, Machine, MachineError, MachineSpec, Material,
+    BarStock, Counterweight, Drive, Inertia, Length, Link, Machine, MachineError, MachineSpec, Material,
 };
 use stillbase_planning::reactionless::Decimal;
 use stillbase_settings::change::{DEFAULT_WORD, at, join, leaves, single_change};
@@ -138,7 +138,7 @@ impl DesignBrief {
     /// widened to include its present place and that in `start`. If it is clear of pins now, it stays clear of them.
     fn along(&self, machine: &Machine, start: &Machine, i: usize) -> ParameterBounds {
         let weights = [machine, start].map(|machine| machine.spec().counterweights.get(i));
-        let link = weights[0].and_then(|weight| machine.links().iter().position(|link| link.name == weight.link));
+        let link = weights[0].and_then(|weight| machine.spec().link_index(&weight.link));
         let Some(link) = link else { return ParameterBounds::Free };
         let length = machine.resolved_links()[link].length;
         let ends = [-self.behind_root.unwrap_or(length), length];
@@ -195,9 +195,8 @@ impl DesignBrief {
     /// # Errors
     /// If the machine is not valid with one more material.
     pub fn stock(&self, machine: &Machine) -> Result<(Machine, BarStock), MachineError> {
-        let known = MATERIALS.iter().map(|(name, density)| (*name, *density));
-        let own = machine.spec().materials.iter().map(|material| (material.name.as_str(), material.density));
-        let name = known.chain(own).find(|(_, density)| *density == self.bar_density).map(|(name, _)| name.to_owned());
+        let mut known = machine.spec().known_materials();
+        let name = known.find(|(_, density)| *density == self.bar_density).map(|(name, _)| name.to_owned());
         let (machine, material) = match name {
             Some(name) => (machine.clone(), name),
             None => {

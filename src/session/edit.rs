@@ -347,11 +347,11 @@ impl Edit {
         self.title_after(None)
     }
 
-    /// Whether it changes the machine, and nothing else.
+    /// Whether it changes what a machine file holds, and nothing else: the machine and the brief of its design.
     pub(super) fn is_of_machine(&self) -> bool {
         match self {
             Self::Sketch(_) => true,
-            Self::Set { change } => change.keys().all(|key| is_of_machine(key)),
+            Self::Set { change } => change.keys().all(|key| is_of_machine(key) || key == "design"),
             _ => false,
         }
     }

@@ -125,7 +125,7 @@ fn swept(machine: &Machine) -> String {
 /// Returns a scenario of a machine with a task, given as TOML.
 fn stated(machine: &Machine, task: &str) -> Result<Scenario, ScenarioError> {
     let text = format!("machine = \"own\"\n[task]\n{task}");
-    let scenario = Scenario::parse(&text, machine.name(), Some(&|_| Ok(machine.clone())))?;
+    let scenario = Scenario::parse(&text, machine.name(), Some(&|_| Ok(machine.clone().into())))?;
     let title = format!("{} · a task made for it", machine.name());
     Ok(Scenario { name: machine.name().to_owned(), title, ..scenario })
 }

@@ -112,7 +112,11 @@ pub fn remove(machine: &Machine, source: PartSource) -> Edit {
 pub fn change_part(machine: &Machine, part: usize, change: impl FnOnce(&mut Part)) -> Edit {
     let mut parts = machine.spec().parts.clone();
     if let Some(part) = parts.get_mut(part) {
+        let before = part.clone();
         change(part);
+        if *part != before {
+            *part = part.clone().changed_by_hand();
+        }
     }
     Edit::Set { change: list("part", &parts) }
 }

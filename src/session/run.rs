@@ -341,7 +341,7 @@ impl Run {
     /// Returns the chain from the base to a point of a link, `along` m from its root.
     fn point_of(&self, link: &str, along: f64) -> Result<Chain, Refusal> {
         let machine = &self.scenario.machine;
-        let found = machine.links().iter().position(|own| own.name == link);
+        let found = machine.spec().link_index(link);
         let names = || machine.links().iter().map(|own| own.name.as_str()).collect::<Vec<_>>().join(", ");
         let found = found.ok_or_else(|| Refusal::Task(format!("no link {link:?}: want one of {}", names())))?;
         Ok(machine.resolved_links()[found].point(along))

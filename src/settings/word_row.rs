@@ -16,12 +16,12 @@ pub struct WordRow {
     pub example: &'static str,
 }
 
-impl WordRow {
-    /// Makes a row.
-    pub const fn new(path: &'static str, name: &'static str, want: &'static str, example: &'static str) -> Self {
-        Self { path, name, want, example }
-    }
+/// Makes a row of a table, in which it is one line.
+pub const fn row(path: &'static str, name: &'static str, want: &'static str, example: &'static str) -> WordRow {
+    WordRow { path, name, want, example }
+}
 
+impl WordRow {
     /// Returns the row of a place.
     pub fn of<'a>(rows: &'a [Self], path: &KeyPath) -> Option<&'a Self> {
         rows.iter().find(|row| path.fits(row.path))

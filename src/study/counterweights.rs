@@ -96,8 +96,11 @@ pub struct CounterweightReport {
     pub balance: BalanceConstants,
 }
 
-/// Serialises new counterweights with every number, also those that a machine file omits where they are 0.
-fn all_numbers<S: Serializer>(weights: &[Counterweight], serializer: S) -> Result<S::Ok, S::Error> {
+/// Serialises counterweights with every number, also those that a machine file omits where they are 0.
+///
+/// # Errors
+/// If the serializer fails.
+pub fn all_numbers<S: Serializer>(weights: &[Counterweight], serializer: S) -> Result<S::Ok, S::Error> {
     #[derive(Serialize)]
     struct Numbers<'a> {
         link: &'a str,

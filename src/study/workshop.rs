@@ -316,7 +316,7 @@ fn with_arms(machine: &Machine, stock: &BarStock, reach: &[[f64; 2]]) -> Result<
     let armed = machine.with_bars(stock, reach)?.with_arms(stock)?;
     let mut feet = reach.to_vec();
     for weight in &machine.spec().counterweights {
-        let Some(link) = machine.links().iter().position(|link| link.name == weight.link) else { continue };
+        let Some(link) = machine.spec().link_index(&weight.link) else { continue };
         let at = weight.carried_at();
         // A bar that reaches its centre of mass goes on to its wall.
         if at != weight.at {
@@ -324,7 +324,7 @@ fn with_arms(machine: &Machine, stock: &BarStock, reach: &[[f64; 2]]) -> Result<
         }
     }
     for arm in armed.spec().parts.iter().filter(|part| part.is_arm()) {
-        let Some(link) = armed.links().iter().position(|link| link.name == arm.link) else { continue };
+        let Some(link) = armed.spec().link_index(&arm.link) else { continue };
         for [at, _] in &arm.polygon {
             feet[link] = [feet[link][0].min(*at), feet[link][1].max(*at)];
         }

@@ -665,6 +665,13 @@ fn a_machine_from_a_file_is_its_own_and_keeps_the_time() {
     h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     h.run_steps(4);
     assert_eq!(shown(&h, "Machine"), "two-drive");
+    // So is one that has no name of a built-in one.
+    drop_on(&mut h, &folder.file("arm.toml", own.replacen("two-drive", "arm", 1)));
+    h.run_steps(4);
+    assert_eq!(shown(&h, "Machine"), "arm");
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(Edit::set("link.1.axial", 0.01)));
+    h.run_steps(4);
+    assert_eq!(shown(&h, "Machine"), "arm (edited)");
 }
 
 /// Saved as a machine, a session that changes only its machine closes without a question.
@@ -678,11 +685,18 @@ fn a_saved_machine_leaves_nothing_to_ask() {
         h.run_steps(3);
     };
     edit(&mut h, "link.9.mass", 0.3);
+    edit(&mut h, "design.clearance", 0.005);
     assert!(h.state().app_state().changes().1, "unsaved");
     h.state_mut().app_state_mut().carry_out(SessionCommand::TakeElsewhere(folder.path("own.toml")));
     h.run_steps(4);
     done(&h, "saved");
     assert!(!h.state().app_state().changes().1, "all of it is in the file");
+    let (machine, design) = (session(&h).scenario().machine.clone(), session(&h).scenario().design.clone());
+    let mut other = window("case-1", Theme::Dark);
+    drop_on(&mut other, &folder.path("own.toml"));
+    other.run_steps(4);
+    let opened = session(&other).scenario();
+    assert!((&opened.machine, &opened.design) == (&machine, &design) && design.clearance == Some(0.005));
     edit(&mut h, "plant.payload.mass", 0.3);
     h.state_mut().app_state_mut().carry_out(SessionCommand::TakeElsewhere(folder.path("other.toml")));
     h.run_steps(4);

@@ -1,6 +1,8 @@
 //! Shards of a study of tolerances: put together they are the whole, and what is missing, doubled or foreign is refused.
 
+use std::panic;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use stillbase::files::shards::{ShardError, ShardHeader, StudyId, StudyPart, Writer, merge};
 use stillbase::study::tolerance::SampleOutcome;
@@ -67,4 +69,28 @@ fn what_is_no_whole_study_is_refused() {
     std::fs::write(&b, text).expect("written");
     let why = merge(&[a, b], &named("merged"), true).expect_err("changed");
     assert!(why.to_string().contains("its checksum does not fit"), "{why}");
+}
+
+/// Files that are read on several threads at once leave the panics of others as they are.
+#[test]
+fn reading_leaves_the_panics_of_others_alone() {
+    static SEEN: AtomicUsize = AtomicUsize::new(0);
+    let folder = Folder::new("panics");
+    let file = write(folder.path("whole.parquet"), STUDY, 0..30);
+    let former = panic::take_hook();
+    panic::set_hook(Box::new(move |of| match of.payload().downcast_ref::<&str>() {
+        Some(&"meant") => drop(SEEN.fetch_add(1, Ordering::Relaxed)),
+        _ => former(of),
+    }));
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            let read = || (0..50).all(|_| StudyPart::open(&file).is_ok_and(|part| part.first_sample().is_ok()));
+            scope.spawn(move || assert!(read()));
+        }
+        for _ in 0..50 {
+            assert!(panic::catch_unwind(|| panic!("meant")).is_err());
+        }
+    });
+    assert!(panic::catch_unwind(|| panic!("meant")).is_err());
+    assert_eq!(SEEN.load(Ordering::Relaxed), 51);
 }

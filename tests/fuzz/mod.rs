@@ -23,16 +23,21 @@ use stillbase::exchange::urdf::urdf;
 use stillbase::mechanics::machine::{self, Inertia};
 use stillbase::mechanics::planar::Vector;
 use stillbase::planning::pose_space::{PoseSpace, plane_map};
-use stillbase::session::scenario::Scenario;
+use stillbase::session::scenario::{MachineFile, Scenario};
 use stillbase::session::{Session, replay};
 
 use crate::exchange::arms::{THREE, TWO};
 use crate::exchange::ordinary::ARM;
 use mutation::{Dice, mutated};
 
-const MACHINES: [&str; 2] = [
+const MACHINES: [&str; 3] = [
     include_str!("../../assets/machines/nine-link.toml"),
     include_str!("../../assets/machines/nine-link-table-1.toml"),
+    concat!(
+        include_str!("../../assets/machines/two-drive.toml"),
+        "\n[design]\nshape = \"half-ring\"\ninner_radius = 0.012\nclearance = 0.006\npayload = [0.0, 0.2]\n\
+         fixed = { 2 = true }\nlength.l1 = [0.3, 0.6]\nhold.link.1 = { mass = [0.4, 0.8], com = \"fixed\" }\n"
+    ),
 ];
 
 const SCENARIOS: [&str; 12] = [
@@ -314,15 +319,15 @@ pub fn bytes(texts: &[&str]) -> Vec<Vec<u8>> {
 fn machines() {
     fuzz("machine", &bytes(&MACHINES), 300, |bytes, dice| {
         let text = String::from_utf8_lossy(bytes);
-        let machine = match machine::parse(&text, "in.toml") {
-            Ok(machine) => machine,
+        let file = match MachineFile::parse(&text, "in.toml") {
+            Ok(file) => file,
             Err(error) => return is_short(&error.to_string()),
         };
-        let again =
-            machine::parse(&machine::to_toml(&machine), "again.toml").map_err(|e| format!("not read back: {e}"))?;
-        if again != machine {
+        let again = MachineFile::parse(&file.to_toml(), "again.toml").map_err(|e| format!("not read back: {e}"))?;
+        if again != file {
             return Err("read back as another".into());
         }
+        let machine = file.machine;
         let inertia = Inertia::of(&machine);
         if !(0..machine.drives()).all(|k| inertia.diagonal(k) > 0.0 && inertia.diagonal(k).is_finite()) {
             return Err("a mass matrix that is none".into());

@@ -221,6 +221,7 @@ fn what_is_derived_is_kept_by_queries_alone() {
         ("session/scenario/catalog.rs", "the scenarios that come along"),
         ("picture/scene/stage/workspace.rs", "bounds that follow from the planes it holds"),
         ("planning/pose_space/pattern.rs", "patterns that follow from the space they are of"),
+        ("files/shards/rows.rs", "whether a thread reads a file whose panics are errors of the file"),
     ];
     const SAME: &[(&str, &str)] = &[
         ("mechanics/machine/model.rs", "what copies of a machine share needs no comparison"),
@@ -255,6 +256,7 @@ fn the_library_does_not_panic() {
         // Plain data is always TOML.
         ("mechanics/machine/file.rs", "a machine is plain data"),
         ("session/scenario/file.rs", "a scenario is plain data"),
+        ("session/scenario/machine_file.rs", "a brief is plain data"),
         ("session/edit.rs", "an edit is plain data"),
     ];
     for source in core(&Source::all()) {

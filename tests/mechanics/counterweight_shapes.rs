@@ -112,6 +112,30 @@ fn distance(weight: &Counterweight, pin: f64) -> f64 {
     }
 }
 
+/// The distances that keep a counterweight clear along its link, and how far a pin lies within the clearance, are one
+/// rule.
+#[test]
+fn the_distances_from_pins_are_where_the_overlap_ends() {
+    let mut noise = Noise::of(2904);
+    for kind in 0..500 {
+        let across = if kind % 3 == 0 { 0.0 } else { noise.between(-0.3, 0.3) };
+        let place = [noise.between(-0.5, 0.5), across];
+        let weight = Counterweight::new("1", 1.0, place, a_shape(&mut noise, kind));
+        let clearance = noise.between(0.0, 0.03);
+        let [to_root, to_tip] = weight.clear_along(clearance);
+        for (pin, beyond) in [(weight.at - to_root, -1e-6), (weight.at + to_tip, 1e-6)] {
+            let [here, farther] = [pin, pin + beyond].map(|pin| weight.overlap(pin, clearance));
+            assert!(here < 1e-12 && farther <= here.max(0.0), "{weight:?}: {here}, {farther}");
+            // Only where nothing is in the way, or the pin is in the bore, the distance is no edge.
+            let is_free = to_root == 0.0 && to_tip == 0.0;
+            assert!(is_free || here > -1e-12, "{weight:?}: {here}");
+        }
+        let nearer = weight.overlap(weight.at + 0.5 * (to_tip - to_root), clearance);
+        let is_bored = weight.inner_radius > 0.0;
+        assert!(is_bored || nearer > 0.0 || (to_root, to_tip) == (0.0, 0.0), "{weight:?}: {nearer}");
+    }
+}
+
 /// Counterweights of every form balance a machine; clear of pins, no pin is nearer to their material than the clearance.
 #[test]
 fn every_form_balances_and_is_clear_of_pins() {

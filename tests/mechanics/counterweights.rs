@@ -5,7 +5,7 @@ use stillbase::mechanics::counterweights::{
     Objective, PlacementTolerance, RotorFreedom, front, over_payloads, place_weights, worst_residual,
 };
 use stillbase::mechanics::dynamics::mass_matrix;
-use stillbase::mechanics::machine::{CounterweightShape, Inertia, Machine, builtin, parse, to_toml};
+use stillbase::mechanics::machine::{CounterweightShape, Inertia, Length, Machine, builtin, parse, to_toml};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
 
 use crate::support::{Noise, family_machine};
@@ -334,6 +334,28 @@ fn what_cannot_be_is_refused() {
     let torque = Objective { torque: 1.0, accelerations: vec![1.0; 3], ..Objective::mass() };
     let why = place_weights(&geared, &weighing(&geared, torque)).expect_err("it cannot be");
     assert_eq!(why, CounterweightError::Coupled);
+}
+
+/// What no counterweight changes is told of machines of every size: a residual is large or small beside its own machine.
+#[test]
+fn what_nothing_changes_is_told_of_machines_of_every_size() {
+    let slanted = family_machine("nine-link-bare").set("link.4.com_normal", "0.02").expect("in range");
+    for size in [1e-3, 1.0, 10.0] {
+        let mut spec = slanted.spec().clone();
+        let mass = size * size * size;
+        spec.lengths.values_mut().for_each(|length| *length *= size);
+        for link in &mut spec.links {
+            if let Length::Metres(length) = &mut link.length {
+                *length *= size;
+            }
+            (link.mass, link.inertia) = (link.mass * mass, link.inertia * mass * size * size);
+            (link.com, link.com_normal) = (link.com * size, link.com_normal * size);
+        }
+        let machine = Machine::new(spec).expect("a machine");
+        let sites = CounterweightSite::anywhere(&machine);
+        let why = place_weights(&machine, &CounterweightSpec::least(Objective::mass(), sites, STEEL));
+        assert!(matches!(why, Err(CounterweightError::OffAxis { .. })), "{size}: {why:?}");
+    }
 }
 
 /// The torque of a motion whose accelerations are known.

@@ -245,7 +245,7 @@ fn pins_and_motors_agree() {
 fn wrong_motors_are_named() {
     let text = include_str!("../reference/family/serial-3r.toml");
     for (from, to, said) in [
-        ("on = \"1\"", "on = \"3\"", "the motor of drive \"2\" sits on itself (2 on 3 on 2)"),
+        ("on = \"1\"", "on = \"3\"", "(drive.2.on): the motor of drive \"2\" sits on itself (2 on 3 on 2)"),
         ("on = \"1\"", "on = \"2\"", "sits on itself (2 on 2)"),
         ("on = \"1\"", "on = \"7\"", "names the drive \"7\", which does not exist"),
         ("ratio = -30.0", "ratio = 0", "want a gear ratio other than 0"),

@@ -150,19 +150,18 @@ fn all(sketch: &Sketch, bars: &[&Bar]) -> PlaneBody {
     bars.iter().map(of).reduce(PlaneBody::and).expect("a bar")
 }
 
+/// A place along a bar, m from its root; a drawing names no lengths.
+fn metres(sketch: &Sketch, own: &Bar, place: &PlaceOnLink) -> f64 {
+    match place {
+        PlaceOnLink::Metres(x) => *x,
+        PlaceOnLink::Named(word) if word == "tip" => sketch.length(own),
+        PlaceOnLink::Named(_) => 0.0,
+    }
+}
+
 /// The discs that a cut adds: each half of a flat bar with round ends has an end of its own there.
 fn round_ends(sketch: &Sketch, own: &Bar, along: f64) -> Vec<PlaneBody> {
-    let length = sketch.length(own);
-    let metres = |place: &PlaceOnLink| match place {
-        PlaceOnLink::Metres(x) => *x,
-        PlaceOnLink::Named(word) => {
-            if word == "tip" {
-                length
-            } else {
-                0.0
-            }
-        }
-    };
+    let metres = |place: &PlaceOnLink| metres(sketch, own, place);
     let is_cut = |part: &&Part| {
         let is_round = part.shape == Shape::Flat && part.ends != Some(Ends::Square);
         part.link == own.name && is_round && metres(&part.from) < along && metres(&part.to) > along
@@ -335,17 +334,7 @@ fn computed_numbers_are_written_as_a_person_would() {
 #[track_caller]
 pub fn reaches_over_its_pins(sketch: &Sketch) {
     for own in &sketch.bars {
-        let length = sketch.length(own);
-        let metres = |place: &PlaceOnLink| match place {
-            PlaceOnLink::Metres(x) => *x,
-            PlaceOnLink::Named(word) => {
-                if word == "tip" {
-                    length
-                } else {
-                    0.0
-                }
-            }
-        };
+        let metres = |place: &PlaceOnLink| metres(sketch, own, place);
         let parts: Vec<&Part> = sketch.parts.iter().filter(|part| part.link == own.name).collect();
         let [part] = parts.as_slice() else { panic!("bar {} of {parts:?}", own.name) };
         let pins: Vec<f64> = own.all_pins().map(|pin| sketch.along(own, pin)).collect();

@@ -36,6 +36,8 @@ fn corners_are_refused_with_what_would_do() {
     assert!(refused(SketchStep::Split { bar: BarId(2), along: 0.3 }).to_string().contains("between 0 and 300 mm"));
     assert!(refused(SketchStep::NameBar { bar: BarId(2), name: " ".into() }).to_string().contains("cannot name"));
     assert!(refused(SketchStep::Length { bar: BarId(2), metres: 0.0 }).to_string().contains("0 mm"));
+    let why = refused(SketchStep::Length { bar: BarId(9), metres: 0.2 }).to_string();
+    assert_eq!(why, "there is no bar with the number 9: want one of 2 (bar 1)");
     assert!(refused(follow(2, "1")).to_string().contains("no drive"));
     let elsewhere = SketchStep::Motor { pin: PinId(1), stator: None, drive: None, rotor: None, turns: None };
     let refusal = refused(elsewhere);

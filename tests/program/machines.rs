@@ -797,3 +797,60 @@ fn the_tilting_moment_of_layers_is_that_of_the_run() {
     let own = stacked["tilt"]["after"].as_f64().expect("a moment");
     assert!((run - own).abs() < 1e-3 * own, "{run} {own}");
 }
+
+/// The brief in the file of a machine applies, the command line overrules it and says so, and the new file has both.
+#[test]
+fn design_takes_the_brief_of_the_file() {
+    let folder = Folder::new("brief");
+    let bare = fs::read_to_string(BARE).expect("a file");
+    let design =
+        "[design]\nshape = \"ring\"\ninner_radius = 0.012\nthickness = 0.02\nclearance = 0.006\nheaviest = 9.0\n";
+    let (file, out) = (word(folder.file("own.toml", bare + design)), word(folder.path("out.toml")));
+    let run = stillbase(&["design", &file, "--counterweights", "--json"]);
+    let said = text(&run.stderr).to_owned();
+    assert!(said.contains("the brief of ") && said.contains("design.shape=ring"), "{said}");
+    assert!(said.contains("design.clearance=0.006") && !said.contains("overrules"), "{said}");
+    let asked = ["--shape", "ring,0.012", "--thickness", "0.02", "--clearance", "0.006", "--max-mass", "9"];
+    let stated: Vec<&str> = ["design", BARE, "--counterweights"].into_iter().chain(asked).collect();
+    let (of_file, of_flags): (Value, Value) =
+        (serde_json::from_slice(&run.stdout).expect("an object"), object(&stated));
+    assert_eq!(of_file["weights"], of_flags["weights"]);
+    let run = stillbase(&["design", &file, "--counterweights", "--thickness", "0.03", "-o", &out]);
+    let said = text(&run.stderr);
+    assert!(run.status.success() && said.contains("overrules design.thickness=0.02 of "), "{said}");
+    assert!(said.contains("own.toml: it is 0.03"), "{said}");
+    let made = fs::read_to_string(&out).expect("written");
+    assert!(made.contains("[design]") && made.contains("inner_radius = 0.012\nheaviest"), "{made}");
+    assert!(!made[made.find("[design]").expect("a brief")..].contains("thickness"), "it is the usual one: {made}");
+    // Flags are the brief of a machine that had none, and other commands read its file.
+    let out = word(folder.path("flags.toml"));
+    let stated: Vec<&str> = stated.into_iter().chain(["-o", &out]).collect();
+    assert!(stillbase(&stated).status.success());
+    let made = fs::read_to_string(&out).expect("written");
+    assert!(made.ends_with("heaviest = 9.0\nclearance = 0.006\n"), "{made}");
+    assert_eq!(object(&["check", &out])["invariant"], true);
+    let said = prints(&["check", &out]);
+    assert!(said.contains("counterweight on link   shape") && said.contains("radius mm   inner radius mm"), "{said}");
+    assert_eq!(object(&["check", &out])["counterweights"], of_flags["weights"]);
+}
+
+/// What stays or may change with `--keep` is taken from the brief of the file, too.
+#[test]
+fn design_keep_takes_the_brief_of_the_file() {
+    let folder = Folder::new("kept");
+    let design = "[design]\nfixed = { 3 = true }\nhold.link.2 = { com = [-0.3, 0.1] }\n";
+    let whole = stillbase::mechanics::machine::to_toml(
+        &stillbase::mechanics::machine::builtin("nine-link").expect("built in").set("link.9.mass", "0.4").expect("set"),
+    );
+    let (file, out) = (word(folder.file("own.toml", format!("{whole}\n{design}"))), word(folder.path("out.toml")));
+    let of_file = object(&["design", &file, "--keep"]);
+    let flags = ["--set", "link.9.mass=0.4", "--keep", "--fix", "3.com", "--bound", "2.com=-0.3,0.1"];
+    let of_flags = object(&["design", "nine-link"].into_iter().chain(flags).collect::<Vec<_>>());
+    assert_eq!(of_file["changes"], of_flags["changes"]);
+    let run = stillbase(&["design", &file, "--keep", "--free", "3.com", "-o", &out]);
+    let said = text(&run.stderr);
+    assert!(run.status.success() && said.contains("design.fixed.3=true") && said.contains("hold.link.2.com"), "{said}");
+    // What the options ask of this change alone is not asked of the next one.
+    let made = fs::read_to_string(&out).expect("written");
+    assert!(made.contains("[design.hold.link.2]") && !made.contains("\"free\""), "{made}");
+}

@@ -1,7 +1,7 @@
 //! All faults of a scenario file at once, those of the machine in it included.
 
 use stillbase::mechanics::machine::{SMALLEST, parse};
-use stillbase::session::scenario::{Scenario, ScenarioError};
+use stillbase::session::scenario::{MachineFile, Scenario, ScenarioError};
 use stillbase::settings::fault::Faults;
 
 const CASE: &str = include_str!("../../assets/scenarios/case-3.toml");
@@ -11,6 +11,11 @@ fn faults(text: &str) -> Faults {
     let (file, faults) = error.faults().expect("they are told");
     assert_eq!(file, "my.toml");
     faults.clone()
+}
+
+/// The line of a text on which a part of it begins, from 1.
+fn line(text: &str, part: &str) -> usize {
+    text[..text.find(part).expect("it is there")].matches('\n').count() + 1
 }
 
 fn keys(faults: &Faults) -> Vec<&str> {
@@ -34,9 +39,8 @@ fn all_faults_of_a_scenario_are_told_at_once() {
     assert!(of("control.kp").text.starts_with("position gain (control.kp) is -1: want 0 to"), "{:?}", of("control.kp"));
     assert!(of("base.mass").text.starts_with("mass of the base (base.mass) is the text \"heavy\""));
     assert!(of("edit[3].c").text.starts_with("edit 3 has no key \"c\""), "{:?}", of("edit[3].c"));
-    let line = |part: &str| text[..text.find(part).expect("it is there")].matches('\n').count() + 1;
     for (key, part) in [("task.tiem", "tiem"), ("control.law", "law = \"magic"), ("edit[3].c", "c = 2.5")] {
-        assert_eq!(of(key).line, Some(line(part)), "{key}");
+        assert_eq!(of(key).line, Some(line(&text, part)), "{key}");
     }
 }
 
@@ -72,7 +76,7 @@ fn what_is_no_file_of_ours_shows_a_machine() {
 /// A machine's own file has its own faults.
 #[test]
 fn faults_of_a_named_machine_are_those_of_its_file() {
-    let find = |name: &str| parse("[[drive]]\n[[link]]\n", name);
+    let find = |name: &str| MachineFile::parse("[[drive]]\n[[link]]\n", name);
     let error = Scenario::parse(&CASE.replace("nine-link", "arm.toml"), "my.toml", Some(&find)).expect_err("faulty");
     assert!(matches!(error, ScenarioError::MachineFile(_)));
     let (file, faults) = error.faults().expect("they are told");
@@ -94,7 +98,6 @@ fn faults_of_edits_and_tolerances_are_named_plainly() {
          [[edit]]\nstep = 7\nx = 1.0\ny = 0.0\n"
     );
     let found = faults(&text);
-    let line = |part: &str| text[..text.find(part).expect("it is there")].matches('\n').count() + 1;
     let wanted = [
         ("tolerance.sede", "sede", "table of tolerances has no key \"sede\": want seed (nearest)", ""),
         ("tolerance.samples", "samples = 0", "how many machines (tolerance.samples) is 0: want a whole number", ""),
@@ -124,7 +127,7 @@ fn faults_of_edits_and_tolerances_are_named_plainly() {
     ];
     assert_eq!(keys(&found), wanted.map(|(key, ..)| key), "{:#?}", found.list);
     for (fault, (key, part, said, example)) in found.list.iter().zip(wanted) {
-        assert_eq!(fault.line, Some(line(part)), "{key}");
+        assert_eq!(fault.line, Some(line(&text, part)), "{key}");
         assert!(fault.text.starts_with(said), "{key}: {}", fault.text);
         assert!(example.is_empty() || fault.example == example, "{key}: {}", fault.example);
     }

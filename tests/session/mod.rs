@@ -11,6 +11,7 @@ mod events;
 mod faults;
 mod hand;
 mod limits;
+mod machine_file;
 mod notes;
 mod parts;
 mod proposals;

@@ -1,6 +1,6 @@
 //! Parts of links in a session: every change is undone, done again, saved and replayed.
 
-use stillbase::mechanics::machine::{LinkNumber, Machine, PartSource, Shape, parse, to_toml};
+use stillbase::mechanics::machine::{BarStock, LinkNumber, Machine, PartSource, Shape, builtin, parse, to_toml};
 use stillbase::mechanics::sketch::SketchStep;
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session, gentle_motion, parts};
@@ -104,4 +104,38 @@ fn a_link_that_loses_its_last_part_keeps_its_numbers() {
         session.undo().expect("undone");
     }
     assert_eq!(session.scenario().machine, before);
+}
+
+/// A number of a bar that is cut anew makes it a part of its own, whichever way it is set; undone, it is cut anew again.
+#[test]
+fn a_cut_bar_that_is_changed_is_cut_no_more() {
+    let bare = builtin("nine-link-bare").expect("built in");
+    let stock = BarStock::default();
+    let cut = bare.with_bars(&stock, &[]).expect("it is cut");
+    assert!(cut.spec().parts.iter().all(|part| part.is_cut()));
+    let edits: [&dyn Fn(&Machine) -> Edit; 3] =
+        [&|_| Edit::set("part.1.width", 0.05), &|_| Edit::set("part.1.to", 0.7), &|machine| {
+            parts::change_part(machine, 0, |part| part.material = "steel".into())
+        }];
+    for edit in edits {
+        let mut session = Session::open(gentle_motion(&cut).expect("a gentle motion")).expect("it opens");
+        session.apply(edit(&cut)).expect("it is applied");
+        session.end_gesture();
+        let changed = session.scenario().machine.clone();
+        let own = &changed.spec().parts[0];
+        assert!(!own.is_cut() && changed.spec().parts[1].is_cut(), "{own:?}");
+        // Cut again, all other bars are new.
+        let again = changed.with_bars(&BarStock { width: 0.02, ..stock.clone() }, &[]).expect("it is cut");
+        let of_link = |machine: &Machine| machine.spec().parts.iter().find(|part| part.link == own.link).cloned();
+        let (was, is) = (of_link(&changed).expect("a part"), of_link(&again).expect("a part"));
+        assert_eq!((was.width, was.material), (is.width, is.material));
+        assert!(again.spec().parts.iter().filter(|part| part.is_cut()).all(|part| part.width == Some(0.02)));
+        session.undo().expect("undone");
+        assert_eq!(session.scenario().machine, cut);
+        session.redo().expect("done again");
+        assert_eq!(session.scenario().machine, changed);
+    }
+    // The same value is no change.
+    let width = cut.spec().parts[0].width.expect("a flat bar").to_string();
+    assert_eq!(cut.set("part.1.width", &width).expect("in range"), cut);
 }

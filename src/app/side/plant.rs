@@ -238,7 +238,7 @@ fn link(ui: &mut Ui, plant: &PlantDifferences, model: &Machine, p: &Palette, com
     pick(ui, WHAT, "A link that is not as the model has it; * marks those that differ", names, &now, commands);
     let Some(link) = known(&now) else { return };
     let differs = plant.link.get(&now).copied().unwrap_or_default();
-    let number = model.links().iter().position(|other| other.name == link.name).unwrap_or_default();
+    let number = model.spec().link_index(&link.name).unwrap_or_default();
     place::place_of_thing(ui, Handle::Link(number), p, |ui| {
         ui.indent("link", |ui| link_rows(ui, link, &differs, p, commands));
     });

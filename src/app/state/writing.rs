@@ -7,8 +7,8 @@ use super::background::fault;
 use crate::file_dialog::MACHINE_EXTENSION;
 use crate::{Activity, FileReport, PlotFile, ResumePoint, plots, studio};
 use stillbase_exchange::form::Form;
-use stillbase_mechanics::machine::to_toml;
 use stillbase_query::Ticket;
+use stillbase_session::scenario::{MachineFile, Scenario};
 
 /// Computes the content of a file, in the background.
 type Content = Box<dyn FnOnce() -> Result<Vec<u8>, String> + Send>;
@@ -125,7 +125,8 @@ impl AppState {
             let changes = self.session.changes_machine_only().then_some(self.saving.changes);
             let then = AfterWriting::Machine(changes, path.to_owned());
             return self.write_content(path, FILE_BEING_SAVED, then, |app_state| {
-                let text = to_toml(&app_state.session.scenario().machine);
+                let Scenario { machine, design, .. } = app_state.session.scenario();
+                let text = MachineFile { machine: machine.clone(), design: design.clone() }.to_toml();
                 Ok(Box::new(move || Ok(text.into_bytes())))
             });
         }

@@ -50,11 +50,11 @@ fn link_of(handle: Handle, session: &Session) -> Option<usize> {
         Handle::Link(i) | Handle::Mass(i) | Handle::End(i) => Some(i),
         Handle::Weight(i) => {
             let weight = spec.counterweights.get(i)?;
-            spec.links.iter().position(|link| link.name == weight.link)
+            spec.link_index(&weight.link)
         }
         Handle::Lump(i) => {
             let lump = spec.lumps.get(i)?;
-            spec.links.iter().position(|link| link.name == lump.link)
+            spec.link_index(&lump.link)
         }
         _ => None,
     }

@@ -363,7 +363,7 @@ impl DesignFacts {
         let spec = point.map(|point| point.placed.machine.spec());
         let weights = spec.iter().flat_map(|spec| {
             spec.counterweights.iter().filter_map(move |weight| {
-                let link = spec.links.iter().position(|link| link.name == weight.link)?;
+                let link = spec.link_index(&weight.link)?;
                 // Of a ring, the bore too.
                 let inner = CounterweightShape::Disc { radius: weight.inner_radius };
                 let bore = Counterweight::new("", 1.0, [weight.at, weight.across], inner);

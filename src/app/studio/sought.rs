@@ -33,7 +33,7 @@ pub(super) fn link(ui: &Ui, spec: &MachineSpec) -> Option<usize> {
         true => spec.counterweights.get(of.parse::<usize>().ok()?.checked_sub(1)?)?.link.as_str(),
         false => of,
     };
-    spec.links.iter().position(|own| own.name == link)
+    spec.link_index(link)
 }
 
 /// Focuses a number if it is that of the setting that is looked up.

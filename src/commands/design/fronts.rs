@@ -11,6 +11,7 @@ use super::super::failure::Failure;
 use super::super::input::task_run;
 use super::super::output::TextTable;
 use super::DesignArguments;
+use super::brief::report_brief;
 use super::weighed::{FRONT_HEADINGS, cut_failure, front_cells, report_removed};
 
 #[derive(Serialize)]
@@ -21,14 +22,17 @@ struct Answer {
 impl DesignArguments {
     /// Prints the Pareto front of each machine, or the reason why it has none.
     pub fn fronts(&self) -> Result<(), Failure> {
-        let machines = self.machine.load_with(&self.other_machines)?;
+        let (machines, design) = self.machine.load_with(&self.other_machines)?;
         let all: Vec<&Machine> = machines.iter().map(|(_, machine)| machine).collect();
         let task = self.task.as_ref().map(|name| task_run(name, &all)).transpose()?;
+        let brief = self.weighing.brief(all[0], &design);
+        report_brief(self.machine.name(), &design, &brief, |key| self.weighing.asks_for(key));
         let of = |(name, machine)| {
             // The Pareto front trades mass against inertia, neither of which depends on a motion.
-            let spec = self.weighing.spec(&machine, None).map_err(|why| why.with_context(&name))?;
+            let spec = self.weighing.spec(&machine, &brief, None).map_err(|why| why.with_context(&name))?;
             report_removed(&machine, &format!("{name}: "));
-            Ok(FrontCase { name, machine, spec, bars: self.weighing.bars() })
+            let (machine, bars) = self.weighing.bars(&machine, &brief).map_err(|why| why.with_context(&name))?;
+            Ok(FrontCase { name, machine, spec, bars })
         };
         let machines = machines.into_iter().map(of).collect::<Result<_, Failure>>()?;
         let motion = task.as_ref().and_then(|run| run.shared_motion());

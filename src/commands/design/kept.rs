@@ -1,9 +1,10 @@
 //! `stillbase design --keep`
 
 use clap::Args;
-use stillbase_mechanics::balance::{RebalanceError, RebalanceRequest};
+use stillbase_mechanics::balance::{Body, Parameter, ParameterBounds, RebalanceError, RebalanceRequest};
 use stillbase_mechanics::machine::Machine;
 use stillbase_planning::Motion;
+use stillbase_session::scenario::DesignBrief;
 use stillbase_settings::number::{fixed, significant};
 use stillbase_study::centres::{RebalanceChange, RebalanceReport, rebalance_report};
 
@@ -33,15 +34,34 @@ pub struct RebalanceArguments {
 }
 
 impl RebalanceArguments {
-    /// Returns the machine with the least change, and the report on it.
+    /// Returns the brief of a file with the bounds that the arguments state in place of its own.
+    pub fn brief(&self, machine: &Machine, own: &DesignBrief) -> Result<DesignBrief, Failure> {
+        let mut stated = RebalanceRequest::default();
+        apply_bounds(&mut stated, machine, &self.fix, &self.free, &self.bound)?;
+        let mut brief = own.clone();
+        let held = stated.parameters.iter().map(|one| (one.parameter.key(machine), one.bounds));
+        brief.hold.0.extend(held);
+        Ok(brief)
+    }
+
+    /// Returns the machine with the least change within the bounds of a brief, and the report on it.
     pub fn run(
         &self,
         machine: &Machine,
+        brief: &DesignBrief,
         motion: Option<&Motion>,
         penalty: &[f64],
     ) -> Result<(Machine, RebalanceReport), Failure> {
         let mut request = RebalanceRequest::coms(machine, penalty);
-        apply_bounds(&mut request, machine, &self.fix, &self.free, &self.bound)?;
+        for parameter in Parameter::all(machine) {
+            let stays = matches!(parameter.body, Body::Link(j) if brief.fixed.contains(&machine.links()[j].name));
+            let listed = request.parameters.iter().any(|one| one.parameter == parameter);
+            match brief.hold.get(&parameter.key(machine)) {
+                Some(bounds) => request.set_bounds(machine, parameter, *bounds),
+                None if stays && listed => request.set_bounds(machine, parameter, ParameterBounds::Fixed),
+                None => {}
+            }
+        }
         rebalance_report(machine, &request, motion).map_err(as_failure)
     }
 }

@@ -1,5 +1,6 @@
 //! `stillbase design`
 
+mod brief;
 mod fronts;
 mod kept;
 mod measures;
@@ -15,8 +16,10 @@ use super::failure::Failure;
 use super::input::{MachineArgument, choice, task_run};
 use super::new_machine::NewMachine;
 use super::output::{Format, TextTable};
+use brief::report_brief;
 use kept::RebalanceArguments;
 use stillbase_planning::Motion;
+use stillbase_session::scenario::{DesignBrief, MachineFile};
 use stillbase_settings::number::fixed;
 use stillbase_settings::word::Choice;
 use weighed::WeightArguments;
@@ -31,6 +34,8 @@ use weighed::WeightArguments;
 ///
 /// With --counterweights the links stay unchanged, and discs on them balance the machine. A cone program finds the
 /// lightest discs, or those of least inertia. "gap" is the maximum amount by which the optimum may be lower.
+///
+/// What the file of the machine asks for in its table [design] applies, too. The options overrule it, and a note says so.
 ///
 /// With --counterweights --front and several machines, the answer compares their Pareto fronts under the same bounds.
 /// For a machine that no counterweights within the bounds balance, it gives the reason.
@@ -89,19 +94,19 @@ impl DesignArguments {
         if !self.other_machines.is_empty() {
             return self.fronts();
         }
-        let machine = self.machine.load()?;
+        let MachineFile { machine, design } = self.machine.load_file()?;
         let task = self.task.as_ref().map(|name| task_run(name, &[&machine])).transpose()?;
         let motion = task.as_ref().map(|run| &*run.plan().motion);
         if self.weighing.counterweights {
-            return self.weigh(&machine, motion);
+            return self.weigh(&machine, &design, motion);
         }
-        let (penalty, by) = self.penalty(machine.links().len())?;
+        let (penalty, by) = self.penalty(&machine, &design)?;
         if self.rebalance.keep {
-            return self.keep(&machine, motion, &penalty, &by);
+            return self.keep(&machine, &design, motion, (&penalty, &by));
         }
         self.new_machine.check()?;
         let (designed, answer) = design_centres(&machine, &penalty, motion)?;
-        self.new_machine.save(&designed, format!("{}, balanced with {by}", machine.name()))?;
+        self.new_machine.save(&designed, &design, format!("{}, balanced with {by}", machine.name()))?;
         self.format.print(&answer, |answer| {
             let mut table = TextTable::new(["link", "penalty", "l_c before m", "l_c m"]);
             for (j, link) in machine.links().iter().enumerate() {
@@ -113,27 +118,46 @@ impl DesignArguments {
     }
 
     /// Prints the least change, and writes the machine.
-    fn keep(&self, machine: &Machine, motion: Option<&Motion>, penalty: &[f64], by: &str) -> Result<(), Failure> {
+    fn keep(
+        &self,
+        machine: &Machine,
+        design: &DesignBrief,
+        motion: Option<&Motion>,
+        (penalty, by): (&[f64], &str),
+    ) -> Result<(), Failure> {
         self.new_machine.check()?;
-        let (machine_now, answer) = self.rebalance.run(machine, motion, penalty)?;
-        self.new_machine.save(&machine_now, format!("{}, kept balanced with {by}", machine.name()))?;
+        let brief = self.rebalance.brief(machine, design)?;
+        let concerns = |key: &str| key.starts_with("fixed.") || key.starts_with("hold.");
+        report_brief(self.machine.name(), design, &brief, concerns);
+        let (machine_now, answer) = self.rebalance.run(machine, &brief, motion, penalty)?;
+        self.new_machine.save(&machine_now, design, format!("{}, kept balanced with {by}", machine.name()))?;
         self.format.print(&answer, |answer| kept::text(answer, machine, by))
     }
 
     /// Prints counterweights and their measures, and writes the machine that carries them.
-    fn weigh(&self, machine: &Machine, motion: Option<&Motion>) -> Result<(), Failure> {
+    fn weigh(&self, machine: &Machine, design: &DesignBrief, motion: Option<&Motion>) -> Result<(), Failure> {
         self.new_machine.check()?;
-        let (weighed, answer) = self.weighing.run(machine, motion)?;
-        self.new_machine.save(&weighed, format!("{}, balanced by counterweights", machine.name()))?;
+        let brief = self.weighing.brief(machine, design);
+        report_brief(self.machine.name(), design, &brief, |key| self.weighing.asks_for(key));
+        let (weighed, answer) = self.weighing.run(machine, &brief, motion)?;
+        self.new_machine.save(&weighed, &brief, format!("{}, balanced by counterweights", machine.name()))?;
         self.format.print(&answer, |answer| weighed::text(answer, machine))
     }
 
-    fn penalty(&self, links: usize) -> Result<(Vec<f64>, String), Failure> {
+    /// Returns the penalties, and by which words they are named: those of the arguments, else of the brief, else the
+    /// usual ones.
+    fn penalty(&self, machine: &Machine, design: &DesignBrief) -> Result<(Vec<f64>, String), Failure> {
+        let links = machine.links().len();
         if !self.penalty.is_empty() {
             return Ok((self.penalty.clone(), "the given penalties".into()));
         }
         let usual = if links == 9 { Preset::Table1 } else { Preset::MinimumNorm };
-        let preset = self.preset.unwrap_or(usual);
+        let asked = Some(design.penalties).filter(|asked| links == 9 && *asked != DesignBrief::default().penalties);
+        if let Some(asked) = asked {
+            let now = DesignBrief { penalties: self.preset.unwrap_or(asked), ..design.clone() };
+            report_brief(self.machine.name(), design, &now, |key| key == "penalties");
+        }
+        let preset = self.preset.or(asked).unwrap_or(usual);
         Ok((preset.penalty(links)?, format!("preset {}", preset.name())))
     }
 }

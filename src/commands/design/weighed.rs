@@ -9,6 +9,7 @@ use stillbase_mechanics::counterweights::{
 };
 use stillbase_mechanics::machine::{BarStock, Counterweight, CounterweightShape, Machine};
 use stillbase_planning::Motion;
+use stillbase_session::scenario::{DesignBrief, NameSet};
 use stillbase_settings::number::{counted, fixed, nine_digits, significant};
 use stillbase_study::counterweights::{
     CounterweightReport, CounterweightRequest, LengthsReport, NoCounterweights, balance_by_weights, removed_weights,
@@ -39,18 +40,18 @@ pub struct WeightArguments {
     #[arg(long, value_name = "LINK=LO,HI", requires = "counterweights", value_parser = range, allow_hyphen_values = true)]
     range: Vec<(String, [f64; 2])>,
     /// Maximum distance of a counterweight from the axis of its link, to either side, m; by default it lies on the axis
-    #[arg(long, value_parser = number, value_name = "METRES", requires = "counterweights", default_value_t = 0.0)]
-    across: f64,
+    #[arg(long, value_parser = number, value_name = "METRES", requires = "counterweights")]
+    across: Option<f64>,
     /// Shape of the counterweights: disc; ring,A or half-ring,A with an inner radius, m; box,W with a width across the
-    /// link, m, as long as its mass takes. Half a ring has its round side away from the root of its link
-    #[arg(long, value_parser = shape, value_name = "disc|ring,A|half-ring,A|box,W", requires = "counterweights", default_value = "disc")]
-    shape: CounterweightForm,
-    /// Material of the counterweights: aluminium, steel, brass, lead, tungsten, or a density, kg/m³
-    #[arg(long, value_parser = density, value_name = "MATERIAL", requires = "counterweights", default_value = "steel")]
-    material: f64,
-    /// Thickness of the counterweights, m
-    #[arg(long, value_parser = number, value_name = "T", requires = "counterweights", default_value_t = CounterweightStock::STEEL.thickness)]
-    thickness: f64,
+    /// link, m, as long as its mass takes. Half a ring has its round side away from the root of its link. Default: disc
+    #[arg(long, value_parser = shape, value_name = "disc|ring,A|half-ring,A|box,W", requires = "counterweights")]
+    shape: Option<CounterweightForm>,
+    /// Material of the counterweights: aluminium, steel, brass, lead, tungsten, or a density, kg/m³; default: steel
+    #[arg(long, value_parser = density, value_name = "MATERIAL", requires = "counterweights")]
+    material: Option<f64>,
+    /// Thickness of the counterweights, m; default: 0.03
+    #[arg(long, value_parser = number, value_name = "T", requires = "counterweights")]
+    thickness: Option<f64>,
     /// Maximum mass of a counterweight, kg: M for every link, or LINK=M for one
     #[arg(long, value_name = "[LINK=]M", requires = "counterweights")]
     max_mass: Vec<String>,
@@ -123,25 +124,94 @@ pub struct WeightArguments {
 }
 
 impl WeightArguments {
-    /// Returns the problem that the arguments define.
-    pub fn spec(&self, machine: &Machine, motion: Option<&Motion>) -> Result<CounterweightSpec, Failure> {
-        let mut sites = sites(machine, &self.range, self.across)?;
+    /// Returns the brief of a machine's file, overruled by the arguments.
+    pub fn brief(&self, machine: &Machine, own: &DesignBrief) -> DesignBrief {
+        let mut brief = own.clone();
+        brief.density = self.material.unwrap_or(own.density);
+        brief.thickness = self.thickness.unwrap_or(own.thickness);
+        brief.across = self.across.unwrap_or(own.across);
+        brief.clearance = self.clearance.or(own.clearance);
+        brief.payload = self.payload.or(own.payload);
+        brief.reach = self.min_reach.or(own.reach);
+        brief.workspace = self.min_workspace.or(own.workspace);
+        brief.length.extend(self.length.iter().cloned());
+        brief.ratio.extend(self.rotor_ratio.iter().cloned());
+        if let Some(form) = self.shape {
+            brief.shape = form.kind();
+            match form {
+                CounterweightForm::Disc => {}
+                CounterweightForm::Ring(inner) | CounterweightForm::HalfRing(inner) => brief.inner_radius = inner,
+                CounterweightForm::Box(width) => brief.box_width = width,
+            }
+        }
+        // A word that is no mass is refused with the problem.
+        let heaviest = self.max_mass.iter().filter_map(|word| word.trim().parse().ok()).reduce(f64::min);
+        brief.heaviest = heaviest.or(own.heaviest);
+        // Ranges say where counterweights lie, and bars go with lengths as they are.
+        if !self.range.is_empty() {
+            (brief.behind_root, brief.fixed) = (None, NameSet::default());
+        }
+        if !self.length.is_empty() {
+            brief.as_cut = false;
+        }
+        if let Some(BarStock { width, thickness, material, .. }) = &self.bars {
+            brief.as_cut = true;
+            (brief.bar_width, brief.bar_thickness) = (*width, *thickness);
+            brief.bar_density = machine.spec().density_of(material).unwrap_or(own.bar_density);
+            brief.pin_diameter = self.pin_diameter.unwrap_or(BarStock::default().pin_diameter);
+        }
+        brief
+    }
+
+    /// Returns whether a key of a brief, without `design.`, matters to counterweights.
+    pub fn asks_for(&self, key: &str) -> bool {
+        match key.split_once('.').map_or(key, |(head, _)| head) {
+            "keep_balanced" | "penalties" | "hold" => false,
+            "length" | "reach" | "workspace" => !self.length.is_empty(),
+            "ratio" => self.takes_ratios(),
+            _ => true,
+        }
+    }
+
+    /// Returns whether the ratios of the brief are chosen.
+    fn takes_ratios(&self) -> bool {
+        let of_momentum = self.objective.as_ref().is_some_and(|objective| objective.momentum > 0.0);
+        !self.rotor_ratio.is_empty() || (of_momentum && self.rotor_inertia.is_empty())
+    }
+
+    /// Returns the problem that the arguments and the brief define.
+    pub fn spec(
+        &self,
+        machine: &Machine,
+        brief: &DesignBrief,
+        motion: Option<&Motion>,
+    ) -> Result<CounterweightSpec, Failure> {
+        let asked = brief.lightest_problem(machine);
+        let mut sites = match self.range.is_empty() {
+            true => asked.sites,
+            false => sites(machine, &self.range, brief.across)?,
+        };
+        let mut heaviest = vec![f64::INFINITY; machine.links().len()];
         for word in &self.max_mass {
             let (name, most) = word.split_once('=').map_or((None, word.as_str()), |(name, most)| (Some(name), most));
             let want = || Failure::wrong_input(format!("--max-mass {word}: want a mass above 0 in kg, or LINK=M"));
             let most: f64 = most.trim().parse().ok().filter(|most| *most > 0.0).ok_or_else(want)?;
             let only = name.map(|name| link(machine, name.trim())).transpose()?;
-            for site in sites.iter_mut().filter(|site| only.is_none_or(|only| only == site.link)) {
-                site.most = site.most.min(most);
-            }
+            let of = heaviest.iter_mut().enumerate().filter(|(link, _)| only.is_none_or(|only| only == *link));
+            of.for_each(|(_, heaviest)| *heaviest = heaviest.min(most));
         }
-        let stock = CounterweightStock { density: self.material, thickness: self.thickness, form: self.shape };
+        for site in &mut sites {
+            // What the arguments say of one link overrules what the brief says of all.
+            let most = Some(heaviest[site.link]).filter(|most| most.is_finite());
+            site.most = most.or(brief.heaviest).unwrap_or(f64::INFINITY);
+        }
+        let stock = asked.stock;
         if let Some(radius) = self.max_radius {
             if !(radius.is_finite() && radius > 0.0) {
                 return Err(Failure::wrong_input(format!("--max-radius {radius}: want a radius above 0 in m")));
             }
             let Some(most) = stock.mass_of_radius(radius) else {
-                let want = match self.shape {
+                let want = match stock.form {
                     CounterweightForm::Box(_) => "a box has no radius: want --max-mass".to_owned(),
                     _ => format!("want more than the inner radius, {} m", nine_digits(stock.inner_radius())),
                 };
@@ -162,9 +232,9 @@ impl WeightArguments {
         Ok(CounterweightSpec {
             max_added_mass: self.max_added,
             max_inertia: self.max_inertia,
-            clearance: self.clearance,
-            rotors: self.rotors(machine)?,
-            payload: self.payload,
+            clearance: brief.clearance,
+            rotors: self.rotors(machine, brief)?,
+            payload: brief.payload,
             ..CounterweightSpec::least(objective, sites, stock)
         })
     }
@@ -174,15 +244,23 @@ impl WeightArguments {
         self.front.map_or(2, usize::from)
     }
 
-    /// Returns the bars of which links are cut, if they are.
-    pub fn bars(&self) -> Option<CutRequest> {
-        self.bars.clone().map(|stock| CutRequest {
-            stock: BarStock { pin_diameter: self.pin_diameter.unwrap_or(stock.pin_diameter), ..stock },
-            bought: self.bought,
-        })
+    /// Returns the bars of which links are cut, if they are, and a machine that knows their material.
+    ///
+    /// # Errors
+    /// If the machine is not valid with one more material.
+    pub fn bars(&self, machine: &Machine, brief: &DesignBrief) -> Result<(Machine, Option<CutRequest>), Failure> {
+        let (machine, stock) = match &self.bars {
+            Some(stock) => {
+                let pin_diameter = self.pin_diameter.unwrap_or(stock.pin_diameter);
+                (machine.clone(), BarStock { pin_diameter, ..stock.clone() })
+            }
+            None if brief.as_cut => brief.stock(machine)?,
+            None => return Ok((machine.clone(), None)),
+        };
+        Ok((machine, Some(CutRequest { stock, bought: self.bought })))
     }
 
-    fn rotors(&self, machine: &Machine) -> Result<Vec<FreeRotor>, Failure> {
+    fn rotors(&self, machine: &Machine, brief: &DesignBrief) -> Result<Vec<FreeRotor>, Failure> {
         let drives = &machine.spec().drives;
         let find = |name: &str| {
             drives.iter().position(|drive| drive.name == name).ok_or_else(|| {
@@ -191,7 +269,12 @@ impl WeightArguments {
             })
         };
         let inertia = self.rotor_inertia.iter().map(|(name, ends)| (name, RotorFreedom::Inertia(*ends)));
-        let ratio = self.rotor_ratio.iter().map(|(name, ends)| (name, RotorFreedom::Ratio(*ends)));
+        let ratios = if self.rotor_ratio.is_empty() && self.takes_ratios() {
+            brief.ratio.iter().map(|(name, ends)| (name, *ends)).collect()
+        } else {
+            self.rotor_ratio.iter().map(|(name, ends)| (name, *ends)).collect::<Vec<_>>()
+        };
+        let ratio = ratios.into_iter().map(|(name, ends)| (name, RotorFreedom::Ratio(ends)));
         inertia.chain(ratio).map(|(name, parameter)| Ok(FreeRotor { drive: find(name)?, parameter })).collect()
     }
 
@@ -215,24 +298,30 @@ impl WeightArguments {
     }
 
     /// Returns the search for lengths, if lengths are free.
-    fn lengths(&self, weighing: &CounterweightSpec) -> Option<LengthSearch> {
+    fn lengths(&self, brief: &DesignBrief, weighing: &CounterweightSpec) -> Option<LengthSearch> {
         let lengths = self.length.iter().map(|(name, ends)| FreeLength { name: name.clone(), bounds: *ends });
         (!self.length.is_empty()).then(|| LengthSearch {
             lengths: lengths.collect(),
             spec: weighing.clone(),
             anywhere: self.range.is_empty(),
-            least_reach: self.min_reach,
-            least_workspace: self.min_workspace,
+            least_reach: brief.reach,
+            least_workspace: brief.workspace,
             starts: self.starts.into(),
             seed: self.seed,
         })
     }
 
-    /// Finds the counterweights. Returns the machine that carries them, and the report on it.
-    pub fn run(&self, machine: &Machine, motion: Option<&Motion>) -> Result<(Machine, CounterweightReport), Failure> {
-        let spec = self.spec(machine, motion)?;
-        report_removed(machine, "");
-        let lengths = self.lengths(&spec);
+    /// Finds the counterweights within a brief. Returns the machine that carries them, and the report on it.
+    pub fn run(
+        &self,
+        machine: &Machine,
+        brief: &DesignBrief,
+        motion: Option<&Motion>,
+    ) -> Result<(Machine, CounterweightReport), Failure> {
+        let spec = self.spec(machine, brief, motion)?;
+        let (machine, bars) = self.bars(machine, brief)?;
+        report_removed(&machine, "");
+        let lengths = self.lengths(brief, &spec);
         let within = match self.seconds.filter(|_| lengths.is_some()) {
             Some(seconds) if !(seconds.is_finite() && seconds > 0.0) => {
                 return Err(Failure::wrong_input(format!("--seconds {seconds}: want a time above 0 in s")));
@@ -240,10 +329,10 @@ impl WeightArguments {
             seconds => seconds.unwrap_or(f64::INFINITY),
         };
         let stock = spec.stock;
-        let request = CounterweightRequest { spec, lengths, front: self.front.map(usize::from), bars: self.bars() };
+        let request = CounterweightRequest { spec, lengths, front: self.front.map(usize::from), bars };
         let begun = Instant::now();
         let mut go_on = |_| begun.elapsed().as_secs_f64() < within;
-        balance_by_weights(machine, &request, motion, &mut go_on).map_err(|why| match why {
+        balance_by_weights(&machine, &request, motion, &mut go_on).map_err(|why| match why {
             NoCounterweights::Lengths(why) => lengths_failure(why),
             NoCounterweights::Weights(why) => self.refusal(why, &stock),
             NoCounterweights::Front(why) => request_failure(why),

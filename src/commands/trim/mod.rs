@@ -9,9 +9,10 @@ use stillbase_files::table::motions;
 use stillbase_files::{finish_all, write_temporary};
 use stillbase_mechanics::balance::RebalanceRequest;
 use stillbase_mechanics::counterweights::{CounterweightSpec, CounterweightStock, Objective};
-use stillbase_mechanics::machine::{Machine, to_toml};
+use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
 use stillbase_query::{Shared, answer_now};
+use stillbase_session::scenario::MachineFile;
 use stillbase_settings::number::counted;
 use stillbase_study::trim::{
     MeasurementSet, NoTrim, TrimMethod, TrimQuery, TrimRequest, TrimResult as Found, corrected_as_built, free_weights,
@@ -22,6 +23,7 @@ use super::exit::print_message;
 use super::failure::Failure;
 use super::holds::{apply_bounds, bound};
 use super::input::{self, Settings, read};
+use super::new_machine::named_after;
 use super::output::{Format, check_output};
 use super::sites::{range, sites};
 
@@ -107,7 +109,8 @@ impl TrimArguments {
             [files @ .., name] if !files.is_empty() => (name, files),
             _ => return Err(Failure::wrong_input("want files and a machine, as in trim measured.csv nine-link")),
         };
-        let machine = self.settings.apply(input::machine(name)?)?;
+        let MachineFile { machine, design } = input::machine(name)?;
+        let machine = self.settings.apply(machine)?;
         let drives = machine.drives();
         if !(self.accelerations.is_empty() || self.accelerations.len() == drives) {
             return Err(Failure::wrong_input(format!(
@@ -152,11 +155,13 @@ impl TrimArguments {
         }
         let mut files = Vec::new();
         if let Some(file) = &self.identified {
-            files.push((file, named(&built, file, format!("{}, as measured", machine.name()))?));
+            let summary = format!("{}, as measured", machine.name());
+            files.push((file, named_after(file, &built, &design, summary)?));
         }
         if let Some(file) = &self.output {
             let trimmed = corrected_as_built(&built, &machine, &mended)?;
-            files.push((file, named(&trimmed, file, format!("{}, trimmed as measured", machine.name()))?));
+            let summary = format!("{}, trimmed as measured", machine.name());
+            files.push((file, named_after(file, &trimmed, &design, summary)?));
         }
         let written = |(file, text): &(&PathBuf, String)| write_temporary(file, text.as_bytes(), self.force);
         match files.as_slice() {
@@ -205,12 +210,4 @@ fn as_failure(why: NoTrim) -> Failure {
         }
         NoTrim::NoFit(why) => Failure::no_answer(why),
     }
-}
-
-/// Returns a machine as TOML, named after its file.
-fn named(machine: &Machine, file: &Path, summary: String) -> Result<String, Failure> {
-    let mut spec = machine.spec().clone();
-    spec.name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    spec.summary = summary;
-    Ok(to_toml(&Machine::new(spec)?))
 }

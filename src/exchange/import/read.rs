@@ -13,7 +13,7 @@ const MAX_MAGNITUDE: f64 = 1e9;
 /// Maximum number of numbers in an attribute: a pose has one for each hinge.
 const MAX_NUMBERS: usize = 1000;
 
-/// What stands for a value that is wrong or missing, so that the rest of the file can be judged.
+/// A value in place of one that is wrong or missing. With it the rest of the file can be judged.
 const STAND_IN: &str = "1";
 
 /// A source of attributes: an element, or an element with the defaults of its class.

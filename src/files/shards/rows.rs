@@ -1,12 +1,13 @@
 //! Files of samples, CSV or Parquet, with one row for each machine and a header that identifies the study.
 
+use std::cell::Cell;
 use std::fmt;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::ops::ControlFlow;
 use std::panic::{self, AssertUnwindSafe};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Once};
 
 use parquet::basic::{Compression, Type as Physical};
 use parquet::column::reader::get_typed_column_reader;
@@ -466,12 +467,27 @@ fn group_of(
     if whole { Ok((samples, columns)) } else { Err(foreign(file)) }
 }
 
-/// Calls the Parquet reader, and turns its panics, which some damaged files cause, into errors.
+thread_local! {
+    /// Whether this thread reads a Parquet file, so that a panic is an error of the file and is not printed.
+    static IS_GUARDED: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Calls the Parquet reader, and turns its panics, which some damaged files cause, into errors. Panics of other threads
+/// are printed as ever.
 fn guarded<T>(file: &Path, read: impl FnOnce() -> Result<T, ShardError>) -> Result<T, ShardError> {
-    let hook = panic::take_hook();
-    panic::set_hook(Box::new(|_| {}));
+    static HOOK: Once = Once::new();
+    // The hook belongs to the whole program, so it is laid once, and stays.
+    HOOK.call_once(|| {
+        let print = panic::take_hook();
+        panic::set_hook(Box::new(move |of| {
+            if !IS_GUARDED.get() {
+                print(of);
+            }
+        }));
+    });
+    IS_GUARDED.set(true);
     let done = panic::catch_unwind(AssertUnwindSafe(read));
-    panic::set_hook(hook);
+    IS_GUARDED.set(false);
     done.unwrap_or_else(|_| Err(foreign(file)))
 }
 

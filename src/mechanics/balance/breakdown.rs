@@ -104,7 +104,7 @@ fn masses(machine: &Machine) -> Vec<Mass> {
         (source, body.mass, on(link, body.com, body.com_normal))
     });
     let weights = spec.counterweights.iter().enumerate().filter_map(|(i, weight)| {
-        let link = spec.links.iter().position(|link| link.name == weight.link)?;
+        let link = spec.link_index(&weight.link)?;
         Some((CarriedBody { body: Body::Counterweight(i), link }, weight.mass, on(link, weight.at, weight.across)))
     });
     let payload = (spec.payload.mass > 0.0).then(|| {

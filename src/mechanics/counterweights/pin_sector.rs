@@ -14,7 +14,7 @@ use super::cell::DiscPlace;
 use super::spec::{CounterweightSite, CounterweightSpec};
 use super::stock::{CounterweightForm, CounterweightStock};
 use super::unknowns::UnknownIndices;
-use crate::machine::{Counterweight, CounterweightShape};
+use crate::machine::Counterweight;
 use stillbase_convex::{LinearRow, Program};
 
 /// Half a ring keeps this distance from the root, m, so that rounding does not turn it round.
@@ -221,24 +221,5 @@ pub(super) fn worst_pin(
 ) -> Option<(f64, f64)> {
     let across = if on_axis { 0.0 } else { place.across };
     let weight = Counterweight::new("", place.mass, [place.at, across], stock.shape(place.mass));
-    let shape = weight.shape();
-    let violation = |pin: f64| {
-        let ahead = pin - place.at;
-        match shape {
-            CounterweightShape::HalfRing { .. } | CounterweightShape::Box { .. } => {
-                let [flat, round, wide] = shape.reach();
-                let bore = if on_axis { stock.inner_radius() } else { 0.0 };
-                let outward = weight.outward() * ahead;
-                let along = (flat - bore + clearance + outward).min(round + clearance - outward);
-                along.min(wide + clearance - across.abs())
-            }
-            _ => {
-                let away = ahead.hypot(across);
-                let beyond = clearance + weight.radius - away;
-                let bore = stock.inner_radius();
-                if bore > 0.0 { beyond.min(clearance + away - bore) } else { beyond }
-            }
-        }
-    };
-    pins.map(|pin| (pin, violation(pin))).max_by(|a, b| a.1.total_cmp(&b.1))
+    pins.map(|pin| (pin, weight.overlap(pin, clearance))).max_by(|a, b| a.1.total_cmp(&b.1))
 }

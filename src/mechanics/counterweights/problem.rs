@@ -53,8 +53,9 @@ impl CounterweightProblem {
         };
         for one in &self.conditions {
             let (condition, residual) = (one.condition.name(&self.bare), one.residual);
+            let least = one.condition.tolerance(&self.inertia);
             let stays = |residual: f64| format!("{residual:.3e} {}", one.condition.unit());
-            if !one.is_touched_across() && residual.im.abs() > 1e-9 {
+            if !one.is_touched_across() && residual.im.abs() > least {
                 let want = one_of(&|part| one.condition.by_cross_moment(part) != 0.0);
                 return Err(CounterweightError::OffAxis {
                     condition,
@@ -63,7 +64,7 @@ impl CounterweightProblem {
                     reliefs: Vec::new(),
                 });
             }
-            if !one.is_touched() && residual.re.abs() > 1e-9 {
+            if !one.is_touched() && residual.re.abs() > least {
                 let want = one_of(&|part| one.condition.by_mass(part) != 0.0 || one.condition.by_moment(part) != 0.0);
                 return Err(CounterweightError::Untouched { condition, residual: stays(residual.re), want });
             }

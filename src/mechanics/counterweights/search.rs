@@ -40,21 +40,32 @@ pub(super) fn search(
     node: &SearchNode,
 ) -> Result<Result<Optimum, NoOptimum>, CounterweightError> {
     let search = Search { problem, machine, request };
-    // Open subproblems, each with the optimum of its relaxation.
     let mut open = match problem.least(machine, request, node) {
-        Ok(least) => vec![(least, node.clone())],
+        Ok(least) => vec![OpenNode { least, node: node.clone(), failed: None }],
         Err(why) => return Ok(Err(why)),
     };
     let (mut best, mut choices, mut cells): (Option<Optimum>, usize, usize) = (None, 1, 1);
-    while let Some(next) = (0..open.len()).min_by(|a, b| open[*a].0.value.total_cmp(&open[*b].0.value)) {
-        let (least, node) = open.swap_remove(next);
+    // The lowest bound of the subproblems that were given up because the solver fails, and why it does.
+    let (mut unproven, mut failure) = (f64::INFINITY, None);
+    while let Some(next) = (0..open.len()).min_by(|a, b| open[*a].least.value.total_cmp(&open[*b].least.value)) {
+        let OpenNode { least, node, failed } = open.swap_remove(next);
         let bound = least.value - least.gap;
         if let Some(best) =
             best.as_ref().filter(|best| best.value <= least.value + VALUE_TOLERANCE || cells > MAX_CELLS)
         {
-            return Ok(Ok(Optimum { gap: best.value - bound, ..best.clone() }));
+            return Ok(Ok(Optimum { gap: best.value - bound.min(unproven), ..best.clone() }));
         }
+        let proven = |least: Optimum| Optimum { gap: least.gap.max(least.value - unproven), ..least };
         let children = match search.worst_site(&least, &node) {
+            // The optimum is that of the parent, whose counterweights need not lie where this node has them.
+            _ if failed.is_some() => {
+                let halves = if cells > MAX_CELLS { Vec::new() } else { search.halves(&least, &node, best.as_ref()) };
+                cells += halves.len();
+                if halves.is_empty() {
+                    (unproven, failure) = (unproven.min(bound), failed);
+                }
+                halves
+            }
             Some((j, pin)) => {
                 let site = &request.sites[j];
                 let sectors = PinSector::choices(request, site, search.pins(j), &node.sectors[j], pin);
@@ -74,12 +85,12 @@ pub(super) fn search(
                 || node.least.is_some()
                 || node.balance == BalanceGoal::Nearest =>
             {
-                return Ok(Ok(least));
+                return Ok(Ok(proven(least)));
             }
             None => {
                 let found = search.with_exact_inertia(&least);
                 if found.value <= least.value + VALUE_TOLERANCE {
-                    return Ok(Ok(least));
+                    return Ok(Ok(proven(least)));
                 }
                 // A descent may move a disc without chosen directions onto a pin; such solutions are discarded.
                 let descended = search.descend(&found, &node, cells == 1).into_iter();
@@ -92,24 +103,36 @@ pub(super) fn search(
                 cells += halves.len();
                 if halves.is_empty() {
                     // All cells are too narrow to be split, so the subproblem is assigned its exact value.
-                    open.push((Optimum { value: found.value, ..found }, node));
+                    open.push(OpenNode { least: found, node, failed: None });
                 }
                 halves
             }
         };
         for next in children {
             match problem.least(machine, request, &next) {
-                Ok(least) => open.push((least, next)),
+                Ok(least) => open.push(OpenNode { least, node: next, failed: None }),
                 Err(NoOptimum::Contradiction(_)) => {}
                 Err(NoOptimum::Failed(why)) if request.objective.momentum == 0.0 => {
                     return Err(CounterweightError::Failed(why));
                 }
                 // If the solver fails, the parent's bound holds.
-                Err(NoOptimum::Failed(_)) => open.push((least.clone(), next)),
+                Err(NoOptimum::Failed(why)) => {
+                    open.push(OpenNode { least: least.clone(), node: next, failed: Some(why) });
+                }
             }
         }
     }
-    Ok(best.ok_or(NoOptimum::Contradiction(Vec::new())))
+    let none = || failure.map_or(NoOptimum::Contradiction(Vec::new()), NoOptimum::Failed);
+    Ok(best.map(|best| Optimum { gap: best.gap.max(best.value - unproven), ..best }).ok_or_else(none))
+}
+
+/// An open subproblem.
+struct OpenNode {
+    /// The optimum of its relaxation; of its parent's, if the solver has failed.
+    least: Optimum,
+    node: SearchNode,
+    /// Why the solver has failed, if it has.
+    failed: Option<String>,
 }
 
 struct Search<'a> {

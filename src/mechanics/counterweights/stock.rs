@@ -1,8 +1,9 @@
 //! [`CounterweightStock`]: the plate or bar of which counterweights are made. It gives each mass one shape.
 //!
-//! Of half a ring with inner radius a, mass w gives u = r² = a² + 2 w/(π ρ d), and the inertia about its own centre of
-//! mass is (π ρ d/2) ((1/2 − β) r⁴ − β a² r² + 2 β a³ r − (1/2 + β) a⁴ + 2 β a⁵/(r + a)) with β = 16/(9 π²). Its second
-//! derivative by w increases with w, so the inertia is a square of w plus a convex remainder.
+//! Half a ring has an inner radius a and an outer one r. Its mass w gives r² = a² + 2 w/(π ρ d). With β = 16/(9 π²), its
+//! inertia about its own centre of mass is
+//! (π ρ d/2) ((1/2 − β) r⁴ − β a² r² + 2 β a³ r − (1/2 + β) a⁴ + 2 β a⁵/(r + a)).
+//! Its second derivative by w increases with w, so the inertia is a square of w plus a convex remainder.
 
 use std::f64::consts::PI;
 
@@ -49,6 +50,16 @@ words! {
 }
 
 impl CounterweightForm {
+    /// Returns its kind.
+    pub const fn kind(self) -> CounterweightKind {
+        match self {
+            Self::Disc => CounterweightKind::Disc,
+            Self::Ring(_) => CounterweightKind::Ring,
+            Self::HalfRing(_) => CounterweightKind::HalfRing,
+            Self::Box(_) => CounterweightKind::Box,
+        }
+    }
+
     /// Returns the form of a kind, with the inner radius of rings and the width of boxes, m.
     pub const fn of(kind: CounterweightKind, inner_radius: f64, width: f64) -> Self {
         match kind {
@@ -209,8 +220,8 @@ impl CounterweightStock {
         masses.iter().map(tangent).fold(0.0, f64::max)
     }
 
-    /// Adds unknowns, and returns how far a counterweight with unknown mass w reaches from its centre of mass, times w,
-    /// kg m: towards its flat side, towards its round side, and to either side across its link. Each is convex in w.
+    /// Adds unknowns, and returns how far a counterweight reaches from its centre of mass, times its unknown mass w, kg m.
+    /// The three reaches are towards its flat side, towards its round side, and across its link. Each is convex in w.
     pub(super) fn enter_reach(&self, w: usize, into: &mut Program) -> [AffineForm; 3] {
         let n = into.linear.len();
         let mut unknowns = |count: usize| into.linear.resize(n + count, 0.0);

@@ -34,7 +34,7 @@ pub fn worst_residual(machine: &Machine, tolerance: &PlacementTolerance) -> Wors
     let mut worst = WorstResidual { force: 0.0, coupling: 0.0 };
     for condition in Condition::all(machine.drives()) {
         let each = machine.spec().counterweights.iter().filter_map(|weight| {
-            let link = machine.links().iter().position(|link| link.name == weight.link)?;
+            let link = machine.spec().link_index(&weight.link)?;
             let part = &machine.resolved_links()[link];
             let (by_mass, by_moment) = (condition.by_mass(part), condition.by_moment(part));
             let by_cross = condition.by_cross_moment(part);

@@ -264,10 +264,33 @@ impl Counterweight {
         }
     }
 
-    /// Returns the least distances along the link, m, from its centre of mass to a pin nearer to the root and to a pin
-    /// nearer to the tip, at which its edge keeps a clearance, m, from the centres of these pins.
+    /// Returns how far a pin of its link, m from the root, lies within a clearance, m, from its edge: zero or negative if
+    /// the pin is clear of it.
     ///
-    /// Half a ring and a box count as the rectangle around them. On the axis, half a ring may take a pin into its bore.
+    /// Half a ring and a box count as the rectangle around them. A ring may have the pin in its bore; half a ring may on
+    /// the axis of its link.
+    pub fn overlap(&self, pin: f64, clearance: f64) -> f64 {
+        let (shape, ahead, across) = (self.shape(), pin - self.at, self.across.abs());
+        match shape {
+            CounterweightShape::HalfRing { .. } | CounterweightShape::Box { .. } => {
+                let [flat, round, wide] = shape.reach();
+                let bore = if across == 0.0 { self.inner_radius } else { 0.0 };
+                let outward = self.outward() * ahead;
+                let along = (flat - bore + clearance + outward).min(round + clearance - outward);
+                along.min(wide + clearance - across)
+            }
+            _ => {
+                let (away, bore) = (ahead.hypot(across), self.inner_radius);
+                let beyond = clearance + self.radius - away;
+                if bore > 0.0 { beyond.min(clearance + away - bore) } else { beyond }
+            }
+        }
+    }
+
+    /// Returns the least distances along the link at which it keeps a clearance from pins, all in m. They go from its
+    /// centre of mass to a pin nearer to the root, and to one nearer to the tip.
+    ///
+    /// The rule is that of [`overlap`](Self::overlap), but no pin lies in the bore of a ring.
     pub fn clear_along(&self, clearance: f64) -> [f64; 2] {
         let (shape, across) = (self.shape(), self.across.abs());
         match shape {

@@ -225,18 +225,29 @@ pub enum MachineError {
     Syntax(String),
 }
 
+/// The pattern of every error that has a place.
+macro_rules! every_place {
+    ($place:ident) => {
+        Self::NotFinite { $place, .. }
+            | Self::OutOfRange { $place, .. }
+            | Self::Unknown { $place, .. }
+            | Self::Duplicate { $place, .. }
+            | Self::Unprintable { $place, .. }
+            | Self::TooLong { $place, .. }
+            | Self::Cycle { $place, .. }
+            | Self::StatorCycle { $place, .. }
+            | Self::OpenLoop { $place, .. }
+            | Self::Part { $place, .. }
+            | Self::HalfLimited { $place, .. }
+            | Self::NoParts { $place, .. }
+    };
+}
+
 impl MachineError {
-    /// Returns the error with links, drives and angles named instead of numbered. A part whose name is not unique keeps
-    /// its number.
+    /// Returns the error with links, drives and angles named instead of numbered. A part whose name is wrong itself, or
+    /// is not unique, keeps its number.
     pub(super) fn named(mut self, spec: &MachineSpec) -> Self {
-        let (Self::NotFinite { place, .. }
-        | Self::OutOfRange { place, .. }
-        | Self::Unknown { place, .. }
-        | Self::NoParts { place, .. }
-        | Self::Cycle { place, .. }) = &mut self
-        else {
-            return self;
-        };
+        let Some(place) = self.place_mut().filter(|place| place.last_key() != Some("name")) else { return self };
         if let [KeyStep::Key(list), step, ..] = &mut place.0[..]
             && let KeyStep::At(i) = *step
         {
@@ -257,18 +268,14 @@ impl MachineError {
     /// Returns the place in the file, if the error has one.
     pub fn place(&self) -> Option<&KeyPath> {
         match self {
-            Self::NotFinite { place, .. }
-            | Self::OutOfRange { place, .. }
-            | Self::Unknown { place, .. }
-            | Self::Duplicate { place, .. }
-            | Self::Unprintable { place, .. }
-            | Self::TooLong { place, .. }
-            | Self::Cycle { place, .. }
-            | Self::StatorCycle { place, .. }
-            | Self::OpenLoop { place, .. }
-            | Self::Part { place, .. }
-            | Self::HalfLimited { place, .. }
-            | Self::NoParts { place, .. } => Some(place),
+            every_place!(place) => Some(place),
+            _ => None,
+        }
+    }
+
+    fn place_mut(&mut self) -> Option<&mut KeyPath> {
+        match self {
+            every_place!(place) => Some(place),
             _ => None,
         }
     }

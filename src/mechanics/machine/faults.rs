@@ -10,11 +10,14 @@ use stillbase_settings::stated::StatedFile;
 /// Keys of which a machine has at least one.
 const OWN: [&str; 3] = ["drive", "link", "end_effector"];
 
+/// The first problem of a text, with the error that it comes from.
+pub type FirstProblem = Box<(Problem, MachineError)>;
+
 /// Reads a machine from what a file, or a table of it, states.
 ///
 /// # Errors
 /// The first problem, with the error that it comes from.
-pub fn read(file: &StatedFile) -> Result<Machine, Box<(Problem, MachineError)>> {
+pub fn read(file: &StatedFile) -> Result<Machine, FirstProblem> {
     if !file.keys().any(|key| OWN.contains(&key) || super::words::is_meant(key)) {
         return Err(nothing_of_a_machine(file));
     }
@@ -43,7 +46,7 @@ fn is_length_of_part(key: &str) -> bool {
 }
 
 /// Returns the problem of a file without a single part of a machine.
-fn nothing_of_a_machine(file: &StatedFile) -> Box<(Problem, MachineError)> {
+fn nothing_of_a_machine(file: &StatedFile) -> FirstProblem {
     let what = if file.keys().next().is_none() { "the file states nothing" } else { "the file states no machine" };
     let said = format!("{what}: want [[drive]], [[link]] and [end_effector]");
     let wrong = Wrong::Whole(said.clone(), SMALLEST.into());

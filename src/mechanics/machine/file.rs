@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::faults;
+use super::faults::{self, FirstProblem};
 use super::words::MachineWords;
 use super::{Machine, MachineError};
 use stillbase_settings::fault::Faults;
-use stillbase_settings::mending::faults_of;
+use stillbase_settings::mending::{Vocabulary, faults_of};
 use stillbase_settings::range::shortened;
 use stillbase_settings::spelling::UnknownName;
 use stillbase_settings::stated::StatedFile;
@@ -76,14 +76,27 @@ fn named(file: &Path) -> String {
 /// # Errors
 /// If the text does not describe a machine; the error has all faults of the text.
 pub fn parse(text: &str, file: &str) -> Result<Machine, FileError> {
+    parse_with(text, file, &MachineWords, &faults::read)
+}
+
+/// Reads from text a machine with what else its file holds: `read` reads both, `words` names the keys of both.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_with<T>(
+    text: &str,
+    file: &str,
+    words: &dyn Vocabulary,
+    read: &dyn Fn(&StatedFile) -> Result<T, FirstProblem>,
+) -> Result<T, FileError> {
     let first = match StatedFile::parse(text) {
-        Ok(stated) => match faults::read(&stated) {
-            Ok(machine) => return Ok(machine),
+        Ok(stated) => match read(&stated) {
+            Ok(found) => return Ok(found),
             Err(first) => Some((stated.place(&first.0.path), first.1)),
         },
         Err(_) => None,
     };
-    let faults = faults_of(text, &MachineWords, &|stated| faults::read(stated).map(|_| ()).map_err(|first| first.0));
+    let faults = faults_of(text, words, &|stated| read(stated).map(|_| ()).map_err(|first| first.0));
     let (line, error) = match (first, faults.list.first()) {
         (Some((place, error)), _) => (place.map(|place| place.line), error),
         (None, Some(fault)) => (fault.line, MachineError::Syntax(fault.text.clone())),

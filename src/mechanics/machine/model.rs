@@ -163,7 +163,7 @@ impl Machine {
 
     /// Returns a place on a link, m from its root; `None` if there is no such link or length.
     pub fn place_on(&self, link: &str, place: &PlaceOnLink) -> Option<f64> {
-        let i = self.links().iter().position(|own| own.name == link)?;
+        let i = self.spec().link_index(link)?;
         place_on_link(self.spec(), i, place, KeyPath::default).ok()
     }
 

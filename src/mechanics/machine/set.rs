@@ -3,7 +3,7 @@
 use toml::{Table, Value};
 
 use super::keys::{FieldAccess, KEYS, KeyRow, MACHINE_KEYS};
-use super::{KeyPath, Machine, MachineError, MachineSpec, PlaceOnLink};
+use super::{KeyPath, Machine, MachineError, MachineSpec, Part, PlaceOnLink};
 use stillbase_settings::change::{self, DEFAULT_WORD};
 use stillbase_settings::key::{self, Key};
 
@@ -71,6 +71,21 @@ impl Machine {
         let is_given = |row: &KeyRow| !change::same_value(&row.value(self, 0), &change::value(row.key.default));
         let idle = move |row: &&KeyRow| row.uses.is_some_and(|uses| !uses(self.spec(), pushed)) && is_given(row);
         MACHINE_KEYS.iter().filter(idle).map(|row| row.key.path)
+    }
+
+    /// Returns the settings whose present values undo a change of others. A change of a bar that is cut anew makes it a
+    /// part of its own, so all parts are put back as they are.
+    pub fn settings_to_undo(&self, change: &Table) -> Vec<String> {
+        let is_cut = |path: &str| {
+            let number = path.strip_prefix("part.").and_then(|rest| rest.split('.').next()?.parse::<usize>().ok());
+            number.and_then(|n| self.spec().parts.get(n.checked_sub(1)?)).is_some_and(Part::is_cut)
+        };
+        let mut paths: Vec<String> = change::leaves(change).into_iter().map(|(path, _)| path).collect();
+        if paths.iter().any(|path| is_cut(path)) {
+            paths.retain(|path| !path.starts_with("part."));
+            paths.push("part".into());
+        }
+        paths
     }
 
     /// Returns the value of a setting; the word `default` if it is not given, `None` if there is no such key.
@@ -146,6 +161,7 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), Machin
     let default =
         Some(row.key.default).filter(|default| is_default(value) && *default != Key::REQUIRED).map(change::value);
     let (given, value) = (value, default.as_ref().unwrap_or(value));
+    let part = if key.starts_with("part.") { spec.parts.get(i).cloned() } else { None };
     match row.at {
         FieldAccess::Number(_, of) => *of(spec, i) = number(key, value)?,
         FieldAccess::LinkNumber(of) => {
@@ -162,6 +178,9 @@ fn assign(spec: &mut MachineSpec, key: &str, value: &Value) -> Result<(), Machin
             of(spec, i).into_iter().zip(bounds).for_each(|(end, to)| *end = to);
         }
         FieldAccess::Metres(_, set) => set(spec, i, number(key, value)?)?,
+    }
+    if part.is_some_and(|before| before != spec.parts[i]) {
+        spec.parts[i] = spec.parts[i].clone().changed_by_hand();
     }
     Ok(())
 }

@@ -55,6 +55,11 @@ pub struct MachineSpec {
 }
 
 impl MachineSpec {
+    /// Returns the index of a link by its name.
+    pub fn link_index(&self, name: &str) -> Option<usize> {
+        self.links.iter().position(|link| link.name == name)
+    }
+
     /// Returns whether a link has parts or lumps, from which its mass, centre of mass and inertia can follow.
     pub fn has_parts(&self, link: &str) -> bool {
         self.parts.iter().any(|part| part.link == link) || self.lumps.iter().any(|lump| lump.link == link)

@@ -4,11 +4,7 @@ use super::error::{KeyPath, KeyStep};
 use super::keys::KeyRow;
 use stillbase_settings::mending::{Meant, Vocabulary, called, with_key};
 use stillbase_settings::stated::StatedFile;
-use stillbase_settings::word_row::WordRow;
-
-const fn row(path: &'static str, name: &'static str, want: &'static str, example: &'static str) -> WordRow {
-    WordRow::new(path, name, want, example)
-}
+use stillbase_settings::word_row::{WordRow, row};
 
 const OF_DRIVE: &str = "the name of a drive";
 const OF_LINK: &str = "the name of a link";

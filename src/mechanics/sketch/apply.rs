@@ -5,6 +5,7 @@ use super::refusal::SketchRefusal;
 use super::step::SketchStep;
 use crate::machine::Angle;
 use crate::planar::Vector;
+use stillbase_settings::range::{MAX_SAID, quote_clipped, shortened};
 
 impl Sketch {
     /// Returns the drawing after a step.
@@ -68,8 +69,12 @@ impl Sketch {
     }
 
     pub(super) fn no_bar(&self, id: BarId) -> SketchRefusal {
-        let names: Vec<&str> = self.bars.iter().map(|bar| bar.name.as_str()).collect();
-        let want = if names.is_empty() { "a bar drawn first".into() } else { format!("one of {}", names.join(", ")) };
+        let known: Vec<String> =
+            self.bars.iter().map(|bar| format!("{} (bar {})", bar.id.0, quote_clipped(&bar.name))).collect();
+        let want = match known.is_empty() {
+            true => "a bar drawn first".to_owned(),
+            false => format!("one of {}", shortened(&known.join(", "), MAX_SAID)),
+        };
         SketchRefusal::new(Place::Whole, format!("there is no bar with the number {}", id.0), want)
     }
 

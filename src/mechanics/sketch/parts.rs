@@ -93,11 +93,7 @@ impl Sketch {
         let at = |is_own: &dyn Fn(usize) -> bool, count: usize| (0..count).find(|i| is_own(*i)).unwrap_or(count);
         let first = at(&|i| self.parts[i].link == name, self.parts.len());
         next.parts.retain(|part| part.link != name);
-        // A bar that someone changes is not cut anew: it is a part of its own from now on.
-        let own = |part: &Part| match part.is_cut() && !self.parts.contains(part) {
-            true => Part { name: String::new(), ..part.clone() },
-            false => part.clone(),
-        };
+        let own = |part: &Part| if self.parts.contains(part) { part.clone() } else { part.clone().changed_by_hand() };
         next.parts.splice(first..first, parts.iter().map(own));
         let first = at(&|i| self.lumps[i].link == name, self.lumps.len());
         next.lumps.retain(|lump| lump.link != name);

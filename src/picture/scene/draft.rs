@@ -64,7 +64,7 @@ impl DesignDrawing {
             },
         });
         let weights = spec.counterweights.iter().filter_map(|weight| {
-            let link = spec.links.iter().position(|link| link.name == weight.link)?;
+            let link = spec.link_index(&weight.link)?;
             Some(Weight { link, at: Vector::new(weight.at, weight.across), mass: weight.mass })
         });
         let lumps = machine.part_bodies().iter().filter_map(|part| match part.source {

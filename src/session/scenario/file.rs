@@ -8,6 +8,7 @@ use super::definition::Scenario;
 use super::design::{DesignBrief, is_default};
 use super::error::ScenarioError;
 use super::kept::{Bookmark, StatedBranch, branches, check_bookmarks};
+use super::machine_file::MachineFile;
 use super::note::{StatedNote, notes};
 use super::own::ScenarioSettings;
 use super::task::Task;
@@ -104,8 +105,8 @@ pub fn content(text: &str) -> Option<FileContent> {
     }
 }
 
-/// Looks up a machine by name or file.
-pub type FindMachine<'a> = &'a dyn Fn(&str) -> Result<Machine, FileError>;
+/// Looks up a machine by name or file, with the brief that its file holds.
+pub type FindMachine<'a> = &'a dyn Fn(&str) -> Result<MachineFile, FileError>;
 
 /// The first problem of a text, with the error that it makes.
 type FirstProblem = Box<(Problem, ScenarioError)>;
@@ -162,8 +163,8 @@ impl Reading<'_> {
     }
 
     /// Returns the machine that the file names.
-    fn named_machine(&self, name: &str) -> Result<Machine, FirstProblem> {
-        self.find.map_or_else(|| machine::named(name), |find| find(name)).map_err(|error| {
+    fn named_machine(&self, name: &str) -> Result<MachineFile, FirstProblem> {
+        self.find.map_or_else(|| machine::named(name).map(MachineFile::from), |find| find(name)).map_err(|error| {
             let wrong = Wrong::Last(error.to_string());
             Box::new((Problem { path: KeyPath::new(&[&"machine"]), wrong }, error.into()))
         })
@@ -217,12 +218,19 @@ impl Reading<'_> {
                 return Err(self.wrong(KeyPath::new(&[&key]), message));
             }
         }
-        let machine = match (own_machine, &file.machine) {
-            (Some(machine), _) => machine,
+        let MachineFile { machine, design } = match (own_machine, &file.machine) {
+            (Some(machine), _) => machine.into(),
             (None, MachineRef::Name(name)) => self.named_machine(name)?,
             (None, MachineRef::Inline(_)) => {
                 return Err(self.wrong(KeyPath::new(&[&"machine"]), "is no machine".into()));
             }
+        };
+        // The brief of the scenario overrules that of the machine's file, key by key.
+        let design = match stated.get("design").and_then(toml::Value::as_table) {
+            Some(own) => {
+                change::with_changes(&design, own).map_err(|why| self.wrong(KeyPath::new(&[&"design"]), why))?
+            }
+            None => design,
         };
         let stated_machine = machine.clone();
         let machine = self.set(machine, &file.set)?;
@@ -269,7 +277,7 @@ impl Reading<'_> {
             duration: file.duration,
             task,
             tolerance: file.tolerance,
-            design: file.design,
+            design,
             sketch,
             edits,
             bookmarks: file.bookmarks,

@@ -170,7 +170,7 @@ impl Scenario {
             stated.insert("task".into(), Table::try_from(&self.task).ok()?.into());
         }
         let mut now = change::present_values(&stated, &own);
-        for (path, _) in change::leaves(&of_machine) {
+        for path in self.machine.settings_to_undo(&of_machine) {
             now = change::join(now, &change::single_change(&path, self.machine.value(&path)?));
         }
         Some(now)

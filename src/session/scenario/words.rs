@@ -5,14 +5,10 @@ use super::names::name_of;
 use stillbase_mechanics::machine::{KeyPath, KeyStep, MachineWords};
 use stillbase_settings::key::{Key, KeyType};
 use stillbase_settings::mending::{Meant, Vocabulary};
-use stillbase_settings::word_row::WordRow;
+use stillbase_settings::word_row::{WordRow, row};
 
 /// The words of scenario files.
 pub(crate) struct ScenarioWords;
-
-const fn row(path: &'static str, name: &'static str, want: &'static str, example: &'static str) -> WordRow {
-    WordRow::new(path, name, want, example)
-}
 
 const A_BAR: &str = "the number of a bar in the drawing";
 const A_PIN: &str = "the number of a pin in the drawing";
@@ -35,6 +31,7 @@ const STATED: &[WordRow] = &[
     row("plant", "plant", "", "{ force = [0.0, 0.0] }"),
     row("sketch", "drawing", "", ""),
     row("tolerance", "table of tolerances", "", ""),
+    row("design", "brief of the design", "a table of settings", "{ clearance = 0.005 }"),
     row("edit.*.step", "step of edit *", "a whole number of steps since the start, 0 to 4000000", "0"),
     row("edit.*.do", "kind of edit *", "", "\"slide-b\""),
     row("edit.*.x", "x of edit *", "a number in m, or in N for a push", "0.5"),

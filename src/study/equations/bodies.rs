@@ -77,7 +77,7 @@ impl Bodies {
             mass(machine, origin, j, [link.mass, link.inertia, link.com, link.com_normal], symbols, &walk.root(j))
         });
         let weights = spec.counterweights.iter().enumerate().filter_map(|(i, weight)| {
-            let j = spec.links.iter().position(|link| link.name == weight.link)?;
+            let j = spec.link_index(&weight.link)?;
             let before = spec.counterweights[..i].iter().filter(|other| other.link == weight.link).count();
             let name = format!("{}{}", weight.link, "′".repeat(before));
             let symbols =

@@ -53,9 +53,10 @@ pub(super) fn held_plane_motion(
     });
     let b = followed.as_ref().map_or(b, |(b, _)| *b);
     let start = poses_of_points(space, &[samples.point(0)], b).ok().and_then(|poses| poses.first().map(|pose| pose.q));
-    let candidates = followed.map_err(|stop| stop.to_string().into()).map(|(b, why)| {
-        let task = Task::sampled(TaskKind::Given, samples.clone(), Some(b), &judge.machine).ok();
-        task.map(|task| MotionCandidate { method: "on-plane", why, task }).into_iter().collect()
+    let candidates = followed.map_err(|stop| stop.to_string().into()).and_then(|(b, why)| {
+        let task = Task::sampled(TaskKind::Given, samples.clone(), Some(b), &judge.machine);
+        let task = task.map_err(|key| format!("the samples make no task: task.{key} is missing"))?;
+        Ok(vec![MotionCandidate { method: "on-plane", why, task }])
     });
     (start, candidates)
 }

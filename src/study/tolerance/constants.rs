@@ -108,8 +108,7 @@ pub(super) fn bodies(machine: &Machine, parameters: &[UncertainParameter]) -> Re
         stretch: Vec::new(),
     });
     // Counterweights have no parameters of their own: only the position of their link varies.
-    let carrier = |link: &str| spec.links.iter().position(|l| l.name == link);
-    let carriers: Vec<usize> = spec.counterweights.iter().filter_map(|weight| carrier(&weight.link)).collect();
+    let carriers: Vec<usize> = spec.counterweights.iter().filter_map(|weight| spec.link_index(&weight.link)).collect();
     bodies.extend(spec.counterweights.iter().zip(&carriers).map(|(weight, j)| {
         let part = &machine.resolved_links()[*j];
         LinkConstants {

@@ -166,10 +166,7 @@ impl<'a> Problem<'a> {
     fn carrier(&self, body: Body) -> Option<usize> {
         match body {
             Body::Link(j) => Some(j),
-            Body::Counterweight(i) => {
-                let name = &self.from.counterweights[i].link;
-                self.from.links.iter().position(|link| link.name == *name)
-            }
+            Body::Counterweight(i) => self.from.link_index(&self.from.counterweights[i].link),
             Body::Payload => None,
         }
     }

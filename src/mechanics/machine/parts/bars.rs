@@ -77,6 +77,13 @@ impl Part {
         self.is_arm() || self.name == CUT_BAR
     }
 
+    /// Returns the part once someone has changed it. A bar that is cut anew loses its name: it is a part of its own from
+    /// now on, and no design replaces it.
+    #[must_use]
+    pub fn changed_by_hand(self) -> Self {
+        if self.is_cut() { Self { name: String::new(), ..self } } else { self }
+    }
+
     /// Returns whether it has a name of its own; a bar that is drawn or cut anew is named after its section.
     pub(super) fn has_own_name(&self) -> bool {
         !["", CUT_BAR, DRAWN_BAR].contains(&self.name.as_str())
@@ -168,7 +175,7 @@ impl Machine {
         spec.parts.retain(|part| !part.is_arm());
         let mut arms = Vec::new();
         for (k, weight) in spec.counterweights.iter().enumerate() {
-            let Some(j) = self.links().iter().position(|link| link.name == weight.link) else { continue };
+            let Some(j) = self.spec().link_index(&weight.link) else { continue };
             let not_carried = || MachineError::NotCarried {
                 weight: k + 1,
                 link: weight.link.clone(),

@@ -34,16 +34,26 @@ pub(super) fn check(spec: &MachineSpec) -> Result<(), MachineError> {
     Ok(())
 }
 
+impl MachineSpec {
+    /// Returns the names and densities, kg/m³, of all materials: of [`MATERIALS`], then of those of the machine.
+    pub fn known_materials(&self) -> impl Iterator<Item = (&str, f64)> {
+        let own = self.materials.iter().map(|material| (material.name.as_str(), material.density));
+        MATERIALS.into_iter().chain(own)
+    }
+
+    /// Returns the density of a material by its name, kg/m³.
+    pub fn density_of(&self, name: &str) -> Option<f64> {
+        self.known_materials().find(|(known, _)| *known == name).map(|(_, density)| density)
+    }
+}
+
 /// Returns the density of a material, kg/m³.
 pub(super) fn density(spec: &MachineSpec, name: &str, place: impl Fn() -> KeyPath) -> Result<f64, MachineError> {
-    let own = spec.materials.iter().map(|material| (material.name.as_str(), material.density));
-    let known = MATERIALS.into_iter().chain(own);
-    let found = known.clone().find(|(known, _)| *known == name);
-    found.map(|(_, density)| density).ok_or_else(|| MachineError::Unknown {
+    spec.density_of(name).ok_or_else(|| MachineError::Unknown {
         place: place(),
         what: "material",
         name: name.into(),
-        known: known.map(|(name, _)| name.into()).collect(),
+        known: spec.known_materials().map(|(name, _)| name.into()).collect(),
         more: ", or a [[material]] of this name with its density",
     })
 }

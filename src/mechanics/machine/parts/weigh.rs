@@ -69,7 +69,7 @@ impl Machine {
     pub fn part_holes(&self, part: usize) -> Vec<([f64; 2], f64)> {
         let spec = self.spec();
         let Some(part) = spec.parts.get(part) else { return Vec::new() };
-        let Some(link) = spec.links.iter().position(|link| link.name == part.link) else { return Vec::new() };
+        let Some(link) = spec.link_index(&part.link) else { return Vec::new() };
         let place = |hole: &Hole| {
             let at = place_on_link(spec, link, &hole.at, KeyPath::default).ok()?;
             Some(([at, hole.across], hole.diameter))
