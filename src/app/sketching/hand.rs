@@ -210,13 +210,13 @@ impl Hand<'_> {
     fn pin_after(&self, step: &SketchStep) -> Option<PinId> {
         match *step {
             SketchStep::Weld { onto, .. } => Some(onto),
-            SketchStep::Attach { pin, .. } => {
+            SketchStep::Attach { pin, bar } => {
                 let sketch = &self.facts.sketch;
+                let along = sketch.along(sketch.bar(bar)?, pin);
                 let next = sketch.with(step).ok()?;
-                let (at, is_new) = (sketch.at(pin), next.pin(pin).is_none());
-                let far = |own: &PinId| (next.at(*own) - at).norm();
-                let pins = next.pins.iter().map(|own| own.id).filter(|_| is_new);
-                pins.min_by(|a, b| far(a).total_cmp(&far(b)))
+                let bar = next.bar(bar)?;
+                let far = |own: &PinId| (next.along(bar, *own) - along).abs();
+                bar.all_pins().min_by(|a, b| far(a).total_cmp(&far(b)))
             }
             _ => None,
         }

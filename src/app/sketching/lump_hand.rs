@@ -21,7 +21,7 @@ impl Hand<'_> {
     /// Puts a lump on the bar under the pointer, or chooses the lump there.
     pub(super) fn puts_lump(&self, pen: &mut Pen, pos: Option<Pos2>, clicked: bool, commands: &mut Vec<Command>) {
         let sketch = &self.facts.sketch;
-        if pen.hot.is_none() {
+        if matches!(pen.hot, None | Some(SketchItem::Limit(..))) {
             // Beside a bar, the lump goes on the nearest one.
             let near = pos.and_then(|pos| bar_near(sketch, &self.spot.pointer(pos), REACH_PT));
             pen.hot = near.map(SketchItem::Bar);

@@ -9,10 +9,9 @@ use super::SketchFacts;
 use super::scene::SketchScene;
 use crate::theme::{bold, colour, plain};
 use crate::widgets::{name, note};
-use crate::{Command, Switch, ViewChange, ViewState, corner, notation};
+use crate::{Command, Layout, Switch, ViewChange, ViewState, corner, framing, notation};
 use stillbase_picture::paint::labels::draw_labels;
 use stillbase_picture::paint::{SceneViewport, paint};
-use stillbase_picture::scene::framing::PictureArea;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_picture::scene::sketching::{SketchOptions, content};
 use stillbase_picture::scene::views::ViewKind;
@@ -56,7 +55,10 @@ pub fn scene(
             ui.add_space(4.0);
             list(ui, unfinished, p);
             ui.add_space(6.0);
-            back(ui, commands);
+            match view_state.arrangement.layout {
+                Layout::Present => note(ui, p, "Esc leads back to the panels."),
+                _ => back(ui, commands),
+            }
         });
     });
     rect
@@ -80,19 +82,10 @@ fn picture(ui: &Ui, rect: Rect, SketchScene { facts, views }: SketchScene<'_>, v
     let options = SketchOptions { theme: view_state.arrangement.theme, ..SketchOptions::default() };
     let drawn = Arc::new(views.sketched(&facts.sketch, &facts.resolved, &options));
     let card = ui.memory(|memory| memory.area_rect(card()));
-    let covered = [Some(corner::strip(rect)), card];
-    let part = |part: &Rect| {
-        let part = part.intersect(rect).translate(-rect.min.to_vec2());
-        part.is_positive().then(|| [part.left(), part.top(), part.right(), part.bottom()].map(f64::from))
-    };
-    let area = PictureArea {
-        size: [rect.width(), rect.height()].map(f64::from),
-        covered: covered.iter().flatten().filter_map(part).collect(),
-    };
-    let camera = content(&facts.sketch).framed(views.camera(ViewKind::Flat), &area);
+    let covered: Vec<Rect> = [Some(corner::strip(rect)), card].into_iter().flatten().collect();
+    let camera = content(&facts.sketch).framed(views.camera(ViewKind::Flat), &framing::area(rect, &covered));
     paint(ui, 0, rect, &drawn, &camera);
-    let taken: Vec<Rect> = covered.into_iter().flatten().collect();
-    draw_labels(ui, 0, &SceneViewport { rect, camera }, &drawn, &taken);
+    draw_labels(ui, 0, &SceneViewport { rect, camera }, &drawn, &covered);
 }
 
 /// Says in a panel what stands there once the drawing is a machine.
