@@ -114,7 +114,6 @@ fn counterweights_and_pins_are_seen_in_a_drawing() {
     let pin = drawn.bars[8].tip;
     let place = drawn.at(pin);
     assert!(written(&h, &format!("pin {}", pin.0)).distance(at(&h, place.re, place.im)) < 60.0);
-    egui_kittest::image_snapshot(&h.render().expect("drawn"), "sketch-weights-dark");
 }
 
 fn a_lump_beside_a_bar_goes_on_it() {

@@ -101,6 +101,7 @@ pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, has_panel: bool, commands: &
     let frame = Frame::new().inner_margin(Margin { left: 14, right: 2, top: 10, bottom: 8 });
     let made = panel.frame(frame).show(ui, |ui| {
         if session.run().unfinished().is_some() {
+            ui.set_max_width(ui.available_width() - SCROLL_BAR_WIDTH_PT);
             waits::panel(ui, "Its plots stand", &view_state.palette());
             return;
         }
