@@ -33,7 +33,14 @@ impl SessionChange {
     /// can stop the change.
     pub fn make(&self, session: &mut Session, watch: ProgressCallback<'_>) -> Result<Option<String>, Refusal> {
         match self {
-            Self::Edit(edit) => session.apply_while(edit.clone(), watch)?,
+            Self::Edit(edit) => {
+                session.apply_while(edit.clone(), watch)?;
+                if matches!(edit, Edit::Sketch(_)) && session.has_just_made_task() {
+                    return Ok(Some(
+                        "the machine could not do the task: one is made for it; Ctrl Z undoes both".into(),
+                    ));
+                }
+            }
             Self::Undo => {
                 let title = session.undo_title().map(|title| format!("undone: {title}"));
                 session.undo_while(watch)?;

@@ -1,6 +1,6 @@
 //! The keyboard's focus: a field is asked for by its name, and panels scroll to what has the focus.
 
-use egui::{Context, Id, Ui, vec2};
+use egui::{Context, Id, Response, Ui, vec2};
 
 /// Key under which egui stores the name of the field that is asked for.
 fn asked_id() -> Id {
@@ -22,6 +22,24 @@ pub fn is_asked(ctx: &Context, name: &str) -> bool {
         }
         is_this
     })
+}
+
+/// Key under which egui stores the name of the widget that has the focus, of those that say so.
+fn named_id() -> Id {
+    Id::unique("name of the focus")
+}
+
+/// Says by which name the widget of a response is known while it has the focus.
+pub fn tell(response: &Response, name: &str) {
+    if response.has_focus() {
+        response.ctx.data_mut(|data| data.insert_temp(named_id(), (response.id, name.to_owned())));
+    }
+}
+
+/// Returns whether the widget of this name has the focus.
+pub fn is_on(ctx: &Context, name: &str) -> bool {
+    let known = ctx.data(|data| data.get_temp::<(Id, String)>(named_id()));
+    known.is_some_and(|(id, known)| known == name && ctx.memory(|memory| memory.has_focus(id)))
 }
 
 /// Room that is shown above and below what has the focus, where the content fades out, points.

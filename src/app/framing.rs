@@ -31,11 +31,17 @@ pub fn keep_framed(
         Framing::Framed(content, _) => content.clone(),
         Framing::Pending => Arc::new(content(view)),
     };
+    let area = area(rect, covered);
+    view_state.cameras[view as usize] = content.framed(views.camera(view), &area);
+    view_state.framing[view as usize] = Framing::Framed(content, room);
+}
+
+/// Returns the area of a scene on the screen, with its covered parts.
+pub fn area(rect: Rect, covered: &[Rect]) -> PictureArea {
     let part = |part: &Rect| {
         let part = part.intersect(rect).translate(-rect.min.to_vec2());
         part.is_positive().then(|| [part.left(), part.top(), part.right(), part.bottom()].map(f64::from))
     };
-    let area = PictureArea { size: size.map(f64::from), covered: covered.iter().filter_map(part).collect() };
-    view_state.cameras[view as usize] = content.framed(views.camera(view), &area);
-    view_state.framing[view as usize] = Framing::Framed(content, room);
+    let size = [rect.width(), rect.height()].map(f64::from);
+    PictureArea { size, covered: covered.iter().filter_map(part).collect() }
 }

@@ -368,7 +368,6 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
     };
     let [time, torque, moment] = [forecast.time, torque, forecast.moment].map(|x| signed(x, 3));
     let figures = match waits {
-        true if session.run().unfinished().is_some() => "the drawing is no machine yet: Shift D draws on".into(),
         true => "change limits, points or b".into(),
         false => {
             // A limit that is named in place of the first line leaves no other word that these are planned.

@@ -38,11 +38,11 @@ pub fn show(
     let line = |ui: &mut Ui, text: RichText| ui.add(egui::Label::new(text).extend());
     line(&mut corner, RichText::new(title).font(bold(0.4 * large)).color(colour(p.ink)));
     let moment = f.wrench.total().moment;
-    let (number, tone) = match session.run().unfinished() {
-        Some(_) => ("no machine yet".to_owned(), p.dim),
-        None if moment.abs() < ZERO_BELOW_N_M => (format!("{} N m", signed(0.0, 2)), p.zero),
-        None => (format!("{} N m", signed(moment, 2)), p.reaction),
+    let (number, tone) = match moment.abs() < ZERO_BELOW_N_M {
+        true => (signed(0.0, 2), p.zero),
+        false => (signed(moment, 2), p.reaction),
     };
+    let number = format!("{number} N m");
     line(&mut corner, RichText::new(number).font(bold(large)).color(colour(tone)));
     line(
         &mut corner,

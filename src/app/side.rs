@@ -13,6 +13,7 @@ use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
 use super::facts::ScenarioFacts;
 use super::notation;
+use super::sketching::waits;
 use super::theme::{bold, colour, plain};
 use super::widgets::{NumberRow, name, note, section, send, unit};
 use super::{
@@ -65,13 +66,11 @@ pub fn show(
     let shown = panel.frame(frame).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.set_width(ui.available_width() - SCROLL_BAR_WIDTH);
-            place::place_of_thing(ui, Handle::Ring, &p, |ui| pose_constant(ui, session, facts, view_state, commands));
-            if session.run().pose_space().is_ok() {
-                place::place_of_thing(ui, Handle::Target, &p, |ui| target(ui, session, &p, commands));
+            if session.run().unfinished().is_some() {
+                waits::panel(ui, "Its pose constant, limits and path stand", &p);
+            } else {
+                of_machine(ui, session, facts, view_state, &p, commands);
             }
-            place::place_of_thing(ui, Handle::Joint(0), &p, |ui| limits(ui, session, &p, commands));
-            gravity(ui, session, &p, commands);
-            path::show(ui, session, &p, commands);
             plant::show(ui, session, &p, commands);
             base::show(ui, session, view_state, commands);
             control::show(ui, session, &p, commands);
@@ -84,6 +83,24 @@ pub fn show(
         });
     });
     view_state.arrangement.now().side.stored_width(shown.response.rect.width(), usual)
+}
+
+/// Draws the settings that only a machine has: of a drawing that is none, they would be those of the machine before.
+fn of_machine(
+    ui: &mut Ui,
+    session: &Session,
+    facts: &ScenarioFacts<'_>,
+    view_state: &ViewState,
+    p: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    place::place_of_thing(ui, Handle::Ring, p, |ui| pose_constant(ui, session, facts, view_state, commands));
+    if session.run().pose_space().is_ok() {
+        place::place_of_thing(ui, Handle::Target, p, |ui| target(ui, session, p, commands));
+    }
+    place::place_of_thing(ui, Handle::Joint(0), p, |ui| limits(ui, session, p, commands));
+    gravity(ui, session, p, commands);
+    path::show(ui, session, p, commands);
 }
 
 fn pose_constant(

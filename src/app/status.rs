@@ -116,7 +116,7 @@ pub fn show(
                 });
             }
             if let Some(drawing) = unfinished {
-                fit::label(ui, &drawing.first_of(), plain(12.0), colour(p.dim));
+                fit::label(ui, &notation::sentence(ui.ctx(), &drawing.first_of()), plain(12.0), colour(p.dim));
             }
             let facts: Vec<_> = facts.iter().map(|fact| notation::sentence(ui.ctx(), fact)).collect();
             let facts = fitting(ui, facts.iter().map(|fact| &**fact), ui.available_width());

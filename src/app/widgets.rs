@@ -4,10 +4,12 @@ use std::cell::Cell;
 use std::ops::RangeInclusive;
 
 use egui::response::Flags;
-use egui::{Align, DragValue, EventFilter, Key, Layout, Modifiers, Response, RichText, Slider, SliderClamping, Ui};
+use egui::{
+    Align, DragValue, EventFilter, Key, Label, Layout, Modifiers, Response, RichText, Slider, SliderClamping, Ui,
+};
 
 use super::theme::{bold, colour, plain};
-use super::{Command, SessionCommand, focus, notation, pointing};
+use super::{Command, SessionCommand, fit, focus, notation, pointing};
 use stillbase_picture::notation::ShownUnit;
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::Palette;
@@ -66,13 +68,18 @@ pub(super) fn section(ui: &mut Ui, p: &Palette, title: &str) {
     ui.label(RichText::new(title.to_uppercase()).font(bold(11.0)).color(colour(p.dim)));
 }
 
-/// Draws a heading with a hint.
+/// Draws a heading with a hint: beside it, or below it if there is no room.
 pub(super) fn heading(ui: &mut Ui, p: &Palette, title: &str, words: &str) {
-    ui.horizontal(|ui| {
-        ui.label(RichText::new(title).font(bold(13.5)).color(colour(p.ink)));
-        let words = notation::sentence(ui.ctx(), words);
-        ui.label(RichText::new(words).font(plain(11.5)).color(colour(p.dim)));
-    });
+    let words = notation::sentence(ui.ctx(), words);
+    let [title_font, words_font] = [bold(13.5), plain(11.5)];
+    let width = fit::width_of(ui, title, &title_font) + fit::width_of(ui, &words, &words_font);
+    let has_room = width + ui.spacing().item_spacing.x <= ui.available_width();
+    let title = RichText::new(title).font(title_font).color(colour(p.ink));
+    let words = Label::new(RichText::new(words).font(words_font).color(colour(p.dim))).wrap();
+    match has_room {
+        true => _ = ui.horizontal(|ui| [ui.label(title), ui.add(words)]),
+        false => _ = [ui.label(title), ui.add(words)],
+    }
     ui.add_space(2.0);
 }
 
@@ -422,6 +429,12 @@ pub(super) fn unit(ui: &mut Ui, p: &Palette, text: &str) {
 pub(super) fn note(ui: &mut Ui, p: &Palette, text: &str) {
     let text = notation::sentence(ui.ctx(), text);
     ui.add(egui::Label::new(RichText::new(text).font(plain(11.0)).color(colour(p.dim))).wrap());
+}
+
+/// Says why something cannot be, in the user's units.
+pub(super) fn reason(ui: &mut Ui, p: &Palette, text: &str) {
+    let text = notation::sentence(ui.ctx(), text);
+    ui.add(egui::Label::new(RichText::new(text).font(plain(12.0)).color(colour(p.reaction))).wrap());
 }
 
 /// Sends an edit when a widget has changed, and ends the gesture at its release.

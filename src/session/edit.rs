@@ -426,6 +426,9 @@ fn title_of(change: &Table, before: Option<&Table>) -> String {
         if value.as_str() == Some(change::DEFAULT_WORD) {
             return format!("{words} back to normal");
         }
+        if let Some(is_so) = value.as_bool() {
+            return format!("{words}: {}", if is_so { "yes" } else { "no" });
+        }
         let typed = match change::number(value) {
             Some(x) => at_most_digits(x, TITLE_DIGITS),
             None => shortened(&change::typed(value), 60),

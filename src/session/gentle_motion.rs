@@ -2,12 +2,16 @@
 
 use std::f64::consts::{FRAC_PI_3, PI, TAU};
 
+use toml::{Table, Value};
+
+use super::edit::Edit;
 use super::run::Run;
 use super::scenario::{Scenario, ScenarioError};
 use stillbase_mechanics::kinematics::end_effector;
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, unit};
 use stillbase_mechanics::sketch::Template;
+use stillbase_settings::change::DEFAULT_WORD;
 
 /// Each relative angle in the middle of the motion, as a fraction of the range between its limits. At a fraction of one
 /// half, parallelograms go flat.
@@ -105,6 +109,24 @@ pub fn for_template(present: &Scenario, template: Template) -> Scenario {
 pub fn with_own_task(present: &Scenario) -> Option<Scenario> {
     let made = gentle_motion(&present.machine).ok()?;
     Some(Scenario { sketch: present.sketch.clone(), design: present.design.clone(), ..made })
+}
+
+/// Returns the edit that gives a drawn machine a task made for it in place of one that it cannot do; `None` if the task
+/// is already so, or the one that is made cannot be done either.
+pub(super) fn own_task(present: &Scenario) -> Option<Edit> {
+    let made = gentle_motion(&present.machine).ok()?.task;
+    Run::new(&Scenario { task: made.clone(), ..present.without_edits() }).ok()?;
+    let [now, made] = [Table::try_from(&present.task).ok()?, Table::try_from(&made).ok()?];
+    let dropped = now.keys().filter(|key| !made.contains_key(*key));
+    let dropped = dropped.map(|key| (key.clone(), Value::from(DEFAULT_WORD)));
+    let set = made.iter().filter(|(key, value)| now.get(*key) != Some(*value));
+    let change: Table = set.map(|(key, value)| (key.clone(), value.clone())).chain(dropped).collect();
+    (!change.is_empty()).then(|| Edit::of("task", change))
+}
+
+/// Whether the task of a scenario is the one that is made for its machine.
+pub(super) fn has_made_task(scenario: &Scenario) -> bool {
+    gentle_motion(&scenario.machine).is_ok_and(|made| made.task == scenario.task)
 }
 
 /// Returns a motion of the drives over time, as TOML. It needs no inverse kinematics and no path between points.

@@ -11,6 +11,7 @@ mod editing;
 mod history;
 mod notes;
 mod opening;
+mod own_task;
 mod passing;
 
 use std::sync::Arc;

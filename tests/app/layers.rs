@@ -38,7 +38,7 @@ fn heights_of_layers_are_used_and_taken_back() {
 fn a_machine_without_an_order_says_who_meets() {
     let mut h = design("case-3");
     assert!(h.query_by_label("no bar meets another along the task").is_some());
-    let why = "No order of links 2, 3, 4, 6 fits the joint limits: link 4 meets axis of the base";
+    let why = "Elsewhere within the joint limits: no order of links 2, 3, 4, 6 keeps bars apart: link 4 meets axis of the base";
     assert!(h.query_by_label_contains(why).is_some());
     h.get_by_label("Use the heights of the layers").click_accesskit();
     h.run_steps(4);

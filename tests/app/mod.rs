@@ -1,5 +1,6 @@
 //! The window, driven as a person does: widgets by label, the pointer in the scene, keys; and pictures of it.
 
+mod drawing;
 mod family;
 mod files;
 mod finder;
@@ -44,8 +45,9 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 32] = [
+pub const TESTS: [&[Test]; 33] = [
     saving::TESTS,
+    drawing::TESTS,
     family::TESTS,
     files::TESTS,
     finder::TESTS,

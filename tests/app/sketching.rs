@@ -340,9 +340,15 @@ fn an_unfinished_drawing_is_told_in_every_view() {
     h.run_steps(4);
     assert!(said(&h, "machine: 3 things missing") && said(&h, "stand here as soon as it is a machine"));
     assert!(h.query_by_label("mass of link 1 kg").is_none(), "no table of the links of another machine");
-    h.state_mut().app_state_mut().carry_out(ViewChange::Kind(ViewKind::Flat));
-    h.run_steps(4);
-    assert!(said(&h, "What is seen here is nine-link, the machine before."));
+    for view in [ViewKind::Design, ViewKind::Flat, ViewKind::Space, ViewKind::Joints, ViewKind::Tower] {
+        h.state_mut().app_state_mut().carry_out(ViewChange::Kind(view));
+        h.run_steps(4);
+        assert!(said(&h, "my arm is no machine yet") && said(&h, "• no bar yet"), "{view:?}");
+        let numbers = ["reactionless workspace", "N m", "b = ", "POSE CONSTANT", "drag me"];
+        let texts = super::painted(&h);
+        let stale = texts.iter().find(|text| numbers.iter().any(|words| text.contains(words)));
+        assert_eq!(stale, None, "of the machine before, in {view:?}");
+    }
     h.get_by_label("draw on").click();
     h.run_steps(4);
     assert!(h.state().app_state().view_state().pen.is_some());

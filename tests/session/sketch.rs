@@ -186,7 +186,7 @@ fn an_unfinished_drawing_is_not_judged_by_the_machine_before() {
     draw(&mut session, bar(BarEnd::pin(PinId(0)), BarEnd::At([0.3, 0.2])));
     let unfinished = session.run().unfinished().expect("a bar alone").clone();
     assert_eq!(unfinished.missing, ["no motor turns bar 1 yet", "no end effector yet"]);
-    assert_eq!((unfinished.drawing.as_str(), unfinished.former.as_str()), ("my arm", "nine-link"));
+    assert_eq!(unfinished.drawing, "my arm");
     let statements = Statements::of(session.run(), session.frame());
     assert!(statements.named().iter().all(|(_, one)| one.outcome == StatusLight::Open), "{statements:?}");
     assert_eq!(statements.line(), "machine: 2 things missing · plan: none yet · run: none yet");
@@ -216,4 +216,56 @@ fn an_unfinished_drawing_is_not_judged_by_the_machine_before() {
     assert_eq!(session.run().unfinished(), None);
     let statements = Statements::of(session.run(), session.frame());
     assert!(statements.machine.words.starts_with("off balance by"), "{statements:?}");
+}
+
+/// A machine that is drawn from nothing has no task of its own: one is made for it, with the step that ends its drawing.
+/// A task that a person has set stays, and the run waits.
+#[test]
+fn a_machine_drawn_from_nothing_gets_a_task_and_keeps_that_of_its_user() {
+    for is_set in [false, true] {
+        let mut session = open(coarse());
+        draw(&mut session, SketchStep::New { template: Template::Blank });
+        if is_set {
+            session.apply(set("task.to", "0.5,0.7")).expect("it is a place");
+            session.end_gesture();
+        }
+        draw(&mut session, bar(BarEnd::pin(PinId(0)), BarEnd::At([0.0, 0.05])));
+        draw(&mut session, bar(BarEnd::pin(PinId(1)), BarEnd::At([0.04, 0.08])));
+        let motor = |pin: u32, stator: Option<u32>, turns: u32| SketchStep::Motor {
+            pin: PinId(pin),
+            stator: stator.map(BarId),
+            drive: None,
+            rotor: None,
+            turns: Some(BarId(turns)),
+        };
+        let [first, second] = [0, 1].map(|i| sketch(&session).bars[i].clone());
+        draw(&mut session, motor(0, None, first.id.0));
+        draw(&mut session, motor(first.tip.0, Some(first.id.0), second.id.0));
+        let (before, count) = (session.scenario().task.clone(), session.undo_count());
+        draw(&mut session, SketchStep::EndEffector { pin: second.tip, bar: None });
+        assert_eq!(session.run().unfinished(), None);
+        assert_eq!(session.undo_count(), count + 1, "one step");
+        if is_set {
+            assert_eq!(session.scenario().task, before);
+            assert!(session.run().waiting().is_some(), "it is the task of the user");
+            continue;
+        }
+        let made = session.scenario().task.clone();
+        assert!(made != before && session.run().waiting().is_none());
+        assert_eq!(session.undo_title(), Some("place end effector, with a task made for it"));
+        assert_eq!(open(session.to_scenario()).scenario(), session.scenario(), "it is saved");
+        session.undo().expect("it was so before");
+        assert_eq!(session.scenario().task, before);
+        session.redo().expect("it was so before");
+        assert_eq!(session.scenario().task, made);
+        // The task that was made follows the machine as it grows shorter.
+        draw(&mut session, SketchStep::Length { bar: first.id, metres: 0.005 });
+        assert!(session.run().waiting().is_none(), "a task for the shorter arm");
+    }
+}
+
+#[test]
+fn what_is_switched_is_told_in_words() {
+    assert_eq!(Edit::set("design.as_cut", true).title(), "set links are flat bars, as they are cut: yes");
+    assert_eq!(Edit::set("task.closed", false).title(), "set back to A: no");
 }

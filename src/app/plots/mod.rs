@@ -21,6 +21,7 @@ use egui::{Frame, Margin, Panel, Rect, Ui, vec2};
 
 use self::header::{HEADER_HEIGHT, STATISTICS_HEIGHT};
 use super::side::is_narrow;
+use super::sketching::waits;
 use super::{Command, Layout, focus};
 use stillbase_picture::charts::choice::Plot;
 use stillbase_picture::charts::drawn::PlotLines;
@@ -99,6 +100,11 @@ pub fn show(ui: &mut Ui, what: &DisplayContext<'_>, has_panel: bool, commands: &
     let panel = panel.default_size(stored.unwrap_or(usual).min(most)).size_range(MIN_PANEL_PT..=most).resizable(true);
     let frame = Frame::new().inner_margin(Margin { left: 14, right: 2, top: 10, bottom: 8 });
     let made = panel.frame(frame).show(ui, |ui| {
+        if session.run().unfinished().is_some() {
+            ui.set_max_width(ui.available_width() - SCROLL_BAR_WIDTH_PT);
+            waits::panel(ui, "Its plots stand", &view_state.palette());
+            return;
+        }
         search::show(ui, what, &plots, SCROLL_BAR_WIDTH_PT as i8, commands);
         let room = ui.available_width() - SCROLL_BAR_WIDTH_PT;
         legend::show(ui, what, room);

@@ -3,8 +3,8 @@
 use egui::{Area, Button, Frame, Id, Label, Order, Rect, RichText, Ui, vec2};
 
 use super::{Pen, SketchFacts, draw};
-use crate::Command;
 use crate::theme::{colour, plain};
+use crate::{Command, notation};
 use stillbase_mechanics::planar::Vector;
 use stillbase_mechanics::sketch::{Lack, Place, Sketch, SketchStep};
 use stillbase_picture::paint::SceneViewport;
@@ -70,9 +70,11 @@ pub fn show(ui: &Ui, spot: &SceneViewport, facts: &SketchFacts, pen: &Pen, p: &P
         let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(tone))).corner_radius(8).inner_margin(10);
         frame.show(ui, |ui| {
             ui.set_max_width(WIDTH_PT);
+            let text = notation::sentence(ui.ctx(), &text);
             ui.add(Label::new(RichText::new(text).font(plain(12.0)).color(colour(p.ink))).wrap());
             for (words, step) in ways {
-                let words = RichText::new(words).font(plain(12.0)).color(colour(p.amber));
+                let words =
+                    RichText::new(notation::sentence(ui.ctx(), &words)).font(plain(12.0)).color(colour(p.amber));
                 if ui.add(Button::new(words).wrap()).clicked() {
                     draw(&facts.sketch, step, commands);
                 }

@@ -4,8 +4,8 @@ use egui::{CursorIcon, EventFilter, Key, PointerButton, Pos2, Response, Ui};
 
 use super::motors::motor_at;
 use super::pen::{Drag, Pen, PenTool, Start};
-use super::{SketchFacts, draw};
-use crate::Command;
+use super::{SketchFacts, draw, fields};
+use crate::{Command, focus};
 use stillbase_mechanics::planar::{Vector, unit};
 use stillbase_mechanics::sketch::{LimitArc, Onto, PinId, Sketch, SketchStep, Snap, SnapOptions, snap};
 use stillbase_picture::paint::SceneViewport;
@@ -48,7 +48,8 @@ impl Hand<'_> {
         if self.response.clicked() || self.response.drag_started() {
             pen.refused = None;
         }
-        let is_typing = self.ui.ctx().egui_wants_keyboard_input();
+        // The list from which a thing is chosen has no use for these keys.
+        let is_typing = self.ui.ctx().egui_wants_keyboard_input() && !focus::is_on(self.ui.ctx(), fields::CARD);
         let deletes = self.ui.input(|i| i.key_pressed(Key::Delete) || i.key_pressed(Key::Backspace));
         if deletes && !is_typing && pen.from.is_none() {
             self.delete(pen.chosen.take(), commands);
@@ -200,10 +201,24 @@ impl Hand<'_> {
         if self.response.drag_stopped_by(PointerButton::Primary)
             && let Some(step) = pen.drag.take().and_then(|drag| drag.step)
         {
-            if let SketchStep::Weld { onto, .. } = step {
-                pen.chosen = Some(SketchItem::Pin(onto));
-            }
+            pen.chosen = self.pin_after(&step).map(SketchItem::Pin).or(pen.chosen);
             draw(&self.facts.sketch, step, commands);
+        }
+    }
+
+    /// Returns the pin that a dragged one has become.
+    fn pin_after(&self, step: &SketchStep) -> Option<PinId> {
+        match *step {
+            SketchStep::Weld { onto, .. } => Some(onto),
+            SketchStep::Attach { pin, bar } => {
+                let sketch = &self.facts.sketch;
+                let along = sketch.along(sketch.bar(bar)?, pin);
+                let next = sketch.with(step).ok()?;
+                let bar = next.bar(bar)?;
+                let far = |own: &PinId| (next.along(bar, *own) - along).abs();
+                bar.all_pins().min_by(|a, b| far(a).total_cmp(&far(b)))
+            }
+            _ => None,
         }
     }
 

@@ -8,17 +8,24 @@ use super::pen::Pen;
 use crate::Command;
 use stillbase_mechanics::machine::{Lump, PlaceOnLink};
 use stillbase_mechanics::planar::{Vector, unit};
-use stillbase_mechanics::sketch::{Bar, BarId, SketchStep};
-use stillbase_picture::scene::sketching::{SketchItem, metres_per_px};
+use stillbase_mechanics::sketch::{Bar, BarId, Place, SketchRefusal, SketchStep};
+use stillbase_picture::scene::sketching::{SketchItem, bar_near, metres_per_px};
 use stillbase_session::parts::new_lump;
 
 /// Step of the place of a lump along and across its bar, m.
 const STEP_M: f64 = 1e-3;
+/// Distance from a bar within which a click beside it puts a lump there, points.
+const REACH_PT: f64 = 60.0;
 
 impl Hand<'_> {
     /// Puts a lump on the bar under the pointer, or chooses the lump there.
     pub(super) fn puts_lump(&self, pen: &mut Pen, pos: Option<Pos2>, clicked: bool, commands: &mut Vec<Command>) {
         let sketch = &self.facts.sketch;
+        if matches!(pen.hot, None | Some(SketchItem::Limit(..))) {
+            // Beside a bar, the lump goes on the nearest one.
+            let near = pos.and_then(|pos| bar_near(sketch, &self.spot.pointer(pos), REACH_PT));
+            pen.hot = near.map(SketchItem::Bar);
+        }
         let bar = match pen.hot {
             Some(SketchItem::Bar(id)) => sketch.bar(id),
             // A pin is at the end of a bar, or between two.
@@ -31,8 +38,17 @@ impl Hand<'_> {
         if !clicked {
             return;
         }
-        if let Some(SketchItem::Lump(..)) = pen.hot {
-            pen.chosen = pen.hot;
+        match pen.hot {
+            Some(SketchItem::Lump(..)) => pen.chosen = pen.hot,
+            _ if bar.is_none() => {
+                pen.refused = Some(SketchRefusal {
+                    what: "no bar is near enough to carry a lump here".into(),
+                    place: Place::Whole,
+                    want: "a click on a bar, or a little beside one".into(),
+                    proposals: Vec::new(),
+                });
+            }
+            _ => {}
         }
         let Some((bar, (at, across))) = bar.and_then(|bar| Some((bar, self.place_on(bar, pos?)?))) else { return };
         let lump = Some(new_lump(&bar.name, at, across));

@@ -3,9 +3,9 @@
 use egui::{Button, Frame, Label, RichText, Ui};
 
 use super::{SketchFacts, draw};
-use crate::Command;
 use crate::theme::{colour, plain};
 use crate::widgets::{name, section};
+use crate::{Command, notation};
 use stillbase_picture::scene::palette::Palette;
 
 /// Most buttons for one thing.
@@ -25,7 +25,9 @@ pub fn show(ui: &mut Ui, facts: &SketchFacts, p: &Palette, commands: &mut Vec<Co
     for one in facts.resolved.missing.iter().chain(crossings) {
         Frame::new().fill(colour(p.background)).corner_radius(6).inner_margin(8).show(ui, |ui| {
             ui.set_width(ui.available_width());
-            let text = RichText::new(format!("• {}", one.text)).font(plain(12.5)).color(colour(p.ink));
+            let text = RichText::new(notation::sentence(ui.ctx(), &format!("• {}", one.text)))
+                .font(plain(12.5))
+                .color(colour(p.ink));
             ui.add(Label::new(text).wrap());
             ui.horizontal_wrapped(|ui| {
                 for mend in one.mends.iter().take(MOST_MENDS) {

@@ -18,10 +18,11 @@ mod rail;
 mod scene;
 mod section;
 mod typed;
+pub mod waits;
 
 pub use card::{NumberField, renamed};
 pub use facts::SketchFacts;
-pub use panel::{balance_waits, links_wait, show as panel};
+pub use panel::{balance_waits, show as panel};
 pub use pen::{Pen, PenChange, PenTool};
 pub use rail::show as rail;
 pub use scene::{SketchScene, show};

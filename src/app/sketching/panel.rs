@@ -4,14 +4,13 @@ use egui::{Button, ComboBox, RichText, Ui};
 
 use super::card::renamed;
 use super::lump::lump_title;
-use super::pin_list::pin_title;
 use super::{Pen, PenChange, SketchFacts, by_numbers, card, draw, fields, missing, motors};
 use crate::theme::{bold, colour, plain};
-use crate::widgets::{heading, name, note, section, stepped};
-use crate::{Command, FileDialog, SessionCommand, Switch, ViewChange, ViewState};
+use crate::widgets::{heading, name, note, reason, section, stepped};
+use crate::{Command, FileDialog, SessionCommand, Switch, ViewChange, ViewState, focus};
 use stillbase_mechanics::sketch::{Sketch, SketchStep};
 use stillbase_picture::scene::palette::Palette;
-use stillbase_picture::scene::sketching::SketchItem;
+use stillbase_picture::scene::sketching::{SketchItem, pin_title};
 use stillbase_session::scenario::UnfinishedDrawing;
 use stillbase_session::{Session, with_own_task};
 
@@ -39,8 +38,7 @@ pub fn show(
     renamed(ui, "name of the machine", &sketch.name, p, |name| draw(sketch, SketchStep::Name { name }, commands));
     if let Some(refused) = &pen.refused {
         ui.add_space(4.0);
-        let words = RichText::new(refused.to_string()).font(plain(12.0)).color(colour(p.reaction));
-        ui.add(egui::Label::new(words).wrap());
+        reason(ui, p, &refused.to_string());
         for step in &refused.proposals {
             if ui.button(step.title_in(sketch)).clicked() {
                 draw(sketch, step.clone(), commands);
@@ -92,6 +90,7 @@ fn card_of(ui: &mut Ui, sketch: &Sketch, pen: &Pen, commands: &mut Vec<Command>)
     });
     let response = list.response.on_hover_text("The bar or pin whose card is shown");
     name(&response, fields::CARD);
+    focus::tell(&response, fields::CARD);
     let next = list.inner.flatten().or_else(|| stepped(ui, &response, all.iter(), &pen.chosen));
     if let Some(item) = next {
         commands.push(ViewChange::Pen(PenChange::Choose(item)).into());
@@ -110,19 +109,6 @@ fn task(ui: &mut Ui, session: &Session, facts: &SketchFacts, view_state: &ViewSt
         && let Some(scenario) = with_own_task(session.scenario())
     {
         commands.push(SessionCommand::Open(Box::new(scenario)).into());
-    }
-}
-
-/// Says that the table of links stands here once the drawing is a machine, and what is missing.
-pub fn links_wait(ui: &mut Ui, unfinished: &UnfinishedDrawing, p: &Palette) {
-    note(
-        ui,
-        p,
-        &format!("The links of {:?} stand here as soon as it is a machine. Still missing:", unfinished.drawing),
-    );
-    for one in &unfinished.missing {
-        let words = RichText::new(format!("• {one}")).font(plain(12.5)).color(colour(p.ink));
-        ui.add(egui::Label::new(words).wrap());
     }
 }
 

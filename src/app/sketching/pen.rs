@@ -2,7 +2,7 @@
 
 use super::typed::Typed;
 use crate::icon::Icon;
-use stillbase_mechanics::sketch::{BarEnd, Sketch, SketchRefusal, SketchStep};
+use stillbase_mechanics::sketch::{BarEnd, Pin, Sketch, SketchRefusal, SketchStep};
 use stillbase_picture::scene::sketching::SketchItem;
 
 /// What a click or drag in a drawing does.
@@ -90,6 +90,8 @@ pub struct Pen {
     pub drag: Option<Drag>,
     /// Why the last step was refused.
     pub refused: Option<SketchRefusal>,
+    /// The pins of the last pass, by which new and moved ones are told.
+    pub placed: Vec<Pin>,
 }
 
 /// A change of the [`Pen`].
@@ -128,15 +130,31 @@ impl Pen {
         self.drag = self.drag.take().filter(|drag| is_there(&drag.item));
     }
 
+    /// Returns the state with a tool, with nothing under way.
+    fn at_rest(&mut self, tool: PenTool) -> Self {
+        Self { tool, chosen: self.chosen, placed: std::mem::take(&mut self.placed), ..Self::default() }
+    }
+
+    /// Takes over where the pins are now; returns whether one that is new or has moved fulfils a condition. During a drag
+    /// nothing is taken over.
+    pub fn places(&mut self, sketch: &Sketch, is_of: impl Fn(&Pin) -> bool) -> bool {
+        if self.from.is_some() || self.drag.is_some() || self.placed == sketch.pins {
+            return false;
+        }
+        let found = sketch.pins.iter().any(|pin| !self.placed.contains(pin) && is_of(pin));
+        self.placed.clone_from(&sketch.pins);
+        found
+    }
+
     /// Applies a change.
     pub fn apply(&mut self, change: PenChange) {
         match change {
-            PenChange::Tool(tool) => *self = Self { tool, chosen: self.chosen, ..Self::default() },
+            PenChange::Tool(tool) => *self = self.at_rest(tool),
             PenChange::Choose(chosen) => self.chosen = chosen,
             PenChange::Refuse(refusal) => self.refused = Some(refusal),
             PenChange::Taken => self.refused = None,
             PenChange::GiveUp if self.from.is_some() || self.drag.is_some() || self.refused.is_some() => {
-                *self = Self { tool: self.tool, chosen: self.chosen, ..Self::default() };
+                *self = self.at_rest(self.tool);
             }
             PenChange::GiveUp => self.chosen = None,
         }

@@ -6,12 +6,7 @@ use super::{PenChange, ViewChange};
 use crate::Command;
 use crate::widgets::{name, stepped};
 use stillbase_mechanics::sketch::{PinId, Sketch};
-use stillbase_picture::scene::sketching::SketchItem;
-
-/// Returns how a pin is called.
-pub fn pin_title(sketch: &Sketch, pin: PinId) -> String {
-    if pin == sketch.base { "pin B".to_owned() } else { format!("pin {}", pin.0) }
-}
+use stillbase_picture::scene::sketching::{SketchItem, pin_title};
 
 /// Draws the list; `field` is its name for screen readers. A pin that is chosen is lit in the drawing.
 pub fn pin_list(ui: &mut Ui, sketch: &Sketch, pin: &mut PinId, field: &str, commands: &mut Vec<Command>) {

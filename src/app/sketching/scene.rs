@@ -10,7 +10,8 @@ use super::{SketchFacts, bubble};
 use crate::theme::{colour, plain};
 use crate::viewport::move_camera;
 use crate::widgets::name;
-use crate::{Command, ViewState, corner, framing};
+use crate::{Command, Framing, ViewState, corner, framing};
+use stillbase_mechanics::sketch::Pin;
 use stillbase_picture::paint::labels::draw_labels;
 use stillbase_picture::paint::{SceneViewport, paint};
 use stillbase_picture::scene::sketching::{Rubber, SketchOptions, content};
@@ -31,6 +32,12 @@ pub fn show(ui: &mut Ui, scene: SketchScene<'_>, view_state: &mut ViewState, com
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         name(&response, "Scene: the drawing of the machine");
         let strip = corner::strip(rect);
+        // A bar that has left the view takes the view along.
+        let spot = SceneViewport { rect, camera: *view_state.camera() };
+        let is_out = |pin: &Pin| !spot.screen([pin.at[0], pin.at[1], 0.0]).is_some_and(|at| rect.contains(at));
+        if pen.places(&scene.facts.sketch, is_out) {
+            view_state.framing[view_state.view as usize] = Framing::Pending;
+        }
         framing::keep_framed(rect, (&[strip], None), scene.views, |_| content(&scene.facts.sketch), view_state);
         let spot = SceneViewport { rect, camera: *view_state.camera() };
         let under_way = Hand { ui, response: &response, spot: &spot, facts: scene.facts }.points(&mut pen, commands);

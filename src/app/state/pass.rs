@@ -159,7 +159,13 @@ impl AppState {
                 let scene = SketchScene { facts, views: &self.views };
                 sketching::show(ui, scene, &mut self.view_state, &mut commands)
             }
-            None => viewport::show(ui, content, &mut self.view_state, &mut commands),
+            None => match (self.session.run().unfinished(), sketching::waits::facts(&queries, &self.session)) {
+                (Some(unfinished), Some(facts)) => {
+                    let scene = SketchScene { facts: &facts, views: &self.views };
+                    sketching::waits::scene(ui, unfinished, scene, &self.view_state, &mut commands)
+                }
+                _ => viewport::show(ui, content, &mut self.view_state, &mut commands),
+            },
         };
         let window = ui.ctx().content_rect().size();
         self.view_state.displayed =

@@ -5,7 +5,7 @@ use egui::{Align2, Area, Button, Context, Frame, Id, Label, Rect, RichText, vec2
 use super::power;
 use crate::theme::{colour, plain};
 use crate::widgets::name;
-use crate::{Command, Switch, ViewChange, ViewState, lamp, notation};
+use crate::{Command, ViewChange, ViewState, lamp, notation};
 use stillbase_session::{OutsideLimits, Proposal, Session};
 use stillbase_simulation::frame::Frame as RunFrame;
 
@@ -24,8 +24,6 @@ enum Reason {
     Fault(String),
     /// The run waits, in a sentence.
     Waits(String),
-    /// The run waits for a drawing that is no machine yet, in a sentence.
-    Unfinished(String),
     /// Joint limits leave out the present pose.
     OutsideLimits(OutsideLimits),
 }
@@ -63,11 +61,7 @@ impl News {
             return Some(Self { reason: Reason::Fault(fault), also: said, holds_on });
         }
         if let Some(said) = said {
-            let reason = match session.run().unfinished() {
-                Some(_) => Reason::Unfinished(said),
-                None => Reason::Waits(said),
-            };
-            return Some(Self { reason, also: None, holds_on: of_wait });
+            return Some(Self { reason: Reason::Waits(said), also: None, holds_on: of_wait });
         }
         let outside = session.outside_limits().filter(|outside| waits.is_none() && is_new(&outside.why))?;
         let holds_on = vec![outside.why.clone()];
@@ -108,7 +102,7 @@ impl News {
     /// Returns what is wrong, in a sentence.
     fn text(&self) -> &str {
         match &self.reason {
-            Reason::Message(text) | Reason::Fault(text) | Reason::Waits(text) | Reason::Unfinished(text) => text,
+            Reason::Message(text) | Reason::Fault(text) | Reason::Waits(text) => text,
             Reason::OutsideLimits(outside) => &outside.why,
         }
     }
@@ -124,13 +118,10 @@ impl News {
     }
 }
 
-/// Returns why the run waits, in a sentence; for an unfinished drawing, also whose machine is seen meanwhile.
+/// Returns why the run waits, in a sentence. What an unfinished drawing lacks stands in place of its scene.
 fn wait(session: &Session) -> Option<String> {
-    let why = &session.run().waiting()?.why;
-    Some(match session.run().unfinished() {
-        Some(drawing) => format!("{WAITS}{why}. What is seen here is {}, the machine before.", drawing.former),
-        None => format!("{WAITS}{why}"),
-    })
+    let waits = session.run().waiting().filter(|_| session.run().unfinished().is_none())?;
+    Some(format!("{WAITS}{}", waits.why))
 }
 
 /// Returns which audit has failed, and the warning about it, whose numbers change while the run goes on.
@@ -165,9 +156,7 @@ pub fn show(
     let (p, status) = (view_state.palette(), &view_state.status);
     let proposals = news.proposals(&status.proposals, found);
     let refused = status.refused.as_ref().filter(|_| !matches!(news.reason, Reason::OutsideLimits(_)));
-    let draws_on = matches!(news.reason, Reason::Unfinished(_));
-    let tone = if draws_on { p.line } else { p.reaction };
-    let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(tone))).corner_radius(8).inner_margin(10);
+    let frame = Frame::new().fill(colour(p.panel)).stroke((1.0, colour(p.reaction))).corner_radius(8).inner_margin(10);
     // The message does not cover the panels.
     let width = (0.42 * ctx.content_rect().width()).clamp(320.0, (scene.width() - 40.0).max(320.0));
     let area = Area::new(Id::unique("news")).pivot(Align2::CENTER_BOTTOM);
@@ -190,13 +179,10 @@ pub fn show(
                     commands.push(news.clone().put_away().into());
                 }
             });
-            if proposals.is_empty() && status.entry.is_none() && !draws_on {
+            if proposals.is_empty() && status.entry.is_none() {
                 return;
             }
             ui.horizontal_wrapped(|ui| {
-                if draws_on && ui.button("draw on").on_hover_text("Back to the drawing (Shift D)").clicked() {
-                    commands.push(ViewChange::Switch(Switch::Sketching, true).into());
-                }
                 if let Some(entry) = &status.entry {
                     entry.button(ui);
                 }

@@ -9,7 +9,7 @@ use stillbase_mechanics::balance::{Breakdown, Condition};
 use stillbase_mechanics::counterweights::{
     CounterweightError, Front, FrontSearch, PayloadResidual, PlacedCounterweights, over_payloads,
 };
-use stillbase_mechanics::machine::{Counterweight, CounterweightShape, Inertia, Machine};
+use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_picture::scene::mesh::SEGMENTS;
 use stillbase_picture::scene::options::WeightOption;
 use stillbase_planning::Motion;
@@ -364,12 +364,7 @@ impl DesignFacts {
         let weights = spec.iter().flat_map(|spec| {
             spec.counterweights.iter().filter_map(move |weight| {
                 let link = spec.link_index(&weight.link)?;
-                // Of a ring, the bore too.
-                let inner = CounterweightShape::Disc { radius: weight.inner_radius };
-                let bore = Counterweight::new("", 1.0, [weight.at, weight.across], inner);
-                let is_ring = !weight.half && weight.inner_radius > 0.0;
-                let outlines = std::iter::once(weight.polygon(SEGMENTS)).chain(is_ring.then(|| bore.polygon(SEGMENTS)));
-                Some(outlines.map(move |outline| WeightOption { link, outline }))
+                Some(weight.outlines(SEGMENTS).into_iter().map(move |outline| WeightOption { link, outline }))
             })
         });
         weights.flatten().collect()

@@ -243,7 +243,12 @@ fn summary(
     {
         text.push_str(&format!(", {}", colours.words(value)));
     }
-    let tone = if at.is_some() { p.ink } else { p.amber };
+    let tone = match (at, mass < MIN_ADDED_MASS_KG) {
+        (Some(_), _) => p.ink,
+        (None, true) => p.dim,
+        (None, false) if facts.is_balanced() => p.zero,
+        (None, false) => p.amber,
+    };
     ui.label(RichText::new(text).font(bold(13.0)).color(colour(tone)));
     let gap = points.iter().map(|point| point.placed.gap).fold(0.0, f64::max);
     let proof = format!("proved: every point of the curve is within {gap:.0e} of the least value of its objective");

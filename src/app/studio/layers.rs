@@ -49,7 +49,7 @@ pub fn show(
     });
     let Some(answer) = layers.last.as_deref() else { return };
     if let Err(why) = &answer.within_limits {
-        note(ui, p, &words_of(why));
+        note(ui, p, &format!("Elsewhere within the joint limits: {}", words_of(why)));
     }
     if let Some(Err(why)) = &answer.along_task {
         note(ui, p, &format!("Along the task: {}", words_of(why)));
@@ -91,7 +91,7 @@ fn verdict(ui: &mut Ui, layers: &QueryResult<LayersAnswer>, p: &Palette) {
 fn words_of(why: &NoLayers) -> String {
     let NoLayers::NoOrder(conflict) = why else { return why.to_string() };
     let met: Vec<String> = conflict.contacts.iter().map(|met| format!("{} meets {}", met.a, met.b)).collect();
-    format!("No order of links {} fits the joint limits: {}.", conflict.links.join(", "), met.join("; "))
+    format!("no order of links {} keeps bars apart: {}.", conflict.links.join(", "), met.join("; "))
 }
 
 /// Returns lines on height, tilt and clearance.

@@ -5,7 +5,7 @@ use egui::{Align, CollapsingHeader, Layout, RichText, Ui};
 use super::brief::{BoundRow, draw_bound, optional};
 use crate::notation;
 use crate::theme::{bold, colour, plain};
-use crate::widgets::{NumberRow, note, send, tip_of, unit};
+use crate::widgets::{NumberRow, note, reason, send, tip_of, unit};
 use crate::{Command, SessionCommand, WindowCommand};
 use stillbase_mechanics::counterweights::Objective;
 use stillbase_mechanics::machine::ranges;
@@ -114,7 +114,7 @@ fn found<'a>(
     let found = match &**outcome {
         Ok(found) => found,
         Err(why) => {
-            ui.label(RichText::new(why.to_string()).font(plain(12.0)).color(colour(p.reaction)));
+            reason(ui, p, &why.to_string());
             return;
         }
     };

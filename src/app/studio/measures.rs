@@ -5,7 +5,7 @@ use egui::{Align, Layout, RichText, Ui};
 use super::facts::DesignFacts;
 use crate::notation;
 use crate::theme::{colour, plain};
-use crate::widgets::heading;
+use crate::widgets::{heading, reason};
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Session;
@@ -66,6 +66,6 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, p: &Palette) {
         });
     }
     if let Some(waiting) = run.waiting() {
-        ui.label(RichText::new(waiting.why.to_string()).font(plain(11.5)).color(colour(p.reaction)));
+        reason(ui, p, &waiting.why.to_string());
     }
 }

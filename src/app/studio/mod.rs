@@ -69,8 +69,8 @@ pub fn show(
                     return;
                 }
                 draw_button(ui, &p, commands);
-                if let Some(unfinished) = session.run().unfinished() {
-                    sketching::links_wait(ui, unfinished, &p);
+                if session.run().unfinished().is_some() {
+                    sketching::waits::panel(ui, "Its links stand", &p);
                     return;
                 }
                 table::show(ui, session, view_state, commands);

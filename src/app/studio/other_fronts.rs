@@ -6,11 +6,14 @@ use egui_plot::{Line, LineStyle, PlotPoint, PlotPoints, PlotUi, Points, Text};
 use super::facts::DesignFacts;
 use crate::theme::{colour, plain};
 use crate::widgets::{name, note};
-use crate::{Command, FrontsCommand, WindowCommand};
+use crate::{Command, FrontsCommand, WindowCommand, fit, notation};
 use stillbase_mechanics::machine::builtins;
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::{Palette, faded};
 use stillbase_study::fronts::MachineFront;
+
+/// Least distance between the name of a front and what it comes to, points.
+const ROOM_BETWEEN_PT: f32 = 16.0;
 
 /// Returns the points of all these fronts: added mass, kg, and Σ D_k, kg m².
 pub(super) fn places(facts: &DesignFacts) -> impl Iterator<Item = [f64; 2]> {
@@ -65,11 +68,13 @@ pub(super) fn list(ui: &mut Ui, facts: &DesignFacts, p: &Palette, commands: &mut
                 }
                 Err(_) => "has no front".into(),
             };
-            ui.label(RichText::new(format!("{}  {called}", i + 1)).font(plain(12.0)));
+            let called = format!("{}  {}", i + 1, notation::sentence(ui.ctx(), called));
+            let room = ui.available_width() - fit::width_of(ui, &words, &plain(11.0)) - ROOM_BETWEEN_PT;
+            fit::label_within(ui, &called, plain(12.0), colour(p.ink), room.max(0.0));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let label = ui.label(RichText::new(words).font(plain(11.0)).color(colour(p.dim)));
                 if let Err(why) = outcome {
-                    label.on_hover_text(why.to_string());
+                    label.on_hover_text(notation::sentence(ui.ctx(), &why.to_string()));
                 }
             });
         });

@@ -3,9 +3,9 @@
 use egui::{Align, CollapsingHeader, Layout, RichText, Ui};
 
 use super::brief::materials;
-use super::facts::DesignFacts;
+use super::facts::{DesignFacts, FrontMachine};
 use crate::theme::{bold, colour, plain};
-use crate::widgets::{NumberRow, name, note, send, tip_of, undoable_edit};
+use crate::widgets::{NumberRow, name, note, reason, send, tip_of, undoable_edit};
 use crate::{Command, SessionCommand, lamp};
 
 use stillbase_picture::numbers::signed;
@@ -50,9 +50,9 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, p: &Palette, co
         }
         match facts.cut.as_ref().and_then(|cut| cut.known()).map(|found| &**found) {
             None => note(ui, p, "weighing …"),
-            Some(Ok(found)) => result(ui, session, found, p, commands),
+            Some(Ok(found)) => result(ui, session, (facts, found), p, commands),
             Some(Err(why)) => {
-                ui.label(RichText::new(why.to_string()).font(plain(12.0)).color(colour(p.reaction)));
+                reason(ui, p, &why.to_string());
                 if let NoCut::Weights(why) = why {
                     relaxations(why).iter().for_each(|relaxed| lamp::proposal(ui, relaxed, None, commands));
                 }
@@ -62,7 +62,13 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, p: &Palette, co
 }
 
 /// Draws the masses and what is left of the balance, with the button that makes the machine so.
-fn result(ui: &mut Ui, session: &Session, found: &CutMachine, p: &Palette, commands: &mut Vec<Command>) {
+fn result(
+    ui: &mut Ui,
+    session: &Session,
+    (facts, found): (&DesignFacts, &CutMachine),
+    p: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let report = BarsReport::of(found);
     let BarsReport { mass, tail, tried, force_residual, coupling_residual, .. } = report;
     let added = signed(found.placed.added_mass, 3);
@@ -81,8 +87,20 @@ fn result(ui: &mut Ui, session: &Session, found: &CutMachine, p: &Palette, comma
     if (&is.parts, &is.counterweights) == (&of.parts, &of.counterweights) {
         return note(ui, p, "The machine is cut like this.");
     }
+    let of_front = |point: &FrontMachine| {
+        let of = point.placed.machine.spec();
+        (&is.parts, &is.counterweights) == (&of.parts, &of.counterweights)
+    };
+    let is_taken = facts.front().is_ok_and(|points| points.iter().any(of_front));
+    let words = match is_taken {
+        true => {
+            note(ui, p, "The machine is cut, with counterweights that were taken from the curve on the right.");
+            "take the lightest"
+        }
+        false => "make it so",
+    };
     let tip = "Makes the links of these bars, with these counterweights: one step to undo";
-    let button = ui.button(RichText::new("make it so").font(plain(12.0))).on_hover_text(tip);
+    let button = ui.button(RichText::new(words).font(plain(12.0))).on_hover_text(tip);
     name(&button, "Make the links of these bars");
     if button.clicked() {
         commands.push(SessionCommand::TakeCut.into());

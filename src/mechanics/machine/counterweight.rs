@@ -356,6 +356,15 @@ impl Counterweight {
         }
     }
 
+    /// Returns its outer outline and, of a ring, that of its bore, as [`polygon`](Self::polygon) does; none for a point.
+    pub fn outlines(&self, sides: usize) -> Vec<Vec<Vector>> {
+        let inner = CounterweightShape::Disc { radius: self.inner_radius };
+        let bore = Self::new("", 1.0, [self.at, self.across], inner);
+        let is_ring = !self.half && self.inner_radius > 0.0;
+        let all = std::iter::once(self.polygon(sides)).chain(is_ring.then(|| bore.polygon(sides)));
+        all.filter(|outline| !outline.is_empty()).collect()
+    }
+
     /// Returns whether a point in the axes of its link, m, lies in its material.
     pub fn covers(&self, p: Vector) -> bool {
         let from = p - Vector::new(self.at, self.across);

@@ -78,9 +78,23 @@ impl Body {
 impl Sketch {
     /// Returns what a bar weighs: its typed numbers, and for the others those of its parts, or of a slender bar.
     pub fn body(&self, bar: &Bar) -> PlaneBody {
-        let stated = self.stated(bar);
         let index = self.bars.iter().position(|own| own.id == bar.id);
         let parts = index.filter(|_| self.has_parts(&bar.name)).and_then(|i| sum_of(&self.part_bodies().ok()?, i));
+        self.with_typed(bar, parts)
+    }
+
+    /// Returns what each bar weighs, in their order.
+    pub fn bodies(&self) -> Vec<PlaneBody> {
+        let parts = self.part_bodies().unwrap_or_default();
+        let of = |(i, bar): (usize, &Bar)| {
+            self.with_typed(bar, self.has_parts(&bar.name).then(|| sum_of(&parts, i)).flatten())
+        };
+        self.bars.iter().enumerate().map(of).collect()
+    }
+
+    /// Returns what a bar weighs whose parts are this body, if it has parts.
+    fn with_typed(&self, bar: &Bar, parts: Option<PlaneBody>) -> PlaneBody {
+        let stated = self.stated(bar);
         let rest = parts.unwrap_or_else(|| self.slender(bar));
         PlaneBody {
             mass: stated.mass.unwrap_or(rest.mass),

@@ -43,6 +43,7 @@ mod stock;
 mod template;
 mod trace;
 mod valid;
+mod weights;
 
 pub use body::Body;
 pub use drawing::{Bar, BarId, EndEffector, Motor, Pin, PinId, Place, Sketch};

@@ -104,6 +104,8 @@ impl DesignDrawing {
             let arm = (CROSS_HALF_SIZE * linkage.reach()) as f32;
             draw_handle(scene, &palette, handle, self.kilograms(handle), at, arm, options.highlighted == Some(handle));
         }
+        // Labels leave the pins free.
+        scene.bodies.extend(linkage.pin_discs(&e, frame.base.at));
         self.draw_choice(scene, linkage, &palette, frame, &options.weights);
         if let Some(i) = hot {
             self.draw_length(scene, linkage, &palette, i, &e, frame);

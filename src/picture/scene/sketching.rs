@@ -3,18 +3,20 @@
 mod limits;
 mod lumps;
 mod pick;
+mod weights;
 
 use std::sync::Arc;
 
 use super::framing::ViewContent;
 use super::palette::{Palette, Theme, faded, mix, palette};
-use super::{Anchor, Label, Marker, MeshSet, Polyline, Rgba, Scene, point};
+use super::{Anchor, Body, Label, Marker, MeshSet, Polyline, Rgba, Scene, point};
 use stillbase_mechanics::planar::Vector;
 use stillbase_mechanics::sketch::{Bar, BarId, PinId, Resolved, Sketch};
+use stillbase_settings::number::ShortNumber;
 
 pub use limits::DrawnArc;
 pub use lumps::lump_marker;
-pub use pick::{metres_per_px, pick};
+pub use pick::{bar_near, metres_per_px, pick};
 
 /// Width of a square of the grid, m.
 pub const GRID_M: f64 = 0.05;
@@ -67,12 +69,18 @@ pub struct SketchOptions {
     pub ring: Option<[f64; 2]>,
 }
 
+/// Returns how a pin is called.
+pub fn pin_title(sketch: &Sketch, pin: PinId) -> String {
+    if pin == sketch.base { "pin B".to_owned() } else { format!("pin {}", pin.0) }
+}
+
 /// Returns the points that the camera has to show, m.
 pub fn content(sketch: &Sketch) -> ViewContent {
     let base = sketch.at(sketch.base);
     let room = [[-ROOM_M, -0.5 * ROOM_M], [ROOM_M, 2.0 * ROOM_M]];
     let room = room.map(|[x, y]| [base.re + x, base.im + y, 0.0]);
-    ViewContent { first: sketch.pins.iter().map(|pin| [pin.at[0], pin.at[1], 0.0]).chain(room).collect(), then: vec![] }
+    let pins = sketch.pins.iter().map(|pin| [pin.at[0], pin.at[1], 0.0]);
+    ViewContent { first: pins.chain(weights::corners(sketch)).chain(room).collect(), then: vec![] }
 }
 
 /// Returns the scene of a drawing.
@@ -81,6 +89,7 @@ pub fn scene(model: Arc<MeshSet>, sketch: &Sketch, resolved: &Resolved, options:
     let mut scene = Scene::new(palette.background, model);
     grid(&mut scene, sketch, &palette);
     let drawing = Drawing { sketch, resolved, options, palette: &palette };
+    weights::draw(&mut scene, &drawing);
     drawing.bars(&mut scene);
     lumps::draw(&mut scene, sketch, options, &palette);
     drawing.motors(&mut scene);
@@ -110,6 +119,7 @@ fn grid(scene: &mut Scene, sketch: &Sketch, palette: &Palette) {
 }
 
 /// A drawing on its way into a scene.
+#[derive(Clone, Copy)]
 struct Drawing<'a> {
     sketch: &'a Sketch,
     resolved: &'a Resolved,
@@ -150,6 +160,8 @@ impl Drawing<'_> {
             // A margin in the colour of the background separates bars that cross.
             let (margin, wide) = edge.map_or((self.palette.background, 3.0), |edge| (edge, 4.0));
             let tone = self.tone(bar);
+            // Labels leave its axis free.
+            scene.bodies.push(Body { ends, radius: 0.0, height: 0.0 });
             scene.lines.push(line(BAR_PX + wide, margin));
             scene.lines.push(line(BAR_PX, tone));
             scene.lines.push(line(1.0, faded(self.palette.background, 0.55)));
@@ -192,6 +204,11 @@ impl Drawing<'_> {
                 scene.markers.push(Marker::disc("sketch/base", at, 11.0, grey).edged(edge, 1.6));
                 let b = Label::new("sketch/base/name", at, [0.0, 34.0], "B", self.palette.dim, 12.0, Anchor::Centre);
                 scene.labels.push(b);
+            } else {
+                let words = pin_title(self.sketch, pin.id);
+                let away = [8.0, 15.0];
+                let label = Label::new("sketch/pins/names", at, away, words, self.palette.dim, 10.5, Anchor::Left);
+                scene.labels.push(label);
             }
             let is_lit = self.options.hot == item || self.options.chosen == item;
             if is_lit {

@@ -23,6 +23,7 @@ impl Session {
     /// # Errors
     /// As [`apply`](Self::apply), and if `watch` cancels it.
     pub fn apply_while(&mut self, edit: Edit, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
+        let before = matches!(edit, Edit::Sketch(_)).then(|| self.run.shared_scenario());
         let mut now = self.concerns_now(&edit);
         if let (true, Some(waiting)) = (now, self.run.waiting()) {
             return Err(waiting.why.clone());
@@ -40,6 +41,9 @@ impl Session {
             done => done?,
         }
         self.gesture_now = Some(now);
+        if let Some(before) = before {
+            self.give_own_task(&before.0, watch);
+        }
         Ok(())
     }
 
@@ -111,7 +115,7 @@ impl Session {
     }
 
     /// Applies an edit before the first step, so that a setting applies to the whole run.
-    fn amend(&mut self, edit: Edit, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
+    pub(super) fn amend(&mut self, edit: Edit, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
         let (before, inverse) = (self.document.clone(), self.run.inverse_of(&edit));
         let timed = TimedEdit { step: 0, edit };
         let mut document = self.document.amended(&timed);

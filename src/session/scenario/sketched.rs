@@ -12,8 +12,6 @@ use stillbase_mechanics::sketch::{Sketch, SketchRefusal, SketchStep};
 pub struct UnfinishedDrawing {
     /// Name of the drawing.
     pub drawing: String,
-    /// Name of the machine before.
-    pub former: String,
     /// What is missing, in words; at least one.
     pub missing: Vec<String>,
 }
@@ -57,10 +55,6 @@ impl Scenario {
     pub fn unfinished(&self) -> Option<UnfinishedDrawing> {
         let sketch = self.sketch.as_ref()?;
         let missing = sketch.lacks();
-        (!missing.is_empty()).then(|| UnfinishedDrawing {
-            drawing: sketch.name.clone(),
-            former: self.machine.name().to_owned(),
-            missing,
-        })
+        (!missing.is_empty()).then(|| UnfinishedDrawing { drawing: sketch.name.clone(), missing })
     }
 }

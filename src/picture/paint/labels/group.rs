@@ -79,6 +79,9 @@ impl Kind {
             "reaction/words" | "base_motion" | "pin_forces/scale" => (2, f32::INFINITY, true),
             "axes/titles" | "axes/now/words" => (4, 90.0, true),
             "axes/words" => (5, 36.0, true),
+            // Only where there is room.
+            "sketch/weights/masses" => (6, 30.0, true),
+            "sketch/pins/names" => (7, 44.0, true),
             "workspace/label" | "workspace/compared/label" | "plane/label" => (3, f32::INFINITY, true),
             // The line of a note leads to it.
             name if name.starts_with(NOTES) => (3, f32::INFINITY, true),

@@ -1,11 +1,18 @@
 //! The room that a machine takes: its parts as strips and discs, which labels leave free.
 
-use super::LinkageModel;
+use super::{LinkageModel, THIN_BAR_RADIUS};
 use crate::scene::{Body, point};
 use stillbase_mechanics::machine::place_of;
 use stillbase_mechanics::planar::{Pose2, UnitVectors, Vector, unit};
 
 impl LinkageModel {
+    /// Returns the pins between links as discs, at the top of the machine.
+    pub fn pin_discs(&self, e: &UnitVectors, base: Vector) -> impl Iterator<Item = Body> {
+        let (e, radius, top) = (*e, (THIN_BAR_RADIUS * self.reach) as f32, self.top());
+        let at = move |pin: &super::Pin| point(base + place_of(&pin.at, &e), top);
+        self.pins.iter().map(move |pin| Body { ends: [at(pin); 2], radius, height: 0.0 })
+    }
+
     /// Returns links, counterweights, drives and base as strips and discs; `moves` says whether the base can move.
     pub fn bodies(&self, e: &UnitVectors, base: Pose2, moves: bool) -> impl Iterator<Item = Body> {
         let e = *e;

@@ -1,12 +1,11 @@
 //! Lumps of a drawing: discs whose area grows with their mass, and names of those under the pointer.
 
-use super::{SketchItem, SketchOptions};
+use super::{ShortNumber, SketchItem, SketchOptions};
 use crate::scene::palette::{Palette, mix};
 use crate::scene::{Anchor, Label, Marker, Name, Polyline, Scene, point};
 use stillbase_mechanics::machine::Lump;
 use stillbase_mechanics::planar::Vector;
 use stillbase_mechanics::sketch::{Bar, Sketch};
-use stillbase_settings::number::ShortNumber;
 
 /// Radius of a lump of 0.1 kg, and least and greatest radius of any, px.
 const USUAL_PX: f64 = 10.0;

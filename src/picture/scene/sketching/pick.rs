@@ -3,7 +3,7 @@
 use super::lumps::{all, radius};
 use super::{DrawnArc, SketchItem};
 use crate::scene::pointer::Pointer;
-use stillbase_mechanics::sketch::{PinId, Sketch};
+use stillbase_mechanics::sketch::{BarId, PinId, Sketch};
 
 /// Distance within which the pointer is on a pin, and on the axis of a bar, px.
 const PIN_PICK_PX: f64 = 11.0;
@@ -36,15 +36,22 @@ pub fn pick(sketch: &Sketch, pointer: &Pointer) -> Option<SketchItem> {
         });
         far.filter(|(_, far)| *far < PIN_PICK_PX).min_by(|a, b| a.1.total_cmp(&b.1))
     };
-    let bars = || {
-        sketch.bars.iter().filter_map(|bar| {
-            let sides = bar.all_pins().map(|pin| [at(bar.root), at(pin)]);
-            let far = sides.filter_map(|side| pointer.distance_to_segment(side)).min_by(f64::total_cmp)?;
-            Some((SketchItem::Bar(bar.id), far))
-        })
+    let item = near.or(lump).or_else(grips).map(|(item, _)| item);
+    item.or_else(|| bar_near(sketch, pointer, BAR_PICK_PX).map(SketchItem::Bar))
+}
+
+/// Returns the bar whose axis is nearest to the pointer, within a distance, px.
+pub fn bar_near(sketch: &Sketch, pointer: &Pointer, most: f64) -> Option<BarId> {
+    let at = |pin: PinId| {
+        let at = sketch.at(pin);
+        [at.re, at.im, 0.0]
     };
-    let on = || bars().filter(|(_, far)| *far < BAR_PICK_PX).min_by(|a, b| a.1.total_cmp(&b.1));
-    near.or(lump).or_else(grips).or_else(on).map(|(item, _)| item)
+    let bars = sketch.bars.iter().filter_map(|bar| {
+        let sides = bar.all_pins().map(|pin| [at(bar.root), at(pin)]);
+        let far = sides.filter_map(|side| pointer.distance_to_segment(side)).min_by(f64::total_cmp)?;
+        Some((bar.id, far))
+    });
+    bars.filter(|(_, far)| *far < most).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(bar, _)| bar)
 }
 
 /// Returns the size of a pixel in the plane of the drawing, m; 0 if the pointer does not see the plane.
