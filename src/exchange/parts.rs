@@ -1,7 +1,7 @@
 //! [`PartsList`]: the parts list of a machine, as CSV for a spreadsheet or as Markdown to read.
 
 use super::cut::{Cut, CutError};
-use super::solids::{Axle, axles};
+use super::solids::{Axle, Spacer, axles, link_solids};
 use stillbase_mechanics::machine::{Counterweight, Drive, Link, Machine, PartBody, PartSource, PlaneBody, Shape};
 use stillbase_settings::number::fixed;
 use stillbase_settings::text::sheet_cell;
@@ -43,9 +43,9 @@ impl PartsList {
     /// Makes the parts list of a machine; `cut` gives density and thickness of discs.
     ///
     /// # Errors
-    /// If density or thickness of discs is out of range.
+    /// If density or thickness of discs is out of range, or if links with heights cannot be cut.
     pub fn of(machine: &Machine, cut: &Cut) -> Result<Self, CutError> {
-        cut.check_discs()?;
+        if has_heights(machine) { cut.check_stack(machine) } else { cut.check_discs() }?;
         let tables = [
             Some(links(machine, cut)),
             Some(parts(machine)),
@@ -54,7 +54,8 @@ impl PartsList {
             payload(machine),
             Some(motors(machine)),
             Some(pins(machine, cut)),
-            Some(totals(machine)),
+            Some(spacers(machine, cut)),
+            Some(totals(machine, cut)),
         ];
         let tables = tables.into_iter().flatten().filter(|table| !table.rows.is_empty()).collect();
         Ok(Self { machine: machine.name().into(), tables })
@@ -221,20 +222,23 @@ fn parts(machine: &Machine) -> PartTable {
     }
 }
 
-/// Lists motors, bearings, screws and sensors on links.
+/// Lists motors, bearings, screws and sensors on links, with the height of their link if links have heights.
 fn lumps(machine: &Machine) -> PartTable {
+    let has_heights = has_heights(machine);
     let row = |body: &PartBody| match body.source {
         PartSource::Part(_) => None,
         PartSource::Lump(_) => {
             let name = PartCell::words(body.title(machine.spec()));
             let on_link = PartCell::words(&machine.links()[body.link].name);
-            Some([name, on_link].into_iter().chain(of_body(body.body)).collect())
+            let height = PartCell::Number(machine.spec().links[body.link].axial, 4);
+            let height = Some(height).filter(|_| has_heights);
+            Some([name, on_link].into_iter().chain(of_body(body.body)).chain(height).collect())
         }
     };
     PartTable {
         kind: "lump",
         title: "Lumps",
-        head: ["name", "on link"].into_iter().chain(BODY).collect(),
+        head: ["name", "on link"].into_iter().chain(BODY).chain(has_heights.then_some("height m")).collect(),
         rows: machine.part_bodies().iter().filter_map(row).collect(),
     }
 }
@@ -325,43 +329,90 @@ fn on(machine: &Machine, j: usize, at: f64) -> String {
     format!("link {} at {} m", machine.links()[j].name, fixed(at, 4))
 }
 
-/// Lists the pins, with their lengths if the links have heights. Points of links that coincide in every pose share one
-/// pin.
+/// Columns of what lies between two heights.
+const BETWEEN: [&str; 2] = ["from height m", "to height m"];
+
+/// Returns the cells of these columns, with the length between.
+fn between(faces: Option<[f64; 2]>) -> [PartCell; 3] {
+    let length = faces.map(|[low, high]| high - low);
+    [length, faces.map(|[low, _]| low), faces.map(|[_, high]| high)].map(|metres| PartCell::some(metres, 4))
+}
+
+/// Lists the pins, with their lengths from face to face if the links have heights. Points of links that coincide in every
+/// pose share one pin.
 fn pins(machine: &Machine, cut: &Cut) -> PartTable {
     let has_heights = has_heights(machine);
     let row = |(i, axle): (usize, Axle)| {
         let places = axle.links.iter().map(|(j, at)| on(machine, *j, *at));
         let joined: Vec<String> = axle.is_on_base().then(|| "base".to_owned()).into_iter().chain(places).collect();
-        let length = axle.faces(machine, cut).map(|[low, high]| high - low);
-        let cells = [PartCell::words((i + 1).to_string()), PartCell::words(joined.join(" · "))];
-        cells.into_iter().chain(has_heights.then(|| PartCell::some(length, 4))).collect()
+        let name = PartCell::words((i + 1).to_string());
+        let cells = [name, PartCell::words(joined.join(" · ")), PartCell::Number(cut.pin_diameter, 4)];
+        let stacked = between(axle.faces(machine, cut)).into_iter().filter(|_| has_heights);
+        cells.into_iter().chain(stacked).collect()
     };
+    let stacked = ["pin length m"].into_iter().chain(BETWEEN).filter(|_| has_heights);
     PartTable {
         kind: "pin",
         title: "Pins",
-        head: ["name", "connects"].into_iter().chain(has_heights.then_some("pin length m")).collect(),
-        rows: axles(machine).into_iter().filter(Axle::is_pin).enumerate().map(row).collect(),
+        head: ["name", "connects", "pin diameter m"].into_iter().chain(stacked).collect(),
+        rows: pin_axles(machine).enumerate().map(row).collect(),
     }
 }
 
-fn totals(machine: &Machine) -> PartTable {
+/// Returns the pins that are made, that at the base first.
+fn pin_axles(machine: &Machine) -> impl Iterator<Item = Axle> {
+    axles(machine).into_iter().filter(Axle::is_pin)
+}
+
+/// Lists the rings on the pins that keep links of different heights apart.
+fn spacers(machine: &Machine, cut: &Cut) -> PartTable {
+    let solids = if has_heights(machine) { link_solids(machine, cut) } else { Vec::new() };
+    let stacked = pin_axles(machine).enumerate().filter(|_| has_heights(machine));
+    let of_pin = |(pin, axle): (usize, Axle)| {
+        let row = |spacer: Spacer| {
+            let diameters = [cut.pin_diameter, 2.0 * cut.spacer_radius()].map(|metres| PartCell::Number(metres, 4));
+            let name = PartCell::words(format!("{}.{}", pin + 1, spacer.number));
+            [name, PartCell::words((pin + 1).to_string())]
+                .into_iter()
+                .chain(diameters)
+                .chain(between(Some(spacer.faces)))
+                .collect()
+        };
+        axle.spacers(machine, cut, &solids).into_iter().map(row).collect::<Vec<Vec<PartCell>>>()
+    };
+    let sizes = ["inner diameter m", "outer diameter m", "spacer length m"];
+    PartTable {
+        kind: "spacer",
+        title: "Spacers",
+        head: ["name", "on pin"].into_iter().chain(sizes).chain(BETWEEN).collect(),
+        rows: stacked.flat_map(of_pin).collect(),
+    }
+}
+
+fn totals(machine: &Machine, cut: &Cut) -> PartTable {
     let spec = machine.spec();
     let links = spec.links.iter().map(|link| link.mass).sum::<f64>();
     // The sum of nothing is −0.
     let discs = spec.counterweights.iter().map(|weight| weight.mass).sum::<f64>() + 0.0;
-    let row = |name: &str, count: Option<usize>, mass: f64| {
+    let row = |name: &str, count: Option<usize>, mass: Option<f64>| {
         let count = count.map_or(PartCell::None, |count| PartCell::Number(count as f64, 0));
-        vec![PartCell::words(name), count, PartCell::Number(mass, 3)]
+        vec![PartCell::words(name), count, PartCell::some(mass, 3)]
     };
+    let rings = spacers(machine, cut).rows.len();
+    let made = [("pins", pin_axles(machine).count()), ("spacers", rings)];
+    // Nothing weighs them.
+    let made = made.into_iter().filter(|(_, count)| *count > 0).map(|(name, count)| row(name, Some(count), None));
     PartTable {
         kind: "total",
         title: "Totals",
         head: vec!["name", "count", "mass kg"],
-        rows: vec![
-            row("links", Some(spec.links.len()), links),
-            row("counterweights", Some(spec.counterweights.len()), discs),
-            row("payload", None, spec.payload.mass),
-            row("all", None, machine.mass()),
-        ],
+        rows: [
+            row("links", Some(spec.links.len()), Some(links)),
+            row("counterweights", Some(spec.counterweights.len()), Some(discs)),
+        ]
+        .into_iter()
+        .chain(made)
+        .chain([row("payload", None, Some(spec.payload.mass)), row("all", None, Some(machine.mass()))])
+        .collect(),
     }
 }

@@ -2,13 +2,19 @@
 
 use egui::Key;
 use egui_kittest::kittest::Queryable as _;
+use stillbase::mechanics::machine::Machine;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::scenario::Scenario;
 
 use super::{Window, session, window_of};
 use crate::Test;
 
-pub const TESTS: &[Test] = tests![heights_of_layers_are_used_and_taken_back, a_machine_without_an_order_says_who_meets];
+pub const TESTS: &[Test] = tests![
+    heights_of_layers_are_used_and_taken_back,
+    a_machine_without_an_order_says_who_meets,
+    heights_that_do_not_fit_any_more_are_told,
+    heights_are_used_from_the_list_of_commands,
+];
 
 fn design(case: &str) -> Window {
     let mut h = window_of(Scenario::builtin(case).expect("built in"), Theme::Dark, 900.0);
@@ -44,4 +50,44 @@ fn a_machine_without_an_order_says_who_meets() {
     h.run_steps(4);
     assert!(heights(&h).iter().any(|height| *height > 0.0));
     assert!(h.query_by_label_contains("least clearance").is_some());
+}
+
+/// Returns two-drive with its links at heights, m.
+fn at_heights(heights: [f64; 4]) -> Scenario {
+    let mut scenario = Scenario::builtin("two-drive").expect("built in");
+    let mut spec = scenario.machine.spec().clone();
+    for (link, height) in spec.links.iter_mut().zip(heights) {
+        link.axial = height;
+    }
+    scenario.machine = Machine::new(spec).expect("a machine");
+    scenario
+}
+
+fn heights_that_do_not_fit_any_more_are_told() {
+    let told = |h: &Window| h.query_by_label_contains("do not fit any more").is_some();
+    let design = |scenario| {
+        let mut h = window_of(scenario, Theme::Dark, 900.0);
+        h.key_press(Key::D);
+        h.run_steps(4);
+        h
+    };
+    assert!(!told(&design(at_heights([0.0, 0.007, 0.014, 0.007]))));
+    assert!(!told(&design(at_heights([0.0; 4]))), "a machine without heights has none that fit");
+    let mut h = design(at_heights([0.0, 0.007, 0.010, 0.007]));
+    assert!(told(&h));
+    assert!(h.query_by_label_contains("link 2 meets link 3 at heights from 0.0070 m to 0.0100 m").is_some());
+    h.get_by_label("Use the heights of the layers").click_accesskit();
+    h.run_steps(4);
+    assert!(!told(&h));
+}
+
+fn heights_are_used_from_the_list_of_commands() {
+    let mut h = window_of(at_heights([0.0; 4]), Theme::Dark, 900.0);
+    h.key_press_modifiers(egui::Modifiers::COMMAND, Key::K);
+    h.run_steps(4);
+    h.event(egui::Event::Text("heights of the layers".into()));
+    h.run_steps(4);
+    h.key_press(Key::Enter);
+    h.run_steps(6);
+    assert_eq!(heights(&h), [0.0, 0.007, 0.014, 0.007]);
 }

@@ -17,7 +17,7 @@ impl LinkageModel {
         let links = self.bars.iter().flat_map(move |bar| {
             let (root, along, z) = bar.pose(&e);
             let link = body(bar.span.map(|s| (root + along * s, z)), bar.radius, bar.height);
-            let discs = bar.weights.iter().map(move |disc| {
+            let discs = bar.covers.iter().map(move |disc| {
                 let ends = disc.ends.map(|end| (root + along * end, z + disc.z));
                 body(ends, disc.radius, disc.height)
             });
