@@ -105,11 +105,10 @@ fn heights_lines(clashes: Option<&Result<Vec<Clash>, NoLayers>>) -> String {
             "heights          fit: no two parts meet within the joint limits\n".into()
         }
         Some(Ok(clashes)) => {
-            let line = |clash: &Clash| clash.words(|metres| format!("{} mm", fixed(1e3 * metres, 1)));
-            let lines: Vec<String> = clashes.iter().map(line).collect();
+            let lines = Clash::lines(clashes, |metres| format!("{} mm", fixed(1e3 * metres, 1)));
             let all = lines.join("\n                 ");
             format!(
-                "heights          do not fit within the joint limits; `stillbase layers` finds others:\n                 {all}\n"
+                "heights          do not fit everywhere within the joint limits; `stillbase layers` finds others:\n                 {all}\n"
             )
         }
     }

@@ -6,7 +6,7 @@ use stillbase_exchange::thin::too_thin;
 use stillbase_mechanics::machine::Machine;
 use stillbase_query::ByIdentity;
 use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
-use stillbase_study::layers::{Between, Contact, LayersReport, LayersRequest, find_layers};
+use stillbase_study::layers::{Between, Clash, Contact, LayersReport, LayersRequest, find_layers};
 
 use super::dimensions::Dimensions;
 use super::failure::Failure;
@@ -89,9 +89,8 @@ fn text(report: &LayersReport, machine: &Machine) -> String {
         [report.tilt_coefficient.before, report.tilt_coefficient.after].map(|sum| fixed_or_scientific(sum, 6));
     let of_motion = if report.tilt.is_none() { format!("; {least}") } else { String::new() };
     text += &format!("Σ |Σ m (z − z_CM) a|      {after} kg m², was {before} kg m²{of_motion}\n");
-    for clash in &report.clashes {
-        let words = clash.words(|metres| format!("{} mm", fixed(1e3 * metres, 1)));
-        text += &format!("does not fit as it is      {words}\n");
+    for words in Clash::lines(&report.clashes, |metres| format!("{} mm", fixed(1e3 * metres, 1))) {
+        text += &format!("does not fit as it is     {words}\n");
     }
     let undecided = report.meetings.iter().filter(|contact| !contact.decided).count();
     if undecided > 0 {

@@ -2,9 +2,13 @@
 
 use egui::Key;
 use egui_kittest::kittest::Queryable as _;
-use stillbase::mechanics::machine::Machine;
+use stillbase::exchange::cut::Cut;
+use stillbase::mechanics::machine::{Machine, parse};
 use stillbase::picture::scene::palette::Theme;
+use stillbase::query::ByIdentity;
 use stillbase::session::scenario::Scenario;
+use stillbase::session::{Run, for_machine};
+use stillbase::study::layers::{LayersRequest, find_layers};
 
 use super::{Window, session, window_of};
 use crate::Test;
@@ -14,6 +18,8 @@ pub const TESTS: &[Test] = tests![
     a_machine_without_an_order_says_who_meets,
     heights_that_do_not_fit_any_more_are_told,
     heights_are_used_from_the_list_of_commands,
+    a_machine_with_heights_is_drawn_as_it_is_cut,
+    a_link_with_a_plate_is_drawn_with_its_outline,
 ];
 
 fn design(case: &str) -> Window {
@@ -90,4 +96,29 @@ fn heights_are_used_from_the_list_of_commands() {
     h.key_press(Key::Enter);
     h.run_steps(6);
     assert_eq!(heights(&h), [0.0, 0.007, 0.014, 0.007]);
+}
+
+/// Nine links stacked so that none meets another along case 3, in 3D.
+fn a_machine_with_heights_is_drawn_as_it_is_cut() {
+    let mut scenario = Scenario::builtin("case-3").expect("built in");
+    let run = Run::new(&scenario).expect("it runs");
+    let machine = scenario.machine.clone();
+    let motion = Some(ByIdentity(run.plan().motion.clone()));
+    let request = LayersRequest { machine, cut: Cut::default(), motion, along_task: true };
+    scenario.machine = find_layers(&request).expect("an order").machine;
+    let mut h = window_of(scenario, Theme::Dark, 800.0);
+    h.key_press(Key::V);
+    h.run_steps(4);
+    h.snapshot("cut-heights-dark-3d");
+}
+
+/// The machine of the guide that has bars, a plate, pipes and a motor, from above.
+fn a_link_with_a_plate_is_drawn_with_its_outline() {
+    let (_, rest) = include_str!("../../src/guide/files.md").split_once("```toml made-arm.toml\n").expect("a machine");
+    let (text, _) = rest.split_once("```").expect("its end");
+    let machine = parse(text, "made-arm.toml").expect("a machine");
+    let scenario = for_machine(&Scenario::builtin("two-drive").expect("built in"), &machine);
+    let mut h = window_of(scenario, Theme::Light, 800.0);
+    h.run_steps(4);
+    h.snapshot("cut-plate-light");
 }

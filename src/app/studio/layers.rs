@@ -13,7 +13,7 @@ use stillbase_picture::scene::palette::{Palette, mix};
 use stillbase_query::{QueryResult, QueryStatus};
 use stillbase_session::{Session, parts};
 use stillbase_settings::number::counted;
-use stillbase_study::layers::{LayersAnswer, LayersReport, NoLayers, SideRow, SideView};
+use stillbase_study::layers::{Clash, LayersAnswer, LayersReport, NoLayers, SideRow, SideView};
 use stillbase_study::workshop::cut_of;
 
 /// Heights of a row and of a bar, and widths on the left for the name and on the right for the layer, points.
@@ -87,19 +87,13 @@ fn verdict(ui: &mut Ui, layers: &QueryResult<LayersAnswer>, p: &Palette) {
     ui.label(RichText::new(words).font(plain(12.0)).color(colour(tone)));
 }
 
-/// Number of parts that meet at the present heights which are named.
-const NAMED_CLASHES: usize = 3;
-
 /// Tells which parts meet at the heights that the machine has.
 fn clashes(ui: &mut Ui, report: &LayersReport, p: &Palette) {
     let notation = notation::of(ui.ctx());
     let line = |text: String| RichText::new(text).font(plain(12.0)).color(colour(p.reaction));
     ui.label(line("The heights of the machine do not fit any more; those above do.".into()));
-    for clash in report.clashes.iter().take(NAMED_CLASHES) {
-        ui.label(line(clash.words(|metres| notation.write(metres, 4, "m"))));
-    }
-    if let Some(more) = report.clashes.len().checked_sub(NAMED_CLASHES).filter(|more| *more > 0) {
-        ui.label(line(format!("and {more} more")));
+    for words in Clash::lines(&report.clashes, |metres| notation.write(metres, 4, "m")) {
+        ui.label(line(words));
     }
 }
 

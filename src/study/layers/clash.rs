@@ -9,6 +9,9 @@ use stillbase_mechanics::machine::Machine;
 /// Heights closer than this are one, m.
 const SAME_HEIGHT: f64 = 1e-9;
 
+/// Number of clashes that are named.
+const NAMED: usize = 4;
+
 /// Two solids that meet at the heights that a machine has.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Clash {
@@ -44,8 +47,16 @@ impl Clash {
         own.iter().filter_map(Self::of).collect()
     }
 
+    /// Returns the first clashes in words, one a line, and how many more there are, with lengths in m as `write` gives
+    /// them.
+    pub fn lines(clashes: &[Self], write: impl Fn(f64) -> String) -> Vec<String> {
+        let more = clashes.len().saturating_sub(NAMED);
+        let named = clashes.iter().take(NAMED).map(|clash| clash.words(&write));
+        named.chain((more > 0).then(|| format!("and {more} more"))).collect()
+    }
+
     /// Returns it in words, with lengths in m as `write` gives them.
-    pub fn words(&self, write: impl Fn(f64) -> String) -> String {
+    fn words(&self, write: impl Fn(f64) -> String) -> String {
         let verb = if self.decided { "meets" } else { "may meet" };
         let [low, high] = self.heights.map(write);
         format!("{} {verb} {} at heights from {low} to {high}", self.a, self.b)

@@ -72,10 +72,13 @@ pub fn pins(
     meshes: &mut Vec<Mesh>,
 ) -> (Option<Pin>, Vec<Pin>) {
     let is_cut = |axle: &Axle| axle.links.iter().all(|(j, _)| solids.iter().any(|solid| solid.link == *j));
-    let real = (!solids.is_empty()).then(|| PinSize::real(meshes, cut, reach, heights.gap));
-    let usual = PinSize::usual(meshes, reach, heights.height + 2.0 * heights.gap, heights.gap);
+    let (base, others): (Vec<Axle>, Vec<Axle>) = axles(machine).into_iter().partition(Axle::is_on_base);
+    // All pins of a machine have one size, so that they are one item.
+    let size = match others.iter().chain(&base).all(is_cut) {
+        true => PinSize::real(meshes, cut, reach, heights.gap),
+        false => PinSize::usual(meshes, reach, heights.height + 2.0 * heights.gap, heights.gap),
+    };
     let made = |axle: Axle| {
-        let size = real.filter(|_| is_cut(&axle)).unwrap_or(usual);
         let (z, spacers) = match heights.lowest {
             Some(lowest) => {
                 let above = |faces: [f64; 2]| faces.map(|z| z - lowest);
@@ -92,7 +95,6 @@ pub fn pins(
         };
         Pin { at: axle.at, links: axle.links.into_iter().map(|(j, _)| j).collect(), size, z, spacers }
     };
-    let (base, others): (Vec<Axle>, Vec<Axle>) = axles(machine).into_iter().partition(Axle::is_on_base);
     let base = base.into_iter().next().filter(|_| heights.lowest.is_some()).map(made);
     (base, others.into_iter().map(made).collect())
 }
