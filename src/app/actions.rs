@@ -345,6 +345,10 @@ pub const ACTIONS: &[Action] = actions![
         shown.names = shown.names.other();
     });
 
+    Task, "Use the heights of the layers: no part meets another" = "stack links height axial collide collision order plates workshop", [], "design view, layers", |s, _| {
+        (s.scenario().machine.links().len() > 1).then_some(Command::Session(SessionCommand::TakeHeights))
+    };
+
     Analysis, "The same task done in other ways, side by side" = "compare alternatives table difference versus runs", [on(PLAIN, Key::C)], "tool bar" turns Compare;
     Analysis, "Shake and still: two runs side by side" = "compare split contrast straight line vibration beside demo machine branch double", [on(PLAIN, Key::Y)], "scene" turns Pair;
     Analysis, "Add this run to the runs side by side", [], "side by side", |_, v| {

@@ -128,6 +128,8 @@ pub enum SessionCommand {
     TakeLengths,
     /// Cut the links from bars, with the counterweights that balance what is cut.
     TakeCut,
+    /// Give the links the heights of the layers in which no two parts meet.
+    TakeHeights,
     /// Apply the counterweights and rotor ratios with the least Σ |D_k|, kg m², from which the angular momentum
     /// Σ D_k q̇_k of the arm follows.
     TakeStillest,

@@ -2,12 +2,15 @@
 
 use clap::Args;
 use serde::Serialize;
+use stillbase_exchange::cut::Cut;
+use stillbase_exchange::solids::has_heights;
 use stillbase_mechanics::machine::{Counterweight, Inertia, Machine};
 use stillbase_planning::off_plane::null_space::is_integrable;
 use stillbase_planning::pose_constant::PoseConstant;
 use stillbase_session::verdict::Statement;
 use stillbase_study::balance_constants::BalanceConstants;
 use stillbase_study::counterweights::all_numbers;
+use stillbase_study::layers::{Clash, LayersRequest, NoLayers, find_contacts};
 use stillbase_study::parts::{LinkParts, PartRow};
 
 use super::failure::Failure;
@@ -99,6 +102,9 @@ struct Answer {
     integrable: bool,
     /// How well a constant b = Σ λ_k q_k keeps moments from the base: `exact`, `nearly`, `unneeded` or `none`.
     pose_constant: &'static str,
+    /// Parts that meet within the joint limits at the heights of their links; absent if the machine states no heights.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    clashes: Option<Vec<Clash>>,
     /// What each part and lump of the links brings.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     parts: Vec<PartRow>,
@@ -107,12 +113,37 @@ struct Answer {
     counterweights: Vec<Counterweight>,
 }
 
+/// Returns which parts meet within the joint limits at the heights that a machine states; `None` if it states none.
+fn clashes(machine: &Machine) -> Option<Result<Vec<Clash>, NoLayers>> {
+    let cut = Cut::default().fitting(machine);
+    let request = LayersRequest { machine: machine.clone(), cut, motion: None, along_task: false };
+    has_heights(machine).then(|| Ok(Clash::all(machine, &find_contacts(&request)?)))
+}
+
+/// Says in lines whether the heights of a machine fit.
+fn heights_lines(clashes: Option<&Result<Vec<Clash>, NoLayers>>) -> String {
+    match clashes {
+        None => String::new(),
+        Some(Err(why)) => format!("heights          not checked: {why}\n"),
+        Some(Ok(clashes)) if clashes.is_empty() => {
+            "heights          fit: no two parts meet within the joint limits\n".into()
+        }
+        Some(Ok(clashes)) => {
+            let lines = Clash::lines(clashes, |metres| format!("{} mm", fixed(1e3 * metres, 1)));
+            let all = lines.join("\n                 ");
+            format!(
+                "heights          do not fit everywhere within the joint limits; `stillbase layers` finds others:\n                 {all}\n"
+            )
+        }
+    }
+}
+
 impl CheckArguments {
     /// Prints the verdict; a machine that is not balanced is no failure.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load().map_err(|why| self.machine.incomplete_drawing().unwrap_or(why))?;
         let (inertia, constant) = (Inertia::of(&machine), PoseConstant::of(&machine));
-        let parts = LinkParts::all(&machine);
+        let (parts, clashes) = (LinkParts::all(&machine), clashes(&machine));
         let answer = Answer {
             mass: inertia.mass(),
             balance: BalanceConstants::of(&inertia),
@@ -121,6 +152,7 @@ impl CheckArguments {
             machine: Statement::of_machine(&inertia),
             integrable: is_integrable(&inertia),
             pose_constant: constant.word(),
+            clashes: clashes.as_ref().and_then(|clashes| clashes.as_ref().ok()).cloned(),
             parts: parts.iter().flat_map(|link| &link.parts).map(|part| part.row.clone()).collect(),
             counterweights: machine.spec().counterweights.clone(),
         };
@@ -129,7 +161,7 @@ impl CheckArguments {
             format!(
                 "{} · {}\n\nmachine          {}\nmass             {} kg\nforce balanced   {}, largest |g_k| {force:.1e} kg m\n\
                  invariant        {}, largest |C_kl| {coupling:.1e} kg m²\n\
-                 pose constant    {}\n\n{}{}{}",
+                 pose constant    {}\n{}\n{}{}{}",
                 machine.name(),
                 machine.spec().summary,
                 answer.machine.words,
@@ -137,6 +169,7 @@ impl CheckArguments {
                 yes(answer.force_balanced),
                 yes(answer.invariant),
                 constant,
+                heights_lines(clashes.as_ref()),
                 balance_tables(&answer.balance, &machine),
                 parts_table(&parts),
                 counterweights_table(&answer.counterweights),

@@ -123,12 +123,11 @@ impl ExportModelArguments {
     /// Refuses options that have no effect on the file.
     fn check_options(&self, form: Form) -> Result<(), Failure> {
         let dimensions = &self.dimensions;
-        let is_cut = |shows| matches!(shows, ModelContent::Links | ModelContent::Solids);
         let has_layers = |shows| matches!(shows, ModelContent::Links | ModelContent::Solids | ModelContent::Parts);
         let all: [OptionScope; 5] = [
             ("--pose", self.pose.is_empty(), |shows| matches!(shows, ModelContent::Pose | ModelContent::Solids)),
-            ("--bar-width", dimensions.bar_width.is_none(), is_cut),
-            ("--pin-diameter", dimensions.pin_diameter.is_none(), is_cut),
+            ("--bar-width", dimensions.bar_width.is_none(), has_layers),
+            ("--pin-diameter", dimensions.pin_diameter.is_none(), has_layers),
             ("--plate-thickness", dimensions.plate_thickness.is_none(), has_layers),
             ("--spacer", dimensions.spacer.is_none(), has_layers),
         ];

@@ -1,11 +1,13 @@
 //! `stillbase layers`
 
 use clap::Args;
+use stillbase_exchange::cut::Cut;
+use stillbase_exchange::thin::too_thin;
 use stillbase_mechanics::machine::Machine;
 use stillbase_query::ByIdentity;
 use stillbase_session::scenario::MachineFile;
 use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
-use stillbase_study::layers::{Between, Contact, LayersReport, LayersRequest, find_layers};
+use stillbase_study::layers::{Between, Clash, Contact, LayersReport, LayersRequest, find_layers};
 
 use super::dimensions::Dimensions;
 use super::failure::Failure;
@@ -58,7 +60,7 @@ impl LayersArguments {
         let request = LayersRequest { machine: machine.clone(), cut, motion, along_task: self.along_task };
         let report = find_layers(&request).map_err(|why| Failure::from(why).with_context(machine.name()))?;
         self.new_machine.save(&report.machine, &design, format!("{}, stacked in layers", machine.name()))?;
-        self.format.print(&report, |report| text(report, &machine))
+        self.format.print(&report, |report| text(report, &machine) + &remarks(&machine, &cut))
     }
 }
 
@@ -88,6 +90,9 @@ fn text(report: &LayersReport, machine: &Machine) -> String {
         [report.tilt_coefficient.before, report.tilt_coefficient.after].map(|sum| fixed_or_scientific(sum, 6));
     let of_motion = if report.tilt.is_none() { format!("; {least}") } else { String::new() };
     text += &format!("Σ |Σ m (z − z_CM) a|      {after} kg m², was {before} kg m²{of_motion}\n");
+    for words in Clash::lines(&report.clashes, |metres| format!("{} mm", fixed(1e3 * metres, 1))) {
+        text += &format!("does not fit as it is     {words}\n");
+    }
     let undecided = report.meetings.iter().filter(|contact| !contact.decided).count();
     if undecided > 0 {
         text += &format!("not decided               {}: they count as meeting\n", counted(undecided, "pair"));
@@ -99,6 +104,11 @@ fn text(report: &LayersReport, machine: &Machine) -> String {
         text += "least clearance           none: no two solids of different links share a height\n";
     }
     text
+}
+
+/// Returns lines on counterweights that are too thin to be made.
+fn remarks(machine: &Machine, cut: &Cut) -> String {
+    too_thin(&machine.spec().counterweights, cut).iter().map(|remark| format!("note: {remark}\n")).collect()
 }
 
 /// Returns the names of what the solids of a link meet, each once.

@@ -14,6 +14,7 @@ pub mod mjcf;
 pub mod parts;
 pub mod solids;
 pub mod stl;
+pub mod thin;
 mod tree;
 mod turn;
 pub mod urdf;

@@ -1,6 +1,6 @@
 //! [`SolidMesh`]: a prism on an outline with holes, as triangles that close it.
 
-use stillbase_mechanics::planar::{Vector, cross, dot};
+use stillbase_mechanics::planar::{self, Vector, cross, dot, unit};
 
 /// A closed surface of triangles, m, seen counter-clockwise from outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,8 +16,7 @@ const SIDES: usize = 64;
 
 /// Returns a circle as a polygon, counter-clockwise, m. The area of the polygon is that of the circle.
 pub(super) fn circle(centre: Vector, radius: f64) -> Vec<Vector> {
-    let radius = radius * equal_area();
-    (0..SIDES).map(|i| centre + turned(i) * radius).collect()
+    planar::circle(centre, radius, SIDES)
 }
 
 /// Returns the outline of a bar with round ends, counter-clockwise, m: half a polygon at each end, with the area of half a
@@ -42,13 +41,7 @@ fn equal_half_area() -> f64 {
 }
 
 fn turned(i: usize) -> Vector {
-    stillbase_mechanics::planar::unit(std::f64::consts::TAU * (i % SIDES) as f64 / SIDES as f64)
-}
-
-/// Returns the ratio of the radius of a polygon to that of the circle with its area.
-fn equal_area() -> f64 {
-    let step = std::f64::consts::TAU / SIDES as f64;
-    (step / step.sin()).sqrt()
+    unit(std::f64::consts::TAU * (i % SIDES) as f64 / SIDES as f64)
 }
 
 impl SolidMesh {

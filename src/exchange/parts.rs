@@ -1,7 +1,9 @@
 //! [`PartsList`]: the parts list of a machine, as CSV for a spreadsheet or as Markdown to read.
 
+mod pins;
+
 use super::cut::{Cut, CutError};
-use super::solids::{Axle, axles};
+use pins::{pin_axles, pins, spacers};
 use stillbase_mechanics::machine::{Counterweight, Drive, Link, Machine, PartBody, PartSource, PlaneBody, Shape};
 use stillbase_settings::number::fixed;
 use stillbase_settings::text::sheet_cell;
@@ -43,9 +45,9 @@ impl PartsList {
     /// Makes the parts list of a machine; `cut` gives density and thickness of discs.
     ///
     /// # Errors
-    /// If a dimension or the density is out of range.
+    /// If a dimension or the density is out of range, or if links with heights cannot be cut.
     pub fn of(machine: &Machine, cut: &Cut) -> Result<Self, CutError> {
-        cut.check_ranges()?;
+        if has_heights(machine) { cut.check(machine) } else { cut.check_ranges() }?;
         let tables = [
             Some(links(machine, cut)),
             Some(parts(machine)),
@@ -54,7 +56,8 @@ impl PartsList {
             payload(machine),
             Some(motors(machine)),
             Some(pins(machine, cut)),
-            Some(totals(machine)),
+            Some(spacers(machine, cut)),
+            Some(totals(machine, cut)),
         ];
         let tables = tables.into_iter().flatten().filter(|table| !table.rows.is_empty()).collect();
         Ok(Self { machine: machine.name().into(), tables })
@@ -221,20 +224,23 @@ fn parts(machine: &Machine) -> PartTable {
     }
 }
 
-/// Lists motors, bearings, screws and sensors on links.
+/// Lists motors, bearings, screws and sensors on links, with the height of their link if links have heights.
 fn lumps(machine: &Machine) -> PartTable {
+    let has_heights = has_heights(machine);
     let row = |body: &PartBody| match body.source {
         PartSource::Part(_) => None,
         PartSource::Lump(_) => {
             let name = PartCell::words(body.title(machine.spec()));
             let on_link = PartCell::words(&machine.links()[body.link].name);
-            Some([name, on_link].into_iter().chain(of_body(body.body)).collect())
+            let height = PartCell::Number(machine.spec().links[body.link].axial, 4);
+            let height = Some(height).filter(|_| has_heights);
+            Some([name, on_link].into_iter().chain(of_body(body.body)).chain(height).collect())
         }
     };
     PartTable {
         kind: "lump",
         title: "Lumps",
-        head: ["name", "on link"].into_iter().chain(BODY).collect(),
+        head: ["name", "on link"].into_iter().chain(BODY).chain(has_heights.then_some("height m")).collect(),
         rows: machine.part_bodies().iter().filter_map(row).collect(),
     }
 }
@@ -325,43 +331,30 @@ fn on(machine: &Machine, j: usize, at: f64) -> String {
     format!("link {} at {} m", machine.links()[j].name, fixed(at, 4))
 }
 
-/// Lists the pins, with their lengths if the links have heights. Points of links that coincide in every pose share one
-/// pin.
-fn pins(machine: &Machine, cut: &Cut) -> PartTable {
-    let has_heights = has_heights(machine);
-    let row = |(i, axle): (usize, Axle)| {
-        let places = axle.links.iter().map(|(j, at)| on(machine, *j, *at));
-        let joined: Vec<String> = axle.is_on_base().then(|| "base".to_owned()).into_iter().chain(places).collect();
-        let length = axle.faces(machine, cut).map(|[low, high]| high - low);
-        let cells = [PartCell::words((i + 1).to_string()), PartCell::words(joined.join(" · "))];
-        cells.into_iter().chain(has_heights.then(|| PartCell::some(length, 4))).collect()
-    };
-    PartTable {
-        kind: "pin",
-        title: "Pins",
-        head: ["name", "connects"].into_iter().chain(has_heights.then_some("pin length m")).collect(),
-        rows: axles(machine).into_iter().filter(Axle::is_pin).enumerate().map(row).collect(),
-    }
-}
-
-fn totals(machine: &Machine) -> PartTable {
+fn totals(machine: &Machine, cut: &Cut) -> PartTable {
     let spec = machine.spec();
     let links = spec.links.iter().map(|link| link.mass).sum::<f64>();
     // The sum of nothing is −0.
     let discs = spec.counterweights.iter().map(|weight| weight.mass).sum::<f64>() + 0.0;
-    let row = |name: &str, count: Option<usize>, mass: f64| {
+    let row = |name: &str, count: Option<usize>, mass: Option<f64>| {
         let count = count.map_or(PartCell::None, |count| PartCell::Number(count as f64, 0));
-        vec![PartCell::words(name), count, PartCell::Number(mass, 3)]
+        vec![PartCell::words(name), count, PartCell::some(mass, 3)]
     };
+    let rings = spacers(machine, cut).rows.len();
+    let made = [("pins", pin_axles(machine).count()), ("spacers", rings)];
+    // Nothing weighs them.
+    let made = made.into_iter().filter(|(_, count)| *count > 0).map(|(name, count)| row(name, Some(count), None));
     PartTable {
         kind: "total",
         title: "Totals",
         head: vec!["name", "count", "mass kg"],
-        rows: vec![
-            row("links", Some(spec.links.len()), links),
-            row("counterweights", Some(spec.counterweights.len()), discs),
-            row("payload", None, spec.payload.mass),
-            row("all", None, machine.mass()),
-        ],
+        rows: [
+            row("links", Some(spec.links.len()), Some(links)),
+            row("counterweights", Some(spec.counterweights.len()), Some(discs)),
+        ]
+        .into_iter()
+        .chain(made)
+        .chain([row("payload", None, Some(spec.payload.mass)), row("all", None, Some(machine.mass()))])
+        .collect(),
     }
 }

@@ -3,11 +3,11 @@
 
 use std::fmt::Write as _;
 
-use super::cut::{Cut, CutError, SAME_PIN_DISTANCE};
-use super::mesh::{bar, circle};
-use super::solids::{Axle, LinkSolid, Plan, axles, link_solids};
-use stillbase_mechanics::machine::{Machine, Part, Shape, place_of};
-use stillbase_mechanics::planar::{UnitVectors, Vector, cross, unit};
+use super::cut::{Cut, CutError};
+use super::mesh::circle;
+use super::solids::{Axle, LinkSolid, Spacer, axles, link_solids};
+use stillbase_mechanics::machine::{Machine, place_of};
+use stillbase_mechanics::planar::{UnitVectors, unit};
 
 pub use super::mesh::SolidMesh;
 
@@ -97,52 +97,7 @@ fn normal([a, b, c]: &[[f64; 3]; 3]) -> [f64; 3] {
 /// Returns a solid of a link in a pose.
 fn link_mesh(machine: &Machine, solid: &LinkSolid, e: &UnitVectors) -> SolidMesh {
     let link = &machine.resolved_links()[solid.link];
-    let name = solid.name(machine);
-    let [low, high] = solid.faces(machine);
-    let mesh = match solid.part.map(|i| (i, &machine.spec().parts[i])) {
-        Some((i, part)) if matches!(part.shape, Shape::Tube | Shape::Profile) => {
-            let along = machine.part_ends(i).unwrap_or_default();
-            SolidMesh::pipe(name, &section(part), along, [part.across, 0.5 * (low + high)])
-        }
-        _ => {
-            let holes: Vec<Vec<Vector>> =
-                solid.holes.iter().map(|(at, diameter)| circle(*at, 0.5 * diameter)).collect();
-            SolidMesh::prism(name, &outline(&solid.plan), &holes, [low, high])
-        }
-    };
-    mesh.placed(place_of(&link.root, e), e[link.drive] * link.sign)
-}
-
-/// Returns the outline of an area, counter-clockwise, m.
-fn outline(plan: &Plan) -> Vec<Vector> {
-    match plan.corners[..] {
-        [at] => circle(at, plan.radius),
-        [from, to] if from == to => circle(from, plan.radius),
-        [from, to] => bar([from, to], plan.radius),
-        _ => {
-            let twice_area: f64 = plan.sides(|corner| corner).map(|[a, b]| cross(a, b)).sum();
-            let mut corners = plan.corners.clone();
-            if twice_area < 0.0 {
-                corners.reverse();
-            }
-            corners
-        }
-    }
-}
-
-/// Returns the outer and the inner outline of the section of a tube or a profile about its middle, across and up, m; no
-/// inner one if it is not hollow.
-fn section(part: &Part) -> Vec<Vec<Vector>> {
-    let [width, _, diameter, height, wall] = part.lengths().map(|(_, given)| given.unwrap_or_default());
-    let rings = [0.0, 2.0 * wall].into_iter().filter_map(|less| match part.shape {
-        Shape::Tube => (diameter > less).then(|| circle(Vector::default(), 0.5 * (diameter - less))),
-        _ => {
-            let (x, y) = (0.5 * (width - less), 0.5 * (height - less));
-            let corners = [[-x, -y], [x, -y], [x, y], [-x, y]].map(|[x, y]| Vector::new(x, y));
-            (x > 0.0 && y > 0.0).then(|| corners.to_vec())
-        }
-    });
-    rings.collect()
+    solid.mesh(machine).placed(place_of(&link.root, e), e[link.drive] * link.sign)
 }
 
 /// Adds a pin and the spacers around it, from one link to the next.
@@ -155,34 +110,18 @@ fn pin_meshes(
 ) -> Result<(), SolidsError> {
     let at = place_of(&axle.at, e);
     let height = |j: usize| machine.spec().links[j].axial;
-    let mut joined: Vec<usize> = axle.links.iter().map(|(j, _)| *j).collect();
-    joined.sort_by(|i, j| height(*i).total_cmp(&height(*j)));
+    let joined = axle.upwards(machine);
     let name = |j: usize| machine.spec().links[j].name.clone();
     if let Some(pair) = joined.windows(2).find(|pair| height(pair[1]) - height(pair[0]) < cut.plate_thickness) {
         return Err(SolidsError::Height { a: name(pair[0]), b: name(pair[1]) });
     }
-    let Some([low, high]) = axle.faces(machine, cut) else { return Ok(()) };
+    let Some(faces) = axle.faces(machine, cut) else { return Ok(()) };
     let pin = circle(at, 0.5 * cut.pin_diameter);
-    solids.push(SolidMesh::prism(axle.name(machine), &pin, &[], [low, high]));
-    // A disc or a lump around the pin is thicker than its bar.
-    let around = |j: usize| {
-        let along = axle.links.iter().find(|(own, _)| *own == j).map_or(0.0, |(_, along)| *along);
-        let own = links.iter().filter(|solid| solid.link == j);
-        let covering = own.filter(|solid| solid.plan.distance(Vector::new(along, 0.0)) < 0.0);
-        let height = machine.spec().links[j].axial;
-        covering
-            .map(|solid| solid.faces(machine))
-            .fold([height; 2], |[low, high], own| [low.min(own[0]), high.max(own[1])])
-    };
-    let mut below = axle.is_on_base().then_some(low);
-    for (i, j) in joined.into_iter().enumerate() {
-        let [bottom, top] = around(j);
-        if let Some(below) = below.filter(|below| bottom - below > SAME_PIN_DISTANCE) {
-            let ring = circle(at, cut.spacer_radius());
-            let called = format!("spacer {} on the {}", i + 1, axle.name(machine));
-            solids.push(SolidMesh::prism(called, &ring, std::slice::from_ref(&pin), [below, bottom]));
-        }
-        below = Some(top);
+    solids.push(SolidMesh::prism(axle.name(machine), &pin, &[], faces));
+    for Spacer { number, faces } in axle.spacers(machine, cut, links) {
+        let ring = circle(at, cut.spacer_radius());
+        let called = format!("spacer {number} on the {}", axle.name(machine));
+        solids.push(SolidMesh::prism(called, &ring, std::slice::from_ref(&pin), faces));
     }
     Ok(())
 }

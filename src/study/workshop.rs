@@ -7,11 +7,13 @@
 use serde::Serialize;
 use thiserror::Error;
 
+use stillbase_exchange::cut::Cut;
 use stillbase_mechanics::counterweights::{
     CounterweightError, CounterweightSite, CounterweightSpec, CounterweightStock, PlacedCounterweights, place_weights,
 };
 use stillbase_mechanics::machine::{BarStock, Inertia, Link, LinkNumber, Machine, MachineError, Part};
 use stillbase_query::QuickQuery;
+use stillbase_session::scenario::DesignBrief;
 
 /// Shares of the greatest tails that are tried first, for all links alike.
 const SHARES: [f64; 8] = [1.0, 0.75, 0.55, 0.4, 0.25, 0.12, 0.05, 0.0];
@@ -46,6 +48,18 @@ pub struct CutMachine {
     pub reach: Vec<[f64; 2]>,
     /// Names of the links whose typed numbers gave way to those of their bars.
     pub replaced_links: Vec<String>,
+}
+
+/// Returns the dimensions of bars, pins and discs of a machine: those of its parts, or else those of a design.
+pub fn cut_of(design: &DesignBrief, machine: &Machine) -> Cut {
+    let stated = Cut {
+        bar_width: design.bar_width,
+        plate_thickness: design.bar_thickness,
+        pin_diameter: design.pin_diameter,
+        density: design.density,
+        ..Cut::default()
+    };
+    stated.fitting(machine)
 }
 
 /// Returns the names of the links whose typed numbers give way to those of the bars that are cut for them: links that

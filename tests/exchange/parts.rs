@@ -3,6 +3,9 @@
 use stillbase::exchange::cut::Cut;
 use stillbase::exchange::mjcf::{middle, mjcf};
 use stillbase::exchange::parts::PartsList;
+#[cfg(feature = "cli")]
+use stillbase::exchange::stl::solids;
+use stillbase::exchange::thin::too_thin;
 use stillbase::exchange::urdf::urdf;
 use stillbase::mechanics::machine::{Counterweight, Machine, builtin, builtins};
 
@@ -169,4 +172,57 @@ fn a_disc_is_as_thick_in_every_export() {
             }
         }
     }
+}
+
+/// The list has the pins and spacers of the solids, with their sizes.
+#[cfg(feature = "cli")]
+#[test]
+fn pins_and_spacers_are_those_of_the_solids() {
+    let mut spec = builtin("two-drive").expect("built in").spec().clone();
+    for (link, height) in spec.links.iter_mut().zip([0.0, 0.007, 0.021, 0.007]) {
+        link.axial = height;
+    }
+    let machine = Machine::new(spec).expect("a machine");
+    let cut = Cut::default();
+    let all = solids(&machine, &middle(&machine), &cut).expect("solids");
+    let list = rows(&PartsList::of(&machine, &cut).expect("a list").csv());
+    let of = |kind: &str| list.iter().filter(|row| row["part"] == kind).collect::<Vec<_>>();
+    let number =
+        |row: &std::collections::HashMap<String, String>, name: &str| row[name].parse::<f64>().expect("a number");
+    let listed = of("spacer");
+    let cut_rings: Vec<_> = all.iter().filter(|solid| solid.name.starts_with("spacer")).collect();
+    assert_eq!(listed.len(), cut_rings.len());
+    assert!(listed.len() > 2);
+    for (row, ring) in listed.iter().zip(cut_rings) {
+        let [inner, outer] = ["inner diameter m", "outer diameter m"].map(|name| number(row, name));
+        let length = number(row, "spacer length m");
+        let volume = 0.25 * std::f64::consts::PI * (outer * outer - inner * inner) * length;
+        assert!((volume - ring.volume()).abs() < 1e-9 * volume, "{}", ring.name);
+        assert!((number(row, "to height m") - number(row, "from height m") - length).abs() < 1e-12);
+    }
+    for row in of("pin") {
+        assert_eq!(number(row, "pin diameter m"), cut.pin_diameter);
+        let length = number(row, "to height m") - number(row, "from height m");
+        assert!((number(row, "pin length m") - length).abs() < 1e-12 && length > 0.0);
+    }
+}
+
+/// A wall or a plate below 1 mm is remarked on; one of 1 mm is not.
+#[test]
+fn what_is_too_thin_is_told() {
+    let ring = |wall: f64| Counterweight {
+        link: "1".into(),
+        mass: 0.5,
+        at: -0.05,
+        radius: 0.05,
+        inner_radius: 0.05 - wall,
+        ..Default::default()
+    };
+    let thick = Cut { thickness: Some(0.01), ..Cut::default() };
+    assert!(too_thin(&[ring(0.002)], &thick).is_empty());
+    let [told] = &too_thin(&[ring(0.0004)], &thick)[..] else { panic!("one remark") };
+    assert_eq!(told, "the ring of 0.500 kg on link 1 has a wall of 0.40 mm: under 1.00 mm it is hard to make");
+    let thin = Cut { thickness: Some(0.0005), ..Cut::default() };
+    let [told] = &too_thin(&[ring(0.002)], &thin)[..] else { panic!("one remark") };
+    assert!(told.contains("a thickness of 0.50 mm"), "{told}");
 }

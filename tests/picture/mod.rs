@@ -1,5 +1,6 @@
 //! Tests of `src/picture`: scenes, charts, meshes, and what the renderer draws.
 
+mod cut;
 #[cfg(feature = "render")]
 mod film;
 mod mesh;

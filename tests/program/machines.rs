@@ -706,7 +706,7 @@ fn a_machine_goes_elsewhere_by_the_ending_of_the_file() {
     assert!(prints(&["export-model", "scara", "-o", &file("arm.md")]).contains("10.000 kg in all"));
     fails(&["export-model", "scara", "-o", &file("arm.md")], 2, &["arm.md", "--force"]);
     for (name, option) in
-        [("b.urdf", ["--pose", "1,2"]), ("b.xml", ["--bar-width", "0.04"]), ("b.csv", ["--pin-diameter", "0.01"])]
+        [("b.urdf", ["--pose", "1,2"]), ("b.xml", ["--bar-width", "0.04"]), ("b.csv", ["--pose", "1,2"])]
     {
         fails(&[&["export-model", "scara", "-o", &file(name)], &option[..]].concat(), 2, &[option[0], "has no effect"]);
     }

@@ -9,7 +9,9 @@ use stillbase::mechanics::machine::{
     Attach, Link, LinkPoint, Lump, Machine, Part, PlaceOnLink, Shape, builtin, place_of,
 };
 use stillbase::mechanics::planar::{MAX_DRIVES, UnitVectors, Vector, unit};
-use stillbase::study::layers::{Contact, LayersReport, LayersRequest, NoLayers, find_contacts, find_layers};
+use stillbase::study::layers::{
+    Between, Clash, Contact, LayersReport, LayersRequest, NoLayers, find_contacts, find_layers,
+};
 
 use crate::support::Noise;
 use crate::support::random::{a_chain, a_machine};
@@ -515,4 +517,32 @@ fn the_work_for_a_machine_of_many_solids_is_bounded() {
     assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
     assert!(matches!(find_layers(&request(&machine, thin())), Err(NoLayers::NoOrder(_) | NoLayers::NotFound)));
     assert!(begun.elapsed().as_secs() < 60, "{:?}", begun.elapsed());
+}
+
+/// At the heights that are found nothing meets; two links that meet are named once they are put at one height.
+#[test]
+fn heights_that_do_not_fit_are_told() {
+    let (noise, cut) = (&mut Noise::of(77), thin());
+    let mut told = 0;
+    for machine in machines(noise) {
+        let Ok(report) = find_layers(&request(&machine, cut)) else { continue };
+        let contacts = |machine: &Machine| find_contacts(&request(machine, cut)).expect("they can be cut");
+        let fits = Clash::all(&report.machine, &contacts(&report.machine));
+        assert!(fits.is_empty(), "{}: {fits:?}", machine.name());
+        let of_links = |contact: &&Contact| matches!(contact.between, Between::Links(..));
+        let Some(met) = report.meetings.iter().find(of_links) else { continue };
+        let Between::Links(a, b) = met.between else { continue };
+        let mut spec = report.machine.spec().clone();
+        spec.links[a].axial = spec.links[b].axial;
+        let changed = Machine::new(spec).expect("a machine");
+        if changed.spec().links.windows(2).all(|pair| pair[0].axial == pair[1].axial) {
+            continue;
+        }
+        let clashes = Clash::all(&changed, &contacts(&changed));
+        let names = |clash: &&Clash| clash.a == met.a && clash.b == met.b;
+        let clash = clashes.iter().find(names).unwrap_or_else(|| panic!("{}: {} {}", machine.name(), met.a, met.b));
+        assert!(clash.heights[1] > clash.heights[0]);
+        told += 1;
+    }
+    assert!(told > 3, "{told}");
 }

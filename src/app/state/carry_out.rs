@@ -186,6 +186,7 @@ impl AppState {
             SessionCommand::Take(i) => self.take_of_front(i),
             SessionCommand::TakeLengths => self.take_lengths()?,
             SessionCommand::TakeCut => self.take_cut()?,
+            SessionCommand::TakeHeights => self.take_heights()?,
             SessionCommand::TakeStillest => self.take_stillest()?,
             SessionCommand::KeepRun => self.keep_run(),
             SessionCommand::OpenRun(entry) => self.open_run(entry),

@@ -9,6 +9,7 @@ use stillbase_picture::scene::views::ViewKind;
 use stillbase_query::{Query, Shared};
 use stillbase_session::Edit;
 use stillbase_session::design::{brief_edit, counterweights_edit, machine_edit};
+use stillbase_session::parts::set_heights;
 use stillbase_session::scenario::Scenario;
 use stillbase_study::fronts::{FrontCase, Fronts};
 use stillbase_study::lengths::{LengthSearch, LengthsQuery};
@@ -96,6 +97,20 @@ impl AppState {
         let found = found.as_ref().as_ref().map_err(ToString::to_string)?;
         let edit =
             machine_edit(self.session.scenario(), &found.placed.machine).ok_or("the machine is cut like this")?;
+        self.change(SessionChange::Edit(edit));
+        Ok(())
+    }
+
+    /// Gives the links the heights of the layers in which no two parts meet.
+    pub(super) fn take_heights(&mut self) -> Result<(), String> {
+        let found = studio::layers_of(self.queries(), &self.session);
+        let machine = &self.session.scenario().machine;
+        let why = || found.within_limits.as_ref().err().map_or_else(String::new, ToString::to_string);
+        let report = found.report().ok_or_else(why)?;
+        if report.is_used_by(machine) {
+            return Err("the machine has the heights of its layers already".into());
+        }
+        let edit = set_heights(machine, &report.machine);
         self.change(SessionChange::Edit(edit));
         Ok(())
     }

@@ -290,10 +290,7 @@ impl DesignFacts {
             queries.ask_in_background::<QuickWork<Cost>>(&(bare.clone(), machine.clone(), run.shared_motion())).last
         };
         let over = |ends| queries.ask_in_background::<QuickWork<OverPayloads>>(&(machine.clone(), ends)).last;
-        // A run that waits has no motion.
-        let motion = run.shared_motion().filter(|_| run.waiting().is_none());
-        let layers =
-            queries.ask_in_background::<QuickWork<LayersQuery>>(&(machine.clone(), layers::cut(session), motion));
+        let layers = queries.ask_in_background::<QuickWork<LayersQuery>>(&layers_request(session, machine));
         Self {
             terms: queries.ask::<QuickWork<Terms>>(machine),
             layers,
@@ -383,6 +380,19 @@ pub fn of_front(queries: &Queries, session: &Session, i: usize) -> Option<Machin
 /// Returns the machine of a session as it is cut, found now if it is not known; `None` if that is not asked for.
 pub fn as_cut(queries: &Queries, session: &Session) -> Option<Arc<Result<CutMachine, NoCut>>> {
     Some(queries.ask::<QuickWork<CutQuery>>(&cut_request(session)?))
+}
+
+/// Returns the layers of the machine of a session, found now if they are not known.
+pub fn layers_of(queries: &Queries, session: &Session) -> Arc<LayersAnswer> {
+    queries.ask::<QuickWork<LayersQuery>>(&layers_request(session, &session.scenario().machine))
+}
+
+/// Returns the question for the layers of a machine in the task of a session.
+fn layers_request(session: &Session, machine: &Machine) -> <LayersQuery as QuickQuery>::Input {
+    let run = session.run();
+    // A run that waits has no motion.
+    let motion = run.shared_motion().filter(|_| run.waiting().is_none());
+    (machine.clone(), layers::cut(session), motion)
 }
 
 /// Returns the question for the machine as it is cut, if its design asks for it.

@@ -6,13 +6,15 @@ use crate::theme::{colour, plain};
 use crate::widgets::{name, note, section, undoable_edit};
 use crate::{Command, notation, place};
 use stillbase_exchange::cut::Cut;
+use stillbase_exchange::thin::too_thin;
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::options::Handle;
 use stillbase_picture::scene::palette::{Palette, mix};
 use stillbase_query::{QueryResult, QueryStatus};
 use stillbase_session::{Session, parts};
 use stillbase_settings::number::counted;
-use stillbase_study::layers::{LayersAnswer, LayersReport, NoLayers, SideRow, SideView};
+use stillbase_study::layers::{Clash, LayersAnswer, LayersReport, NoLayers, SideRow, SideView};
+use stillbase_study::workshop::cut_of;
 
 /// Heights of a row and of a bar, and widths on the left for the name and on the right for the layer, points.
 const ROW_HEIGHT_PT: f32 = 17.0;
@@ -24,15 +26,7 @@ const PLATE_HEIGHT_PT: f32 = 5.0;
 
 /// Returns the dimensions of bars, pins and discs as the parts have them, or else as the design view states them.
 pub fn cut(session: &Session) -> Cut {
-    let brief = &session.scenario().design;
-    Cut {
-        bar_width: brief.bar_width,
-        plate_thickness: brief.bar_thickness,
-        pin_diameter: brief.pin_diameter,
-        density: brief.density,
-        ..Cut::default()
-    }
-    .fitting(&session.scenario().machine)
+    cut_of(&session.scenario().design, &session.scenario().machine)
 }
 
 /// Draws the section.
@@ -61,6 +55,12 @@ pub fn show(
     for line in totals(ui, report) {
         ui.label(RichText::new(line).font(plain(12.0)).color(colour(p.dim)));
     }
+    if !report.clashes.is_empty() {
+        clashes(ui, report, p);
+    }
+    for remark in too_thin(&machine.spec().counterweights, &cut(session)) {
+        note(ui, p, &format!("Note: {remark}."));
+    }
     if report.is_used_by(machine) {
         ui.label(RichText::new("The machine has these heights.").font(plain(12.0)).color(colour(p.dim)));
         return;
@@ -85,6 +85,16 @@ fn verdict(ui: &mut Ui, layers: &QueryResult<LayersAnswer>, p: &Palette) {
         None => ("", p.dim),
     };
     ui.label(RichText::new(words).font(plain(12.0)).color(colour(tone)));
+}
+
+/// Tells which parts meet at the heights that the machine has.
+fn clashes(ui: &mut Ui, report: &LayersReport, p: &Palette) {
+    let notation = notation::of(ui.ctx());
+    let line = |text: String| RichText::new(text).font(plain(12.0)).color(colour(p.reaction));
+    ui.label(line("The heights of the machine do not fit any more; those above do.".into()));
+    for words in Clash::lines(&report.clashes, |metres| notation.write(metres, 4, "m")) {
+        ui.label(line(words));
+    }
 }
 
 /// Returns a reason in a sentence or two.

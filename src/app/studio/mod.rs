@@ -31,7 +31,7 @@ use super::{Command, FileDialog, FilePurpose, Switch, ViewChange, ViewState, foc
 use stillbase_picture::scene::palette::Palette;
 use stillbase_session::Session;
 
-pub use facts::{DesignFacts, as_cut, leave, of_front};
+pub use facts::{DesignFacts, as_cut, layers_of, leave, of_front};
 pub use layers::cut;
 pub use sought::{holds, look_up};
 

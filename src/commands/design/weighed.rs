@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use clap::Args;
+use stillbase_exchange::thin::thin_wall;
 use stillbase_mechanics::counterweights::{
     BoundRelaxation, CounterweightError, CounterweightForm, CounterweightSpec, CounterweightStock, FreeRotor,
     Objective, RotorFreedom,
@@ -493,6 +494,7 @@ pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
         measures::text(&report.measures),
         balance_tables(&report.balance, machine)
     );
+    text.extend(report.weights.iter().filter_map(thin_wall).map(|remark| format!("\n{remark}\n")));
     if let Some(torque) = report.torque {
         text.push_str(&format!("\ngreatest torque of the task {} N m\n", fixed(torque, 6)));
     }

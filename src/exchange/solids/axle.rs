@@ -1,9 +1,9 @@
 //! [`Axle`]: a pin of a machine.
 
 use crate::cut::{Cut, SAME_PIN_DISTANCE};
-use crate::solids::base_height;
+use crate::solids::{LinkSolid, base_height};
 use stillbase_mechanics::machine::{Chain, Machine};
-use stillbase_mechanics::planar::MAX_DRIVES;
+use stillbase_mechanics::planar::{MAX_DRIVES, Vector};
 
 /// A pin that joins links: points of these that coincide in every pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +42,39 @@ impl Axle {
         (!is_of_one_height || self.links.len() == 1).then_some([low, high])
     }
 
+    /// Returns the links that it joins, the lowest first.
+    pub(crate) fn upwards(&self, machine: &Machine) -> Vec<usize> {
+        let height = |j: usize| machine.spec().links[j].axial;
+        let mut joined: Vec<usize> = self.links.iter().map(|(j, _)| *j).collect();
+        joined.sort_by(|i, j| height(*i).total_cmp(&height(*j)));
+        joined
+    }
+
+    /// Returns the spacers around it, the lowest first: each from one link to the next, or from the base plate to the
+    /// lowest link. `solids` are those of all links.
+    pub fn spacers(&self, machine: &Machine, cut: &Cut, solids: &[LinkSolid]) -> Vec<Spacer> {
+        let Some([base, _]) = self.faces(machine, cut) else { return Vec::new() };
+        // A disc or a lump around the pin is thicker than its bar.
+        let around = |j: usize| {
+            let along = self.links.iter().find(|(own, _)| *own == j).map_or(0.0, |(_, along)| *along);
+            let own = solids.iter().filter(|solid| solid.link == j);
+            let covering = own.filter(|solid| solid.plan.distance(Vector::new(along, 0.0)) < 0.0);
+            let height = machine.spec().links[j].axial;
+            covering
+                .map(|solid| solid.faces(machine))
+                .fold([height; 2], |[low, high], own| [low.min(own[0]), high.max(own[1])])
+        };
+        let (mut below, mut spacers) = (self.is_on_base().then_some(base), Vec::new());
+        for (i, j) in self.upwards(machine).into_iter().enumerate() {
+            let [bottom, top] = around(j);
+            if let Some(below) = below.filter(|below| bottom - below > SAME_PIN_DISTANCE) {
+                spacers.push(Spacer { number: i + 1, faces: [below, bottom] });
+            }
+            below = Some(top);
+        }
+        spacers
+    }
+
     /// Returns whether it passes through a link.
     pub fn joins(&self, link: usize) -> bool {
         self.links.iter().any(|(own, _)| *own == link)
@@ -59,6 +92,15 @@ impl Axle {
             [] => "pin".into(),
         }
     }
+}
+
+/// A spacer on a pin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spacer {
+    /// Number of the link above it on the pin, from 1 for the lowest.
+    pub number: usize,
+    /// Heights of its lower and upper face, m.
+    pub faces: [f64; 2],
 }
 
 /// Returns the pins of a machine, that at the base first.

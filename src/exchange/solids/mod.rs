@@ -5,9 +5,11 @@
 //! of the discs, as wide as gives them their inertia, and without inertia as high as wide.
 
 mod axle;
+mod body;
 mod plan;
 
-pub use axle::{Axle, axles};
+pub use super::mesh::SolidMesh;
+pub use axle::{Axle, Spacer, axles};
 pub use plan::{Plan, encloses, foot};
 
 use super::cut::{Cut, bar_extent};
@@ -79,6 +81,11 @@ impl LinkSolid {
         self.holes = holes;
         self
     }
+}
+
+/// Returns whether a machine states heights of its links, which differ; else all links lie at one.
+pub fn has_heights(machine: &Machine) -> bool {
+    machine.spec().links.windows(2).any(|pair| pair[0].axial != pair[1].axial)
 }
 
 /// Returns the height of the base plate, m: a spacer below the lowest solid.

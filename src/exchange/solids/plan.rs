@@ -1,6 +1,7 @@
 //! [`Plan`]: the area that a solid covers, seen from above.
 
-use stillbase_mechanics::planar::{Vector, dot};
+use crate::mesh::{bar, circle};
+use stillbase_mechanics::planar::{Vector, cross, dot};
 
 /// An area: all points within a radius of a corner, of the line between two corners, or of the polygon of more.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +38,23 @@ impl Plan {
     /// Returns whether it is a polygon, which has an inside apart from its radius.
     pub fn is_polygon(&self) -> bool {
         self.corners.len() > 2
+    }
+
+    /// Returns its outline, counter-clockwise, m. Round ends and discs are polygons with the area of their circles.
+    pub fn outline(&self) -> Vec<Vector> {
+        match self.corners[..] {
+            [at] => circle(at, self.radius),
+            [from, to] if from == to => circle(from, self.radius),
+            [from, to] => bar([from, to], self.radius),
+            _ => {
+                let twice_area: f64 = self.sides(|corner| corner).map(|[a, b]| cross(a, b)).sum();
+                let mut corners = self.corners.clone();
+                if twice_area < 0.0 {
+                    corners.reverse();
+                }
+                corners
+            }
+        }
     }
 
     /// Returns the distance of a point from it, m; below 0 inside.

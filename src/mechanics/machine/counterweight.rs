@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::parts::PlaneBody;
 use super::spec::{Link, is_nought};
-use crate::planar::{Vector, unit};
+use crate::planar::{Vector, circle, equal_area, unit};
 
 /// A body on a link, in the plane of the link's own centre of mass. It moves with the link; the mass of the link
 /// excludes it.
@@ -339,12 +339,10 @@ impl Counterweight {
     /// Returns its outer outline, counter-clockwise in the axes of its link, m; empty for a point. A whole circle has
     /// `sides` chords, and its area.
     pub fn polygon(&self, sides: usize) -> Vec<Vector> {
-        let (at, radius) = (Vector::new(self.at, self.across), self.radius * equal_area(sides));
         match self.shape() {
             CounterweightShape::Point => Vec::new(),
             CounterweightShape::Disc { .. } | CounterweightShape::Ring { .. } => {
-                let turn = std::f64::consts::TAU / sides as f64;
-                (0..sides).map(|k| at + unit(turn * k as f64) * radius).collect()
+                circle(Vector::new(self.at, self.across), self.radius, sides)
             }
             CounterweightShape::HalfRing { .. } | CounterweightShape::Box { .. } => {
                 let rails = self.rails(sides);
@@ -394,12 +392,6 @@ impl Counterweight {
             _ => ([at; 2], self.radius),
         }
     }
-}
-
-/// Returns the ratio of the radius of a polygon of so many sides to that of the circle with its area.
-fn equal_area(sides: usize) -> f64 {
-    let step = std::f64::consts::TAU / sides as f64;
-    (step / step.sin()).sqrt()
 }
 
 impl Link {

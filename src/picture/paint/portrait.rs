@@ -57,7 +57,7 @@ impl Portrait {
         let mut bounds = [Vector::new(-foot, -foot), Vector::new(foot, foot)];
         let discs = links.iter().flat_map(|link| {
             let ends = link.ends.map(|at| (at, link.radius));
-            let weights = link.weights.iter().flat_map(|weight| weight.ends.map(|end| (end, weight.radius)));
+            let weights = link.covers.iter().flat_map(|cover| cover.ends.map(|end| (end, cover.radius)));
             ends.into_iter().chain(weights)
         });
         for (at, radius) in discs.chain([(tip, 0.03 * linkage.reach())]) {
@@ -112,13 +112,14 @@ impl Portrait {
             painter.line_segment(ends, Stroke::new(2.0 * radius + 1.6, colour(p.background)));
             painter.line_segment(ends, Stroke::new(2.0 * radius, colour(tone)));
             ends.into_iter().for_each(|end| disc(end, radius, tone));
-            for weight in &link.weights {
-                if weight.rails.is_empty() {
-                    disc(spot(weight.ends[0]), long(weight.radius), tone);
+            for cover in &link.covers {
+                if cover.areas.is_empty() {
+                    painter.line_segment(cover.ends.map(spot), Stroke::new(2.0 * long(cover.radius), colour(tone)));
+                    disc(spot(cover.ends[0]), long(cover.radius), tone);
                 }
-                for pair in weight.rails.windows(2) {
-                    let corners = [pair[0][0], pair[1][0], pair[1][1], pair[0][1]].map(spot);
-                    painter.add(Shape::convex_polygon(corners.to_vec(), colour(tone), Stroke::NONE));
+                for area in &cover.areas {
+                    let corners = area.iter().map(|corner| spot(*corner)).collect();
+                    painter.add(Shape::convex_polygon(corners, colour(tone), Stroke::NONE));
                 }
             }
         }

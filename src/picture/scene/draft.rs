@@ -99,6 +99,7 @@ impl DesignDrawing {
             }
         }
         scene.solids.extend(solids);
+        scene.lines.extend(linkage.threads(&e, frame.base.at, &palette));
         for handle in self.handles() {
             let Some(at) = self.place(handle, linkage, frame) else { continue };
             let arm = (CROSS_HALF_SIZE * linkage.reach()) as f32;

@@ -7,9 +7,12 @@
 //! Invalid sizes are corrected. Negative and non-finite ones are treated as zero, and a bevel is at most half of the
 //! radius and a third of the height. A mesh without volume has no triangles.
 
+mod closed;
+
 use std::f64::consts::{PI, TAU};
 
 use super::Mesh;
+pub use closed::closed;
 
 /// Number of chords of a circle; the vertices lie on the circle. A multiple of four.
 pub const SEGMENTS: usize = 64;

@@ -41,6 +41,7 @@ use stillbase_planning::pose_space::{Planes, PoseSpace};
 use stillbase_query::{Queries, Shared};
 use stillbase_session::Run;
 use stillbase_simulation::frame::Frame;
+use stillbase_study::workshop::cut_of;
 
 /// The parts of the machine's view that do not change from frame to frame.
 #[derive(Clone, Debug)]
@@ -105,7 +106,7 @@ impl Stage {
         let model = &run.scenario().machine;
         // If the plant has other lengths than the model, the plant is drawn.
         let plant = run.scenario().plant.machine(model).unwrap_or_else(|_| model.clone());
-        let linkage = LinkageModel::of(&plant);
+        let linkage = LinkageModel::cut(&plant, &cut_of(&run.scenario().design, &plant));
         let (compared, space) = (run.scenario().compare_b, run.pose_space().ok());
         Self {
             base: BaseStage::of(run, &plant, &linkage),
@@ -339,7 +340,7 @@ impl Stage {
 
     /// Returns the outermost points of the discs of counterweights on both axes, at the units of the drives.
     fn discs(&self, units: &UnitVectors) -> impl Iterator<Item = Vector> + use<> {
-        let discs = self.linkage.flat(units).into_iter().flat_map(|flat| flat.weights);
+        let discs = self.linkage.flat(units).into_iter().flat_map(|flat| flat.covers);
         let discs = discs.flat_map(|weight| weight.ends.map(|end| (end, weight.radius)));
         discs.flat_map(|(p, r)| [[r, 0.0], [-r, 0.0], [0.0, r], [0.0, -r]].map(|[x, y]| p + Vector::new(x, y)))
     }
@@ -418,6 +419,7 @@ impl Stage {
         let mut solids = self.linkage.solids(&units, shown.base, self.base.moves(), palette);
         under::light(&mut solids, &self.linkage, options.highlighted, palette);
         scene.solids.extend(solids);
+        scene.lines.extend(self.linkage.threads(&units, shown.base.at, palette));
         if options.shadows {
             scene.shadows.extend(self.linkage.shadows(&units, shown.base.at));
         }

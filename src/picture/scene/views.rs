@@ -21,6 +21,7 @@ use stillbase_mechanics::sketch::{Resolved, Sketch};
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork, Shared, WeakQueries};
 use stillbase_session::Run;
+use stillbase_session::scenario::Scenario;
 use stillbase_settings::number::ShortNumber;
 use stillbase_simulation::frame::Frame;
 
@@ -136,11 +137,18 @@ impl ViewSubject {
             && one.compare_b == other.compare_b
             && one.plant.length == other.plant.length
             && one.plant.link == other.plant.link
+            && dimensions(one) == dimensions(other)
             // Angles in joint space are relative to a base that moves.
             && one.base.moves() == other.base.moves()
             && self.run.motion().is_some() == run.motion().is_some()
             && self.run.waiting() == run.waiting()
     }
+}
+
+/// Returns what a design states of the parts of a machine.
+fn dimensions(scenario: &Scenario) -> [f64; 4] {
+    let design = &scenario.design;
+    [design.bar_width, design.bar_thickness, design.pin_diameter, design.density]
 }
 
 impl PartialEq for ViewSubject {

@@ -58,7 +58,7 @@ impl Clearance {
 }
 
 /// Returns the heights of the ends of a pin, m, without end below if it stands on the base.
-fn pin_faces(machine: &Machine, cut: &Cut, axle: &Axle) -> [f64; 2] {
+pub(super) fn pin_faces(machine: &Machine, cut: &Cut, axle: &Axle) -> [f64; 2] {
     let [low, high] = axle.span(machine, cut);
     [if axle.is_on_base() { f64::NEG_INFINITY } else { low }, high]
 }

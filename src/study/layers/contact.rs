@@ -5,6 +5,7 @@ use stillbase_exchange::cut::Cut;
 use stillbase_exchange::solids::{Axle, LinkSolid, axles, link_solids};
 use stillbase_mechanics::machine::Machine;
 
+use super::clearance::pin_faces;
 use super::overlap::{Overlap, Pair};
 use super::plan::{Nearness, PlanSolid};
 use super::range::PoseRange;
@@ -36,6 +37,9 @@ pub struct Contact {
     pub decided: bool,
     /// Least difference between their layers. A pin counts as the link that it joins.
     pub apart: usize,
+    /// Heights of the lower and the upper face of each, m, in the given machine.
+    #[serde(skip)]
+    pub faces: [[f64; 2]; 2],
     /// What meets.
     #[serde(skip)]
     pub between: Between,
@@ -94,17 +98,27 @@ impl Solids {
             for (j, b) in self.links.iter().enumerate().skip(i + 1).filter(|(_, b)| b.link != a.link) {
                 let pair = Pair::of(&self.plans[i], &self.plans[j]);
                 let apart = layers_between(cut, [a.thickness, a.rise], [b.thickness, b.rise]);
-                contacts.examine(&pair, apart, Between::Links(a.link, b.link), &|| [a, b].map(|x| x.name(machine)));
+                let distance = Distance { apart, faces: [a, b].map(|x| x.faces(machine)) };
+                contacts.examine(&pair, distance, Between::Links(a.link, b.link), &|| [a, b].map(|x| x.name(machine)));
             }
             for (j, axle) in self.axles.iter().enumerate().filter(|(_, axle)| axle.is_pin() && !axle.joins(a.link)) {
                 let pair = Pair::of(&self.plans[i], &self.pins[j]);
                 let apart = layers_between(cut, [a.thickness, a.rise], [cut.plate_thickness, 0.0]);
                 let names = || [a.name(machine), axle.name(machine)];
-                contacts.examine(&pair, apart, Between::Pin(a.link, j), &names);
+                let distance = Distance { apart, faces: [a.faces(machine), pin_faces(machine, cut, axle)] };
+                contacts.examine(&pair, distance, Between::Pin(a.link, j), &names);
             }
         }
         contacts.found
     }
+}
+
+/// How far two solids must lie apart, and how they lie.
+struct Distance {
+    /// Least difference between their layers.
+    apart: usize,
+    /// Heights of the lower and the upper face of each, m.
+    faces: [[f64; 2]; 2],
 }
 
 /// Contacts as they are found.
@@ -116,7 +130,8 @@ struct Contacts<'a> {
 }
 
 impl Contacts<'_> {
-    fn examine(&mut self, pair: &Pair<'_>, apart: usize, between: Between, names: &dyn Fn() -> [String; 2]) {
+    fn examine(&mut self, pair: &Pair<'_>, distance: Distance, between: Between, names: &dyn Fn() -> [String; 2]) {
+        let Distance { apart, faces } = distance;
         let is_known = |own: &Contact| own.between == between && own.apart >= apart;
         if self.left < pair.cost() && self.found.iter().any(is_known) {
             return;
@@ -124,7 +139,7 @@ impl Contacts<'_> {
         self.left = self.left.saturating_sub(pair.cost());
         let Some(met) = meeting(pair, self.way, &mut self.left) else { return };
         let (at, [a, b]) = ([met.near.at.re, met.near.at.im], names());
-        self.found.push(Contact { a, b, at, q: met.q, time: met.time, decided: met.decided, apart, between });
+        self.found.push(Contact { a, b, at, q: met.q, time: met.time, decided: met.decided, apart, faces, between });
     }
 }
 

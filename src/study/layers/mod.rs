@@ -6,6 +6,7 @@
 //! finds an order with the fewest layers, and among those the one that tilts the base least; or the fewest links that
 //! have no order, and where they meet. A motor has a shape if it is a lump.
 
+mod clash;
 mod clearance;
 mod contact;
 mod overlap;
@@ -18,6 +19,7 @@ mod stack;
 mod tilt;
 mod way;
 
+pub use clash::Clash;
 pub use clearance::Clearance;
 pub use contact::{Between, Contact};
 pub use overlap::TOLERANCE;

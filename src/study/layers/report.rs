@@ -3,6 +3,7 @@
 use serde::Serialize;
 use stillbase_mechanics::machine::Machine;
 
+use super::clash::Clash;
 use super::clearance::Clearance;
 use super::contact::Contact;
 
@@ -46,6 +47,9 @@ pub struct LayersReport {
     pub least_tilt: bool,
     /// Solids that overlap in plan, so that they need different layers.
     pub meetings: Vec<Contact>,
+    /// Solids that meet at the heights of the given machine; empty if it states none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub clashes: Vec<Clash>,
     /// Least distance in plan of solids that share a height, along the task.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clearance: Option<Clearance>,

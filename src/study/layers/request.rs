@@ -9,6 +9,7 @@ use stillbase_query::{ByIdentity, QuickQuery};
 use stillbase_settings::number::fixed;
 use thiserror::Error;
 
+use super::clash::Clash;
 use super::clearance::Clearance;
 use super::contact::{Between, Contact, Solids, Way};
 use super::range::PoseRange;
@@ -168,6 +169,7 @@ pub fn find_layers(request: &LayersRequest) -> Result<LayersReport, NoLayers> {
         tilt_coefficient: Change { before: tilt_coefficient(machine), after: tilt_coefficient(&stacked) },
         minimal: minimal && is_exact,
         least_tilt: least_tilt && is_exact,
+        clashes: Clash::all(machine, &meetings),
         meetings,
         clearance: task.as_ref().and_then(|task| Clearance::least(&stacked, cut, task)),
         machine: stacked,

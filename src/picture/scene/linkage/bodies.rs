@@ -1,6 +1,7 @@
 //! The room that a machine takes: its parts as strips and discs, which labels leave free.
 
-use super::{LinkageModel, THIN_BAR_RADIUS};
+use super::LinkageModel;
+use super::schematic::THIN_BAR_RADIUS;
 use crate::scene::{Body, point};
 use stillbase_mechanics::machine::place_of;
 use stillbase_mechanics::planar::{Pose2, UnitVectors, Vector, unit};
@@ -24,7 +25,7 @@ impl LinkageModel {
         let links = self.bars.iter().flat_map(move |bar| {
             let (root, along, z) = bar.pose(&e);
             let link = body(bar.span.map(|s| (root + along * s, z)), bar.radius, bar.height);
-            let discs = bar.weights.iter().map(move |disc| {
+            let discs = bar.covers.iter().map(move |disc| {
                 let ends = disc.ends.map(|end| (root + along * end, z + disc.z));
                 body(ends, disc.radius, disc.height)
             });

@@ -2,7 +2,7 @@
 
 use super::reaction;
 use crate::scene::exaggeration::DrawnFrame;
-use crate::scene::linkage::{LinkageModel, PLATE_HALF_SIZE};
+use crate::scene::linkage::{Bar, LinkageModel, PLATE_HALF_SIZE};
 use crate::scene::options::{Handle, ViewOptions};
 use crate::scene::palette::{Palette, Theme, mix, palette};
 use crate::scene::pointer::Pointer;
@@ -30,7 +30,8 @@ pub fn link(linkage: &LinkageModel, shown: &DrawnFrame<'_>, pointer: &Pointer) -
         pointer.distance_to_segment(ends).is_some_and(|d| d < LINK_PICK_PX)
     };
     let bars = linkage.bars().iter().enumerate();
-    bars.filter(|(_, bar)| near(bar.ends(&e))).max_by_key(|(_, bar)| bar.drive).map(|(i, _)| i)
+    let height = |bar: &Bar| bar.pose(&e).2;
+    bars.filter(|(_, bar)| near(bar.ends(&e))).max_by(|(_, a), (_, b)| height(a).total_cmp(&height(b))).map(|(i, _)| i)
 }
 
 /// Returns the index of the pin under the pointer.
