@@ -202,6 +202,8 @@ impl Place {
     }
 }
 
+/// Largest difference that is told in units in the last place: beyond it the numbers themselves say more.
+const MAX_UNITS: u64 = 1_000_000;
 /// Maximum number of signals in a printed table.
 const MAX_ROWS: usize = 20;
 
@@ -283,13 +285,13 @@ fn sentence(name: &str, difference: &TableDifference) -> String {
     if let Some((signal, first)) = difference.first() {
         let count = difference.signals.iter().filter(|signal| signal.first.is_some()).count();
         let ulps = match first.units_in_the_last_place() {
-            Some(ulps) => format!(", by {}", counted(ulps, "unit")) + " in the last place",
-            None => String::new(),
+            Some(ulps) if ulps <= MAX_UNITS => format!(", by {}", counted(ulps, "unit")) + " in the last place",
+            _ => String::new(),
         };
         let [a, b] = first.values;
         let unit = if signal.unit == "1" { String::new() } else { format!(" {}", signal.unit) };
         found.push(format!(
-            "{count} of {signals} differ at {instants}{between}; the first is {} at {} s: {a} and {b}{unit}{ulps}",
+            "{count} of {signals} differ at {instants}{between}; the first is {} at {} s: {a:?} and {b:?}{unit}{ulps}",
             signal.path,
             at_most_digits(first.time, 9),
         ));

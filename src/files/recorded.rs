@@ -211,7 +211,7 @@ impl Cases {
             if topic.units.len() != width || topic.values.len() != rows * width {
                 return Err(format!("{}: rows of {width} signals are not whole", topic.path));
             }
-            let time: Vec<f64> = topic.nanos.iter().map(|nanos| 1e-9 * *nanos as f64).collect();
+            let time: Vec<f64> = topic.nanos.iter().map(|nanos| *nanos as f64 / 1e9).collect();
             if table.columns.is_empty() {
                 table.time = time;
             } else if table.time != time {
