@@ -42,7 +42,7 @@ pub struct HeadlessArguments {
     /// Show the forces on the pins in the pictures
     #[arg(long, requires = "fps")]
     pin_forces: bool,
-    /// Record the signals at every step, not at a fixed rate: at least 100 rows a second and 2000 in all
+    /// Record the signals at every step, not at a fixed rate: at least 100 rows a second and 500 in all
     #[arg(long)]
     every_step: bool,
     /// Replace the file if it exists

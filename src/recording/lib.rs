@@ -32,10 +32,11 @@
 //! Each change of the machine in a session is a row of the design, at the step at which it was made. Such recordings
 //! have a further time line, `edit`.
 //!
-//! Constant parts of an item are written once. Moving parts have 50 to 200 rows a second. Signals have rows at a
-//! fixed rate, at least 100 a second and 2000 in all, or at every step if the options say so. Each row holds the exact
-//! numbers of its step. The components `paths` and `units` of an entity of signals name its series. Machine, scenario, version and verdict are properties of the recording. Equal scenarios give equal
-//! recordings, independent of the time and the computer.
+//! Constant parts of an item are written once. Moving parts have rows at a fixed rate, at least 50 a second and 100 in
+//! all; signals, at least 100 a second and 500 in all, or at every step if the options say so. Each row holds the exact
+//! numbers of its step. The components `paths` and `units` of an entity of signals name its series. Machine, scenario,
+//! version and verdict are properties of the recording. Equal scenarios give equal recordings, independent of the time
+//! and the computer.
 
 mod blueprint;
 mod dashes;

@@ -32,20 +32,19 @@ const MAX_BUFFERED_ROWS: usize = 8192;
 
 /// How often something has a row: a screen shows no more.
 struct RowRate {
-    /// Shortest and longest interval between rows, s.
-    interval_s: [f64; 2],
-    /// Number of rows of a run of medium length.
+    /// Longest interval between rows, s.
+    longest_s: f64,
+    /// Number of rows of a run so short that more of them would not be told apart.
     rows: f64,
 }
 
 impl RowRate {
-    const MOVING: Self = Self { interval_s: [0.005, 0.02], rows: 1000.0 };
-    const SIGNALS: Self = Self { interval_s: [0.0, 0.01], rows: 2000.0 };
+    const MOVING: Self = Self { longest_s: 0.02, rows: 100.0 };
+    const SIGNALS: Self = Self { longest_s: 0.01, rows: 500.0 };
 
     /// Returns the number of steps from one row to the next, in a run of a number of steps of a length, s.
     fn every(&self, steps: u64, step: f64) -> u64 {
-        let [shortest, longest] = self.interval_s;
-        let interval = (steps as f64 * step / self.rows).clamp(shortest, longest);
+        let interval = (steps as f64 * step / self.rows).min(self.longest_s);
         (interval / step).round().max(1.0) as u64
     }
 }

@@ -291,7 +291,6 @@ impl Store {
 /// Encodes and writes messages until `Close`.
 fn write(to: NewFile, messages: &Receiver<Message>) -> Result<NewFile, StoreError> {
     let mut encoder = Encoder::new_eager(CrateVersion::LOCAL, EncodingOptions::PROTOBUF_COMPRESSED, to)?;
-    if std::env::var_os("NOFOOT").is_some() { encoder.do_not_emit_footer(); }
     let written = loop {
         match messages.recv() {
             Ok(Message::Row(message)) => {

@@ -55,7 +55,7 @@ fn a_recording_replays_to_the_same_numbers() {
     assert_eq!(names, ["case-1", "case-3", "spacecraft", "busy"]);
     for case in cases {
         assert!(case["signals"].as_array().expect("a list").len() > 60, "{case}");
-        assert!(case["instants"].as_u64() > Some(500), "{case}");
+        assert!(case["instants"].as_u64() > Some(300), "{case}");
         assert_eq!(case["interpolated"], json!(0));
     }
     let one = ends(&["replay", &format!("{file}:busy")], 0);
@@ -119,7 +119,7 @@ fn a_long_run_has_rows_at_a_fixed_rate_and_a_row_at_every_step_on_request() {
     prints(&[&["headless", "case-3", "-o", &thin][..], &set].concat());
     prints(&[&["headless", "case-3", "--every-step", "-o", &whole][..], &set].concat());
     let instants = |file: &str| object(&["replay", file])["cases"][0]["instants"].as_u64();
-    assert_eq!((instants(&thin), instants(&whole)), (Some(2001), Some(8001)));
+    assert_eq!((instants(&thin), instants(&whole)), (Some(801), Some(8001)));
     // The rows that both have are the same.
     ends(&["diff", &thin, &whole], 0);
     let size = |file: &str| fs::metadata(file).expect("a file").len();
