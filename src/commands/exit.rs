@@ -82,6 +82,7 @@ pub fn exit_code(done: Result<(), Failure>, as_json: bool, line: &Line<'_>) -> E
         Failure::NoAnswer(why) => (1, why),
         Failure::WrongInput(why) => (2, why),
         Failure::ReaderGone | Failure::Refused(_) => return ExitCode::SUCCESS,
+        Failure::Told => return ExitCode::FAILURE,
     };
     if as_json && !is_printed {
         // If this fails because standard output cannot be written, standard error still gives the reason.

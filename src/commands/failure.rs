@@ -30,6 +30,8 @@ use super::remedy::option;
 pub enum Failure {
     /// The reader of standard output has closed it, as `head` does: not an error.
     ReaderGone,
+    /// The answer on standard output says that something is not as it should be; there is nothing to add.
+    Told,
     /// The question has no answer: the reason, and a similar question that has one.
     NoAnswer(String),
     /// The input is wrong: the place of the error, and the expected input.
@@ -94,7 +96,7 @@ impl Failure {
     #[must_use]
     pub fn with_misnamed(self, misnamed: Option<Misnamed>) -> Self {
         match self {
-            Self::ReaderGone => Self::ReaderGone,
+            Self::ReaderGone | Self::Told => self,
             Self::Refused(refused) => Self::Refused(Box::new(RefusedScenario { misnamed, ..*refused })),
             failure => {
                 Self::Refused(Box::new(RefusedScenario { misnamed, ..RefusedScenario::of(failure, Vec::new()) }))
@@ -148,7 +150,7 @@ impl Failure {
     #[must_use]
     pub fn worded(self, words: &dyn Fn(&str) -> String) -> Self {
         match self {
-            Self::ReaderGone => Self::ReaderGone,
+            Self::ReaderGone | Self::Told => self,
             Self::NoAnswer(why) => Self::NoAnswer(words(&why)),
             Self::WrongInput(why) => Self::WrongInput(words(&why)),
             Self::Refused(refused) => {

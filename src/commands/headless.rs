@@ -42,6 +42,9 @@ pub struct HeadlessArguments {
     /// Show the forces on the pins in the pictures
     #[arg(long, requires = "fps")]
     pin_forces: bool,
+    /// Record the signals at every step, not at a fixed rate: at least 100 rows a second and 500 in all
+    #[arg(long)]
+    every_step: bool,
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
@@ -115,7 +118,8 @@ impl HeadlessArguments {
         check_output(&self.output, self.force, &["rrd"])?;
         let [width, height] = self.size;
         let pictures = self.fps.map(|fps| Pictures { fps, width, height, pin_forces: self.pin_forces });
-        let recordings = record_with_bar(&scenarios, &self.output, &Options { pictures, force: self.force })?;
+        let options = Options { pictures, every_step: self.every_step, force: self.force };
+        let recordings = record_with_bar(&scenarios, &self.output, &options)?;
         print_message(format!("wrote {}", self.output.display()));
         let answer = Answer { recordings: recordings.into_iter().map(Row::from).collect() };
         for row in &answer.recordings {
@@ -144,7 +148,7 @@ impl HeadlessArguments {
 
 /// Returns options of a recording without pictures that replaces no file.
 pub fn unpictured() -> Options {
-    Options { pictures: None, force: false }
+    Options::default()
 }
 
 /// Records with a progress bar on standard error, if that is a terminal.

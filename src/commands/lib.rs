@@ -8,6 +8,7 @@
 mod check;
 mod compare;
 mod design;
+mod diff;
 mod dimensions;
 pub mod dynamics;
 mod ends;
@@ -41,14 +42,19 @@ mod reach;
 mod remedy;
 #[cfg(feature = "ui")]
 mod render;
+#[cfg(feature = "record")]
+mod replay;
 #[cfg(feature = "ui")]
 mod report;
 mod rows;
+mod signal_source;
 mod simulate;
 mod sites;
 #[cfg(any(feature = "record", feature = "ui"))]
 mod size;
 mod spectrum;
+#[cfg(feature = "record")]
+mod table;
 mod tolerance;
 mod trim;
 mod workspace;
@@ -92,6 +98,11 @@ subcommands! {
     #[cfg(feature = "record")]
     Headless: headless::HeadlessArguments,
     Simulate: simulate::SimulateArguments,
+    #[cfg(feature = "record")]
+    Replay: replay::ReplayArguments,
+    Diff: diff::DiffArguments,
+    #[cfg(feature = "record")]
+    Table: table::TableArguments,
     Compare: compare::CompareArguments,
     Joints: joints::JointsArguments,
     Machines: machines::MachinesArguments,

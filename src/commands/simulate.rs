@@ -256,17 +256,8 @@ impl SimulateArguments {
         if self.signals.is_empty() {
             return Ok(all);
         }
-        chosen_signals(&all, &self.signals).map_err(|name| {
-            let mut known: Vec<&str> = Vec::new();
-            for group in all.iter().map(Signal::group) {
-                if !known.contains(&group) {
-                    known.push(group);
-                }
-            }
-            let why =
-                format!("no signal {:?}: want one of {}, or one of their parts", quote_clipped(name), known.join(", "));
-            Failure::wrong_input(why).with_context("--signals")
-        })
+        chosen_signals(&all, &self.signals)
+            .map_err(|name| unknown_signal(name, all.iter().map(|s| s.path.as_str())).with_context("--signals"))
     }
 
     /// Returns the rows; the first call opens the file and writes its head.
@@ -276,6 +267,18 @@ impl SimulateArguments {
             None => Ok(begun.insert(Rows::begin(self.output.as_deref(), self.force, &row_heads(table))?)),
         }
     }
+}
+
+/// Returns the failure that no signal among some has a name.
+pub fn unknown_signal<'a>(name: &str, paths: impl Iterator<Item = &'a str>) -> Failure {
+    let mut known: Vec<&str> = Vec::new();
+    for group in paths.filter_map(|path| path.split('/').next()) {
+        if !known.contains(&group) {
+            known.push(group);
+        }
+    }
+    let (name, known) = (quote_clipped(name), known.join(", "));
+    Failure::wrong_input(format!("no signal {name:?}: want one of {known}, or one of their parts"))
 }
 
 /// Formats the summary that a terminal gets instead of rows.

@@ -62,6 +62,10 @@ fn found(name: &str, folder: Option<&Path>, takes_scenarios: bool) -> Result<Fou
     if let Some(machine) = known_machine(name) {
         return Ok(own(machine.into()));
     }
+    if let Some(found) = recorded(name).filter(|_| takes_scenarios) {
+        let found = found.map_err(|why| wrong_file(name, Faults::one(whole_file(why.to_string()))))?;
+        return machine_of(&found.scenario, name);
+    }
     let file = folder.map_or_else(|| name.into(), |folder| folder.join(name));
     let other = |file: String| wrong_file(&file, Faults::one(whole_file(IS_SCENARIO)));
     match read(&file) {
@@ -144,6 +148,9 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
     if let Some(scenario) = Scenario::builtin(name) {
         return Ok(FoundScenario { scenario, note: None, left_out: Vec::new() });
     }
+    if let Some(scenario) = recorded(name) {
+        return scenario;
+    }
     let file = Path::new(name);
     let text = match read(file) {
         Ok(text) => text,
@@ -172,6 +179,28 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
     };
     let scenario = Scenario::parse(&text, name, Some(&find))?;
     Ok(FoundScenario { scenario, note: None, left_out: Vec::new() })
+}
+
+/// Returns the session of a recording, the first of several; `None` if the name is not that of a recording.
+#[cfg(feature = "record")]
+fn recorded(name: &str) -> Option<Result<FoundScenario, ScenarioError>> {
+    let wrong = |message: String| ScenarioError::Syntax { file: shortened(name, 300), line: None, message };
+    let cases = crate::recorded::CaseName::of(name)?.cases().map_err(|why| wrong(why.why));
+    let first = |cases: Vec<crate::recorded::RecordedCase>| {
+        let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
+        let [first, .., last] = &names[..] else { return Ok((cases[0].scenario()?, None)) };
+        let all = shortened(&names.join(", "), 300);
+        let note = format!("{name} holds the cases {all}: taken is {first}; {name}:{last} names another");
+        Ok((cases[0].scenario()?, Some(note)))
+    };
+    Some(cases.and_then(first).map(|(scenario, note)| FoundScenario { scenario, note, left_out: Vec::new() }))
+}
+
+#[cfg(not(feature = "record"))]
+fn recorded(name: &str) -> Option<Result<FoundScenario, ScenarioError>> {
+    let message = "this build reads no recordings: want a TOML file".into();
+    let is_recording = name.to_ascii_lowercase().ends_with(".rrd");
+    is_recording.then(|| Err(ScenarioError::Syntax { file: shortened(name, 300), line: None, message }))
 }
 
 /// Makes a scenario for a machine, whose name or file is `name`. The scenario has the brief of the file.

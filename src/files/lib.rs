@@ -20,6 +20,8 @@ mod parquet_rows;
 #[cfg(feature = "window")]
 #[doc(hidden)]
 pub mod preferences;
+#[cfg(feature = "record")]
+pub mod recorded;
 #[cfg(feature = "rows")]
 #[doc(hidden)]
 pub mod row_file;

@@ -11,15 +11,23 @@ use stillbase_settings::text::MAX_TEXT_BYTES;
 /// # Errors
 /// If it is not such a file, or cannot be read.
 pub fn read(file: &Path) -> io::Result<String> {
+    read_at_most(file, MAX_TEXT_BYTES)
+}
+
+/// Reads a plain text file of at most `most` bytes.
+///
+/// # Errors
+/// If it is not such a file, or cannot be read.
+pub fn read_at_most(file: &Path, most: u64) -> io::Result<String> {
     // Opening a pipe would block until its other end is opened.
-    check(&fs::metadata(file)?, MAX_TEXT_BYTES)?;
+    check(&fs::metadata(file)?, most)?;
     let opened = File::open(file)?;
-    check(&opened.metadata()?, MAX_TEXT_BYTES)?;
+    check(&opened.metadata()?, most)?;
     let mut text = String::new();
     // The length is limited again here, because the file may grow, and some files report no length.
-    opened.take(MAX_TEXT_BYTES + 1).read_to_string(&mut text)?;
+    opened.take(most + 1).read_to_string(&mut text)?;
     let length = text.len() as u64;
-    if length > MAX_TEXT_BYTES { Err(too_long(length)) } else { Ok(text) }
+    if length > most { Err(too_long(length, most)) } else { Ok(text) }
 }
 
 /// Checks that a file is a plain file of at most `most` bytes.
@@ -30,7 +38,7 @@ pub fn check(file: &Metadata, most: u64) -> io::Result<()> {
     match file.len() {
         _ if file.is_dir() => Err(io::Error::new(ErrorKind::IsADirectory, "a folder")),
         _ if !file.is_file() => Err(io::Error::new(ErrorKind::InvalidInput, "a device or a pipe")),
-        length if length > most => Err(too_long(length)),
+        length if length > most => Err(too_long(length, most)),
         _ => Ok(()),
     }
 }
@@ -46,6 +54,6 @@ pub fn names_in(folder: &Path) -> Vec<String> {
     names
 }
 
-fn too_long(length: u64) -> io::Error {
-    io::Error::new(ErrorKind::FileTooLarge, format!("{length} bytes or more, where {MAX_TEXT_BYTES} are the most"))
+fn too_long(length: u64, most: u64) -> io::Error {
+    io::Error::new(ErrorKind::FileTooLarge, format!("{length} bytes or more, where {most} are the most"))
 }

@@ -18,7 +18,7 @@
 //! | `design/state`, `design/links`, `design/balance` | tables of measures, masses, and the residuals of (7) and (8) |
 //! | `design/bars`, `design/front` | bar charts of (7) and (8); Pareto front of added mass and inertia |
 //! | `reaction/force`, `reaction/moment` | the reaction on the base, with a label of the scale |
-//! | `signals/<topic>` | every row of the table of [`signals`](stillbase_simulation::signals), at every step, as a series |
+//! | `signals/<topic>` | every row of the table of [`signals`](stillbase_simulation::signals) as a series |
 //! | `signals/<topic>/limits` | limits of torques and rates near enough to be drawn, at plus and minus, as series |
 //! | `events`, `phase` | events and phases of the run |
 //! | `view` | offscreen pictures |
@@ -32,9 +32,11 @@
 //! Each change of the machine in a session is a row of the design, at the step at which it was made. Such recordings
 //! have a further time line, `edit`.
 //!
-//! Constant parts of an item are written once. Moving parts have up to about 200 rows a second, and signals a row at
-//! every step. Machine, scenario, version and verdict are properties of the recording. Equal scenarios give equal
-//! recordings, independent of the time and the computer.
+//! Constant parts of an item are written once. Moving parts have rows at a fixed rate, at least 50 a second and 100 in
+//! all; signals, at least 100 a second and 500 in all, or at every step if the options say so. Each row holds the exact
+//! numbers of its step. The components `paths` and `units` of an entity of signals name its series. Machine, scenario,
+//! version and verdict are properties of the recording. Equal scenarios give equal recordings, independent of the time
+//! and the computer.
 
 mod blueprint;
 mod dashes;
@@ -226,6 +228,9 @@ fn digest(scenarios: &[Scenario], options: &Options) -> u128 {
         hash.add(&scenario.to_toml());
         hash.add(&stillbase_mechanics::machine::to_toml(&scenario.machine));
     }
+    if options.every_step {
+        hash.add("every step");
+    }
     if let Some(p) = options.pictures {
         hash.add(&format!("{} {} {} {}", p.fps, p.width, p.height, p.pin_forces));
     }
@@ -261,7 +266,13 @@ fn write(
     let mut pictures = PictureSeries::of(options.pictures);
     let pictured = pictures.is_wanted();
     let scale = preview::scale(&cases);
-    let mut set = RecordingSetup { store: &mut store, pictures: &mut pictures, scale, several: scenarios.len() > 1 };
+    let mut set = RecordingSetup {
+        store: &mut store,
+        pictures: &mut pictures,
+        scale,
+        every_step: options.every_step,
+        several: scenarios.len() > 1,
+    };
     let mut recordings = Vec::with_capacity(scenarios.len());
     // The layout comes first, so that the viewer does not create a default one.
     let laid_out = blueprint::lay_out(set.store, &cases, pictured).map_err(CaseError::from);

@@ -30,8 +30,24 @@ use stillbase_simulation::frame::{Frame, Peaks};
 /// Number of buffered rows above which they are written.
 const MAX_BUFFERED_ROWS: usize = 8192;
 
-/// Interval between the rows of moving items, s; a screen cannot show more.
-const ROW_INTERVAL_S: f64 = 0.005;
+/// How often something has a row: a screen shows no more.
+struct RowRate {
+    /// Longest interval between rows, s.
+    longest_s: f64,
+    /// Number of rows of a run so short that more of them would not be told apart.
+    rows: f64,
+}
+
+impl RowRate {
+    const MOVING: Self = Self { longest_s: 0.02, rows: 100.0 };
+    const SIGNALS: Self = Self { longest_s: 0.01, rows: 500.0 };
+
+    /// Returns the number of steps from one row to the next, in a run of a number of steps of a length, s.
+    fn every(&self, steps: u64, step: f64) -> u64 {
+        let interval = (steps as f64 * step / self.rows).min(self.longest_s);
+        (interval / step).round().max(1.0) as u64
+    }
+}
 
 /// Maximum number of points of a trail.
 const MAX_TRAIL_POINTS: usize = 16_384;
@@ -44,6 +60,8 @@ pub struct RecordingSetup<'a> {
     pub pictures: &'a mut PictureSeries,
     /// Scale of reactions.
     pub scale: Scale,
+    /// Whether signals have a row at every step.
+    pub every_step: bool,
     /// Whether there is more than one case; the texts of events then name the case.
     pub several: bool,
 }
@@ -88,6 +106,8 @@ struct Recorder<'a> {
     clock: RowTimes,
     topics: Vec<Topic>,
     row_every: u64,
+    /// Number of steps from one row of signals to the next.
+    signals_every: u64,
     drawn: Option<Drawn>,
     /// Pose constant b at the start, rad.
     first_b: f64,
@@ -112,7 +132,7 @@ impl Instant {
 
 impl<'a> Recorder<'a> {
     fn new(set: &'a mut RecordingSetup<'_>, scenario: &'a Scenario, forecast: &'a Preview) -> Result<Self, CaseError> {
-        let RecordingSetup { store, pictures, scale, several } = set;
+        let RecordingSetup { store, pictures, scale, every_step, several } = set;
         let (palette, root) = (palette(Theme::Dark), &forecast.root);
         store.fixed(root, &ViewCoordinates::RIGHT_HAND_Z_UP())?;
         forecast.design.write(store, root)?;
@@ -152,7 +172,11 @@ impl<'a> Recorder<'a> {
             edits: 0,
             clock: RowTimes::default(),
             topics: forecast.topics.clone(),
-            row_every: (ROW_INTERVAL_S / scenario.step).round().max(1.0) as u64,
+            signals_every: match *every_step {
+                true => 1,
+                false => RowRate::SIGNALS.every(forecast.steps, scenario.step),
+            },
+            row_every: RowRate::MOVING.every(forecast.steps, scenario.step),
             drawn: None,
             first_b: 0.0,
         })
@@ -165,10 +189,13 @@ impl<'a> Recorder<'a> {
             self.events.start(at, &self.forecast.title, self.scenario.machine.name());
             self.events.plan(at, &run.scenario().task, run.planned_time());
         }
-        let redrawn = (self.edited(at) || self.drawn.is_none()) && self.prepare(run, frame);
+        let edited = self.edited(at);
+        let redrawn = (edited || self.drawn.is_none()) && self.prepare(run, frame);
         self.events.note(at, frame, run.scenario());
-        self.clock.push(at);
-        self.topics.iter_mut().for_each(|topic| topic.push(frame));
+        if last || edited || frame.step.is_multiple_of(self.signals_every) {
+            self.clock.push(at);
+            self.topics.iter_mut().for_each(|topic| topic.push(frame));
+        }
         // After a change of the views, the scene is drawn at once.
         if last || redrawn || frame.step.is_multiple_of(self.row_every) {
             self.draw(at, frame, last)?;

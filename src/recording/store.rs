@@ -17,12 +17,7 @@ use crate::rerun::{TimeInt, TimePoint, Timeline};
 use thiserror::Error;
 
 use stillbase_files::NewFile;
-
-/// Application name under which the viewer stores layouts.
-pub const APPLICATION: &str = "stillbase";
-
-/// Time line of simulated time.
-pub const TIME_TIMELINE: &str = "sim_time";
+pub use stillbase_files::recorded::{APPLICATION, TIME_TIMELINE};
 
 /// Time line of steps.
 pub const STEP_TIMELINE: &str = "step";

@@ -1,10 +1,12 @@
 //! Topics: signals that share an entity. Each row of an entity has an identifier and two times, which take 18 bytes in
 //! the file, while a value takes 8. The signals of one entity share identifier and times.
 
-use crate::rerun::{EntityPath, Scalars, SeriesLines};
+use crate::rerun::components::Text;
+use crate::rerun::{AnyValues, EntityPath, Scalars, SeriesLines};
 
 use super::store::{RowTimes, Store, StoreError};
 use super::style::{colour, series_name, under};
+use stillbase_files::recorded::{PATHS, UNITS};
 use stillbase_picture::charts::{self, Chart};
 use stillbase_picture::scene::palette::{Palette, faded};
 use stillbase_simulation::frame::{Frame, Peaks};
@@ -86,6 +88,12 @@ impl Topic {
         palette: &Palette,
         peaks: &Peaks,
     ) -> Result<(), StoreError> {
+        let words =
+            |of: fn(&Signal) -> &str| self.signals.iter().map(|signal| Text::from(of(signal))).collect::<Vec<_>>();
+        let names = AnyValues::default()
+            .with_component::<Text>(PATHS, words(|signal| &signal.path))
+            .with_component::<Text>(UNITS, words(|signal| signal.unit));
+        store.fixed(&self.path(root), &names)?;
         let width = |signal: &Signal| if signal.path.contains("reference") { 0.8 } else { 1.6 };
         let style = SeriesLines::new()
             .with_names(self.signals.iter().map(series_name))

@@ -7,6 +7,7 @@ pub mod control;
 pub mod frame;
 mod peaks;
 pub mod plant;
+pub mod signal_table;
 pub mod signals;
 mod simulator;
 pub mod totals;

@@ -90,6 +90,19 @@ pub fn row_heads(signals: &[Signal]) -> Vec<String> {
     ["time s".to_owned()].into_iter().chain(heads).collect()
 }
 
+/// Every unit of a signal.
+const UNITS: [&str; 17] = [
+    "N m/N", "kg m²/s", "rad/s²", "kg m/s", "N m s", "rad/s", "N m", "N s", "m/s", "rad", "m²", "kg", "N", "m", "J",
+    "s", "1",
+];
+
+/// Returns the name and the unit of a signal from the head of a column, as [`row_heads`] writes it. A name may contain
+/// spaces; the unit is empty if it is not stated.
+pub fn name_and_unit(head: &str) -> (&str, &str) {
+    let parts = |unit: &'static str| head.strip_suffix(unit)?.strip_suffix(' ').map(|name| (name, unit));
+    UNITS.into_iter().find_map(parts).unwrap_or((head, ""))
+}
+
 /// Returns the signals of some names, in the order of the table. A name is a path, or the first part of several paths.
 ///
 /// # Errors

@@ -220,7 +220,7 @@ fn four_drives() -> PoseSpace {
 fn record_three_cases(bencher: Bencher) {
     let scenarios: Vec<_> = Scenario::cases().filter_map(Scenario::builtin).collect();
     let file = std::env::temp_dir().join(format!("stillbase-bench-{}.rrd", std::process::id()));
-    let options = stillbase::recording::Options { pictures: None, force: true };
+    let options = stillbase::recording::Options { force: true, ..Default::default() };
     bencher
         .bench_local(|| stillbase::recording::record(&scenarios, &file, &options, &mut |_| true).expect("it records"));
     std::fs::remove_file(&file).expect("the recording is there");

@@ -13,6 +13,8 @@ mod machines;
 mod net;
 mod plan;
 mod reach;
+#[cfg(feature = "record")]
+mod recorded;
 mod results;
 mod simulate;
 mod study;

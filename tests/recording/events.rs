@@ -105,7 +105,7 @@ fn a_gesture_is_one_event() {
 #[test]
 fn edits_on_the_way_are_recorded() {
     let folder = Folder::new("edits");
-    let mut scenario = short("case-3");
+    let mut scenario = Scenario { duration: Some(0.5), ..short("case-3") };
     let edit = |step, edit| TimedEdit { step, edit };
     scenario.edits = vec![
         edit(22, Edit::DragTarget { x: 3.0, y: 0.0 }),
@@ -148,7 +148,7 @@ fn edits_on_the_way_are_recorded() {
     assert_eq!(steps("/case-3/joint_space/plane", "Mesh3D:vertex_positions"), [0, 60]);
     // Also between the instants at which bodies have their rows.
     let moved = steps("/case-3/joint_space/pose", "Points3D:positions");
-    assert!(moved.windows(2).all(|w| w[0] < w[1]) && moved[4..7] == [20, 22, 25], "{moved:?}");
+    assert!(moved.windows(2).all(|w| w[0] < w[1]) && moved[3..7] == [15, 20, 22, 25], "{moved:?}");
     assert_eq!(contents.texts("/case-3/phase", "StateChange:state"), ["motion", "follow"]);
 }
 

@@ -96,7 +96,7 @@ fn a_folder_that_cannot_be_written_is_named() {
         assert!(matches!(&error, RecordError::Write(WriteError::NoFolder { file, .. }) if *file == folder.path(name)));
         assert!(error.to_string().contains(name), "{error}");
     }
-    let error = record(&[short("case-3")], &folder.0, &Options { force: true, pictures: None }, &mut quietly);
+    let error = record(&[short("case-3")], &folder.0, &Options { force: true, ..Options::default() }, &mut quietly);
     assert!(matches!(error, Err(RecordError::Write(WriteError::IsFolder(_)))), "a folder is no file");
     assert_eq!(folder.names(), ["plain"]);
     // Where not even root can write.
@@ -119,7 +119,7 @@ fn what_cannot_be_recorded_is_said() {
         Pictures { fps: f64::NAN, width: 10, height: 10, pin_forces: false },
         Pictures { fps: 30.0, width: 0, height: 10, pin_forces: false },
     ] {
-        let options = Options { pictures: Some(pictures), force: false };
+        let options = Options { pictures: Some(pictures), ..Options::default() };
         let refused = record(&[short("case-1")], &folder.path("x.rrd"), &options, &mut quietly);
         assert!(matches!(refused, Err(RecordError::Pictures(_))), "{pictures:?}");
     }

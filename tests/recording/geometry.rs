@@ -18,16 +18,17 @@ fn geometry_is_static_and_bodies_move_under_their_case() {
         let path = format!("/case-3/machine/link/{}", link.name);
         assert_eq!(has(&path, "Mesh3D:vertex_positions", true), 1, "{path}");
         assert_eq!(has(&path, "Mesh3D:albedo_factor", true), 1, "{path}");
-        // Every fifth of 101 frames.
-        assert_eq!(has(&path, "Transform3D:translation", false), 21, "{path}");
-        assert_eq!(has(&path, "Transform3D:quaternion", false), 21, "{path}");
+        // A short run has a row at each of its 101 frames, but for the first ones, in which it hardly moves.
+        for component in ["Transform3D:translation", "Transform3D:quaternion"] {
+            assert!((96..=101).contains(&has(&path, component, false)), "{path} {component}");
+        }
     }
     for path in ["machine/base", "machine/base/cap", "machine/base/drive/2", "machine/joints", "plan/start/9"] {
         assert_eq!(has(&format!("/case-3/{path}"), "Mesh3D:vertex_positions", true), 1, "{path}");
     }
     assert_eq!(has("/case-3/machine/base", "Transform3D:translation", true), 1, "a fixed base stays");
-    assert_eq!(has("/case-3/machine/joints", "InstancePoses3D:translations", false), 21);
-    assert_eq!(has("/case-3/end_effector", "Points3D:positions", false), 21);
+    assert_eq!(has("/case-3/machine/joints", "InstancePoses3D:translations", false), 101);
+    assert_eq!(has("/case-3/end_effector", "Points3D:positions", false), 101);
     for path in ["end_effector/path", "com", "grid"] {
         assert_eq!(has(&format!("/case-3/{path}"), "LineStrips3D:strips", true), 1, "{path}");
     }

@@ -6,7 +6,8 @@ use super::*;
 fn signals_are_the_frames_at_every_step() {
     let folder = Folder::new("signals");
     let mut heard = Vec::new();
-    let recordings = record(&cases(), &folder.path("cases.rrd"), &Options::default(), &mut |p| {
+    let every_step = Options { every_step: true, ..Options::default() };
+    let recordings = record(&cases(), &folder.path("cases.rrd"), &every_step, &mut |p| {
         heard.push((p.done, p.total, p.what.to_owned()));
         true
     })
@@ -35,6 +36,26 @@ fn signals_are_the_frames_at_every_step() {
     }
     assert!(heard.windows(2).all(|w| w[0].0 <= w[1].0), "progress only grows");
     assert_eq!(heard.last(), Some(&(6000, 6000, "case-3".to_owned())));
+}
+
+/// Without the option, the rows come at a fixed rate, with the last step and those of edits.
+#[test]
+fn signals_of_a_longer_run_have_rows_at_a_fixed_rate() {
+    let folder = Folder::new("signals");
+    let mut scenario = Scenario::builtin("case-3").expect("built in");
+    scenario.duration = Some(7.003);
+    let push = Edit::Set { change: "plant = { force = [0.1, 0.0] }".parse().expect("TOML") };
+    scenario.edits.push(TimedEdit { step: 1234, edit: push });
+    record_in(&folder, "long.rrd", std::slice::from_ref(&scenario)).expect("recorded");
+    let contents = Contents::of(&folder.path("long.rrd"));
+    let own = signals(&scenario.machine);
+    let (steps, _, values) = contents.signal("case-3", &own[0]);
+    let mut wanted: Vec<i64> = (0..=7000).step_by(10).chain([1234, 7003]).collect();
+    wanted.sort_unstable();
+    assert_eq!(steps, wanted);
+    let mut frames: Vec<Frame> = Vec::new();
+    replay(&scenario, |_, frame| frames.push(*frame)).expect("it runs");
+    assert!(steps.iter().zip(&values).all(|(step, x)| own[0].value(&frames[*step as usize]) == *x));
 }
 
 /// Limits stand beside the signals that come near them, from the first to the last instant, at plus and at minus.

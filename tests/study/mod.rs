@@ -2,6 +2,7 @@
 
 mod comparison;
 mod counterweights;
+mod difference;
 mod doubt;
 mod equations;
 mod fronts;

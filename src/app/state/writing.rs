@@ -150,7 +150,7 @@ impl AppState {
             let mut scenario = app_state.session.to_scenario();
             scenario.duration = Some(app_state.session.length());
             Ok(move |ticket: &Ticket, path: &Path, force: bool| {
-                let options = stillbase_recording::Options { pictures: None, force };
+                let options = stillbase_recording::Options { force, ..Default::default() };
                 let mut report = |progress: stillbase_recording::RecordingProgress| {
                     ticket.goes_on(progress.done as f64 / progress.total.max(1) as f64)
                 };

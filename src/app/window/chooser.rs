@@ -82,7 +82,7 @@ impl Chooser {
 /// Returns the file extensions for a purpose, the usual one first.
 fn endings(purpose: &FilePurpose) -> Vec<&'static str> {
     match purpose {
-        FilePurpose::Open => vec!["toml", "urdf", "xml", "csv"],
+        FilePurpose::Open => vec!["toml", "urdf", "xml", "csv", "rrd"],
         FilePurpose::Save => vec!["toml"],
         FilePurpose::Record => vec!["rrd"],
         FilePurpose::Plot(_, PlotFile::Csv) => vec!["csv"],

@@ -6,6 +6,7 @@
 //! | a motion given by samples of the drive angles or of the end effector | [`samples()`] |
 //! | measured motions of a built machine, with forces and moments on its base | [`motions`] |
 //! | a motion or a measurement, distinguished by the columns | [`TableData`] |
+//! | signals over time | [`signals()`] |
 
 mod angle;
 mod column;
@@ -14,8 +15,10 @@ mod kind;
 mod measured;
 mod reader;
 mod samples;
+mod signals;
 
 pub use error::TableError;
 pub use kind::TableData;
 pub use measured::{MAX_ROWS, motions};
 pub use samples::{SampleTable, samples};
+pub use signals::signals;

@@ -1,0 +1,323 @@
+//! `stillbase diff`
+
+use clap::Args;
+use serde::Serialize;
+use stillbase_settings::number::{at_most_digits, counted};
+use stillbase_simulation::signal_table::SignalTable;
+use stillbase_study::difference::{Departure, SignalDifference, TableDifference, Tolerances};
+
+use super::failure::Failure;
+use super::output::{Format, TextTable};
+use super::signal_source::SignalSource;
+use super::simulate::unknown_signal;
+
+/// Compare two recordings, tables or scenarios, signal by signal
+///
+/// Each of the two is a recording (.rrd), a table of signals over time (.csv), or a scenario, which is run. A recording
+/// of several cases is compared case by case; `FILE.rrd:CASE` is one of them. The exit status is 0 if every signal stays
+/// within its tolerance, and 1 otherwise. By default no difference is permitted.
+///
+/// Both are compared at the instants of the one with fewer rows. At an instant that the other one lacks, its values are
+/// interpolated linearly.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  stillbase diff before.rrd after.rrd                             what a change of the program has changed
+  stillbase diff case-3 my.toml --tolerance torque=0.01           within 0.01 N m, and all else equal
+  stillbase diff cases.rrd:case-1 measured.csv --tolerance 1e-3 --json")]
+pub struct DiffArguments {
+    /// A recording, a table or a scenario
+    #[arg(value_name = "A")]
+    first: String,
+    /// Another one
+    #[arg(value_name = "B")]
+    second: String,
+    #[command(flatten)]
+    tolerance: ToleranceOptions,
+    #[command(flatten)]
+    format: Format,
+}
+
+/// Options of permitted differences.
+#[derive(Args)]
+pub struct ToleranceOptions {
+    /// Permit a difference of a signal, in its unit, such as torque/1=1e-6 (N m), of all signals of a group, such as
+    /// torque=1e-6, or of all others, such as 1e-9; may be repeated
+    #[arg(long = "tolerance", value_name = "SIGNAL=ABS", value_parser = tolerance)]
+    given: Vec<(Option<String>, f64)>,
+}
+
+fn tolerance(text: &str) -> Result<(Option<String>, f64), String> {
+    let (name, number) = match text.rsplit_once('=') {
+        Some((name, number)) => (Some(name.trim().to_owned()), number),
+        None => (None, text),
+    };
+    let number = number.trim().parse().ok().filter(|x: &f64| *x >= 0.0 && x.is_finite());
+    number.map(|x| (name, x)).ok_or_else(|| "want SIGNAL=ABS, such as torque/1=1e-6, or a number, 0 or more".into())
+}
+
+impl ToleranceOptions {
+    /// Returns the tolerances; without a number for all signals, that is `all` with its relative part.
+    pub fn over(&self, all: Tolerances) -> Tolerances {
+        let own = self.given.iter().rev().find(|(name, _)| name.is_none());
+        let all = own.map_or(all, |(_, all)| Tolerances { all: *all, ..Tolerances::default() });
+        let named = self.given.iter().filter_map(|(name, x)| Some((name.clone()?, *x)));
+        Tolerances { named: named.collect(), ..all }
+    }
+
+    /// Refuses names of tolerances that no signal has.
+    ///
+    /// # Errors
+    /// If there is such a name.
+    pub fn check<'a>(&self, tables: impl IntoIterator<Item = &'a SignalTable>) -> Result<(), Failure> {
+        let columns: Vec<&str> = tables.into_iter().flat_map(|t| t.columns.iter().map(|c| c.path.as_str())).collect();
+        let is_known = |name: &str| columns.iter().any(|path| *path == name || path.split('/').next() == Some(name));
+        match self.given.iter().filter_map(|(name, _)| name.as_ref()).find(|name| !is_known(name)) {
+            Some(name) => Err(unknown_signal(name, columns.iter().copied()).with_context("--tolerance")),
+            None => Ok(()),
+        }
+    }
+}
+
+impl DiffArguments {
+    /// Compares both and prints the differences.
+    pub fn run(&self) -> Result<(), Failure> {
+        let sources = [SignalSource::open(&self.first)?, SignalSource::open(&self.second)?];
+        self.tolerance.check(sources.iter().flat_map(|source| source.cases.iter().map(|(_, table)| table)))?;
+        let tolerances = self.tolerance.over(Tolerances::default());
+        let mut cases = Vec::new();
+        let mut missing = Vec::new();
+        let [first, second] = &sources;
+        if let ([(a, left)], [(b, right)]) = (&first.cases[..], &second.cases[..]) {
+            let name = a.as_ref().or(b.as_ref()).map_or("", String::as_str);
+            cases.push(Case::of(name, &TableDifference::between(left, right, &tolerances)));
+        } else {
+            let named = |name: &Option<String>, source: &SignalSource| {
+                name.clone().ok_or_else(|| {
+                    let why = "want one case of the other file, such as cases.rrd:case-1: it has several";
+                    Failure::wrong_input(why).with_context(&source.name)
+                })
+            };
+            for (name, left) in &first.cases {
+                let name = named(name, first)?;
+                match second.cases.iter().find(|(other, _)| other.as_ref() == Some(&name)) {
+                    Some((_, right)) => {
+                        cases.push(Case::of(&name, &TableDifference::between(left, right, &tolerances)))
+                    }
+                    None => missing.push((name, &first.name)),
+                }
+            }
+            for (name, _) in &second.cases {
+                let name = named(name, second)?;
+                if !first.cases.iter().any(|(other, _)| other.as_ref() == Some(&name)) {
+                    missing.push((name, &second.name));
+                }
+            }
+        }
+        let missing: Vec<String> =
+            missing.iter().map(|(case, file)| format!("only {file} has the case {case}")).collect();
+        let equal = missing.is_empty() && cases.iter().all(|case| case.equal);
+        let within = missing.is_empty() && cases.iter().all(|case| case.within);
+        let answer = Answer { equal, within, missing, cases };
+        self.format.print(&answer, |answer| {
+            let parts = answer.missing.iter().map(|line| format!("{line}\n"));
+            parts.chain(answer.cases.iter().map(Case::text)).collect()
+        })?;
+        if within { Ok(()) } else { Err(Failure::Told) }
+    }
+}
+
+#[derive(Serialize)]
+struct Answer {
+    /// Whether every number is equal.
+    equal: bool,
+    /// Whether every signal stays within its tolerance.
+    within: bool,
+    /// Cases that only one of both has.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    missing: Vec<String>,
+    cases: Vec<Case>,
+}
+
+/// The difference of one case, as it is printed.
+#[derive(Serialize)]
+pub struct Case {
+    case: String,
+    /// Whether every number is equal.
+    pub equal: bool,
+    /// Whether every signal stays within its tolerance.
+    pub within: bool,
+    /// What the comparison found, in words.
+    pub sentence: String,
+    /// Last time of both, s.
+    ends: [f64; 2],
+    instants: usize,
+    interpolated: usize,
+    only_first: Vec<String>,
+    only_second: Vec<String>,
+    /// Path and units of signals whose units differ.
+    units: Vec<(String, [String; 2])>,
+    signals: Vec<Row>,
+}
+
+/// The difference of one signal.
+#[derive(Serialize)]
+struct Row {
+    signal: String,
+    unit: String,
+    tolerance: f64,
+    within: bool,
+    /// Where the difference is largest.
+    largest: Place,
+    /// Where it exceeds the tolerance first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    first: Option<Place>,
+}
+
+/// The values at one instant; a value that is no finite number is absent.
+#[derive(Serialize)]
+struct Place {
+    time: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    first: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    second: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    difference: Option<f64>,
+    /// Number of floating-point numbers from one to the other.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ulps: Option<u64>,
+}
+
+impl Place {
+    fn of(departure: &Departure) -> Self {
+        let finite = |x: f64| Some(x).filter(|x| x.is_finite());
+        Self {
+            time: departure.time,
+            first: finite(departure.values[0]),
+            second: finite(departure.values[1]),
+            difference: finite(departure.size()),
+            ulps: departure.units_in_the_last_place(),
+        }
+    }
+}
+
+/// Largest difference that is told in units in the last place: beyond it the numbers themselves say more.
+const MAX_UNITS: u64 = 1_000_000;
+/// Maximum number of signals in a printed table.
+const MAX_ROWS: usize = 20;
+
+impl Case {
+    /// Returns the difference of a case with a name.
+    pub fn of(name: &str, difference: &TableDifference) -> Self {
+        let finite = |x: f64| if x.is_finite() { x } else { 0.0 };
+        Self {
+            case: name.into(),
+            equal: difference.is_equal(),
+            within: difference.is_within(),
+            sentence: sentence(name, difference),
+            ends: difference.ends.map(finite),
+            instants: difference.instants,
+            interpolated: difference.interpolated,
+            only_first: difference.unmatched[0].clone(),
+            only_second: difference.unmatched[1].clone(),
+            units: difference.units.clone(),
+            signals: difference.signals.iter().map(Row::of).collect(),
+        }
+    }
+
+    /// Returns the sentence, and below it the signals that differ, the worst first.
+    pub fn text(&self) -> String {
+        let mut rows: Vec<&Row> = self.signals.iter().filter(|row| row.largest.difference != Some(0.0)).collect();
+        if rows.is_empty() {
+            return format!("{}\n", self.sentence);
+        }
+        let excess =
+            |row: &Row| row.largest.difference.map_or(f64::INFINITY, |x| x / row.tolerance.max(f64::MIN_POSITIVE));
+        rows.sort_by(|a, b| excess(b).total_cmp(&excess(a)));
+        let head = ["signal", "unit", "largest difference", "at s", "tolerance", "exceeded from s"];
+        let mut table = TextTable::new(head).with_words(1);
+        let number = |x: f64| at_most_digits(x, 3);
+        for row in rows.iter().take(MAX_ROWS) {
+            let first = row.first.as_ref().map_or_else(String::new, |first| at_most_digits(first.time, 6));
+            table.row([
+                row.signal.clone(),
+                row.unit.clone(),
+                row.largest.difference.map_or_else(|| "no number".into(), number),
+                at_most_digits(row.largest.time, 6),
+                number(row.tolerance),
+                first,
+            ]);
+        }
+        let more = match rows.len().saturating_sub(MAX_ROWS) {
+            0 => String::new(),
+            more => format!("and {more} more: --json lists them\n"),
+        };
+        format!("{}\n{table}{more}", self.sentence)
+    }
+}
+
+impl Row {
+    fn of(signal: &SignalDifference) -> Self {
+        Self {
+            signal: signal.path.clone(),
+            unit: signal.unit.clone(),
+            tolerance: signal.tolerance,
+            within: signal.first.is_none(),
+            largest: Place::of(&signal.largest),
+            first: signal.first.as_ref().map(Place::of),
+        }
+    }
+}
+
+/// Returns what the comparison of a case found.
+fn sentence(name: &str, difference: &TableDifference) -> String {
+    let of = if name.is_empty() { String::new() } else { format!("{name}: ") };
+    if difference.overlap.is_none() {
+        return format!("{of}no instant that both have");
+    }
+    let (signals, instants) = (counted(difference.signals.len(), "signal"), counted(difference.instants, "instant"));
+    let between = match difference.interpolated {
+        0 => String::new(),
+        count => format!(", {count} of them interpolated"),
+    };
+    let mut found = Vec::new();
+    if let Some((signal, first)) = difference.first() {
+        let count = difference.signals.iter().filter(|signal| signal.first.is_some()).count();
+        let ulps = match first.units_in_the_last_place() {
+            Some(ulps) if ulps <= MAX_UNITS => format!(", by {}", counted(ulps, "unit")) + " in the last place",
+            _ => String::new(),
+        };
+        let [a, b] = first.values;
+        let unit = if signal.unit == "1" { String::new() } else { format!(" {}", signal.unit) };
+        found.push(format!(
+            "{count} of {signals} differ at {instants}{between}; the first is {} at {} s: {a:?} and {b:?}{unit}{ulps}",
+            signal.path,
+            at_most_digits(first.time, 9),
+        ));
+    }
+    if !difference.has_same_end() {
+        let [a, b] = difference.ends;
+        found.push(format!("the first ends at {} s, the second at {} s", at_most_digits(a, 9), at_most_digits(b, 9)));
+    }
+    for (place, paths) in ["first", "second"].iter().zip(&difference.unmatched) {
+        if let Some(path) = paths.first() {
+            found.push(format!("only the {place} has {path}{}", others(paths.len())));
+        }
+    }
+    if let Some((path, [a, b])) = difference.units.first() {
+        found.push(format!("{path} is in {a} and in {b}{}", others(difference.units.len())));
+    }
+    let how = if difference.is_equal() { "equal" } else { "within tolerance" };
+    match found.is_empty() {
+        true => format!("{of}{how}: {signals} at {instants}{between}"),
+        false => format!("{of}{}", found.join("; ")),
+    }
+}
+
+fn others(count: usize) -> String {
+    match count {
+        0 | 1 => String::new(),
+        count => format!(" and {} more", count - 1),
+    }
+}

@@ -1,0 +1,58 @@
+//! [`SignalTable`]: signals over time, as a run gives them or as a file holds them.
+
+use crate::frame::Frame;
+use crate::signals::Signal;
+
+/// Signals over time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SignalTable {
+    /// Time of each row, s, increasing.
+    pub time: Vec<f64>,
+    /// The signals.
+    pub columns: Vec<SignalColumn>,
+}
+
+/// One signal over time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SignalColumn {
+    /// Path of the signal, such as `torque/1`.
+    pub path: String,
+    /// Its unit, `1` for none.
+    pub unit: String,
+    /// Its value in each row.
+    pub values: Vec<f64>,
+}
+
+impl SignalTable {
+    /// Returns a table of some signals without rows.
+    pub fn of(signals: &[Signal]) -> Self {
+        let column = |signal: &Signal| SignalColumn {
+            path: signal.path.clone(),
+            unit: signal.unit.to_owned(),
+            values: Vec::new(),
+        };
+        Self { time: Vec::new(), columns: signals.iter().map(column).collect() }
+    }
+
+    /// Appends the values of a frame; `signals` are those of the table.
+    pub fn push(&mut self, signals: &[Signal], frame: &Frame) {
+        self.time.push(frame.time);
+        self.columns.iter_mut().zip(signals).for_each(|(column, signal)| column.values.push(signal.value(frame)));
+    }
+
+    /// Returns the signal with a path.
+    pub fn column(&self, path: &str) -> Option<&SignalColumn> {
+        self.columns.iter().find(|column| column.path == path)
+    }
+
+    /// Returns time and signals as heads of columns: the name and the unit of each.
+    pub fn heads(&self) -> Vec<String> {
+        let heads = self.columns.iter().map(|column| format!("{} {}", column.path, column.unit));
+        ["time s".to_owned()].into_iter().chain(heads).collect()
+    }
+
+    /// Returns the numbers of a row: the time and the value of each signal.
+    pub fn row(&self, row: usize) -> impl Iterator<Item = f64> + '_ {
+        [self.time[row]].into_iter().chain(self.columns.iter().map(move |column| column.values[row]))
+    }
+}
