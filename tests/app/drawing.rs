@@ -3,6 +3,7 @@
 use egui::{Key, Modifiers, Pos2};
 use egui_kittest::kittest::Queryable as _;
 use stillbase::app::{PenChange, PenTool, Preferences, SessionCommand, Switch, ViewChange};
+use stillbase::mechanics::machine::place_of;
 use stillbase::mechanics::sketch::{BarEnd, Place, Sketch, SketchRefusal, SketchStep, Template};
 use stillbase::picture::paint::labels;
 use stillbase::picture::scene::palette::Theme;
@@ -12,7 +13,7 @@ use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 use stillbase::settings::number::ShortNumber;
 
-use super::{Window, drag, seen, session, window, window_liked, window_of, written};
+use super::{Window, drag, on_screen, seen, session, window, window_liked, window_of, written};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![
@@ -25,6 +26,7 @@ pub const TESTS: &[Test] = tests![
     a_machine_from_nothing_gets_a_task,
     headings_of_a_narrow_design_view_are_whole,
     the_word_on_a_balanced_machine_is_green,
+    masses_of_counterweights_leave_pins_free,
 ];
 
 fn drawing(template: Template) -> Window {
@@ -245,6 +247,20 @@ fn headings_of_a_narrow_design_view_are_whole() {
 fn the_word_on_a_balanced_machine_is_green() {
     let h = balanced();
     assert_eq!(tones(&h, "kg added, Σ D"), [egui::Color32::from_rgb(0x4c, 0xc9, 0xa0)]);
+}
+
+fn masses_of_counterweights_leave_pins_free() {
+    let h = balanced();
+    let units = session(&h).frame().q.units();
+    let links = session(&h).scenario().machine.resolved_links();
+    let pins: Vec<Pos2> =
+        links.iter().map(|link| place_of(&link.root, &units)).map(|p| on_screen(&h, p.re, p.im)).collect();
+    let placement = labels::last(&h.ctx, 0).expect("drawn");
+    let masses: Vec<_> = placement.all.iter().filter(|own| &*own.label.name == "design/weights/kg").collect();
+    assert!(!masses.is_empty());
+    for own in masses {
+        assert!(!pins.iter().any(|pin| own.place.contains(*pin)), "{} lies on a pin", own.text);
+    }
 }
 
 /// The colours of all texts that contain these words.
