@@ -446,6 +446,48 @@ fn the_order_is_the_best_of_all() {
     assert!(compared > 7, "{compared}");
 }
 
+/// A random chain with halves of rings on all of its links.
+fn with_half_rings(noise: &mut Noise, drives: usize) -> Machine {
+    let mut spec = a_chain(noise, drives).spec().clone();
+    for link in &spec.links {
+        spec.counterweights.push(stillbase::mechanics::machine::Counterweight {
+            link: link.name.clone(),
+            mass: noise.between(0.2, 1.0),
+            at: noise.between(-0.15, -0.02),
+            radius: noise.between(0.03, 0.06),
+            inner_radius: 0.012,
+            half: true,
+            ..Default::default()
+        });
+    }
+    Machine::new(spec).expect("a machine")
+}
+
+/// Pairs that are not decided count as meeting, but they prove nothing.
+#[test]
+fn the_fewest_layers_are_proven_by_what_meets_for_certain() {
+    let noise = &mut Noise::of(9);
+    let [mut undecided, mut unproven] = [0; 2];
+    for drives in [4, 5, 5, 5, 5, 5] {
+        let machine = with_half_rings(noise, drives);
+        let Ok(report) = find_layers(&request(&machine, thin())) else { continue };
+        if report.is_decided() {
+            continue;
+        }
+        undecided += 1;
+        assert!(!report.least_tilt, "{}", machine.name());
+        if !report.minimal {
+            unproven += 1;
+            continue;
+        }
+        let certain: Vec<Contact> = report.meetings.iter().filter(|contact| contact.decided).cloned().collect();
+        every(machine.links().len(), (report.count - 1).min(8), |layers| {
+            assert!(!is_order(&machine, &thin(), &certain, layers), "{layers:?} is lower");
+        });
+    }
+    assert!(undecided > 0 && unproven > 0, "{undecided} undecided, {unproven} not proven");
+}
+
 #[test]
 fn the_machine_of_the_paper_has_no_order_within_its_limits() {
     let machine = builtin("nine-link").expect("built in");

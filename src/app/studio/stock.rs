@@ -53,7 +53,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, p: &Palette, co
             Some(Ok(found)) => result(ui, session, found, p, commands),
             Some(Err(why)) => {
                 ui.label(RichText::new(why.to_string()).font(plain(12.0)).color(colour(p.reaction)));
-                if let NoCut::Weights(why) = why {
+                if let NoCut::Weights(why) | NoCut::Bounds { why, .. } = why {
                     relaxations(why).iter().for_each(|relaxed| lamp::proposal(ui, relaxed, None, commands));
                 }
             }

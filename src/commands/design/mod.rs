@@ -124,7 +124,8 @@ impl DesignArguments {
     fn weigh(&self, machine: &Machine, motion: Option<&Motion>) -> Result<(), Failure> {
         self.new_machine.check()?;
         let (weighed, answer) = self.weighing.run(machine, motion)?;
-        self.new_machine.save(&weighed, format!("{}, balanced by counterweights", machine.name()))?;
+        let how = if answer.is_balanced { "balanced by" } else { "with" };
+        self.new_machine.save(&weighed, format!("{}, {how} counterweights", machine.name()))?;
         self.format.print(&answer, |answer| weighed::text(answer, machine))
     }
 
