@@ -429,7 +429,12 @@ fn the_order_is_the_best_of_all() {
             continue;
         };
         let own: Vec<usize> = layers.iter().map(|layer| layer.layer).collect();
-        assert!(minimal && least_tilt && is_order(machine, &cut, &contacts, &own), "{}: {own:?}", machine.name());
+        assert!(is_order(machine, &cut, &contacts, &own), "{}: {own:?}", machine.name());
+        if !contacts.iter().all(|contact| contact.decided) {
+            assert!(!least_tilt, "{}: {own:?}", machine.name());
+            continue;
+        }
+        assert!(minimal && least_tilt, "{}: {own:?}", machine.name());
         if count > 12 {
             continue;
         }
@@ -446,30 +451,13 @@ fn the_order_is_the_best_of_all() {
     assert!(compared > 7, "{compared}");
 }
 
-/// A random chain with halves of rings on all of its links.
-fn with_half_rings(noise: &mut Noise, drives: usize) -> Machine {
-    let mut spec = a_chain(noise, drives).spec().clone();
-    for link in &spec.links {
-        spec.counterweights.push(stillbase::mechanics::machine::Counterweight {
-            link: link.name.clone(),
-            mass: noise.between(0.2, 1.0),
-            at: noise.between(-0.15, -0.02),
-            radius: noise.between(0.03, 0.06),
-            inner_radius: 0.012,
-            half: true,
-            ..Default::default()
-        });
-    }
-    Machine::new(spec).expect("a machine")
-}
-
 /// Pairs that are not decided count as meeting, but they prove nothing.
 #[test]
 fn the_fewest_layers_are_proven_by_what_meets_for_certain() {
     let noise = &mut Noise::of(9);
     let [mut undecided, mut unproven] = [0; 2];
-    for drives in [4, 5, 5, 5, 5, 5] {
-        let machine = with_half_rings(noise, drives);
+    for drives in [3, 4, 4, 4, 5, 5, 5, 5] {
+        let machine = weighted(noise, drives);
         let Ok(report) = find_layers(&request(&machine, thin())) else { continue };
         if report.is_decided() {
             continue;

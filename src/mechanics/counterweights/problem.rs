@@ -4,7 +4,7 @@
 use super::refusal::CounterweightError;
 use super::residual::{ConditionResidual, conditions};
 use super::spec::CounterweightSpec;
-use super::units::Units;
+use super::units::{Units, ratio_unit};
 use crate::balance::{LinearEquation, SolutionSpace};
 use crate::machine::{Inertia, Machine, ResolvedLink, Rotor};
 use crate::planar::Vector;
@@ -15,6 +15,8 @@ pub(super) struct CounterweightProblem {
     pub inertia: Inertia,
     /// The rotors of all drives, also those with a free parameter.
     pub rotors: Vec<Rotor>,
+    /// Units of the free ratios of rotors.
+    pub ratio_units: Vec<f64>,
     /// Units of all that follows, and of the requests that are solved.
     pub units: Units,
     pub conditions: Vec<ConditionResidual>,
@@ -42,11 +44,12 @@ impl CounterweightProblem {
             return Err(CounterweightError::Coupled);
         }
         let rotors = machine.spec().drives.iter().map(|drive| drive.rotor.unwrap_or_default()).collect();
+        let ratio_units = request.rotors.iter().map(ratio_unit).collect();
         let units = Units::of(&bare);
         let parts = bare.resolved_links().iter().map(|link| units.link(link)).collect::<Vec<_>>();
         let conditions = conditions(&bare, &inertia, units, &parts, request, beyond)?;
         let reach = bare.reach() / units.length;
-        Ok(Self { bare, inertia, rotors, units, conditions, parts, reach })
+        Ok(Self { bare, inertia, rotors, ratio_units, units, conditions, parts, reach })
     }
 
     /// Checks that counterweights at the sites can change every condition that is not satisfied.

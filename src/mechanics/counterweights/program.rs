@@ -188,7 +188,7 @@ impl CounterweightProblem {
                     ends
                 }
                 RotorFreedom::Ratio(ends) => {
-                    let inertia = self.rotor_inertia(rotor.drive);
+                    let inertia = self.rotor_inertia(rotor.drive) * self.ratio_units[i].powi(2);
                     program.above_square(turned, inertia, x);
                     ends
                 }

@@ -25,7 +25,7 @@ impl CounterweightProblem {
         let unknowns = UnknownIndices::of(request, self.drives());
         let mut x = x.to_vec();
         for (i, rotor) in request.rotors.iter().enumerate() {
-            let inertia = self.rotor_inertia(rotor.drive);
+            let inertia = self.rotor_inertia(rotor.drive) * self.ratio_units[i].powi(2);
             x[unknowns.turned(i)] = match rotor.parameter {
                 RotorFreedom::Inertia(_) => 0.0,
                 RotorFreedom::Ratio(_) => inertia * x[unknowns.rotor(i)].powi(2),
@@ -119,7 +119,10 @@ impl CounterweightProblem {
                 RotorFreedom::Inertia([low, high]) => {
                     Rotor { inertia: (value * self.units.inertia()).clamp(low, high), ..present }
                 }
-                RotorFreedom::Ratio([low, high]) => Rotor { ratio: other_than_zero(value.clamp(low, high)), ..present },
+                RotorFreedom::Ratio([low, high]) => {
+                    let ratio = (value * self.ratio_units[i]).clamp(low, high);
+                    Rotor { ratio: other_than_zero(ratio), ..present }
+                }
             };
             spec.drives[rotor.drive].rotor = (found.inertia > 0.0).then_some(found);
         }

@@ -16,6 +16,13 @@ pub(super) struct Units {
     pub mass: f64,
 }
 
+/// Returns the unit of the free ratio of a rotor: its greatest magnitude.
+pub(super) fn ratio_unit(rotor: &FreeRotor) -> f64 {
+    let RotorFreedom::Ratio([low, high]) = rotor.parameter else { return 1.0 };
+    let greatest = low.abs().max(high.abs());
+    if greatest > 0.0 { greatest } else { 1.0 }
+}
+
 impl Units {
     /// Returns the units of a machine.
     pub fn of(machine: &Machine) -> Self {
@@ -89,7 +96,7 @@ impl Units {
         let rotor = |rotor: &FreeRotor| FreeRotor {
             parameter: match rotor.parameter {
                 RotorFreedom::Inertia(ends) => RotorFreedom::Inertia(ends.map(|end| end / self.inertia())),
-                RotorFreedom::Ratio(ends) => RotorFreedom::Ratio(ends),
+                RotorFreedom::Ratio(ends) => RotorFreedom::Ratio(ends.map(|end| end / ratio_unit(rotor))),
             },
             ..*rotor
         };

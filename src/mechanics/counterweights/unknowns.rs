@@ -110,6 +110,7 @@ impl CounterweightProblem {
             let [plain, by_ratio] = self.rates(rotor.drive, k);
             let (x, turned) = (unknowns.rotor(i), unknowns.turned(i));
             let (ratio, inertia) = (self.rotors[rotor.drive].ratio, self.rotor_inertia(rotor.drive));
+            let of_ratio = by_ratio * inertia * self.ratio_units[i];
             match rotor.parameter {
                 RotorFreedom::Inertia(_) => {
                     let rate = plain + by_ratio * ratio;
@@ -117,9 +118,9 @@ impl CounterweightProblem {
                     sums[1].terms.push((x, rate * rate));
                 }
                 RotorFreedom::Ratio(_) => {
-                    sums[0].terms.push((x, by_ratio * inertia));
+                    sums[0].terms.push((x, of_ratio));
                     sums[0].constant += plain * inertia;
-                    sums[1].terms.extend([(x, 2.0 * plain * by_ratio * inertia), (turned, by_ratio * by_ratio)]);
+                    sums[1].terms.extend([(x, 2.0 * plain * of_ratio), (turned, by_ratio * by_ratio)]);
                     sums[1].constant += plain * plain * inertia;
                 }
             }

@@ -18,7 +18,6 @@ use stillbase_mechanics::counterweights::{
 };
 use stillbase_mechanics::machine::{BarStock, Inertia, Link, LinkNumber, Machine, MachineError, Part};
 use stillbase_query::QuickQuery;
-use stillbase_settings::number::counted;
 
 use tails::{MAX_ROUNDS, TailSearch};
 
@@ -64,11 +63,12 @@ pub enum NoCut {
     #[error(transparent)]
     Weights(#[from] CounterweightError),
     /// On none of the bars that were tried do discs within the bounds balance the machine.
-    #[error("on none of {}: {why}", counted(.tried, "cut of its bars"))]
+    #[error("on none of {tried} cuts of its bars: {why}")]
     Bounds {
         /// Number of sets of bars that were tried.
         tried: usize,
         /// The bounds in conflict on the bars that come nearest to them, and bounds that would do on some bars.
+        #[source]
         why: CounterweightError,
     },
     /// Arms and discs do not agree.

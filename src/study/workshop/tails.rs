@@ -6,7 +6,7 @@
 use stillbase_mechanics::balance::Condition;
 use stillbase_mechanics::counterweights::{
     BoundKind, BoundRelaxation, CounterweightError, CounterweightSpec, EXTRA_FRACTIONS, PlacedCounterweights,
-    RelaxedBounds, place_weights, relaxed_weights_if_any, weights_if_any,
+    RelaxedBounds, over_payloads, place_weights, relaxed_weights_if_any, weights_if_any,
 };
 use stillbase_mechanics::machine::{BarStock, Inertia, Machine, MachineError};
 
@@ -27,6 +27,8 @@ const SETTLED: f64 = 1e-4;
 const TIE_BREAK: f64 = 1e-6;
 /// Places closer than this, relative to the longest bar, are one.
 const SAME_PLACE: f64 = 1e-9;
+/// Residuals closer than this part of them are one.
+const SAME_RESIDUAL: f64 = 1e-6;
 /// Factor on the least value of several bounds that are relaxed together.
 const TOGETHER: f64 = 1.001;
 
@@ -62,8 +64,18 @@ type Reach = Vec<[f64; 2]>;
 pub(super) struct Attempt {
     pub reach: Reach,
     pub placed: PlacedCounterweights,
+    /// Largest residual over a range of payloads, kg m; that of (8) counts divided by the reach. 0 without a range.
+    residual: f64,
     /// Value of what is minimised, with the mass of the bars.
     value: f64,
+}
+
+impl Attempt {
+    /// Returns whether it is better than another: of less residual over the payloads, or of the same and less value.
+    fn is_better_than(&self, other: &Self) -> bool {
+        let [own, others] = [self.residual, other.residual];
+        if (own - others).abs() > SAME_RESIDUAL * own.max(others) { own < others } else { self.value < other.value }
+    }
 }
 
 /// A search for the lengths of bars.
@@ -265,13 +277,13 @@ impl<'a> TailSearch<'a> {
         let tie_break = TIE_BREAK * placed.unit / self.bare.mass();
         let by_mass = if goal.relaxed.is_none() { goal.request.objective.mass } else { 0.0 };
         let value = placed.value + by_mass.max(tie_break) * bars;
-        Some(Attempt { reach: reach.to_vec(), placed, value })
+        Some(Attempt { reach: reach.to_vec(), residual: residual_over_payloads(&placed.machine, goal), placed, value })
     }
 
     /// Takes bars with these ends if they are the first, or better.
     fn take(&mut self, found: &mut Result<Attempt, Reach>, goal: &Goal, reach: &[[f64; 2]]) {
-        let least = found.as_ref().map_or(f64::INFINITY, |best| best.value);
-        if let Some(other) = self.attempt(goal, reach).filter(|other| other.value < least) {
+        let is_worse = |other: &Attempt| found.as_ref().is_ok_and(|best| !other.is_better_than(best));
+        if let Some(other) = self.attempt(goal, reach).filter(|other| !is_worse(other)) {
             *found = Ok(other);
         }
     }
@@ -279,7 +291,7 @@ impl<'a> TailSearch<'a> {
     /// Takes bars with these ends if they are better; returns whether they are.
     fn improve(&mut self, goal: &Goal, best: &mut Attempt, reach: &[[f64; 2]]) -> bool {
         let found = if reach == best.reach { None } else { self.attempt(goal, reach) };
-        match found.filter(|found| found.value < best.value) {
+        match found.filter(|found| found.is_better_than(best)) {
             Some(found) => {
                 *best = found;
                 true
@@ -327,6 +339,13 @@ impl<'a> TailSearch<'a> {
             }
         }
     }
+}
+
+/// Returns the largest residual of a machine over the range of payloads of a goal, kg m; 0 if there is no range.
+fn residual_over_payloads(machine: &Machine, goal: &Goal) -> f64 {
+    let Some([low, high]) = goal.request.payload.filter(|[low, high]| low < high) else { return 0.0 };
+    let ends = over_payloads(machine, [low, high], 2).unwrap_or_default();
+    ends.iter().map(|end| end.force.max(end.coupling / machine.reach())).fold(0.0, f64::max)
 }
 
 /// Returns the condition of (7) or (8) whose residual differs most between two machines, and by how much, kg m or kg m²;
