@@ -16,7 +16,7 @@ use stillbase_study::parts::{LinkParts, PartRow};
 use super::failure::Failure;
 use super::input::MachineArgument;
 use super::output::{Format, TextTable, yes};
-use stillbase_settings::number::fixed;
+use stillbase_settings::number::{fixed, fixed_or_finer};
 
 /// Say whether a machine is force balanced and its mass matrix invariant, Eqs (7), (8)
 #[derive(Args)]
@@ -37,9 +37,8 @@ pub fn balance_tables(balance: &BalanceConstants, machine: &Machine) -> String {
     let drives = &machine.spec().drives;
     let mut by_drive = TextTable::new(["drive", "g kg m", "H kg m²", "D kg m²", "λ"]);
     for (k, drive) in drives.iter().enumerate() {
-        let [g, h, d, l] =
-            [&balance.gamma_coefficients, &balance.h, &balance.d, &balance.lambda].map(|of| fixed(of[k], 9));
-        let row = [g, h, d, l];
+        let [h, d] = [&balance.h, &balance.d].map(|of| fixed_or_finer(of[k], 9));
+        let row = [fixed(balance.gamma_coefficients[k], 9), h, d, fixed(balance.lambda[k], 9)];
         by_drive.row([drive.name.clone()].into_iter().chain(row));
     }
     if drives.len() < 2 {

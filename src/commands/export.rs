@@ -95,7 +95,8 @@ impl ExportArguments {
         }
         let scenario = scenario(&self.scenario, &self.settings)?;
         let name = scenario.name.clone();
-        let drives = scenario.machine.drives();
+        // The first edits may draw another machine.
+        let drives = with_start_edits(&scenario)?.0.machine.drives();
         let (rows, duration, audit_failed) = match self.what {
             What::Reference => {
                 let (start, later) = with_start_edits(&scenario)?;

@@ -9,7 +9,7 @@ use serde::{Serialize, Serializer};
 use stillbase_files::row_file::ROW_ENDINGS;
 use stillbase_mechanics::machine::Machine;
 use stillbase_session::verdict::{Statements, Verdict};
-use stillbase_session::{Run, replay_if};
+use stillbase_session::{Run, replay_if, with_start_edits};
 use stillbase_simulation::frame::Frame;
 use stillbase_simulation::signals::{Signal, chosen_signals, row_heads, signals};
 
@@ -169,7 +169,9 @@ impl SimulateArguments {
     /// Simulates the scenario. Writes its signals as CSV or Parquet, or prints them as JSON, or prints a summary.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = scenario(&self.scenario, &self.settings)?;
-        let table = self.table(&scenario.machine)?;
+        // The first edits may draw another machine.
+        let (start, _) = with_start_edits(&scenario).map_err(|e| Failure::refused(&scenario, e))?;
+        let table = self.table(&start.machine)?;
         if let Some(file) = &self.output {
             check_output(file, self.force, &ROW_ENDINGS)?;
         }

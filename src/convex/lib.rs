@@ -154,15 +154,17 @@ fn sparse(m: usize, n: usize, entries: &[(usize, usize, f64)]) -> CscMatrix<f64>
 
 /// Returns an irreducible infeasible subset of contradicting bounds: without any one of them, the others are feasible.
 ///
-/// Starts from the bounds with nonzero `weights` in the solver's proof of infeasibility, or from all bounds if those do
+/// The bounds are the last inequalities of the program, and `multipliers` are those of the solver's proof of infeasibility;
+/// there may be none. Starts from the bounds whose multipliers are not zero, or from all bounds if those do
 /// not contradict each other. Then removes each bound without which the rest still contradicts itself.
 pub fn infeasible_bounds<B: Clone>(
     bounds: Vec<(B, LinearRow)>,
-    weights: &[f64],
+    multipliers: &[f64],
     contradicts: impl Fn(&[(B, LinearRow)]) -> bool,
 ) -> Vec<B> {
-    let most = weights.iter().fold(0.0_f64, |most, z| most.max(z.abs()));
-    let used = bounds.iter().zip(weights).filter(|(_, z)| z.abs() > 1e-7 * most).map(|(bound, _)| bound.clone());
+    let own = multipliers.len().checked_sub(bounds.len()).map_or_else(Default::default, |first| &multipliers[first..]);
+    let most = own.iter().fold(0.0_f64, |most, z| most.max(z.abs()));
+    let used = bounds.iter().zip(own).filter(|(_, z)| z.abs() > 1e-7 * most).map(|(bound, _)| bound.clone());
     let mut kept: Vec<(B, LinearRow)> = used.collect();
     if !contradicts(&kept) {
         kept = bounds;

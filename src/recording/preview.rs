@@ -15,7 +15,7 @@ use stillbase_picture::scene::reaction::Scale;
 use stillbase_picture::scene::views::{ViewKind, Views};
 use stillbase_query::Queries;
 use stillbase_session::scenario::Scenario;
-use stillbase_session::{Refusal, replay_while};
+use stillbase_session::{Refusal, replay_while, with_start_edits};
 use stillbase_simulation::frame::Peaks;
 use stillbase_simulation::signals::{Signal, signals};
 use stillbase_study::comparison::DesignCandidate;
@@ -61,8 +61,10 @@ impl Preview {
     pub fn of(scenario: &Scenario, tick: &mut dyn FnMut(u64) -> bool) -> Result<Self, Refusal> {
         let none = [f64::INFINITY, f64::NEG_INFINITY];
         let wider = |range: &mut [f64; 2], x: f64| *range = [range[0].min(x), range[1].max(x)];
-        let signals = signals(&scenario.machine);
-        let charts = charts(scenario, false);
+        // The first edits may draw another machine.
+        let (start, _) = with_start_edits(scenario)?;
+        let signals = signals(&start.machine);
+        let charts = charts(&start, false);
         let topics = Topic::all(signals.clone(), &charts);
         let mut charts: Vec<_> = charts.into_iter().map(|chart| (chart, none)).collect();
         charts.retain(|(chart, _)| signals.iter().any(|signal| chart.contains(signal)));

@@ -186,7 +186,7 @@ impl<'a> Recorder<'a> {
     fn see(&mut self, run: &Run, frame: &Frame) -> Result<(), CaseError> {
         let (at, last) = (Instant::of(frame), frame.step == self.forecast.steps);
         if frame.step == 0 {
-            self.events.start(at, &self.forecast.title, self.scenario.machine.name());
+            self.events.start(at, &self.forecast.title, run.scenario().machine.name());
             self.events.plan(at, &run.scenario().task, run.planned_time());
         }
         let edited = self.edited(at);

@@ -25,6 +25,7 @@ use toml::Table;
 
 use crate::design::balancing_change;
 use crate::edit::Edit;
+use crate::replay::with_start_edits;
 use crate::run::Run;
 use crate::scenario::Scenario;
 use stillbase_mechanics::machine::{Machine, is_of_machine};
@@ -156,10 +157,15 @@ impl Proposal {
         without(&kept)
     }
 
-    /// Returns the scenario with the settings.
-    fn applied(&self, scenario: &Scenario) -> Option<Scenario> {
+    /// Returns the scenario with the settings as they are typed: its edits come after them.
+    fn typed(&self, scenario: &Scenario) -> Option<Scenario> {
         let changed = scenario.with_settings(self.change()?).ok()?;
         changed.check("").ok().map(|()| changed)
+    }
+
+    /// Returns the scenario that starts after the settings, with its edits before the first step.
+    fn applied(&self, scenario: &Scenario) -> Option<Scenario> {
+        Some(with_start_edits(&self.typed(scenario)?).ok()?.0)
     }
 
     /// Returns the run after the change, at rest at its start; `None` if it is refused.

@@ -40,6 +40,16 @@ pub fn fixed_or_scientific(x: f64, decimals: usize) -> String {
     }
 }
 
+/// Formats a number with fixed decimals, or with four digits if those would show only one or none. Below 1e-16 it is
+/// treated as zero.
+pub fn fixed_or_finer(x: f64, decimals: usize) -> String {
+    let shown = x.abs() * 10_f64.powi(decimals as i32);
+    match x.abs() >= 1e-16 && shown < 10.0 {
+        true => fixed(x, 3 + (-x.abs().log10()).ceil().max(0.0) as usize),
+        false => fixed(x, decimals),
+    }
+}
+
 /// Formats a number with four decimals, or with a power of ten below 1e-3 and from 1e6 on.
 pub fn significant(x: f64) -> String {
     match x.abs() {

@@ -67,7 +67,8 @@ pub struct CounterweightReport {
     /// Counterweights of the given machine that were removed first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub taken_off: Vec<Counterweight>,
-    /// Upper bound on the difference between the objective's value and its minimum.
+    /// Upper bound on the difference between the objective's value and its minimum. Of discs as they are bought nothing
+    /// is certified: their value less that of the exact discs, which can be below 0.
     pub gap: f64,
     /// Whether the gap is within rounding.
     pub certified: bool,
@@ -182,13 +183,15 @@ pub fn balance_by_weights(
     go_on: &mut dyn FnMut(SearchProgress) -> bool,
 ) -> Result<(Machine, CounterweightReport), NoCounterweights> {
     let mut weighing = request.spec.clone();
-    let (mut bars, mut on_bars) = (None, None);
+    let (mut bars, mut on_bars, mut as_cut) = (None, None, None);
     let (placed, sought) = match &request.lengths {
         None if let Some(cut) = &request.bars => {
             let found = cut.balance(machine, &weighing).map_err(NoCounterweights::Cut)?;
             bars = Some(BarsReport::of(&found));
-            on_bars = Some((found.on_bars(&weighing), found.bars));
-            (found.placed, None)
+            on_bars = Some((found.on_bars(&weighing), found.bars.clone()));
+            let placed = found.placed.clone();
+            as_cut = Some((found, &cut.stock));
+            (placed, None)
         }
         None => (place_weights(machine, &weighing).map_err(NoCounterweights::Weights)?, None),
         Some(lengths) => {
@@ -209,9 +212,17 @@ pub fn balance_by_weights(
         Some(count) => front(base, spec, count).map_err(NoCounterweights::Front)?.points,
         None => Vec::new(),
     };
-    let front = front.iter().map(|placed| FrontPoint::of(placed, motion, true)).collect();
+    let built = |placed: PlacedCounterweights| match &as_cut {
+        Some((found, stock)) => found.as_built(placed, spec, stock),
+        None => Ok(placed),
+    };
+    let measured = |placed| -> Result<FrontPoint, MachineError> { Ok(FrontPoint::of(&built(placed)?, motion, true)) };
+    let front = front.into_iter().map(measured).collect::<Result<Vec<_>, _>>()?;
     let mut report = CounterweightReport::of(&placed, front, motion, &weighing)?;
     (report.optimised_lengths, report.bars) = (sought, bars);
+    if let Some(exact) = report.bars.as_ref().and_then(|bars| bars.exact_value) {
+        report.gap = placed.value - exact;
+    }
     report.taken_off = removed_weights(machine);
     Ok((placed.machine, report))
 }

@@ -4,7 +4,7 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use super::front_point::FrontPoint;
-use super::workshop::{CutRequest, NoCut};
+use super::workshop::{CutMachine, CutRequest, NoCut};
 use stillbase_mechanics::counterweights::{CounterweightSpec, Front, FrontSearch};
 use stillbase_mechanics::machine::Machine;
 use stillbase_planning::Motion;
@@ -37,16 +37,21 @@ impl FrontCase {
     }
 
     /// Begins the search for its front with so many machines, on the bars of which it is cut.
-    fn search(&self, count: usize) -> Result<FrontSearch, NoCut> {
-        let (machine, spec) = match &self.bars {
-            None => (self.machine.clone(), self.spec.clone()),
-            Some(bars) => {
-                let found = bars.balance(&self.machine, &self.spec)?;
-                let spec = found.on_bars(&self.spec);
-                (found.bars, spec)
-            }
+    fn search(&self, count: usize) -> Result<Stage, NoCut> {
+        let Some(bars) = &self.bars else {
+            let search = FrontSearch::begin((self.machine.clone(), self.spec.clone(), count));
+            return Ok(Stage::Search(Box::new(search), None));
         };
-        Ok(FrontSearch::begin((machine, spec, count)))
+        let found = bars.balance(&self.machine, &self.spec)?;
+        let search = FrontSearch::begin((found.bars.clone(), found.on_bars(&self.spec), count));
+        Ok(Stage::Search(Box::new(search), Some(Box::new(found))))
+    }
+
+    /// Returns a front as its machines are built: with discs as they are bought, if this is asked for.
+    fn as_built(&self, front: Front, found: Option<&CutMachine>) -> Result<Front, NoCut> {
+        let Some((found, bars)) = found.zip(self.bars.as_ref()) else { return Ok(front) };
+        let built = front.points.into_iter().map(|placed| found.as_built(placed, &self.spec, &bars.stock));
+        Ok(Front { points: built.collect::<Result<_, _>>()? })
     }
 }
 
@@ -117,8 +122,8 @@ pub struct Fronts {
 enum Stage {
     /// Its bars are being cut, if it has any.
     Begin,
-    /// The machines of the front are being computed.
-    Search(Box<FrontSearch>),
+    /// The machines of the front are being computed, on the bars of a machine that is cut.
+    Search(Box<FrontSearch>, Option<Box<CutMachine>>),
     /// The measures of these machines are being computed.
     Telling(Front, Vec<FrontPoint>),
 }
@@ -142,19 +147,22 @@ impl Query for Fronts {
         let outcome = match &mut self.now {
             Stage::Begin => match of.search(self.request.count) {
                 Ok(search) => {
-                    self.now = Stage::Search(Box::new(search));
+                    self.now = search;
                     return Portion::More(share(0.0));
                 }
                 Err(why) => Err(why),
             },
-            Stage::Search(search) => match search.go_on(&mut |found| goes_on(share(found))) {
+            Stage::Search(search, found) => match search.go_on(&mut |found| goes_on(share(found))) {
                 Portion::More(found) => return Portion::More(share(found)),
                 Portion::Stopped => return Portion::Stopped,
                 Portion::Done(Err(why)) => Err(why.into()),
-                Portion::Done(Ok(front)) => {
-                    self.now = Stage::Telling(front, Vec::new());
-                    return Portion::More(share(1.0));
-                }
+                Portion::Done(Ok(front)) => match of.as_built(front, found.as_deref()) {
+                    Ok(front) => {
+                        self.now = Stage::Telling(front, Vec::new());
+                        return Portion::More(share(1.0));
+                    }
+                    Err(why) => Err(why),
+                },
             },
             Stage::Telling(front, points) => match front.points.get(points.len()) {
                 Some(placed) => {

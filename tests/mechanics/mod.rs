@@ -3,6 +3,7 @@
 mod balance;
 mod bodies;
 mod breakdown;
+mod counterweight_scale;
 mod counterweight_shapes;
 mod counterweights;
 mod dynamics;

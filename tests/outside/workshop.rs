@@ -60,7 +60,7 @@ fn cut(machine: &Machine, noise: &mut Noise) -> Option<(Machine, CounterweightSt
     sites.iter_mut().for_each(|site| (site.across, site.from) = (across, -2.0));
     match balance_as_cut(&machine, &CounterweightSpec::least(Objective::mass(), sites, disc), &stock) {
         Ok(cut) => Some((cut.placed.machine, disc)),
-        Err(why @ (NoCut::Weights(_) | NoCut::Unsettled { .. })) => {
+        Err(why @ (NoCut::Weights(_) | NoCut::Bounds { .. } | NoCut::Unsettled(_))) => {
             eprintln!("{}: {why}", machine.name());
             None
         }

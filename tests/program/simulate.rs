@@ -212,3 +212,27 @@ fn plants_bases_and_control_are_set_by_key() {
         fails(&["simulate", "case-1", "--set", pair], 2, &[word]);
     }
 }
+
+/// A scenario whose first edit draws a machine of fewer drives than that of its file.
+#[test]
+fn a_machine_drawn_by_the_first_edit_is_the_one_that_runs() {
+    let folder = Folder::new("drawn-first");
+    let file = "machine = \"nine-link\"\n[task]\nkind = \"reactionless\"\nb = 2.4\nfrom = [0.5, 0.5]\nto = [0.55, 0.9]\n\
+                time = 1.0\n[[edit]]\nstep = 0\ndo = \"sketch\"\ndraw = \"new\"\ntemplate = \"serial-of-two\"\n";
+    fs::write(folder.0.join("drawn.toml"), file).expect("writable");
+    let refused = folder.run(&["simulate", "drawn.toml"]);
+    assert!(!refused.status.success());
+    let lines = text(&refused.stderr).lines().filter_map(|line| line.split_once(": --set ")).map(|(_, rest)| rest);
+    let ways: Vec<Vec<&str>> = lines.map(|rest| rest.split(" --set ").collect()).collect();
+    assert!(!ways.is_empty(), "{}", text(&refused.stderr));
+    for way in ways {
+        for command in [&["simulate", "drawn.toml"][..], &["export", "drawn.toml", "--what", "simulated"]] {
+            let typed: Vec<&str> = command.iter().copied().chain(way.iter().flat_map(|set| ["--set", set])).collect();
+            let done = folder.run(&typed);
+            assert!(done.status.success(), "{typed:?}: {}", text(&done.stderr));
+            let head = text(&done.stdout).lines().next().expect("a head").to_owned();
+            let third = ["torque/3", "q3", "q_3"].iter().any(|name| head.contains(name));
+            assert!(head.contains(',') && !third, "{head}");
+        }
+    }
+}

@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use stillbase::mechanics::machine::Inertia;
 use stillbase::mechanics::planar::Vector;
+use stillbase::mechanics::sketch::{SketchStep, Template};
 use stillbase::session::design::relaxations;
 use stillbase::session::scenario::{Scenario, Task, TaskKind};
-use stillbase::session::{Proposal, Run, improvements, proposals};
+use stillbase::session::{Edit, Proposal, Refusal, Run, TimedEdit, improvements, proposals, replay};
 use stillbase::settings::change::{join, single_change, value};
 use stillbase::settings::word::Choice as _;
 use toml::Table;
@@ -193,4 +194,43 @@ fn values_have_plain_names_and_units_that_a_notation_converts() {
     assert!(text.starts_with("take point A = 1.0, ") && text.ends_with(" m"), "{text}");
     let shown = notation.sentence(text);
     assert!(shown.starts_with("take point A = 1000, ") && shown.ends_with(" mm"), "{shown}");
+}
+
+/// Returns a scenario with an edit before its first step.
+fn opened_with(scenario: &Scenario, edits: &[Edit]) -> Scenario {
+    let edits = edits.iter().map(|edit| TimedEdit { step: 0, edit: edit.clone() }).collect();
+    Scenario { edits, ..scenario.clone() }
+}
+
+/// What the command line does with a scenario: its edits, from the first to the last step.
+fn simulated(scenario: &Scenario) -> Result<Run, Refusal> {
+    replay(&Scenario { duration: Some(0.01), ..scenario.clone() }, |_, _| {})
+}
+
+/// Machines drawn by the first edit, and settings that the first edit makes: what is proposed is for what then runs.
+#[test]
+fn proposals_work_before_the_edits_of_a_scenario() {
+    let noise = &mut Noise::of(12);
+    let case = |name: &str| Scenario::builtin(name).expect("built in");
+    let draw = |template: Template| vec![Edit::Sketch(SketchStep::New { template })];
+    let lengths = ["length.l1", "length.l2", "length.l5"];
+    let set = |noise: &mut Noise| {
+        let key = lengths[(noise.between(0.0, 3.0) as usize).min(2)];
+        vec![Edit::set(key, noise.between(0.1, 0.45))]
+    };
+    let mut scenarios: Vec<Scenario> =
+        Template::ALL.into_iter().map(|of| opened_with(&case("case-3"), &draw(of))).collect();
+    scenarios.extend((0..12).map(|i| opened_with(&case(["case-1", "case-3"][i % 2]), &set(noise))));
+    let (mut refused, mut proposed) = (0, 0);
+    for scenario in &scenarios {
+        let Err(refusal) = simulated(scenario) else { continue };
+        refused += 1;
+        for proposal in proposals(scenario, &refusal) {
+            proposed += 1;
+            let changed = scenario.with_settings(&typed(&proposal)).unwrap_or_else(|why| panic!("{proposal:?}: {why}"));
+            changed.check("").unwrap_or_else(|why| panic!("{proposal:?}: {why}"));
+            simulated(&changed).unwrap_or_else(|why| panic!("{refusal}: {:?}: {why}", proposal.settings()));
+        }
+    }
+    assert!(refused > 8 && proposed > 8, "{refused} refused, {proposed} proposed");
 }

@@ -53,7 +53,7 @@ pub fn show(ui: &mut Ui, session: &Session, facts: &DesignFacts, p: &Palette, co
             Some(Ok(found)) => result(ui, session, (facts, found), p, commands),
             Some(Err(why)) => {
                 reason(ui, p, &why.to_string());
-                if let NoCut::Weights(why) = why {
+                if let NoCut::Weights(why) | NoCut::Bounds { why, .. } = why {
                     relaxations(why).iter().for_each(|relaxed| lamp::proposal(ui, relaxed, None, commands));
                 }
             }

@@ -1,14 +1,14 @@
 //! Measures of a design, as text.
 
-use stillbase_settings::number::fixed;
+use stillbase_settings::number::{fixed, fixed_or_finer};
 use stillbase_study::measures::Measures;
 
 /// Formats the measures, one in each line.
 pub fn text(measures: &Measures) -> String {
     let mut text = format!(
         "added mass       {} kg\nadded inertia    {} kg m², Σ D_k\n",
-        fixed(measures.added_mass, 6),
-        fixed(measures.added_inertia, 6)
+        fixed_or_finer(measures.added_mass, 6),
+        fixed_or_finer(measures.added_inertia, 6)
     );
     if let Some(factor) = measures.mass_inertia_factor {
         text.push_str(&format!("mass–inertia     {}, M ratio + Σ D_k ratio, now to before\n", fixed(factor, 4)));

@@ -140,7 +140,8 @@ impl DesignArguments {
         let brief = self.weighing.brief(machine, design);
         report_brief(self.machine.name(), design, &brief, |key| self.weighing.asks_for(key));
         let (weighed, answer) = self.weighing.run(machine, &brief, motion)?;
-        self.new_machine.save(&weighed, &brief, format!("{}, balanced by counterweights", machine.name()))?;
+        let how = if answer.is_balanced { "balanced by" } else { "with" };
+        self.new_machine.save(&weighed, &brief, format!("{}, {how} counterweights", machine.name()))?;
         self.format.print(&answer, |answer| weighed::text(answer, machine))
     }
 

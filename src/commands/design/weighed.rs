@@ -1,5 +1,6 @@
 //! `stillbase design --counterweights`
 
+use std::fmt::Display;
 use std::time::Instant;
 
 use clap::Args;
@@ -11,7 +12,7 @@ use stillbase_mechanics::counterweights::{
 use stillbase_mechanics::machine::{BarStock, Counterweight, CounterweightShape, Machine};
 use stillbase_planning::Motion;
 use stillbase_session::scenario::{DesignBrief, NameSet};
-use stillbase_settings::number::{counted, fixed, nine_digits, significant};
+use stillbase_settings::number::{counted, fixed, fixed_or_finer, nine_digits, significant};
 use stillbase_study::counterweights::{
     CounterweightReport, CounterweightRequest, LengthsReport, NoCounterweights, balance_by_weights, removed_weights,
 };
@@ -119,7 +120,7 @@ pub struct WeightArguments {
     #[arg(long, value_name = "D", requires = "bars", value_parser = number)]
     pin_diameter: Option<f64>,
     /// Take discs as they are bought, with radii and places in steps of 0.1 mm; the answer says what is left of Eqs (7)
-    /// and (8)
+    /// and (8), and which bounds the rounded discs break. Nothing is certified of them
     #[arg(long, requires = "bars")]
     bought: bool,
 }
@@ -279,15 +280,15 @@ impl WeightArguments {
         inertia.chain(ratio).map(|(name, parameter)| Ok(FreeRotor { drive: find(name)?, parameter })).collect()
     }
 
-    /// Converts the reason why there are no counterweights into a failure. If radii are bounded, feasible masses are
-    /// also given as radii.
-    fn refusal(&self, why: CounterweightError, stock: &CounterweightStock) -> Failure {
+    /// Converts the reason why there are no counterweights into a failure, in the words `said`. If radii are bounded,
+    /// feasible masses are also given as radii.
+    fn refusal(&self, said: &dyn Display, why: &CounterweightError, stock: &CounterweightStock) -> Failure {
         let (CounterweightError::Conflict { reliefs, .. } | CounterweightError::Reaches { reliefs, .. }, Some(_)) =
-            (&why, self.max_radius)
+            (why, self.max_radius)
         else {
-            return request_failure(why);
+            return if is_wrong_input(why) { Failure::wrong_input(said) } else { Failure::no_answer(said) };
         };
-        let mut said = why.to_string();
+        let mut said = said.to_string();
         for relief in reliefs.iter().flatten() {
             if let BoundRelaxation::Most(most) = relief {
                 let (_, radius) = Counterweight::new("", *most, [0.0; 2], stock.shape(*most)).free_size();
@@ -335,9 +336,10 @@ impl WeightArguments {
         let mut go_on = |_| begun.elapsed().as_secs_f64() < within;
         balance_by_weights(&machine, &request, motion, &mut go_on).map_err(|why| match why {
             NoCounterweights::Lengths(why) => lengths_failure(why),
-            NoCounterweights::Weights(why) => self.refusal(why, &stock),
+            NoCounterweights::Weights(why) => self.refusal(&why, &why, &stock),
             NoCounterweights::Front(why) => request_failure(why),
-            NoCounterweights::Cut(NoCut::Weights(why)) => self.refusal(why, &stock),
+            NoCounterweights::Cut(NoCut::Weights(why)) => self.refusal(&why, &why, &stock),
+            NoCounterweights::Cut(ref cut @ NoCut::Bounds { ref why, .. }) => self.refusal(cut, why, &stock),
             NoCounterweights::Cut(why) => cut_failure(why),
             NoCounterweights::Machine(why) => why.into(),
         })
@@ -374,14 +376,18 @@ fn lengths_failure(why: NoLengths) -> Failure {
 
 /// Converts the reason why there are no counterweights into a failure: wrong input, or no answer.
 pub fn request_failure(why: CounterweightError) -> Failure {
-    match why {
+    if is_wrong_input(&why) { Failure::wrong_input(why) } else { Failure::no_answer(why) }
+}
+
+fn is_wrong_input(why: &CounterweightError) -> bool {
+    matches!(
+        why,
         CounterweightError::OutOfRange { .. }
-        | CounterweightError::Twice(_)
-        | CounterweightError::RotorTwice(_)
-        | CounterweightError::FreeRotorOfFront(_)
-        | CounterweightError::NoRotor(_) => Failure::wrong_input(why),
-        why => Failure::no_answer(why),
-    }
+            | CounterweightError::Twice(_)
+            | CounterweightError::RotorTwice(_)
+            | CounterweightError::FreeRotorOfFront(_)
+            | CounterweightError::NoRotor(_)
+    )
 }
 
 /// Converts the reason why no machine can be cut into a failure: wrong input, or no answer.
@@ -389,7 +395,7 @@ pub fn cut_failure(why: NoCut) -> Failure {
     match why {
         NoCut::Weights(why) => request_failure(why),
         NoCut::Bars(_) => Failure::wrong_input(why),
-        NoCut::Unsettled { .. } => Failure::no_answer(why),
+        NoCut::Bounds { .. } | NoCut::Unsettled(_) => Failure::no_answer(why),
     }
 }
 
@@ -458,9 +464,10 @@ pub const FRONT_HEADINGS: [&str; 5] = ["added kg", "Σ D_k kg m²", "torque N m"
 
 /// Returns the cells of one machine of a Pareto front.
 pub fn front_cells(point: &FrontPoint) -> [String; 5] {
-    let or_none = |x: Option<f64>| x.map_or_else(|| "–".into(), |x| fixed(x, 6));
+    let or_none = |x: Option<f64>| x.map_or_else(|| "–".into(), |x| fixed_or_finer(x, 6));
     let FrontPoint { added_mass, inertia, torque, workspace, residual_if_misplaced } = *point;
-    [fixed(added_mass, 6), fixed(inertia, 6), or_none(torque), or_none(workspace), fixed(residual_if_misplaced, 6)]
+    let [added_mass, inertia, off_by] = [added_mass, inertia, residual_if_misplaced].map(|x| fixed_or_finer(x, 6));
+    [added_mass, inertia, or_none(torque), or_none(workspace), off_by]
 }
 
 /// Formats the report as text.
@@ -481,16 +488,19 @@ pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
     let mut table = TextTable::new(some(heads));
     for w in &report.weights {
         let (_, size) = w.free_size();
-        table.row(some([w.link.clone(), fixed(w.mass, 6), fixed(w.at, 6), fixed(w.across, 6), fixed(size, 6)]));
+        let [mass, at, across, size] = [w.mass, w.at, w.across, size].map(|x| fixed_or_finer(x, 6));
+        table.row(some([w.link.clone(), mass, at, across, size]));
     }
+    let bought = report.bars.as_ref().is_some_and(|bars| bars.exact_value.is_some());
     let sure = match report.certified {
         true => format!("within {:.1e} of the best", report.gap),
+        false if bought => "rounded as sold, not certified".to_owned(),
         false => format!("not certified: the best may lie {} below", significant(report.gap)),
     };
     let mut text = format!(
         "{} · {} kg added{shape} · {sure}\n\n{table}\n{}\n{}",
         machine.name(),
-        fixed(report.measures.added_mass, 6),
+        fixed_or_finer(report.measures.added_mass, 6),
         measures::text(&report.measures),
         balance_tables(&report.balance, machine)
     );
@@ -511,13 +521,21 @@ pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
     if let Some(bars) = &report.bars {
         text.push_str(&format!(
             "\nas cut: bars {} kg, longest tail {} mm, the best of {}; left of (7) {:.1e} kg m, of (8) {:.1e} kg m²\n",
-            fixed(bars.mass, 3),
-            fixed(1e3 * bars.tail, 1),
+            fixed_or_finer(bars.mass, 3),
+            fixed_or_finer(1e3 * bars.tail, 1),
             counted(bars.tried, "cut"),
             bars.force_residual,
             bars.coupling_residual
         ));
         text.extend(bars.replaced().map(|sentence| format!("{sentence}\n")));
+        if let Some(exact) = bars.exact_value {
+            text.push_str(&format!(
+                "Rounded, the objective is {}; the discs before rounding, certified on these bars, have {}.\n",
+                nine_digits(exact + report.gap),
+                nine_digits(exact)
+            ));
+        }
+        text.extend(bars.broken_bounds.iter().map(|broken| format!("Rounding breaks a bound: {broken}.\n")));
     }
     if !report.rotors.is_empty() {
         let mut table = TextTable::new(["rotor of drive", "inertia kg m²", "ratio"]);

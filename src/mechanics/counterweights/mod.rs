@@ -13,6 +13,7 @@
 //! | ρ, d | density and thickness of the discs | kg/m³, m |
 //! | D_k | coefficient of q̇_k in the angular momentum about B, (6) | kg m² |
 
+mod broken;
 mod cell;
 mod front;
 mod payload;
@@ -21,6 +22,7 @@ mod place;
 mod problem;
 mod program;
 mod refusal;
+mod relaxed;
 mod relief;
 mod residual;
 mod search;
@@ -30,14 +32,18 @@ mod spec;
 mod stock;
 mod task;
 mod tolerance;
+mod units;
 mod unknowns;
 
 pub use crate::machine::MATERIALS;
 pub use crate::machine::ranges::DENSITY as DENSITY_RANGE;
+pub use broken::BrokenBound;
 pub use front::{Front, FrontSearch, front};
 pub use payload::{PayloadResidual, over_payloads};
-pub use place::{PlacedCounterweights, place_weights, place_weights_with, unreachable_by_weights};
-pub use refusal::{Bound, BoundRelaxation, CounterweightError};
+pub use place::{PlacedCounterweights, place_weights, place_weights_with, unreachable_by_weights, weights_if_any};
+pub use refusal::{Bound, BoundKind, BoundRelaxation, CounterweightError, RelaxedBounds};
+pub use relaxed::relaxed_weights_if_any;
+pub use relief::EXTRA_FRACTIONS;
 pub use spec::{ACROSS_RANGE, CounterweightSite, CounterweightSpec, FreeRotor, Objective, RotorFreedom};
 pub use stock::{
     BOX_WIDTH_RANGE, CounterweightForm, CounterweightKind, CounterweightStock, INNER_RADIUS_RANGE, THICKNESS_RANGE,

@@ -23,23 +23,25 @@ pub struct PlacedCounterweights {
     pub value: f64,
     /// Upper bound of the difference between this value and the optimum.
     pub gap: f64,
+    /// Value of the objective for the machine's own unit of mass and length: gaps are small compared with this.
+    pub unit: f64,
 }
 
 impl PlacedCounterweights {
     /// Returns whether the value is certified as the optimum, to rounding. A search may stop before it has proved
     /// optimality.
     pub fn is_certified(&self) -> bool {
-        self.gap <= 2.0 * MAX_GAP * self.value.abs().max(1.0)
+        self.gap <= 2.0 * MAX_GAP * self.value.abs().max(self.unit)
     }
 }
 
-/// Ratio of the weight of inertia to the weight of mass, 1/m². It breaks ties between solutions of equal mass.
+/// Ratio of the weight of inertia to the weight of mass, in the units of the machine. It breaks ties between solutions of equal mass.
 const TIE_BREAK_WEIGHT: f64 = 1e-7;
 
 /// A counterweight lighter than this fraction of the added mass is omitted if balance is possible without it.
 const NEGLIGIBLE_MASS_FRACTION: f64 = 1e-4;
 
-/// Largest gap to the optimum, in units of the objective, that is accepted for a simpler answer.
+/// Largest gap to the optimum, in the unit of the objective, that is accepted for a simpler answer.
 const MAX_GAP: f64 = 5e-7;
 
 /// Finds the counterweights that make a machine balanced and invariant, (7) and (8), and minimise an objective.
@@ -69,14 +71,23 @@ pub fn place_weights_with(
     beyond: &[Vector],
 ) -> Result<PlacedCounterweights, CounterweightError> {
     let problem = CounterweightProblem::new(machine, spec, beyond)?;
-    let one = CounterweightTask { problem: &problem, machine, spec, beyond };
+    let one = CounterweightTask::new(&problem, machine, spec, beyond);
     problem.check().map_err(|why| one.with_reliefs(why))?;
-    if problem.needs_nothing(spec) {
-        let inertia = Inertia::of(&problem.bare);
-        let value = spec.objective.of(0.0, &inertia);
-        return Ok(PlacedCounterweights { machine: problem.bare, added_mass: 0.0, value, gap: 0.0 });
-    }
-    one.found()?.map_err(|weights| one.refusal(&weights))
+    one.found()?.map_err(|multipliers| one.refusal(&multipliers))
+}
+
+/// As [`place_weights`], but `None` where there are no counterweights: the reason, which takes longer, is not sought.
+///
+/// # Errors
+/// If the request is not valid, a condition cannot be changed, the search or the solver gives up, or the result is
+/// invalid.
+pub fn weights_if_any(
+    machine: &Machine,
+    spec: &CounterweightSpec,
+) -> Result<Option<PlacedCounterweights>, CounterweightError> {
+    let problem = CounterweightProblem::new(machine, spec, &[])?;
+    problem.check()?;
+    Ok(CounterweightTask::new(&problem, machine, spec, &[]).found()?.ok())
 }
 
 /// Returns the part of each residual of (7) and (8), kg m or kg m², that no counterweights on the listed links remove,
@@ -97,6 +108,11 @@ impl CounterweightTask<'_> {
     /// Finds the counterweights. If there are none, returns the multipliers of the bounds that prove the problem
     /// without clearance infeasible. The list is empty if only the clearance makes the problem infeasible.
     fn found(&self) -> Result<Result<PlacedCounterweights, Vec<f64>>, CounterweightError> {
+        if self.problem.needs_nothing(self.spec) {
+            let (machine, unit) = (self.problem.bare.clone(), self.unit());
+            let value = self.spec.objective.of(0.0, &self.problem.inertia);
+            return Ok(Ok(PlacedCounterweights { machine, added_mass: 0.0, value, gap: 0.0, unit }));
+        }
         if self.balance() == BalanceGoal::Nearest {
             return self.nearest();
         }
@@ -107,7 +123,7 @@ impl CounterweightTask<'_> {
             }
             Err(NoOptimum::Failed(why)) => Err(CounterweightError::Failed(why)),
             Err(NoOptimum::Contradiction(_)) if self.spec.payload.is_some() => self.nearest(),
-            Err(NoOptimum::Contradiction(weights)) => Ok(Err(weights)),
+            Err(NoOptimum::Contradiction(multipliers)) => Ok(Err(multipliers)),
         }
     }
 
@@ -117,12 +133,12 @@ impl CounterweightTask<'_> {
         if objective.depends_on_inertia() || objective.mass == 0.0 || max_inertia.is_some() {
             return best;
         }
-        let objective = Objective { inertia: TIE_BREAK_WEIGHT * objective.mass, ..objective.clone() };
+        let objective = Objective { inertia: self.tie_break() * objective.mass, ..objective.clone() };
         let tied = CounterweightSpec { objective, ..self.spec.clone() };
-        let one = CounterweightTask { spec: &tied, ..*self };
+        let one = self.with(&tied);
         let found = one.least(BalanceGoal::Exact).ok().and_then(Result::ok);
         let found = found.and_then(|tied| one.placed(&tied, BalanceGoal::Exact).ok());
-        found.and_then(|found| self.within_max_gap(found, least.value - least.gap)).unwrap_or(best)
+        found.and_then(|found| self.within_max_gap(found, self.bound(least))).unwrap_or(best)
     }
 
     /// Returns a solution without the counterweights of negligible mass, if one is optimal within [`MAX_GAP`].
@@ -145,7 +161,7 @@ impl CounterweightTask<'_> {
     fn exact(&self, spec: &CounterweightSpec) -> Option<PlacedCounterweights> {
         let problem = CounterweightProblem::new(self.machine, spec, self.beyond).ok()?;
         problem.check().ok()?;
-        let one = CounterweightTask { problem: &problem, spec, ..*self };
+        let one = CounterweightTask::new(&problem, self.machine, spec, self.beyond);
         let least = one.least(BalanceGoal::Exact).ok()?.ok()?;
         let best = one.placed(&least, BalanceGoal::Exact).ok()?;
         Some(one.least_inertia(best, &least))
@@ -155,7 +171,7 @@ impl CounterweightTask<'_> {
     fn within_max_gap(&self, found: PlacedCounterweights, bound: f64) -> Option<PlacedCounterweights> {
         let value = self.spec.objective.of(found.added_mass, &Inertia::of(&found.machine));
         let gap = (value - bound).max(found.gap);
-        (gap < MAX_GAP).then_some(PlacedCounterweights { value, gap, ..found })
+        (gap < MAX_GAP * self.unit()).then_some(PlacedCounterweights { value, gap, unit: self.unit(), ..found })
     }
 
     /// Minimises the largest residual over all payloads, then the objective. Prefers exact balance with the mean
@@ -163,17 +179,17 @@ impl CounterweightTask<'_> {
     fn nearest(&self) -> Result<Result<PlacedCounterweights, Vec<f64>>, CounterweightError> {
         let found = |balance| match self.least(balance)? {
             Ok(least) => Ok(Ok(least)),
-            Err(NoOptimum::Contradiction(weights)) => Ok(Err(weights)),
+            Err(NoOptimum::Contradiction(multipliers)) => Ok(Err(multipliers)),
             Err(NoOptimum::Failed(why)) => Err(CounterweightError::Failed(why)),
         };
         let worst = match found(BalanceGoal::Nearest)? {
             Ok(least) => least.value,
-            Err(weights) => return Ok(Err(weights)),
+            Err(multipliers) => return Ok(Err(multipliers)),
         };
         let balance = BalanceGoal::Within(worst * (1.0 + SOLVER_ROUNDING[0]) + SOLVER_ROUNDING[1]);
         let least = match found(balance)? {
             Ok(least) => least,
-            Err(weights) => return Ok(Err(weights)),
+            Err(multipliers) => return Ok(Err(multipliers)),
         };
         if let Ok(Ok(exact)) = self.least(BalanceGoal::Exact)
             && exact.value <= least.value + MAX_GAP
@@ -183,16 +199,44 @@ impl CounterweightTask<'_> {
         Ok(Ok(self.placed(&least, balance)?))
     }
 
+    /// Returns the unit of the objective.
+    fn unit(&self) -> f64 {
+        self.problem.units.objective(&self.spec.objective)
+    }
+
+    /// Returns the lower bound of the objective that an optimum proves.
+    fn bound(&self, least: &Optimum) -> f64 {
+        self.unit() * (least.value - least.gap)
+    }
+
+    /// Returns the weight of inertia per weight of mass that breaks ties, 1/m².
+    fn tie_break(&self) -> f64 {
+        TIE_BREAK_WEIGHT / self.problem.units.length.powi(2)
+    }
+
     fn placed(&self, least: &Optimum, balance: BalanceGoal) -> Result<PlacedCounterweights, CounterweightError> {
-        let (added_mass, machine) = self.problem.machine(self.machine, self.spec, &least.x, balance)?;
+        let (added_mass, machine) = self.machine(least, balance)?;
         let value = self.spec.objective.of(added_mass, &Inertia::of(&machine));
         // The gap is that of the finished machine: the dual value is a lower bound of the objective.
-        Ok(PlacedCounterweights { machine, added_mass, value, gap: (value - (least.value - least.gap)).max(least.gap) })
+        let gap = (value - self.bound(least)).max(self.unit() * least.gap);
+        Ok(PlacedCounterweights { machine, added_mass, value, gap, unit: self.unit() })
+    }
+
+    /// Returns the added mass, kg, and the machine of a solution.
+    pub(super) fn machine(&self, least: &Optimum, balance: BalanceGoal) -> Result<(f64, Machine), CounterweightError> {
+        let (added_mass, machine) = self.problem.machine(self.spec, &self.scaled, &least.x, balance)?;
+        let is_settled =
+            balance != BalanceGoal::Exact || !self.beyond.is_empty() || Inertia::of(&machine).is_balanced();
+        match is_settled {
+            true => Ok((added_mass, machine)),
+            false => Err(CounterweightError::Failed("rounding leaves more than balance tolerates".into())),
+        }
     }
 
     /// Returns whether there are counterweights for another request.
     fn is_feasible(&self, spec: &CounterweightSpec) -> bool {
-        let found = |problem: &CounterweightProblem| CounterweightTask { problem, spec, ..*self }.found();
+        let found =
+            |problem: &CounterweightProblem| CounterweightTask::new(problem, self.machine, spec, self.beyond).found();
         CounterweightProblem::new(self.machine, spec, self.beyond)
             .is_ok_and(|problem| problem.check().is_ok() && found(&problem).is_ok_and(|found| found.is_ok()))
     }
@@ -208,13 +252,13 @@ impl CounterweightTask<'_> {
         }
     }
 
-    /// Returns the reason why there are no counterweights; `weights` come from [`found`](Self::found).
-    fn refusal(&self, weights: &[f64]) -> CounterweightError {
+    /// Returns the reason why there are no counterweights; `multipliers` come from [`found`](Self::found).
+    fn refusal(&self, multipliers: &[f64]) -> CounterweightError {
         let would = || sufficient_reliefs(self, &|spec| self.is_feasible(spec));
         match self.spec.clearance {
-            Some(clearance) if weights.is_empty() => CounterweightError::Reaches { clearance, reliefs: would() },
+            Some(clearance) if multipliers.is_empty() => CounterweightError::Reaches { clearance, reliefs: would() },
             _ => {
-                let bounds = self.problem.conflict(self.machine, self.spec, self.balance(), weights);
+                let bounds = self.problem.conflict(&self.scaled, self.balance(), multipliers);
                 match bounds.is_empty() {
                     true => CounterweightError::TooFew,
                     false => CounterweightError::Conflict { bounds, reliefs: would() },
@@ -226,7 +270,7 @@ impl CounterweightTask<'_> {
 
 impl Objective {
     /// Returns its value for an added mass, kg, and the inertia of the finished machine.
-    fn of(&self, added_mass: f64, inertia: &Inertia) -> f64 {
+    pub fn of(&self, added_mass: f64, inertia: &Inertia) -> f64 {
         let diagonal = inertia.diagonals();
         let torques = diagonal.iter().zip(&self.accelerations).map(|(h, acceleration)| h * acceleration);
         self.mass * added_mass

@@ -2,7 +2,7 @@
 
 use super::pin_sector::PinSector;
 use super::problem::CounterweightProblem;
-use super::refusal::{Bound, BoundKind};
+use super::refusal::{Bound, BoundKind, RelaxedBounds};
 use super::residual::ConditionResidual;
 use super::search_node::{BalanceGoal, SearchNode};
 use super::spec::{CounterweightSpec, Objective, RotorFreedom};
@@ -19,18 +19,13 @@ pub(super) const SOLVER_ROUNDING: [f64; 2] = [1e-7, 1e-10];
 /// Maximum number of times that tangents are added.
 const MAX_TANGENTS: usize = 12;
 
-/// An own inertia this close to its bound is exact, kg m².
+/// An own inertia this close to its bound is exact, in the unit of inertia.
 const TANGENT_TOLERANCE: f64 = 1e-11;
 
 impl CounterweightProblem {
     /// Solves the cone program of one subproblem.
-    pub fn least(
-        &self,
-        machine: &Machine,
-        request: &CounterweightSpec,
-        node: &SearchNode,
-    ) -> Result<Optimum, NoOptimum> {
-        let solve = |node: &SearchNode| self.with_tangents(machine, request, node);
+    pub fn least(&self, request: &CounterweightSpec, node: &SearchNode) -> Result<Optimum, NoOptimum> {
+        let solve = |node: &SearchNode| self.with_tangents(request, node);
         let first = solve(node)?;
         if request.objective.momentum == 0.0 || node.balance == BalanceGoal::Nearest || node.least.is_some() {
             return Ok(first);
@@ -43,14 +38,9 @@ impl CounterweightProblem {
     }
 
     /// Solves the cone program, and adds tangents of own inertias until they are exact.
-    fn with_tangents(
-        &self,
-        machine: &Machine,
-        request: &CounterweightSpec,
-        node: &SearchNode,
-    ) -> Result<Optimum, NoOptimum> {
-        let (bounds, unknowns) = (self.bounds(machine, request), UnknownIndices::of(request, self.drives()));
-        let mut found = self.program(machine, request, &bounds, node).solve()?;
+    fn with_tangents(&self, request: &CounterweightSpec, node: &SearchNode) -> Result<Optimum, NoOptimum> {
+        let (bounds, unknowns) = (self.bounds(request), UnknownIndices::of(request, self.drives()));
+        let mut found = self.program(request, &bounds, node).solve()?;
         if !(request.stock.has_remainder() && unknowns.inertia) {
             return Ok(found);
         }
@@ -67,7 +57,7 @@ impl CounterweightProblem {
             if is_exact {
                 break;
             }
-            found = self.program(machine, request, &bounds, &node).solve()?;
+            found = self.program(request, &bounds, &node).solve()?;
         }
         Ok(found)
     }
@@ -75,41 +65,28 @@ impl CounterweightProblem {
     /// Returns a minimal set of bounds that contradict each other even if clearances are ignored. It is a
     /// subset of the bounds in
     /// the solver's certificate of infeasibility. Empty if the problem is infeasible even without bounds.
-    pub fn conflict(
-        &self,
-        machine: &Machine,
-        request: &CounterweightSpec,
-        balance: BalanceGoal,
-        weights: &[f64],
-    ) -> Vec<Bound> {
-        let (bounds, node) = (self.bounds(machine, request), SearchNode::unconstrained(request, balance));
+    pub fn conflict(&self, request: &CounterweightSpec, balance: BalanceGoal, multipliers: &[f64]) -> Vec<Bound> {
+        let (bounds, node) = (self.bounds(request), SearchNode::unconstrained(request, balance));
         let any = CounterweightSpec { objective: Objective::mass(), ..request.clone() };
         let contradicts = |bounds: &[(Bound, LinearRow)]| {
-            matches!(self.program(machine, &any, bounds, &node).solve(), Err(NoOptimum::Contradiction(_)))
+            matches!(self.program(&any, bounds, &node).solve(), Err(NoOptimum::Contradiction(_)))
         };
-        let of_bounds = &weights[weights.len() - bounds.len()..];
-        infeasible_bounds(bounds, of_bounds, contradicts)
+        infeasible_bounds(bounds, multipliers, contradicts)
     }
 
     /// Returns the cone program of a subproblem: its unknowns, its objective, and its rows.
-    pub fn program(
-        &self,
-        machine: &Machine,
-        request: &CounterweightSpec,
-        bounds: &[(Bound, LinearRow)],
-        node: &SearchNode,
-    ) -> Program {
+    pub fn program(&self, request: &CounterweightSpec, bounds: &[(Bound, LinearRow)], node: &SearchNode) -> Program {
         let unknowns = UnknownIndices::of(request, self.drives());
         let mut program = Program::over(unknowns.torque() + usize::from(request.objective.torque > 0.0));
         for j in 0..request.sites.len() {
             program.linear[unknowns.w(j)] += request.objective.mass;
             program.at_most.push(LinearRow::new([(unknowns.w(j), -1.0)], 0.0));
         }
-        self.enter_rotors(machine, request, &unknowns, &mut program);
+        self.enter_rotors(request, &unknowns, &mut program);
         if unknowns.inertia {
             self.enter_inertia(request, &unknowns, node, &mut program);
-            self.cost(machine, request, &unknowns, &mut program);
-            self.enter_motion(machine, request, &unknowns, node, &mut program);
+            self.cost(request, &unknowns, &mut program);
+            self.enter_motion(request, &unknowns, node, &mut program);
         }
         if unknowns.momentum {
             for (j, cell) in node.cells.iter().enumerate() {
@@ -122,7 +99,7 @@ impl CounterweightProblem {
             program.linear.fill(0.0);
             let tie_break = CounterweightSpec { objective: Objective::inertia(), ..request.clone() };
             (0..request.sites.len()).for_each(|j| program.linear[unknowns.w(j)] = 1.0);
-            self.cost(machine, &tie_break, &unknowns, &mut program);
+            self.cost(&tie_break, &unknowns, &mut program);
         }
         self.enter_balance(&unknowns, node.balance, &mut program);
         for (j, sectors) in node.sectors.iter().enumerate() {
@@ -130,14 +107,20 @@ impl CounterweightProblem {
         }
         let firm = bounds.iter().filter(|(bound, _)| !bound.kind().is_some_and(|kind| node.loose.contains(&kind)));
         program.at_most.extend(firm.clone().map(|(_, row)| row.clone()));
-        if let Some(kind) = node.least {
-            // The value of the bound becomes an unknown, which is minimised.
+        if let Some(relaxed) = node.least {
+            // The value of the bounds becomes an unknown, which is minimised, or the factor by which they grow.
             program.linear.fill(0.0);
             let (most, start) = (program.linear.len(), program.at_most.len() - firm.clone().count());
             program.linear.push(1.0);
-            for ((bound, _), row) in firm.zip(&mut program.at_most[start..]).filter(|(b, _)| b.0.kind() == Some(kind)) {
-                row.right -= request.value_of(bound, &self.bare);
-                row.terms.push((most, -1.0));
+            for ((bound, _), row) in firm.zip(&mut program.at_most[start..]) {
+                let value = request.value_of(bound, &self.bare);
+                let growth = match (relaxed, bound.kind()) {
+                    (RelaxedBounds::Value(kind), Some(own)) if own == kind => 1.0,
+                    (RelaxedBounds::Factor, Some(_)) => value,
+                    _ => continue,
+                };
+                row.right -= value;
+                row.terms.push((most, -growth));
             }
         }
         program
@@ -196,13 +179,7 @@ impl CounterweightProblem {
         }
     }
 
-    fn enter_rotors(
-        &self,
-        machine: &Machine,
-        request: &CounterweightSpec,
-        unknowns: &UnknownIndices,
-        program: &mut Program,
-    ) {
+    fn enter_rotors(&self, request: &CounterweightSpec, unknowns: &UnknownIndices, program: &mut Program) {
         for (i, rotor) in request.rotors.iter().enumerate() {
             let (x, turned) = (unknowns.rotor(i), unknowns.turned(i));
             let ends = match rotor.parameter {
@@ -211,7 +188,7 @@ impl CounterweightProblem {
                     ends
                 }
                 RotorFreedom::Ratio(ends) => {
-                    let inertia = machine.spec().drives[rotor.drive].rotor.unwrap_or_default().inertia;
+                    let inertia = self.rotor_inertia(rotor.drive) * self.ratio_units[i].powi(2);
                     program.above_square(turned, inertia, x);
                     ends
                 }
@@ -229,7 +206,6 @@ impl CounterweightProblem {
         node: &SearchNode,
         program: &mut Program,
     ) {
-        let parts = self.bare.resolved_links();
         for j in 0..request.sites.len() {
             let moments = std::iter::once(unknowns.s(j)).chain(unknowns.t(j));
             program.add_rotated_cone(unknowns.u(j), unknowns.w(j), moments);
@@ -238,7 +214,7 @@ impl CounterweightProblem {
         for k in 0..self.drives() {
             let mut terms = vec![(unknowns.h(k), 1.0)];
             for (j, site) in request.sites.iter().enumerate() {
-                let (root, part) = (parts[site.link].root[k], &parts[site.link]);
+                let (root, part) = (self.parts[site.link].root[k], &self.parts[site.link]);
                 terms.push((unknowns.w(j), -root * root));
                 if part.drive == k {
                     terms.push((unknowns.s(j), -2.0 * part.sign * root));
@@ -246,14 +222,14 @@ impl CounterweightProblem {
                 }
             }
             terms.retain(|(_, value)| *value != 0.0);
-            program.equal.push(LinearRow::new(terms, self.inertia.diagonal(k)));
+            program.equal.push(LinearRow::new(terms, self.diagonal(k)));
         }
     }
 
     /// Adds Σ H_kk, multiplied by its weight in the objective, to the objective.
-    fn cost(&self, machine: &Machine, request: &CounterweightSpec, unknowns: &UnknownIndices, program: &mut Program) {
+    fn cost(&self, request: &CounterweightSpec, unknowns: &UnknownIndices, program: &mut Program) {
         for k in 0..self.drives() {
-            let [_, turned] = self.of_rotors(request, machine, k);
+            let [_, turned] = self.of_rotors(request, k);
             for (x, by) in std::iter::once((unknowns.h(k), 1.0)).chain(turned.terms) {
                 program.linear[x] += request.objective.inertia * by;
             }
@@ -263,7 +239,6 @@ impl CounterweightProblem {
     /// Adds |D_k| and the greatest torque, with their weights in the objective.
     fn enter_motion(
         &self,
-        machine: &Machine,
         request: &CounterweightSpec,
         unknowns: &UnknownIndices,
         node: &SearchNode,
@@ -271,7 +246,7 @@ impl CounterweightProblem {
     ) {
         let objective = &request.objective;
         for k in 0..self.drives() {
-            let [momentum, turned] = self.of_rotors(request, machine, k);
+            let [momentum, turned] = self.of_rotors(request, k);
             let with = |sum: &AffineForm, sign: f64| {
                 let mut terms = vec![(unknowns.h(k), sign)];
                 terms.extend(sum.terms.iter().map(|(x, by)| (*x, sign * by)));
@@ -303,7 +278,7 @@ impl CounterweightProblem {
     }
 
     /// Returns the bounds of the request, with their rows.
-    fn bounds(&self, machine: &Machine, request: &CounterweightSpec) -> Vec<(Bound, LinearRow)> {
+    fn bounds(&self, request: &CounterweightSpec) -> Vec<(Bound, LinearRow)> {
         let (mut all, unknowns) = (Vec::new(), UnknownIndices::of(request, self.drives()));
         for (j, site) in request.sites.iter().enumerate() {
             let (w, s, link) = (unknowns.w(j), unknowns.s(j), self.bare.links()[site.link].name.clone());
@@ -324,7 +299,7 @@ impl CounterweightProblem {
         if let Some(most) = request.max_inertia {
             let mut row = LinearRow::new([], most);
             for k in 0..self.drives() {
-                let [momentum, _] = self.of_rotors(request, machine, k);
+                let [momentum, _] = self.of_rotors(request, k);
                 row.terms.push((unknowns.h(k), 1.0));
                 row.terms.extend(momentum.terms);
                 row.right -= self.constant(k) + momentum.constant;

@@ -58,6 +58,15 @@ pub enum BoundKind {
     Across,
 }
 
+/// Bounds that are minimised instead of an objective.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RelaxedBounds {
+    /// The value that all bounds of a kind share, kg or kg m². Of clearance and distance from the axes there is none.
+    Value(BoundKind),
+    /// The factor by which all bounds of masses and of Σ D_k are multiplied.
+    Factor,
+}
+
 /// Relaxed value of the bounds of one kind: the least feasible bound, or the greatest feasible clearance, rounded to
 /// the feasible side.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,12 +86,32 @@ pub enum BoundRelaxation {
 impl fmt::Display for BoundRelaxation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Most(x) => write!(f, "up to {x:.6} kg on each link that is bounded"),
-            Self::Mass(x) => write!(f, "up to {x:.6} kg in all"),
-            Self::Inertia(x) => write!(f, "Σ D_k up to {x:.6} kg m²"),
-            Self::Clearance(x) => write!(f, "a clearance of {x:.4} m"),
-            Self::Across(x) => write!(f, "counterweights up to {x:.4} m off the axis of their link"),
+            Self::Most(x) => write!(f, "up to {} kg on each link that is bounded", BoundKind::Most.printed(*x)),
+            Self::Mass(x) => write!(f, "up to {} kg in all", BoundKind::Mass.printed(*x)),
+            Self::Inertia(x) => write!(f, "Σ D_k up to {} kg m²", BoundKind::Inertia.printed(*x)),
+            Self::Clearance(x) => write!(f, "a clearance of {} m", BoundKind::Clearance.printed(*x)),
+            Self::Across(x) => {
+                write!(f, "counterweights up to {} m off the axis of their link", BoundKind::Across.printed(*x))
+            }
         }
+    }
+}
+
+impl BoundKind {
+    /// Returns the number of decimals with which a bound is printed: six for kg and kg m², four for m, and more for
+    /// small numbers.
+    pub(super) fn decimals(self, bound: f64) -> usize {
+        let (usual, digits) = match self {
+            Self::Most | Self::Mass | Self::Inertia => (6, 4),
+            Self::Clearance | Self::Across => (4, 2),
+        };
+        let leading = if bound > 0.0 { -bound.log10().floor() } else { 0.0 };
+        // Of a negative number of decimals, `as` makes 0.
+        usual.max((leading + f64::from(digits - 1)) as usize)
+    }
+
+    fn printed(self, bound: f64) -> String {
+        format!("{bound:.*}", self.decimals(bound))
     }
 }
 

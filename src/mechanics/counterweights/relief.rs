@@ -2,7 +2,7 @@
 //! unchanged.
 
 use super::problem::CounterweightProblem;
-use super::refusal::{BoundKind, BoundRelaxation};
+use super::refusal::{BoundKind, BoundRelaxation, RelaxedBounds};
 use super::search_node::SearchNode;
 use super::spec::CounterweightSpec;
 use super::task::CounterweightTask;
@@ -12,15 +12,10 @@ use super::task::CounterweightTask;
 const FIRST_BOUND_FACTOR: f64 = 1.1;
 
 /// Fractions by which a relaxed bound is relaxed further, against the solver's rounding, until there is a solution.
-const EXTRA_FRACTIONS: [f64; 6] = [0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+pub const EXTRA_FRACTIONS: [f64; 6] = [0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
 /// Number of bisection steps for a clearance or a distance from the axes.
 const BISECTIONS: usize = 20;
-
-/// Relaxed clearances and distances from the axes are multiples of 1/this, m.
-const STEPS_PER_M: f64 = 1e4;
-/// Other relaxed bounds are multiples of 1/this, kg or kg m².
-const STEPS_PER_UNIT: f64 = 1e6;
 
 /// Returns each kind of bound whose relaxation alone is sufficient, with its relaxed value. If there is none, returns
 /// the sufficient sets of the smallest size. `is_feasible` returns whether another request has a solution.
@@ -67,11 +62,11 @@ fn together(
     let (mut request, mut reliefs) = (one.spec.clone(), Vec::new());
     for (i, kind) in first.iter().enumerate() {
         let least = match kind {
-            BoundKind::Across => least_across(one, &loosened(&request, &kinds[i + 1..]))?,
+            BoundKind::Across => least_across(one, &request.without_bounds(&kinds[i + 1..]))?,
             _ => least_bound(one, &request, *kind, &kinds[i + 1..])?,
         };
         let relief = kind.rounded(FIRST_BOUND_FACTOR * least);
-        relief.set(&mut request);
+        relief.enter(&mut request);
         reliefs.push(relief);
     }
     let least = match last {
@@ -82,7 +77,7 @@ fn together(
     let nudged = EXTRA_FRACTIONS
         .map(|by| last.rounded(if *last == BoundKind::Clearance { least * (1.0 - by) } else { least * (1.0 + by) }));
     let enough = |relief: &BoundRelaxation| {
-        relief.set(&mut request);
+        relief.enter(&mut request);
         is_feasible(&request)
     };
     reliefs.push(nudged.into_iter().find(enough)?);
@@ -99,16 +94,17 @@ fn least_bound(
 ) -> Option<f64> {
     let without_clearance = CounterweightSpec { clearance: request.clearance.map(|_| 0.0), ..request.clone() };
     let spec = if loose.contains(&BoundKind::Clearance) { &without_clearance } else { request };
-    let one = CounterweightTask { spec, ..*one };
-    let way = SearchNode { loose: loose.to_vec(), least: Some(kind), ..SearchNode::unconstrained(spec, one.balance()) };
-    one.on(&way).ok()?.ok().map(|least| least.value.max(0.0))
+    let one = one.with(spec);
+    let (least, all) = (Some(RelaxedBounds::Value(kind)), SearchNode::unconstrained(&one.scaled, one.balance()));
+    let way = SearchNode { loose: loose.to_vec(), least, ..all };
+    one.on(&way).ok()?.ok().map(|least| one.problem.units.bound(kind) * least.value.max(0.0))
 }
 
 /// Returns the greatest feasible clearance of discs from pins, m, by bisection; `None` if even 0 is infeasible.
 fn greatest_clearance(one: &CounterweightTask, request: &CounterweightSpec) -> Option<f64> {
     let is_clear = |clearance: f64| {
         let request = CounterweightSpec { clearance: Some(clearance), ..request.clone() };
-        CounterweightTask { spec: &request, ..*one }.is_possible()
+        one.with(&request).is_possible()
     };
     if !is_clear(0.0) {
         return None;
@@ -120,34 +116,19 @@ fn greatest_clearance(one: &CounterweightTask, request: &CounterweightSpec) -> O
     Some((0..BISECTIONS).fold([0.0, request.clearance?], bisected)[0])
 }
 
-/// Returns the request without the bounds of these kinds.
-fn loosened(request: &CounterweightSpec, kinds: &[BoundKind]) -> CounterweightSpec {
-    let mut request = request.clone();
-    for kind in kinds {
-        match kind {
-            BoundKind::Most => request.sites.iter_mut().for_each(|site| site.most = f64::INFINITY),
-            BoundKind::Mass => request.max_added_mass = None,
-            BoundKind::Inertia => request.max_inertia = None,
-            BoundKind::Clearance => request.clearance = None,
-            BoundKind::Across => {}
-        }
-    }
-    request
-}
-
 /// Returns the least sufficient distance of counterweights from the axes of their links, m, by bisection; `None` if even
 /// the reach of the machine is not sufficient.
 fn least_across(one: &CounterweightTask, request: &CounterweightSpec) -> Option<f64> {
     let is_enough = |across: f64| {
         let mut request = request.clone();
-        BoundRelaxation::Across(across).set(&mut request);
+        BoundRelaxation::Across(across).enter(&mut request);
         let problem = CounterweightProblem::new(one.machine, &request, one.beyond).ok();
         let is_possible = |problem: &CounterweightProblem| {
-            problem.check().is_ok() && CounterweightTask { problem, spec: &request, ..*one }.is_possible()
+            problem.check().is_ok() && CounterweightTask::new(problem, one.machine, &request, one.beyond).is_possible()
         };
         problem.is_some_and(|problem| is_possible(&problem))
     };
-    let reach = one.problem.reach;
+    let reach = one.problem.bare.reach();
     if !is_enough(reach) {
         return None;
     }
@@ -158,14 +139,9 @@ fn least_across(one: &CounterweightTask, request: &CounterweightSpec) -> Option<
     Some((0..BISECTIONS).fold([0.0, reach], bisected)[1])
 }
 
-/// Returns the value of a number printed with `decimals` decimals.
-fn rounded_as_printed(x: f64, decimals: usize) -> f64 {
-    format!("{x:.decimals$}").parse().unwrap_or(x)
-}
-
 impl BoundKind {
     /// Returns the kinds of bounds that are set, the clearance last.
-    fn of(request: &CounterweightSpec) -> Vec<Self> {
+    pub(super) fn of(request: &CounterweightSpec) -> Vec<Self> {
         let set = [
             (Self::Most, request.sites.iter().any(|site| site.most.is_finite())),
             (Self::Mass, request.max_added_mass.is_some()),
@@ -178,22 +154,25 @@ impl BoundKind {
     }
 
     /// Rounds a relaxed bound to few digits, away from the infeasible side.
-    fn rounded(self, bound: f64) -> BoundRelaxation {
-        let up = rounded_as_printed((bound * STEPS_PER_UNIT).ceil().max(1.0) / STEPS_PER_UNIT, 6);
+    pub fn rounded(self, bound: f64) -> BoundRelaxation {
+        let decimals = self.decimals(bound);
+        let steps = 10_f64.powi(decimals as i32);
+        // The value that the printed number has.
+        let printed = |steps_of: f64| format!("{:.decimals$}", steps_of / steps).parse().unwrap_or(bound);
+        let up = |least: f64| printed((bound * steps).ceil().max(least));
         match self {
-            Self::Most => BoundRelaxation::Most(up),
-            Self::Mass => BoundRelaxation::Mass(up),
-            Self::Inertia => BoundRelaxation::Inertia(up),
-            Self::Clearance => {
-                BoundRelaxation::Clearance(rounded_as_printed((bound * STEPS_PER_M).floor() / STEPS_PER_M, 4))
-            }
-            Self::Across => BoundRelaxation::Across(rounded_as_printed((bound * STEPS_PER_M).ceil() / STEPS_PER_M, 4)),
+            Self::Most => BoundRelaxation::Most(up(1.0)),
+            Self::Mass => BoundRelaxation::Mass(up(1.0)),
+            Self::Inertia => BoundRelaxation::Inertia(up(1.0)),
+            Self::Clearance => BoundRelaxation::Clearance(printed((bound * steps).floor())),
+            Self::Across => BoundRelaxation::Across(up(0.0)),
         }
     }
 }
 
 impl BoundRelaxation {
-    fn set(self, request: &mut CounterweightSpec) {
+    /// Enters the relaxed bound into a request, in place of those that it has.
+    pub fn enter(self, request: &mut CounterweightSpec) {
         match self {
             Self::Most(most) => {
                 let bounded = request.sites.iter_mut().filter(|site| site.most.is_finite());

@@ -8,9 +8,8 @@ use super::pin_sector::{PinSector, worst_pin};
 use super::problem::CounterweightProblem;
 use super::refusal::CounterweightError;
 use super::search_node::{BalanceGoal, SearchNode};
-use super::solution::MIN_MASS_KG;
+use super::solution::MIN_MASS;
 use super::spec::CounterweightSpec;
-use crate::machine::Machine;
 use stillbase_convex::{NoOptimum, Optimum};
 
 /// Maximum number of subproblems from choices of directions from pins.
@@ -19,10 +18,10 @@ const MAX_CHOICES: usize = 4000;
 /// Maximum number of cells, the ranges of mass and position that are searched.
 const MAX_CELLS: usize = 300;
 
-/// Tolerance of the clearance, m: the solver's rounding.
-const CLEARANCE_TOLERANCE_M: f64 = 1e-7;
+/// Tolerance of the clearance, in the unit of length: the solver's rounding.
+const CLEARANCE_TOLERANCE: f64 = 1e-7;
 
-/// Tolerance of the objective: a solution worse by at most this is treated as optimal.
+/// Tolerance of the objective, in its unit: a solution worse by at most this is treated as optimal.
 const VALUE_TOLERANCE: f64 = 2e-7;
 
 /// Maximum number of linearisations in one descent.
@@ -35,12 +34,11 @@ const MAX_LINEARISATIONS: usize = 25;
 /// Outer: too many choices, or a subproblem fails and momentum has no weight. Inner: no solution, or the first fails.
 pub(super) fn search(
     problem: &CounterweightProblem,
-    machine: &Machine,
     request: &CounterweightSpec,
     node: &SearchNode,
 ) -> Result<Result<Optimum, NoOptimum>, CounterweightError> {
-    let search = Search { problem, machine, request };
-    let mut open = match problem.least(machine, request, node) {
+    let search = Search { problem, request };
+    let mut open = match problem.least(request, node) {
         Ok(least) => vec![OpenNode { least, node: node.clone(), failed: None }],
         Err(why) => return Ok(Err(why)),
     };
@@ -109,7 +107,7 @@ pub(super) fn search(
             }
         };
         for next in children {
-            match problem.least(machine, request, &next) {
+            match problem.least(request, &next) {
                 Ok(least) => open.push(OpenNode { least, node: next, failed: None }),
                 Err(NoOptimum::Contradiction(_)) => {}
                 Err(NoOptimum::Failed(why)) if request.objective.momentum == 0.0 => {
@@ -122,8 +120,13 @@ pub(super) fn search(
             }
         }
     }
-    let none = || failure.map_or(NoOptimum::Contradiction(Vec::new()), NoOptimum::Failed);
-    Ok(best.map(|best| Optimum { gap: best.gap.max(best.value - unproven), ..best }).ok_or_else(none))
+    match (best, failure) {
+        (Some(best), _) => Ok(Ok(Optimum { gap: best.gap.max(best.value - unproven), ..best })),
+        (None, Some(why)) => Ok(Err(NoOptimum::Failed(why))),
+        (None, None) if request.clearance.is_some() => Ok(Err(NoOptimum::Contradiction(Vec::new()))),
+        // The first relaxation has a solution, and its cells cover all of it.
+        (None, None) => Err(CounterweightError::Failed("no part of the search kept a solution".into())),
+    }
 }
 
 /// An open subproblem.
@@ -137,22 +140,21 @@ struct OpenNode {
 
 struct Search<'a> {
     problem: &'a CounterweightProblem,
-    machine: &'a Machine,
     request: &'a CounterweightSpec,
 }
 
 impl Search<'_> {
-    /// Returns the pins of the link of site j, m from its root.
+    /// Returns the pins of the link of site j, from its root.
     fn pins(&self, j: usize) -> &[f64] {
-        &self.problem.bare.resolved_links()[self.request.sites[j].link].pins
+        &self.problem.parts[self.request.sites[j].link].pins
     }
 
-    /// Returns the site whose disc violates the clearance of a pin most, and that pin, m from the link's root; `None`
+    /// Returns the site whose disc violates the clearance of a pin most, and that pin, from the link's root; `None`
     /// if all discs are clear or may cover pins. On an axis, a disc whose directions are chosen is clear.
     fn worst_site(&self, least: &Optimum, node: &SearchNode) -> Option<(usize, f64)> {
         let clearance = self.request.clearance?;
         let missed = |j: usize| {
-            let disc = self.problem.disc(self.request, &least.x, j, MIN_MASS_KG)?;
+            let disc = self.problem.disc(self.request, &least.x, j, MIN_MASS)?;
             let settled = |pin: f64| node.sectors[j].iter().any(|sector| sector.settles(pin));
             let pins = self.pins(j).iter().copied().filter(|pin| !settled(*pin));
             let on_axis = self.request.sites[j].across == 0.0;
@@ -162,13 +164,13 @@ impl Search<'_> {
         let is_open = |j: &usize| self.request.sites[*j].across > 0.0 || node.sectors[*j].is_empty();
         let open = (0..self.request.sites.len()).filter(is_open);
         let worst = open.filter_map(missed).max_by(|a, b| a.2.total_cmp(&b.2));
-        worst.filter(|(_, _, missed)| *missed > CLEARANCE_TOLERANCE_M).map(|(j, pin, _)| (j, pin))
+        worst.filter(|(_, _, missed)| *missed > CLEARANCE_TOLERANCE).map(|(j, pin, _)| (j, pin))
     }
 
     /// Returns a solution with every inertia at its exact value.
     fn with_exact_inertia(&self, least: &Optimum) -> Optimum {
-        let x = self.problem.with_exact_values(self.machine, self.request, &least.x);
-        Optimum { value: self.problem.value(self.machine, self.request, &x), x, gap: 0.0 }
+        let x = self.problem.with_exact_values(self.request, &least.x);
+        Optimum { value: self.problem.value(self.request, &x), x, gap: 0.0 }
     }
 
     /// Descends from a solution, and also from the bounds of all cells if `from_bounds`. Each iteration solves the cone
@@ -179,7 +181,7 @@ impl Search<'_> {
             let far = |[from, to]: [f64; 2]| if from.abs() > to.abs() { from } else { to };
             let one = |j: usize| {
                 let none = DiscPlace { at: far(node.cells[j].at), ..DiscPlace::default() };
-                self.problem.disc(self.request, &least.x, j, MIN_MASS_KG).unwrap_or(none)
+                self.problem.disc(self.request, &least.x, j, MIN_MASS).unwrap_or(none)
             };
             (0..self.request.sites.len()).map(one).collect::<Vec<_>>()
         };
@@ -196,7 +198,7 @@ impl Search<'_> {
             let mut best: Option<Optimum> = None;
             for _ in 0..MAX_LINEARISATIONS {
                 let node = SearchNode { tangents: Some(tangents), ..node.clone() };
-                let Ok(next) = self.problem.least(self.machine, self.request, &node) else { break };
+                let Ok(next) = self.problem.least(self.request, &node) else { break };
                 let next = self.with_exact_inertia(&next);
                 tangents = about(&next);
                 let gain = best.as_ref().map_or(f64::INFINITY, |best| best.value - next.value);
@@ -214,14 +216,14 @@ impl Search<'_> {
 
     /// Splits the cell in which an inertia differs most from its exact value; empty if all cells are too narrow.
     fn halves(&self, least: &Optimum, node: &SearchNode, best: Option<&Optimum>) -> Vec<SearchNode> {
-        let excess = self.problem.excess(self.machine, self.request, &least.x);
+        let excess = self.problem.excess(self.request, &least.x);
         let each = excess.iter().enumerate().flat_map(|(j, [place, own])| [(j, false, *place), (j, true, *own)]);
         let mut order: Vec<(usize, bool, f64)> = each.collect();
         order.sort_by(|a, b| b.2.total_cmp(&a.2));
         // No counterweight is heavier than the best objective divided by the coefficient of mass in the objective.
         let heaviest = best.map(|best| best.value / self.request.objective.mass).filter(|mass| mass.is_finite());
         let halved = order.into_iter().find_map(|(j, by_mass, _)| {
-            let disc = self.problem.disc(self.request, &least.x, j, MIN_MASS_KG).unwrap_or_default();
+            let disc = self.problem.disc(self.request, &least.x, j, MIN_MASS).unwrap_or_default();
             let mut cell = node.cells[j];
             cell.mass[1] = cell.mass[1].min(heaviest.unwrap_or(f64::INFINITY)).max(cell.mass[0]);
             let side = if by_mass { CellSide::Mass } else { cell.looser_side(&disc) };

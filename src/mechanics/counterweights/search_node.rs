@@ -2,7 +2,7 @@
 
 use super::cell::{DiscPlace, SearchCell};
 use super::pin_sector::PinSector;
-use super::refusal::BoundKind;
+use super::refusal::{BoundKind, RelaxedBounds};
 use super::spec::CounterweightSpec;
 
 /// Form of the balance conditions (7) and (8).
@@ -12,7 +12,8 @@ pub(super) enum BalanceGoal {
     Exact,
     /// The largest residual over a range of payloads is the objective.
     Nearest,
-    /// The largest residual over a range of payloads is at most this, kg m; (8) counts divided by the reach.
+    /// The largest residual over a range of payloads is at most this, in the unit of (7); (8) counts divided by the
+    /// reach.
     Within(f64),
 }
 
@@ -26,14 +27,14 @@ pub(super) struct SearchNode {
     pub most: Option<f64>,
     /// Kinds of bounds that are dropped.
     pub loose: Vec<BoundKind>,
-    /// A kind of bound whose value is minimised instead of the objective.
-    pub least: Option<BoundKind>,
+    /// Bounds that are minimised instead of the objective.
+    pub least: Option<RelaxedBounds>,
     /// Ranges of mass and position of each counterweight; they apply only if the objective contains |D_k|.
     pub cells: Vec<SearchCell>,
     /// Discs at which H_kk is linearised in −D_k ≤ |D_k|, so that this bound is convex. The
     /// linearised inertia is a lower bound, so |D_k| is not underestimated.
     pub tangents: Option<Vec<DiscPlace>>,
-    /// Masses, kg, at which the own inertia of each counterweight is bounded by tangents, where it has a remainder
+    /// Masses at which the own inertia of each counterweight is bounded by tangents, where it has a remainder
     /// beyond its powers of the mass.
     pub own_tangents: Vec<Vec<f64>>,
 }

@@ -10,22 +10,22 @@ use super::unknowns::{AffineForm, UnknownIndices};
 use crate::balance::{LinearEquation, SolutionSpace};
 use crate::machine::{Counterweight, Machine, Rotor};
 
-/// Mass w, kg, and first moments s = w x and t = w y, kg m, of the counterweight at each site that carries one.
+/// Mass w and first moments s = w x and t = w y, in the units of the machine, of each counterweight, with its site.
 type Found = Vec<(CounterweightSite, [f64; 3])>;
 
-/// Smallest mass of a counterweight; lighter ones are omitted.
-pub(super) const MIN_MASS_KG: f64 = 1e-7;
+/// Smallest mass of a counterweight, in the unit of mass; lighter ones are omitted.
+pub(super) const MIN_MASS: f64 = 1e-7;
 
 /// Smallest |gear ratio|: a ratio of zero is not valid.
 const MIN_RATIO: f64 = 1e-9;
 
 impl CounterweightProblem {
     /// Returns a solution with every inertia, momentum and torque at its exact value instead of a bound.
-    pub fn with_exact_values(&self, machine: &Machine, request: &CounterweightSpec, x: &[f64]) -> Vec<f64> {
+    pub fn with_exact_values(&self, request: &CounterweightSpec, x: &[f64]) -> Vec<f64> {
         let unknowns = UnknownIndices::of(request, self.drives());
         let mut x = x.to_vec();
         for (i, rotor) in request.rotors.iter().enumerate() {
-            let inertia = machine.spec().drives[rotor.drive].rotor.unwrap_or_default().inertia;
+            let inertia = self.rotor_inertia(rotor.drive) * self.ratio_units[i].powi(2);
             x[unknowns.turned(i)] = match rotor.parameter {
                 RotorFreedom::Inertia(_) => 0.0,
                 RotorFreedom::Ratio(_) => inertia * x[unknowns.rotor(i)].powi(2),
@@ -45,7 +45,7 @@ impl CounterweightProblem {
         for k in 0..self.drives() {
             let h = of(&self.linear_diagonal(request, &unknowns, k, &places), &x);
             x[unknowns.h(k)] = h;
-            let [momentum, turned] = self.of_rotors(request, machine, k);
+            let [momentum, turned] = self.of_rotors(request, k);
             let (momentum, turned) = (h + self.constant(k) + of(&momentum, &x), h + of(&turned, &x));
             if unknowns.momentum {
                 x[unknowns.momentum(k)] = momentum.abs();
@@ -59,39 +59,38 @@ impl CounterweightProblem {
     }
 
     /// Returns the value of the objective.
-    pub fn value(&self, machine: &Machine, request: &CounterweightSpec, x: &[f64]) -> f64 {
-        let costs = self.program(machine, request, &[], &SearchNode::unconstrained(request, BalanceGoal::Exact)).linear;
+    pub fn value(&self, request: &CounterweightSpec, x: &[f64]) -> f64 {
+        let costs = self.program(request, &[], &SearchNode::unconstrained(request, BalanceGoal::Exact)).linear;
         costs.iter().zip(x).map(|(cost, x)| cost * x).sum()
     }
 
-    /// Returns the excess of u and v over the exact inertias at each site, kg m².
-    pub fn excess(&self, machine: &Machine, request: &CounterweightSpec, x: &[f64]) -> Vec<[f64; 2]> {
-        let (unknowns, settled) =
-            (UnknownIndices::of(request, self.drives()), self.with_exact_values(machine, request, x));
+    /// Returns the excess of u and v over the exact inertias at each site.
+    pub fn excess(&self, request: &CounterweightSpec, x: &[f64]) -> Vec<[f64; 2]> {
+        let (unknowns, settled) = (UnknownIndices::of(request, self.drives()), self.with_exact_values(request, x));
         let excess = |i: usize| x[i] - settled[i];
         (0..request.sites.len()).map(|j| [excess(unknowns.u(j)), excess(unknowns.v(j))]).collect()
     }
 
-    /// Returns the mass w, kg, and the first moments s and t, kg m, at site j.
+    /// Returns the mass w and the first moments s and t at site j.
     fn moments(&self, request: &CounterweightSpec, x: &[f64], j: usize) -> [f64; 3] {
         let unknowns = UnknownIndices::of(request, self.drives());
         [x[unknowns.w(j)], x[unknowns.s(j)], unknowns.t(j).map_or(0.0, |t| x[t])]
     }
 
-    /// Returns the disc at site j; `None` if its mass is at most `min_mass`, kg.
+    /// Returns the disc at site j; `None` if its mass is at most `min_mass`.
     pub fn disc(&self, request: &CounterweightSpec, x: &[f64], j: usize, min_mass: f64) -> Option<DiscPlace> {
         let [w, s, t] = self.moments(request, x, j);
         (w > min_mass).then(|| DiscPlace { mass: w, at: s / w, across: t / w })
     }
 
     /// Returns the added mass, kg, and the machine with the counterweights and rotors of a solution. With exact balance
-    /// the machine is balanced to rounding.
+    /// the machine is balanced to rounding. `asked` is the request in SI units, and `request` in those of the machine.
     ///
     /// # Errors
     /// If the machine is not valid.
     pub fn machine(
         &self,
-        machine: &Machine,
+        asked: &CounterweightSpec,
         request: &CounterweightSpec,
         x: &[f64],
         balance: BalanceGoal,
@@ -102,7 +101,7 @@ impl CounterweightProblem {
             let [w, s, t] = self.moments(request, x, j);
             (*site, [w, s, if site.across > 0.0 { t } else { 0.0 }])
         });
-        let mut found: Found = all.filter(|(_, [w, ..])| *w > MIN_MASS_KG).collect();
+        let mut found: Found = all.filter(|(_, [w, ..])| *w > MIN_MASS).collect();
         // The residual from the solver's rounding and from omitted counterweights is removed by the least change of the
         // others.
         for _ in 0..if balance == BalanceGoal::Exact { 3 } else { 0 } {
@@ -110,19 +109,25 @@ impl CounterweightProblem {
         }
         let mut spec = self.bare.spec().clone();
         let weight = |(site, [w, s, t]): &(CounterweightSite, [f64; 3])| {
-            let link = self.bare.links()[site.link].name.clone();
-            Counterweight::new(link, *w, [s / w, t / w], request.stock.shape(*w))
+            let (link, mass) = (self.bare.links()[site.link].name.clone(), self.units.mass * w);
+            Counterweight::new(link, mass, [s, t].map(|moment| moment / w * self.units.length), asked.stock.shape(mass))
         };
         spec.counterweights.extend(found.iter().map(weight));
-        for (i, rotor) in request.rotors.iter().enumerate() {
-            let (present, value) = (machine.spec().drives[rotor.drive].rotor.unwrap_or_default(), x[unknowns.rotor(i)]);
+        for (i, rotor) in asked.rotors.iter().enumerate() {
+            let (present, value) = (self.rotors[rotor.drive], x[unknowns.rotor(i)]);
             let found = match rotor.parameter {
-                RotorFreedom::Inertia([low, high]) => Rotor { inertia: value.clamp(low, high), ..present },
-                RotorFreedom::Ratio([low, high]) => Rotor { ratio: other_than_zero(value.clamp(low, high)), ..present },
+                RotorFreedom::Inertia([low, high]) => {
+                    Rotor { inertia: (value * self.units.inertia()).clamp(low, high), ..present }
+                }
+                RotorFreedom::Ratio([low, high]) => {
+                    let ratio = (value * self.ratio_units[i]).clamp(low, high);
+                    Rotor { ratio: other_than_zero(ratio), ..present }
+                }
             };
             spec.drives[rotor.drive].rotor = (found.inertia > 0.0).then_some(found);
         }
-        Ok((found.iter().map(|(_, [w, ..])| w).sum(), Machine::new(spec)?))
+        let added: f64 = found.iter().map(|(_, [w, ..])| w).sum();
+        Ok((self.units.mass * added, Machine::new(spec)?))
     }
 
     /// Removes the residual of the conditions by the least change of the counterweights.

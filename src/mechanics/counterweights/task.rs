@@ -10,15 +10,33 @@ use crate::planar::Vector;
 use stillbase_convex::{NoOptimum, Optimum};
 
 /// One request for counterweights on a machine, with the problem derived from it.
-#[derive(Clone, Copy)]
 pub(super) struct CounterweightTask<'a> {
     pub problem: &'a CounterweightProblem,
     pub machine: &'a Machine,
     pub spec: &'a CounterweightSpec,
     pub beyond: &'a [Vector],
+    /// The request in the units of the machine, in which it is solved.
+    pub scaled: CounterweightSpec,
 }
 
-impl CounterweightTask<'_> {
+impl<'a> CounterweightTask<'a> {
+    pub fn new(
+        problem: &'a CounterweightProblem,
+        machine: &'a Machine,
+        spec: &'a CounterweightSpec,
+        beyond: &'a [Vector],
+    ) -> Self {
+        Self { problem, machine, spec, beyond, scaled: problem.units.request(spec) }
+    }
+
+    /// Returns the task with another objective or other bounds on the same sites.
+    pub fn with<'b>(&self, spec: &'b CounterweightSpec) -> CounterweightTask<'b>
+    where
+        'a: 'b,
+    {
+        CounterweightTask::new(self.problem, self.machine, spec, self.beyond)
+    }
+
     /// Returns the goal: exact balance, or the smallest residual over a range of payloads.
     pub fn balance(&self) -> BalanceGoal {
         match self.spec.payload {
@@ -29,20 +47,20 @@ impl CounterweightTask<'_> {
 
     /// Returns whether counterweights exist that satisfy the request; false if the solver fails.
     pub fn is_possible(&self) -> bool {
-        matches!(self.on(&SearchNode::unconstrained(self.spec, self.balance())), Ok(Ok(_)))
+        matches!(self.on(&SearchNode::unconstrained(&self.scaled, self.balance())), Ok(Ok(_)))
     }
 
     /// Finds the optimum with a given form of the balance conditions.
     pub fn least(&self, balance: BalanceGoal) -> Result<Result<Optimum, NoOptimum>, CounterweightError> {
-        self.on(&SearchNode::unconstrained(self.spec, balance))
+        self.on(&SearchNode::unconstrained(&self.scaled, balance))
     }
 
     /// Finds the optimum of the subproblem at a node of the search.
     pub fn on(&self, node: &SearchNode) -> Result<Result<Optimum, NoOptimum>, CounterweightError> {
         let is_convex = self.spec.clearance.is_none() && self.spec.objective.momentum == 0.0;
         match is_convex {
-            true => Ok(self.problem.least(self.machine, self.spec, node)),
-            false => search(self.problem, self.machine, self.spec, node),
+            true => Ok(self.problem.least(&self.scaled, node)),
+            false => search(self.problem, &self.scaled, node),
         }
     }
 }

@@ -3,9 +3,8 @@
 use super::cell::DiscPlace;
 use super::problem::CounterweightProblem;
 use super::spec::{CounterweightSpec, RotorFreedom};
-use crate::machine::Machine;
 
-/// Indices of the unknowns, in this order:
+/// Indices of the unknowns, in this order, in the units of the machine:
 ///
 /// - w and s of each site, and t if a counterweight may lie off its link's axis;
 /// - if the objective or a bound depends on inertia: u and v of each site, and H_kk of each drive without the share
@@ -104,33 +103,29 @@ impl CounterweightProblem {
     }
 
     /// Returns the contributions of free rotors to D_k and to H_kk.
-    pub fn of_rotors(&self, request: &CounterweightSpec, machine: &Machine, k: usize) -> [AffineForm; 2] {
+    pub fn of_rotors(&self, request: &CounterweightSpec, k: usize) -> [AffineForm; 2] {
         let unknowns = UnknownIndices::of(request, self.drives());
         let mut sums = [(); 2].map(|()| AffineForm { terms: Vec::new(), constant: 0.0 });
         for (i, rotor) in request.rotors.iter().enumerate() {
             let [plain, by_ratio] = self.rates(rotor.drive, k);
-            let present = machine.spec().drives[rotor.drive].rotor.unwrap_or_default();
-            let (x, turned, inertia) = (unknowns.rotor(i), unknowns.turned(i), present.inertia);
+            let (x, turned) = (unknowns.rotor(i), unknowns.turned(i));
+            let (ratio, inertia) = (self.rotors[rotor.drive].ratio, self.rotor_inertia(rotor.drive));
+            let of_ratio = by_ratio * inertia * self.ratio_units[i];
             match rotor.parameter {
                 RotorFreedom::Inertia(_) => {
-                    let rate = plain + by_ratio * present.ratio;
+                    let rate = plain + by_ratio * ratio;
                     sums[0].terms.push((x, rate));
                     sums[1].terms.push((x, rate * rate));
                 }
                 RotorFreedom::Ratio(_) => {
-                    sums[0].terms.push((x, by_ratio * inertia));
+                    sums[0].terms.push((x, of_ratio));
                     sums[0].constant += plain * inertia;
-                    sums[1].terms.extend([(x, 2.0 * plain * by_ratio * inertia), (turned, by_ratio * by_ratio)]);
+                    sums[1].terms.extend([(x, 2.0 * plain * of_ratio), (turned, by_ratio * by_ratio)]);
                     sums[1].constant += plain * plain * inertia;
                 }
             }
         }
         sums
-    }
-
-    /// Returns D_k − H_kk without counterweights and free rotors, kg m².
-    pub fn constant(&self, k: usize) -> f64 {
-        self.inertia.momentum(k) - self.inertia.diagonal(k)
     }
 
     /// Returns an affine lower bound of H_kk without free rotors, tangent at `tangents`.
@@ -141,11 +136,10 @@ impl CounterweightProblem {
         k: usize,
         tangents: &[DiscPlace],
     ) -> AffineForm {
-        let parts = self.bare.resolved_links();
-        let mut sum = AffineForm { terms: Vec::new(), constant: self.inertia.diagonal(k) };
+        let mut sum = AffineForm { terms: Vec::new(), constant: self.diagonal(k) };
         for (j, (site, tangent)) in request.sites.iter().zip(tangents).enumerate() {
             let DiscPlace { mass, at, across } = *tangent;
-            let (part, own) = (&parts[site.link], request.stock.own_slope(mass));
+            let (part, own) = (&self.parts[site.link], request.stock.own_slope(mass));
             let (root, (w, s)) = (part.root[k], (unknowns.w(j), unknowns.s(j)));
             sum.terms.push((w, root * root));
             if part.drive == k {

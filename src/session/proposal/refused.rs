@@ -12,7 +12,7 @@ use super::wider::{names_limits, wider_limits};
 use crate::changes::after_start_edit;
 use crate::edit::Edit;
 use crate::refusal::Refusal;
-use crate::replay::replay_while;
+use crate::replay::{replay_while, with_start_edits};
 use crate::run::Run;
 use crate::scenario::Scenario;
 use stillbase_query::{Portion, ProgressCallback, Queries, Query, Shared};
@@ -109,20 +109,23 @@ pub fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: Progress
         // No setting finishes a drawing.
         return Some(Vec::new());
     }
-    let bare = scenario.without_edits();
-    let candidates = candidates(&bare, refusal);
+    // What starts is the scenario after its first edits, which may have drawn another machine; what is typed comes
+    // before them.
+    let start = with_start_edits(scenario).map_or_else(|_| scenario.without_edits(), |(start, _)| start);
+    let candidates = candidates(&start, refusal);
     let count = candidates.len() + 2;
     // Wider limits and a task made for the machine take a search, so this is done only if the loop gets to it.
-    let made = std::iter::once_with(|| would_plan(refusal).then(|| made_task(&bare)).flatten()).flatten();
-    let wider = std::iter::once_with(|| names_limits(refusal).then(|| wider_limits(&bare)).flatten()).flatten();
-    let in_motion = shows_only_in_motion(refusal);
+    let made = std::iter::once_with(|| would_plan(refusal).then(|| made_task(&start)).flatten()).flatten();
+    let wider = std::iter::once_with(|| names_limits(refusal).then(|| wider_limits(&start)).flatten()).flatten();
+    let is_edited_later = with_start_edits(scenario).is_ok_and(|(_, others)| others > 0);
+    let in_motion = shows_only_in_motion(refusal) || is_edited_later;
     // What works, as it was tried first: a longer time may have been added to it.
     let (mut proposals, mut known): (Vec<Proposal>, Vec<Proposal>) = Default::default();
     for (i, candidate) in candidates.into_iter().chain(wider).chain(made).enumerate() {
         if !goes_on(i as f64 / count as f64) {
             return None;
         }
-        let candidate = candidate.reduced(&bare);
+        let candidate = candidate.reduced(scenario);
         let is_new = candidate.change().is_some_and(|change| !change.is_empty())
             && known.iter().all(|known| known.text != candidate.text && known.way != candidate.way);
         if !is_new {
@@ -132,8 +135,12 @@ pub fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: Progress
         let first = candidate.clone();
         let working = match in_motion {
             true => runs_without_fault(scenario, &candidate, &mut || goes_on(share))?.then_some(candidate),
-            false => match candidate.tried(&bare) {
-                Some(run) => Some(within_limits(candidate, &run, &mut |_| goes_on(share))?),
+            false => match candidate.tried(scenario) {
+                Some(run) => {
+                    let longer = within_limits(candidate.clone(), &run, &mut |_| goes_on(share))?;
+                    // An edit may set the time again.
+                    Some(if longer.tried(scenario).is_some() { longer } else { candidate })
+                }
                 None => None,
             },
         };
@@ -151,7 +158,7 @@ pub fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: Progress
 /// Runs a scenario after a proposal; returns whether it comes to its end and its audit finds no fault. `None` if
 /// `goes_on` stops the run.
 fn runs_without_fault(scenario: &Scenario, proposal: &Proposal, goes_on: &mut dyn FnMut() -> bool) -> Option<bool> {
-    let Some(changed) = proposal.applied(scenario) else { return Some(false) };
+    let Some(changed) = proposal.typed(scenario) else { return Some(false) };
     match replay_while(&changed, |_, _| goes_on()) {
         Ok(run) => Some(run.frame().first_violation().is_none()),
         Err(Refusal::Stopped) => None,
@@ -166,12 +173,12 @@ pub fn proposals_for_settings(scenario: &Scenario, wanted: &Table) -> Vec<Propos
 }
 
 fn settings_while(scenario: &Scenario, wanted: &Table, goes_on: ProgressCallback<'_>) -> Option<Vec<Proposal>> {
-    let bare = scenario.without_edits();
     let with = |change: &Table| {
-        let changed = bare.with_settings(&join(wanted.clone(), change)).ok()?;
+        let changed = scenario.with_settings(&join(wanted.clone(), change)).ok()?;
         changed.check("").ok().map(|()| changed)
     };
-    let present = |path: &str| bare.value(path);
+    let starts = |changed: &Scenario| Run::new(&with_start_edits(changed)?.0);
+    let present = |path: &str| scenario.value(path);
     let allowed = |found: Proposal| {
         let changed = with(found.change()?)?;
         Some((found, changed))
@@ -179,7 +186,7 @@ fn settings_while(scenario: &Scenario, wanted: &Table, goes_on: ProgressCallback
     let nearest = nearest_values(wanted, &present, &|change| with(change).is_some()).and_then(allowed);
     let mut found: Vec<Proposal> = Vec::new();
     if let Some((nearest, changed)) = nearest {
-        match Run::new(&changed) {
+        match starts(&changed) {
             Ok(_) => found.push(nearest),
             // The values are allowed, but the task cannot be planned with them: what helps then is proposed with them.
             Err(why) => {
@@ -193,7 +200,7 @@ fn settings_while(scenario: &Scenario, wanted: &Table, goes_on: ProgressCallback
     }
     if found.is_empty() {
         let kept = taking_back(wanted, &present).and_then(allowed);
-        found.extend(kept.filter(|(_, changed)| Run::new(changed).is_ok()).map(|(kept, _)| kept));
+        found.extend(kept.filter(|(_, changed)| starts(changed).is_ok()).map(|(kept, _)| kept));
     }
     Some(found)
 }

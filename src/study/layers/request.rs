@@ -159,6 +159,14 @@ pub fn find_layers(request: &LayersRequest) -> Result<LayersReport, NoLayers> {
     let [low, high] = ends(&stacked, &solids);
     // A payload above its link is kept as far away on both sides.
     let is_exact = solids.links.iter().all(|solid| solid.rise == 0.0);
+    // Pairs that are not decided count as meeting. If they do not meet, another order may have fewer layers or less tilt.
+    let certain: Vec<Contact> = meetings.iter().filter(|contact| contact.decided).cloned().collect();
+    let is_decided = certain.len() == meetings.len();
+    let needs_as_many = || {
+        let lowest = Stack::of(links, &solids, cut, &certain).lowest(&mut { ORDERS });
+        lowest.is_some_and(|(_, fewest, minimal)| minimal && fewest == count)
+    };
+    let minimal = minimal && is_exact && (is_decided || needs_as_many());
     Ok(LayersReport {
         layers: machine.spec().links.iter().zip(&layers).map(row).collect(),
         count,
@@ -167,8 +175,8 @@ pub fn find_layers(request: &LayersRequest) -> Result<LayersReport, NoLayers> {
             .as_ref()
             .map(|task| Change { before: largest_tilt(machine, task), after: largest_tilt(&stacked, task) }),
         tilt_coefficient: Change { before: tilt_coefficient(machine), after: tilt_coefficient(&stacked) },
-        minimal: minimal && is_exact,
-        least_tilt: least_tilt && is_exact,
+        minimal,
+        least_tilt: least_tilt && is_exact && is_decided,
         clashes: Clash::all(machine, &meetings),
         meetings,
         clearance: task.as_ref().and_then(|task| Clearance::least(&stacked, cut, task)),

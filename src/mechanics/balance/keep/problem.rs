@@ -320,10 +320,9 @@ impl<'a> Problem<'a> {
         let solve = |limits: &[(ParameterLimit, LinearRow)]| plane.nearest(&self.bounds(limits));
         match solve(&limits) {
             Ok(_) => RebalanceError::Failed("limits that contradict each other by no more than rounding".into()),
-            Err(weights) => {
+            Err(multipliers) => {
                 let relief = self.relief(&plane, &limits);
-                let weights = &weights[weights.len() - limits.len()..];
-                let limits = infeasible_bounds(limits, weights, |some| solve(some).is_err());
+                let limits = infeasible_bounds(limits, &multipliers, |some| solve(some).is_err());
                 if limits.is_empty() { RebalanceError::NoMass } else { RebalanceError::Conflict { limits, relief } }
             }
         }
