@@ -3,10 +3,8 @@
 
 use std::f64::consts::PI;
 
-use stillbase::mechanics::machine::{
-    Ends, Hole, LinkNumber, Lump, MATERIALS, Machine, Material, Part, PlaceOnLink, PlaneBody, Shape, parse, to_toml,
-};
-use stillbase::mechanics::planar::{DriveAngles, PerDrive};
+use stillbase::mechanics::machine::{Counterweight, CounterweightShape, Ends, Hole, LinkNumber, Lump, MATERIALS, Machine, Material, Part, PlaceOnLink, PlaneBody, Shape, parse, to_toml};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::mechanics::sketch::{Bar, BarEnd, BarId, Body, PinId, Sketch, SketchStep, Template, resolve};
 
 use super::sketch::{at, bar, complete, draw, motor, pin};
@@ -208,6 +206,39 @@ fn split_and_joined_bars_keep_what_they_weigh() {
         alike(&format!("join {i}"), &PlaneBody { at: after.at + shift.re, ..after }, &before);
     }
     assert!(splits > 150 && joins > 150 && rounds > 5, "{splits}, {joins} and {rounds}");
+}
+
+/// Half a ring keeps its round side where it is when its bar is divided, and when it is joined again.
+#[test]
+fn half_rings_keep_their_round_side() {
+    let mut arm = Template::SerialOfTwo.sketch();
+    let own = arm.bars[0].clone();
+    let half = |at: f64, turned: bool| {
+        let shape = CounterweightShape::HalfRing { radius: 0.04, inner_radius: 0.01 };
+        Counterweight { turned, ..Counterweight::new(&own.name, 0.5, [at, 0.01], shape) }
+    };
+    arm.counterweights = vec![half(0.05, false), half(0.3, true), half(0.35, false), half(-0.05, false)];
+    let corners = |sketch: &Sketch| -> Vec<Vec<Vector>> {
+        let placed = |weight: &Counterweight| {
+            let bar = sketch.bars.iter().find(|bar| bar.name == weight.link).expect("its bar");
+            let way = sketch.span(bar) / sketch.length(bar);
+            weight.polygon(32).into_iter().map(|corner| sketch.at(bar.root) + way * corner).collect()
+        };
+        sketch.counterweights.iter().map(placed).collect()
+    };
+    let same = |sketch: &Sketch| {
+        for (was, is) in corners(&arm).iter().zip(&corners(sketch)) {
+            // The corners may be listed in another order.
+            let near = |p: &Vector| was.iter().any(|q| (p - q).norm() < 1e-9);
+            assert!(was.len() == is.len() && is.iter().all(near), "{was:?} {is:?}");
+        }
+    };
+    let split = draw(&arm, [SketchStep::Split { bar: own.id, along: 0.2 }]);
+    assert!(split.counterweights.iter().any(|weight| weight.link != own.name), "some lie beyond the cut");
+    same(&split);
+    let cut_off = split.bars.last().expect("cut off").id;
+    same(&draw(&split, [SketchStep::Join { bar: own.id, with: cut_off }]));
+    same(&draw(&split, [SketchStep::Join { bar: cut_off, with: own.id }]));
 }
 
 /// A part over the cut becomes two; of a flat bar, each has a round end of its own at the cut.

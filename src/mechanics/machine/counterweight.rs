@@ -32,6 +32,9 @@ pub struct Counterweight {
     /// Whether it is half a ring, or half a disc. Its flat side faces the link's root, and its round side away from it.
     #[serde(default, skip_serializing_if = "is_false")]
     pub half: bool,
+    /// Whether half a ring is turned round: its round side faces the link's root, and its flat side away from it.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub turned: bool,
     /// Length of a box along the link, m.
     #[serde(default, skip_serializing_if = "is_nought")]
     pub length: f64,
@@ -43,6 +46,9 @@ pub struct Counterweight {
     #[serde(default, skip_serializing_if = "is_false")]
     pub fixed: bool,
 }
+
+/// Distance from the root within which a counterweight is at the root, m.
+const AT_ROOT: f64 = 1e-9;
 
 /// Shape of a counterweight in the plane of its link. All lengths in m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -201,6 +207,7 @@ impl Counterweight {
         };
         let half = matches!(shape, CounterweightShape::HalfRing { .. });
         (self.radius, self.inner_radius, self.half) = (radius, inner_radius, half);
+        self.turned &= half;
         (self.length, self.width) = (length, width);
     }
 
@@ -249,7 +256,9 @@ impl Counterweight {
 
     /// Returns the direction along the link in which half a ring has its round side: 1 towards the tip, −1 from it.
     pub fn outward(&self) -> f64 {
-        if self.at < 0.0 { -1.0 } else { 1.0 }
+        // At the root itself, away from the root is towards the tip.
+        let away = if self.at < -AT_ROOT { -1.0 } else { 1.0 };
+        if self.turned { -away } else { away }
     }
 
     /// Returns the place along its link, m, to which a bar must reach to carry it: its centre of mass, or the middle of

@@ -238,6 +238,15 @@ pub(super) const MACHINE_KEYS: [KeyRow; 41] = [
         at!(Switch, |spec, i| spec.counterweights[i].half),
     ),
     row(
+        Key::new(
+            "counterweight.*.turned",
+            KeyType::Switch,
+            "false",
+            "Whether half a ring is turned round: round towards its link's root, flat away from it.",
+        ),
+        at!(Switch, |spec, i| spec.counterweights[i].turned),
+    ),
+    row(
         Key::number("counterweight.*.length", RADIUS, "0", "Length of a counterweight along its link, if it is a box."),
         at!(Number, |spec, i| spec.counterweights[i].length),
     ),

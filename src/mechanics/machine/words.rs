@@ -113,6 +113,7 @@ const ROWS: &[WordRow] = &[
     row("counterweight.*.radius", "radius of counterweight *", "", "0.03"),
     row("counterweight.*.inner_radius", "inner radius of counterweight *", "", "0.01"),
     row("counterweight.*.half", "counterweight * is half a ring", "", "true"),
+    row("counterweight.*.turned", "counterweight * is turned round", "", "true"),
     row("counterweight.*.length", "length of counterweight *", "", "0.08"),
     row("counterweight.*.width", "width of counterweight *", "", "0.04"),
     row("counterweight.*.fixed", "counterweight * stays", "", "true"),

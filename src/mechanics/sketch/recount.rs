@@ -74,7 +74,10 @@ impl Sketch {
             (lump.at, lump.across) = (by.place(&lump.at), by.sense * lump.across);
         }
         for weight in self.counterweights.iter_mut().filter(|weight| weight.link == bar) {
+            let outward = by.sense * weight.outward();
             (weight.at, weight.across) = (by.along(weight.at), by.sense * weight.across);
+            // Half a ring keeps its round side where it is.
+            weight.turned ^= weight.half && weight.outward() != outward;
         }
     }
 
