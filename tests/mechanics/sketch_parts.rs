@@ -3,7 +3,10 @@
 
 use std::f64::consts::PI;
 
-use stillbase::mechanics::machine::{Counterweight, CounterweightShape, Ends, Hole, LinkNumber, Lump, MATERIALS, Machine, Material, Part, PlaceOnLink, PlaneBody, Shape, parse, to_toml};
+use stillbase::mechanics::machine::{
+    Counterweight, CounterweightShape, Ends, Hole, LinkNumber, Lump, MATERIALS, Machine, Material, Part, PlaceOnLink,
+    PlaneBody, Shape, parse, to_toml,
+};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::mechanics::sketch::{Bar, BarEnd, BarId, Body, PinId, Sketch, SketchStep, Template, resolve};
 

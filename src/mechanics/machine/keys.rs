@@ -59,7 +59,7 @@ const NOT_OF_THE_SHAPE: &str = "the part has a shape that has none";
 
 /// Every key of a machine that can be set on its own. Keys name links, drives and angles by their names,
 /// counterweights, parts and lumps by their numbers, from 1.
-pub(super) const MACHINE_KEYS: [KeyRow; 41] = [
+pub(super) const MACHINE_KEYS: [KeyRow; 42] = [
     row(
         Key::number(
             "link.*.com",
