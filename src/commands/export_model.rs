@@ -7,7 +7,7 @@ use serde::Serialize;
 use stillbase_exchange::cut::Cut;
 use stillbase_exchange::drawing::Sheet;
 use stillbase_exchange::form::{self, Form, ModelContent};
-use stillbase_exchange::mjcf::{hinges, middle};
+use stillbase_exchange::mjcf::{hinges, usual_pose};
 use stillbase_exchange::stl;
 use stillbase_exchange::urdf::joint;
 use stillbase_files::write_new;
@@ -39,7 +39,8 @@ Examples:
 pub struct ExportModelArguments {
     #[command(flatten)]
     machine: MachineArgument,
-    /// Angles of the drives in the keyframe of .xml and in .stl, rad; default: the middle of the limits
+    /// Angles of the drives in the keyframe of .xml and in .stl, rad; default: the pose that the
+    /// machine's file states, or else the middle of the limits
     #[arg(long, value_name = "Q1,Q2,…", value_delimiter = ',', allow_hyphen_values = true)]
     pose: Vec<f64>,
     #[command(flatten)]
@@ -106,7 +107,7 @@ impl ExportModelArguments {
         if let Some(bad) = self.pose.iter().find(|q| !q.is_finite()) {
             return Err(Failure::wrong_input(format!("--pose {bad}: want finite angles in rad")));
         }
-        let pose = if self.pose.is_empty() { middle(&machine) } else { self.pose.clone() };
+        let pose = if self.pose.is_empty() { usual_pose(&machine) } else { self.pose.clone() };
         let cut = self.dimensions.cut(&machine);
         let text = form.written(&machine, &pose, &cut).map_err(Failure::wrong_input)?;
         let of = described(&machine, form, pose, &cut)?;

@@ -414,6 +414,13 @@ pub(super) fn parallel(machine: &Machine) -> Vec<(usize, PinAngleSum)> {
     (0..parts.len()).filter_map(of).collect()
 }
 
+/// Returns the drive angles, rad, in which a machine is shown if nobody says otherwise: those of its drawing, or else those
+/// in the middle of its limits.
+pub fn usual_pose(machine: &Machine) -> Vec<f64> {
+    let drawn = machine.spec().pose.as_ref().filter(|pose| pose.len() == machine.drives());
+    drawn.cloned().unwrap_or_else(|| middle(machine))
+}
+
 /// Returns drive angles, rad, with each relative angle in the middle of its limits, or at 0 without limits. A drive
 /// that no relative angle determines points along y.
 pub fn middle(machine: &Machine) -> Vec<f64> {

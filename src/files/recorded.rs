@@ -1,6 +1,5 @@
 //! Reads recordings of the Rerun viewer's format: the session and the signals of each case.
 
-use std::fs::{self, File};
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 
@@ -70,9 +69,7 @@ pub fn cases(file: &Path) -> Result<Vec<RecordedCase>, ReadError> {
     let refused = |why: String| ReadError { file: file.into(), why };
     let unreadable = |why: io::Error| refused(format!("{why}: want a recording that can be read"));
     let wrong = |why: String| refused(format!("{why}: want a whole recording of `stillbase headless`"));
-    let there = fs::metadata(file).map_err(unreadable)?;
-    crate::text::check(&there, MAX_FILE_BYTES).map_err(unreadable)?;
-    let opened = File::open(file).map_err(unreadable)?;
+    let opened = crate::text::open(file, MAX_FILE_BYTES).map_err(unreadable)?;
     let mut cases = Cases::default();
     for message in DecoderApp::decode_lazy(BufReader::new(opened)) {
         let message = message.map_err(|e| wrong(e.to_string()))?;

@@ -19,15 +19,24 @@ pub fn read(file: &Path) -> io::Result<String> {
 /// # Errors
 /// If it is not such a file, or cannot be read.
 pub fn read_at_most(file: &Path, most: u64) -> io::Result<String> {
-    // Opening a pipe would block until its other end is opened.
-    check(&fs::metadata(file)?, most)?;
-    let opened = File::open(file)?;
-    check(&opened.metadata()?, most)?;
+    let opened = open(file, most)?;
     let mut text = String::new();
     // The length is limited again here, because the file may grow, and some files report no length.
     opened.take(most + 1).read_to_string(&mut text)?;
     let length = text.len() as u64;
     if length > most { Err(too_long(length, most)) } else { Ok(text) }
+}
+
+/// Opens a plain file of at most `most` bytes.
+///
+/// # Errors
+/// If it is not such a file, or cannot be opened.
+pub fn open(file: &Path, most: u64) -> io::Result<File> {
+    // Opening a pipe would block until its other end is opened.
+    check(&fs::metadata(file)?, most)?;
+    let opened = File::open(file)?;
+    check(&opened.metadata()?, most)?;
+    Ok(opened)
 }
 
 /// Checks that a file is a plain file of at most `most` bytes.

@@ -70,6 +70,8 @@ errors! {
     study::trim::NoTrim,
     study::trim::TrimError,
     settings::spelling::UnknownName,
+    #[cfg(feature = "record")]
+    files::recorded::ReadError,
     files::WriteError,
     files::video::VideoError,
     #[cfg(feature = "cli")]

@@ -408,7 +408,7 @@ fn counterweights_are_set_by_key() {
     }
     assert!(words("counterweight.1.fixed", "2").contains("true or false"));
     assert!(words("counterweight.1.mass", "0").contains("1e-15"), "{}", words("counterweight.1.mass", "0"));
-    let keys = "counterweight.NUMBER.(mass|at|across|radius|inner_radius|half|length|width|fixed)";
+    let keys = "counterweight.NUMBER.(mass|at|across|radius|inner_radius|half|turned|length|width|fixed)";
     assert!(words("counterweight.1.colour", "1").contains(keys), "{}", words("counterweight.1.colour", "1"));
 }
 

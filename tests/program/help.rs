@@ -12,9 +12,10 @@ fn help_names_every_command_with_units_and_examples() {
     for command in names {
         assert!(all.contains(&format!("\n  {command} ")), "{command}");
         let help = prints(&[command, "--help"]);
-        let sets = ["figures", "keys"].contains(&command) || help.contains("--set <KEY=VALUE>");
-        assert!(sets && (command == "figures" || help.contains("--json")), "{command}");
-        assert!(command == "machines" || help.contains("Example"), "{command}");
+        let fixed = ["figures", "keys", "replay", "diff", "table"].contains(&command);
+        assert!(fixed || help.contains("--set <KEY=VALUE>"), "{command}");
+        assert!(["figures", "table"].contains(&command) || help.contains("--json"), "{command}");
+        assert!(help.contains("Example"), "{command}");
     }
     assert!(prints(&["--version"]).starts_with("stillbase "));
 }

@@ -14,7 +14,7 @@ use super::cell::DiscPlace;
 use super::spec::{CounterweightSite, CounterweightSpec};
 use super::stock::{CounterweightForm, CounterweightStock};
 use super::unknowns::UnknownIndices;
-use crate::machine::Counterweight;
+use crate::machine::{Counterweight, behind_half_ring};
 use stillbase_convex::{LinearRow, Program};
 
 /// Half a ring keeps this distance from the root, m, so that rounding does not turn it round.
@@ -176,7 +176,9 @@ impl PinSector {
                     // The centre of mass lies in direction n from the pin, so the pin is on the side −n.
                     match sector.middle[0] * sector.side {
                         1.0 => {
-                            away -= if request.sites[j].across > 0.0 { 0.0 } else { bore };
+                            if request.sites[j].across == 0.0 {
+                                away = behind_half_ring(bore, clearance);
+                            }
                             0
                         }
                         -1.0 => 1,

@@ -283,9 +283,9 @@ impl Counterweight {
         match shape {
             CounterweightShape::HalfRing { .. } | CounterweightShape::Box { .. } => {
                 let [flat, round, wide] = shape.reach();
-                let bore = if across == 0.0 { self.inner_radius } else { 0.0 };
+                let away = if across == 0.0 { behind_half_ring(self.inner_radius, clearance) } else { clearance };
                 let outward = self.outward() * ahead;
-                let along = (flat - bore + clearance + outward).min(round + clearance - outward);
+                let along = (flat + away + outward).min(round + clearance - outward);
                 along.min(wide + clearance - across)
             }
             _ => {
@@ -305,8 +305,8 @@ impl Counterweight {
         match shape {
             CounterweightShape::HalfRing { inner_radius, .. } if across < self.radius + clearance => {
                 let [flat, round, _] = shape.reach();
-                let bore = if across == 0.0 { inner_radius } else { 0.0 };
-                let away = [flat + clearance - bore, round + clearance];
+                let behind = if across == 0.0 { behind_half_ring(inner_radius, clearance) } else { clearance };
+                let away = [flat + behind, round + clearance];
                 if self.outward() < 0.0 { [away[1], away[0]] } else { away }
             }
             CounterweightShape::Box { length, width } if across < 0.5 * width + clearance => {
@@ -323,6 +323,15 @@ impl Counterweight {
     /// Returns the place of the centre of its circles along the link, m from the root.
     pub fn circle_at(&self) -> f64 {
         self.at - self.outward() * self.shape().from_circle()
+    }
+}
+
+/// Returns the least distance, m, of a pin on the axis behind the flat side of half a ring, at which its edge keeps a
+/// clearance, m. It is negative where the pin may lie in the bore. Behind the flat side, the inner corners are nearest.
+pub(crate) fn behind_half_ring(inner_radius: f64, clearance: f64) -> f64 {
+    match clearance <= inner_radius {
+        true => clearance - inner_radius,
+        false => ((clearance - inner_radius) * (clearance + inner_radius)).sqrt(),
     }
 }
 

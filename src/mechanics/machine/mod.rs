@@ -36,6 +36,7 @@ pub use caps::{MAX_CHAIN_LINKS, MAX_COUNTERWEIGHTS, MAX_LINKS, MAX_PARTS, MAX_PE
 pub use catalog::{builtin, builtins, named, unknown};
 pub use chain::{Chain, place_of};
 pub use check::CLOSURE_TOLERANCE;
+pub(crate) use counterweight::behind_half_ring;
 pub use counterweight::{Counterweight, CounterweightShape};
 pub use error::{KeyPath, KeyStep, MachineError};
 pub use faults::{FirstProblem, read as read_stated};

@@ -150,7 +150,10 @@ pub fn find_layers(request: &LayersRequest) -> Result<LayersReport, NoLayers> {
     let mut budget = ORDERS;
     let least_tilt = stack.search(count, &mut visitor, &mut budget) == Ended::Complete;
     let layers = visitor.best.0;
-    let stacked = at_heights(machine, &layers.iter().map(|layer| *layer as f64 * pitch).collect::<Vec<_>>())?;
+    let heights: Vec<f64> = layers.iter().map(|layer| *layer as f64 * pitch).collect();
+    // Along the task no two links meet, elsewhere they may: the machine is shown where the task begins.
+    let pose = request.motion.as_ref().filter(|_| request.along_task).map(|motion| motion.0.at(0.0).q.to_vec());
+    let stacked = at_heights(machine, &heights, pose)?;
     let row = |(link, &layer): (&stillbase_mechanics::machine::Link, &usize)| LinkLayer {
         link: link.name.clone(),
         layer,
@@ -184,9 +187,11 @@ pub fn find_layers(request: &LayersRequest) -> Result<LayersReport, NoLayers> {
     })
 }
 
-/// Returns the machine with its links at heights, m; the payload keeps its height above the link that holds it.
-fn at_heights(machine: &Machine, heights: &[f64]) -> Result<Machine, MachineError> {
+/// Returns the machine with its links at heights, m, drawn in a pose, rad, if one is given; the payload keeps its height
+/// above the link that holds it.
+fn at_heights(machine: &Machine, heights: &[f64], pose: Option<Vec<f64>>) -> Result<Machine, MachineError> {
     let mut spec = machine.spec().clone();
+    spec.pose = pose.or(spec.pose);
     let end = machine.end_link();
     // The height of a payload that is not there has no use.
     if spec.payload.mass > 0.0 || spec.payload.axial != 0.0 {
