@@ -59,6 +59,9 @@ impl Goal {
 /// Ends of the bar of each link, m from its root.
 type Reach = Vec<[f64; 2]>;
 
+/// Discs on given bars, if there are any.
+type Placement = Result<Option<PlacedCounterweights>, CounterweightError>;
+
 /// Discs on bars of known lengths.
 #[derive(Clone)]
 pub(super) struct Attempt {
@@ -306,7 +309,7 @@ impl<'a> TailSearch<'a> {
         &self,
         goal: &Goal,
         reach: &[[f64; 2]],
-        place: &dyn Fn(&Machine, &CounterweightSpec) -> Result<Option<PlacedCounterweights>, CounterweightError>,
+        place: &dyn Fn(&Machine, &CounterweightSpec) -> Placement,
     ) -> Result<Option<PlacedCounterweights>, NoCut> {
         let mut request = goal.request.clone();
         on_reach(&mut request.sites, reach);
