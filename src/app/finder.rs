@@ -124,7 +124,11 @@ fn entries<'a>(known: Known<'a>, view_state: &ViewState) -> Vec<Entry<'a>> {
         let title = format!("Plot: {} {}, {}", signal.label, signal.symbol, signal.unit);
         Entry { hides: true, ..entry(title, SIGNALS_PLACE, "signal curve graph csv column", Box::new(plot)) }
     });
-    let settings = settings.iter().map(|setting| {
+    // The links and parts that a scenario holds are those of the machine before, while a drawing is not complete.
+    let is_drawn = session.run().unfinished().is_none();
+    let is_of_parts = |path: &str| OF_PARTS.iter().any(|list| path.starts_with(list));
+    let known = settings.iter().filter(move |setting| is_drawn || !is_of_parts(&setting.path));
+    let settings = known.map(|setting| {
         let title = format!("Setting: {}", setting.name_and_path());
         let look_up = || Command::View(ViewChange::LookUp(setting.path.clone()));
         Entry { hides: true, ..entry(title, "left panel, all settings", setting.also.as_str(), Box::new(look_up)) }
@@ -156,6 +160,9 @@ fn entries<'a>(known: Known<'a>, view_state: &ViewState) -> Vec<Entry<'a>> {
         .chain(pages)
         .collect()
 }
+
+/// Beginnings of the keys of links and of what is on them.
+const OF_PARTS: [&str; 6] = ["link.", "part.", "lump.", "counterweight.", "length.", "drive."];
 
 /// Maximum number of settings that are offered for one typed value.
 const MAX_TYPED_ENTRIES: usize = 3;

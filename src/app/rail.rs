@@ -89,7 +89,11 @@ pub fn show(ui: &mut Ui, session: &Session, branches: &[Fork], view_state: &View
             let size = vec2(BUTTON_SIZE_PT.x, height(room));
             for view in ViewKind::ALL {
                 let size = vec2(BUTTON_SIZE_PT.x, VIEW_BUTTON_HEIGHT_PT);
-                if let Err(why) = Views::has(view, session.run()) {
+                // While a drawing is not complete, every view says what is missing.
+                let is_drawn = session.run().unfinished().is_none();
+                if let Err(why) =
+                    Views::has(view, session.run()).or_else(|why| if is_drawn { Err(why) } else { Ok(()) })
+                {
                     let tip = format!("This machine has no such view: {why}");
                     disabled_word_button(ui, &p, view.name(), &tip, size);
                     continue;

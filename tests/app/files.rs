@@ -714,4 +714,14 @@ fn a_saved_machine_leaves_nothing_to_ask() {
     h.run_steps(4);
     done(&h, "saved");
     assert!(h.state().app_state().changes().1, "the first drawing is in no file");
+    // A drawing that is not complete is no machine to save: the one before is not written in its place.
+    let edit = Edit::Sketch(SketchStep::New { template: Template::Blank });
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(edit));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::EndGesture);
+    h.run_steps(3);
+    for name in ["third.toml", "third.dxf"] {
+        h.state_mut().app_state_mut().carry_out(SessionCommand::TakeElsewhere(folder.path(name)));
+        h.run_steps(4);
+        assert!(!folder.path(name).exists(), "{name}");
+    }
 }

@@ -7,6 +7,8 @@ mod mesh;
 mod notation;
 mod palette;
 mod plots;
+#[cfg(feature = "ui")]
+mod portrait;
 mod report;
 mod scene;
 #[cfg(feature = "render")]

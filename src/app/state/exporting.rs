@@ -24,6 +24,7 @@ type Work = Box<dyn FnOnce(&Ticket, &Path, bool) -> Result<String, String> + Sen
 impl AppState {
     /// Writes a result to a file.
     pub(super) fn export(&mut self, path: &Path, wanted: &Export) -> Result<(), String> {
+        self.require_machine()?;
         if let Export::Film(_) = wanted {
             // The path is checked first, so that a wrong one is refused before the film is drawn.
             let replaces = self.saving.replaces.as_deref() == Some(path);

@@ -8,7 +8,7 @@ use crate::file_dialog::MACHINE_EXTENSION;
 use crate::{Activity, FileReport, PlotFile, ResumePoint, plots, studio};
 use stillbase_exchange::form::Form;
 use stillbase_query::Ticket;
-use stillbase_session::scenario::{MachineFile, Scenario};
+use stillbase_session::scenario::{MachineFile, Scenario, UnfinishedDrawing};
 
 /// Computes the content of a file, in the background.
 type Content = Box<dyn FnOnce() -> Result<Vec<u8>, String> + Send>;
@@ -120,6 +120,7 @@ impl AppState {
 
     /// Writes the machine for another program, in the pose on display.
     pub(super) fn take_elsewhere(&mut self, path: &Path) -> Result<(), String> {
+        self.require_machine()?;
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         if ending.eq_ignore_ascii_case(MACHINE_EXTENSION) {
             let changes = self.session.changes_machine_only().then_some(self.saving.changes);
@@ -142,9 +143,16 @@ impl AppState {
         })
     }
 
+    /// Refuses to write anything about a machine whose drawing is not complete: the machine before would be written.
+    pub(super) fn require_machine(&self) -> Result<(), String> {
+        let complete = |why: &UnfinishedDrawing| format!("{why}; complete the drawing first, or save the session");
+        self.session.run().unfinished().map_or(Ok(()), |why| Err(complete(why)))
+    }
+
     /// Records the run.
     #[cfg(feature = "record")]
     pub(super) fn record(&mut self, path: &Path) -> Result<(), String> {
+        self.require_machine()?;
         let busy = "one recording is under way: want it to end first";
         self.write(path, Activity::Recording, busy, AfterWriting::Nothing, |app_state| {
             let mut scenario = app_state.session.to_scenario();

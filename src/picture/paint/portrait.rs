@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use egui::{Painter, Pos2, Rect, Shape, Stroke};
+use egui::{Color32, Mesh, Painter, Pos2, Rect, Shape, Stroke};
 
 use super::colour;
 use crate::scene::linkage::{FlatLink, LinkageModel};
@@ -117,10 +117,8 @@ impl Portrait {
                     painter.line_segment(cover.ends.map(spot), Stroke::new(2.0 * long(cover.radius), colour(tone)));
                     disc(spot(cover.ends[0]), long(cover.radius), tone);
                 }
-                for area in &cover.areas {
-                    let corners = area.iter().map(|corner| spot(*corner)).collect();
-                    painter.add(Shape::convex_polygon(corners, colour(tone), Stroke::NONE));
-                }
+                // As plain triangles: the soft edge of a polygon grows into spikes at the corners of a thin one.
+                painter.add(Shape::mesh(fans(&cover.areas, spot, colour(tone))));
             }
         }
         if self.path.len() > 1 {
@@ -137,6 +135,17 @@ impl Portrait {
         disc(spot(Vector::default()), 0.3 * long(self.foot), p.ink);
         painter.circle_stroke(spot(self.tip), 5.0, Stroke::new(1.6, colour(p.ink)));
     }
+}
+
+/// Returns convex polygons as triangles.
+fn fans(areas: &[Vec<Vector>], spot: impl Fn(Vector) -> Pos2, tone: Color32) -> Mesh {
+    let mut mesh = Mesh::default();
+    for area in areas {
+        let first = mesh.vertices.len() as u32;
+        area.iter().for_each(|corner| mesh.colored_vertex(spot(*corner), tone));
+        (2..area.len() as u32).for_each(|i| mesh.add_triangle(first, first + i - 1, first + i));
+    }
+    mesh
 }
 
 /// Returns drive angles, rad, for which every relative angle is well within its limits.

@@ -4,7 +4,7 @@ use super::cover::Cover;
 use super::shape::Shape;
 use crate::scene::mesh::closed;
 use stillbase_exchange::cut::bar_extent;
-use stillbase_exchange::solids::{LinkSolid, Plan, SolidKind};
+use stillbase_exchange::solids::{LinkSolid, Plan, SolidKind, foot};
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
 
@@ -26,10 +26,34 @@ pub fn real(machine: &Machine, j: usize, solids: &[LinkSolid]) -> Shape {
         }
         triangles.append(&mut body.triangles);
     }
+    // A counterweight that no part reaches hangs on a tail, which is drawn only.
+    let bars: Vec<&LinkSolid> = own().filter(|solid| !matches!(solid.kind, SolidKind::Disc(_))).collect();
+    for solid in own().filter(|solid| matches!(solid.kind, SolidKind::Disc(_))) {
+        let Some(tail) = tail(solid, &bars) else { continue };
+        let mut body = tail.mesh(machine);
+        body.triangles.iter_mut().flatten().for_each(|[_, _, z]| *z -= low);
+        let [from, to] = tail.faces(machine);
+        covers.push(covered(&tail.plan, &body.triangles, [from - low, to - low]));
+        triangles.append(&mut body.triangles);
+    }
     let span =
         covers.iter().fold(bar_extent(machine, j), |[from, to], cover| [from.min(cover.at.re), to.max(cover.at.re)]);
     let radius = main.filter(|main| is_bar(main)).map_or(0.0, |bar| half_width(&bar.plan));
     Shape { mesh: closed(&triangles), span, radius, height: high - low, rise: 0.5 * (low + high) - axial, covers }
+}
+
+/// Returns a bar from the nearest of the solids of a link to a counterweight that none of them reaches.
+fn tail(weight: &LinkSolid, others: &[&LinkSolid]) -> Option<LinkSolid> {
+    let [x, y] = [weight.plan.extent(|corner| corner), weight.plan.extent(|corner| corner * Vector::new(0.0, -1.0))];
+    let middle = Vector::new(0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1]));
+    let nearest = others.iter().min_by(|a, b| a.plan.distance(middle).total_cmp(&b.plan.distance(middle)))?;
+    if nearest.plan.distance(middle) <= 0.0 {
+        return None;
+    }
+    let feet = nearest.plan.sides(|corner| corner).map(|side| foot(side, middle));
+    let from = feet.min_by(|a, b| (a - middle).norm().total_cmp(&(b - middle).norm()))?;
+    let narrow = 0.5 * half_width(&nearest.plan).min(half_width(&weight.plan));
+    Some(LinkSolid { part: None, plan: Plan::bar([from, middle], narrow), holes: Vec::new(), ..(*nearest).clone() })
 }
 
 /// Returns the area of a solid, from its triangles, between two heights above the bar, m.

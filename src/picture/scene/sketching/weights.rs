@@ -1,13 +1,14 @@
 //! What bars have beyond their pins: tails, and counterweights as hatched outlines in grey.
 
+use super::Drawing;
 use super::lumps::radius;
-use super::{Drawing, ShortNumber};
 use crate::scene::mesh::SEGMENTS;
 use crate::scene::palette::{Palette, faded, mix};
 use crate::scene::{Anchor, Body, Label, Marker, Polyline, Scene, point};
 use stillbase_mechanics::machine::Counterweight;
 use stillbase_mechanics::planar::{Vector, dot};
 use stillbase_mechanics::sketch::{Bar, Sketch};
+use stillbase_settings::number::fixed;
 
 /// Width of a tail, px.
 const TAIL_PX: f32 = 5.0;
@@ -85,7 +86,7 @@ fn counterweight(scene: &mut Scene, (sketch, bar): (&Sketch, &Bar), weight: &Cou
         scene.lines.push(Polyline::new("sketch/weights/hatches", hatches(&outlines), 1.0, faded(palette.dim, 0.35)));
         scene.lines.push(Polyline::new("sketch/weights", edges, 1.6, palette.dim));
     }
-    let words = format!("{} kg", ShortNumber(weight.mass));
+    let words = format!("{} kg", fixed(weight.mass, 3));
     let label = Label::new("sketch/weights/masses", at, [0.0, 0.0], words, palette.dim, 11.0, Anchor::Centre);
     scene.labels.push(label);
 }
