@@ -5,7 +5,7 @@ mod pins;
 use super::cut::{Cut, CutError};
 use pins::{pin_axles, pins, spacers};
 use stillbase_mechanics::machine::{Counterweight, Drive, Link, Machine, PartBody, PartSource, PlaneBody, Shape};
-use stillbase_settings::number::fixed;
+use stillbase_settings::number::{fixed, shortest};
 use stillbase_settings::text::sheet_cell;
 
 /// Parts list of a machine, by kinds of parts.
@@ -29,6 +29,9 @@ pub struct PartTable {
     /// A row for each part.
     pub rows: Vec<Vec<PartCell>>,
 }
+
+/// Part of a number that is rounding.
+const NOISE: f64 = 1e-14;
 
 /// A cell of the table of a part.
 #[derive(Clone, Debug, PartialEq)]
@@ -134,7 +137,8 @@ impl PartCell {
     fn csv_text(&self) -> String {
         match self {
             Self::Words(text) => sheet_cell(text).into_owned(),
-            Self::Number(value, _) => value.to_string(),
+            // Without the noise of the last digits, as a person would write it.
+            Self::Number(value, _) => shortest(*value, NOISE).to_string(),
             Self::None => String::new(),
         }
     }

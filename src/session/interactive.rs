@@ -23,6 +23,7 @@ use super::edit::{Edit, TimedEdit};
 use super::events::{EventLog, Gestures};
 use super::machines::Machines;
 use super::run::Run;
+use crate::gentle_motion::has_made_task;
 use crate::scenario::{MAX_FRAMES, MAX_TIME, Scenario};
 use stillbase_mechanics::sketch::{SketchStep, resolve};
 use stillbase_query::{IncrementalAnswer, Queries, Sequence};
@@ -211,8 +212,12 @@ impl Session {
             None => true,
         };
         let begins = |edit: &Edit| matches!(edit, Edit::Sketch(SketchStep::New { .. }));
+        // A task that was made for the machine is made again when its file is opened.
+        let is_made_again = |edit: &Edit| {
+            matches!(edit, Edit::Set { change } if change.keys().all(|key| key == "task")) && has_made_task(scenario)
+        };
         kept == [true; 3]
-            && self.edits.iter().all(|timed| timed.edit.is_of_machine())
+            && self.edits.iter().all(|timed| timed.edit.is_of_machine() || is_made_again(&timed.edit))
             && !self.edits.iter().skip(1).any(|timed| begins(&timed.edit))
             && is_drawn()
     }

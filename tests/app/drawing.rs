@@ -11,7 +11,7 @@ use stillbase::picture::scene::sketching::SketchItem;
 use stillbase::picture::scene::views::ViewKind;
 use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
-use stillbase::settings::number::ShortNumber;
+use stillbase::settings::number::fixed;
 
 use super::{Window, drag, on_screen, seen, session, window, window_liked, window_of, written};
 use crate::Test;
@@ -109,7 +109,7 @@ fn counterweights_and_pins_are_seen_in_a_drawing() {
             let place = drawn.on_bar(bar, point);
             assert!(rect.contains(at(&h, place.re, place.im)), "it is in view as a whole");
         }
-        let words = format!("{} kg", ShortNumber(weight.mass));
+        let words = format!("{} kg", fixed(weight.mass, 3));
         written_down += usize::from(placement.all.iter().any(|own| own.text == words));
     }
     assert!(written_down > 0, "where there is room");

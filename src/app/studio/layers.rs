@@ -51,12 +51,12 @@ pub fn show(
     let machine = &session.scenario().machine;
     let fits = |report: &&LayersReport| report.layers.len() == machine.links().len();
     let Some(report) = answer.report().filter(fits) else { return };
+    if !report.clashes.is_empty() {
+        clashes(ui, report, p);
+    }
     stack(ui, session, report, p);
     for line in totals(ui, report) {
         ui.label(RichText::new(line).font(plain(12.0)).color(colour(p.dim)));
-    }
-    if !report.clashes.is_empty() {
-        clashes(ui, report, p);
     }
     for remark in too_thin(&machine.spec().counterweights, &cut(session)) {
         note(ui, p, &format!("Note: {remark}."));
@@ -77,6 +77,9 @@ fn verdict(ui: &mut Ui, layers: &QueryResult<LayersAnswer>, p: &Palette) {
     let answer = layers.last.as_deref();
     let (words, tone) = match answer.map(|answer| (&answer.within_limits, &answer.along_task)) {
         _ if matches!(layers.state, QueryStatus::UnderWay(_)) && answer.is_none() => ("…", p.dim),
+        _ if answer.and_then(LayersAnswer::report).is_some_and(|report| !report.clashes.is_empty()) => {
+            ("parts meet at its heights", p.reaction)
+        }
         Some((Ok(report), _)) if report.is_decided() => ("no bar meets another", p.zero),
         Some((Ok(_), _)) => ("no bar meets another, not all decided", p.zero),
         Some((Err(_), Some(Ok(_)))) => ("no bar meets another along the task", p.amber),
@@ -91,7 +94,7 @@ fn verdict(ui: &mut Ui, layers: &QueryResult<LayersAnswer>, p: &Palette) {
 fn clashes(ui: &mut Ui, report: &LayersReport, p: &Palette) {
     let notation = notation::of(ui.ctx());
     let line = |text: String| RichText::new(text).font(plain(12.0)).color(colour(p.reaction));
-    ui.label(line("The heights of the machine do not fit any more; those above do.".into()));
+    ui.label(line("The heights of the machine do not fit any more; those below do.".into()));
     for words in Clash::lines(&report.clashes, |metres| notation.write(metres, 4, "m")) {
         ui.label(line(words));
     }
