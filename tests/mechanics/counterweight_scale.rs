@@ -145,12 +145,24 @@ fn requests(machine: &Machine) -> Vec<CounterweightSpec> {
     ]
 }
 
+/// How an objective depends on the counterweights about its minimum.
+#[derive(Clone, Copy, PartialEq)]
+enum Flatness {
+    /// It rises in proportion to the distance.
+    None,
+    /// It rises with the square of the distance.
+    Smooth,
+    /// It does not rise in every direction.
+    Whole,
+}
+
 fn alike(a: f64, b: f64, part: f64) -> bool {
     (a - b).abs() <= part * a.abs().max(b.abs()) + 1e-12
 }
 
 /// Checks that an answer is the same at another size.
-fn same(of: &PlacedCounterweights, other: &PlacedCounterweights, size: Size, is_flat: bool, what: &str) {
+fn same(of: &PlacedCounterweights, other: &PlacedCounterweights, size: Size, flatness: Flatness, what: &str) {
+    let is_flat = flatness == Flatness::Whole;
     for placed in [of, other] {
         assert!(placed.is_certified(), "{what}: {}", placed.gap);
     }
@@ -162,15 +174,17 @@ fn same(of: &PlacedCounterweights, other: &PlacedCounterweights, size: Size, is_
         return;
     }
     let [inertia, scaled] = [of, other].map(|placed| Inertia::of(&placed.machine).diagonals().iter().sum::<f64>());
-    assert!(alike(of.added_mass, other.added_mass / size.mass, 1e-5), "{what}: {} {}", of.added_mass, other.added_mass);
+    // A value to 2e-6 leaves the place of a smooth minimum to about its root.
+    let [part, share] = if flatness == Flatness::Smooth { [5e-3, 1e-2] } else { [1e-5, 1e-4] };
+    assert!(alike(of.added_mass, other.added_mass / size.mass, part), "{what}: {} {}", of.added_mass, other.added_mass);
     assert!(alike(inertia, scaled / size.inertia(), 1e-6), "{what}: {inertia} {scaled}");
     let [one, two] = [of, other].map(|placed| &placed.machine.spec().counterweights);
     assert_eq!(one.len(), two.len(), "{what}");
     for (one, two) in one.iter().zip(two) {
         let total = of.added_mass;
-        assert!((one.mass - two.mass / size.mass).abs() < 1e-4 * total, "{what}, link {}: {one:?} {two:?}", one.link);
+        assert!((one.mass - two.mass / size.mass).abs() < share * total, "{what}, link {}: {one:?} {two:?}", one.link);
         let moment = one.mass * (one.at - two.at / size.length);
-        assert!(moment.abs() < 1e-4 * total, "{what}, link {}: {one:?} {two:?}", one.link);
+        assert!(moment.abs() < share * total, "{what}, link {}: {one:?} {two:?}", one.link);
     }
 }
 
@@ -191,8 +205,13 @@ fn a_machine_at_another_size_has_the_same_counterweights() {
                 let other = place_weights(&size.machine(&machine), &size.request(request));
                 let other = other.unwrap_or_else(|why| panic!("{what}: {why}"));
                 // Over payloads, and where momenta cancel, many counterweights are as good.
-                let is_flat = request.payload.is_some() || request.objective.momentum > 0.0;
-                same(&of, &other, size, is_flat, &what);
+                let flatness = match (request.payload.is_some() || request.objective.momentum > 0.0, &request.objective)
+                {
+                    (true, _) => Flatness::Whole,
+                    (false, objective) if objective.inertia > 0.0 => Flatness::Smooth,
+                    (false, _) => Flatness::None,
+                };
+                same(&of, &other, size, flatness, &what);
             }
         }
     }

@@ -84,7 +84,9 @@ fn row<T>(ui: &mut Ui, p: &Palette, words: &str, add: impl FnOnce(&mut Ui) -> T)
 /// Draws the numbers of a bar in the order in which a person thinks. Enter in the last of them adds the bar; the next
 /// one then begins at its end.
 fn bar(ui: &mut Ui, sketch: &Sketch, p: &Palette, numbers: &mut Numbers, commands: &mut Vec<Command>) {
-    row(ui, p, "from", |ui| pin_list(ui, sketch, &mut numbers.from, fields::BAR_FROM, commands));
+    row(ui, p, "from", |ui| {
+        numbers.from = pin_list(ui, sketch, Some(numbers.from), fields::BAR_FROM, commands).unwrap_or(numbers.from);
+    });
     let mut number = |words, label, (own_unit, decimals), speed, range: RangeInclusive<f64>, value: &mut f64| {
         let tip = "Of the bar that is added; Enter goes on";
         let field = NumberRow { label, unit: own_unit, tip, decimals, speed, slide: range.clone(), range };
@@ -128,7 +130,8 @@ fn at_pins(ui: &mut Ui, facts: &SketchFacts, p: &Palette, numbers: &mut Numbers,
     let sketch = &facts.sketch;
     ui.horizontal(|ui| {
         ui.label(RichText::new("motor on").font(plain(12.5)).color(colour(p.dim)));
-        pin_list(ui, sketch, &mut numbers.motor, fields::MOTOR_PIN, commands);
+        let chosen = pin_list(ui, sketch, Some(numbers.motor), fields::MOTOR_PIN, commands);
+        numbers.motor = chosen.unwrap_or(numbers.motor);
         let hang = ui.button("hang").on_hover_text("A motor there turns the bar that follows no drive yet");
         name(&hang, "hang a motor on the pin");
         if hang.clicked() {
@@ -140,10 +143,8 @@ fn at_pins(ui: &mut Ui, facts: &SketchFacts, p: &Palette, numbers: &mut Numbers,
     });
     ui.horizontal(|ui| {
         ui.label(RichText::new("end effector on").font(plain(12.5)).color(colour(p.dim)));
-        let own = sketch.end_effector.as_ref().map_or(sketch.base, |end| end.pin);
-        let mut pin = own;
-        pin_list(ui, sketch, &mut pin, fields::END_PIN, commands);
-        if pin != own {
+        let present = sketch.end_effector.as_ref().map(|end| end.pin);
+        if let Some(pin) = pin_list(ui, sketch, present, fields::END_PIN, commands) {
             draw(sketch, SketchStep::EndEffector { pin, bar: None }, commands);
         }
     });

@@ -94,11 +94,15 @@ impl Sketch {
             (Lack::NoBarOfDrive, Place::Drive(drive)) => self.bars_for(found, drive),
             (Lack::NoEndEffector, _) => {
                 let (_, far) = Graph::of(self).distances(self.pins.iter().position(|p| p.id == self.base).unwrap_or(0));
-                let last = self.pins.iter().zip(far).filter_map(|(pin, far)| Some((far?, pin.id))).max();
-                last.filter(|(_, pin)| *pin != self.base)
-                    .map(|(_, pin)| SketchStep::EndEffector { pin, bar: None })
-                    .into_iter()
-                    .collect()
+                // A pin at the end of one bar alone, if there is one, else any.
+                let ends_one = |pin: PinId| {
+                    let mut bars =
+                        self.bars.iter().filter(|bar| [bar.root, bar.tip].contains(&pin) || bar.pins.contains(&pin));
+                    bars.next().is_some() && bars.next().is_none()
+                };
+                let others = self.pins.iter().zip(far).filter(|(pin, _)| pin.id != self.base);
+                let last = others.filter_map(|(pin, far)| Some((ends_one(pin.id), far?, pin.id))).max();
+                last.map(|(.., pin)| SketchStep::EndEffector { pin, bar: None }).into_iter().collect()
             }
             (Lack::Invalid { error: MachineError::StatorCycle { drive, .. } }, _) => {
                 vec![SketchStep::DeleteMotor { drive: drive.clone() }]
