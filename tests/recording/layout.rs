@@ -81,8 +81,10 @@ fn pictures_stand_beside_each_other_and_in_their_case() {
         return;
     }
     let folder = Folder::new("pictured");
-    let options =
-        Options { pictures: Some(Pictures { fps: 10.0, width: 64, height: 40, pin_forces: false }), ..Options::default() };
+    let options = Options {
+        pictures: Some(Pictures { fps: 10.0, width: 64, height: 40, pin_forces: false }),
+        ..Options::default()
+    };
     let cases = [short("case-1"), short("case-3")];
     record(&cases, &folder.path("two.rrd"), &options, &mut quietly).expect("two cases");
     let parts = parts(&Contents::of(&folder.path("two.rrd")));
