@@ -14,6 +14,9 @@ use stillbase_picture::scene::palette::{Theme, faded, palette};
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_settings::number::fixed;
 
+/// Why a picture cannot be drawn as outlines.
+pub const NO_OUTLINES: &str = "outlines are drawn of the view from above alone: want that, or .png or .webp";
+
 /// Part of the width of a picture that plots beside the scene take.
 const PLOTS_SHARE: f32 = 0.38;
 /// Smallest and largest height of such a plot, points.
@@ -101,11 +104,11 @@ impl PictureOrder {
     /// If it is not seen so; the text says what would be right.
     pub fn page(&self, app_state: &mut AppState) -> Result<Page, &'static str> {
         if self.shot == Shot::Window {
-            return Err("the window has no outlines: want a view from above, or a name that ends in .png or .webp");
+            return Err(NO_OUTLINES);
         }
         let (scene, camera) = self.scene(app_state);
         if !camera.is_flat() {
-            return Err("outlines are drawn of the view from above: want that, or a name that ends in .png or .webp");
+            return Err(NO_OUTLINES);
         }
         let mut figures = vec![([0.0; 2], scene_figure(&Arc::new(scene), &camera, self.scene_size()))];
         figures.extend(self.plot_figures(app_state));

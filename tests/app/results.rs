@@ -26,6 +26,7 @@ use crate::folder::Folder;
 pub const TESTS: &[Test] = tests![
     a_picture_is_chosen_on_a_card_and_written,
     a_scene_may_be_transparent,
+    a_scene_is_written_as_outlines_and_as_webp,
     a_film_holds_the_range_that_plots_show,
     a_film_that_is_stopped_leaves_nothing,
     a_folder_of_pictures_replaces_only_its_like,
@@ -108,6 +109,29 @@ fn a_picture_is_chosen_on_a_card_and_written() {
     h.key_press(Key::Escape);
     h.run_steps(3);
     assert!(h.state().app_state().view_state().open.export.is_none());
+}
+
+fn a_scene_is_written_as_outlines_and_as_webp() {
+    let folder = Folder::new("results");
+    let mut app_state = app_state("case-3");
+    app_state.carry_out(ViewChange::Kind(ViewKind::Flat));
+    for (form, begins) in [(PictureForm::Svg, "<?xml"), (PictureForm::Pdf, "%PDF"), (PictureForm::Webp, "RIFF")] {
+        for plots in [false, true] {
+            let file = folder.path(&format!("{plots}.{}", form.ending()));
+            let look = Look { plots, ..look(Shot::Scene) };
+            saved(&mut app_state, &file, Export::Picture(PictureChoice { look, form }));
+            assert!(fs::read(&file).expect("a file").starts_with(begins.as_bytes()), "{form:?}");
+        }
+    }
+    let drawing = fs::read_to_string(folder.path("true.svg")).expect("a file");
+    let page = roxmltree::Document::parse(&drawing).expect("an SVG");
+    assert!(page.descendants().filter(|node| node.has_tag_name("path")).count() > 100);
+    // Other views have no outlines: that is said, and no file is left.
+    app_state.carry_out(ViewChange::Kind(ViewKind::Space));
+    let choice = PictureChoice { look: look(Shot::Scene), form: PictureForm::Svg };
+    let said = said(&mut app_state, &folder.path("space.svg"), Export::Picture(choice));
+    assert!(said.is_problem && said.text.contains("view from above"), "{said:?}");
+    assert!(!folder.path("space.svg").exists());
 }
 
 fn a_scene_may_be_transparent() {

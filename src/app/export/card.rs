@@ -70,6 +70,7 @@ pub fn show(
             ui.add_space(6.0);
             ui.horizontal(|ui| {
                 let nothing = match &export {
+                    Export::Picture(choice) => choice.refusal(view_state.view),
                     Export::Values(choice) => refusal(&chosen, choice.times.of(session, view_state), session),
                     _ => None,
                 };

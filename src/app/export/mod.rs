@@ -25,7 +25,9 @@ pub use values::{RowForm, ValuesOrder, write_values};
 pub use values_choice::{SignalChoice, TimeChoice, ValuesChoice};
 
 use super::Shot;
+use super::shot::NO_OUTLINES;
 use stillbase_picture::scene::palette::Theme;
+use stillbase_picture::scene::views::ViewKind;
 
 /// What is to be written, as the user has chosen it.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,6 +64,14 @@ pub struct PictureChoice {
     pub look: Look,
     /// Format that is suggested; the ending of the file's name decides.
     pub form: PictureForm,
+}
+
+impl PictureChoice {
+    /// Returns why no such picture can be drawn while a view is shown; `None` if one can.
+    pub fn refusal(&self, view: ViewKind) -> Option<&'static str> {
+        let is_from_above = self.look.shot != Shot::Window && matches!(view, ViewKind::Flat | ViewKind::Design);
+        (self.form.has_outlines() && !is_from_above).then_some(NO_OUTLINES)
+    }
 }
 
 /// Choices for a film.

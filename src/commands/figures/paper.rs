@@ -13,6 +13,7 @@ use stillbase_picture::print::paper::{
 use stillbase_picture::scene::palette::Theme;
 use stillbase_planning::common::starting_b;
 use stillbase_planning::pose_constant::Unreachable;
+use stillbase_planning::pose_space::PoseSpace;
 use stillbase_session::scenario::{Scenario, TaskChange, Value};
 use stillbase_settings::number::counted;
 use stillbase_settings::text::shell_word;
@@ -21,6 +22,7 @@ use stillbase_study::pose_curves::PoseCurves;
 use stillbase_study::workspace::WorkspaceReport;
 
 use super::{FiguresArguments, write};
+use crate::exit::print_message;
 use crate::failure::Failure;
 use crate::input::{change_task, machine, overlay_used, pose_space};
 
@@ -77,12 +79,24 @@ pub fn draw(wanted: &FiguresArguments, figure: PaperFigure, folder: &Path) -> Re
     }
     let all: &[PaperFigure] = if figure == PaperFigure::All { &PaperFigure::EACH } else { &[figure] };
     make_folder(folder)?;
+    let subject = Subject::of(wanted)?;
+    // A machine may lack what one figure shows; the others are drawn.
+    let mut refused: Vec<(String, Failure)> = Vec::new();
     for figure in all {
-        let drawn = Subject::of(wanted)?.figure(*figure)?;
-        let files = ["svg", "pdf", "csv"].map(|ending| folder.join(format!("{}.{ending}", figure.word())));
-        write(&drawn, &files, wanted.force)?;
+        let word = figure.word();
+        match subject.figure(*figure) {
+            Ok(drawn) => {
+                let files = ["svg", "pdf", "csv"].map(|ending| folder.join(format!("{word}.{ending}")));
+                write(&drawn, &files, wanted.force)?;
+            }
+            Err(why) => refused.push((word, why)),
+        }
     }
-    Ok(())
+    if refused.len() > 1 {
+        let words: Vec<&str> = refused.iter().map(|(word, _)| word.as_str()).collect();
+        print_message(format!("not drawn: {}; the first because", words.join(", ")));
+    }
+    refused.into_iter().next().map_or(Ok(()), |(word, why)| Err(why.with_context(word)))
 }
 
 /// Machine, points and b of the figures.
@@ -104,7 +118,7 @@ impl<'a> Subject<'a> {
         let is_paper = wanted.machine.is_none() && wanted.point.is_empty();
         let b = match &wanted.b[..] {
             [] if is_paper => POSE_CONSTANTS.to_vec(),
-            [] => starting_b(&pose_space(&machine)?, &points).into_iter().collect(),
+            [] => PoseSpace::of(&machine).ok().and_then(|space| starting_b(&space, &points)).into_iter().collect(),
             own => own.to_vec(),
         };
         let b = if b.is_empty() { POSE_CONSTANTS.to_vec() } else { b };
@@ -132,7 +146,7 @@ impl<'a> Subject<'a> {
                 let space = pose_space(&self.machine)?;
                 let places: Vec<Vector> = self.points.iter().map(|(_, at)| *at).collect();
                 let curves = PoseCurves::of(&space, &places, self.b[0]);
-                let curves = curves.map_err(|why| Failure::no_answer(why).with_context("fig-3"))?;
+                let curves = curves.map_err(Failure::no_answer)?;
                 if let Some(i) = curves.of_points.iter().position(Vec::is_empty) {
                     let Vector { re: x, im: y } = places[i];
                     space.reach(places[i]).map_err(|reason| Unreachable::Anywhere { x, y, reason })?;
@@ -163,7 +177,7 @@ impl<'a> Subject<'a> {
             Some(_) => vec![column("", self.machine.clone())],
             None => vec![
                 column("printed", machine(MACHINES[1])?.machine),
-                column("solved again", machine(MACHINES[0])?.machine),
+                column("re-solved", machine(MACHINES[0])?.machine),
             ],
         };
         let title = match &self.wanted.machine {

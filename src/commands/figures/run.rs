@@ -6,6 +6,7 @@ use std::sync::Arc;
 use clap::ValueEnum;
 use stillbase_app::{AppState, PictureOrder, SessionCommand, Shot};
 use stillbase_picture::charts::charts;
+use stillbase_picture::charts::figure::Figure;
 use stillbase_picture::print::paper::{PrintedFigure, chart_plot, snapshots_plot, workspaces};
 use stillbase_picture::print::{PrintPlot, scene_figure};
 use stillbase_picture::scene::palette::Theme;
@@ -50,8 +51,8 @@ pub enum RunFigure {
 /// Heights of the axes as fractions of the width of the figure.
 const PLOT_HEIGHT: f32 = 0.42;
 const DRAWING_HEIGHT: f32 = 0.95;
-/// Points across the drawing of the linkage: its type is as large as that of the window at this width.
-const LINKAGE_WIDTH: f32 = 620.0;
+/// Points of the window in a point of paper: so the type of labels is as large as that of plots.
+const LINKAGE_SCALE: f32 = 1.6;
 
 impl RunFigure {
     fn word(self) -> String {
@@ -80,7 +81,7 @@ pub fn draw(wanted: &FiguresArguments, file: &Path) -> Result<(), Failure> {
     let mut linkage = None;
     for part in &wanted.what {
         match part {
-            RunFigure::Linkage => linkage = Some(linkage_figure(&mut app_state)),
+            RunFigure::Linkage => linkage = Some(linkage_figure(&mut app_state, width)),
             part => plots.push(plot(*part, &app_state, width)?),
         }
     }
@@ -132,11 +133,11 @@ fn plot(part: RunFigure, app_state: &AppState, width: f32) -> Result<(PrintPlot,
     }
 }
 
-/// Returns the machine as the flat view shows it.
-fn linkage_figure(app_state: &mut AppState) -> stillbase_picture::charts::figure::Figure {
-    let side = LINKAGE_WIDTH as u32;
+/// Returns the machine as the flat view shows it, on a square that is this wide on paper, points.
+fn linkage_figure(app_state: &mut AppState, width: f32) -> Figure {
+    let side = (LINKAGE_SCALE * width).round() as u32;
     let order =
         PictureOrder { scale: 1.0, ..PictureOrder::new(Shot::View(ViewKind::Flat), Theme::Light, [side, side]) };
     let (scene, camera) = order.scene(app_state);
-    scene_figure(&Arc::new(scene), &camera, [LINKAGE_WIDTH; 2])
+    scene_figure(&Arc::new(scene), &camera, [side as f32; 2])
 }

@@ -20,18 +20,45 @@ fn fonts(bold: bool) -> impl Iterator<Item = FontRef<'static>> {
     [own, signs].into_iter().filter_map(|(_, bytes)| FontRef::new(bytes).ok())
 }
 
-/// Returns each letter of a text with its font and its distance from the start of the text, points.
-fn laid_out(text: &str, size: f32, bold: bool) -> (Vec<(FontRef<'static>, GlyphId, f32)>, f32) {
-    let fonts: Vec<FontRef<'_>> = fonts(bold).collect();
-    let (mut glyphs, mut x) = (Vec::new(), 0.0);
-    for letter in text.chars() {
-        let found = fonts.iter().find_map(|font| Some((font, font.charmap().map(letter)?)));
-        let Some((font, glyph)) = found else { continue };
-        glyphs.push((font.clone(), glyph, x));
+/// Size of the letters of an index, and their distance below the line, as fractions of the font size.
+const INDEX_SIZE: f32 = 0.68;
+const INDEX_DROP: f32 = 0.2;
+
+/// A letter at its place.
+struct Glyph {
+    font: FontRef<'static>,
+    id: GlyphId,
+    size: f32,
+    /// Distances from the start of the text and below its line, points.
+    at: [f32; 2],
+}
+
+/// Returns the letters of a text, and its width, points. What follows a letter and `_`, as in n_B, is its index.
+fn laid_out(text: &str, size: f32, bold: bool) -> (Vec<Glyph>, f32) {
+    let fonts: Vec<FontRef<'static>> = fonts(bold).collect();
+    let letters: Vec<char> = text.chars().collect();
+    let (mut glyphs, mut x, mut is_index) = (Vec::new(), 0.0, false);
+    for (i, letter) in letters.iter().enumerate() {
+        is_index &= letter.is_alphanumeric();
+        if begins_index(&letters, i) {
+            is_index = true;
+            continue;
+        }
+        let found = fonts.iter().find_map(|font| Some((font, font.charmap().map(*letter)?)));
+        let Some((font, id)) = found else { continue };
+        let (size, down) = if is_index { (INDEX_SIZE * size, INDEX_DROP * size) } else { (size, 0.0) };
+        glyphs.push(Glyph { font: font.clone(), id, size, at: [x, down] });
         let metrics = font.glyph_metrics(Size::new(size), LocationRef::default());
-        x += metrics.advance_width(glyph).unwrap_or(0.5 * size);
+        x += metrics.advance_width(id).unwrap_or(0.5 * size);
     }
     (glyphs, x)
+}
+
+/// Whether the letter at a place is the `_` of a symbol: behind one letter alone, before one or two.
+fn begins_index(letters: &[char], i: usize) -> bool {
+    let is_word = |place: Option<usize>| place.and_then(|i| letters.get(i)).is_some_and(|c| c.is_alphanumeric());
+    let is_symbol = is_word(i.checked_sub(1)) && !is_word(i.checked_sub(2));
+    letters[i] == '_' && is_symbol && is_word(Some(i + 1)) && !is_word(Some(i + 3))
 }
 
 /// Returns the width of a text, points.
@@ -48,10 +75,10 @@ pub fn text(words: &[FigureText], at: [f32; 2], anchor: [f32; 2]) -> Vec<Shape> 
     for own in words {
         let (glyphs, along) = laid_out(&own.text, own.size, own.bold);
         let mut pen = Pen { origin: [x, y], now: [0.0; 2], steps: Vec::new() };
-        for (font, glyph, from) in glyphs {
-            pen.origin = [x + from, y];
-            let settings = DrawSettings::unhinted(Size::new(own.size), LocationRef::default());
-            if let Some(outline) = font.outline_glyphs().get(glyph) {
+        for Glyph { font, id, size, at: [along, down] } in glyphs {
+            pen.origin = [x + along, y + down];
+            let settings = DrawSettings::unhinted(Size::new(size), LocationRef::default());
+            if let Some(outline) = font.outline_glyphs().get(id) {
                 // A letter that the font cannot draw leaves its space.
                 let _ = outline.draw(settings, &mut pen);
             }

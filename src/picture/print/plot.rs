@@ -124,8 +124,11 @@ impl PrintPlot {
         for words in &self.words {
             let [x, y] = axes.place(words.at);
             if words.dot {
+                // The lower of two points has its words below it, clear of what joins them.
+                let is_lower = self.words.iter().any(|other| other.dot && other.at[1] > words.at[1]);
+                let (down, anchor) = if is_lower { (0.5, 0.0) } else { (-1.0, 1.0) };
                 items.push(FigureItem::Dot { at: [x, y], radius: 1.8, colour: p.ink });
-                items.push(text([x + 3.5, y - 1.0], [0.0, 1.0], &words.text, p.ink, true));
+                items.push(text([x + 3.5, y + down], [0.0, anchor], &words.text, p.ink, true));
             } else {
                 items.push(text([x, y], [0.5, 0.5], &words.text, p.ink, false));
             }

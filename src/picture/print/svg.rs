@@ -44,20 +44,30 @@ pub fn svg(page: &Page) -> String {
     text + "</svg>\n"
 }
 
-/// Writes a length in points with three decimals, without trailing zeros.
+/// Writes a place in points with two decimals: to 4 µm.
+fn place([x, y]: [f32; 2]) -> String {
+    let [x, y] = [x, y].map(|x| short(x, 2));
+    format!("{x} {y}")
+}
+
+/// Writes a length with three decimals.
 fn n(x: f32) -> String {
-    let text = fixed(f64::from(x), 3);
+    short(x, 3)
+}
+
+/// Writes a number without trailing zeros.
+fn short(x: f32, decimals: usize) -> String {
+    let text = fixed(f64::from(x), decimals);
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
 }
 
 fn element(shape: &Shape, clip: Option<usize>) -> String {
     let mut path = String::new();
-    let pair = |[x, y]: [f32; 2]| format!("{} {}", n(x), n(y));
     for step in &shape.steps {
         let _ = match step {
-            PathStep::Move(p) => write!(path, "M{}", pair(*p)),
-            PathStep::Line(p) => write!(path, "L{}", pair(*p)),
-            PathStep::Cubic(a, b, p) => write!(path, "C{} {} {}", pair(*a), pair(*b), pair(*p)),
+            PathStep::Move(p) => write!(path, "M{}", place(*p)),
+            PathStep::Line(p) => write!(path, "L{}", place(*p)),
+            PathStep::Cubic(a, b, p) => write!(path, "C{} {} {}", place(*a), place(*b), place(*p)),
             PathStep::Close => write!(path, "Z"),
         };
     }

@@ -71,19 +71,25 @@ pub fn which_b(points: &[(String, Vector)], curves: &PoseCurves) -> PrintPlot {
         name: "poses".into(),
         head: String::new(),
         axes: ["pose constant b (rad)", "angle of drive 1, q₁ (rad)"].map(String::from),
+        words: curves.common.iter().map(|band| named_band(*band, &all)).collect(),
         curves: all,
-        words: Vec::new(),
         bands: curves.common.clone(),
         is_equal: false,
         least_range: 0.0,
     }
 }
 
+/// Returns the words in a shaded interval of b, at its lower end.
+fn named_band([from, to]: [f64; 2], curves: &[PrintCurve]) -> PrintWords {
+    let lowest = curves.iter().flat_map(|curve| &curve.points).fold(f64::INFINITY, |low, [_, q]| low.min(*q));
+    PrintWords { at: [0.5 * (from + to), lowest], text: "b of both".into(), dot: false }
+}
+
 /// Returns Fig. 4: the reactionless workspaces of several b, rad.
 pub fn workspaces(all: &[(f64, WorkspaceReport)]) -> PrintPlot {
     let p = palette(Theme::Light);
     let mut curves = Vec::new();
-    let words = vec![PrintWords { at: [0.0; 2], text: "B".into(), dot: true }];
+    let words = vec![PrintWords { at: [0.0; 2], text: "base".into(), dot: true }];
     for (i, (b, report)) in all.iter().enumerate() {
         let (width, dash) = pen(i);
         let colour = if i == 0 { p.ink } else { mix(p.ink, p.dim, 0.5) };

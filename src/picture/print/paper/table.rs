@@ -42,7 +42,7 @@ pub fn parameters(title: &str, made: &str, columns: &[TableColumn], width: f32) 
     let heads = ["link", "l (m)", "m (kg)", "I (kg m²)"].map(String::from);
     let names = columns.iter().map(|column| match columns.len() {
         1 => "l_c (m)".into(),
-        _ => format!("l_c (m), {}", column.name),
+        _ => format!("l_c (m)\n{}", column.name),
     });
     let head: Vec<String> = heads.into_iter().chain(names).collect();
     let exact = |j: usize| {
@@ -53,7 +53,12 @@ pub fn parameters(title: &str, made: &str, columns: &[TableColumn], width: f32) 
     };
     let links: Vec<(String, Vec<f64>)> = (0..machine.links().len()).map(exact).collect();
     let residuals = residuals(columns);
-    let mut rows = vec![Row { cells: head.clone(), begins: true, bold: true }];
+    let mut rows = Vec::new();
+    for nth in 0..head.iter().map(|cell| cell.lines().count()).max().unwrap_or(1) {
+        let cells = head.iter().map(|cell| cell.lines().nth(nth).unwrap_or_default().to_owned());
+        rows.push(Row { cells: cells.collect(), begins: nth == 0, bold: true });
+    }
+    let head: Vec<String> = head.iter().map(|cell| cell.replace('\n', ", ")).collect();
     for (i, (name, numbers)) in links.iter().enumerate() {
         let decimals = |i: usize| [2, 2, 4].get(i).copied().unwrap_or(4);
         let numbers = numbers.iter().enumerate().map(|(i, x)| fixed(*x, decimals(i)).replace('-', "−"));
