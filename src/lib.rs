@@ -182,9 +182,9 @@
 //! | `render` | pictures of scenes, drawn on the GPU by wgpu; films | 132 |
 //! | `ui` | panels, plots and figures, without a window | 177 |
 //! | `window` | the window around them | 285 |
-//! | `record` | recordings for the Rerun viewer | 296 |
+//! | `record` | recordings for the Rerun viewer | 311 |
 //!
-//! `window`, `record` and `cli` are enabled by default, 472 crates together. `tables`, `render` and `ui` are enabled by
+//! `window`, `record` and `cli` are enabled by default, 487 crates together. `tables`, `render` and `ui` are enabled by
 //! the features that need them.
 //!
 //! # Checking the interface
