@@ -182,9 +182,9 @@
 //! | `render` | pictures of scenes, drawn on the GPU by wgpu; films | 135 |
 //! | `ui` | panels, plots and figures for print, without a window | 183 |
 //! | `window` | the window around them | 290 |
-//! | `record` | recordings for the Rerun viewer | 296 |
+//! | `record` | recordings for the Rerun viewer | 314 |
 //!
-//! `window`, `record` and `cli` are enabled by default, 475 crates together. `tables`, `render` and `ui` are enabled by
+//! `window`, `record` and `cli` are enabled by default, 492 crates together. `tables`, `render` and `ui` are enabled by
 //! the features that need them.
 //!
 //! # Checking the interface
