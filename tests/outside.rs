@@ -24,12 +24,22 @@ mod drags;
 mod drawings;
 #[path = "outside/ezdxf.rs"]
 mod ezdxf;
+#[cfg(feature = "cli")]
+#[allow(dead_code, reason = "the tests use a few of them")]
+mod folder;
+#[cfg(feature = "cli")]
+#[allow(dead_code, reason = "the tests use a few of them")]
+#[path = "guide/markdown.rs"]
+mod markdown;
 #[path = "outside/mesh.rs"]
 mod mesh;
 #[path = "outside/mujoco.rs"]
 mod mujoco;
 #[path = "support/noise.rs"]
 mod noise;
+#[cfg(feature = "cli")]
+#[path = "outside/page.rs"]
+mod page;
 #[path = "outside/pinocchio.rs"]
 mod pinocchio;
 #[path = "outside/planar.rs"]
@@ -44,6 +54,9 @@ mod random;
 
 #[path = "outside/trim.rs"]
 mod trim;
+#[cfg(feature = "record")]
+#[path = "outside/viewer.rs"]
+mod viewer;
 #[path = "outside/weights.rs"]
 mod weights;
 #[path = "outside/workshop.rs"]
@@ -58,7 +71,7 @@ fn count(word: &str, usual: u64) -> u64 {
 }
 
 fn main() -> ExitCode {
-    let packages: [(&str, &[Test]); 10] = [
+    let packages: &[(&str, &[Test])] = &[
         ("ezdxf", ezdxf::TESTS),
         ("numpy", mesh::TESTS),
         ("mujoco", mujoco::TESTS),
@@ -69,8 +82,16 @@ fn main() -> ExitCode {
         ("scipy", trim::TESTS),
         ("scipy", weights::TESTS),
         ("ezdxf", workshop::TESTS),
+        #[cfg(feature = "cli")]
+        ("pandas, rerun.experimental", page::TABLES),
+        #[cfg(feature = "cli")]
+        ("pandas, mujoco", page::IN_MUJOCO),
+        #[cfg(feature = "cli")]
+        ("pinocchio", page::IN_PINOCCHIO),
+        #[cfg(feature = "record")]
+        ("rerun_cli", viewer::TESTS),
     ];
-    let trials = packages.into_iter().flat_map(|(package, tests)| {
+    let trials = packages.iter().flat_map(|(package, tests)| {
         let missing = python::missing(package);
         tests.iter().map(move |(name, test)| {
             let (missing, name, test) = (missing.clone(), name.split_once("::").map_or(*name, |(_, rest)| rest), *test);

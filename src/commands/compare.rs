@@ -103,7 +103,7 @@ impl CompareArguments {
     #[cfg(feature = "record")]
     fn record(&self, scenarios: &[Scenario], file: &std::path::Path) -> Result<(), Failure> {
         let options = stillbase_recording::Options { force: self.force, ..super::headless::unpictured() };
-        super::headless::record_with_bar(scenarios, file, &options)?;
+        super::headless::record_with_bar(scenarios, &super::headless::Target::File(file.into()), &options)?;
         print_message(format!("wrote {}", file.display()));
         Ok(())
     }

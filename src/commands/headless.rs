@@ -1,10 +1,12 @@
 //! `stillbase headless`
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
-use stillbase_recording::{Options, Pictures, RecordError, Recording, RecordingProgress, record};
+use stillbase_recording::{
+    Options, Pictures, RecordError, Recording, RecordingProgress, VIEWER_URL, Viewer, record, stream,
+};
 use stillbase_session::scenario::Scenario;
 use stillbase_session::verdict::Statements;
 use stillbase_settings::text::plain;
@@ -24,15 +26,28 @@ use stillbase_settings::number::fixed;
 Examples:
   stillbase headless -o cases.rrd                             the paper's three cases
   stillbase headless case-1 my.toml -o both.rrd --fps 30      with pictures
-  stillbase headless case-3 -o loaded.rrd --set payload.mass=0.1")]
+  stillbase headless case-3 -o loaded.rrd --set payload.mass=0.1
+  stillbase headless case-3 --spawn                           opens the viewer")]
 pub struct HeadlessArguments {
     /// Built-in scenarios (case-1, spacecraft …; an unknown name lists them all) or TOML files; default: the three
     /// cases
     #[arg(value_name = "SCENARIO")]
     scenarios: Vec<String>,
     /// The recording to write
-    #[arg(short, long, value_name = "FILE.rrd")]
-    output: PathBuf,
+    #[arg(short, long, value_name = "FILE.rrd", required_unless_present_any = ["connect", "spawn"])]
+    output: Option<PathBuf>,
+    /// Stream to a viewer that runs, instead of writing a file; default: the one on this computer
+    #[arg(
+        long,
+        value_name = "URL",
+        num_args = 0..=1,
+        default_missing_value = VIEWER_URL,
+        conflicts_with_all = ["output", "spawn"],
+    )]
+    connect: Option<String>,
+    /// Start the viewer, the program `rerun` on the path, and stream to it
+    #[arg(long, conflicts_with = "output")]
+    spawn: bool,
     /// Record N offscreen pictures per simulated second, if a graphics adapter exists
     #[arg(long, value_name = "N", value_parser = frames_per_second)]
     fps: Option<f64>,
@@ -67,7 +82,11 @@ struct Answer {
 #[derive(Serialize)]
 struct Row {
     scenario: String,
-    file: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    file: Option<String>,
+    /// Address of the viewer, if it was streamed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    viewer: Option<String>,
     steps: u64,
     peak_torque: Vec<f64>,
     peak_base_force: f64,
@@ -94,7 +113,8 @@ impl From<Recording> for Row {
     fn from(recording: Recording) -> Self {
         Self {
             scenario: recording.scenario,
-            file: recording.file.display().to_string(),
+            file: recording.file.map(|file| file.display().to_string()),
+            viewer: None,
             steps: recording.steps,
             peak_torque: recording.peak_torque,
             peak_base_force: recording.peak_base_force,
@@ -115,19 +135,38 @@ impl HeadlessArguments {
     /// Records the scenarios and prints the peaks of each.
     pub fn run(&self) -> Result<(), Failure> {
         let scenarios = self.scenarios()?;
-        check_output(&self.output, self.force, &["rrd"])?;
+        let to = self.target()?;
         let [width, height] = self.size;
         let pictures = self.fps.map(|fps| Pictures { fps, width, height, pin_forces: self.pin_forces });
         let options = Options { pictures, every_step: self.every_step, force: self.force };
-        let recordings = record_with_bar(&scenarios, &self.output, &options)?;
-        print_message(format!("wrote {}", self.output.display()));
-        let answer = Answer { recordings: recordings.into_iter().map(Row::from).collect() };
+        let recordings = record_with_bar(&scenarios, &to, &options)?;
+        let mut answer = Answer { recordings: recordings.into_iter().map(Row::from).collect() };
+        match &to {
+            Target::File(file) => print_message(format!("wrote {}", file.display())),
+            Target::Viewer(viewer) => {
+                print_message(format!("sent to the viewer at {}", viewer.url()));
+                answer.recordings.iter_mut().for_each(|row| row.viewer = Some(viewer.url()));
+            }
+        }
         for row in &answer.recordings {
             print_message(format!("{}: {}", row.scenario, row.statements.line()));
             row.remarks.iter().for_each(|remark| print_message(format!("{}: {remark}", row.scenario)));
         }
         self.format.print(&answer, table)?;
         answer.recordings.iter().try_for_each(|row| require_audit(&row.scenario, row.audit_failed.clone()))
+    }
+
+    /// Returns where the recording goes.
+    fn target(&self) -> Result<Target, Failure> {
+        let viewer = match (&self.output, &self.connect) {
+            (Some(file), _) => {
+                check_output(file, self.force, &["rrd"])?;
+                return Ok(Target::File(file.clone()));
+            }
+            (None, Some(url)) => Viewer::at(url),
+            (None, None) => Viewer::started(),
+        };
+        viewer.map(Target::Viewer).map_err(Failure::wrong_input)
     }
 
     fn scenarios(&self) -> Result<Vec<Scenario>, Failure> {
@@ -146,15 +185,23 @@ impl HeadlessArguments {
     }
 }
 
+/// Where a recording goes.
+pub enum Target {
+    /// To a file.
+    File(PathBuf),
+    /// To a viewer.
+    Viewer(Viewer),
+}
+
 /// Returns options of a recording without pictures that replaces no file.
 pub fn unpictured() -> Options {
     Options::default()
 }
 
 /// Records with a progress bar on standard error, if that is a terminal.
-pub fn record_with_bar(scenarios: &[Scenario], file: &Path, options: &Options) -> Result<Vec<Recording>, Failure> {
+pub fn record_with_bar(scenarios: &[Scenario], to: &Target, options: &Options) -> Result<Vec<Recording>, Failure> {
     let bar = bar(0);
-    let recordings = record(scenarios, file, options, &mut |progress: RecordingProgress| {
+    let mut report = |progress: RecordingProgress| {
         let what = plain(progress.what);
         if bar.message() != what {
             bar.set_message(what.into_owned());
@@ -162,7 +209,11 @@ pub fn record_with_bar(scenarios: &[Scenario], file: &Path, options: &Options) -
         bar.set_length(progress.total);
         bar.set_position(progress.done);
         true
-    });
+    };
+    let recordings = match to {
+        Target::File(file) => record(scenarios, file, options, &mut report),
+        Target::Viewer(viewer) => stream(scenarios, viewer, options, &mut report),
+    };
     bar.finish_and_clear();
     let recordings = recordings.map_err(|error| failed(error, scenarios))?;
     let notes: Vec<&String> = recordings.iter().flat_map(|r| &r.notes).collect();

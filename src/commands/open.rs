@@ -87,14 +87,14 @@ fn record_instead(scenario: Scenario, why: &str) -> Result<(), Failure> {
     use stillbase_settings::number::counted;
 
     use super::exit::print_message;
-    use super::headless::{record_with_bar, unpictured};
+    use super::headless::{Target, record_with_bar, unpictured};
 
     let file = free_name(&scenario.name, "rrd");
     print_message(format!("{}; recording {} without a window instead", why.trim_end_matches('.'), scenario.name));
-    for done in record_with_bar(&[scenario], &file, &unpictured())? {
+    for done in record_with_bar(&[scenario], &Target::File(file.clone()), &unpictured())? {
         print_message(format!(
             "wrote {}: {}, {}",
-            done.file.display(),
+            file.display(),
             counted(done.steps, "step"),
             done.verdict.sentence()
         ));

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use stillbase_app::export::{FilmDone, FilmOrder, check_film, write_film, write_picture};
+use stillbase_app::export::{FilmDone, FilmOrder, PictureForm, check_film, write_film, write_picture};
 use stillbase_app::{AppState, PictureOrder, SessionCommand, Shot};
 use stillbase_picture::scene::palette::Theme;
 use stillbase_picture::scene::views::ViewKind;
@@ -19,14 +19,16 @@ use super::size::size;
 
 /// Draw a picture or a film of a run, without a display
 ///
-/// A still picture shows the instant --at. With --film the run is shown from one time to another. A .gif (slides and
-/// mail) or an animated .png (all colours) repeats forever. A .mp4 is written by the program ffmpeg. A name without
-/// an ending gives a folder of numbered pictures.
+/// A still picture shows the instant --at: as pixels in a .png or .webp, or the view from above as outlines in a .svg
+/// or .pdf. With --film the run is shown from one time to another. A .gif (slides and mail) or an animated .png or .webp
+/// (all colours) repeats forever. A .mp4 is written by the program ffmpeg. A name without an ending gives a folder of
+/// numbered pictures.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   stillbase render case-3 -o case-3.png --at 0.62
   stillbase render case-3 -o slide.png --view space --theme light --transparent
+  stillbase render case-3 -o case-3.svg --theme light --plots
   stillbase render case-1 -o shake.gif --film --view window
   stillbase render case-1 -o pictures --film 0,0.5 --size 1920x1080
   stillbase render spacecraft -o turning.png --film 0,1 --view space --fps 30 --slow 2")]
@@ -34,7 +36,7 @@ pub struct RenderArguments {
     /// A built-in scenario or machine, or a TOML file of either
     #[arg(default_value = DEFAULT_SCENARIO)]
     scenario: String,
-    /// The picture (.png) or film (.gif, .png, .mp4, or a folder) to write
+    /// The picture (.png, .webp, .svg, .pdf) or film (.gif, .png, .webp, .mp4, or a folder) to write
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Instant of a still picture, s; default: the end of the run
@@ -61,6 +63,9 @@ pub struct RenderArguments {
     /// Draw nothing behind the scene, to lay it over a page or a slide
     #[arg(long, conflicts_with = "film")]
     transparent: bool,
+    /// Draw the plots of the window right of the view
+    #[arg(long)]
+    plots: bool,
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
@@ -135,19 +140,23 @@ impl RenderArguments {
     pub fn run(&self) -> Result<(), Failure> {
         match self.film {
             Some(_) => drop(check_film(&self.output, self.force)?),
-            None => drop(check_output(&self.output, self.force, &["png"])?),
+            None => drop(check_output(&self.output, self.force, &PictureForm::ALL.map(PictureForm::ending))?),
         }
         let shot = Shot::from(self.view);
         if self.transparent && shot == Shot::Window {
             let why = "the window has no background to leave out: want a view, such as --view flat";
             return Err(Failure::wrong_input(why).with_context("--transparent"));
         }
+        if self.plots && shot == Shot::Window {
+            let why = "the window shows its own plots: want a view, such as --view flat";
+            return Err(Failure::wrong_input(why).with_context("--plots"));
+        }
         let scenario = scenario(&self.scenario, &self.settings)?;
         let mut app_state =
             AppState::new(scenario.clone(), Theme::Dark).map_err(|why| Failure::refused(&scenario, why))?;
         let end = app_state.run_to_end();
-        let transparent = self.transparent;
-        let picture = PictureOrder { transparent, ..PictureOrder::new(shot, self.theme.into(), self.size) };
+        let Self { transparent, plots, .. } = *self;
+        let picture = PictureOrder { transparent, plots, ..PictureOrder::new(shot, self.theme.into(), self.size) };
         let Some(FilmRange(range)) = self.film else {
             let at = within(self.at.unwrap_or(end), end, "--at")?;
             app_state.carry_out(SessionCommand::Seek(at));

@@ -19,6 +19,18 @@ pub struct NewFolder {
     count: u32,
 }
 
+/// Makes a folder for several files, if there is none yet.
+///
+/// # Errors
+/// If its parent does not exist, or the folder cannot be made.
+pub fn make_folder(folder: &Path) -> Result<(), WriteError> {
+    if folder.is_dir() {
+        return Ok(());
+    }
+    check_new_folder(folder, false)?;
+    fs::create_dir(folder).map_err(|source| WriteError::Failed { file: folder.into(), source })
+}
+
 /// Checks that a folder may be written: its parent exists, and its name is free. With `force`, it may be that of a
 /// folder which holds nothing but numbered pictures.
 ///

@@ -19,11 +19,11 @@ pub enum VideoError {
     /// There is no encoder.
     #[error(
         "MP4 is written by the program ffmpeg, which is not on the PATH: install it (`apt-get install ffmpeg`, `brew \
-         install ffmpeg`, `winget install ffmpeg`), or want a name that ends in .gif or .png, which need nothing"
+         install ffmpeg`, `winget install ffmpeg`), or want a name that ends in .gif, .png or .webp, which need nothing"
     )]
     NoEncoder,
     /// The encoder failed.
-    #[error("{}: ffmpeg failed: {why}: want a name that ends in .gif or .png", file.display())]
+    #[error("{}: ffmpeg failed: {why}: want a name that ends in .gif, .png or .webp", file.display())]
     Encoder {
         /// The film.
         file: PathBuf,

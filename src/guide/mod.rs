@@ -33,6 +33,7 @@ pages! {
     keys: "keys.md",
     command_line: "command_line.md",
     recording: "recording.md",
+    python: "python.md",
     paper: "paper.md",
     speed: "speed.md",
 }

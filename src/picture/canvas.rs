@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
+use super::charts::figure::Figure;
 use super::gui::{GuiRenderer, RenderTarget};
+use super::paint::figure::paint_figure;
 use super::paint::{self, labels};
 use super::render::offscreen::{Gpu, NoAdapter, NoPicture, Picture, surface};
 use super::scene::Scene;
@@ -61,14 +63,33 @@ impl Canvas {
     /// # Errors
     /// If the picture cannot be read back.
     pub fn scene(&mut self, scene: &Arc<Scene>, camera: &Camera) -> Result<Picture, NoPicture> {
+        self.scene_beside(scene, camera, &[])
+    }
+
+    /// Draws a scene as [`scene`](Self::scene) does, left of figures, each with its upper left corner, points.
+    ///
+    /// # Errors
+    /// If the picture cannot be read back.
+    pub fn scene_beside(
+        &mut self,
+        scene: &Arc<Scene>,
+        camera: &Camera,
+        figures: &[([f32; 2], Figure)],
+    ) -> Result<Picture, NoPicture> {
         let behind = Some(paint::colour(scene.background));
+        let draw = |ui: &mut egui::Ui| {
+            labels::paint_still(ui, scene, camera, figures.first().map(|([left, _], _)| *left));
+            for (corner, figure) in figures {
+                paint_figure(ui.painter(), (*corner).into(), figure);
+            }
+        };
         if !self.fonts {
             paint::install_fonts(&self.ctx);
             self.fonts = true;
-            self.pass(behind, |ui| labels::paint_still(ui, scene, camera));
+            self.pass(behind, draw);
             self.forget_labels();
         }
-        self.pass(behind, |ui| labels::paint_still(ui, scene, camera));
+        self.pass(behind, draw);
         self.read()
     }
 

@@ -182,6 +182,11 @@ impl Chart {
     pub fn range(&self, low: f64, high: f64) -> [f64; 2] {
         self.axis.bounds([low, high], self.min_range)
     }
+
+    /// Returns the axis of a run that is complete, for SI values from `low` to `high`, as [`AxisKind::span`].
+    pub fn si_span(&self, low: f64, high: f64) -> [f64; 2] {
+        self.axis.span([low, high], self.min_range / self.scale)
+    }
 }
 
 /// Returns the colour of a signal in every chart. Reactions are red if their peak counts as nonzero, otherwise green.

@@ -1,10 +1,11 @@
-//! A [`Film`]: pictures in a row as one file, an animated GIF or PNG that plays over and over.
+//! A [`Film`]: pictures in a row as one file, an animated GIF, PNG or WebP that plays over and over.
 
 use std::io::{self, Write};
 
 use gif::{Encoder, Frame, Repeat};
 
 use crate::render::offscreen::{Picture, png_encoder};
+use crate::webp::WebpFilm;
 
 /// Format of a film.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,12 +14,17 @@ pub enum FilmFormat {
     Gif,
     /// Animated PNG: all colours; browsers play it.
     Png,
+    /// Animated WebP: all colours without loss, smaller than PNG; browsers play it.
+    Webp,
 }
 
 /// Speed of the choice of colours, 1 (best) to 30.
 const QUANTISATION_SPEED: i32 = 10;
 /// Number of units in which a GIF counts the delays between pictures, per second.
 const GIF_DELAYS_PER_SECOND: f64 = 100.0;
+/// Number of units in which a WebP counts them, and the largest such count.
+const WEBP_DELAYS_PER_SECOND: f64 = 1000.0;
+const MAX_WEBP_DELAY: f64 = 16_777_215.0;
 /// Longest time that a picture may stay, s: an animated PNG cannot say a longer one.
 const MAX_DELAY_S: f64 = 65_535.0;
 
@@ -34,6 +40,7 @@ pub struct Film<W: Write> {
 enum FilmEncoder<W: Write> {
     Gif(Encoder<W>),
     Png(png::Writer<W>),
+    Webp(W, WebpFilm),
 }
 
 impl<W: Write> Film<W> {
@@ -62,6 +69,7 @@ impl<W: Write> Film<W> {
                 encoder.set_frame_delay(numerator, denominator)?;
                 FilmEncoder::Png(encoder.write_header()?)
             }
+            FilmFormat::Webp => FilmEncoder::Webp(to, WebpFilm::new([width, height])),
         };
         Ok(Self { encoder, fps, count: 0 })
     }
@@ -90,6 +98,11 @@ impl<W: Write> Film<W> {
                 }
             }
             FilmEncoder::Png(writer) => writer.write_image_data(&picture.rgba)?,
+            FilmEncoder::Webp(_, film) => {
+                // As for a GIF: rounded sums.
+                let until = |count: u32| (f64::from(count) * WEBP_DELAYS_PER_SECOND / self.fps).round();
+                film.push(&picture, (until(self.count + 1) - until(self.count)).min(MAX_WEBP_DELAY) as u32)?;
+            }
         }
         self.count += 1;
         Ok(())
@@ -104,6 +117,7 @@ impl<W: Write> Film<W> {
             // The end of a GIF is written when its encoder gives the file back.
             FilmEncoder::Gif(encoder) => encoder.into_inner().map(drop).map_err(io::Error::other),
             FilmEncoder::Png(writer) => Ok(writer.finish()?),
+            FilmEncoder::Webp(to, film) => film.write(to),
         }
     }
 }

@@ -21,8 +21,14 @@ pub mod numbers;
 #[cfg(feature = "ui")]
 #[doc(hidden)]
 pub mod paint;
+#[cfg(feature = "ui")]
+#[doc(hidden)]
+pub mod print;
 #[cfg(feature = "render")]
 pub mod render;
 #[doc(hidden)]
 pub mod report;
 pub mod scene;
+#[cfg(feature = "render")]
+#[doc(hidden)]
+pub mod webp;

@@ -35,17 +35,19 @@ pub fn code(size: f32) -> FontId {
     FontId::new(size, FontFamily::Name("code".into()))
 }
 
+/// The fonts: regular, bold, of code, and of signs that the others lack.
+pub const FONT_FILES: [(&str, &[u8]); 4] = [
+    ("sans", include_bytes!("../../assets/fonts/Inter-Regular.ttf")),
+    ("sans-bold", include_bytes!("../../assets/fonts/Inter-SemiBold.ttf")),
+    ("mono", include_bytes!("../../assets/fonts/DejaVuSansMono-text.ttf")),
+    ("signs", include_bytes!("../../assets/fonts/DejaVuSans-signs.ttf")),
+];
+
 /// Installs the font Inter, with digits of equal width; glyphs that it lacks come from DejaVu Sans. Code is set
 /// in DejaVu Sans Mono.
 pub fn install_fonts(ctx: &egui::Context) {
     let mut fonts = FontDefinitions::default();
-    let files: [(&str, &[u8]); 4] = [
-        ("sans", include_bytes!("../../assets/fonts/Inter-Regular.ttf")),
-        ("sans-bold", include_bytes!("../../assets/fonts/Inter-SemiBold.ttf")),
-        ("mono", include_bytes!("../../assets/fonts/DejaVuSansMono-text.ttf")),
-        ("signs", include_bytes!("../../assets/fonts/DejaVuSans-signs.ttf")),
-    ];
-    for (name, bytes) in files {
+    for (name, bytes) in FONT_FILES {
         fonts.font_data.insert(name.into(), Arc::new(FontData::from_static(bytes)));
     }
     let first = |own: &str| [own.into(), "signs".into()];

@@ -1,5 +1,6 @@
-//! The layout with which a recording opens: scene on the left with tabs of joint space and tower, plots on the right,
-//! events below. Several cases are compared in a first tab, and each also has a separate tab.
+//! The layout with which a recording opens: scene on the left with tabs of joint space and tower, below it lanes of
+//! phases and refusals, events and notes; plots on the right. Several cases are compared in a first tab, and each also
+//! has a separate tab.
 //!
 //! Views are rows of a separate store. The builders of the SDK set neither the eye of a 3D view nor axis ranges nor
 //! backgrounds, so the rows are written here.
@@ -18,16 +19,18 @@ use crate::rerun::datatypes::Range2D;
 use crate::rerun::{AsComponents, EntityPath, SeriesLines};
 
 use super::design::FRONT_VIEW;
+use super::events::{PHASE_PATH, REFUSALS_PATH};
 use super::eye::Eye;
 use super::hash::Hash;
+use super::notes::NOTES_PATH;
 use super::preview::{DESIGNS_PATH, Preview, machines_differ};
 use super::store::{Store, StoreError, TIME_TIMELINE};
 use super::style::{CombinedArchetypes, colour, series_name, under};
+use super::ticks::with_ticks;
 use super::topic::Topic;
 use stillbase_mechanics::balance::Condition;
 use stillbase_picture::charts::{Chart, ChartPlace};
-use stillbase_picture::scene::Rgba;
-use stillbase_picture::scene::palette::{Palette, Theme, mix, palette};
+use stillbase_picture::scene::palette::{Palette, Theme, palette};
 
 /// Writes the layout and makes the viewer open with it. `pictured` says whether there are offscreen pictures.
 ///
@@ -77,13 +80,8 @@ fn shared(cases: &[Preview]) -> Vec<(Chart, [f64; 2])> {
             None => all.push((*chart, [*low, *high])),
         }
     }
-    for (chart, range) in &mut all {
-        // Recordings contain SI values, also where the window shows thousandths.
-        let si = Chart { min_range: chart.min_range / chart.scale, ..*chart };
-        let [low, high] = si.range(range[0], range[1]);
-        let margin = 0.06 * (high - low);
-        *range = [low - margin, high + margin];
-    }
+    // Recordings contain SI values, also where the window shows thousandths.
+    all.iter_mut().for_each(|(chart, range)| *range = chart.si_span(range[0], range[1]));
     all
 }
 
@@ -193,7 +191,9 @@ impl Layout<'_> {
 
     /// Adds the comparison of several cases, with scenes above, and plots, machines and events below.
     fn comparison(&mut self, cases: &[Preview]) -> Result<Part, StoreError> {
-        let scenes = cases.iter().map(|case| self.scene(case, &case.title)).collect::<Result<Vec<_>, _>>()?;
+        let eyes = beside_each_other(cases);
+        let scenes = cases.iter().zip(&eyes).map(|(case, eye)| self.scene(case, &case.title, eye));
+        let scenes = scenes.collect::<Result<Vec<_>, _>>()?;
         let mut top = self.container(ContainerKind::Horizontal, "Scenes", &scenes, &vec![1.0; scenes.len()])?;
         if self.pictured {
             let pictures = cases.iter().map(|case| self.pictures(case, &case.title)).collect::<Result<Vec<_>, _>>()?;
@@ -209,15 +209,16 @@ impl Layout<'_> {
         if machines_differ(cases) {
             below.push(self.document("Machines side by side", &EntityPath::from(DESIGNS_PATH))?);
         }
-        below.push(self.events(cases)?);
+        let said = [self.events(cases)?, self.lanes(cases)?];
+        below.push(self.container(ContainerKind::Tabs, "", &said, &[])?);
         let bottom = self.container(ContainerKind::Horizontal, "", &below, &vec![1.0; below.len()])?;
         self.container(ContainerKind::Vertical, "All cases", &[top, bottom], &[1.25, 1.0])
     }
 
-    /// Adds the motion of one case, with its scene on the left, plots on the right and events below, and its design.
+    /// Adds the motion of one case, with its scene, lanes and events on the left and plots on the right, and its design.
     fn case(&mut self, case: &Preview, alone: bool) -> Result<[Part; 2], StoreError> {
         self.tab.clone_from(&case.name);
-        let mut scenes = vec![self.scene(case, "Scene")?];
+        let mut scenes = vec![self.scene(case, "Scene", &case.scene)?];
         if self.pictured {
             scenes.push(self.pictures(case, "Pictures")?);
         }
@@ -228,15 +229,18 @@ impl Layout<'_> {
             }
         }
         let scene = self.container(ContainerKind::Tabs, "", &scenes, &[])?;
-        let beside = self.plots(case, "Drives and base", |place| place == ChartPlace::Beside)?;
-        let inside = self.plots(case, "Inside", |place| place != ChartPlace::Beside)?;
-        let plots = self.container(ContainerKind::Tabs, "", &[beside, inside], &[])?;
-        let top = self.container(ContainerKind::Horizontal, "", &[scene, plots], &[1.25, 1.0])?;
-        let events = self.events(std::slice::from_ref(case))?;
-        let phase = self.view("StateTimeline", "Phase", &under(&case.root, "phase"), &["$origin/**".into()], &[])?;
-        let bottom = self.container(ContainerKind::Horizontal, "", &[events, phase], &[1.6, 1.0])?;
+        let one = std::slice::from_ref(case);
+        let lanes = self.lanes(one)?;
+        let said = [self.events(one)?, self.document("Notes and equations", &under(&case.root, NOTES_PATH))?];
+        let said = self.container(ContainerKind::Tabs, "", &said, &[])?;
+        let left = self.container(ContainerKind::Vertical, "", &[scene, lanes, said], &[3.1, 0.95, 1.0])?;
+        let mut pages = Vec::new();
+        for (name, holds) in PAGES {
+            pages.extend(self.plots(case, name, holds)?);
+        }
+        let plots = self.container(ContainerKind::Tabs, "", &pages, &[])?;
         let name = if alone { &case.title } else { "Motion" };
-        let motion = self.container(ContainerKind::Vertical, name, &[top, bottom], &[3.0, 1.0])?;
+        let motion = self.container(ContainerKind::Horizontal, name, &[left, plots], &[1.25, 1.0])?;
         Ok([motion, self.design(case)?])
     }
 
@@ -291,28 +295,36 @@ impl Layout<'_> {
         self.view("2D", name, origin, &["$origin/**".into()], &properties)
     }
 
-    /// Adds the charts of a case in the given places, one below the other.
-    fn plots(&mut self, case: &Preview, name: &str, is_included: fn(ChartPlace) -> bool) -> Result<Part, StoreError> {
+    /// Adds the charts of a case on one page, one below the other; `None` if there are none.
+    fn plots(
+        &mut self,
+        case: &Preview,
+        name: &str,
+        holds: fn(&Chart, &str) -> bool,
+    ) -> Result<Option<Part>, StoreError> {
+        let is_here = |chart: &&Chart| holds(chart, chart.signals[0].split('/').next().unwrap_or_default());
+        let charts: Vec<&Chart> = case.charts.iter().map(|(chart, _)| chart).filter(is_here).collect();
         let mut parts = Vec::new();
-        for (chart, _) in case.charts.iter().filter(|(chart, _)| is_included(chart.place)) {
-            parts.push(self.plot(case, chart)?);
+        for chart in &charts {
+            parts.push(self.plot(case, chart, charts.len())?);
         }
-        self.container(ContainerKind::Vertical, name, &parts, &vec![1.0; parts.len()])
+        let page = |parts: Vec<Part>| self.container(ContainerKind::Vertical, name, &parts, &vec![1.0; parts.len()]);
+        Some(parts).filter(|parts| !parts.is_empty()).map(page).transpose()
     }
 
     fn range_of(&self, chart: &Chart) -> Option<[f64; 2]> {
         self.charts.iter().find(|(known, _)| known.title == chart.title).map(|(_, range)| *range)
     }
 
-    fn scene(&mut self, case: &Preview, name: &str) -> Result<Part, StoreError> {
+    fn scene(&mut self, case: &Preview, name: &str, eye: &Eye) -> Result<Part, StoreError> {
         let background = view::Background::new(BackgroundKind::SolidColor).with_color(colour(self.palette.background));
         // The scene contains its own grid.
         let grid = view::LineGrid3D::new().with_visible(false);
-        let eye = case.scene.controls();
+        let eye = eye.controls();
         let properties: [(&str, &dyn AsComponents); 3] =
             [("Background", &background), ("LineGrid3D", &grid), ("EyeControls3D", &eye)];
         // All entities of the case except those with views of their own.
-        let others = ["signals", "events", "phase", "view", "joint_space", "tower", "design"];
+        let others = ["signals", "events", PHASE_PATH, REFUSALS_PATH, "view", "joint_space", "tower", "design"];
         let without = others.iter().map(|part| format!("- $origin/{part}/**"));
         let contents: Vec<_> = ["$origin/**".to_owned()].into_iter().chain(without).collect();
         self.view("3D", name, &case.root, &contents, &properties)
@@ -338,15 +350,15 @@ impl Layout<'_> {
         self.view("3D", name, origin, contents, &properties)
     }
 
-    /// Adds the plot of a chart; other series of the same entities are hidden.
-    fn plot(&mut self, case: &Preview, chart: &Chart) -> Result<Part, StoreError> {
+    /// Adds the plot of a chart, one of `rows` on its page; other series of the same entities are hidden.
+    fn plot(&mut self, case: &Preview, chart: &Chart, rows: usize) -> Result<Part, StoreError> {
         let held = |topic: &&Topic| topic.signals.iter().any(|signal| chart.contains(signal));
         let topics: Vec<_> = case.topics.iter().filter(held).collect();
         let is_shown = |topic: &Topic, (i, _): &(usize, f64)| chart.contains(&topic.signals[*i]);
         let limited = |topic: &&&Topic| topic.limits.iter().any(|limit| is_shown(topic, limit));
         let limits = topics.iter().filter(limited).map(|topic| format!("$origin/{}/limits", topic.name));
         let contents: Vec<_> = topics.iter().map(|topic| format!("$origin/{}", topic.name)).chain(limits).collect();
-        let range = self.range_of(chart);
+        let range = self.range_of(chart).map(|range| with_ticks(range, rows));
         let plot = self.time_series(&titled(chart, case), &under(&case.root, "signals"), &contents, range, false)?;
         for topic in topics {
             let shown: Vec<bool> = topic.signals.iter().map(|signal| chart.contains(signal)).collect();
@@ -396,16 +408,24 @@ impl Layout<'_> {
         let contents: Vec<_> = topics.iter().map(|(case, topic)| topic.path(&case.root).to_string()).collect();
         let legend = cases.len() <= MAX_LEGEND_CASES;
         let range = if legend { with_legend_space(range, cases.len()) } else { range };
+        // These plots take the lower half of the window.
+        let range = with_ticks(range, 2);
         let plot = self.time_series(&name_of(chart), &EntityPath::root(), &contents, Some(range), legend)?;
         for (i, (case, topic)) in topics.iter().enumerate() {
-            let rgba = case_colour(i, case.peaks.is_reactionless(), &self.palette);
             let style = SeriesLines::new()
                 .with_names(topic.signals.iter().map(|signal| format!("{} · {}", case.name, series_name(signal))))
-                .with_colors([colour(rgba)])
+                .with_colors([colour(self.palette.run(i))])
                 .with_widths([1.8]);
             self.draw_as(&plot, &topic.path(&case.root), i, &style)?;
         }
         Ok(plot)
+    }
+
+    /// Adds the lanes of phases and refusals.
+    fn lanes(&mut self, cases: &[Preview]) -> Result<Part, StoreError> {
+        let lanes = cases.iter().flat_map(|case| [PHASE_PATH, REFUSALS_PATH].map(|lane| under(&case.root, lane)));
+        let contents: Vec<_> = lanes.map(|lane| lane.to_string()).collect();
+        self.view("StateTimeline", "Phases and refusals", &EntityPath::root(), &contents, &[])
     }
 
     fn events(&mut self, cases: &[Preview]) -> Result<Part, StoreError> {
@@ -419,6 +439,41 @@ impl Layout<'_> {
             ]);
         let contents: Vec<_> = cases.iter().map(|case| under(&case.root, "events").to_string()).collect();
         self.view("TextLog", "Events", &EntityPath::root(), &contents, &[("TextLogColumns", &columns)])
+    }
+}
+
+/// Pages of plots: their names, and which charts stand on them, by chart and group of its first signal. The fewer stand
+/// on a page, the more numbers fit beside their axes.
+const PAGES: [(&str, fn(&Chart, &str) -> bool); 4] = [
+    ("Torque and base", |chart, group| is_beside(chart) && is_load(group)),
+    ("Motion", |chart, group| is_beside(chart) && !is_load(group)),
+    ("Pins and tilt", |chart, group| !is_beside(chart) && ["pin", "tilt"].contains(&group)),
+    ("Transmission", |chart, group| !is_beside(chart) && !["pin", "tilt"].contains(&group)),
+];
+
+fn is_beside(chart: &Chart) -> bool {
+    chart.place == ChartPlace::Beside
+}
+
+fn is_load(group: &str) -> bool {
+    ["torque", "moment", "force"].contains(&group)
+}
+
+/// Width and height of what a viewer of usual size shows of the scenes of several cases, in any unit.
+const SCENES_SIZE: [f64; 2] = [1400.0, 430.0];
+
+/// Returns eyes of scenes that stand beside each other. Cases of one machine are seen from one place, so that they can be
+/// compared; otherwise each machine fills its scene.
+fn beside_each_other(cases: &[Preview]) -> Vec<Eye> {
+    let [width, height] = SCENES_SIZE;
+    let aspect = width / cases.len().max(1) as f64 / height;
+    let eye = |of: &[Preview]| {
+        let extent = of.iter().flat_map(|case| &case.extent).copied().collect::<Vec<_>>();
+        of[0].scene.filled(&extent, aspect)
+    };
+    match machines_differ(cases) {
+        true => cases.iter().map(|case| eye(std::slice::from_ref(case))).collect(),
+        false => vec![eye(cases); cases.len()],
     }
 }
 
@@ -445,14 +500,6 @@ const COLOURS: [&str; 4] = ["blue", "orange", "green", "violet"];
 /// Extends a range downwards by the space for a legend of `lines` lines.
 fn with_legend_space([low, high]: [f64; 2], lines: usize) -> [f64; 2] {
     // Fraction of the height of a plot, in a viewer of usual size.
-    let share = 0.05 + 0.08 * lines as f64;
+    let share = 0.04 + 0.065 * lines as f64;
     [low - share / (1.0 - share) * (high - low), high]
-}
-
-/// Returns the colour of a case: green if it is reactionless, otherwise one of three shades between red and amber.
-fn case_colour(i: usize, quiet: bool, palette: &Palette) -> Rgba {
-    match quiet {
-        true => palette.zero,
-        false => mix(palette.reaction, palette.amber, 0.9 * (i % 3) as f32 / 2.0),
-    }
 }

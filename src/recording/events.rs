@@ -8,10 +8,18 @@ use super::style::{brief, colour, under};
 use stillbase_picture::scene::Rgba;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_query::IncrementalQuery;
-use stillbase_session::events::{Event, EventKind, EventLog, bookmarked, gestures, noted};
+use stillbase_session::events::{Event, EventKind, EventLog, Hindrance, bookmarked, gestures, noted};
 use stillbase_session::scenario::{Scenario, Task};
 use stillbase_session::verdict::Verdict;
 use stillbase_simulation::frame::{Frame, Peaks, Phase};
+
+/// Paths of the lanes of phases and of refusals.
+pub const PHASE_PATH: &str = "phase";
+/// See [`PHASE_PATH`].
+pub const REFUSALS_PATH: &str = "refusals";
+
+/// State of the lane of refusals while nothing is refused.
+const NOTHING_REFUSED: &str = "nothing refused";
 
 /// Events and phases of a case.
 #[derive(Debug)]
@@ -21,6 +29,7 @@ pub struct Events {
     palette: Palette,
     rows: Vec<Row>,
     phases: SparseRows<Phase>,
+    refusals: SparseRows<Option<Hindrance>>,
     watched: EventLog,
 }
 
@@ -49,7 +58,8 @@ impl Events {
     /// Returns an empty list of events.
     pub fn new(prefix: String, palette: Palette) -> Self {
         let watched = EventLog::begin(&Default::default());
-        Self { prefix, palette, rows: Vec::new(), phases: SparseRows::new(), watched }
+        let (phases, refusals) = (SparseRows::new(), SparseRows::new());
+        Self { prefix, palette, rows: Vec::new(), phases, refusals, watched }
     }
 
     fn add(&mut self, at: Instant, text: String, level: &'static str, rgba: Rgba) {
@@ -66,10 +76,11 @@ impl Events {
         self.add(at, format!("plan: {}, T = {time:.3} s", task.in_one_line()), TextLogLevel::INFO, self.palette.ink);
     }
 
-    /// Records the phase and the events of an instant.
+    /// Records the phase, the refusal and the events of an instant.
     pub fn note(&mut self, at: Instant, frame: &Frame, scenario: &Scenario) {
         self.phases.push(at, frame.phase);
         self.watched.see(frame, (scenario.step, &scenario.machine));
+        self.refusals.push(at, self.watched.hindrance());
     }
 
     fn add_event(&mut self, event: &Event, dt: f64) {
@@ -91,15 +102,17 @@ impl Events {
     /// If it cannot be written.
     pub fn write(mut self, store: &mut Store, root: &EntityPath, run: &RecordedRun<'_>) -> Result<(), StoreError> {
         let RecordedRun { scenario, dt, end, peaks, verdict } = *run;
-        let states = [Phase::Motion, Phase::Follow, Phase::Rest];
-        let lanes = StateConfiguration::new()
-            .with_values(states.map(Phase::name))
-            .with_labels(states.map(Phase::name))
-            .with_colors([self.palette.amber, self.palette.drive(0), self.palette.line].map(colour));
-        store.fixed(&under(root, "phase"), &lanes)?;
-        let (clock, phases) = self.phases.take();
-        let states = StateChange::new().with_state(phases.into_iter().map(Phase::name));
-        store.columns(&clock.columns(), &under(root, "phase"), states.columns_of_unit_batches()?)?;
+        let Palette { amber, line, reaction, .. } = self.palette;
+        let phases = [Phase::Motion, Phase::Follow, Phase::Rest].map(Phase::name);
+        let colours = [amber, self.palette.drive(0), line];
+        let (clock, rows) = self.phases.take();
+        let names = rows.into_iter().map(Phase::name);
+        write_lane(store, &under(root, PHASE_PATH), (&phases, &colours), &clock, names)?;
+        let [target, wheel, torque] = Hindrance::ALL.map(Hindrance::name);
+        let refusals = [target, wheel, torque, NOTHING_REFUSED];
+        let (clock, rows) = self.refusals.take();
+        let names = rows.into_iter().map(|what| what.map_or(NOTHING_REFUSED, Hindrance::name));
+        write_lane(store, &under(root, REFUSALS_PATH), (&refusals, &[amber, reaction, reaction, line]), &clock, names)?;
 
         let mut all = gestures(&scenario.edits, dt);
         all.extend_from_slice(self.watched.events());
@@ -124,4 +137,20 @@ impl Events {
             .with_many_color(self.rows.iter().map(|row| colour(row.rgba)));
         store.columns(&clock.columns(), &under(root, "events"), log.columns_of_unit_batches()?)
     }
+}
+
+/// Writes a lane: the colours of its states, and the states from each instant on.
+fn write_lane(
+    store: &mut Store,
+    path: &EntityPath,
+    (names, colours): (&[&'static str], &[Rgba]),
+    clock: &RowTimes,
+    states: impl Iterator<Item = &'static str>,
+) -> Result<(), StoreError> {
+    let looks = StateConfiguration::new()
+        .with_values(names.iter().copied())
+        .with_labels(names.iter().copied())
+        .with_colors(colours.iter().copied().map(colour));
+    store.fixed(path, &looks)?;
+    store.columns(&clock.columns(), path, StateChange::new().with_state(states).columns_of_unit_batches()?)
 }

@@ -14,6 +14,15 @@ const HALF_HEIGHT: f64 = 0.5206;
 /// shifts labels farther from their points, because the viewer draws them in boxes.
 const HALF_PIXELS: f64 = 240.0;
 
+/// Fraction of the picture that points fill.
+const FILL_FRACTION: f64 = 0.7;
+/// Height of the points' middle above that of the picture, as a fraction of its height: labels stand below.
+const RISE_FRACTION: f64 = 0.05;
+
+fn wider([low, high]: [f64; 2], x: f64) -> [f64; 2] {
+    [low.min(x), high.max(x)]
+}
+
 /// An eye that looks at a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Eye {
@@ -53,6 +62,34 @@ impl Eye {
             Camera::Orbit(orbit) => Self::along(*orbit, axes),
             Camera::Flat(FlatCamera { centre, half_height }) => Self::above(*centre, 2.0 * half_height),
         }
+    }
+
+    /// Returns the eye in the same direction from which points, m, fill a picture; `aspect` is its width as a fraction of
+    /// its height. Without points, the eye stays.
+    pub fn filled(&self, points: &[[f64; 3]], aspect: f64) -> Self {
+        let (yaw, pitch) = (self.orbit.yaw, self.orbit.pitch);
+        let across = [yaw.cos(), yaw.sin(), 0.0];
+        let up = [-yaw.sin() * pitch.sin(), yaw.cos() * pitch.sin(), pitch.cos()];
+        let towards = self.camera().eye_direction().map(f64::from);
+        let along = |axis: [f64; 3], p: &[f64; 3]| (0..3).map(|i| axis[i] * p[i]).sum::<f64>();
+        let middle = |axis: [f64; 3]| {
+            let [low, high] = points.iter().map(|p| along(axis, p)).fold([f64::INFINITY, f64::NEG_INFINITY], wider);
+            0.5 * (low + high)
+        };
+        let [a, u] = [across, up].map(middle);
+        if !(a.is_finite() && u.is_finite()) {
+            return *self;
+        }
+        let half_height = FILL_FRACTION * HALF_HEIGHT;
+        let distance = points.iter().map(|p| {
+            let beside = ((along(across, p) - a).abs() / aspect).max((along(up, p) - u).abs());
+            along(towards, p) + beside / half_height
+        });
+        // The centre has no part along the line of sight.
+        let distance = distance.fold(f64::MIN_POSITIVE, f64::max);
+        let u = u - 2.0 * RISE_FRACTION * HALF_HEIGHT * distance;
+        let centre = [0, 1, 2].map(|i| a * across[i] + u * up[i]);
+        Self { orbit: Orbit { centre, distance, ..self.orbit }, ..*self }
     }
 
     /// Returns whether the eye looks at a drawing from straight above.

@@ -20,7 +20,9 @@
 //! | `reaction/force`, `reaction/moment` | the reaction on the base, with a label of the scale |
 //! | `signals/<topic>` | every row of the table of [`signals`](stillbase_simulation::signals) as a series |
 //! | `signals/<topic>/limits` | limits of torques and rates near enough to be drawn, at plus and minus, as series |
-//! | `events`, `phase` | events and phases of the run |
+//! | `events` | events of the run |
+//! | `phase`, `refusals` | lanes: the phase of the run, and what the machine is kept from |
+//! | `notes` | verdict, notes and bookmarks, and the equations with their numbers, as Markdown |
 //! | `view` | offscreen pictures |
 //!
 //! Each item of the [`Scene`](stillbase_picture::scene::Scene) that the window opens with is an entity with the name of
@@ -45,6 +47,8 @@ mod entity;
 mod events;
 mod eye;
 mod hash;
+mod markdown;
+mod notes;
 mod options;
 mod pictures;
 mod preview;
@@ -55,9 +59,12 @@ mod space;
 mod stop;
 mod store;
 mod style;
+mod ticks;
 mod topic;
+mod viewer;
 
 pub use options::{Options, Pictures};
+pub use viewer::{VIEWER_URL, Viewer, ViewerError};
 
 use std::path::{Path, PathBuf};
 
@@ -73,15 +80,15 @@ use stillbase_session::Refusal;
 use stillbase_session::scenario::Scenario;
 use stillbase_session::verdict::{Statements, Verdict};
 use stop::CaseError;
-use store::{Store, StoreError};
+use store::{Sink, Store, StoreError};
 
 /// A scenario that was recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     /// Name of the scenario.
     pub scenario: String,
-    /// Path of the file.
-    pub file: PathBuf,
+    /// Path of the file; `None` if it was streamed to a viewer.
+    pub file: Option<PathBuf>,
     /// Number of steps; there is one frame more.
     pub steps: u64,
     /// Largest |τ_k|, N m.
@@ -135,6 +142,9 @@ pub enum RecordError {
     /// The file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// The viewer cannot be reached.
+    #[error(transparent)]
+    Viewer(#[from] ViewerError),
     /// The caller stopped the recording.
     #[error("the recording was stopped before its end: no file is left")]
     Stopped,
@@ -162,7 +172,21 @@ pub fn record(
 ) -> Result<Vec<Recording>, RecordError> {
     check(scenarios, options)?;
     let to = NewFile::create(file, options.force)?;
-    write(scenarios, to, file, options, progress)
+    write(scenarios, Sink::File(to), Some(file), options, progress)
+}
+
+/// Runs scenarios and streams all of them to a viewer, as [`record`] writes them to a file.
+///
+/// # Errors
+/// Any [`RecordError`]. What the viewer has by then, it keeps.
+pub fn stream(
+    scenarios: &[Scenario],
+    viewer: &Viewer,
+    options: &Options,
+    progress: &mut dyn FnMut(RecordingProgress) -> bool,
+) -> Result<Vec<Recording>, RecordError> {
+    check(scenarios, options)?;
+    write(scenarios, Sink::Viewer(viewer.clone()), None, options, progress)
 }
 
 fn check(scenarios: &[Scenario], options: &Options) -> Result<(), RecordError> {
@@ -239,14 +263,19 @@ fn digest(scenarios: &[Scenario], options: &Options) -> u128 {
 
 fn write(
     scenarios: &[Scenario],
-    to: NewFile,
-    file: &Path,
+    to: Sink,
+    file: Option<&Path>,
     options: &Options,
     progress: &mut dyn FnMut(RecordingProgress) -> bool,
 ) -> Result<Vec<Recording>, RecordError> {
+    let name = match &to {
+        Sink::File(_) => file.map(PathBuf::from).unwrap_or_default(),
+        Sink::Viewer(viewer) => viewer.url().into(),
+    };
     let because = |error| match error {
-        StoreError::Write(source) => WriteError::Failed { file: file.into(), source }.into(),
-        StoreError::Data(why) => RecordError::Data { file: file.into(), why },
+        StoreError::Write(source) => WriteError::Failed { file: name.clone(), source }.into(),
+        StoreError::Viewer(why) => RecordError::Viewer(why),
+        StoreError::Data(why) => RecordError::Data { file: name.clone(), why },
     };
     let total: u64 = scenarios.iter().map(steps).sum();
     let mut before = 0;
@@ -293,7 +322,7 @@ fn write(
             before += case.steps;
             recordings.push(Recording {
                 scenario: scenario.name.clone(),
-                file: file.into(),
+                file: file.map(PathBuf::from),
                 steps: case.steps,
                 peak_torque: peaks.torque.to_vec(),
                 peak_base_force: peaks.force,
@@ -308,7 +337,9 @@ fn write(
     });
     match done {
         Ok(()) => {
-            store.close().map_err(because)?.finish()?;
+            if let Some(written) = store.close().map_err(because)? {
+                written.finish()?;
+            }
             Ok(recordings)
         }
         Err(stop) => {

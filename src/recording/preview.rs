@@ -6,7 +6,9 @@ use crate::rerun::EntityPathPart;
 
 use super::design::RecordedDesign;
 use super::eye::Eye;
+use super::steps;
 use super::topic::Topic;
+use stillbase_mechanics::machine::Machine;
 use stillbase_picture::charts::drawn::shows_limit;
 use stillbase_picture::charts::{Chart, charts};
 use stillbase_picture::scene::camera::Orbit;
@@ -16,7 +18,7 @@ use stillbase_picture::scene::views::{ViewKind, Views};
 use stillbase_query::Queries;
 use stillbase_session::scenario::Scenario;
 use stillbase_session::{Refusal, replay_while, with_start_edits};
-use stillbase_simulation::frame::Peaks;
+use stillbase_simulation::frame::{Frame, Peaks};
 use stillbase_simulation::signals::{Signal, signals};
 use stillbase_study::comparison::DesignCandidate;
 
@@ -41,6 +43,8 @@ pub struct Preview {
     pub charts: Vec<(Chart, [f64; 2])>,
     /// Eye of the view of the machine.
     pub scene: Eye,
+    /// Points between which the machine moves, m.
+    pub extent: Vec<[f64; 3]>,
     /// Cache of the results derived from the run.
     pub queries: Queries,
     /// Eye of the view of joint space, if there is one.
@@ -71,8 +75,12 @@ impl Preview {
         let held = |signal: &Signal| charts.iter().position(|(chart, _)| chart.contains(signal));
         let drawn: Vec<_> = signals.iter().filter_map(|signal| Some((held(signal)?, signal.clone()))).collect();
         let (mut b, mut first) = (none, None);
-        let run = replay_while(scenario, |_, frame| {
+        let (mut extent, every) = (Vec::new(), (steps(scenario) / EXTENT_POSES).max(1));
+        let run = replay_while(scenario, |run, frame| {
             first.get_or_insert(*frame);
+            if frame.step.is_multiple_of(every) {
+                extent.extend(pins(&run.scenario().machine, frame));
+            }
             wider(&mut b, frame.b);
             drawn.iter().for_each(|(i, signal)| wider(&mut charts[*i].1, signal.value(frame)));
             !frame.step.is_multiple_of(1024) || tick(frame.step)
@@ -110,6 +118,7 @@ impl Preview {
             topics,
             charts,
             scene: near(reach),
+            extent,
             joints,
             candidate: DesignCandidate::of(&run),
             design: RecordedDesign::of(scenario, &run, first.unwrap_or(last))?,
@@ -117,6 +126,16 @@ impl Preview {
             queries: run.queries().clone(),
         })
     }
+}
+
+/// Number of poses of a run by which the space that its machine needs is found.
+const EXTENT_POSES: u64 = 40;
+
+/// Returns where the links of a machine end at an instant, m.
+fn pins(machine: &Machine, frame: &Frame) -> Vec<[f64; 3]> {
+    let bars = LinkageModel::of(machine).flat(&frame.q.units());
+    let ends = bars.iter().flat_map(|bar| bar.ends);
+    ends.map(|end| end + frame.base.at).map(|end| [end.re, end.im, 0.0]).collect()
 }
 
 /// Path of the comparison of the machines of several cases.

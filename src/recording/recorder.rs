@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use crate::rerun::EntityPathPart;
 use crate::rerun::components::{Scalar, Text};
-use crate::rerun::{AnyValues, EntityPath, ViewCoordinates};
+use crate::rerun::{AnyValues, EntityPath, TextDocument, ViewCoordinates};
 
 use super::events::{Events, RecordedRun};
 use super::eye::Eye;
+use super::notes;
 use super::pictures::PictureSeries;
 use super::preview::Preview;
 use super::rows::Thinned;
@@ -292,6 +293,8 @@ impl<'a> Recorder<'a> {
             verdict: &verdict,
         };
         self.events.write(self.store, self.root, &recorded)?;
+        let document = TextDocument::from_markdown(notes::document(run, frame, &verdict, &statements));
+        self.store.fixed(&under(self.root, notes::NOTES_PATH), &document)?;
         let path = EntityPath::properties() / EntityPathPart::new(self.scenario.name.as_str());
         self.store.fixed(&path, &properties(self.scenario, (&frame.peaks, &verdict, &statements), run.plan()))?;
         Ok((frame.peaks, verdict, statements))

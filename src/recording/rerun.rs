@@ -1,10 +1,12 @@
 //! The parts of the Rerun SDK that recordings need, under the names that the SDK gives them.
 //!
-//! The whole SDK also brings a network client, a runtime and a store of the viewer's. A recording is a file of chunks:
-//! data types, chunks and the encoder suffice.
+//! The whole SDK also brings a store of the viewer's and much else. A recording is a file of chunks, or a stream of them:
+//! data types, chunks, the encoder and the client suffice.
 
 pub use re_build_info::CrateVersion;
 pub use re_chunk::{Chunk, ChunkError, ChunkId, RowId, TimeColumn};
+pub use re_grpc_client::Client;
+pub use re_grpc_client::write::{ClientConnectionState as StreamState, Options as StreamOptions};
 pub use re_log_encoding::{EncodeError, Encoder, EncodingOptions};
 pub use re_log_types::{
     BlueprintActivationCommand, EntityPath, EntityPathPart, LogMsg, SetStoreInfo, StoreId, StoreInfo, StoreKind,
@@ -17,4 +19,5 @@ pub use re_sdk_types::{
     AnyValues, AsComponents, SerializationError, SerializedComponentBatch, SerializedComponentColumn,
 };
 pub use re_sdk_types::{blueprint, components, datatypes};
+pub use re_uri::{Error as UriError, ProxyUri};
 pub use uuid::Uuid;

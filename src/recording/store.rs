@@ -1,7 +1,8 @@
 //! A [`Store`]: rows and columns of a recording and of its layout, encoded one chunk at a time.
 //!
-//! A separate thread encodes and writes chunks in order, while the next chunk is made. It returns its error, so that
-//! the caller learns of a full disk; the stream of the SDK only prints it to standard error. Identifiers of chunks
+//! A separate thread encodes and writes chunks in order, or sends them to a viewer, while the next chunk is made. It
+//! returns its error, so that the caller learns of a full disk; the stream of the SDK only prints it to standard error.
+//! Identifiers of chunks
 //! count up from a number derived from the digest, so that equal data give equal chunks.
 
 use std::io::Write;
@@ -16,6 +17,7 @@ use crate::rerun::{EncodeError, Encoder, EncodingOptions};
 use crate::rerun::{TimeInt, TimePoint, Timeline};
 use thiserror::Error;
 
+use super::viewer::{Viewer, ViewerError};
 use stillbase_files::NewFile;
 pub use stillbase_files::recorded::{APPLICATION, TIME_TIMELINE};
 
@@ -31,9 +33,21 @@ pub enum StoreError {
     /// Error of the file system.
     #[error(transparent)]
     Write(#[from] std::io::Error),
+    /// The viewer cannot be reached.
+    #[error(transparent)]
+    Viewer(#[from] ViewerError),
     /// Rerun refuses the data.
     #[error("{0}")]
     Data(String),
+}
+
+/// Where a recording goes.
+#[derive(Debug)]
+pub enum Sink {
+    /// To a file.
+    File(NewFile),
+    /// To a viewer.
+    Viewer(Viewer),
 }
 
 impl From<EncodeError> for StoreError {
@@ -129,7 +143,7 @@ impl RowTimes {
 pub struct Store {
     to: SyncSender<Message>,
     /// Thread that writes; `None` once its result has been taken.
-    writer: Option<JoinHandle<Result<NewFile, StoreError>>>,
+    writer: Option<JoinHandle<Result<Option<NewFile>, StoreError>>>,
     recording: StoreId,
     layout: StoreId,
     /// Identifier given out last; the next one is larger by [`CHUNK_ID_STEP`].
@@ -150,9 +164,13 @@ const CHUNK_ID_STEP: u128 = 1 << 64;
 
 impl Store {
     /// Begins a recording and its layout; `digest` identifies the recording.
-    pub fn open(to: NewFile, digest: u128) -> Result<Self, StoreError> {
+    pub fn open(to: Sink, digest: u128) -> Result<Self, StoreError> {
         let (sender, receiver) = sync_channel(QUEUE_LENGTH);
-        let writer = thread::Builder::new().name("recording".into()).spawn(move || write(to, &receiver))?;
+        let take = move || match to {
+            Sink::File(file) => write(file, &receiver).map(Some),
+            Sink::Viewer(viewer) => stream(&viewer, &receiver).map(|()| None),
+        };
+        let writer = thread::Builder::new().name("recording".into()).spawn(take)?;
         let id = format!("{digest:032x}");
         let mut store = Self {
             to: sender,
@@ -276,8 +294,9 @@ impl Store {
         let _ = self.writer.take().map(JoinHandle::join);
     }
 
-    /// Finishes the file with its table of contents.
-    pub fn close(mut self) -> Result<NewFile, StoreError> {
+    /// Finishes the file with its table of contents, or waits until the viewer has everything. Returns the file, if
+    /// there is one.
+    pub fn close(mut self) -> Result<Option<NewFile>, StoreError> {
         if self.to.send(Message::Close).is_err() {
             return Err(self.why());
         }
@@ -307,4 +326,16 @@ fn write(to: NewFile, messages: &Receiver<Message>) -> Result<NewFile, StoreErro
     written?;
     to.flush()?;
     Ok(to)
+}
+
+/// Sends messages to a viewer until `Close`.
+fn stream(to: &Viewer, messages: &Receiver<Message>) -> Result<(), StoreError> {
+    let stream = to.connect()?;
+    loop {
+        match messages.recv() {
+            Ok(Message::Row(message)) => stream.send(*message)?,
+            Ok(Message::Close) => return Ok(stream.finish()?),
+            Err(_) => return Err(StoreError::Data("given up".into())),
+        }
+    }
 }

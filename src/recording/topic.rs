@@ -5,7 +5,7 @@ use crate::rerun::components::Text;
 use crate::rerun::{AnyValues, EntityPath, Scalars, SeriesLines};
 
 use super::store::{RowTimes, Store, StoreError};
-use super::style::{colour, series_name, under};
+use super::style::{CombinedArchetypes, colour, series_name, under};
 use stillbase_files::recorded::{PATHS, UNITS};
 use stillbase_picture::charts::{self, Chart};
 use stillbase_picture::scene::palette::{Palette, faded};
@@ -93,13 +93,13 @@ impl Topic {
         let names = AnyValues::default()
             .with_component::<Text>(PATHS, words(|signal| &signal.path))
             .with_component::<Text>(UNITS, words(|signal| signal.unit));
-        store.fixed(&self.path(root), &names)?;
-        let width = |signal: &Signal| if signal.path.contains("reference") { 0.8 } else { 1.6 };
+        let is_reference = |signal: &Signal| signal.group() == "reference" || signal.path == "pose/b_reference";
+        let width = |signal: &Signal| if is_reference(signal) { 0.8 } else { 1.6 };
         let style = SeriesLines::new()
             .with_names(self.signals.iter().map(series_name))
             .with_colors(self.signals.iter().map(|signal| colour(charts::colour(signal, palette, peaks))))
             .with_widths(self.signals.iter().map(width));
-        store.fixed(&self.path(root), &style)
+        store.fixed(&self.path(root), &CombinedArchetypes(&[&names, &style]))
     }
 
     /// Returns the path of the entity of the limits in the recording.

@@ -36,6 +36,31 @@ pub enum EventKind {
     Fault,
 }
 
+/// What keeps the machine from what is asked of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hindrance {
+    /// The target lies where the machine cannot go.
+    Target,
+    /// The reaction wheel is saturated.
+    Wheel,
+    /// A motor is at its torque limit.
+    Torque,
+}
+
+impl Hindrance {
+    /// All hindrances.
+    pub const ALL: [Self; 3] = [Self::Target, Self::Wheel, Self::Torque];
+
+    /// Returns what is refused, in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Target => "target out of reach",
+            Self::Wheel => "reaction wheel saturated",
+            Self::Torque => "drive at its torque limit",
+        }
+    }
+}
+
 /// One event.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
@@ -278,6 +303,13 @@ impl EventLog {
     /// Returns the same events as a shared value.
     pub fn shared_events(&self) -> Shared<Vec<Event>> {
         Shared(self.events.clone())
+    }
+
+    /// Returns what keeps the machine from what is asked of it at the last frame.
+    pub fn hindrance(&self) -> Option<Hindrance> {
+        let Seen { reach, saturated, limited, .. } = self.now;
+        let is_beyond = matches!(reach, Some(Reach::Outside { .. }));
+        Hindrance::ALL.into_iter().zip([is_beyond, saturated, limited != 0]).find_map(|(what, holds)| holds.then_some(what))
     }
 
     /// Returns the event of the largest |n_B|.

@@ -24,6 +24,7 @@ pub mod lengths;
 pub mod measures;
 pub mod parts;
 pub mod plan_summary;
+pub mod pose_curves;
 pub mod pose_measures;
 #[doc(hidden)]
 pub mod samples;

@@ -6,8 +6,8 @@ use std::path::Path;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use stillbase::app::export::{
-    Export, FilmChoice, FilmForm, FilmOrder, Look, PictureSize, RowForm, SignalChoice, TimeChoice, ValuesChoice,
-    write_film,
+    Export, FilmChoice, FilmForm, FilmOrder, Look, PictureChoice, PictureForm, PictureSize, RowForm, SignalChoice,
+    TimeChoice, ValuesChoice, write_film,
 };
 use stillbase::app::jobs::Threads;
 use stillbase::app::{Activity, AppState, Message, PictureOrder, SessionCommand, Shot, ViewChange, WindowCommand};
@@ -26,6 +26,7 @@ use crate::folder::Folder;
 pub const TESTS: &[Test] = tests![
     a_picture_is_chosen_on_a_card_and_written,
     a_scene_may_be_transparent,
+    a_scene_is_written_as_outlines_and_as_webp,
     a_film_holds_the_range_that_plots_show,
     a_film_that_is_stopped_leaves_nothing,
     a_folder_of_pictures_replaces_only_its_like,
@@ -43,8 +44,12 @@ pub const TESTS: &[Test] = tests![
 
 const SIZE: [u32; 2] = [320, 200];
 
+fn png(look: Look) -> Export {
+    Export::Picture(PictureChoice { look, form: PictureForm::Png })
+}
+
 fn look(shot: Shot) -> Look {
-    Look { shot, size: PictureSize::Pixels(SIZE), theme: Theme::Light, transparent: false }
+    Look { shot, size: PictureSize::Pixels(SIZE), theme: Theme::Light, transparent: false, plots: false }
 }
 
 fn picture_in(file: &Path) -> Picture {
@@ -83,7 +88,7 @@ fn a_picture_is_chosen_on_a_card_and_written() {
     h.get_by_label("light").click();
     h.run_steps(3);
     let chosen = h.state().app_state().view_state().open.export.clone();
-    let Some(Export::Picture(look)) = chosen else { panic!("{chosen:?}") };
+    let Some(Export::Picture(PictureChoice { look, .. })) = chosen else { panic!("{chosen:?}") };
     assert_eq!((look.shot, look.theme, look.size), (Shot::Window, Theme::Light, PictureSize::Display));
     h.get_by_label("Choose a file…").click();
     h.run_steps(3);
@@ -106,6 +111,29 @@ fn a_picture_is_chosen_on_a_card_and_written() {
     assert!(h.state().app_state().view_state().open.export.is_none());
 }
 
+fn a_scene_is_written_as_outlines_and_as_webp() {
+    let folder = Folder::new("results");
+    let mut app_state = app_state("case-3");
+    app_state.carry_out(ViewChange::Kind(ViewKind::Flat));
+    for (form, begins) in [(PictureForm::Svg, "<?xml"), (PictureForm::Pdf, "%PDF"), (PictureForm::Webp, "RIFF")] {
+        for plots in [false, true] {
+            let file = folder.path(&format!("{plots}.{}", form.ending()));
+            let look = Look { plots, ..look(Shot::Scene) };
+            saved(&mut app_state, &file, Export::Picture(PictureChoice { look, form }));
+            assert!(fs::read(&file).expect("a file").starts_with(begins.as_bytes()), "{form:?}");
+        }
+    }
+    let drawing = fs::read_to_string(folder.path("true.svg")).expect("a file");
+    let page = roxmltree::Document::parse(&drawing).expect("an SVG");
+    assert!(page.descendants().filter(|node| node.has_tag_name("path")).count() > 100);
+    // Other views have no outlines: that is said, and no file is left.
+    app_state.carry_out(ViewChange::Kind(ViewKind::Space));
+    let choice = PictureChoice { look: look(Shot::Scene), form: PictureForm::Svg };
+    let said = said(&mut app_state, &folder.path("space.svg"), Export::Picture(choice));
+    assert!(said.is_problem && said.text.contains("view from above"), "{said:?}");
+    assert!(!folder.path("space.svg").exists());
+}
+
 fn a_scene_may_be_transparent() {
     let folder = Folder::new("results");
     let mut app_state = app_state("case-3");
@@ -113,7 +141,7 @@ fn a_scene_may_be_transparent() {
         app_state.carry_out(ViewChange::Kind(view));
         let [clear, filled] = [true, false].map(|transparent| {
             let file = folder.path(&format!("{}-{transparent}.png", view.name()));
-            saved(&mut app_state, &file, Export::Picture(Look { transparent, ..look(Shot::Scene) }));
+            saved(&mut app_state, &file, png(Look { transparent, ..look(Shot::Scene) }));
             picture_in(&file)
         });
         let alpha = |picture: &Picture, wanted: fn(u8) -> bool| {
@@ -152,7 +180,7 @@ fn a_film_holds_the_range_that_plots_show() {
     assert_eq!(app_state.session().frame().time, 0.0, "the window stays where it is");
     // The first picture shows the first instant of the range.
     app_state.carry_out(SessionCommand::Seek(0.2));
-    saved(&mut app_state, &folder.path("at.png"), Export::Picture(look(Shot::Scene)));
+    saved(&mut app_state, &folder.path("at.png"), png(look(Shot::Scene)));
     assert!(picture_in(&folder.path("at.png")) == picture_in(&folder.path("frames/frame-00001.png")));
     saved(&mut app_state, &folder.path("film.gif"), Export::Film(FilmChoice { whole: true, ..choice }));
     saved(&mut app_state, &folder.path("film.png"), Export::Film(choice));
@@ -445,7 +473,7 @@ fn a_transparent_picture_is_legible_on_any_colour() {
     for theme in [Theme::Dark, Theme::Light] {
         let file = folder.path(&format!("{theme:?}.png"));
         let look = Look { transparent: true, theme, size: PictureSize::Pixels([640, 400]), ..look(Shot::Scene) };
-        saved(&mut app_state, &file, Export::Picture(look));
+        saved(&mut app_state, &file, png(look));
         let picture = picture_in(&file);
         let p = palette(theme);
         let near = |pixel: &[u8], colour: [f32; 4]| {

@@ -45,6 +45,7 @@ const EDGES: &[(&str, &[&str])] = &[
             "commands/design/weighed.rs",
             "files/journal.rs",
             "files/stamp.rs",
+            "recording/viewer.rs",
         ],
     ),
     ("std::env", &["main.rs", "app/window.rs", "app/window/error.rs", "app/window/chooser/portal.rs"]),
@@ -63,7 +64,7 @@ const EDGES: &[(&str, &[&str])] = &[
     ("std::net", &[]),
     (
         "std::process",
-        &["commands/exit.rs", "files/draft.rs", "files/fault.rs", "files/new_file.rs", "files/video.rs", "main.rs"],
+        &["commands/exit.rs", "files/draft.rs", "files/fault.rs", "files/new_file.rs", "files/video.rs", "main.rs", "recording/viewer.rs"],
     ),
     // Text comes in at one place; everything else of the core takes it from there.
     (

@@ -3,7 +3,7 @@
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::process::{Command, Stdio};
 
-fn python() -> Command {
+pub fn python() -> Command {
     Command::new(std::env::var_os("STILLBASE_PYTHON").unwrap_or_else(|| "python3".into()))
 }
 

@@ -110,3 +110,31 @@ fn a_picture_that_would_stay_for_days_is_refused() {
         assert!(why.contains("pictures per second: want at least one in 65535 s"), "{why}");
     }
 }
+
+#[test]
+fn an_animated_webp_holds_every_picture_and_is_as_long_as_the_run() {
+    let bytes = film(FilmFormat::Webp);
+    let mut decoder = image_webp::WebPDecoder::new(Cursor::new(&bytes)).expect("a WebP");
+    assert!(decoder.is_animated());
+    assert_eq!(decoder.dimensions(), (SIZE[0], SIZE[1]));
+    assert_eq!((decoder.num_frames(), decoder.loop_count()), (COUNT, image_webp::LoopCount::Forever));
+    let (mut rgba, mut length) = (vec![0; decoder.output_buffer_size().expect("a size")], 0);
+    for i in 0..COUNT {
+        length += decoder.read_frame(&mut rgba).expect("a picture");
+        assert_eq!(rgba, picture(i).rgba, "picture {i}");
+    }
+    assert!((f64::from(length) - 1000.0 * f64::from(COUNT) / FPS).abs() <= 0.5, "{length} ms");
+}
+
+#[test]
+fn a_still_webp_holds_every_pixel() {
+    let mut clear = picture(3);
+    clear.rgba.iter_mut().skip(3).step_by(8).for_each(|alpha| *alpha = 0);
+    let bytes = stillbase::picture::webp::still(&clear).expect("a file");
+    let mut decoder = image_webp::WebPDecoder::new(Cursor::new(&bytes)).expect("a WebP");
+    let mut rgba = vec![0; decoder.output_buffer_size().expect("a size")];
+    decoder.read_image(&mut rgba).expect("a picture");
+    assert_eq!(rgba, clear.rgba);
+    let none = stillbase::picture::render::offscreen::Picture { width: 0, height: 4, rgba: Vec::new() };
+    assert!(stillbase::picture::webp::still(&none).is_err(), "no pixels");
+}

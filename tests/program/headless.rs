@@ -52,6 +52,26 @@ fn headless_refuses_wrong_input_before_it_runs() {
     fails(&["headless", "case-3", "-o", &free, "--set", "limits.a1=0,0.1"], 1, &["case-3", "A (0.500, 0.500) m"]);
     fails(&["headless"], 2, &["--output <FILE.rrd>"]);
     assert_eq!(folder.names(), ["taken.rrd"]);
+    // A viewer instead of a file: one or the other, at an address, and there.
+    fails(&["headless", "case-3", "-o", &free, "--spawn"], 2, &["--output", "--spawn"]);
+    fails(&["headless", "--connect", "case-3"], 2, &["case-3", "rerun+http://127.0.0.1:9876/proxy"]);
+    let silent = std::net::TcpListener::bind("127.0.0.1:0").and_then(|free| free.local_addr()).expect("a port");
+    let silent = format!("rerun+http://{silent}/proxy");
+    fails(&["headless", "case-3", "--connect", &silent], 2, &[&silent, "no viewer answers within 5 s", "--spawn"]);
+    assert_eq!(folder.names(), ["taken.rrd"]);
+}
+
+#[cfg(all(feature = "record", unix))]
+#[test]
+fn without_a_viewer_to_start_it_says_what_to_install() {
+    let run = Command::new(env!("CARGO_BIN_EXE_stillbase"))
+        .args(["headless", "case-3", "--spawn"])
+        .env("PATH", "/nonexistent")
+        .output()
+        .expect("it runs");
+    assert_eq!(run.status.code(), Some(2));
+    let said = String::from_utf8(run.stderr).expect("UTF-8");
+    assert!(said.contains("pip install rerun-sdk==0.36.3") && said.contains("-o FILE.rrd"), "{said}");
 }
 
 #[test]

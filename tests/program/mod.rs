@@ -1,6 +1,8 @@
 //! The program, from outside.
 
 mod dynamics;
+#[cfg(feature = "ui")]
+mod figures;
 mod files;
 #[cfg(unix)]
 mod guide;

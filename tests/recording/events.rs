@@ -150,6 +150,45 @@ fn edits_on_the_way_are_recorded() {
     let moved = steps("/case-3/joint_space/pose", "Points3D:positions");
     assert!(moved.windows(2).all(|w| w[0] < w[1]) && moved[3..7] == [15, 20, 22, 25], "{moved:?}");
     assert_eq!(contents.texts("/case-3/phase", "StateChange:state"), ["motion", "follow"]);
+    let refused = contents.texts("/case-3/refusals", "StateChange:state");
+    assert!(refused.len() == 2 && refused[0] == "nothing refused" && refused[1] == "target out of reach", "{refused:?}");
+}
+
+/// What keeps the machine from what is asked of it has a lane of its own, from its first step to its last.
+#[test]
+fn what_is_refused_has_a_lane() {
+    let folder = Folder::new("refused");
+    let mut scenario = Scenario { duration: Some(0.6), ..Scenario::builtin("case-1").expect("built in") };
+    scenario.edits = vec![
+        TimedEdit { step: 100, edit: Edit::Push { x: 90.0, y: 0.0 } },
+        TimedEdit { step: 120, edit: Edit::Push { x: 0.0, y: 0.0 } },
+    ];
+    record_in(&folder, "pushed.rrd", std::slice::from_ref(&scenario)).expect("a case");
+    let contents = Contents::of(&folder.path("pushed.rrd"));
+    let refused = contents.texts("/case-1/refusals", "StateChange:state");
+    assert_eq!(refused, ["nothing refused", "drive at its torque limit", "nothing refused"]);
+}
+
+/// Notes and equations stand as Markdown that no name of the user can break.
+#[test]
+fn notes_and_equations_are_a_page() {
+    use stillbase::session::scenario::{Bookmark, Note, NoteTime};
+
+    let folder = Folder::new("notes");
+    let mut scenario = Scenario { duration: Some(0.1), ..Scenario::builtin("case-3").expect("built in") };
+    scenario.notes = vec![Note { text: "a | b *c* ``` <d>".into(), point: None, time: NoteTime::At(0.05) }];
+    scenario.bookmarks = vec![Bookmark { time: 0.02, name: "look # here".into() }];
+    record_in(&folder, "one.rrd", std::slice::from_ref(&scenario)).expect("a case");
+    let contents = Contents::of(&folder.path("one.rrd"));
+    let [page] = &contents.texts("/case-3/notes", "TextDocument:text")[..] else { panic!("one page") };
+    assert!(page.starts_with("# Reactionless, from A to B\n"), "{page}");
+    for part in ["## Notes", r"a \| b \*c\* \`\`\` \<d\> at 0.050 s", r"0.020 s: look \# here", "**Machine:** balanced"] {
+        assert!(page.contains(part), "{part} in {page}");
+    }
+    for number in ["(1)", "(5)", "(7)", "(8)", "(11)", "(12)", "(13)"] {
+        assert!(page.contains(&format!("```text\n{number} ")), "{number} in {page}");
+    }
+    assert_eq!(page.matches("```").count() % 2, 0, "blocks are closed: {page}");
 }
 
 /// A recording tells what the time line of the window has marks for, in the same words.

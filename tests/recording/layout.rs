@@ -11,9 +11,9 @@ fn the_layout_comes_along_and_is_activated() {
     let layouts: Vec<_> = contents.stores.iter().filter(|(id, _)| id.kind() == StoreKind::Blueprint).collect();
     let [(_, chunks)] = layouts[..] else { panic!("one layout") };
     let views = chunks.iter().filter(|c| c.components().contains_component("ViewBlueprint:class_identifier".into()));
-    // Side by side: two scenes, two plots, events; each case: scene, joint space, tower, five plots, five of
-    // the inside, events, phase; of the design the machine, three tables, two kinds of bars.
-    assert_eq!(views.count(), 5 + 2 * 21);
+    // Side by side: two scenes, two plots, events, lanes; each case: scene, joint space, tower, five plots, five of
+    // the inside, events, notes, lanes; of the design the machine, three tables, two kinds of bars.
+    assert_eq!(views.count(), 6 + 2 * 22);
     assert!(chunks.iter().any(|c| *c.entity_path() == EntityPath::from("/viewport")));
 }
 
@@ -67,7 +67,7 @@ fn a_view_has_its_identifier_for_good_and_shares_it_with_nothing() {
     }
     // What a case shows in a tab of its own is the same view in every recording that has it.
     for (class, origin, recordings) in
-        [("TimeSeries", "/case-3/signals", 3), ("3D", "/case-3/tower", 3), ("StateTimeline", "/spacecraft/phase", 2)]
+        [("TimeSeries", "/case-3/signals", 3), ("3D", "/case-3/tower", 3), ("3D", "/spacecraft", 2)]
     {
         let seen = &tabs[&(class.to_owned(), origin.to_owned())];
         assert!(seen.len() == recordings && seen.iter().all(|ids| *ids == seen[0]), "{class} of {origin}: {seen:?}");
@@ -92,4 +92,89 @@ fn pictures_stand_beside_each_other_and_in_their_case() {
         let origin = format!("/{}/view", case.name);
         assert_eq!(parts.iter().filter(|(_, class, from)| class == "2D" && *from == origin).count(), 2, "{origin}");
     }
+}
+
+/// Strings of a component in the layout, by entity.
+fn layout_texts(contents: &Contents, component: &'static str) -> BTreeMap<String, Vec<String>> {
+    let layouts = contents.stores.iter().filter(|(id, _)| id.kind() == StoreKind::Blueprint);
+    let found = layouts.flat_map(|(_, chunks)| chunks).filter_map(|chunk| {
+        let column = chunk.components().get_array(component.into())?;
+        let flat = column.values().as_any().downcast_ref::<StringArray>()?;
+        Some((chunk.entity_path().to_string(), flat.iter().flatten().map(str::to_owned).collect()))
+    });
+    found.collect()
+}
+
+/// The viewer writes numbers at multiples of a power of ten, where they stand far enough apart.
+#[test]
+fn every_plot_has_room_for_two_numbers() {
+    let folder = Folder::new("numbers");
+    let mut plots = 0;
+    for (name, settings) in [
+        ("case-1", ""),
+        ("case-3", ""),
+        ("spacecraft", ""),
+        ("wheel", ""),
+        ("pick-up", ""),
+        // Torques of about 5 N m: from −5 to 5 there would be a 0 and nothing else in a low plot.
+        ("case-1", "task.time = 0.75"),
+        ("case-1", "task.time = 0.7"),
+        ("case-1", "task.time = 7"),
+    ] {
+        let change = toml::from_str(settings).expect("keys");
+        let scenario = Scenario::builtin(name).expect("built in").with_settings(&change).expect("a time");
+        let file = folder.path(&format!("{name} {settings}.rrd"));
+        record(std::slice::from_ref(&scenario), &file, &Options::default(), &mut quietly).expect("a case");
+        let contents = Contents::of(&file);
+        let classes = layout_texts(&contents, "ViewBlueprint:class_identifier");
+        for (page, views) in layout_texts(&contents, "ContainerBlueprint:contents") {
+            let is_plot = |view: &String| classes.get(&format!("/{}", view.trim_start_matches('/'))).is_some_and(|class| class[0] == "TimeSeries");
+            if !views.iter().all(is_plot) {
+                continue;
+            }
+            for view in &views {
+                let path = format!("/{}/ScalarAxis", view.trim_start_matches('/'));
+                let [low, high] = range(&contents, &path);
+                // A window of usual size has room for 28 numbers from top to bottom.
+                let step = 10f64.powf(((high - low) * views.len() as f64 / 28.0).log10().ceil());
+                let numbers = (high / step).floor() - (low / step).ceil() + 1.0;
+                assert!(numbers >= 2.0, "{name} {settings}, {page}: {low} to {high}, one of {}", views.len());
+                plots += 1;
+            }
+        }
+    }
+    assert!(plots > 60, "only {plots} plots");
+}
+
+/// Ends of the vertical axis of a plot.
+fn range(contents: &Contents, path: &str) -> [f64; 2] {
+    let layouts = contents.stores.iter().filter(|(id, _)| id.kind() == StoreKind::Blueprint);
+    let mut chunks = layouts.flat_map(|(_, chunks)| chunks).filter(|c| *c.entity_path() == EntityPath::from(path));
+    let chunk = chunks.next().unwrap_or_else(|| panic!("{path}"));
+    let column = chunk.components().get_array("ScalarAxis:range".into()).expect("a range");
+    let list = column.values().as_any().downcast_ref::<FixedSizeListArray>().expect("two numbers").clone();
+    let numbers = list.values().as_any().downcast_ref::<Float64Array>().expect("numbers").values().clone();
+    [numbers[0], numbers[1]]
+}
+
+/// Cases that are compared have colours of their own, and the curves of one drive stay what they are.
+#[test]
+fn compared_cases_have_colours_of_their_own() {
+    let folder = Folder::new("colours");
+    let names = ["case-1", "case-2", "case-3", "spacecraft", "wheel"];
+    record_in(&folder, "five.rrd", &names.map(short)).expect("five cases");
+    let contents = Contents::of(&folder.path("five.rrd"));
+    let layouts = contents.stores.iter().filter(|(id, _)| id.kind() == StoreKind::Blueprint);
+    let mut colours: BTreeMap<String, BTreeSet<u32>> = BTreeMap::new();
+    for chunk in layouts.flat_map(|(_, chunks)| chunks) {
+        let path = chunk.entity_path().to_string();
+        let Some(column) = chunk.components().get_array("SeriesLines:colors".into()) else { continue };
+        let flat = column.values().as_any().downcast_ref::<arrow::array::UInt32Array>().expect("colours");
+        let case = names.iter().find(|name| path.contains(&format!("/{name}/"))).expect("a case");
+        colours.entry((*case).to_owned()).or_default().extend(flat.values());
+    }
+    assert_eq!(colours.len(), names.len());
+    assert!(colours.values().all(|of| of.len() == 1), "one each, in every plot: {colours:?}");
+    let all: BTreeSet<&u32> = colours.values().flatten().collect();
+    assert_eq!(all.len(), names.len(), "{colours:?}");
 }

@@ -26,7 +26,7 @@ fn signals_are_the_frames_at_every_step() {
         }
         let last = frames.last().expect("frames").peaks;
         assert_eq!(recording.scenario, scenario.name);
-        assert_eq!(recording.file, folder.path("cases.rrd"));
+        assert_eq!(recording.file, Some(folder.path("cases.rrd")));
         assert_eq!(recording.steps, 1000);
         assert_eq!(recording.peak_torque, last.torque.to_vec());
         assert_eq!(recording.peak_base_moment, last.moment);
@@ -81,5 +81,40 @@ fn limits_stand_beside_their_signals() {
                 assert!(names.iter().any(|name| name.contains(&signal.symbol)), "{names:?}");
             }
         }
+    }
+}
+
+/// Names of drives are any; what a signal is does not follow from them.
+#[test]
+fn drives_named_like_rows_stay_apart() {
+    let folder = Folder::new("named");
+    let mut scenario = short("case-3");
+    let mut spec = scenario.machine.spec().clone();
+    for (drive, name) in spec.drives.iter_mut().zip(["reference", "total", "limits"]) {
+        let old = std::mem::replace(&mut drive.name, name.to_owned());
+        spec.links.iter_mut().filter(|link| link.drive == old).for_each(|link| link.drive = name.to_owned());
+        spec.angles.iter_mut().for_each(|angle| {
+            for of in [&mut angle.to, &mut angle.from] {
+                if *of == old {
+                    *of = name.to_owned();
+                }
+            }
+        });
+    }
+    scenario.machine = stillbase::mechanics::machine::Machine::new(spec).expect("a machine");
+    record_in(&folder, "named.rrd", std::slice::from_ref(&scenario)).expect("a case");
+    let contents = Contents::of(&folder.path("named.rrd"));
+    let mut frames: Vec<Frame> = Vec::new();
+    replay(&scenario, |_, frame| frames.push(*frame)).expect("it runs");
+    for signal in signals(&scenario.machine) {
+        let (path, k) = contents.series(&scenario.name, &signal);
+        assert_eq!(contents.texts(&path, "paths")[k], signal.path);
+        let (steps, _, values) = contents.signal(&scenario.name, &signal);
+        assert!(steps.iter().zip(&values).all(|(step, x)| signal.value(&frames[*step as usize]) == *x), "{}", signal.path);
+        let widths = contents.at(&path).into_iter().find_map(|c| c.components().get_array("SeriesLines:widths".into()));
+        let widths = widths.expect("widths");
+        let widths = widths.values().as_any().downcast_ref::<Float32Array>().expect("numbers").values();
+        let is_thin = widths[k] < 1.0;
+        assert_eq!(is_thin, signal.path.starts_with("reference/") || signal.path == "pose/b_reference", "{}", signal.path);
     }
 }

@@ -4,7 +4,7 @@ use egui::{Align2, ComboBox, DragValue, Grid, ScrollArea, Ui};
 
 use super::values_card::{self, ValuesContext};
 use super::values_choice::{refusal, times_in_words};
-use super::{DisplaySize, Export, FilmChoice, FilmForm, Look, PictureSize, TimeChoice};
+use super::{DisplaySize, Export, FilmChoice, FilmForm, Look, PictureChoice, PictureForm, PictureSize, TimeChoice};
 use crate::shot::Shot;
 use crate::theme::{colour, plain};
 use crate::widgets::name;
@@ -48,8 +48,10 @@ pub fn show(
             // In a small window the choices scroll, so that the buttons stay in view.
             let choices = ScrollArea::vertical().max_height((height - top - FRAME_HEIGHT_PT).max(60.0));
             let rows = |ui: &mut Ui| match &mut export {
-                Export::Picture(look) => {
+                Export::Picture(PictureChoice { look, form }) => {
                     look_rows(ui, look, &view_state.displayed);
+                    let words = PictureForm::ALL.map(|form| (form, form.words()));
+                    form_row(ui, form, &words, "Format of the picture", view_state);
                     let has_scene = look.shot != Shot::Window;
                     ui.label("Background");
                     let tick = egui::Checkbox::new(&mut look.transparent, "transparent, to lay over a page or a slide");
@@ -68,6 +70,7 @@ pub fn show(
             ui.add_space(6.0);
             ui.horizontal(|ui| {
                 let nothing = match &export {
+                    Export::Picture(choice) => choice.refusal(view_state.view),
                     Export::Values(choice) => refusal(&chosen, choice.times.of(session, view_state), session),
                     _ => None,
                 };
@@ -99,6 +102,12 @@ fn look_rows(ui: &mut Ui, look: &mut Look, display: &DisplaySize) {
         ui.radio_value(&mut look.shot, Shot::Scene, "the scene");
         ui.radio_value(&mut look.shot, Shot::Window, "the whole window");
     });
+    ui.end_row();
+    ui.label("Plots");
+    let tick = egui::Checkbox::new(&mut look.plots, "right of the scene");
+    let has_scene = look.shot != Shot::Window;
+    ui.add_enabled(has_scene, tick).on_disabled_hover_text("the window shows its own plots");
+    look.plots &= has_scene;
     ui.end_row();
     ui.label("Size");
     ui.vertical(|ui| {
@@ -152,23 +161,36 @@ fn time_row(ui: &mut Ui, whole: &mut bool, session: &Session, view_state: &ViewS
     ui.end_row();
 }
 
-fn film_rows(ui: &mut Ui, choice: &mut FilmChoice, session: &Session, view_state: &ViewState) {
-    look_rows(ui, &mut choice.look, &view_state.displayed);
-    time_row(ui, &mut choice.whole, session, view_state);
+/// Draws the choice between formats, each with its name and what it is good for.
+fn form_row<F: Copy + PartialEq>(
+    ui: &mut Ui,
+    form: &mut F,
+    all: &[(F, [&'static str; 2])],
+    what: &str,
+    view_state: &ViewState,
+) {
+    let words = |form: F| all.iter().find(|(own, _)| *own == form).map_or([""; 2], |(_, words)| *words);
     ui.label("Format");
     ui.vertical(|ui| {
         ui.set_width(WIDTH_PT);
-        let chooser = ComboBox::from_id_salt("format").selected_text(choice.form.words()[0]).width(240.0);
+        let chooser = ComboBox::from_id_salt("format").selected_text(words(*form)[0]).width(240.0);
         let chooser = chooser.show_ui(ui, |ui| {
-            for form in FilmForm::ALL {
-                ui.selectable_value(&mut choice.form, form, form.words()[0]);
+            for (own, words) in all {
+                ui.selectable_value(form, *own, words[0]);
             }
         });
-        name(&chooser.response, "Format of the film");
-        let words = egui::RichText::new(choice.form.words()[1]).font(plain(11.5));
+        name(&chooser.response, what);
+        let words = egui::RichText::new(words(*form)[1]).font(plain(11.5));
         ui.add(egui::Label::new(words.color(colour(view_state.palette().dim))).wrap());
     });
     ui.end_row();
+}
+
+fn film_rows(ui: &mut Ui, choice: &mut FilmChoice, session: &Session, view_state: &ViewState) {
+    look_rows(ui, &mut choice.look, &view_state.displayed);
+    time_row(ui, &mut choice.whole, session, view_state);
+    let words = FilmForm::ALL.map(|form| (form, form.words()));
+    form_row(ui, &mut choice.form, &words, "Format of the film", view_state);
     ui.label("Pace");
     ui.horizontal(|ui| {
         name(&ui.add(DragValue::new(&mut choice.fps).range(1.0..=50.0).max_decimals(1)), "Pictures per second");

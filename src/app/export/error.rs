@@ -34,8 +34,22 @@ pub enum ExportError {
         /// The reason.
         source: io::Error,
     },
+    /// No picture has this ending.
+    #[error("{}: want a name that ends in .png, .webp, .svg or .pdf", .0.display())]
+    PictureEnding(PathBuf),
+    /// The picture cannot be drawn as outlines.
+    #[error("{}: {why}", file.display())]
+    NoOutlines {
+        /// The file.
+        file: PathBuf,
+        /// The reason, and what would be right.
+        why: &'static str,
+    },
     /// No film has this ending.
-    #[error("{}: want a name that ends in .gif, .png or .mp4, or without an ending a folder of pictures", .0.display())]
+    #[error(
+        "{}: want a name that ends in .gif, .png, .webp or .mp4, or without an ending a folder of pictures",
+        .0.display()
+    )]
     FilmEnding(PathBuf),
     /// The film would be too long.
     #[error("a film of {count} pictures: want at most {most}, by fewer pictures per second or a shorter time")]

@@ -82,8 +82,12 @@ pub fn write_film(
     };
     let failed = |source: io::Error| ExportError::Encoding { file: file.into(), source };
     match form {
-        FilmForm::Gif | FilmForm::Png => {
-            let format = if form == FilmForm::Gif { FilmFormat::Gif } else { FilmFormat::Png };
+        FilmForm::Gif | FilmForm::Png | FilmForm::Webp => {
+            let format = match form {
+                FilmForm::Gif => FilmFormat::Gif,
+                FilmForm::Webp => FilmFormat::Webp,
+                _ => FilmFormat::Png,
+            };
             let mut out = NewFile::create(file, force)?;
             let begun = Film::begin(&mut out, format, order.picture.size_px, count, order.fps);
             let mut film = begun.map_err(failed)?;

@@ -11,6 +11,8 @@ pub enum FilmForm {
     Gif,
     /// Animated PNG.
     Png,
+    /// Animated WebP.
+    Webp,
     /// MP4, which the system's encoder writes.
     Mp4,
     /// A folder of numbered pictures, PNG.
@@ -19,13 +21,14 @@ pub enum FilmForm {
 
 impl FilmForm {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Gif, Self::Png, Self::Mp4, Self::Frames];
+    pub const ALL: [Self; 5] = [Self::Gif, Self::Png, Self::Webp, Self::Mp4, Self::Frames];
 
     /// Returns the file name extension; empty for a folder.
     pub fn ending(self) -> &'static str {
         match self {
             Self::Gif => "gif",
             Self::Png => "png",
+            Self::Webp => "webp",
             Self::Mp4 => "mp4",
             Self::Frames => "",
         }
@@ -36,6 +39,7 @@ impl FilmForm {
         match self {
             Self::Gif => ["GIF", "plays everywhere: slides, mail, browsers; 256 colours a picture"],
             Self::Png => ["Animated PNG", "plays in browsers; all colours"],
+            Self::Webp => ["Animated WebP", "plays in browsers; all colours, smaller than PNG"],
             Self::Mp4 => ["MP4", "small, for video players; the program ffmpeg writes it and has to be installed"],
             Self::Frames => ["Numbered PNG pictures", "a folder for a video program: frame-00001.png and so on"],
         }

@@ -6,6 +6,7 @@ mod error;
 mod film;
 mod film_form;
 mod picture;
+mod picture_form;
 mod report;
 mod size;
 mod values;
@@ -17,19 +18,22 @@ pub use error::ExportError;
 pub use film::{FilmDone, FilmOrder, check_film, write_film};
 pub use film_form::FilmForm;
 pub use picture::write_picture;
+pub use picture_form::PictureForm;
 pub use report::{ReportDone, write_report};
 pub use size::{DisplaySize, PictureSize};
 pub use values::{RowForm, ValuesOrder, write_values};
 pub use values_choice::{SignalChoice, TimeChoice, ValuesChoice};
 
 use super::Shot;
+use super::shot::NO_OUTLINES;
 use stillbase_picture::scene::palette::Theme;
+use stillbase_picture::scene::views::ViewKind;
 
 /// What is to be written, as the user has chosen it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Export {
     /// A picture of the instant on display.
-    Picture(Look),
+    Picture(PictureChoice),
     /// A film of the run.
     Film(FilmChoice),
     /// Values of signals over time.
@@ -49,6 +53,25 @@ pub struct Look {
     pub theme: Theme,
     /// Whether nothing is drawn behind the scene.
     pub transparent: bool,
+    /// Whether the plots stand right of the scene.
+    pub plots: bool,
+}
+
+/// Choices for a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PictureChoice {
+    /// How it looks.
+    pub look: Look,
+    /// Format that is suggested; the ending of the file's name decides.
+    pub form: PictureForm,
+}
+
+impl PictureChoice {
+    /// Returns why no such picture can be drawn while a view is shown; `None` if one can.
+    pub fn refusal(&self, view: ViewKind) -> Option<&'static str> {
+        let is_from_above = self.look.shot != Shot::Window && matches!(view, ViewKind::Flat | ViewKind::Design);
+        (self.form.has_outlines() && !is_from_above).then_some(NO_OUTLINES)
+    }
 }
 
 /// Choices for a film.
@@ -69,12 +92,13 @@ pub struct FilmChoice {
 impl Export {
     /// Returns a picture as the window would show it by default.
     pub fn picture(theme: Theme) -> Self {
-        Self::Picture(Look { shot: Shot::Scene, size: PictureSize::Display, theme, transparent: false })
+        let look = Look { shot: Shot::Scene, size: PictureSize::Display, theme, transparent: false, plots: false };
+        Self::Picture(PictureChoice { look, form: PictureForm::Png })
     }
 
     /// Returns a film with default choices.
     pub fn film(theme: Theme) -> Self {
-        let look = Look { shot: Shot::Scene, size: PictureSize::FILM, theme, transparent: false };
+        let look = Look { shot: Shot::Scene, size: PictureSize::FILM, theme, transparent: false, plots: false };
         Self::Film(FilmChoice { look, form: FilmForm::Gif, whole: true, fps: 25.0, slow: 1.0 })
     }
 
@@ -106,10 +130,16 @@ impl Export {
     /// Returns an example of a file name.
     pub fn example(&self) -> &'static str {
         match self {
-            Self::Picture(_) => "picture.png",
+            Self::Picture(PictureChoice { form, .. }) => match form {
+                PictureForm::Png => "picture.png",
+                PictureForm::Webp => "picture.webp",
+                PictureForm::Svg => "picture.svg",
+                PictureForm::Pdf => "picture.pdf",
+            },
             Self::Film(FilmChoice { form, .. }) => match form {
                 FilmForm::Gif => "film.gif",
                 FilmForm::Png => "film.png",
+                FilmForm::Webp => "film.webp",
                 FilmForm::Mp4 => "film.mp4",
                 FilmForm::Frames => "frames",
             },
@@ -123,7 +153,11 @@ impl Export {
     /// A folder has no extension.
     pub fn naming(&self) -> (&'static str, Vec<&'static str>) {
         match self {
-            Self::Picture(_) => ("", vec!["png"]),
+            Self::Picture(choice) => {
+                let mut endings = PictureForm::ALL.map(PictureForm::ending);
+                endings.sort_by_key(|ending| *ending != choice.form.ending());
+                ("", endings.to_vec())
+            }
             Self::Film(choice) => match choice.form.ending() {
                 "" => (" frames", Vec::new()),
                 ending => ("", vec![ending]),

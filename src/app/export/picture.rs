@@ -2,11 +2,14 @@
 
 use std::path::Path;
 
-use super::ExportError;
+use super::{ExportError, PictureForm};
 use crate::AppState;
 use crate::shot::PictureOrder;
+use stillbase_picture::print::{pdf, svg};
+use stillbase_picture::webp;
 
-/// Draws the instant that `app_state` shows and writes it as PNG, unless `goes_on` stops it before.
+/// Draws the instant that `app_state` shows and writes it in the format of the file's ending, unless `goes_on` stops it
+/// before.
 ///
 /// # Errors
 /// If the picture cannot be drawn or written, or is stopped.
@@ -18,10 +21,18 @@ pub fn write_picture(
     goes_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<(), ExportError> {
     stillbase_files::check_new(file, force)?;
-    let picture = order.draw(&mut order.canvas()?, app_state)?;
-    let png = picture.to_png().map_err(|source| ExportError::Encoding { file: file.into(), source })?;
+    let form = PictureForm::of(file)?;
+    let failed = |source| ExportError::Encoding { file: file.into(), source };
+    let bytes = if form.has_outlines() {
+        let page = order.page(app_state);
+        let page = page.map_err(|why| ExportError::NoOutlines { file: file.into(), why })?;
+        if form == PictureForm::Svg { svg(&page).into_bytes() } else { pdf(&page) }
+    } else {
+        let picture = order.draw(&mut order.canvas()?, app_state)?;
+        if form == PictureForm::Webp { webp::still(&picture) } else { picture.to_png() }.map_err(failed)?
+    };
     if !goes_on(1.0) {
         return Err(ExportError::Stopped);
     }
-    Ok(stillbase_files::write_new(file, &png, force)?)
+    Ok(stillbase_files::write_new(file, &bytes, force)?)
 }

@@ -43,6 +43,7 @@ pages! {
     Keys: "keys",
     CommandLine: "command_line",
     Recording: "recording",
+    Python: "python",
     Paper: "paper",
     Speed: "speed",
 }

@@ -19,6 +19,7 @@ use stillbase_planning::pose_space::{Planes, PoseSpace};
 use stillbase_planning::reactionless::PlanePoint;
 use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork};
 use stillbase_session::Session;
+use stillbase_study::pose_curves::lifted;
 
 /// Query for the branches of the self-motion at each of the given points, sampled on the planes of joint space.
 pub struct Branches;
@@ -93,16 +94,7 @@ fn lines(
         .iter()
         .zip(&*branches)
         .flat_map(|((name, _), branches)| branches.iter().map(move |branch| (name.as_str(), branch)))
-        .map(|(name, branch)| {
-            // Each branch is shifted by whole periods of b, so that its middle is nearest to the present b.
-            let middle = branch.get(branch.len() / 2).map_or(0.0, |x| x.b);
-            let lift = map.period() * ((now.b_reference - middle) / map.period()).round();
-            let point = |x: &PlanePoint| {
-                let x = PlanePoint { b: x.b + lift, ..*x };
-                [x.b, map.lift(x)[0]]
-            };
-            (name, branch.iter().map(point).collect::<Vec<_>>())
-        })
+        .map(|(name, branch)| (name, lifted(map, branch, now.b_reference)))
         .collect();
     for [b, q] in lines.iter().flat_map(|(_, l)| l) {
         bounds = [bounds[0].min(*b), bounds[1].max(*b), bounds[2].min(*q), bounds[3].max(*q)];

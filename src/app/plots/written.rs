@@ -77,7 +77,7 @@ fn png(figure: &Figure) -> Result<Vec<u8>, String> {
     let picture = canvas.draw(|ui| {
         // Fonts are available from the second pass on.
         if std::mem::replace(&mut has_fonts, true) {
-            paint_figure(ui.painter(), figure);
+            paint_figure(ui.painter(), egui::Pos2::ZERO, figure);
         } else {
             stillbase_picture::paint::install_fonts(ui.ctx());
         }

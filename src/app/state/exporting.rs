@@ -32,7 +32,7 @@ impl AppState {
         }
         self.write(path, Activity::Exporting, BUSY, AfterWriting::Nothing, |app_state| {
             Ok(match wanted {
-                Export::Picture(look) => app_state.picture_work(look),
+                Export::Picture(choice) => app_state.picture_work(&choice.look),
                 Export::Film(choice) => app_state.film_work(choice)?,
                 Export::Values(choice) => app_state.values_work(choice)?,
                 Export::Report => app_state.report_work(),
@@ -42,8 +42,8 @@ impl AppState {
 
     fn order(&self, look: &Look) -> PictureOrder {
         let (size_px, scale) = look.size.of(look.shot, &self.view_state.displayed);
-        let Look { shot, theme, transparent, .. } = *look;
-        PictureOrder { shot, theme, transparent, size_px, scale }
+        let Look { shot, theme, transparent, plots, .. } = *look;
+        PictureOrder { shot, theme, transparent, plots, size_px, scale }
     }
 
     fn picture_work(&self, look: &Look) -> Work {
@@ -92,6 +92,11 @@ impl AppState {
             write_report(&mut copy.open(), None, path, force, goes_on).map_err(|e| e.to_string())?;
             Ok(format!("saved {}; a browser shows and prints it", absolute(path)))
         })
+    }
+
+    /// Returns the number of plots on display.
+    pub(crate) fn plot_count(&self) -> usize {
+        self.view_state.plots(self.session.scenario(), &self.signals()).len()
     }
 
     /// Returns drawings of the plots on display, of a size in points.

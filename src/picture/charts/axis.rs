@@ -50,6 +50,33 @@ impl AxisKind {
         if signals.all(Signal::is_magnitude) { Self::FromZero } else { Self::Free }
     }
 
+    /// Returns the shortest axis that contains the values from `low` to `high` and is at least as long as
+    /// [`bounds`](Self::bounds) wants, without rounding: for runs that are complete.
+    pub fn span(self, [low, high]: [f64; 2], floor: f64) -> [f64; 2] {
+        if self == Self::Centred {
+            let most = low.abs().max(high.abs());
+            let most = if most.is_finite() { most.max(floor) } else { floor };
+            return [-most, most];
+        }
+        if !(low.is_finite() && high.is_finite()) {
+            return [0.0, 1.0];
+        }
+        let low = self.bottom(low, floor);
+        match self {
+            Self::FromZero => [low, high.max(low + floor)],
+            _ => {
+                let missing = 0.5 * (floor - (high - low)).max(0.0);
+                [low - missing, high + missing]
+            }
+        }
+    }
+
+    /// Returns the value at which an axis begins whose least value is `low`.
+    fn bottom(self, low: f64, floor: f64) -> f64 {
+        // What is negative by rounding only is zero.
+        if self == Self::FromZero && low > -floor { 0.0 } else { low }
+    }
+
     /// Returns bounds of an axis that contain the values from `low` to `high`, rounded outwards. Rounded bounds seldom
     /// change as values arrive. The length is at least `floor`, or twice `floor` if the axis is centred.
     pub fn bounds(self, [low, high]: [f64; 2], floor: f64) -> [f64; 2] {
@@ -61,9 +88,7 @@ impl AxisKind {
         if !(low.is_finite() && high.is_finite()) {
             return [0.0, 1.0];
         }
-        let low = if self == Self::FromZero { low.min(0.0) } else { low };
-        // What is negative by rounding only is zero.
-        let low = if self == Self::FromZero && low > -floor { 0.0 } else { low };
+        let low = self.bottom(low, floor);
         let step = round_up((high - low).max(floor) / 2.0);
         let bottom = (low / step).floor() * step;
         let count = ((high - bottom) / step).ceil().max((floor / step).ceil()).max(1.0);

@@ -46,6 +46,15 @@ pub enum FigureItem {
         /// Colour.
         colour: Rgba,
     },
+    /// A filled area inside closed lines, by the even-odd rule.
+    Area {
+        /// The lines; the last point of each connects to its first.
+        loops: Vec<Vec<[f32; 2]>>,
+        /// Colour.
+        colour: Rgba,
+        /// Whether the area is clipped to the axes.
+        inside: bool,
+    },
     /// A filled rectangle.
     Rectangle {
         /// Left, top, right and bottom.
@@ -300,6 +309,39 @@ pub struct Figure {
 }
 
 impl Figure {
+    /// Returns the picture with all lengths multiplied by a factor, type included.
+    #[must_use]
+    pub fn scaled(mut self, by: f32) -> Self {
+        let place = |p: &mut [f32; 2]| *p = p.map(|x| x * by);
+        for item in &mut self.items {
+            match item {
+                FigureItem::Line { points, width, dash, .. } => {
+                    points.iter_mut().for_each(place);
+                    (*width, *dash) = (*width * by, dash.map(|lengths| lengths.map(|x| x * by)));
+                }
+                FigureItem::Area { loops, .. } => loops.iter_mut().flatten().for_each(place),
+                FigureItem::Text { at, words, .. } => {
+                    place(at);
+                    words.iter_mut().for_each(|words| words.size *= by);
+                }
+                FigureItem::Dot { at, radius, .. } => {
+                    place(at);
+                    *radius *= by;
+                }
+                FigureItem::Rectangle { sides, .. } => *sides = sides.map(|x| x * by),
+            }
+        }
+        let axes = Axes { sides: self.axes.sides.map(|x| x * by), ..self.axes };
+        Self { size: self.size.map(|x| x * by), axes, ..self }
+    }
+
+    /// Returns the background as an item, unless it is transparent.
+    pub fn behind(&self) -> Option<FigureItem> {
+        let [width, height] = self.size;
+        let sides = [0.0, 0.0, width, height];
+        (self.background[3] > 0.0).then_some(FigureItem::Rectangle { sides, colour: self.background })
+    }
+
     /// Returns the picture of a plot, with its title, its units and the symbols of its curves. The names of the overlaid
     /// `runs` make it higher; `size`, points, is without these names.
     pub fn of(plot: &Plot<'_>, drawn: &PlotLines, size: [f32; 2], look: &PlotContext<'_>, runs: &[RunName]) -> Self {

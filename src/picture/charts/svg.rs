@@ -59,6 +59,17 @@ fn element(item: &FigureItem, id: &str) -> String {
         FigureItem::Dot { at: [x, y], radius, colour } => {
             format!("<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{radius}\"{}/>", paint("fill", *colour))
         }
+        FigureItem::Area { loops, colour, inside } => {
+            let mut path = String::new();
+            for points in loops {
+                for (i, [x, y]) in points.iter().enumerate() {
+                    let _ = write!(path, "{}{x:.2} {y:.2}", if i == 0 { 'M' } else { 'L' });
+                }
+                path.push('Z');
+            }
+            let clip = if *inside { format!(" clip-path=\"url(#{id})\"") } else { String::new() };
+            format!("<path d=\"{path}\" fill-rule=\"evenodd\"{}{clip}/>", paint("fill", *colour))
+        }
         FigureItem::Rectangle { sides, colour } => rect(*sides, &paint("fill", *colour)),
         FigureItem::Text { at: [x, y], anchor: [across, down], words } => {
             let size = words.iter().fold(0.0_f32, |most, w| most.max(w.size));

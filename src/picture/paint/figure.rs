@@ -1,10 +1,11 @@
 //! Paints the items of a figure with egui.
 
 use egui::text::{LayoutJob, TextFormat};
-use egui::{Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
+use egui::{Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 
 use super::{bold, colour, plain};
 use crate::charts::figure::{Axes, Figure, FigureItem};
+use crate::scene::fill;
 
 /// Paints items; their coordinates are relative to `origin`.
 pub fn items(painter: &Painter, origin: Pos2, axes: &Axes, items: &[FigureItem]) {
@@ -26,6 +27,15 @@ pub fn items(painter: &Painter, origin: Pos2, axes: &Axes, items: &[FigureItem])
             FigureItem::Dot { at: place, radius, colour: tone } => {
                 painter.circle_filled(at(*place), *radius, colour(*tone));
             }
+            FigureItem::Area { loops, colour: tone, inside } => {
+                let wide = |line: &Vec<[f32; 2]>| line.iter().map(|p| p.map(f64::from)).collect::<Vec<_>>();
+                let filled = fill::mesh(&loops.iter().map(wide).collect::<Vec<_>>());
+                let mut mesh = egui::Mesh::default();
+                filled.positions.iter().for_each(|[x, y, _]| mesh.colored_vertex(at([*x, *y]), colour(*tone)));
+                filled.triangles.iter().for_each(|[a, b, c]| mesh.add_triangle(*a, *b, *c));
+                let painter = if *inside { &inner } else { painter };
+                painter.add(Shape::mesh(mesh));
+            }
             FigureItem::Rectangle { sides: [left, top, right, bottom], colour: tone } => {
                 painter.rect_filled(Rect::from_min_max(at([*left, *top]), at([*right, *bottom])), 0.0, colour(*tone));
             }
@@ -43,9 +53,9 @@ pub fn items(painter: &Painter, origin: Pos2, axes: &Axes, items: &[FigureItem])
     }
 }
 
-/// Paints a whole figure with its background.
-pub fn paint_figure(painter: &Painter, figure: &Figure) {
+/// Paints a whole figure with its background; `corner` is its upper left corner.
+pub fn paint_figure(painter: &Painter, corner: Pos2, figure: &Figure) {
     let [width, height] = figure.size;
-    painter.rect_filled(Rect::from_min_size(Pos2::ZERO, Vec2::new(width, height)), 0.0, colour(figure.background));
-    items(painter, pos2(0.0, 0.0), &figure.axes, &figure.items);
+    painter.rect_filled(Rect::from_min_size(corner, Vec2::new(width, height)), 0.0, colour(figure.background));
+    items(painter, corner, &figure.axes, &figure.items);
 }

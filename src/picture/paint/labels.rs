@@ -54,10 +54,11 @@ pub struct Placement {
     all_choices: Arc<[Choice]>,
 }
 
-/// Paints a scene with its labels over the whole surface, without input.
-pub fn paint_still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera) {
+/// Paints a scene with its labels over the whole surface, or up to a distance from its left, points, without input.
+pub fn paint_still(ui: &mut Ui, scene: &Arc<Scene>, camera: &Camera, right: Option<f32>) {
     CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
-        let rect = ui.max_rect();
+        let mut rect = ui.max_rect();
+        rect.max.x = right.unwrap_or(rect.max.x);
         paint(ui, 0, rect, scene, camera);
         draw_labels(ui, 0, &SceneViewport { rect, camera: *camera }, scene, &[]);
     });
@@ -106,6 +107,11 @@ impl Placement {
     /// Returns the view, points.
     pub fn view(&self) -> Rect {
         self.room.view
+    }
+
+    /// Returns the lines to labels that stand far from their points, each with the index of the label.
+    pub fn leads(&self) -> &[(usize, [Pos2; 2])] {
+        &self.leads
     }
 
     /// Returns the handle that the label at a position is a part of.

@@ -1,12 +1,12 @@
 //! Texts about a state of a design, as Markdown.
 
 use super::state::DesignState;
+use crate::markdown::{cell, table};
 use stillbase_mechanics::balance::{BalanceTerm, Breakdown};
 use stillbase_mechanics::machine::{Counterweight, Inertia, LinkNumber, Machine, PartBody, PartSource};
 use stillbase_mechanics::planar::Vector;
 use stillbase_picture::numbers::signed;
 use stillbase_settings::number::counted;
-use stillbase_settings::range::shortened;
 use stillbase_study::comparison::{DESIGN_COLUMNS, DesignMeasures};
 
 /// Maximum number of conditions as columns of a table; with more conditions, the table is transposed.
@@ -184,24 +184,4 @@ fn complex(x: Vector) -> String {
         across if x.im > 0.0 => format!("{} + {across} i", signed(x.re, 4)),
         _ => format!("{} − {} i", signed(x.re, 4), signed(-x.im, 4)),
     }
-}
-
-/// Escapes a text for Markdown, on one line and with at most `most` characters before escaping.
-fn cell(text: &str, most: usize) -> String {
-    let mut cell = String::new();
-    for c in shortened(text, most).chars() {
-        match c {
-            '\\' | '|' | '*' | '_' | '`' | '[' | ']' | '<' | '>' | '#' | '~' | '!' | '$' => cell.extend(['\\', c]),
-            c if c.is_control() => cell.push(' '),
-            c => cell.push(c),
-        }
-    }
-    cell
-}
-
-/// Returns a table; columns after the first are right-aligned.
-fn table(heads: &[String], rows: &[Vec<String>]) -> String {
-    let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
-    let rule: Vec<String> = (0..heads.len()).map(|i| if i == 0 { "---" } else { "---:" }.to_owned()).collect();
-    line(heads) + &line(&rule) + &rows.iter().map(|row| line(row)).collect::<String>()
 }

@@ -12,6 +12,7 @@ mod balance;
 mod bodies;
 mod equation;
 mod planes;
+mod printed;
 mod products;
 mod reactions;
 mod state;
@@ -25,6 +26,7 @@ use stillbase_planning::pose_space::constant_inertia;
 use stillbase_settings::number::ShortNumber;
 
 pub use equation::{Equality, Equation, Origin, Term};
+pub use printed::{equation_text, state_text};
 pub use state::{DriveState, InstantKind, NoInstant};
 pub use stated::{StatedEquation, StatedEquations, StatedLine, StatedPart, StatedTerm};
 pub use symbol::{Level, pieces, plain};

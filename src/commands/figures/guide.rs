@@ -1,9 +1,7 @@
-//! `stillbase figures`
+//! The pictures of the guide.
 
-use std::path::PathBuf;
+use std::path::Path;
 
-use clap::Args;
-use clap::builder::PossibleValuesParser;
 use stillbase_app::{
     AppState, Command, ComparisonCommand, PenChange, PictureOrder, SessionCommand, Shot, Switch, ViewChange,
     WindowCommand,
@@ -12,32 +10,17 @@ use stillbase_exchange::cut::Cut;
 use stillbase_files::write_new;
 use stillbase_mechanics::machine;
 use stillbase_mechanics::sketch::Sketch;
-use stillbase_picture::render::offscreen::Picture;
 use stillbase_picture::scene::palette::Theme;
 use stillbase_picture::scene::sketching::SketchItem;
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_query::ByIdentity;
 use stillbase_session::scenario::{Scenario, TaskChange, Value};
 use stillbase_session::{Edit, Run, parts};
+use stillbase_settings::range::quote_clipped;
 use stillbase_study::layers::{LayersRequest, find_layers};
 
-use super::exit::print_message;
-use super::failure::Failure;
-
-/// Draw the pictures of the documentation in both themes, without a display: the window, joint space and the tower
-#[derive(Args)]
-#[command(after_help = "Examples:\n  stillbase figures -o assets/pictures --force\n  stillbase figures window tower")]
-pub struct FiguresArguments {
-    /// Names of the pictures; default: all
-    #[arg(value_name = "PICTURE", value_parser = PossibleValuesParser::new(PICTURES.map(|(name, ..)| name)))]
-    pictures: Vec<String>,
-    /// The folder to write to
-    #[arg(short, long, value_name = "FOLDER", default_value = ".")]
-    output: PathBuf,
-    /// Replace pictures that exist
-    #[arg(long)]
-    force: bool,
-}
+use crate::exit::print_message;
+use crate::failure::Failure;
 
 /// Content of a picture.
 enum Shown {
@@ -71,32 +54,36 @@ const PICTURES: [(&str, &str, f64, Shown); 9] = [
     ("joints", "case-1", 0.5, Shown::Scene(ViewKind::Joints)),
 ];
 
-impl FiguresArguments {
-    /// Draws the chosen pictures.
-    pub fn run(&self) -> Result<(), Failure> {
-        let is_chosen = |name: &str| self.pictures.is_empty() || self.pictures.iter().any(|picture| picture == name);
-        for (name, scenario, time, shown) in PICTURES.iter().filter(|(name, ..)| is_chosen(name)) {
-            let mut app_state = opened(scenario, *time)?;
-            if let Shown::Window(commands) = shown {
-                commands().into_iter().for_each(|command| app_state.carry_out(command));
-            }
-            // Both themes share a canvas, so that its fonts are loaded once.
-            let mut canvas = shown.order(Theme::Dark).canvas().map_err(Failure::no_answer)?;
-            for (theme, word) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
-                let drawn = shown.order(theme).draw(&mut canvas, &mut app_state);
-                let picture = drawn.map_err(Failure::no_answer)?;
-                self.write(&format!("{name}-{word}.png"), &picture)?;
-            }
-        }
-        Ok(())
-    }
+/// Returns the names of the pictures.
+pub fn names() -> Vec<&'static str> {
+    PICTURES.iter().map(|(name, ..)| *name).collect()
+}
 
-    fn write(&self, name: &str, picture: &Picture) -> Result<(), Failure> {
-        let file = self.output.join(name);
-        write_new(&file, &picture.to_png().map_err(Failure::no_answer)?, self.force)?;
-        print_message(format!("wrote {}", file.display()));
-        Ok(())
+/// Draws pictures of the guide into a folder: those of these names, or all if there is no name.
+pub fn draw(names: &[String], folder: &Path, force: bool) -> Result<(), Failure> {
+    if let Some(unknown) = names.iter().find(|name| !self::names().contains(&name.as_str())) {
+        let (unknown, known) = (quote_clipped(unknown), self::names().join(", "));
+        let why =
+            format!("no picture of the guide is called {unknown:?}: want one of these [possible values: {known}]");
+        return Err(Failure::wrong_input(format!("{why}, or --what for figures of a run")));
     }
+    let is_chosen = |name: &str| names.is_empty() || names.iter().any(|picture| picture == name);
+    for (name, scenario, time, shown) in PICTURES.iter().filter(|(name, ..)| is_chosen(name)) {
+        let mut app_state = opened(scenario, *time)?;
+        if let Shown::Window(commands) = shown {
+            commands().into_iter().for_each(|command| app_state.carry_out(command));
+        }
+        // Both themes share a canvas, so that its fonts are loaded once.
+        let mut canvas = shown.order(Theme::Dark).canvas().map_err(Failure::no_answer)?;
+        for (theme, word) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
+            let drawn = shown.order(theme).draw(&mut canvas, &mut app_state);
+            let picture = drawn.map_err(Failure::no_answer)?;
+            let file = folder.join(format!("{name}-{word}.png"));
+            write_new(&file, &picture.to_png().map_err(Failure::no_answer)?, force)?;
+            print_message(format!("wrote {}", file.display()));
+        }
+    }
+    Ok(())
 }
 
 /// Returns commands that open the comparison, show two alternatives in plots and scene, and draw snapshots.

@@ -1,0 +1,215 @@
+//! [`PrintPlot`]: curves in axes as journals print them: a frame, ticks inside, small type, and lines that differ by
+//! their dashes, so that they can be told apart in grey.
+
+use super::glyphs;
+use crate::charts::figure::{Axes, Figure, FigureItem, FigureText};
+use crate::numbers::{round_ticks, ticks};
+use crate::scene::Rgba;
+use crate::scene::palette::{Theme, faded, palette};
+use crate::scene::thin::simplify_line;
+
+/// A curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PrintCurve {
+    /// Name, for the legend and the table of numbers.
+    pub name: String,
+    /// Its points, in the units of the axes.
+    pub points: Vec<[f64; 2]>,
+    /// Colour.
+    pub colour: Rgba,
+    /// Width, points.
+    pub width: f32,
+    /// Lengths of dash and gap, points; `None` for a solid line.
+    pub dash: Option<[f32; 2]>,
+    /// Colour that fills the closed curve.
+    pub fill: Option<Rgba>,
+    /// Whether the legend names it.
+    pub in_legend: bool,
+}
+
+/// Words beside a point of the plot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PrintWords {
+    /// The point, in the units of the axes.
+    pub at: [f64; 2],
+    /// The words.
+    pub text: String,
+    /// Whether a dot marks the point; the words then stand beside it.
+    pub dot: bool,
+}
+
+/// Curves in axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PrintPlot {
+    /// Name in the table of numbers.
+    pub name: String,
+    /// What it shows, above the axes.
+    pub head: String,
+    /// What the axes show, with units: from left to right, and upwards.
+    pub axes: [String; 2],
+    /// Curves; later ones lie over earlier ones.
+    pub curves: Vec<PrintCurve>,
+    /// Words in the plot.
+    pub words: Vec<PrintWords>,
+    /// An interval of the horizontal axis that is shaded.
+    pub bands: Vec<[f64; 2]>,
+    /// Whether both axes have the same scale, as in a drawing.
+    pub is_equal: bool,
+    /// Smallest range of the vertical axis, so that rounding does not look like a signal.
+    pub least_range: f64,
+}
+
+/// Sizes, points.
+const TYPE: f32 = 7.5;
+const SMALL: f32 = 7.0;
+const LEFT: f32 = 34.0;
+const RIGHT: f32 = 9.0;
+const LINE: f32 = 11.0;
+const TICK: f32 = 2.6;
+const SAMPLE: f32 = 18.0;
+/// Largest distance of a drawn curve from its points, points.
+const THINNING: f32 = 0.01;
+/// Free space around the curves, as a fraction of their range.
+const MARGIN: f64 = 0.06;
+
+/// Returns width and dash of the i-th curve of a plot.
+pub fn pen(i: usize) -> (f32, Option<[f32; 2]>) {
+    [(1.0, None), (1.0, Some([5.0, 2.0])), (1.0, Some([1.2, 1.8])), (1.0, Some([8.0, 2.0])), (0.6, None)][i % 5]
+}
+
+impl PrintPlot {
+    /// Returns the figure; `size` is its width and the height of its axes, points. With equal scales the axes are as
+    /// high as the curves need, at most that height.
+    pub fn figure(&self, [width, height]: [f32; 2]) -> Figure {
+        let p = palette(Theme::Light);
+        let legend = self.legend(width - LEFT - RIGHT);
+        let rows = legend.last().map_or(0, |(row, ..)| row + 1) as f32;
+        let heads = if self.head.is_empty() { 0.0 } else { LINE };
+        // The name of the vertical axis stands in a row of its own above it.
+        let top = 5.0 + heads + LINE * rows + LINE;
+        let ([x, y], inner) = (self.ranges(), [width - LEFT - RIGHT, height]);
+        let (x, y, inner) = if self.is_equal { equal_scales(x, y, inner) } else { (x, y, inner) };
+        let sides = [LEFT, top, LEFT + inner[0], top + inner[1]];
+        let axes = Axes { sides, x, y };
+        let mut items = vec![text([LEFT - 26.0, top - LINE - 1.0], [0.0, 0.0], &self.axes[1], p.ink, false)];
+        if !self.head.is_empty() {
+            items.push(text([LEFT - 26.0, 2.0], [0.0, 0.0], &self.head, p.ink, true));
+        }
+        for (row, from, curve) in &legend {
+            let at = [LEFT - 26.0 + from, 4.0 + heads + LINE * (*row as f32 + 0.5)];
+            let points = vec![at, [at[0] + SAMPLE, at[1]]];
+            items.push(FigureItem::Line {
+                points,
+                width: curve.width,
+                colour: curve.colour,
+                dash: curve.dash,
+                inside: false,
+            });
+            items.push(text([at[0] + SAMPLE + 3.0, at[1]], [0.0, 0.5], &curve.name, p.ink, false));
+        }
+        for band in &self.bands {
+            let [from, to] = band.map(|x| axes.place([x, axes.y[0]])[0].clamp(sides[0], sides[2]));
+            items.push(FigureItem::Rectangle { sides: [from, sides[1], to, sides[3]], colour: faded(p.dim, 0.18) });
+        }
+        self.frame(&axes, &mut items);
+        for curve in &self.curves {
+            let points: Vec<[f32; 2]> = curve.points.iter().map(|point| axes.place(*point)).collect();
+            let points = simplify_line(&points, THINNING);
+            if let Some(colour) = curve.fill {
+                items.push(FigureItem::Area { loops: vec![points.clone()], colour, inside: true });
+            }
+            let PrintCurve { width, colour, dash, .. } = *curve;
+            items.push(FigureItem::Line { points, width, colour, dash, inside: true });
+        }
+        for words in &self.words {
+            let [x, y] = axes.place(words.at);
+            if words.dot {
+                // The lower of two points has its words below it, clear of what joins them.
+                let is_lower = self.words.iter().any(|other| other.dot && other.at[1] > words.at[1]);
+                let (down, anchor) = if is_lower { (0.5, 0.0) } else { (-1.0, 1.0) };
+                items.push(FigureItem::Dot { at: [x, y], radius: 1.8, colour: p.ink });
+                items.push(text([x + 3.5, y + down], [0.0, anchor], &words.text, p.ink, true));
+            } else {
+                items.push(text([x, y], [0.5, 0.5], &words.text, p.ink, false));
+            }
+        }
+        let bottom = sides[3] + LINE + LINE + 4.0;
+        Figure { size: [width, bottom], background: p.background, axes, items }
+    }
+
+    /// Draws the frame with its ticks and their numbers, and the name of the horizontal axis.
+    fn frame(&self, axes: &Axes, items: &mut Vec<FigureItem>) {
+        let p = palette(Theme::Light);
+        let [left, top, right, bottom] = axes.sides;
+        let mut line = |points: Vec<[f32; 2]>, width| {
+            items.push(FigureItem::Line { points, width, colour: p.ink, dash: None, inside: false });
+        };
+        let mut words = Vec::new();
+        let (values, step) = round_ticks(axes.x[0], axes.x[1], f64::from((right - left) / 34.0).clamp(2.0, 8.0));
+        for (value, label) in values.iter().zip(ticks(&values, step)) {
+            let x = axes.place([*value, axes.y[0]])[0];
+            line(vec![[x, bottom], [x, bottom - TICK]], 0.5);
+            words.push(text([x, bottom + 2.0], [0.5, 0.0], &label, p.ink, false));
+        }
+        let (values, step) = round_ticks(axes.y[0], axes.y[1], f64::from((bottom - top) / 18.0).clamp(2.0, 8.0));
+        for (value, label) in values.iter().zip(ticks(&values, step)) {
+            let y = axes.place([axes.x[0], *value])[1];
+            line(vec![[left, y], [left + TICK, y]], 0.5);
+            words.push(text([left - 3.0, y], [1.0, 0.5], &label, p.ink, false));
+        }
+        if !self.is_equal && axes.y[0] < 0.0 && axes.y[1] > 0.0 {
+            let y = axes.place([axes.x[0], 0.0])[1];
+            line(vec![[left, y], [right, y]], 0.25);
+        }
+        line(vec![[left, top], [right, top], [right, bottom], [left, bottom], [left, top]], 0.5);
+        words.push(text([0.5 * (left + right), bottom + 2.0 + LINE], [0.5, 0.0], &self.axes[0], p.ink, false));
+        items.extend(words);
+    }
+
+    /// Returns the ranges of the axes.
+    fn ranges(&self) -> [[f64; 2]; 2] {
+        let all = || self.curves.iter().flat_map(|curve| &curve.points).filter(|p| p.iter().all(|x| x.is_finite()));
+        let range = |i: usize, margin: f64| {
+            let [low, high] =
+                all().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p[i]), high.max(p[i])]);
+            if low > high {
+                return [-1.0, 1.0];
+            }
+            let lacking = if i == 1 { (0.5 * (self.least_range - (high - low))).max(0.0) } else { 0.0 };
+            let room = (margin * (high - low + 2.0 * lacking)).max(1e-9 * (1.0 + high.abs()));
+            [low - lacking - room, high + lacking + room]
+        };
+        // Over time, the curves fill the axes from left to right.
+        [range(0, if self.is_equal || !self.bands.is_empty() { MARGIN } else { 0.0 }), range(1, MARGIN)]
+    }
+
+    /// Returns row, distance from the left and curve of each entry of the legend.
+    fn legend(&self, width: f32) -> Vec<(usize, f32, &PrintCurve)> {
+        let (mut row, mut x, mut all) = (0, 0.0, Vec::new());
+        let named = self.curves.iter().filter(|curve| curve.in_legend);
+        for curve in named {
+            let own = SAMPLE + 3.0 + glyphs::width(&curve.name, TYPE, false) + 10.0;
+            if x > 0.0 && x + own > width + 26.0 {
+                (row, x) = (row + 1, 0.0);
+            }
+            all.push((row, x, curve));
+            x += own;
+        }
+        all
+    }
+}
+
+/// Returns the ranges and the size of axes, points, in which both have the same scale.
+fn equal_scales(x: [f64; 2], y: [f64; 2], [width, height]: [f32; 2]) -> ([f64; 2], [f64; 2], [f32; 2]) {
+    let [across, up] = [x[1] - x[0], y[1] - y[0]];
+    let scale = (f64::from(width) / across).min(f64::from(height) / up);
+    let height = (up * scale) as f32;
+    let middle = 0.5 * (x[0] + x[1]);
+    let half = 0.5 * f64::from(width) / scale;
+    ([middle - half, middle + half], y, [width, height])
+}
+
+fn text(at: [f32; 2], anchor: [f32; 2], words: &str, colour: Rgba, bold: bool) -> FigureItem {
+    let size = if bold { TYPE } else { SMALL };
+    FigureItem::Text { at, anchor, words: vec![FigureText { text: words.into(), size, bold, colour }] }
+}

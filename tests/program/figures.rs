@@ -1,0 +1,300 @@
+//! Figures fit for print: their numbers are those of the paper, the drawn curves pass through them, and the command in
+//! each file writes it again.
+
+use std::collections::BTreeMap;
+use std::fs;
+
+use super::{stillbase_in, text};
+use crate::folder::Folder;
+
+const FIGURES: [&str; 6] = ["fig-3", "fig-4", "fig-5a", "fig-5b", "fig-5c", "table-1"];
+
+fn draw(folder: &Folder, args: &[&str]) {
+    let out = folder.run(args);
+    assert!(out.status.success(), "{args:?}: {}", text(&out.stderr));
+}
+
+fn read(folder: &Folder, name: &str) -> String {
+    fs::read_to_string(folder.path(name)).unwrap_or_else(|why| panic!("{name}: {why}"))
+}
+
+/// Rows of a table of numbers, below its lines and its head.
+fn rows(csv: &str) -> Vec<Vec<String>> {
+    let data: String = csv.lines().filter(|line| !line.starts_with('#')).map(|line| format!("{line}\n")).collect();
+    let mut reader = csv::Reader::from_reader(data.as_bytes());
+    reader.records().map(|row| row.expect("a row").iter().map(str::to_owned).collect()).collect()
+}
+
+/// The points of each curve, in the order of the file.
+fn curves(csv: &str) -> Vec<((String, String), Vec<[f64; 2]>)> {
+    let mut all: Vec<((String, String), Vec<[f64; 2]>)> = Vec::new();
+    for row in rows(csv) {
+        let [plot, curve, x, y] = &row[..] else { panic!("{row:?}") };
+        let point = [x, y].map(|x| x.parse().expect("a number"));
+        let key = (plot.clone(), curve.clone());
+        match all.last_mut().filter(|(known, _)| *known == key) {
+            Some((_, points)) => points.push(point),
+            None => all.push((key, vec![point])),
+        }
+    }
+    all
+}
+
+fn range(points: impl Iterator<Item = f64>) -> [f64; 2] {
+    points.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+}
+
+fn close(what: &str, got: f64, want: f64, tolerance: f64) {
+    assert!((got - want).abs() <= tolerance, "{what}: {got}, want {want}");
+}
+
+fn peak(csv: &str, curve: &str) -> f64 {
+    let all = curves(csv);
+    let (_, points) = all.iter().find(|((_, name), _)| name == curve).unwrap_or_else(|| panic!("{curve}"));
+    points.iter().fold(0.0, |most, [_, y]| most.max(y.abs()))
+}
+
+/// Figures 3 to 5 and Table I of the paper's machine, each with the known answer of its equation.
+#[test]
+fn numbers_of_the_papers_figures_are_its_answers() {
+    let folder = Folder::new("paper");
+    draw(&folder, &["figures", "--paper", "all", "-o", "all"]);
+    let csv = |name: &str| read(&folder, &format!("all/{name}.csv"));
+    // Eq. (13): the b of A and B.
+    let fig_3 = curves(&csv("fig-3"));
+    for (point, [low, high]) in
+        [("A (", [1.649_537_096_9, 2.901_299_106_1]), ("B (", [2.215_749_658_2, 2.661_072_721_1])]
+    {
+        let own = fig_3.iter().filter(|((_, name), _)| name.starts_with(point)).flat_map(|(_, points)| points);
+        let [from, to] = range(own.map(|[b, _]| *b));
+        close("least b", from, low, 1e-9);
+        close("largest b", to, high, 1e-9);
+    }
+    // Eq. (16): both workspaces have one area, 2π l₅ (l₉ + λ₃ l₁)/Σλ, and are one turned by (5 − 2.4)/Σλ.
+    let fig_4 = curves(&csv("fig-4"));
+    assert_eq!(fig_4.len(), 2);
+    for (_, points) in &fig_4 {
+        let twice: f64 = points.windows(2).map(|p| p[0][0] * p[1][1] - p[1][0] * p[0][1]).sum();
+        close("area", 0.5 * twice, 0.845_144_847_1, 2e-5);
+    }
+    // Fig. 5, Eq. (11) and n_B = −D₁ b̈: peaks of torques and of the base moment.
+    close("case 1", peak(&csv("fig-5a"), "n_B"), 1.0891, 5e-5);
+    close("case 2", peak(&csv("fig-5b"), "n_B"), 0.4853, 5e-5);
+    let fig_5c = csv("fig-5c");
+    close("case 3", peak(&fig_5c, "n_B"), 0.0, 1e-9);
+    for (drive, torque) in [("τ₁", 1.42194), ("τ₂", 0.46385), ("τ₃", 0.95808)] {
+        close(drive, peak(&fig_5c, drive), torque, 1e-5);
+    }
+    // Table I leaves 2.5e-4 kg m of Eq. (7) and 2.25e-5 kg m² of Eq. (8) as printed, nothing when solved again.
+    let mut left: BTreeMap<&str, [f64; 2]> = BTreeMap::new();
+    let table = rows(&csv("table-1"));
+    for row in table.iter().filter(|row| row[0].starts_with("Eq.")) {
+        let most = left.entry(&row[0][..7]).or_default();
+        let number = |cell: &String| cell.parse::<f64>().expect("a number").abs();
+        *most = [most[0].max(number(&row[4])), most[1].max(number(&row[5]))];
+    }
+    close("Eq. (7)", left["Eq. (7)"][0], 2.5e-4, 5e-6);
+    close("Eq. (8)", left["Eq. (8)"][0], 2.25e-5, 1e-10);
+    assert!(left.values().all(|[_, again]| *again < 1e-12), "{left:?}");
+    assert_eq!(table[0][..6], ["1", "0.5", "7", "0.2501", "-0.2214", table[0][5].as_str()]);
+}
+
+/// The vertices of a path of straight lines.
+fn vertices(path: &str) -> Vec<[f64; 2]> {
+    let pairs = path.trim_end_matches('Z').split(['M', 'L']).filter(|part| !part.is_empty());
+    pairs
+        .map(|pair| {
+            let (x, y) = pair.split_once(' ').expect("two numbers");
+            [x, y].map(|x| x.parse().expect("a number"))
+        })
+        .collect()
+}
+
+fn distance(at: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
+    let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+    let along = ((at[0] - from[0]) * dx + (at[1] - from[1]) * dy) / (dx * dx + dy * dy).max(1e-12);
+    let along = along.clamp(0.0, 1.0);
+    (at[0] - from[0] - along * dx).hypot(at[1] - from[1] - along * dy)
+}
+
+/// Each clipped line of the drawing is a curve of the table, in the same order; one scale for each axis puts every row
+/// on it, to 1/50 mm.
+#[test]
+fn drawn_curves_pass_through_their_numbers() {
+    let folder = Folder::new("curves");
+    draw(&folder, &["figures", "--paper", "all", "-o", "all"]);
+    draw(&folder, &["figures", "case-1", "--what", "torque,moment,workspace,snapshots", "-o", "all/run.svg"]);
+    for name in FIGURES.into_iter().filter(|name| *name != "table-1").chain(["run"]) {
+        let (drawing, table) = (read(&folder, &format!("all/{name}.svg")), read(&folder, &format!("all/{name}.csv")));
+        let drawing = roxmltree::Document::parse(&drawing).unwrap_or_else(|why| panic!("{name}: {why}"));
+        assert!(drawing.descendants().all(|node| node.tag_name().name() != "text"), "{name}: letters are outlines");
+        let width = drawing.root_element().attribute("width");
+        assert_eq!(width, Some("85mm"), "{name}");
+        let is_curve =
+            |node: &roxmltree::Node<'_, '_>| node.attribute("clip-path").is_some() && node.has_attribute("stroke");
+        let lines: Vec<_> = drawing.descendants().filter(is_curve).collect();
+        let curves = curves(&table);
+        assert_eq!(lines.len(), curves.len(), "{name}");
+        let mut of_plot: BTreeMap<&str, Vec<(&Vec<[f64; 2]>, Vec<[f64; 2]>)>> = BTreeMap::new();
+        for (line, ((plot, _), points)) in lines.iter().zip(&curves) {
+            let mut drawn = vertices(line.attribute("d").expect("a path"));
+            if line.attribute("d").is_some_and(|path| path.ends_with('Z')) {
+                drawn.push(drawn[0]);
+            }
+            of_plot.entry(plot).or_default().push((points, drawn));
+        }
+        for (plot, pairs) in of_plot {
+            // The scale of each axis follows from the extremes of all curves.
+            let scale = |i: usize| {
+                let own = range(pairs.iter().flat_map(|(points, _)| points.iter().map(|p| p[i])));
+                let drawn = range(pairs.iter().flat_map(|(_, drawn)| drawn.iter().map(|p| p[i])));
+                let [from, to] = if i == 0 { drawn } else { [drawn[1], drawn[0]] };
+                move |x: f64| from + (x - own[0]) / (own[1] - own[0]).max(1e-300) * (to - from)
+            };
+            let (across, up) = (scale(0), scale(1));
+            for (points, drawn) in &pairs {
+                for [x, y] in *points {
+                    let at = [across(*x), up(*y)];
+                    let off = drawn.windows(2).map(|ends| distance(at, ends[0], ends[1])).fold(f64::INFINITY, f64::min);
+                    assert!(off < 0.06, "{name}, {plot}: ({x}, {y}) is {off} points off its line");
+                }
+            }
+        }
+    }
+}
+
+/// The command that a file names writes the same bytes in another folder.
+#[test]
+fn the_command_in_a_figure_writes_it_again() {
+    let folder = Folder::new("again");
+    let wanted = ["--machine", "nine-link-geared", "--point", "0.6,0.5", "--point", "0.5,0.8", "--time", "2"];
+    draw(&folder, &[&["figures", "--paper", "fig-5c", "-o", ".", "--width", "120"][..], &wanted].concat());
+    draw(&folder, &["figures", "--paper", "fig-3"]);
+    let run = ["figures", "case-2", "--what", "linkage,torque", "--at", "0.5", "-o", "run.svg"];
+    draw(&folder, &[&run[..], &["--set", "plant.payload.mass=0.1"]].concat());
+    for name in ["fig-5c.svg", "fig-3.svg", "run.svg"] {
+        let drawing = read(&folder, name);
+        let page = roxmltree::Document::parse(&drawing).expect("an SVG");
+        let made = page.descendants().find(|node| node.has_tag_name("desc")).and_then(|node| node.text());
+        let command = made.and_then(|made| made.strip_prefix("Made by: stillbase ")).expect("a command").to_owned();
+        assert!(read(&folder, &name.replace(".svg", ".csv")).contains(&command), "{name}: {command}");
+        let other = Folder::new("again");
+        let words: Vec<&str> = command.split(' ').collect();
+        let out = stillbase_in(&other.0, &words);
+        assert!(out.status.success(), "{command}: {}", text(&out.stderr));
+        for file in other.names() {
+            let bytes = |folder: &Folder| fs::read(folder.path(&file)).expect("a file");
+            assert!(bytes(&folder) == bytes(&other), "{command}: {file} differs");
+        }
+    }
+}
+
+/// Each object of a PDF begins where its table says, and its title and its command are there.
+#[test]
+fn a_pdf_is_where_its_table_says() {
+    let folder = Folder::new("pdf");
+    draw(&folder, &["figures", "--paper", "all", "-o", "all"]);
+    draw(&folder, &["figures", "case-3", "--what", "torque,linkage", "-o", "all/run.pdf"]);
+    draw(&folder, &["render", "case-3", "-o", "all/view.pdf", "--theme", "light", "--transparent"]);
+    for name in FIGURES.into_iter().chain(["run", "view"]) {
+        let bytes = fs::read(folder.path(&format!("all/{name}.pdf"))).expect("a file");
+        let words = String::from_utf8_lossy(&bytes);
+        assert!(words.starts_with("%PDF-1.") && words.trim_end().ends_with("%%EOF"), "{name}");
+        let from: usize = words
+            .rsplit("startxref")
+            .next()
+            .and_then(|at| at.split_whitespace().next())
+            .expect("a place")
+            .parse()
+            .expect("a number");
+        let table = text(&bytes[from..]);
+        let mut lines = table.lines();
+        assert_eq!(lines.next(), Some("xref"), "{name}");
+        let (_, count) = lines.next().and_then(|head| head.split_once(' ')).expect("a head");
+        let places: Vec<&str> = lines.take(count.trim().parse().expect("a number")).collect();
+        assert!(places.len() > 5, "{name}");
+        for (i, place) in places.iter().enumerate().filter(|(_, place)| place.contains(" n")) {
+            let at: usize = place.split(' ').next().expect("a place").parse().expect("a number");
+            assert!(bytes[at..].starts_with(format!("{i} 0 obj").as_bytes()), "{name}: object {i}");
+        }
+        assert!(words.contains("/FlateDecode") && words.contains("/Subject"), "{name}");
+    }
+}
+
+/// Wrong requests name what would be right, and leave no file.
+#[test]
+fn wrong_figures_are_refused() {
+    let folder = Folder::new("refused");
+    folder.file("fig-4.csv", "mine");
+    for (args, why) in [
+        (&["figures", "--paper", "fig-4"][..], "fig-4.csv exists"),
+        (&["figures", "--paper", "fig-6"], "fig-5a"),
+        (&["figures", "--paper", "fig-3", "-o", "none/none"], "none"),
+        (&["figures", "--paper", "fig-3", "--point", "0.5,0.5"], "1 point: want A and B"),
+        (&["figures", "--paper", "fig-3", "--point", "9,9", "--point", "0.5,0.5"], "9"),
+        (&["figures", "--paper", "fig-3", "--machine", "two-drive"], "three"),
+        (&["figures", "--paper", "fig-3", "--width", "10"], "40 to 400"),
+        (&["figures", "--paper", "fig-5a", "--b", "40"], "b"),
+        (&["figures", "case-3", "--what", "torque", "-o", "a.png"], ".svg or .pdf"),
+        (&["figures", "case-3", "--what", "torque"], "--output"),
+        (&["figures", "case-3", "--what", "friction", "-o", "a.svg"], "this run has no friction"),
+        (&["figures", "case-3", "--what", "linkage", "--at", "9", "-o", "a.svg"], "within the run, 0 to 1.000 s"),
+        (&["figures", "--what", "torque", "-o", "a.svg"], "SCENARIO"),
+        (&["figures", "window", "--width", "90"], "want --paper or --what"),
+        (&["render", "case-3", "-o", "a.svg", "--view", "space"], "view from above"),
+        (&["render", "case-3", "-o", "a.svg", "--view", "window"], "view from above"),
+        (&["render", "case-3", "-o", "a.bmp"], ".png or .webp or .svg or .pdf"),
+        (&["render", "case-3", "-o", "a.svg", "--plots", "--view", "window"], "own plots"),
+    ] {
+        let out = folder.run(args);
+        assert!(!out.status.success() && text(&out.stderr).contains(why), "{args:?}: {}", text(&out.stderr));
+        assert_eq!(folder.names(), ["fig-4.csv"], "{args:?}");
+    }
+    assert_eq!(read(&folder, "fig-4.csv"), "mine");
+}
+
+/// Every built-in machine that has a workspace of constant b has a Fig. 4 and a drawing.
+#[test]
+fn every_machine_is_drawn() {
+    let folder = Folder::new("machines");
+    let out = folder.run(&["machines", "--json"]);
+    let machines: serde_json::Value = serde_json::from_slice(&out.stdout).expect("JSON");
+    let mut with_workspace = 0;
+    for machine in machines["machines"].as_array().expect("machines") {
+        let name = machine["name"].as_str().expect("a name");
+        let file = format!("{name}.svg");
+        draw(&folder, &["figures", name, "--what", "linkage,torque,snapshots", "-o", &file]);
+        draw(&folder, &["figures", "--paper", "table-1", "--machine", name, "-o", ".", "--force"]);
+        let drawing = read(&folder, &file);
+        roxmltree::Document::parse(&drawing).unwrap_or_else(|why| panic!("{name}: {why}"));
+        assert!(!drawing.contains("NaN") && !drawing.contains("inf"), "{name}");
+        let out = folder.run(&["figures", "--paper", "fig-4", "--machine", name, "--b", "1", "-o", ".", "--force"]);
+        with_workspace += usize::from(out.status.success());
+        assert!(!text(&out.stderr).contains("panicked"), "{name}: {}", text(&out.stderr));
+    }
+    assert!(with_workspace >= 7, "{with_workspace}");
+}
+
+/// A view as outlines has the size that is asked for, and nothing behind it if that is asked for.
+#[test]
+fn a_view_is_drawn_as_outlines() {
+    let folder = Folder::new("outlines");
+    let render = |file: &str, more: &[&str]| {
+        draw(&folder, &[&["render", "case-3", "-o", file, "--at", "0.5", "--size", "900x600"][..], more].concat());
+        read(&folder, file)
+    };
+    let (plain, clear) = (render("plain.svg", &[]), render("clear.svg", &["--transparent"]));
+    let plots = render("plots.svg", &["--plots", "--theme", "light"]);
+    for drawing in [&plain, &clear, &plots] {
+        let page = roxmltree::Document::parse(drawing).expect("an SVG");
+        // 900 pixels of 1/96 inch.
+        assert_eq!(page.root_element().attribute("width"), Some("238.125mm"));
+    }
+    assert!(plain.contains("fill=\"#111317\"") && !clear.contains("<path d=\"M0 0L"), "the background");
+    let count = |drawing: &str| drawing.matches("<path").count();
+    assert!(count(&plots) > count(&plain) + 20, "the plots");
+    assert_eq!(plain, {
+        fs::remove_file(folder.path("plain.svg")).expect("a file");
+        render("plain.svg", &[])
+    });
+}
