@@ -58,7 +58,8 @@ fn laid_out(text: &str, size: f32, bold: bool) -> (Vec<Glyph>, f32) {
 fn begins_index(letters: &[char], i: usize) -> bool {
     let is_word = |place: Option<usize>| place.and_then(|i| letters.get(i)).is_some_and(|c| c.is_alphanumeric());
     let is_symbol = is_word(i.checked_sub(1)) && !is_word(i.checked_sub(2));
-    letters[i] == '_' && is_symbol && is_word(Some(i + 1)) && !is_word(Some(i + 3))
+    let is_short = is_word(Some(i + 1)) && !(is_word(Some(i + 2)) && is_word(Some(i + 3)));
+    letters[i] == '_' && is_symbol && is_short
 }
 
 /// Returns the width of a text, points.
