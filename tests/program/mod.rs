@@ -16,6 +16,8 @@ mod reach;
 #[cfg(feature = "record")]
 mod recorded;
 mod results;
+mod schema;
+mod scripts;
 mod simulate;
 mod study;
 mod trim;
