@@ -44,7 +44,7 @@ struct State {
 }
 
 #[derive(JsonSchema, Serialize)]
-pub struct Answer {
+pub(crate) struct Answer {
     results: Vec<Loads>,
 }
 

@@ -56,6 +56,8 @@ fn schemas() -> Vec<(String, Value)> {
         if let Some(object) = schema.as_object_mut() {
             let title =
                 if command == REFUSAL { "stillbase: a refusal".into() } else { format!("stillbase {command} --json") };
+            // That of a type says nothing of the whole.
+            object.remove("description");
             object.insert("title".into(), title.into());
         }
         (command, schema)
