@@ -23,7 +23,7 @@ use super::input::{
     DEFAULT_SCENARIO, Settings, above_zero, change_task, choice, no_use, overlay_settings, overlay_unchecked, point,
     pose_constant, pose_space, refuse_ineffective, report_idle, report_left_out, report_tolerance,
 };
-use super::output::{Format, TextTable, write_text};
+use super::output::{Format, TextTable, is_standard, write_text};
 use super::strict::Strict;
 use stillbase_settings::number::{counted, fixed};
 use stillbase_settings::word::Choice;
@@ -141,7 +141,8 @@ impl PlanArguments {
         if let Some(file) = &self.output {
             // The name of the file tells plans apart in a recording or a table.
             if scenario.name == DEFAULT_NAME {
-                scenario.name = file.file_stem().map_or_else(|| DEFAULT_NAME.into(), |s| s.to_string_lossy().into());
+                let stem = file.file_stem().filter(|_| !is_standard(file));
+                scenario.name = stem.map_or_else(|| DEFAULT_NAME.into(), |s| s.to_string_lossy().into());
             }
             write_text(file, &scenario.to_toml(), self.force)?;
         }

@@ -9,7 +9,8 @@ use super::net::{asked, each_line, lines};
 use super::*;
 
 /// Keywords that say nothing on what is valid.
-const NOTES: [&str; 8] = ["unevaluatedProperties", "$schema", "$defs", "title", "description", "unit", "deprecated", "default"];
+const NOTES: [&str; 8] =
+    ["unevaluatedProperties", "$schema", "$defs", "title", "description", "unit", "deprecated", "default"];
 
 /// Faults of a value, each with its place. A property that the schema does not name is a fault.
 fn faults(value: &Value, schema: &Value, place: &str) -> Vec<String> {
@@ -196,7 +197,8 @@ fn what_commands_print_is_what_their_schema_says() {
         tried.insert(name.to_owned());
     }
     // Measured base forces are asked for elsewhere, with a file of their own; pictures need an adapter.
-    let without: Vec<&String> = schemas.keys().filter(|name| !tried.contains(*name) && !["trim", "render"].contains(&name.as_str())).collect();
+    let without: Vec<&String> =
+        schemas.keys().filter(|name| !tried.contains(*name) && !["trim", "render"].contains(&name.as_str())).collect();
     assert!(without.is_empty(), "no output was held against the schema of {without:?}");
 }
 
