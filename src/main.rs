@@ -2,30 +2,9 @@
 
 use std::process::ExitCode;
 
-use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser};
+use clap::{ArgMatches, FromArgMatches};
 use stillbase_commands as commands;
-
-/// Zero reaction manipulators: design, plan, simulate, see and record what a robot arm does to its base.
-///
-/// Without a command, opens a window on a scenario; without a display, records it instead.
-#[derive(Parser)]
-#[command(name = "stillbase", version, args_conflicts_with_subcommands = true, after_help = EXAMPLES)]
-struct Arguments {
-    #[command(subcommand)]
-    command: Option<commands::Subcommand>,
-    #[command(flatten)]
-    open: commands::OpenArguments,
-}
-
-const EXAMPLES: &str = "\
-Examples:
-  stillbase                                      the paper's case 3, in a window
-  stillbase headless -o cases.rrd                the three cases, recorded for the Rerun viewer
-  stillbase check nine-link --set link.5.com=0   what one misplaced centre of mass does
-  stillbase import motion.csv -o quiet.toml      your own motion, and the nearest one without reactions
-  stillbase reach nine-link 0.5,0.5 0.55,0.9     which b reach both points
-
-Units are SI and angles are radians. Exit status: 0 done, 1 the question has no answer, 2 wrong input.";
+use stillbase_commands::Arguments;
 
 /// Sets `XDG_RUNTIME_DIR`, if unset, to a folder that does not exist. Otherwise graphics libraries that look for a
 /// display there print on standard error that the variable is not set.
@@ -51,14 +30,13 @@ fn main() -> ExitCode {
         stillbase::files::fault::arm_fault(&wanted);
     }
     let words: Vec<_> = commands::words(std::env::args_os()).collect();
-    let parses = |words: &[_]| Arguments::command().try_get_matches_from(words).is_ok();
+    let parses = |words: &[_]| Arguments::program().try_get_matches_from(words).is_ok();
     let line = commands::Line { words: &words, parses: &parses };
-    let matches = Arguments::command().try_get_matches_from(&words);
+    let matches = Arguments::program().try_get_matches_from(&words);
     let parsed = matches.and_then(|matches| Ok((Arguments::from_arg_matches(&matches)?, asks_for_json(&matches))));
     let (arguments, as_json) = match parsed {
         Ok(parsed) => parsed,
         Err(error) => return commands::usage(&error, &line),
     };
-    let done = arguments.command.map_or_else(|| arguments.open.run(), |command| command.run());
-    commands::exit_code(done, as_json, &line)
+    commands::exit_code(arguments.run(), as_json, &line)
 }

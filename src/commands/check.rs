@@ -1,6 +1,7 @@
 //! `stillbase check`
 
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_exchange::cut::Cut;
 use stillbase_exchange::solids::has_heights;
@@ -9,13 +10,14 @@ use stillbase_planning::off_plane::null_space::is_integrable;
 use stillbase_planning::pose_constant::PoseConstant;
 use stillbase_session::verdict::Statement;
 use stillbase_study::balance_constants::BalanceConstants;
-use stillbase_study::counterweights::all_numbers;
+use stillbase_study::counterweights::{CounterweightNumbers, all_numbers};
 use stillbase_study::layers::{Clash, LayersRequest, NoLayers, find_contacts};
 use stillbase_study::parts::{LinkParts, PartRow};
 
 use super::failure::Failure;
 use super::input::MachineArgument;
 use super::output::{Format, TextTable, yes};
+use super::strict::Strict;
 use stillbase_settings::number::{fixed, fixed_or_finer};
 
 /// Say whether a machine is force balanced and its mass matrix invariant, Eqs (7), (8)
@@ -28,6 +30,8 @@ Examples:
 pub struct CheckArguments {
     #[command(flatten)]
     machine: MachineArgument,
+    #[command(flatten)]
+    strict: Strict,
     #[command(flatten)]
     format: Format,
 }
@@ -88,8 +92,8 @@ fn counterweights_table(weights: &[Counterweight]) -> String {
     format!("\n{table}")
 }
 
-#[derive(Serialize)]
-struct Answer {
+#[derive(JsonSchema, Serialize)]
+pub struct Answer {
     mass: f64,
     #[serde(flatten)]
     balance: BalanceConstants,
@@ -109,6 +113,7 @@ struct Answer {
     parts: Vec<PartRow>,
     /// The counterweights.
     #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "all_numbers")]
+    #[schemars(with = "Vec<CounterweightNumbers>")]
     counterweights: Vec<Counterweight>,
 }
 
@@ -155,6 +160,8 @@ impl CheckArguments {
             parts: parts.iter().flat_map(|link| &link.parts).map(|part| part.row.clone()).collect(),
             counterweights: machine.spec().counterweights.clone(),
         };
+        let fits = clashes.as_ref().is_none_or(|clashes| clashes.as_ref().is_ok_and(Vec::is_empty));
+        let is_good = answer.force_balanced && answer.invariant && fits;
         self.format.print(&answer, |answer| {
             let (force, coupling) = (inertia.force_residual(), inertia.invariance_residual());
             format!(
@@ -173,6 +180,7 @@ impl CheckArguments {
                 parts_table(&parts),
                 counterweights_table(&answer.counterweights),
             )
-        })
+        })?;
+        self.strict.require(is_good)
     }
 }

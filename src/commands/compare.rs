@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
-use stillbase_files::{NewFile, WriteError};
 use stillbase_session::scenario::Scenario;
 use stillbase_study::comparison::{
     ComparisonRow, ComparisonTable, DESIGN_COLUMNS, SUMMARY_COLUMNS, Summary, alternatives,
@@ -13,7 +13,9 @@ use stillbase_study::comparison::{
 use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, distinct_name, scenario};
-use super::output::{Format, TextTable, check_output};
+use super::output::{Format, TextTable};
+use super::rows::Rows;
+use super::strict::{Strict, is_good};
 use stillbase_settings::number::{fixed, nine_digits};
 use stillbase_settings::text::sheet_cell;
 
@@ -34,7 +36,7 @@ pub struct CompareArguments {
     /// One scenario to do in several ways, or several to compare
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenarios: Vec<String>,
-    /// Write the table as CSV, or with .rrd the runs as a recording
+    /// Write the table, .csv or .parquet, or with .rrd the runs as a recording
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Replace the file if it exists
@@ -43,11 +45,13 @@ pub struct CompareArguments {
     #[command(flatten)]
     settings: Settings,
     #[command(flatten)]
+    strict: Strict,
+    #[command(flatten)]
     format: Format,
 }
 
-#[derive(Serialize)]
-struct Answer {
+#[derive(JsonSchema, Serialize)]
+pub struct Answer {
     runs: ComparisonTable,
 }
 
@@ -55,7 +59,7 @@ impl CompareArguments {
     /// Runs all scenarios and prints a row for each.
     pub fn run(&self) -> Result<(), Failure> {
         let ending = match &self.output {
-            Some(file) => check_output(file, self.force, &["csv", "rrd"])?,
+            Some(file) => self.format.check_output(file, self.force, &["csv", "parquet", "rrd"])?,
             None => "",
         };
         let scenarios = self.scenarios()?;
@@ -75,15 +79,17 @@ impl CompareArguments {
         }
         match &self.output {
             Some(file) if ending == "rrd" => self.record(&good, file)?,
-            Some(file) => self.csv(runs.rows(), file)?,
+            Some(file) => self.rows(runs.rows(), file)?,
             None => {}
         }
         let fault = faults().next().map(|(name, why)| Failure::untrusted(name, why));
+        let all_good = runs.rows().iter().all(|row| row.outcome.as_ref().is_ok_and(|run| is_good(&run.verdict)));
         self.format.print(&Answer { runs }, |Answer { runs }| match runs.have_designs() {
             true => format!("{}\n{}", table(runs.rows()), designs(runs.rows())),
             false => table(runs.rows()),
         })?;
-        fault.map_or(Ok(()), Err)
+        fault.map_or(Ok(()), Err)?;
+        self.strict.require(all_good)
     }
 
     fn scenarios(&self) -> Result<Vec<(Option<&'static str>, Scenario)>, Failure> {
@@ -110,46 +116,35 @@ impl CompareArguments {
 
     #[cfg(not(feature = "record"))]
     fn record(&self, _: &[Scenario], file: &std::path::Path) -> Result<(), Failure> {
-        Err(Failure::wrong_input("this build cannot record: want a name that ends in .csv")
+        Err(Failure::wrong_input("this build cannot record: want a name that ends in .csv or .parquet")
             .with_context(file.display()))
     }
 
-    fn csv(&self, runs: &[ComparisonRow], file: &std::path::Path) -> Result<(), Failure> {
-        let mut writer = csv::Writer::from_writer(NewFile::create(file, self.force)?);
-        let failed = |e: csv::Error| match e.into_kind() {
-            csv::ErrorKind::Io(source) => WriteError::Failed { file: file.into(), source }.into(),
-            other => Failure::wrong_input(format!("CSV: {other:?}")),
-        };
-        let heads = SUMMARY_COLUMNS.iter().map(|c| format!("{} {}", c.name(), c.unit));
+    /// Writes the runs, one in each row, as CSV or Parquet.
+    fn rows(&self, runs: &[ComparisonRow], file: &std::path::Path) -> Result<(), Failure> {
+        let heads = SUMMARY_COLUMNS.iter().map(|c| format!("{} {}", c.key, c.unit));
         let machines =
             DESIGN_COLUMNS.iter().map(|c| if c.unit == "1" { c.key.into() } else { format!("{} {}", c.key, c.unit) });
-        let head = ["scenario".to_owned()].into_iter().chain(heads).chain(["reactionless".into(), "refused".into()]);
-        let head = head.chain(machines);
-        writer.write_record(head).map_err(failed)?;
+        let heads: Vec<String> = heads.chain(machines).collect();
+        let mut rows =
+            Rows::begin_with(Some(file), self.force, ("run", &["scenario", "reactionless", "refused"]), &heads)?;
         for row in runs {
-            let values = SUMMARY_COLUMNS.iter().map(|c| match &row.outcome {
-                Ok(summary) => (c.value)(summary).map_or_else(String::new, nine_digits),
-                Err(_) => String::new(),
-            });
+            let values = SUMMARY_COLUMNS.iter().map(|c| (c.value)(row.outcome.as_ref().ok()?));
+            let machine = DESIGN_COLUMNS.iter().map(|c| (c.value)(row.design.as_ref()?));
+            let values = values.chain(machine).map(|value| value.map(nine));
             let (verdict, why) = match &row.outcome {
-                Ok(summary) => (summary.verdict.answer(), String::new()),
-                Err(why) => (String::new(), why.clone()),
+                Ok(summary) => (summary.verdict.answer(), ""),
+                Err(why) => (String::new(), why.as_str()),
             };
-            let machine = DESIGN_COLUMNS.iter().map(|c| {
-                let value = row.design.as_ref().and_then(|design| (c.value)(design));
-                value.map_or_else(String::new, nine_digits)
-            });
-            let cells =
-                [sheet_cell(&row.name).into_owned()].into_iter().chain(values).chain([verdict, why]).chain(machine);
-            writer.write_record(cells).map_err(failed)?;
+            rows.named_row(&[&sheet_cell(&row.name), &verdict, &sheet_cell(why)], values)?;
         }
-        match writer.into_inner() {
-            Ok(file) => file.finish()?,
-            Err(e) => return Err(Failure::wrong_input(e.error())),
-        }
-        print_message(format!("wrote {}", file.display()));
-        Ok(())
+        rows.finish()
     }
+}
+
+/// Rounds a number to nine digits.
+fn nine(x: f64) -> f64 {
+    nine_digits(x).parse().unwrap_or(x)
 }
 
 /// Formats the machines of the runs, compared with that of the first run; empty columns are left out.
@@ -177,7 +172,7 @@ fn table(rows: &[ComparisonRow]) -> String {
     let moves = good.iter().any(|s| s.base_shift > 0.0 || s.base_tilt > 0.0);
     let columns: Vec<_> = SUMMARY_COLUMNS
         .iter()
-        .filter(|c| moves || !matches!(c.key, "base_shift" | "base_tilt"))
+        .filter(|c| moves || !matches!(c.key, "base_shift" | "base_angle"))
         .filter(|c| good.iter().any(|s| (c.value)(s).is_some()))
         .collect();
     let heads = columns.iter().map(|c| format!("{} {}", c.head, c.unit));

@@ -1,6 +1,7 @@
 //! `stillbase diff`
 
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_settings::number::{at_most_digits, counted};
 use stillbase_simulation::signal_table::SignalTable;
@@ -127,8 +128,8 @@ impl DiffArguments {
     }
 }
 
-#[derive(Serialize)]
-struct Answer {
+#[derive(JsonSchema, Serialize)]
+pub struct Answer {
     /// Whether every number is equal.
     equal: bool,
     /// Whether every signal stays within its tolerance.
@@ -140,7 +141,7 @@ struct Answer {
 }
 
 /// The difference of one case, as it is printed.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 pub struct Case {
     case: String,
     /// Whether every number is equal.
@@ -161,7 +162,7 @@ pub struct Case {
 }
 
 /// The difference of one signal.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct Row {
     signal: String,
     unit: String,
@@ -175,7 +176,7 @@ struct Row {
 }
 
 /// The values at one instant; a value that is no finite number is absent.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct Place {
     time: f64,
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use stillbase_mechanics::dynamics::ExternalLoads;
 use stillbase_mechanics::loads::Loads;
@@ -42,8 +43,8 @@ struct State {
     qdd: Vec<f64>,
 }
 
-#[derive(Serialize)]
-struct Answer {
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Answer {
     results: Vec<Loads>,
 }
 

@@ -5,8 +5,11 @@ use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 
+use clap::builder::Styles;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_session::{Proposal, WayOut};
 use stillbase_settings::fault::{Fault, Faults};
@@ -18,14 +21,39 @@ use super::input::WrongNumber;
 use super::misnamed::Misnamed;
 use super::output::Format;
 
-/// Prints a message on standard error, in one line.
+/// Whether notes are left out.
+static IS_QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Leaves out notes and progress from now on; errors stay.
+pub fn silence_notes() {
+    IS_QUIET.store(true, Ordering::Relaxed);
+}
+
+/// Returns whether notes and progress are left out.
+pub fn is_quiet() -> bool {
+    IS_QUIET.load(Ordering::Relaxed)
+}
+
+/// Prints a note on standard error, in one line, unless notes are left out.
 pub fn print_message(message: impl Display) {
+    if !is_quiet() {
+        print_line(message, "stillbase:");
+    }
+}
+
+/// Prints an error on standard error, in one line, with the colour of errors in help if that is a terminal.
+fn print_error(message: impl Display) {
+    let style = *Styles::styled().get_error();
+    print_line(message, &format!("{style}stillbase:{style:#}"));
+}
+
+fn print_line(message: impl Display, name: &str) {
     let message = message.to_string();
     let line = message.lines().map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join(" ");
     let line = shorten_message(&line);
     let line = plain(&line);
     // When standard error is closed, there is no place for a message.
-    let _ = writeln!(io::stderr(), "stillbase: {line}");
+    let _ = writeln!(anstream::stderr(), "{name} {line}");
 }
 
 /// Prints the faults of a file, each in a line with its place and, below it, an example; `why` for a single one.
@@ -33,31 +61,31 @@ fn print_faults(why: &str, file: &str, faults: &Faults) {
     let example = |fault: &Fault| {
         if !fault.example.is_empty() {
             // Examples are printed as they may be pasted.
-            print_message("for example:");
+            print_error("for example:");
             for line in fault.example.lines() {
                 let _ = writeln!(io::stderr(), "{}", plain(format!("    {line}").trim_end()));
             }
         }
     };
     if let [only] = &faults.list[..] {
-        print_message(why);
+        print_error(why);
         return example(only);
     }
     let file = shortened(file, MAX_FILE_NAME);
-    print_message(format!("{file}: {}", faults.counted()));
+    print_error(format!("{file}: {}", faults.counted()));
     for fault in &faults.list {
-        print_message(fault.in_file(&file));
+        print_error(fault.in_file(&file));
         example(fault);
     }
-    faults.rest().into_iter().for_each(print_message);
+    faults.rest().into_iter().for_each(print_error);
 }
 
 /// Maximum length of the name of a file in messages, characters.
 const MAX_FILE_NAME: usize = 300;
 
 /// A failure as JSON.
-#[derive(Serialize)]
-struct FailureReport<'a> {
+#[derive(JsonSchema, Serialize)]
+pub struct FailureReport<'a> {
     reason: &'a str,
     proposals: &'a [Proposal],
     /// The faults of the file that was read, and how many more it has.
@@ -93,7 +121,7 @@ pub fn exit_code(done: Result<(), Failure>, as_json: bool, line: &Line<'_>) -> E
     }
     match &faults {
         Some((file, faults)) => print_faults(&why, file, faults),
-        None => print_message(why),
+        None => print_error(why),
     }
     for proposal in proposals {
         let typed = match &proposal.way {
@@ -105,7 +133,7 @@ pub fn exit_code(done: Result<(), Failure>, as_json: bool, line: &Line<'_>) -> E
             // No command takes edits.
             WayOut::Edits(_) => continue,
         };
-        print_message(format!("{}: {typed}", proposal.text));
+        print_error(format!("{}: {typed}", proposal.text));
     }
     ExitCode::from(status)
 }

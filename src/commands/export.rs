@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use schemars::JsonSchema;
 use serde::Serialize;
-use stillbase_files::write_new;
+use stillbase_files::row_file::ROW_ENDINGS;
 use stillbase_mechanics::dynamics::{ExternalLoads, inverse};
 use stillbase_mechanics::machine::Inertia;
 use stillbase_mechanics::planar::Vector;
@@ -14,11 +15,13 @@ use stillbase_session::{Run, replay_if, with_start_edits};
 use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{Settings, scenario};
-use super::output::{Format, check_output, check_size};
+use super::output::{Format, check_size};
+use super::rows;
 use super::simulate::require_audit;
+use super::strict::{Strict, is_run_good};
 use stillbase_settings::number::{counted, fixed};
 
-/// Write a motion as CSV at the rate of a controller: angles, rates, accelerations, feed-forward torques
+/// Write a motion as CSV or Parquet at the rate of a controller: angles, rates, accelerations, feed-forward torques
 ///
 /// Columns are t; q, qd, qdd, tau_ff of each drive; x, y of the end effector; and b. Numbers are in SI units and
 /// radians, with all digits. A simulation on a moving base adds base_x, base_y, theta and their rates base_xd, base_yd,
@@ -42,14 +45,16 @@ pub struct ExportArguments {
     /// torque columns are tau1, tau2 …)
     #[arg(long, value_enum, default_value = "reference")]
     what: What,
-    /// Write the CSV to this file instead of standard output
-    #[arg(short, long, value_name = "FILE.csv")]
+    /// Write the rows to this file, .csv or .parquet, instead of standard output
+    #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
     #[command(flatten)]
     settings: Settings,
+    #[command(flatten)]
+    strict: Strict,
     #[command(flatten)]
     format: Format,
 }
@@ -73,8 +78,8 @@ fn rate(text: &str) -> Result<f64, String> {
     text.trim().parse().ok().filter(|x| (0.01..=1e6).contains(x)).ok_or_else(|| "want 0.01 to 1000000 Hz".into())
 }
 
-#[derive(Serialize)]
-struct Answer {
+#[derive(JsonSchema, Serialize)]
+pub struct Answer {
     scenario: String,
     what: &'static str,
     rate: f64,
@@ -88,16 +93,16 @@ struct Answer {
 }
 
 impl ExportArguments {
-    /// Writes the motion as CSV.
+    /// Writes the motion as CSV or Parquet.
     pub fn run(&self) -> Result<(), Failure> {
         if let Some(file) = &self.output {
-            check_output(file, self.force, &["csv"])?;
+            self.format.check_output(file, self.force, &ROW_ENDINGS)?;
         }
         let scenario = scenario(&self.scenario, &self.settings)?;
         let name = scenario.name.clone();
         // The first edits may draw another machine.
         let drives = with_start_edits(&scenario)?.0.machine.drives();
-        let (rows, duration, audit_failed) = match self.what {
+        let (rows, duration, audit_failed, is_good) = match self.what {
             What::Reference => {
                 let (start, later) = with_start_edits(&scenario)?;
                 if later > 0 {
@@ -112,7 +117,7 @@ impl ExportArguments {
                     );
                 }
                 let (rows, duration) = self.reference(&Run::new(&start).map_err(|e| Failure::refused(&start, e))?)?;
-                (rows, duration, None)
+                (rows, duration, None, true)
             }
             What::Simulated => self.simulated(&scenario)?,
         };
@@ -140,18 +145,16 @@ impl ExportArguments {
         let what = if self.what == What::Reference { "reference" } else { "simulated" };
         let answer =
             Answer { scenario: name, what, rate: self.rate, duration, last_interval, columns, rows, audit_failed };
-        let csv = csv(&answer)?;
-        match &self.output {
-            Some(file) => {
-                write_new(file, csv.as_bytes(), self.force)?;
-                if self.format.json {
-                    self.format.print(&answer, |_| String::new())?;
-                }
-                print_message(format!("wrote {}, {}", file.display(), counted(answer.rows.len(), "row")));
-            }
-            None => self.format.print(&answer, |_| csv)?,
+        if self.output.is_some() || !self.format.json {
+            let mut rows = rows::Rows::begin(self.output.as_deref(), self.force, &answer.columns)?;
+            answer.rows.iter().try_for_each(|row| rows.row(row.iter().copied()))?;
+            rows.finish()?;
         }
-        require_audit(&answer.scenario, answer.audit_failed)
+        if self.format.json {
+            self.format.print(&answer, |_| String::new())?;
+        }
+        require_audit(&answer.scenario, answer.audit_failed)?;
+        self.strict.require(is_good)
     }
 
     /// Returns the rows of the planned motion, and its duration, s.
@@ -176,8 +179,9 @@ impl ExportArguments {
         Ok(((0..=spaces).map(row).collect(), whole))
     }
 
-    /// Returns the rows of the simulated motion, its duration, s, and the audit that it failed, if any.
-    fn simulated(&self, scenario: &Scenario) -> Result<(Rows, f64, Option<String>), Failure> {
+    /// Returns the rows of the simulated motion, its duration, s, the audit that it failed, if any, and whether the run
+    /// is good.
+    fn simulated(&self, scenario: &Scenario) -> Result<(Rows, f64, Option<String>, bool), Failure> {
         let steps = 1.0 / (scenario.step * self.rate);
         let every = steps.round();
         if !(every >= 1.0 && (steps - every).abs() < 1e-6 * every) {
@@ -212,7 +216,8 @@ impl ExportArguments {
         })
         .map_err(|e| Failure::refused(scenario, e))?;
         let last = run.frame();
-        Ok((rows, last.time, last.first_violation().map(|lamp| lamp.to_string())))
+        let is_good = is_run_good(run.scenario(), &last);
+        Ok((rows, last.time, last.first_violation().map(|lamp| lamp.to_string()), is_good))
     }
 
     fn check_rows(&self, duration: f64) -> Result<(), Failure> {
@@ -229,14 +234,3 @@ impl ExportArguments {
 
 /// One row of numbers for each instant.
 type Rows = Vec<Vec<f64>>;
-
-fn csv(answer: &Answer) -> Result<String, Failure> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let mut done = writer.write_record(&answer.columns);
-    for row in &answer.rows {
-        done = done.and_then(|()| writer.serialize(row));
-    }
-    done.map_err(|e| Failure::wrong_input(format!("CSV: {e}")))?;
-    let bytes = writer.into_inner().map_err(|e| Failure::standard_output(e.error()))?;
-    String::from_utf8(bytes).map_err(Failure::wrong_input)
-}

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_exchange::cut::Cut;
 use stillbase_exchange::drawing::Sheet;
@@ -55,8 +56,8 @@ pub struct ExportModelArguments {
 }
 
 /// Description of the written file.
-#[derive(Serialize)]
-struct Answer {
+#[derive(JsonSchema, Serialize)]
+pub struct Answer {
     file: String,
     #[serde(flatten)]
     of: Written,
@@ -65,7 +66,7 @@ struct Answer {
     left_out: Vec<String>,
 }
 
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 #[serde(untagged)]
 enum Written {
     Mjcf {

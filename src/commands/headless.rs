@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_recording::{
     Options, Pictures, RecordError, Recording, RecordingProgress, VIEWER_URL, Viewer, record, stream,
@@ -18,6 +19,7 @@ use super::output::{Format, TextTable, check_output};
 use super::progress::bar;
 use super::simulate::require_audit;
 use super::size::size;
+use super::strict::{Strict, is_good};
 use stillbase_settings::number::fixed;
 
 /// Simulate scenarios without a window and record them for the Rerun viewer
@@ -66,6 +68,8 @@ pub struct HeadlessArguments {
     #[command(flatten)]
     settings: Settings,
     #[command(flatten)]
+    strict: Strict,
+    #[command(flatten)]
     format: Format,
 }
 
@@ -74,12 +78,12 @@ fn frames_per_second(text: &str) -> Result<f64, String> {
     fps.ok_or_else(|| "want pictures per simulated second, above 0 and at most 1000".into())
 }
 
-#[derive(Serialize)]
-struct Answer {
+#[derive(JsonSchema, Serialize)]
+pub struct Answer {
     recordings: Vec<Row>,
 }
 
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct Row {
     scenario: String,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -93,6 +97,9 @@ struct Row {
     peak_base_moment: f64,
     /// Peak moment that reaches the base after the reaction wheel, N m, if there is a wheel.
     #[serde(skip_serializing_if = "Option::is_none")]
+    peak_felt_moment: Option<f64>,
+    /// The same, under an older name that version 0.3 drops.
+    #[serde(skip_serializing_if = "Option::is_none")]
     peak_moment_past_wheel: Option<f64>,
     reactionless: bool,
     /// Drive limit exceeded by the largest factor, and this factor, if any limit is exceeded.
@@ -103,6 +110,8 @@ struct Row {
     verdict: String,
     /// Statements on machine, plan and run.
     statements: Statements,
+    #[serde(skip)]
+    is_good: bool,
     #[serde(skip)]
     answer: String,
     #[serde(skip)]
@@ -119,12 +128,14 @@ impl From<Recording> for Row {
             peak_torque: recording.peak_torque,
             peak_base_force: recording.peak_base_force,
             peak_base_moment: recording.peak_base_moment,
+            peak_felt_moment: recording.verdict.past_wheel,
             peak_moment_past_wheel: recording.verdict.past_wheel,
             reactionless: recording.reactionless,
             over: recording.verdict.exceeded_limit.map(|(limit, factor)| (limit.to_string(), factor)),
             audit_failed: recording.verdict.fault.as_ref().map(ToString::to_string),
             verdict: recording.verdict.sentence(),
             statements: recording.statements,
+            is_good: is_good(&recording.verdict),
             answer: recording.verdict.answer(),
             remarks: recording.verdict.remarks().into_iter().map(|r| r.long).collect(),
         }
@@ -153,7 +164,8 @@ impl HeadlessArguments {
             row.remarks.iter().for_each(|remark| print_message(format!("{}: {remark}", row.scenario)));
         }
         self.format.print(&answer, table)?;
-        answer.recordings.iter().try_for_each(|row| require_audit(&row.scenario, row.audit_failed.clone()))
+        answer.recordings.iter().try_for_each(|row| require_audit(&row.scenario, row.audit_failed.clone()))?;
+        self.strict.require(answer.recordings.iter().all(|row| row.is_good))
     }
 
     /// Returns where the recording goes.
@@ -237,14 +249,14 @@ fn table(answer: &Answer) -> String {
     let drives = answer.recordings.iter().map(|r| r.peak_torque.len()).max().unwrap_or(0);
     let torques = (1..=drives).map(|k| format!("peak |τ_{k}| N m"));
     // The moment after a reaction wheel is a different quantity from the moment that the arm transmits.
-    let wheels = answer.recordings.iter().any(|r| r.peak_moment_past_wheel.is_some());
+    let wheels = answer.recordings.iter().any(|r| r.peak_felt_moment.is_some());
     let past = wheels.then(|| "peak past the wheel N m".to_owned());
     let rest = ["peak |f_B| N", "peak |n_B| N m"].map(String::from).into_iter().chain(past);
     let heads = ["scenario", "steps"].map(String::from).into_iter().chain(torques).chain(rest);
     let mut table = TextTable::new(heads.chain(["reactionless".into()]));
     for r in &answer.recordings {
         let torques = (0..drives).map(|k| r.peak_torque.get(k).map_or_else(String::new, |t| fixed(*t, 6)));
-        let past = wheels.then(|| r.peak_moment_past_wheel.map_or_else(|| "–".into(), |n| fixed(n, 6)));
+        let past = wheels.then(|| r.peak_felt_moment.map_or_else(|| "–".into(), |n| fixed(n, 6)));
         let rest = [fixed(r.peak_base_force, 6), fixed(r.peak_base_moment, 6)].into_iter().chain(past);
         let cells = [r.scenario.clone(), r.steps.to_string()].into_iter().chain(torques).chain(rest);
         table.row(cells.chain([r.answer.clone()]));

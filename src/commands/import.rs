@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use std::path::{Path as FilePath, PathBuf};
 
 use clap::{Args, ValueEnum};
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_files::table::{SampleTable, samples};
 use stillbase_files::{finish_all, write_temporary};
@@ -19,6 +20,7 @@ use super::failure::Failure;
 use super::input::{self, DEFAULT_SCENARIO, Settings, above_zero, pose_constant, read};
 use super::output::{Format, check_output};
 use super::remedy::option;
+use super::strict::Strict;
 use table::table;
 
 /// Read your own motion from CSV, report its reactions on the base, and propose the nearest reactionless motion
@@ -68,6 +70,8 @@ pub struct ImportArguments {
     #[command(flatten)]
     settings: Settings,
     #[command(flatten)]
+    strict: Strict,
+    #[command(flatten)]
     format: Format,
 }
 
@@ -87,8 +91,8 @@ enum Kept {
     Joints,
 }
 
-#[derive(Serialize)]
-struct Answer<'a> {
+#[derive(JsonSchema, Serialize)]
+pub struct Answer<'a> {
     file: &'a str,
     #[serde(flatten)]
     imported: &'a ImportedMotion,
@@ -159,7 +163,10 @@ impl ImportArguments {
             finish_all([given_made?, made?])?;
             print_message(format!("wrote {} and {}", file.display(), given_file.display()));
         }
-        Ok(())
+        self.strict.require(imported.proposal.as_ref().is_none_or(|proposal| {
+            let effects = &proposal.account;
+            proposal.reactionless && effects.over.is_none() && effects.past_limits <= 0.0
+        }))
     }
 }
 

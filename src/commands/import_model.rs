@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_exchange::import::{BaseBody, ImportedMachine};
 use stillbase_files::{is_same_place, write_new};
@@ -52,8 +53,8 @@ pub struct ImportModelArguments {
     format: Format,
 }
 
-#[derive(Serialize)]
-struct Answer {
+#[derive(JsonSchema, Serialize)]
+pub struct Answer {
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -72,7 +73,7 @@ struct Answer {
 }
 
 /// Base on which the machine stands.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct OfBase {
     /// Mass, kg.
     mass: f64,

@@ -7,6 +7,7 @@ use std::path::Path;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use stillbase_files::FoundMachine;
+use stillbase_files::text::STANDARD_INPUT;
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
 use stillbase_mechanics::sketch::{Missing, resolve};
@@ -204,6 +205,7 @@ pub fn report_left_out(name: &str, notes: &[String]) {
 
 /// Returns what was left out of a file, each with the name of the file.
 pub fn left_out<'a>(file: &'a str, notes: &'a [String]) -> impl Iterator<Item = String> + 'a {
+    let file = if file == STANDARD_INPUT { "standard input" } else { file };
     notes.iter().map(move |note| format!("{file}: {note}"))
 }
 

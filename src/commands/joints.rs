@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use stillbase_files::row_file::ROW_ENDINGS;
 use stillbase_mechanics::joint_forces::Pin;
 use stillbase_session::replay_if;
 use stillbase_simulation::frame::Frame;
@@ -11,9 +12,10 @@ use stillbase_study::joint_extremes::{JointExtremes, JointReport};
 use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, TextTable, check_output, check_size};
+use super::output::{Format, TextTable, check_size};
 use super::rows::Rows;
 use super::simulate::require_audit;
+use super::strict::{Strict, is_run_good};
 use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
 
 /// Print the forces on all pins and bearings over a run, how near it comes to change points, and the tilting moment
@@ -27,15 +29,17 @@ pub struct JointsArguments {
     /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenario: String,
-    /// Write the force on every pin over time to this CSV file. The first link exerts it on the second; x and y are in
+    /// Write the force on every pin over time to this file, .csv or .parquet. The first link exerts it on the second; x and y are in
     /// base axes
-    #[arg(short, long, value_name = "FILE.csv")]
+    #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
     #[command(flatten)]
     settings: Settings,
+    #[command(flatten)]
+    strict: Strict,
     #[command(flatten)]
     format: Format,
 }
@@ -53,7 +57,7 @@ impl JointsArguments {
             print_message(format!("a run keeps the first {} of {all} pins; the others are left out", pins.len()));
         }
         if let Some(file) = &self.output {
-            check_output(file, self.force, &["csv"])?;
+            self.format.check_output(file, self.force, &ROW_ENDINGS)?;
         }
         let (mut csv, mut written) = (None, Ok(()));
         let columns = if self.output.is_some() { 2 * pins.len() + 3 } else { 0 };
@@ -74,7 +78,8 @@ impl JointsArguments {
         }
         let answer = extremes.report(&scenario.name, &run.frame());
         self.format.print(&answer, human)?;
-        require_audit(&answer.scenario, answer.audit_failed)
+        require_audit(&answer.scenario, answer.audit_failed)?;
+        self.strict.require(is_run_good(run.scenario(), &run.frame()))
     }
 
     fn csv<'a>(&self, begun: &'a mut Option<Rows>, pins: &[Pin]) -> Result<&'a mut Rows, Failure> {

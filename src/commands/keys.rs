@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_session::scenario::KEYS;
 use stillbase_settings::key::Key;
@@ -31,12 +32,12 @@ pub struct KeysArguments {
     format: Format,
 }
 
-#[derive(Serialize)]
-struct Answer {
+#[derive(JsonSchema, Serialize)]
+pub struct Answer {
     keys: Vec<Row>,
 }
 
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct Row {
     key: &'static str,
     holds: String,

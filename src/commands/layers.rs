@@ -14,6 +14,7 @@ use super::failure::Failure;
 use super::input::{MachineArgument, task_run};
 use super::new_machine::NewMachine;
 use super::output::{Format, TextTable};
+use super::strict::Strict;
 
 /// Stack the links of a machine in layers so that it turns without running into itself
 ///
@@ -46,6 +47,8 @@ pub struct LayersArguments {
     #[command(flatten)]
     new_machine: NewMachine,
     #[command(flatten)]
+    strict: Strict,
+    #[command(flatten)]
     format: Format,
 }
 
@@ -53,14 +56,15 @@ impl LayersArguments {
     /// Prints the layers, and writes the machine.
     pub fn run(&self) -> Result<(), Failure> {
         let MachineFile { machine, design } = self.machine.load_file()?;
-        self.new_machine.check()?;
+        self.new_machine.check(&self.format)?;
         let task = self.task.as_ref().map(|name| task_run(name, &[&machine])).transpose()?;
         let motion = task.as_ref().map(|run| ByIdentity(run.plan().motion.clone()));
         let cut = self.dimensions.cut(&machine);
         let request = LayersRequest { machine: machine.clone(), cut, motion, along_task: self.along_task };
         let report = find_layers(&request).map_err(|why| Failure::from(why).with_context(machine.name()))?;
         self.new_machine.save(&report.machine, &design, format!("{}, stacked in layers", machine.name()))?;
-        self.format.print(&report, |report| text(report, &machine) + &remarks(&machine, &cut))
+        self.format.print(&report, |report| text(report, &machine) + &remarks(&machine, &cut))?;
+        self.strict.require(report.clashes.is_empty() && report.meetings.iter().all(|contact| contact.decided))
     }
 }
 

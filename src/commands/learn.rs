@@ -15,6 +15,7 @@ use stillbase_study::equations::{
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, machine, no_use, overlay_used, report_left_out};
 use super::output::Format;
+use super::strict::Strict;
 use stillbase_settings::number::counted;
 
 /// Print every equation of the paper, and below it the same equation with the numbers of a machine
@@ -49,6 +50,8 @@ pub struct LearnArguments {
     accelerations: Vec<f64>,
     #[command(flatten)]
     settings: Settings,
+    #[command(flatten)]
+    strict: Strict,
     #[command(flatten)]
     format: Format,
 }
@@ -88,7 +91,8 @@ impl LearnArguments {
         self.format.print(&answer, |_| {
             let texts: Vec<String> = chosen.iter().map(|equation| equation_text(equation)).collect();
             format!("{}\n\n{}", state_text(&machine, &state), texts.join("\n"))
-        })
+        })?;
+        self.strict.require(answer.equations.iter().all(|equation| equation.holds != Some(false)))
     }
 
     /// Returns the machine and its state at the instant.

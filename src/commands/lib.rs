@@ -7,6 +7,7 @@
 
 mod check;
 mod compare;
+mod completions;
 mod design;
 mod diff;
 mod dimensions;
@@ -30,12 +31,14 @@ mod keys;
 mod layers;
 mod learn;
 mod machines;
+mod man;
 mod misnamed;
 mod new_machine;
 mod open;
 mod output;
 mod plan;
 mod pose;
+mod program;
 #[cfg(any(feature = "record", feature = "ui"))]
 mod progress;
 mod reach;
@@ -46,13 +49,16 @@ mod render;
 mod replay;
 #[cfg(feature = "ui")]
 mod report;
+mod results;
 mod rows;
+mod schema;
 mod signal_source;
 mod simulate;
 mod sites;
 #[cfg(any(feature = "record", feature = "ui"))]
 mod size;
 mod spectrum;
+mod strict;
 #[cfg(feature = "record")]
 mod table;
 mod tolerance;
@@ -63,12 +69,22 @@ pub use exit::{Line, exit_code, usage};
 pub use input::words;
 pub use interrupt::watch;
 pub use open::OpenArguments;
+pub use program::Arguments;
 
 use failure::Failure;
+use stillbase_study::centres::{DesignReport, RebalanceReport};
+use stillbase_study::counterweights::CounterweightReport;
+use stillbase_study::equations::StatedEquations;
+use stillbase_study::joint_extremes::JointReport;
+use stillbase_study::layers::LayersReport;
+use stillbase_study::plan_summary::PlanSummary;
+use stillbase_study::trim::TrimReport;
+use stillbase_study::workspace::WorkspaceReport;
 
-/// Declares the subcommands from one list: the name of each, and the type that reads its arguments and runs it.
+/// Declares the subcommands from one list: the name of each, the type that reads its arguments and runs it, and the
+/// types of what it prints with `--json`.
 macro_rules! subcommands {
-    ($($(#[$gate:meta])? $name:ident: $file:ident::$command:ident,)*) => {
+    ($($(#[$gate:meta])? $name:ident: $file:ident::$command:ident $(=> [$($answer:ty),+])?,)*) => {
         /// The subcommands of the program.
         #[derive(clap::Subcommand)]
         #[expect(missing_docs, reason = "a line of documentation would replace the help of the arguments")]
@@ -80,6 +96,11 @@ macro_rules! subcommands {
         fn names() -> Vec<String> {
             let all = <Subcommand as clap::Subcommand>::augment_subcommands(clap::Command::new("stillbase"));
             all.get_subcommands().map(|command| command.get_name().to_owned()).collect()
+        }
+
+        /// Returns the schemas of what each subcommand prints with `--json`, in the order of [`names`].
+        fn answers() -> Vec<Vec<schemars::Schema>> {
+            Vec::from([$($(#[$gate])? vec![$($(schema::of::<$answer>()),+)?]),*])
         }
 
         impl Subcommand {
@@ -96,37 +117,41 @@ macro_rules! subcommands {
 // In the order of the help.
 subcommands! {
     #[cfg(feature = "record")]
-    Headless: headless::HeadlessArguments,
-    Simulate: simulate::SimulateArguments,
+    Headless: headless::HeadlessArguments => [headless::Answer],
+    Simulate: simulate::SimulateArguments => [simulate::Answer],
     #[cfg(feature = "record")]
-    Replay: replay::ReplayArguments,
-    Diff: diff::DiffArguments,
+    Replay: replay::ReplayArguments => [replay::Answer],
+    Diff: diff::DiffArguments => [diff::Answer],
     #[cfg(feature = "record")]
     Table: table::TableArguments,
-    Compare: compare::CompareArguments,
-    Joints: joints::JointsArguments,
-    Machines: machines::MachinesArguments,
-    Keys: keys::KeysArguments,
-    Check: check::CheckArguments,
-    Learn: learn::LearnArguments,
-    Design: design::DesignArguments,
-    Layers: layers::LayersArguments,
-    Dynamics: dynamics::DynamicsArguments,
-    Reach: reach::ReachArguments,
-    Pose: pose::PoseArguments,
-    Plan: plan::PlanArguments,
-    Workspace: workspace::WorkspaceArguments,
-    Import: import::ImportArguments,
-    Export: export::ExportArguments,
-    ExportModel: export_model::ExportModelArguments,
-    ImportModel: import_model::ImportModelArguments,
-    Tolerance: tolerance::ToleranceArguments,
-    Spectrum: spectrum::SpectrumArguments,
-    Trim: trim::TrimArguments,
+    Compare: compare::CompareArguments => [compare::Answer],
+    Joints: joints::JointsArguments => [JointReport],
+    Machines: machines::MachinesArguments => [machines::Answer],
+    Keys: keys::KeysArguments => [keys::Answer],
+    Check: check::CheckArguments => [check::Answer],
+    Learn: learn::LearnArguments => [StatedEquations],
+    Design: design::DesignArguments => [DesignReport, RebalanceReport, CounterweightReport, design::FrontsAnswer],
+    Layers: layers::LayersArguments => [LayersReport],
+    Dynamics: dynamics::DynamicsArguments => [dynamics::Answer],
+    Reach: reach::ReachArguments => [reach::Answer],
+    Pose: pose::PoseArguments => [pose::Answer],
+    Plan: plan::PlanArguments => [PlanSummary],
+    Workspace: workspace::WorkspaceArguments => [WorkspaceReport],
+    Import: import::ImportArguments => [import::Answer],
+    Export: export::ExportArguments => [export::Answer],
+    ExportModel: export_model::ExportModelArguments => [export_model::Answer],
+    ImportModel: import_model::ImportModelArguments => [import_model::Answer],
+    Tolerance: tolerance::ToleranceArguments => [tolerance::ToleranceAnswer, tolerance::MergedParts],
+    Spectrum: spectrum::SpectrumArguments => [spectrum::Answer],
+    Trim: trim::TrimArguments => [TrimReport],
     #[cfg(feature = "ui")]
-    Render: render::RenderArguments,
+    Render: render::RenderArguments => [render::Answer],
     #[cfg(feature = "ui")]
-    Report: report::ReportArguments,
+    Report: report::ReportArguments => [report::Answer],
     #[cfg(feature = "ui")]
     Figures: figures::FiguresArguments,
+    Results: results::ResultsArguments => [results::Answer],
+    Schema: schema::SchemaArguments,
+    Completions: completions::CompletionsArguments,
+    Man: man::ManArguments,
 }

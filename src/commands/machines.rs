@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_mechanics::machine::{Machine, builtins};
 use stillbase_mechanics::sketch::Template;
@@ -32,14 +33,14 @@ pub struct MachinesArguments {
     format: Format,
 }
 
-#[derive(Serialize)]
-struct Answer {
+#[derive(JsonSchema, Serialize)]
+pub struct Answer {
     machines: Vec<Row>,
     /// Templates from which a person draws; each is a machine, too.
     templates: Vec<Row>,
 }
 
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct Row {
     name: String,
     drives: usize,
@@ -86,7 +87,7 @@ impl MachinesArguments {
 
     /// Prints a machine as TOML, or writes it to a file.
     fn print(&self, file: &MachineFile) -> Result<(), Failure> {
-        self.new.check()?;
+        self.new.check(&self.format)?;
         if self.new.is_wanted() {
             return self.new.save(&file.machine, &file.design, file.machine.spec().summary.clone());
         }

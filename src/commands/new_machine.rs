@@ -4,13 +4,11 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use stillbase_files::write_new;
 use stillbase_mechanics::machine::Machine;
 use stillbase_session::scenario::{DesignBrief, MachineFile};
 
-use super::exit::print_message;
 use super::failure::Failure;
-use super::output::check_output;
+use super::output::{Format, is_standard, write_text};
 
 /// Where the new machine is written.
 #[derive(Args)]
@@ -30,16 +28,14 @@ impl NewMachine {
     }
 
     /// Checks, before any work is done, that the file may be written.
-    pub fn check(&self) -> Result<(), Failure> {
-        self.output.as_ref().map_or(Ok(()), |file| check_output(file, self.force, &["toml"]).map(|_| ()))
+    pub fn check(&self, format: &Format) -> Result<(), Failure> {
+        self.output.as_ref().map_or(Ok(()), |file| format.check_output(file, self.force, &["toml"]).map(|_| ()))
     }
 
     /// Writes a machine with its brief, if a file is asked for.
     pub fn save(&self, machine: &Machine, design: &DesignBrief, summary: String) -> Result<(), Failure> {
         let Some(file) = &self.output else { return Ok(()) };
-        write_new(file, named_after(file, machine, design, summary)?.as_bytes(), self.force)?;
-        print_message(format!("wrote {}", file.display()));
-        Ok(())
+        write_text(file, &named_after(file, machine, design, summary)?, self.force)
     }
 }
 
@@ -49,7 +45,8 @@ impl NewMachine {
 /// If the name of the file cannot be the name of a machine.
 pub fn named_after(file: &Path, machine: &Machine, design: &DesignBrief, summary: String) -> Result<String, Failure> {
     let mut spec = machine.spec().clone();
-    spec.name = file.file_stem().unwrap_or(OsStr::new("machine")).to_string_lossy().into_owned();
+    let name = file.file_stem().filter(|_| !is_standard(file)).unwrap_or(OsStr::new("machine"));
+    spec.name = name.to_string_lossy().into_owned();
     spec.summary = summary;
     Ok(MachineFile { machine: Machine::new(spec)?, design: design.clone() }.to_toml())
 }

@@ -4,14 +4,19 @@ use std::borrow::Cow;
 use std::fmt::{self, Display};
 use std::io::{self, Write};
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::Serialize;
 use serde_json::ser::Formatter;
-use stillbase_files::check_new;
+use stillbase_files::{check_new, write_new};
 use stillbase_session::Refusal;
 use stillbase_settings::text::plain;
 
+use super::exit::{is_quiet, print_message};
 use super::failure::Failure;
+
+/// Whether a file takes standard output.
+static IS_TAKEN: AtomicBool = AtomicBool::new(false);
 
 /// Output format of a command.
 #[derive(clap::Args)]
@@ -22,6 +27,24 @@ pub struct Format {
 }
 
 impl Format {
+    /// Does the same as [`check_output`], but also takes `-` for standard output, which gets the first of the formats.
+    /// What the command has to say besides then goes to standard error.
+    ///
+    /// # Errors
+    /// As [`check_output`], and if JSON is to go there, too.
+    pub fn check_output(&self, file: &Path, force: bool, endings: &[&'static str]) -> Result<&'static str, Failure> {
+        match endings {
+            [_, ..] if is_standard(file) && self.json => {
+                Err(Failure::wrong_input("--json and -o - both want standard output: want one of them"))
+            }
+            [first, ..] if is_standard(file) => {
+                IS_TAKEN.store(true, Ordering::Relaxed);
+                Ok(first)
+            }
+            _ => check_output(file, force, endings),
+        }
+    }
+
     /// Prints an answer as JSON, or as the text that `human` returns for it.
     ///
     /// # Errors
@@ -29,7 +52,15 @@ impl Format {
     pub fn print<T: Serialize>(&self, answer: &T, human: impl FnOnce(&T) -> String) -> Result<(), Failure> {
         // The JSON is made in both cases, because that detects numbers that are not finite.
         let json = json(answer)?;
+        let is_taken = IS_TAKEN.load(Ordering::Relaxed);
         let text = if self.json { json } else { plain(&human(answer)).into_owned() };
+        if is_taken {
+            if !is_quiet() {
+                // When standard error is closed, there is no place for the answer.
+                let _ = io::stderr().write_all(text.as_bytes());
+            }
+            return Ok(());
+        }
         let mut out = io::stdout().lock();
         out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|e| Failure::standard_output(&e))
     }
@@ -128,6 +159,28 @@ pub fn check_output(file: &Path, force: bool, endings: &[&'static str]) -> Resul
         let endings: Vec<String> = endings.iter().map(|ending| format!(".{ending}")).collect();
         Failure::wrong_input(format!("want a name that ends in {}", endings.join(" or "))).with_context(file.display())
     })
+}
+
+/// Name of standard output as an output file.
+const STANDARD: &str = "-";
+
+/// Whether an output is standard output.
+pub fn is_standard(file: &Path) -> bool {
+    file.as_os_str() == STANDARD
+}
+
+/// Writes a text to a new file, and says so, or to standard output.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn write_text(file: &Path, text: &str, force: bool) -> Result<(), Failure> {
+    if is_standard(file) {
+        let mut out = io::stdout().lock();
+        return out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|e| Failure::standard_output(&e));
+    }
+    write_new(file, text.as_bytes(), force)?;
+    print_message(format!("wrote {}", file.display()));
+    Ok(())
 }
 
 /// Maximum size of an output, bytes; a request for a larger one is probably a mistake.

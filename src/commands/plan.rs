@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use stillbase_files::{FoundMachine, text, write_new};
+use stillbase_files::{FoundMachine, text};
 use stillbase_mechanics::planar::Vector;
 use stillbase_planning::common::starting_b;
 use stillbase_planning::off_plane::least_reaction::FixedB;
@@ -12,6 +12,7 @@ use stillbase_planning::pose_constant::PoseConstant;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::timing::TimeLaw;
 use stillbase_session::scenario::{FileContent, PathShape, Scenario, Task, TaskChange, TaskKind, content};
+use stillbase_session::verdict::{Statements, StatusLight};
 use stillbase_session::{Run, with_start_edits};
 use stillbase_simulation::plant::PlantDifferences;
 use stillbase_study::plan_summary::PlanSummary;
@@ -22,7 +23,8 @@ use super::input::{
     DEFAULT_SCENARIO, Settings, above_zero, change_task, choice, no_use, overlay_settings, overlay_unchecked, point,
     pose_constant, pose_space, refuse_ineffective, report_idle, report_left_out, report_tolerance,
 };
-use super::output::{Format, TextTable, check_output};
+use super::output::{Format, TextTable, is_standard, write_text};
+use super::strict::Strict;
 use stillbase_settings::number::{counted, fixed};
 use stillbase_settings::word::Choice;
 
@@ -92,6 +94,8 @@ pub struct PlanArguments {
     #[command(flatten)]
     settings: Settings,
     #[command(flatten)]
+    strict: Strict,
+    #[command(flatten)]
     format: Format,
 }
 
@@ -112,7 +116,7 @@ impl PlanArguments {
     /// Plans, prints, and writes the scenario if requested.
     pub fn run(&self) -> Result<(), Failure> {
         if let Some(file) = &self.output {
-            check_output(file, self.force, &["toml"])?;
+            self.format.check_output(file, self.force, &["toml"])?;
         }
         let mut scenario = self.scenario()?;
         // A motion can be planned for a machine without a pose space, too.
@@ -123,20 +127,26 @@ impl PlanArguments {
         if run.is_ok() || self.format.json {
             self.format.print(&answer, table)?;
         }
-        if let Err(refusal) = run {
-            let refusal = Failure::from(refusal);
-            let proposals = answer.obstacle.map(|obstacle| obstacle.proposals).unwrap_or_default();
-            return Err(refusal.with_printed_proposals(proposals));
-        }
+        let run = match run {
+            Ok(run) => run,
+            Err(refusal) => {
+                let refusal = Failure::from(refusal);
+                let proposals = answer.obstacle.map(|obstacle| obstacle.proposals).unwrap_or_default();
+                return Err(refusal.with_printed_proposals(proposals));
+            }
+        };
+        let Statements { machine, plan, .. } = Statements::of(&run, &run.frame());
+        let keeps_limits = answer.cost.is_none_or(|cost| cost.over.is_none());
+        let is_good = keeps_limits && [machine, plan].iter().all(|statement| statement.outcome != StatusLight::Bad);
         if let Some(file) = &self.output {
             // The name of the file tells plans apart in a recording or a table.
             if scenario.name == DEFAULT_NAME {
-                scenario.name = file.file_stem().map_or_else(|| DEFAULT_NAME.into(), |s| s.to_string_lossy().into());
+                let stem = file.file_stem().filter(|_| !is_standard(file));
+                scenario.name = stem.map_or_else(|| DEFAULT_NAME.into(), |s| s.to_string_lossy().into());
             }
-            write_new(file, scenario.to_toml().as_bytes(), self.force)?;
-            print_message(format!("wrote {}", file.display()));
+            write_text(file, &scenario.to_toml(), self.force)?;
         }
-        Ok(())
+        self.strict.require(is_good)
     }
 
     /// Refuses options that have no effect on the task. Prints a note if the plan leaves out properties of plant or

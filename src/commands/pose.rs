@@ -1,6 +1,7 @@
 //! `stillbase pose`
 
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_mechanics::planar::Vector;
 use stillbase_planning::pose_constant::Unreachable;
@@ -39,8 +40,8 @@ pub struct PoseArguments {
     format: Format,
 }
 
-#[derive(Serialize)]
-struct Answer {
+#[derive(JsonSchema, Serialize)]
+pub struct Answer {
     poses: Vec<PoseMeasures>,
 }
 

@@ -1,6 +1,7 @@
 //! `stillbase reach`
 
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_mechanics::planar::Vector;
 use stillbase_planning::common::{common_b_set, no_common};
@@ -34,8 +35,8 @@ pub struct ReachArguments {
     format: Format,
 }
 
-#[derive(Serialize)]
-struct Answer {
+#[derive(JsonSchema, Serialize)]
+pub struct Answer {
     points: Vec<OfPoint>,
     overlap: Vec<[f64; 2]>,
     period: f64,
@@ -47,7 +48,7 @@ struct Answer {
     proposals: Vec<Proposal>,
 }
 
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct OfPoint {
     point: [f64; 2],
     intervals: Vec<[f64; 2]>,

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_app::export::{FilmDone, FilmOrder, PictureForm, check_film, write_film, write_picture};
 use stillbase_app::{AppState, PictureOrder, SessionCommand, Shot};
@@ -75,8 +76,8 @@ pub struct RenderArguments {
     format: Format,
 }
 
-#[derive(Serialize)]
-struct Answer {
+#[derive(JsonSchema, Serialize)]
+pub struct Answer {
     file: String,
     pictures: u32,
     /// First and last instant, s.

@@ -1,6 +1,7 @@
 //! `stillbase replay`
 
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_files::recorded::CaseName;
 use stillbase_study::difference::{TableDifference, Tolerances};
@@ -35,8 +36,8 @@ pub struct ReplayArguments {
 /// value of the signal.
 const OTHER_VERSION: f64 = 1e-9;
 
-#[derive(Serialize)]
-struct Answer {
+#[derive(JsonSchema, Serialize)]
+pub struct Answer {
     /// Whether every number is equal.
     equal: bool,
     /// Whether every signal stays within its tolerance.
@@ -44,7 +45,7 @@ struct Answer {
     cases: Vec<Replayed>,
 }
 
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct Replayed {
     /// Version of the program that recorded the case, and of the one that simulated it again.
     versions: [String; 2],

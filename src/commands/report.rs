@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_app::export::{ReportDone, write_report};
 use stillbase_app::{AppState, Switch, ViewChange};
 use stillbase_picture::scene::palette::Theme;
-use stillbase_session::verdict::Statements;
+use stillbase_session::verdict::{Statements, StatusLight};
 use stillbase_settings::number::counted;
 use stillbase_settings::text::shell_word;
 
@@ -16,6 +17,7 @@ use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, check_output};
 use super::simulate::require_audit;
+use super::strict::Strict;
 
 /// Write a report on a run as one HTML page: verdicts, pictures, plots, task, settings and machine
 ///
@@ -42,11 +44,13 @@ pub struct ReportArguments {
     #[command(flatten)]
     settings: Settings,
     #[command(flatten)]
+    strict: Strict,
+    #[command(flatten)]
     format: Format,
 }
 
-#[derive(Serialize)]
-struct Answer {
+#[derive(JsonSchema, Serialize)]
+pub struct Answer {
     file: String,
     /// Number of pictures of the scene.
     pictures: usize,
@@ -78,7 +82,10 @@ impl ReportArguments {
             let (pictures, plots) = (counted(answer.pictures, "picture"), counted(answer.plots, "plot"));
             format!("{}: {pictures}, {plots}; {}\n", answer.file, answer.statements.line())
         })?;
-        require_audit(&name, fault)
+        let Statements { machine, plan, run } = &answer.statements;
+        let is_good = [machine, plan, run].iter().all(|statement| statement.outcome != StatusLight::Bad);
+        require_audit(&name, fault)?;
+        self.strict.require(is_good)
     }
 
     /// Returns the command that writes the same report, without `--force` and `--json`.

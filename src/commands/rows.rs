@@ -8,6 +8,7 @@ use stillbase_settings::text::plain;
 
 use super::exit::print_message;
 use super::failure::Failure;
+use super::output::is_standard;
 
 /// Rows that are being written.
 pub struct Rows {
@@ -27,11 +28,26 @@ impl Rows {
     /// # Errors
     /// If the file or standard output cannot be written.
     pub fn begin(file: Option<&Path>, force: bool, head: &[String]) -> Result<Self, Failure> {
-        let sink = match file {
-            Some(file) => Sink::File(RowFile::create(file, force, "instant", head)?, file.into()),
+        Self::begin_with(file, force, ("instant", &[]), head)
+    }
+
+    /// Begins as [`begin`](Self::begin) does; `of` says what a row is, and `texts` names columns of text, which come
+    /// first.
+    ///
+    /// # Errors
+    /// As [`begin`](Self::begin).
+    pub fn begin_with(
+        file: Option<&Path>,
+        force: bool,
+        (of, texts): (&str, &[&str]),
+        head: &[String],
+    ) -> Result<Self, Failure> {
+        let sink = match file.filter(|file| !is_standard(file)) {
+            Some(file) => Sink::File(RowFile::with_texts(file, force, of, (texts, head))?, file.into()),
             None => {
                 let mut writer = csv::Writer::from_writer(io::stdout().lock());
-                writer.write_record(head.iter().map(|name| plain(name).into_owned())).map_err(failure)?;
+                let names = texts.iter().copied().chain(head.iter().map(String::as_str));
+                writer.write_record(names.map(|name| plain(name).into_owned())).map_err(failure)?;
                 Sink::Standard(Box::new(writer))
             }
         };
@@ -43,11 +59,23 @@ impl Rows {
     /// # Errors
     /// If the file or standard output cannot be written.
     pub fn row<T: Into<Option<f64>>>(&mut self, values: impl IntoIterator<Item = T>) -> Result<(), Failure> {
+        self.named_row(&[], values)
+    }
+
+    /// Writes a row as [`row`](Self::row) does, with a cell for each column of text.
+    ///
+    /// # Errors
+    /// If the file or standard output cannot be written.
+    pub fn named_row<T: Into<Option<f64>>>(
+        &mut self,
+        texts: &[&str],
+        values: impl IntoIterator<Item = T>,
+    ) -> Result<(), Failure> {
         self.row.clear();
         self.row.extend(values.into_iter().map(|x| x.into().map(|x| x + 0.0)));
         match &mut self.sink {
-            Sink::File(file, _) => Ok(file.row(&self.row)?),
-            Sink::Standard(writer) => writer.serialize(&self.row).map_err(failure),
+            Sink::File(file, _) => Ok(file.named_row(texts, &self.row)?),
+            Sink::Standard(writer) => writer.serialize((texts, &self.row)).map_err(failure),
         }
     }
 

@@ -1,10 +1,12 @@
 //! `stillbase simulate`
 
+use std::borrow::Cow;
 use std::io::IsTerminal;
 use std::num::NonZeroU64;
 use std::path::PathBuf;
 
 use clap::Args;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Serialize, Serializer};
 use stillbase_files::row_file::ROW_ENDINGS;
 use stillbase_mechanics::machine::Machine;
@@ -16,8 +18,9 @@ use stillbase_simulation::signals::{Signal, chosen_signals, row_heads, signals};
 use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, TextTable, check_output, check_size};
+use super::output::{Format, TextTable, check_size};
 use super::rows::Rows;
+use super::strict::{Strict, is_run_good};
 use stillbase_settings::number::{counted, fixed};
 use stillbase_settings::range::quote_clipped;
 
@@ -55,6 +58,8 @@ pub struct SimulateArguments {
     #[command(flatten)]
     settings: Settings,
     #[command(flatten)]
+    strict: Strict,
+    #[command(flatten)]
     format: Format,
 }
 
@@ -71,7 +76,7 @@ fn instant(text: &str) -> Result<f64, String> {
 const TIME_TOLERANCE_S: f64 = 1e-9;
 
 /// Results of a run.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct Outcome {
     steps: u64,
     peak_torque: Vec<f64>,
@@ -81,12 +86,14 @@ struct Outcome {
     rms_base_moment: f64,
     /// Largest moment on the base beyond what the reaction wheel takes up, N m, if there is a wheel.
     #[serde(skip_serializing_if = "Option::is_none")]
-    peak_moment_past_wheel: Option<f64>,
+    peak_felt_moment: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    rms_moment_past_wheel: Option<f64>,
+    rms_felt_moment: Option<f64>,
+    #[serde(flatten)]
+    old: OldNames,
     peak_tilt: f64,
     base_shift: f64,
-    base_tilt: f64,
+    base_angle: f64,
     miss: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     past_limit: Option<Past>,
@@ -106,8 +113,18 @@ struct Outcome {
     audit_failed: Option<String>,
 }
 
+/// Results once more, under older names that version 0.3 drops.
+#[derive(JsonSchema, Serialize)]
+struct OldNames {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    peak_moment_past_wheel: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rms_moment_past_wheel: Option<f64>,
+    base_tilt: f64,
+}
+
 /// A relative joint angle that exceeded its limit, and by how much, rad.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 struct Past {
     angle: String,
     by: f64,
@@ -118,6 +135,7 @@ impl Outcome {
         let last = &run.frame();
         let verdict = Verdict::of(run.scenario(), last);
         let totals = &last.totals;
+        let rms_felt_moment = verdict.past_wheel.map(|_| totals.moment_rms());
         Self {
             steps: last.step,
             peak_torque: last.peaks.torque.to_vec(),
@@ -125,11 +143,16 @@ impl Outcome {
             peak_base_moment: verdict.arm_moment,
             rms_base_force: totals.force_rms(),
             rms_base_moment: totals.arm_moment_rms(),
-            peak_moment_past_wheel: verdict.past_wheel,
-            rms_moment_past_wheel: verdict.past_wheel.map(|_| totals.moment_rms()),
+            peak_felt_moment: verdict.past_wheel,
+            rms_felt_moment,
+            old: OldNames {
+                peak_moment_past_wheel: verdict.past_wheel,
+                rms_moment_past_wheel: rms_felt_moment,
+                base_tilt: totals.base_angle,
+            },
             peak_tilt: verdict.tilt,
             base_shift: totals.shift,
-            base_tilt: totals.base_angle,
+            base_angle: totals.base_angle,
             miss: verdict.target_distance,
             answer: verdict.answer(),
             sentence: verdict.sentence(),
@@ -147,8 +170,8 @@ impl Outcome {
     }
 }
 
-#[derive(Serialize)]
-struct Answer {
+#[derive(JsonSchema, Serialize)]
+pub struct Answer {
     scenario: String,
     units: Columns<&'static str>,
     time: Vec<f64>,
@@ -158,6 +181,16 @@ struct Answer {
 
 /// A JSON object whose keys keep their order.
 struct Columns<T>(Vec<(String, T)>);
+
+impl<T: JsonSchema> JsonSchema for Columns<T> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("Columns of {}", T::schema_name()).into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "object", "additionalProperties": generator.subschema_for::<T>() })
+    }
+}
 
 impl<T: Serialize> Serialize for Columns<T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -173,7 +206,7 @@ impl SimulateArguments {
         let (start, _) = with_start_edits(&scenario).map_err(|e| Failure::refused(&scenario, e))?;
         let table = self.table(&start.machine)?;
         if let Some(file) = &self.output {
-            check_output(file, self.force, &ROW_ENDINGS)?;
+            self.format.check_output(file, self.force, &ROW_ENDINGS)?;
         }
         let [from, to] = [self.from.unwrap_or(0.0), self.to.unwrap_or(f64::INFINITY)];
         if from > to {
@@ -213,12 +246,14 @@ impl SimulateArguments {
             csv.finish()?;
         }
         let verdict = Outcome::of(&run);
+        let is_good = is_run_good(run.scenario(), &run.frame());
         if !self.format.json && !self.writes_csv() {
             self.format.print(&verdict, |outcome| summary(outcome, &scenario.name, &table))?;
-            return require_audit(&scenario.name, verdict.audit_failed);
+            require_audit(&scenario.name, verdict.audit_failed)?;
+            return self.strict.require(is_good);
         }
         if !self.format.json {
-            let past = verdict.peak_moment_past_wheel;
+            let past = verdict.peak_felt_moment;
             print_message(format!(
                 "{}: {}, peak |n_B| {} N m,{} peak |f_B| {} N, reactionless: {}",
                 scenario.name,
@@ -232,7 +267,8 @@ impl SimulateArguments {
             for remark in &verdict.remarks {
                 print_message(format!("{}: {remark}", scenario.name));
             }
-            return require_audit(&scenario.name, verdict.audit_failed);
+            require_audit(&scenario.name, verdict.audit_failed)?;
+            return self.strict.require(is_good);
         }
         let fault = verdict.audit_failed.clone();
         let name = scenario.name.clone();
@@ -244,7 +280,8 @@ impl SimulateArguments {
             verdict,
         };
         self.format.print(&answer, |_| String::new())?;
-        require_audit(&name, fault)
+        require_audit(&name, fault)?;
+        self.strict.require(is_good)
     }
 
     /// Whether rows are written: to a file, or without --json to standard output if it is not a terminal.
@@ -294,12 +331,12 @@ fn summary(outcome: &Outcome, name: &str, signals: &[Signal]) -> String {
     }
     row("peak |n_B|".into(), outcome.peak_base_moment, 9, "N m");
     row("root mean square of n_B".into(), outcome.rms_base_moment, 9, "N m");
-    if let Some(past_wheel) = outcome.peak_moment_past_wheel {
+    if let Some(past_wheel) = outcome.peak_felt_moment {
         row("peak moment past the wheel".into(), past_wheel, 9, "N m");
     }
     row("peak |f_B|".into(), outcome.peak_base_force, 9, "N");
     row("the base shifts by".into(), outcome.base_shift, 9, "m");
-    row("the base turns by".into(), outcome.base_tilt, 9, "rad");
+    row("the base turns by".into(), outcome.base_angle, 9, "rad");
     let shown = format!(
         "{} of {}: -o FILE.csv writes every row, a pipe gets them too\n",
         counted(outcome.steps, "step"),

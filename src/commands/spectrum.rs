@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
-use stillbase_files::{NewFile, WriteError};
+use stillbase_files::row_file::ROW_ENDINGS;
 use stillbase_session::scenario::Scenario;
 use stillbase_study::base_spectrum::{BaseSpectrum, NoBaseSpectrum};
 use stillbase_study::spectrum::{JitterLimit, WindowFunction};
@@ -12,8 +13,10 @@ use stillbase_study::spectrum::{JitterLimit, WindowFunction};
 use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, TextTable, check_output, yes};
+use super::output::{Format, TextTable, yes};
+use super::rows::Rows;
 use super::simulate::require_audit;
+use super::strict::Strict;
 use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
 
 /// Compute the spectra of the base reactions of a run, and compare them with jitter limits
@@ -30,7 +33,7 @@ Examples:
   stillbase spectrum case-1 --limit-moment 1:0.1,10:0.01,100:0.001    straight in log-log, none beyond its ends
   stillbase spectrum case-1 --window rectangular -o case-1.csv
 
-The exit status is 0 whether limits are kept or not.
+The exit status is 0 whether limits are kept or not, unless --strict is given.
 
 JSON keys: scenario, window, samples, step, resolution (Hz); axes {force_x, force_y, moment: {unit, rms, weighted_rms, limit?: {frequency,
 density, limit, ratio, within}}}; frequency[]; density and cumulative_rms {force_x[], force_y[], moment[]}; file with -o.")]
@@ -47,8 +50,8 @@ pub struct SpectrumArguments {
     /// Window that weights the samples: hann or rectangular
     #[arg(long, value_name = "WINDOW", default_value = "hann")]
     window: WindowFunction,
-    /// Write the spectra to this CSV file
-    #[arg(short, long, value_name = "FILE.csv")]
+    /// Write the spectra to this file, .csv or .parquet
+    #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Replace the file if it exists
     #[arg(long)]
@@ -56,11 +59,13 @@ pub struct SpectrumArguments {
     #[command(flatten)]
     settings: Settings,
     #[command(flatten)]
+    strict: Strict,
+    #[command(flatten)]
     format: Format,
 }
 
-#[derive(Serialize)]
-struct Answer {
+#[derive(JsonSchema, Serialize)]
+pub struct Answer {
     #[serde(flatten)]
     of: BaseSpectrum,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -83,7 +88,7 @@ impl SpectrumArguments {
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = scenario(&self.scenario, &self.settings)?;
         if let Some(file) = &self.output {
-            check_output(file, self.force, &["csv"])?;
+            self.format.check_output(file, self.force, &ROW_ENDINGS)?;
         }
         if scenario.base.wheel.is_some() {
             print_message(format!("note: {}: n_B is the moment minus that of the reaction wheel", scenario.name));
@@ -92,13 +97,15 @@ impl SpectrumArguments {
         let mut of = BaseSpectrum::of(&scenario, self.window).map_err(failed)?;
         if let Some(file) = &self.output {
             write(file, self.force, &of)?;
-            print_message(format!("wrote {}", file.display()));
         }
         of.judge(self.limit_force.as_ref(), self.limit_moment.as_ref()).map_err(failed)?;
         let file = self.output.as_ref().map(|file| file.display().to_string());
         let answer = Answer { file, audit_failed: of.fault.clone(), of };
         self.format.print(&answer, |answer| text(&answer.of))?;
-        require_audit(&answer.of.scenario, answer.audit_failed)
+        let mut limits = answer.of.axes.named().into_iter().filter_map(|(_, _, axis)| axis.limit.as_ref());
+        let is_good = limits.all(|limit| limit.within);
+        require_audit(&answer.of.scenario, answer.audit_failed)?;
+        self.strict.require(is_good)
     }
 }
 
@@ -153,18 +160,12 @@ fn text(answer: &BaseSpectrum) -> String {
 }
 
 fn write(file: &Path, force: bool, of: &BaseSpectrum) -> Result<(), Failure> {
-    let failed = |e: csv::Error| match e.into_kind() {
-        csv::ErrorKind::Io(source) => WriteError::Failed { file: file.into(), source }.into(),
-        other => Failure::wrong_input(format!("{}: {other:?}", file.display())),
-    };
-    let mut csv = csv::Writer::from_writer(NewFile::create(file, force)?);
     let heads = of.spectra.named().map(|(name, unit, _)| [format!("{name} {unit}/√Hz"), format!("{name} RMS {unit}")]);
-    let head = ["frequency Hz".to_owned()].into_iter().chain(heads.into_iter().flatten());
-    csv.write_record(head).map_err(failed)?;
+    let head: Vec<String> = ["frequency Hz".to_owned()].into_iter().chain(heads.into_iter().flatten()).collect();
+    let mut rows = Rows::begin(Some(file), force, &head)?;
     for (m, frequency) in of.frequency().iter().enumerate() {
         let columns = of.spectra.named().map(|(_, _, s)| [s.density[m], s.cumulative_rms[m]]);
-        csv.serialize((frequency, columns)).map_err(failed)?;
+        rows.row([*frequency].into_iter().chain(columns.into_iter().flatten()))?;
     }
-    let out = csv.into_inner().map_err(|e| failed(e.into_error().into()))?;
-    Ok(out.finish()?)
+    rows.finish()
 }

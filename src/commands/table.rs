@@ -7,7 +7,7 @@ use stillbase_files::recorded::CaseName;
 use stillbase_files::row_file::ROW_ENDINGS;
 
 use super::failure::Failure;
-use super::output::check_output;
+use super::output::Format;
 use super::rows::Rows;
 use super::simulate::unknown_signal;
 
@@ -36,7 +36,7 @@ impl TableArguments {
     /// Writes a row for each recorded step.
     pub fn run(&self) -> Result<(), Failure> {
         if let Some(file) = &self.output {
-            check_output(file, self.force, &ROW_ENDINGS)?;
+            Format { json: false }.check_output(file, self.force, &ROW_ENDINGS)?;
         }
         let Some(name) = CaseName::of(&self.file) else {
             return Err(Failure::wrong_input("want a recording, FILE.rrd").with_context(&self.file));

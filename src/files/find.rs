@@ -3,7 +3,7 @@
 use std::io::ErrorKind;
 use std::path::Path;
 
-use super::text::read;
+use super::text::{STANDARD_INPUT, read};
 use stillbase_exchange::import::{ImportedMachine, faults, import};
 use stillbase_mechanics::machine::{self, FileError, Machine, MachineError};
 use stillbase_mechanics::sketch::Template;
@@ -70,7 +70,7 @@ fn found(name: &str, folder: Option<&Path>, takes_scenarios: bool) -> Result<Fou
     let other = |file: String| wrong_file(&file, Faults::one(whole_file(IS_SCENARIO)));
     match read(&file) {
         Ok(text) => {
-            let file = file.display().to_string();
+            let file = label(&file.display().to_string()).to_owned();
             if is_model(&text) {
                 let ImportedMachine { machine, notes, .. } = model(&text, &file)?;
                 return Ok(FoundMachine { left_out: notes, ..own(machine.into()) });
@@ -110,6 +110,11 @@ fn known_machine(name: &str) -> Option<Machine> {
 /// If it is no planar machine; the error has all values that are wrong, or the first other fault.
 pub fn model(text: &str, file: &str) -> Result<ImportedMachine, FileError> {
     import(text).map_err(|why| wrong_file(file, faults(text, why)))
+}
+
+/// Returns what messages call a file.
+fn label(file: &str) -> &str {
+    if file == STANDARD_INPUT { "standard input" } else { file }
 }
 
 /// Returns whether a text is a model of another program; TOML cannot begin with this character.
@@ -166,6 +171,7 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
         }
         Err(source) => return Err(ScenarioError::Unreadable { file: shortened(name, 300), source }),
     };
+    let name = label(name);
     if is_model(&text) {
         let ImportedMachine { machine, notes, .. } = model(&text, name)?;
         return Ok(FoundScenario { left_out: notes, ..scenario_for(name, machine.into())? });

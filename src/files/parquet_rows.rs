@@ -3,8 +3,8 @@
 use std::io::Write;
 use std::sync::Arc;
 
-use parquet::basic::{Repetition, Type as Physical};
-use parquet::data_type::{DoubleType, Int64Type};
+use parquet::basic::{LogicalType, Repetition, Type as Physical};
+use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
@@ -20,6 +20,8 @@ pub struct ParquetHead<'a> {
     pub row: &'a str,
     /// Name of a first column of whole numbers, if there is one.
     pub count: Option<&'a str>,
+    /// Names of columns of text, before those of numbers.
+    pub texts: &'a [&'a str],
     /// Names of the other columns, with units.
     pub columns: &'a [String],
     /// Key and value of a note in the file's metadata, if there is one.
@@ -30,6 +32,7 @@ pub struct ParquetHead<'a> {
 pub struct ParquetRows<W: Write + Send> {
     writer: SerializedFileWriter<W>,
     counts: Option<Vec<i64>>,
+    texts: Vec<Vec<ByteArray>>,
     columns: Vec<Vec<f64>>,
     /// Number of rows that wait for their group.
     waiting: usize,
@@ -46,7 +49,12 @@ impl<W: Write + Send> ParquetRows<W> {
         };
         let count = head.count.map(|name| column(name, Physical::INT64));
         let others = head.columns.iter().map(|name| column(name, Physical::DOUBLE));
-        let fields = count.into_iter().chain(others).collect::<Result<Vec<_>, _>>()?;
+        let text = |name: &&str| {
+            let of = Type::primitive_type_builder(name, Physical::BYTE_ARRAY).with_repetition(Repetition::REQUIRED);
+            of.with_logical_type(Some(LogicalType::String)).build().map(Arc::new)
+        };
+        let texts = head.texts.iter().map(text);
+        let fields = count.into_iter().chain(texts).chain(others).collect::<Result<Vec<_>, _>>()?;
         let schema = Type::group_type_builder(head.row).with_fields(fields).build()?;
         // Numbers that hardly repeat do not compress with a dictionary.
         let properties = WriterProperties::builder()
@@ -56,7 +64,8 @@ impl<W: Write + Send> ParquetRows<W> {
             .build();
         let writer = SerializedFileWriter::new(to, Arc::new(schema), Arc::new(properties))?;
         let counts = head.count.map(|_| Vec::new());
-        Ok(Self { writer, counts, columns: vec![Vec::new(); head.columns.len()], waiting: 0 })
+        let texts = vec![Vec::new(); head.texts.len()];
+        Ok(Self { writer, counts, texts, columns: vec![Vec::new(); head.columns.len()], waiting: 0 })
     }
 
     /// Adds a row; `count` is ignored if there is no column for it.
@@ -64,6 +73,20 @@ impl<W: Write + Send> ParquetRows<W> {
     /// # Errors
     /// If a row group cannot be written.
     pub fn row(&mut self, count: i64, values: impl IntoIterator<Item = f64>) -> Result<(), ParquetError> {
+        self.named_row(count, &[], values)
+    }
+
+    /// Adds a row as [`row`](Self::row) does, with a cell for each column of text.
+    ///
+    /// # Errors
+    /// If a row group cannot be written.
+    pub fn named_row(
+        &mut self,
+        count: i64,
+        texts: &[&str],
+        values: impl IntoIterator<Item = f64>,
+    ) -> Result<(), ParquetError> {
+        self.texts.iter_mut().zip(texts).for_each(|(column, text)| column.push(ByteArray::from(*text)));
         if let Some(counts) = &mut self.counts {
             counts.push(count);
         }
@@ -80,6 +103,13 @@ impl<W: Write + Send> ParquetRows<W> {
             column.typed::<Int64Type>().write_batch(counts, None, None)?;
             column.close()?;
             counts.clear();
+        }
+        for texts in &mut self.texts {
+            if let Some(mut column) = group.next_column()? {
+                column.typed::<ByteArrayType>().write_batch(texts, None, None)?;
+                column.close()?;
+            }
+            texts.clear();
         }
         for values in &mut self.columns {
             if let Some(mut column) = group.next_column()? {

@@ -47,16 +47,30 @@ impl RowFile {
     /// # Errors
     /// If its ending is neither `.csv` nor `.parquet`, or if it cannot be created.
     pub fn create(file: &Path, force: bool, of: &str, columns: &[String]) -> Result<Self, RowError> {
+        Self::with_texts(file, force, of, (&[], columns))
+    }
+
+    /// Begins a file as [`create`](Self::create) does, with columns of text before those of numbers.
+    ///
+    /// # Errors
+    /// As [`create`](Self::create).
+    pub fn with_texts(
+        file: &Path,
+        force: bool,
+        of: &str,
+        (texts, columns): (&[&str], &[String]),
+    ) -> Result<Self, RowError> {
         let own = file.extension().unwrap_or_default();
         let kind = ROW_ENDINGS.iter().position(|ending| own.eq_ignore_ascii_case(ending));
         let out = match kind {
             Some(0) => {
                 let mut writer = csv::Writer::from_writer(NewFile::create(file, force)?);
-                writer.write_record(columns).map_err(|e| csv_error(file, e))?;
+                let head = texts.iter().copied().chain(columns.iter().map(String::as_str));
+                writer.write_record(head).map_err(|e| csv_error(file, e))?;
                 Out::Csv(Box::new(writer))
             }
             Some(_) => {
-                let head = ParquetHead { row: of, count: None, columns, note: None };
+                let head = ParquetHead { row: of, count: None, texts, columns, note: None };
                 let begun = ParquetRows::begin(NewFile::create(file, force)?, &head);
                 Out::Parquet(Box::new(begun.map_err(|e| parquet_error(file, e))?))
             }
@@ -70,14 +84,22 @@ impl RowFile {
     /// # Errors
     /// If it cannot be written.
     pub fn row(&mut self, values: &[Option<f64>]) -> Result<(), RowError> {
+        self.named_row(&[], values)
+    }
+
+    /// Writes a row as [`row`](Self::row) does, with a cell for each column of text.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn named_row(&mut self, texts: &[&str], values: &[Option<f64>]) -> Result<(), RowError> {
         match &mut self.out {
             Out::Csv(writer) => {
                 let row = values.iter().map(|x| x.map(|x| x + 0.0));
-                let done = writer.serialize(row.collect::<Vec<_>>());
+                let done = writer.serialize((texts, row.collect::<Vec<_>>()));
                 done.map_err(|e| csv_error(&self.file, e))
             }
             Out::Parquet(rows) => {
-                let done = rows.row(0, values.iter().map(|x| x.unwrap_or(f64::NAN) + 0.0));
+                let done = rows.named_row(0, texts, values.iter().map(|x| x.unwrap_or(f64::NAN) + 0.0));
                 done.map_err(|e| parquet_error(&self.file, e))
             }
         }

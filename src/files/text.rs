@@ -3,14 +3,42 @@
 use std::fs::{self, File, Metadata};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
+use std::sync::OnceLock;
 
 use stillbase_settings::text::MAX_TEXT_BYTES;
 
-/// Reads a plain text file of at most [`MAX_TEXT_BYTES`].
+/// Name of standard input as a file.
+pub const STANDARD_INPUT: &str = "-";
+
+/// What standard input held, or why it could not be read.
+static INPUT: OnceLock<Result<String, (ErrorKind, String)>> = OnceLock::new();
+
+/// Returns all of standard input, at most [`MAX_TEXT_BYTES`]; it is read once.
+///
+/// # Errors
+/// If it is longer, or cannot be read.
+fn standard_input() -> io::Result<String> {
+    let read = || {
+        let mut text = String::new();
+        let read = io::stdin().lock().take(MAX_TEXT_BYTES + 1).read_to_string(&mut text);
+        let length = text.len() as u64;
+        match read {
+            Ok(_) if length > MAX_TEXT_BYTES => Err(too_long(length, MAX_TEXT_BYTES)),
+            read => read.map(|_| text),
+        }
+        .map_err(|e| (e.kind(), e.to_string()))
+    };
+    INPUT.get_or_init(read).clone().map_err(|(kind, why)| io::Error::new(kind, why))
+}
+
+/// Reads a plain text file of at most [`MAX_TEXT_BYTES`], or standard input as `-`.
 ///
 /// # Errors
 /// If it is not such a file, or cannot be read.
 pub fn read(file: &Path) -> io::Result<String> {
+    if file.as_os_str() == STANDARD_INPUT {
+        return standard_input();
+    }
     read_at_most(file, MAX_TEXT_BYTES)
 }
 

@@ -31,6 +31,7 @@ pages! {
     own_motion: "own_motion.md",
     files: "files.md",
     keys: "keys.md",
+    results: "results.md",
     command_line: "command_line.md",
     recording: "recording.md",
     python: "python.md",

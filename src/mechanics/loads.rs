@@ -1,5 +1,6 @@
 //! [`Loads`]: loads on drives and base in a state of motion.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::dynamics::{ExternalLoads, angular_momentum, centre_of_mass, inverse_with_wrench, mass_matrix};
@@ -7,7 +8,7 @@ use super::machine::Inertia;
 use super::planar::{DriveAngles, PerDrive};
 
 /// Loads on drives and base in a state of motion, Eqs (1) to (6).
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Loads {
     /// Mass matrix H_kl, kg m².
     pub mass_matrix: Vec<Vec<f64>>,

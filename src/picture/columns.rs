@@ -4,7 +4,7 @@ use crate::notation::{NameOrder, Notation, NumberFormat};
 use stillbase_study::comparison::{Comparison, ComparisonEntry, DESIGN_COLUMNS, SUMMARY_COLUMNS, SummaryColumn};
 
 /// Keys of the columns that need a base that moves.
-const OF_MOVING_BASE: [&str; 2] = ["base_shift", "base_tilt"];
+const OF_MOVING_BASE: [&str; 2] = ["base_shift", "base_angle"];
 
 /// A column in the user's units and names.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,8 +32,10 @@ impl RunColumn {
     fn past_wheel(at: usize, column: &SummaryColumn, notation: Notation, has_wheel: bool) -> Self {
         let of = Self::of(at, column, notation);
         let [head, meaning] = match column.key {
-            "peak_moment" => [["peak moment felt", "peak n felt"], ["largest moment on the base, past a wheel"; 2]],
-            "rms_moment" => [["RMS moment felt", "rms n felt"], ["its root mean square"; 2]],
+            "peak_felt_moment" => {
+                [["peak moment felt", "peak n felt"], ["largest moment on the base, past a wheel"; 2]]
+            }
+            "rms_felt_moment" => [["RMS moment felt", "rms n felt"], ["its root mean square"; 2]],
             "moment_impulse" => [["moment felt, impulse", "∫|n felt|dt"], ["its impulse"; 2]],
             _ => return of,
         };

@@ -1,5 +1,6 @@
 //! Why points cannot be reached at a pose constant b, or have no b in common, and a correction.
 
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 use thiserror::Error;
 
@@ -101,12 +102,13 @@ impl RoundedCorrection {
 }
 
 /// A move of one point after which all points have a b in common.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct PointCorrection {
     /// Index of the point, counted from 0; serialised from 1.
     #[serde(serialize_with = "from_one")]
     pub point: usize,
     /// New place of the point, m.
+    #[schemars(with = "[f64; 2]")]
     pub to: Vector,
     /// Length of the move, m.
     pub distance: f64,

@@ -333,7 +333,10 @@ fn properties(
         all = all.with_component::<Text>(name, words(&text));
     }
     if let Some(moment) = verdict.past_wheel {
-        all = all.with_component::<Scalar>("peak_moment_past_wheel", number(moment));
+        // Its older name stays beside it until version 0.3.
+        for name in ["peak_felt_moment", "peak_moment_past_wheel"] {
+            all = all.with_component::<Scalar>(name, number(moment));
+        }
     }
     if let Some(price) = price {
         all = all

@@ -20,6 +20,7 @@ mod task;
 mod value;
 mod wider;
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Serialize, Serializer};
 use toml::Table;
 
@@ -39,7 +40,7 @@ pub use refused::{ProposalsQuery, RefusedChange, proposals, proposals_for_settin
 pub use value::proposals_for_values;
 
 /// A way out: after it, what was refused can be done.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Proposal {
     /// What it does, as the label of a button: `take b = 2.2158 rad`.
     pub text: String,
@@ -49,17 +50,22 @@ pub struct Proposal {
 }
 
 /// How a proposal is carried out.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub enum WayOut {
     /// By settings, as files and edits state them; serialised as `--set` takes them: `task.b=2.2158`.
     #[serde(rename = "set", serialize_with = "as_typed")]
-    Set(Table),
+    Set(#[schemars(with = "Vec<String>")] Table),
     /// By edits of a session that change no setting, such as a drag; one after the other.
     #[serde(rename = "edits")]
-    Edits(Vec<Edit>),
+    Edits(#[schemars(schema_with = "edits_schema")] Vec<Edit>),
     /// By another command line in place of the refused one, as a shell takes it.
     #[serde(rename = "command")]
     Command(String),
+}
+
+/// Edits are as a scenario file states them.
+fn edits_schema(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": "array", "items": { "type": "object" } })
 }
 
 fn as_typed<S: Serializer>(change: &Table, serializer: S) -> Result<S::Ok, S::Error> {

@@ -1,5 +1,6 @@
 //! [`Fault`]: something that is wrong in a file, with its place and an example; [`Faults`]: all of a file.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::number::counted;
@@ -8,7 +9,7 @@ use super::number::counted;
 pub const MAX_FAULTS: usize = 20;
 
 /// Something that is wrong in a file.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Fault {
     /// Line, counted from 1; `None` for a fault of the whole file.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -17,6 +17,7 @@ pub mod number;
 #[doc(hidden)]
 pub mod quantity;
 pub mod range;
+pub mod results;
 pub mod spelling;
 #[doc(hidden)]
 pub mod stated;

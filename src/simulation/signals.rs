@@ -6,6 +6,7 @@ use stillbase_mechanics::machine::{Drive, Inertia, Machine};
 use stillbase_mechanics::planar::MAX_DRIVES;
 use stillbase_query::QuickQuery;
 use stillbase_settings::number::subscript;
+use stillbase_settings::results;
 
 /// A number in a [`Frame`], with its name and unit.
 #[derive(Clone, Debug)]
@@ -128,119 +129,108 @@ impl QuickQuery for SignalsOf {
     }
 }
 
+/// Returns symbol, label and unit of a signal from the dictionary of results.
+fn described(path: &str) -> [&'static str; 3] {
+    results::signal(path).map_or(["", "", "1"], |row| [row.symbol, row.meaning, row.unit])
+}
+
 /// Returns every signal of a machine, in a fixed order.
 pub fn signals(machine: &Machine) -> Vec<Signal> {
     let mut table = Vec::new();
     let n = machine.drives();
-    type Row = (&'static str, &'static str, &'static str, &'static str, fn(&Frame, usize) -> f64);
+    type Row = (&'static str, fn(&Frame, usize) -> f64);
     let per_drive: [Row; 7] = [
-        ("torque", "τ", "torque of drive", "N m", |f, k| f.torque[k]),
-        ("angle", "q", "angle of drive", "rad", |f, k| f.q[k]),
-        ("rate", "q̇", "rate of drive", "rad/s", |f, k| f.qd[k]),
-        ("acceleration", "q̈", "acceleration of drive", "rad/s²", |f, k| f.qdd[k]),
-        ("reference", "q ref", "reference of drive", "rad", |f, k| f.q_reference[k]),
-        ("error", "e", "tracking error of drive", "rad", |f, k| f.q_reference[k] - f.relative(k)),
-        ("friction", "τ f", "friction in the bearing of drive", "N m", |f, k| f.friction[k]),
+        ("torque/*", |f, k| f.torque[k]),
+        ("angle/*", |f, k| f.q[k]),
+        ("rate/*", |f, k| f.qd[k]),
+        ("acceleration/*", |f, k| f.qdd[k]),
+        ("reference/*", |f, k| f.q_reference[k]),
+        ("error/*", |f, k| f.q_reference[k] - f.relative(k)),
+        ("friction/*", |f, k| f.friction[k]),
     ];
-    for (path, symbol, label, unit, value) in per_drive {
+    for (path, value) in per_drive {
+        let [symbol, label, unit] = described(path);
         for k in 0..n {
             let drive = &machine.spec().drives[k];
             let name = &drive.name;
             table.push(Signal {
-                path: format!("{path}/{name}"),
-                symbol: format!("{symbol}{}", subscript(k + 1)),
-                label: format!("{label} {name}"),
+                path: path.replace('*', name),
+                symbol: symbol.replace('*', &subscript(k + 1)),
+                label: label.replace('*', name),
                 unit,
                 drive: Some(k),
-                limit: LIMITED.iter().find(|(group, ..)| *group == path).and_then(|(.., limit)| limit(drive)),
+                limit: LIMITED
+                    .iter()
+                    .find(|(group, ..)| path.strip_suffix("/*") == Some(group))
+                    .and_then(|(.., limit)| limit(drive)),
                 quantity: Quantity::PerIndex(k, value),
             });
         }
     }
+    let [symbol, label, unit] = described("joint/*");
     for (i, angle) in machine.angles().iter().enumerate() {
         table.push(Signal {
             path: format!("joint/{}", angle.name),
-            symbol: format!("a{}", subscript(i + 1)),
-            label: format!("relative joint angle {}", angle.name),
-            unit: "rad",
+            symbol: symbol.replace('*', &subscript(i + 1)),
+            label: label.replace('*', &angle.name),
+            unit,
             drive: Some(angle.to),
             limit: None,
             quantity: Quantity::PerIndex(i, |f, i| f.a[i]),
         });
     }
-    type Single = (&'static str, &'static str, &'static str, &'static str, fn(&Frame) -> f64);
+    type Single = (&'static str, fn(&Frame) -> f64);
     let whole: &[Single] = &[
-        ("pose/b", "b", "pose constant", "rad", |f| f.b),
-        ("pose/b_reference", "b ref", "pose constant aimed at", "rad", |f| f.b_reference),
-        ("moment/total", "n_B", "turning moment on the base", "N m", |f| f.base_moment()),
-        ("moment/dynamic", "n_B dyn", "turning moment on the base, from motion", "N m", |f| f.wrench.dynamic.moment),
-        ("moment/felt", "n felt", "turning moment that the base feels: n_B less a wheel's", "N m", |f| {
-            f.net_base_moment()
-        }),
-        ("moment/wheel", "τ_w", "torque of the reaction wheel", "N m", |f| f.wheel.torque),
-        ("moment/rms", "n rms", "root mean square of the moment so far", "N m", |f| f.totals.moment_rms()),
-        ("moment/static", "n_B stat", "turning moment on the base, from weight", "N m", |f| {
-            f.wrench.static_part.moment
-        }),
-        ("force/dynamic", "|f_B|", "force on the base, from motion", "N", |f| f.wrench.dynamic.force.norm()),
-        ("force/rms", "f rms", "root mean square of |f_B| so far", "N", |f| f.totals.force_rms()),
-        ("force/dynamic_x", "f_Bx", "force on the base along x, from motion", "N", |f| f.wrench.dynamic.force.re),
-        ("force/dynamic_y", "f_By", "force on the base along y, from motion", "N", |f| f.wrench.dynamic.force.im),
-        ("force/static_x", "f_Bx stat", "force on the base along x, from weight", "N", |f| {
-            f.wrench.static_part.force.re
-        }),
-        ("force/static_y", "f_By stat", "force on the base along y, from weight", "N", |f| {
-            f.wrench.static_part.force.im
-        }),
-        ("momentum/x", "p_x", "linear momentum along x", "kg m/s", |f| f.momentum.re),
-        ("momentum/y", "p_y", "linear momentum along y", "kg m/s", |f| f.momentum.im),
-        ("angular_momentum/about_b", "h_B", "angular momentum about the origin", "kg m²/s", |f| f.angular_momentum),
-        ("com/x", "x_CM", "centre of mass, x", "m", |f| f.com.re),
-        ("com/y", "y_CM", "centre of mass, y", "m", |f| f.com.im),
-        ("tip/x", "x", "end effector, x", "m", |f| f.end_effector.re),
-        ("tip/y", "y", "end effector, y", "m", |f| f.end_effector.im),
-        ("target/x", "x target", "target, x", "m", |f| f.target.at.re),
-        ("target/y", "y target", "target, y", "m", |f| f.target.at.im),
-        ("base/x", "x_B", "base, x", "m", |f| f.base.at.re),
-        ("base/y", "y_B", "base, y", "m", |f| f.base.at.im),
-        ("attitude/base", "θ", "attitude of the base", "rad", |f| f.base.angle),
-        ("attitude_rate/base", "θ̇", "rate of the base", "rad/s", |f| f.base_rate),
-        ("base_velocity/x", "ẋ_B", "velocity of the base, x", "m/s", |f| f.base_velocity.re),
-        ("base_velocity/y", "ẏ_B", "velocity of the base, y", "m/s", |f| f.base_velocity.im),
-        ("wheel/rate", "Ω", "rate of the reaction wheel", "rad/s", |f| f.wheel.rate),
-        ("impulse/force", "∫|f|dt", "impulse of |f_B| so far", "N s", |f| f.totals.force_impulse),
-        ("angular_impulse/moment", "∫|n|dt", "impulse of the moment so far", "N m s", |f| f.totals.moment_impulse),
-        ("payload/held", "held", "1 while the payload unknown to the model is held", "1", |f| {
-            f64::from(u8::from(f.loaded))
-        }),
-        ("wheel_saturated/now", "sat", "1 while the wheel cannot give what is wanted", "1", |f| {
-            f64::from(u8::from(f.wheel.saturated))
-        }),
-        ("energy/kinetic", "T", "kinetic energy", "J", |f| f.kinetic),
-        ("energy/motors", "W motors", "energy that motors took, none given back", "J", |f| f.totals.energy),
-        ("audit_energy/balance", "ΔE − W", "energy gained less work done, plus losses", "J", |f| f.audit.energy),
-        ("audit_momentum/linear", "p + ∫f dt", "momentum and impulse on the base", "kg m/s", |f| f.audit.momentum),
-        ("audit_angular/about_o", "h + ∫n dt", "angular momentum and its impulse", "kg m²/s", |f| f.audit.angular),
-        ("audit_closure/worst", "gap", "worst gap in a pin that closes a loop", "m", |f| f.audit.closure),
-        ("audit_step/worst", "h err", "error from the size of the step, as a share of the peaks", "1", |f| {
-            f.audit.step
-        }),
-        ("audit_plane/b", "b − b ref", "distance from the plane", "rad", |f| f.audit.plane),
-        ("dexterity/det", "|det|", "|det| of ∂(x, y)/∂(a₁, a₂) on the plane", "m²", |f| f.dexterity.det),
-        ("dexterity/manipulability", "w", "manipulability √det J J*", "m²", |f| f.dexterity.manipulability),
-        (
-            "torque_per_force/worst",
-            "|τ|/|F|",
-            "torque of all drives for the worst unit force at the end effector",
-            "N m/N",
-            |f| f.dexterity.worst_torque_per_force,
-        ),
-        ("transmission/least", "min |sin|", "least |sin(q_k − q_l)|, 0 at a change point", "1", |f| f.transmission),
-        ("reactionless/now", "reactionless", "1 while the base feels nothing", "1", |f| {
-            f64::from(u8::from(f.is_base_unloaded()))
-        }),
+        ("pose/b", |f| f.b),
+        ("pose/b_reference", |f| f.b_reference),
+        ("moment/total", |f| f.base_moment()),
+        ("moment/dynamic", |f| f.wrench.dynamic.moment),
+        ("moment/felt", |f| f.net_base_moment()),
+        ("moment/wheel", |f| f.wheel.torque),
+        ("moment/rms", |f| f.totals.moment_rms()),
+        ("moment/static", |f| f.wrench.static_part.moment),
+        ("force/dynamic", |f| f.wrench.dynamic.force.norm()),
+        ("force/rms", |f| f.totals.force_rms()),
+        ("force/dynamic_x", |f| f.wrench.dynamic.force.re),
+        ("force/dynamic_y", |f| f.wrench.dynamic.force.im),
+        ("force/static_x", |f| f.wrench.static_part.force.re),
+        ("force/static_y", |f| f.wrench.static_part.force.im),
+        ("momentum/x", |f| f.momentum.re),
+        ("momentum/y", |f| f.momentum.im),
+        ("angular_momentum/about_b", |f| f.angular_momentum),
+        ("com/x", |f| f.com.re),
+        ("com/y", |f| f.com.im),
+        ("tip/x", |f| f.end_effector.re),
+        ("tip/y", |f| f.end_effector.im),
+        ("target/x", |f| f.target.at.re),
+        ("target/y", |f| f.target.at.im),
+        ("base/x", |f| f.base.at.re),
+        ("base/y", |f| f.base.at.im),
+        ("attitude/base", |f| f.base.angle),
+        ("attitude_rate/base", |f| f.base_rate),
+        ("base_velocity/x", |f| f.base_velocity.re),
+        ("base_velocity/y", |f| f.base_velocity.im),
+        ("wheel/rate", |f| f.wheel.rate),
+        ("impulse/force", |f| f.totals.force_impulse),
+        ("angular_impulse/moment", |f| f.totals.moment_impulse),
+        ("payload/held", |f| f64::from(u8::from(f.loaded))),
+        ("wheel_saturated/now", |f| f64::from(u8::from(f.wheel.saturated))),
+        ("energy/kinetic", |f| f.kinetic),
+        ("energy/motors", |f| f.totals.energy),
+        ("audit_energy/balance", |f| f.audit.energy),
+        ("audit_momentum/linear", |f| f.audit.momentum),
+        ("audit_angular/about_o", |f| f.audit.angular),
+        ("audit_closure/worst", |f| f.audit.closure),
+        ("audit_step/worst", |f| f.audit.step),
+        ("audit_plane/b", |f| f.audit.plane),
+        ("dexterity/det", |f| f.dexterity.det),
+        ("dexterity/manipulability", |f| f.dexterity.manipulability),
+        ("torque_per_force/worst", |f| f.dexterity.worst_torque_per_force),
+        ("transmission/least", |f| f.transmission),
+        ("reactionless/now", |f| f64::from(u8::from(f.is_base_unloaded()))),
     ];
-    for &(path, symbol, label, unit, value) in whole {
+    for &(path, value) in whole {
+        let [symbol, label, unit] = described(path);
         table.push(Signal {
             path: path.into(),
             symbol: symbol.into(),
@@ -258,40 +248,45 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
 /// Returns the signals of pin forces (if they can be determined), tilting moments, transmission and change points.
 fn inside(machine: &Machine) -> Vec<Signal> {
     let mut table = Vec::new();
-    let mut add = |path: String, symbol: String, label: String, unit, drive, quantity| {
-        table.push(Signal { path, symbol, label, unit, drive, limit: None, quantity });
+    // The names stand for `*` in path, symbol and label.
+    let mut add = |path: &str, names: [&str; 3], drive, quantity| {
+        let [symbol, label, unit] = described(path);
+        table.push(Signal {
+            path: path.replace('*', names[0]),
+            symbol: symbol.replace('*', names[1]),
+            label: label.replace('*', names[2]),
+            unit,
+            drive,
+            limit: None,
+            quantity,
+        });
     };
     if let Ok(joints) = Joints::of(machine) {
         for (i, pin) in joints.pins().iter().enumerate().take(MAX_FRAME_PINS) {
-            let path = format!("pin/{}", pin.name);
-            let (symbol, label) = (format!("F {}", pin.name), format!("force of pin {}", pin.name));
             let drive = Some(machine.resolved_links()[pin.to].drive);
-            add(path, symbol, label, "N", drive, Quantity::PerIndex(i, |f, i| f.inside.size(i)));
+            add("pin/*", [&pin.name; 3], drive, Quantity::PerIndex(i, |f, i| f.inside.size(i)));
         }
         let worst = Quantity::Whole(|f| f.inside.largest_force);
-        add("pin/worst".into(), "F worst".into(), "largest force of a pin".into(), "N", None, worst);
+        add("pin/worst", [""; 3], None, worst);
     }
     let tilt = |value: fn(&Frame) -> f64| Quantity::Whole(value);
     let (x, y) = (tilt(|f| f.inside.tilt.total().re), tilt(|f| f.inside.tilt.total().im));
-    for (axis, value) in [("x", x), ("y", y)] {
-        let label = format!("moment about {axis} that tilts the base");
-        add(format!("tilt/{axis}"), format!("n_{axis}"), label, "N m", None, value);
+    for (path, value) in [("tilt/x", x), ("tilt/y", y)] {
+        add(path, [""; 3], None, value);
     }
     let drives = &machine.spec().drives;
     for (k, l) in Inertia::pairs(drives.len()) {
         let (a, b) = (&drives[k].name, &drives[l].name);
         let pair = if a.chars().count() + b.chars().count() == 2 { format!("{a}{b}") } else { format!("{a}_{b}") };
-        let symbol = format!("|sin(q{} − q{})|", subscript(k + 1), subscript(l + 1));
-        let label = format!("transmission of drives {a} and {b}, 0 at a change point");
+        let angles = format!("q{} − q{}", subscript(k + 1), subscript(l + 1));
         let value = Quantity::PerIndex(MAX_DRIVES * k + l, |f, pair| {
             joint_forces::pair_transmission(&f.q.units(), pair / MAX_DRIVES, pair % MAX_DRIVES)
         });
-        add(format!("transmission/{pair}"), symbol, label, "1", None, value);
+        add("transmission/*", [&pair, &angles, &format!("{a} and {b}")], None, value);
     }
     if drives.len() > 1 {
-        let label = "least |q_k − q_l − mπ|: how far the nearest change point is".into();
         let value = Quantity::Whole(|f| joint_forces::nearest_change_point(&f.q, &f.qd).map_or(0.0, |c| c.distance));
-        add("change_point/distance".into(), "Δq".into(), label, "rad", None, value);
+        add("change_point/distance", [""; 3], None, value);
     }
     table
 }

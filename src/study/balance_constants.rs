@@ -1,12 +1,13 @@
 //! [`BalanceConstants`]: the constants in the balance conditions of a machine.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use stillbase_mechanics::machine::Inertia;
 
 /// Constants of the balance conditions. Complex coefficients are represented by their real parts; pairs have the order
 /// (1,2), (1,3), (2,3) …
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct BalanceConstants {
     /// Coefficients g_k of the first moment, kg m.
     pub gamma_coefficients: Vec<f64>,

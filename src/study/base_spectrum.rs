@@ -1,7 +1,8 @@
 //! [`BaseSpectrum`]: spectra of the force and moment on the base over a run, and their comparison with jitter limits.
 
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
-use serde::ser::{SerializeStruct, Serializer};
+use std::borrow::Cow;
 use thiserror::Error;
 
 use super::spectrum::{JitterLimit, JitterVerdict, Spectrum, SpectrumError, WindowFunction};
@@ -10,7 +11,7 @@ use stillbase_session::{Refusal, base_loads};
 use stillbase_settings::number::fixed;
 
 /// One value for each component of the base wrench.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct PerAxis<T> {
     /// Value for the dynamic f_Bx.
     pub force_x: T,
@@ -33,7 +34,7 @@ impl<T> PerAxis<T> {
 }
 
 /// RMS values of one component, and its comparison with a limit.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct AxisStatistics {
     /// Unit of the samples and of both RMS values.
     pub unit: &'static str,
@@ -47,7 +48,8 @@ pub struct AxisStatistics {
 }
 
 /// Spectra of the base wrench over a run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(into = "StatedSpectrum")]
 pub struct BaseSpectrum {
     /// Name of the scenario.
     pub scenario: String,
@@ -155,18 +157,42 @@ fn beyond(limit: &JitterLimit, spectrum: &Spectrum) -> NoBaseSpectrum {
     }
 }
 
-impl Serialize for BaseSpectrum {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut all = serializer.serialize_struct("BaseSpectrum", 9)?;
-        all.serialize_field("scenario", &self.scenario)?;
-        all.serialize_field("window", &self.window)?;
-        all.serialize_field("samples", &self.samples)?;
-        all.serialize_field("step", &self.step)?;
-        all.serialize_field("resolution", &self.resolution())?;
-        all.serialize_field("axes", &self.axes)?;
-        all.serialize_field("frequency", self.frequency())?;
-        all.serialize_field("density", &self.spectra.map(|spectrum| &spectrum.density))?;
-        all.serialize_field("cumulative_rms", &self.spectra.map(|spectrum| &spectrum.cumulative_rms))?;
-        all.end()
+/// How a spectrum is serialised.
+#[derive(JsonSchema, Serialize)]
+struct StatedSpectrum {
+    scenario: String,
+    window: WindowFunction,
+    samples: usize,
+    step: f64,
+    resolution: f64,
+    axes: PerAxis<AxisStatistics>,
+    frequency: Vec<f64>,
+    density: PerAxis<Vec<f64>>,
+    cumulative_rms: PerAxis<Vec<f64>>,
+}
+
+impl From<BaseSpectrum> for StatedSpectrum {
+    fn from(of: BaseSpectrum) -> Self {
+        Self {
+            resolution: of.resolution(),
+            frequency: of.frequency().to_vec(),
+            density: of.spectra.map(|spectrum| spectrum.density.clone()),
+            cumulative_rms: of.spectra.map(|spectrum| spectrum.cumulative_rms.clone()),
+            scenario: of.scenario,
+            window: of.window,
+            samples: of.samples,
+            step: of.step,
+            axes: of.axes,
+        }
+    }
+}
+
+impl JsonSchema for BaseSpectrum {
+    fn schema_name() -> Cow<'static, str> {
+        StatedSpectrum::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        StatedSpectrum::json_schema(generator)
     }
 }

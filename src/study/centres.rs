@@ -1,6 +1,7 @@
 //! Balance by moving the links' centres of mass, with a report: [`design_centres`] places them all anew, and
 //! [`rebalance_report`] changes the machine as little as possible.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::balance_constants::BalanceConstants;
@@ -12,7 +13,7 @@ use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_planning::Motion;
 
 /// Report on a machine whose centres of mass were placed by Eq. (10).
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct DesignReport {
     /// l_c of each link, m.
     pub com: Vec<f64>,
@@ -25,7 +26,7 @@ pub struct DesignReport {
 }
 
 /// Report on a machine that was balanced with the least change.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct RebalanceReport {
     /// Parameters that may change, in the order of the request.
     pub changes: Vec<RebalanceChange>,
@@ -42,7 +43,7 @@ pub struct RebalanceReport {
 }
 
 /// One parameter that may change.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct RebalanceChange {
     /// Key, such as `link.5.com`.
     pub key: String,

@@ -1,6 +1,7 @@
 //! [`balance_by_weights`]: balances a machine by counterweights, optionally with optimised link lengths, and reports on
 //! it.
 
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 use thiserror::Error;
 
@@ -53,7 +54,7 @@ pub enum NoCounterweights {
 }
 
 /// Report on a machine with counterweights.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct CounterweightReport {
     /// Comparison with the machine without counterweights.
     #[serde(flatten)]
@@ -63,6 +64,7 @@ pub struct CounterweightReport {
     pub torque: Option<f64>,
     /// New counterweights; fixed ones stay in addition.
     #[serde(serialize_with = "all_numbers")]
+    #[schemars(with = "Vec<CounterweightNumbers>")]
     pub weights: Vec<Counterweight>,
     /// Counterweights of the given machine that were removed first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -97,31 +99,42 @@ pub struct CounterweightReport {
     pub balance: BalanceConstants,
 }
 
+/// The numbers of a counterweight.
+#[derive(JsonSchema, Serialize)]
+pub struct CounterweightNumbers<'a> {
+    /// The link that carries it.
+    pub link: &'a str,
+    /// Mass, kg.
+    pub mass: f64,
+    /// Place along the link, m.
+    pub at: f64,
+    /// Place across the link, m.
+    pub across: f64,
+    /// Radius of a disc or a ring, m; 0 for a point.
+    pub radius: f64,
+    /// Inner radius of a ring, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inner_radius: Option<f64>,
+    /// Whether it is half of a ring.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub half: Option<bool>,
+    /// Length of a box, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub length: Option<f64>,
+    /// Width of a box, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub width: Option<f64>,
+}
+
 /// Serialises counterweights with every number, also those that a machine file omits where they are 0.
 ///
 /// # Errors
 /// If the serializer fails.
 pub fn all_numbers<S: Serializer>(weights: &[Counterweight], serializer: S) -> Result<S::Ok, S::Error> {
-    #[derive(Serialize)]
-    struct Numbers<'a> {
-        link: &'a str,
-        mass: f64,
-        at: f64,
-        across: f64,
-        radius: f64,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        inner_radius: Option<f64>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        half: Option<bool>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        length: Option<f64>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        width: Option<f64>,
-    }
     serializer.collect_seq(weights.iter().map(|weight| {
         let Counterweight { mass, at, across, radius, inner_radius, half, length, width, .. } = *weight;
         let some = |size: f64| (size > 0.0).then_some(size);
-        Numbers {
+        CounterweightNumbers {
             link: &weight.link,
             mass,
             at,
@@ -136,7 +149,7 @@ pub fn all_numbers<S: Serializer>(weights: &[Counterweight], serializer: S) -> R
 }
 
 /// Optimised lengths, and the reliability of the result.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct LengthsReport {
     /// Name and length, m.
     pub lengths: Vec<(String, f64)>,
@@ -156,7 +169,7 @@ pub struct LengthsReport {
 }
 
 /// A rotor whose inertia or gear ratio was optimised; the other value is that of the machine.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct ChosenRotor {
     /// Name of the drive.
     pub drive: String,

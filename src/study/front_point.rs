@@ -1,5 +1,6 @@
 //! [`FrontPoint`]: measures of one machine of a Pareto front, beyond its mass and inertia.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use stillbase_mechanics::counterweights::{PlacedCounterweights, PlacementTolerance, worst_residual};
@@ -12,7 +13,7 @@ use stillbase_planning::pose_space::plane_area;
 use super::measures::instants;
 
 /// Measures of one machine of a Pareto front.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct FrontPoint {
     /// Added mass, kg.
     pub added_mass: f64,

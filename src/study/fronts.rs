@@ -1,7 +1,8 @@
 //! [`Fronts`]: Pareto fronts of added mass against inertia, for several machines under the same bounds.
 
-use serde::ser::SerializeMap;
-use serde::{Serialize, Serializer};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::Serialize;
+use std::borrow::Cow;
 
 use super::front_point::FrontPoint;
 use super::workshop::{CutMachine, CutRequest, NoCut};
@@ -69,7 +70,8 @@ pub struct FrontsRequest {
 }
 
 /// Pareto front of one of several machines.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(into = "StatedFront")]
 pub struct MachineFront {
     /// Name of the machine.
     pub name: String,
@@ -93,18 +95,37 @@ impl MeasuredFront {
     }
 }
 
-impl Serialize for MachineFront {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("machine", &self.name)?;
-        match &self.outcome {
+/// How a front is serialised.
+#[derive(JsonSchema, Serialize)]
+struct StatedFront {
+    machine: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    front: Option<Vec<[f64; 2]>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    front_points: Option<Vec<FrontPoint>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    refused: Option<String>,
+}
+
+impl From<MachineFront> for StatedFront {
+    fn from(MachineFront { name: machine, outcome }: MachineFront) -> Self {
+        match outcome {
             Ok(measured) => {
-                map.serialize_entry("front", &measured.measures())?;
-                map.serialize_entry("front_points", &measured.points)?;
+                let front = Some(measured.measures());
+                Self { machine, front, front_points: Some(measured.points), refused: None }
             }
-            Err(why) => map.serialize_entry("refused", &why.to_string())?,
+            Err(why) => Self { machine, front: None, front_points: None, refused: Some(why.to_string()) },
         }
-        map.end()
+    }
+}
+
+impl JsonSchema for MachineFront {
+    fn schema_name() -> Cow<'static, str> {
+        StatedFront::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        StatedFront::json_schema(generator)
     }
 }
 

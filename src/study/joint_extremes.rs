@@ -1,6 +1,7 @@
 //! [`JointExtremes`]: extremes over a run of the pin forces, of the distance to change points, and of the moments that
 //! tilt the base.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use stillbase_mechanics::joint_forces::{AxialMoments, Joints, JointsError, MAX_FRAME_PINS, Pin, PinPeak};
@@ -9,7 +10,7 @@ use stillbase_mechanics::planar::cross;
 use stillbase_simulation::frame::Frame;
 
 /// An extreme value and its time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Extreme {
     /// The value.
     pub value: f64,
@@ -26,7 +27,7 @@ impl Extreme {
 }
 
 /// Load of a pin over a run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct PinLoad {
     /// Name of the pin.
     pub name: String,
@@ -45,7 +46,7 @@ pub struct PinLoad {
 }
 
 /// Two drives whose closed loops, such as parallelograms, become flat where the drives align.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Transmission {
     /// Names of the drives.
     pub drives: [String; 2],
@@ -62,7 +63,7 @@ pub struct Transmission {
 }
 
 /// Moments that tilt the base.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct TiltExtremes {
     /// Whether all heights are zero, so that the planar model has no tilting moments.
     pub flat: bool,
@@ -78,7 +79,7 @@ pub struct TiltExtremes {
 }
 
 /// Loads of the joints over a run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct JointReport {
     /// Name of the scenario.
     pub scenario: String,

@@ -1,5 +1,6 @@
 //! [`Measures`]: cost and benefit of balancing, by the measures of the literature.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use stillbase_mechanics::dynamics::{ExternalLoads, inverse_with_wrench};
@@ -8,7 +9,7 @@ use stillbase_mechanics::planar::{PerDrive, Vector};
 use stillbase_planning::Motion;
 
 /// Comparison of a machine with the bare machine, from which it was made.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Measures {
     /// M − M_bare, kg.
     pub added_mass: f64,
@@ -25,7 +26,7 @@ pub struct Measures {
 
 /// Ratios of root mean squares over time to those of the bare machine, in the same motion of the drives. 0 if nothing
 /// remains, 1 if nothing changes; `None` if the bare machine's value is zero.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Beta {
     /// Ratio of the dynamic |f_B|.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -1,10 +1,11 @@
 //! Tables of the parts of links: what each brings, and what overrules them.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_mechanics::machine::{LinkNumber, Machine, PartBody, PartSource, PlaneBody, Shape};
 
 /// A part or a lump of a link, or all of a link together.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct PartRow {
     /// The link.
     pub link: String,

@@ -1,5 +1,6 @@
 //! [`PlanSummary`]: cost of a planned task, or the obstacle to the plan with changes that would make it feasible.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use stillbase_mechanics::machine::Inertia;
@@ -14,7 +15,7 @@ use stillbase_session::scenario::Scenario;
 use stillbase_session::{Proposal, Refusal, Run, proposals};
 
 /// Summary of a task.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct PlanSummary {
     /// Whether the task can be planned.
     pub feasible: bool,
@@ -39,7 +40,7 @@ pub struct PlanSummary {
 }
 
 /// Cost of a planned motion, if it is followed exactly.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct PlanCost {
     /// Duration T, s.
     pub duration: f64,
@@ -86,7 +87,7 @@ pub struct PlanCost {
 }
 
 /// Cost of a change of b.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct PriceOfB {
     /// Change of b, rad.
     pub delta_b: f64,
@@ -98,7 +99,7 @@ pub struct PriceOfB {
 }
 
 /// Obstacle to a plan, and changes that would make the task feasible.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Obstacle {
     /// Point at which the path is blocked.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -1,5 +1,6 @@
 //! [`PoseMeasures`]: the poses that reach a point at a given b, with their kinematic measures.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use stillbase_mechanics::kinematics::least_transmission;
@@ -9,7 +10,7 @@ use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::reactionless::{PlaneMap, PlanePoint};
 
 /// A pose and its kinematic measures.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct PoseMeasures {
     /// Absolute drive angles, unwrapped, rad.
     pub q: Vec<f64>,

@@ -23,12 +23,13 @@
 use std::str::FromStr;
 
 use realfft::RealFftPlanner;
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_settings::number::counted;
 use thiserror::Error;
 
 /// Window function of the samples before the transform.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum WindowFunction {
     /// Hann window ½ (1 − cos(2π n/N)), periodic: little leakage to distant frequencies.
@@ -91,7 +92,7 @@ pub enum SpectrumError {
 pub const MIN_SPECTRUM_SAMPLES: usize = 8;
 
 /// A one-sided spectrum of one signal.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Spectrum {
     /// f_m, Hz.
     pub frequency: Vec<f64>,
@@ -176,7 +177,7 @@ impl Spectrum {
 }
 
 /// Comparison of a spectrum with its limit, at the frequency with the largest ratio.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct JitterVerdict {
     /// Frequency, Hz.
     pub frequency: f64,

@@ -1,5 +1,6 @@
 //! [`WorkspaceReport`]: boundary, area and interior curves of the reactionless workspace at a b, and given points.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::pose_measures::PoseMeasures;
@@ -9,7 +10,7 @@ use stillbase_planning::pose_space::{Outline, Planes, PoseSpace};
 use stillbase_planning::reactionless::{Boundary, ChangeCurve, DRIVE_PAIRS, PlaneMap};
 
 /// Region that the end effector reaches at constant b.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct WorkspaceReport {
     /// Area, m²; 0 if the workspace is a curve.
     pub area: f64,
@@ -41,7 +42,7 @@ pub struct WorkspaceReport {
 }
 
 /// Curves and areas inside the workspace of three drives.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct WorkspaceInterior {
     /// Whether a fold runs through the interior.
     pub interior_singularity: bool,
@@ -62,7 +63,7 @@ pub struct WorkspaceInterior {
 }
 
 /// Curve of change points of two drives.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct ChangePointCurve {
     /// The two drives, from 1.
     pub pair: [usize; 2],
@@ -73,7 +74,7 @@ pub struct ChangePointCurve {
 }
 
 /// Part of the workspace that poses with `half_turns` π ≤ q_l − q_k ≤ (`half_turns` + 1) π reach.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct AreaOfSide {
     /// The two drives, from 1.
     pub pair: [usize; 2],
@@ -86,7 +87,7 @@ pub struct AreaOfSide {
 }
 
 /// A point, and the poses that reach it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct PointInWorkspace {
     /// The point, m.
     pub point: [f64; 2],

@@ -18,6 +18,8 @@ mod reach;
 #[cfg(feature = "record")]
 mod recorded;
 mod results;
+mod schema;
+mod scripts;
 mod simulate;
 mod study;
 mod trim;

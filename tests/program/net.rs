@@ -28,15 +28,15 @@ fn kept() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/net/answers.json")
 }
 
-fn lines() -> Vec<&'static str> {
+pub fn lines() -> Vec<&'static str> {
     LINES.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#')).collect()
 }
 
 /// What a program answers to a command: its status, standard output and standard error.
 #[derive(Debug, PartialEq)]
-struct Answer {
+pub struct Answer {
     status: Option<i32>,
-    printed: String,
+    pub printed: String,
     said: String,
 }
 
@@ -91,7 +91,7 @@ b = 2.5
 "#;
 
 /// What it answers to the commands of a line, one after another in a folder.
-fn asked(program: &Path, line: &str, folder: &Path) -> Vec<Answer> {
+pub fn asked(program: &Path, line: &str, folder: &Path) -> Vec<Answer> {
     let answer = |command: &str| {
         let mut words: Vec<&str> = command.split_whitespace().collect();
         if !["machines", "headless"].contains(&words[0]) {
@@ -105,7 +105,10 @@ fn asked(program: &Path, line: &str, folder: &Path) -> Vec<Answer> {
 }
 
 /// Does something with each line, on all cores.
-fn each_line<T: Send>(lines: Vec<&'static str>, what: impl Fn(usize, &str) -> T + Sync) -> BTreeMap<&'static str, T> {
+pub fn each_line<T: Send>(
+    lines: Vec<&'static str>,
+    what: impl Fn(usize, &str) -> T + Sync,
+) -> BTreeMap<&'static str, T> {
     let (next, done) = (AtomicUsize::new(0), Mutex::new(BTreeMap::new()));
     thread::scope(|scope| {
         for _ in 0..thread::available_parallelism().map_or(2, usize::from) {

@@ -116,7 +116,7 @@ fn compare_tells_ways_apart() {
     let runs = got["runs"].as_array().expect("runs");
     let ways: Vec<&str> = runs.iter().filter_map(|r| r["way"].as_str()).collect();
     assert_eq!(ways, ["reactionless", "straight-line", "other-pose", "wheel", "slowly"]);
-    assert!((runs[1]["peak_moment"].as_f64().expect("a number") - 1.0891).abs() < 1e-4);
+    assert!((runs[1]["peak_felt_moment"].as_f64().expect("a number") - 1.0891).abs() < 1e-4);
     assert!(runs[0]["reactionless"] == json!(true) && runs[0]["wheel_rate"].is_null());
     let folder = Folder::new("cli");
     let file = word(folder.path("table.csv"));
@@ -125,10 +125,16 @@ fn compare_tells_ways_apart() {
     );
     let table = fs::read_to_string(&file).expect("written");
     assert_eq!(table.lines().count(), 7);
-    assert!(table.lines().next().expect("a head").starts_with("scenario,time s,peak_moment N m,"));
+    assert!(
+        table
+            .lines()
+            .next()
+            .expect("a head")
+            .starts_with("scenario,reactionless,refused,duration s,peak_felt_moment N m,")
+    );
     assert!(table.contains("is outside the reactionless workspace"), "{table}");
     fails(&["compare", "least-reaction", "-o", &file], 2, &["table.csv"]);
-    fails(&["compare", "case-3", "-o", "table.txt"], 2, &[".csv or .rrd"]);
+    fails(&["compare", "case-3", "-o", "table.txt"], 2, &[".csv or .parquet or .rrd"]);
 }
 
 /// Machines side by side: what balance costs and brings, and nothing where that makes no sense.
@@ -442,7 +448,8 @@ fn compare_has_the_ways_of_any_number_of_drives() {
         // An arm that nobody has balanced has no reactionless way.
         let want = if name == "scara" { vec![json!("reactionless")] } else { Vec::new() };
         assert_eq!(refused, want.iter().collect::<Vec<_>>(), "{name}");
-        let peak = |way: &str| runs.iter().find(|run| run["way"] == way).and_then(|run| run["peak_moment"].as_f64());
+        let peak =
+            |way: &str| runs.iter().find(|run| run["way"] == way).and_then(|run| run["peak_felt_moment"].as_f64());
         assert!(peak("straight-line").expect("it runs") > 0.1, "{name}");
         assert!(name == "scara" || peak("reactionless").expect("it runs") < 1e-6, "{name}");
         assert!(name != "four-drive" || peak("other-pose").expect("it runs") > 0.1);

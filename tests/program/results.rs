@@ -104,7 +104,7 @@ fn a_report_is_one_well_formed_page() {
     assert!(text.contains(&format!("Mass {} kg", fixed(machine["mass"].as_f64().expect("kg"), 3))));
     assert!(text.contains("plant.payload.mass") && text.contains("0.2"), "the setting");
     for way in object(&["compare", "case-1", "--set", "plant.payload.mass=0.2"])["runs"].as_array().expect("runs") {
-        if let Some(peak) = way["peak_moment"].as_f64() {
+        if let Some(peak) = way["peak_felt_moment"].as_f64() {
             assert!(text.contains(&fixed(peak, 4)) || text.contains(&fixed(peak, 3)), "{way}");
         }
     }

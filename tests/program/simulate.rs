@@ -8,7 +8,7 @@ fn simulate_prints_every_signal() {
     assert_eq!(keys(&got), ["scenario", "signals", "time", "units", "verdict"]);
     let peaks = ["peak_base_force", "peak_base_moment", "peak_torque"];
     let sums = ["rms_base_force", "rms_base_moment", "steps"];
-    let all: Vec<&str> = ["audit", "base_shift", "base_tilt", "miss", "moved"]
+    let all: Vec<&str> = ["audit", "base_angle", "base_shift", "base_tilt", "miss", "moved"]
         .into_iter()
         .chain(peaks[..2].iter().copied())
         .chain(["peak_tilt", peaks[2], "reactionless", "remarks"])
@@ -124,7 +124,7 @@ fn verdicts_are_said_in_full() {
     assert!(line.contains("machine: balanced · plan: changes b by 0.0"), "{line}");
     let statements = &got["verdict"]["statements"];
     assert_eq!(["machine", "plan", "run"].map(|of| statements[of]["lamp"].clone()), ["good", "bad", "good"]);
-    assert!(got["verdict"]["peak_moment_past_wheel"].as_f64() < Some(1e-9), "{}", got["verdict"]);
+    assert!(got["verdict"]["peak_felt_moment"].as_f64() < Some(1e-9), "{}", got["verdict"]);
     assert!(got["verdict"]["peak_base_moment"].as_f64() > Some(1.0), "{}", got["verdict"]);
     let fall = object(&["simulate", "case-3", "--set", "base.kind=free", "--set", "gravity=0,-9.81"]);
     assert_eq!(fall["verdict"]["reactionless"], true);
@@ -192,7 +192,7 @@ fn plants_bases_and_control_are_set_by_key() {
         ["base.kind=free", "base.com=0.1,0.05", "control.kp=400,300,200", "plant.friction.viscous=0.01,0.02,0.03"];
     let settings: Vec<&str> = good.iter().flat_map(|s| ["--set", s]).collect();
     let got = object(&[&["simulate", "case-1", "--every", "1000"][..], &settings].concat());
-    assert!(got["verdict"]["base_tilt"].as_f64().expect("a number") > 0.01);
+    assert!(got["verdict"]["base_angle"].as_f64().expect("a number") > 0.01);
     for (pair, word) in [
         ("base.kind=floating", "floating"),
         ("base.mass=-1", "base.mass) is -1"),

@@ -187,7 +187,7 @@ fn a_comparison_follows_sorts_and_keeps() {
     assert_eq!(titles[5..], ["case-2", "case-2 2"]);
     assert_eq!(comparison.shown().map(|(i, _)| i).collect::<Vec<_>>(), [1, 5, 6]);
 
-    let column = SUMMARY_COLUMNS.iter().position(|c| c.key == "peak_moment").expect("a column");
+    let column = SUMMARY_COLUMNS.iter().position(|c| c.key == "peak_felt_moment").expect("a column");
     let values = |comparison: &Comparison| -> Vec<f64> {
         let value = |i: usize| {
             comparison.entries()[i].outcome.as_ref().ok().and_then(|r| (SUMMARY_COLUMNS[column].value)(&r.summary))

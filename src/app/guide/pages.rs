@@ -41,6 +41,7 @@ pages! {
     OwnMotion: "own_motion",
     Files: "files",
     Keys: "keys",
+    Results: "results",
     CommandLine: "command_line",
     Recording: "recording",
     Python: "python",

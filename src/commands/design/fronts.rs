@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_mechanics::machine::Machine;
 use stillbase_query::answer_now;
@@ -14,8 +15,8 @@ use super::DesignArguments;
 use super::brief::report_brief;
 use super::weighed::{FRONT_HEADINGS, cut_failure, front_cells, report_removed};
 
-#[derive(Serialize)]
-struct Answer {
+#[derive(JsonSchema, Serialize)]
+pub struct Answer {
     fronts: Vec<MachineFront>,
 }
 

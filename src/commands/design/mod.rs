@@ -16,7 +16,9 @@ use super::failure::Failure;
 use super::input::{MachineArgument, choice, task_run};
 use super::new_machine::NewMachine;
 use super::output::{Format, TextTable};
+use super::strict::Strict;
 use brief::report_brief;
+pub use fronts::Answer as FrontsAnswer;
 use kept::RebalanceArguments;
 use stillbase_planning::Motion;
 use stillbase_session::scenario::{DesignBrief, MachineFile};
@@ -79,6 +81,8 @@ pub struct DesignArguments {
     #[command(flatten)]
     new_machine: NewMachine,
     #[command(flatten)]
+    strict: Strict,
+    #[command(flatten)]
     format: Format,
 }
 
@@ -104,7 +108,7 @@ impl DesignArguments {
         if self.rebalance.keep {
             return self.keep(&machine, &design, motion, (&penalty, &by));
         }
-        self.new_machine.check()?;
+        self.new_machine.check(&self.format)?;
         let (designed, answer) = design_centres(&machine, &penalty, motion)?;
         self.new_machine.save(&designed, &design, format!("{}, balanced with {by}", machine.name()))?;
         self.format.print(&answer, |answer| {
@@ -125,7 +129,7 @@ impl DesignArguments {
         motion: Option<&Motion>,
         (penalty, by): (&[f64], &str),
     ) -> Result<(), Failure> {
-        self.new_machine.check()?;
+        self.new_machine.check(&self.format)?;
         let brief = self.rebalance.brief(machine, design)?;
         let concerns = |key: &str| key.starts_with("fixed.") || key.starts_with("hold.");
         report_brief(self.machine.name(), design, &brief, concerns);
@@ -136,7 +140,7 @@ impl DesignArguments {
 
     /// Prints counterweights and their measures, and writes the machine that carries them.
     fn weigh(&self, machine: &Machine, design: &DesignBrief, motion: Option<&Motion>) -> Result<(), Failure> {
-        self.new_machine.check()?;
+        self.new_machine.check(&self.format)?;
         let brief = self.weighing.brief(machine, design);
         report_brief(self.machine.name(), design, &brief, |key| self.weighing.asks_for(key));
         let (weighed, answer) = self.weighing.run(machine, &brief, motion)?;

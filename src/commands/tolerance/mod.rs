@@ -15,11 +15,12 @@ use stillbase_study::tolerance::{
     Distributions, Ensemble, EnsemblePart, Mode, PartReport, SampleOutcome, ToleranceError, Yields,
 };
 
-use self::report::{MergedParts, ToleranceAnswer};
-use crate::exit::print_message;
+pub use self::report::{MergedParts, ToleranceAnswer};
+use crate::exit::{is_quiet, print_message};
 use crate::failure::Failure;
 use crate::input::{DEFAULT_SCENARIO, Settings, overlay_for_study};
 use crate::output::{Format, check_output};
+use crate::strict::Strict;
 use stillbase_settings::number::counted;
 
 /// Sample machines within tolerances, and evaluate their reactions on the base
@@ -40,14 +41,14 @@ Examples:
 A file has one row a machine: its number, its parameters, peak |n_B|, peak dynamic |f_B|, and the root mean square of
 both over time. Its head holds a checksum of it all, which --merge looks at. Machine i depends on the seed and on i only, so shards put together are the whole, exactly.
 
-JSON keys: scenario, simulated, samples, shard [from, to), seed, motion_time; parameters [{key, unit, nominal, spread,
-deviation, mean_deviation, cut}]; nominal {peak_moment, peak_force, rms_moment, rms_force}; peak_moment, peak_force,
-rms_moment, rms_force {mean, deviation, quantiles {levels, values}, histogram {edges, counts}}; yield {moment, force,
+JSON keys: scenario, simulated, samples, shard [from, to), seed, duration; parameters [{key, unit, nominal, spread,
+deviation, mean_deviation, cut}]; nominal {peak_base_moment, peak_base_force, rms_base_moment, rms_base_force};
+the same four {mean, deviation, quantiles {levels, values}, histogram {edges, counts}}; yield {moment, force,
 both: {limit, good, of, share, interval}}; shares {parameters [{key, unit, deviation, moment_slope, force_slope,
 moment_share, force_share}], moment_first_order, force_first_order}; bands {time, samples, moment, force} with percentiles
 5, 25, 50, 75, 95; agreement {tolerance, sampled_tolerance; moment_mean, moment_deviation, force_rms, force_mean, force_deviation, sampling:
 {worst, time, share}}; against_tracking with --simulate; file with -o. With --merge: file, samples, seed, the four
-distributions, yield.")]
+distributions, yield. Older names stay until version 0.3: `stillbase results older`.")]
 pub struct ToleranceArguments {
     /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file; by default case-3
     #[arg(value_name = "SCENARIO")]
@@ -93,6 +94,8 @@ pub struct ToleranceArguments {
     #[command(flatten)]
     settings: Settings,
     #[command(flatten)]
+    strict: Strict,
+    #[command(flatten)]
     format: Format,
 }
 
@@ -131,6 +134,12 @@ impl From<ShardError> for Failure {
     }
 }
 
+/// Returns whether every machine is within the limits that are given.
+fn all_within(yields: &Yields) -> bool {
+    let Yields { moment, force, both } = yields;
+    [moment, force, both].into_iter().flatten().all(|limit| limit.count.good == limit.count.total)
+}
+
 impl ToleranceArguments {
     /// Samples and evaluates the machines, or merges parts.
     pub fn run(&self) -> Result<(), Failure> {
@@ -155,7 +164,8 @@ impl ToleranceArguments {
             yields: Yields::of(&outcomes, self.limit_moment, self.limit_force),
         };
         print_message(format!("wrote {}", answer.file));
-        self.format.print(&answer, MergedParts::text)
+        self.format.print(&answer, MergedParts::text)?;
+        self.strict.require(all_within(&answer.yields))
     }
 
     /// Returns the tolerances of the scenario, overridden by those of the command line.
@@ -231,7 +241,8 @@ impl ToleranceArguments {
         if let Some(file) = &answer.file {
             print_message(format!("wrote {file}"));
         }
-        self.format.print(&answer, |answer| report::text(&answer.report))
+        self.format.print(&answer, |answer| report::text(&answer.report))?;
+        self.strict.require(all_within(&answer.report.yields))
     }
 
     /// Evaluates the machines of a range and writes them if requested. Returns their outcomes and, if these are
@@ -278,7 +289,7 @@ impl ToleranceArguments {
     }
 
     fn progress(&self, machines: u64) -> ProgressBar {
-        if !self.simulate {
+        if !self.simulate || is_quiet() {
             return ProgressBar::hidden();
         }
         let style = ProgressStyle::with_template("{bar:30} {human_pos} of {human_len} machines, {eta} left");

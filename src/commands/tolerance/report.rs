@@ -1,5 +1,6 @@
 //! Results of a study, as JSON and as text.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
 use stillbase_study::tolerance::{Distribution, Distributions, LimitYield, PartReport, SampleOutcome, Share, Yields};
@@ -43,7 +44,7 @@ fn yields_table(yields: &Yields) -> Option<TextTable> {
 }
 
 /// Results of merged parts.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 pub struct MergedParts {
     /// The file that was written.
     pub file: String,
@@ -69,7 +70,7 @@ impl MergedParts {
 }
 
 /// Results of a study.
-#[derive(Serialize)]
+#[derive(JsonSchema, Serialize)]
 pub struct ToleranceAnswer {
     /// Report on its machines.
     #[serde(flatten)]
@@ -93,7 +94,7 @@ pub fn text(report: &PartReport) -> String {
         true => counted(report.samples, "machine"),
         false => format!("machines {from} to {} of {}", to - 1, report.samples),
     };
-    let (seed, instants, time) = (report.seed, report.bands.time.len(), fixed(report.motion_time, 3));
+    let (seed, instants, time) = (report.seed, report.bands.time.len(), fixed(report.duration, 3));
     let mut text = format!(
         "{} · {which}, {mode}, seed {seed}, varied in {}, {instants} instants in {time} s\n\n{}",
         report.scenario,

@@ -26,6 +26,7 @@ use super::input::{self, Settings, read};
 use super::new_machine::named_after;
 use super::output::{Format, check_output};
 use super::sites::{range, sites};
+use super::strict::Strict;
 
 /// Identify the unbalance of a built machine from measured base forces, and find the smallest change that corrects it
 ///
@@ -90,6 +91,8 @@ pub struct TrimArguments {
     #[arg(long)]
     force: bool,
     #[command(flatten)]
+    strict: Strict,
+    #[command(flatten)]
     format: Format,
 }
 
@@ -142,9 +145,10 @@ impl TrimArguments {
         found.doubt.iter().for_each(|doubt| print_message(format!("note: {doubt}")));
         let Found { report, adopted, correction } = found.outcome.map_err(as_failure)?;
         self.format.print(&report, |report| answer::text(report, &machine))?;
+        let judged = self.strict.require(report.numbers.iter().all(|number| !number.off));
         let mended = correction.map_err(Failure::no_answer)?;
         if self.output.is_none() && self.identified.is_none() {
-            return Ok(());
+            return judged;
         }
         let (built, misses) = identified_machine(&machine, &adopted).map_err(Failure::no_answer)?;
         let scale = |miss: &Vector| miss.norm();
@@ -170,7 +174,7 @@ impl TrimArguments {
             _ => {}
         }
         files.iter().for_each(|(file, _)| print_message(format!("wrote {}", file.display())));
-        Ok(())
+        judged
     }
 
     /// Returns the permitted changes: of the present counterweights and the named parameters, or by new counterweights

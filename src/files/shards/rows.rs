@@ -231,7 +231,7 @@ impl Groups {
         let file = out.path().to_owned();
         let study = head.study.to_string();
         let note = Some([STUDY_KEY, &study]);
-        let named = ParquetHead { row: "machine", count: Some("sample"), columns: &head.columns, note };
+        let named = ParquetHead { row: "machine", count: Some("sample"), texts: &[], columns: &head.columns, note };
         let rows = ParquetRows::begin(out, &named).map_err(parquet_failure(&file))?;
         Ok(Self { rows, file })
     }

@@ -1,12 +1,13 @@
 //! [`over_payloads`]: residuals of balance over a range of payloads.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::balance::Condition;
 use crate::machine::{Inertia, Machine, MachineError};
 
 /// Largest residuals of (7) and of (8) with one payload.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct PayloadResidual {
     /// Mass of the payload, kg.
     pub payload: f64,

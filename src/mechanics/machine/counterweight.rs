@@ -1,5 +1,6 @@
 //! [`Counterweight`]: a body on a link that balances it, and its shape.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::parts::PlaneBody;
@@ -11,7 +12,7 @@ use crate::planar::{Vector, circle, equal_area, unit};
 ///
 /// Its sizes give its shape: a disc has a radius, a ring an inner radius too, half a ring `half = true`, a box a length
 /// and a width. Without sizes it is a point.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Counterweight {
     /// The link that carries it.

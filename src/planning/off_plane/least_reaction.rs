@@ -13,7 +13,9 @@
 //!
 //! b′ = 0 at both ends. In between, n_B is continuous, and linear between equally spaced nodes.
 
-use serde::ser::{Serialize, SerializeMap, Serializer};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::Serialize;
+use std::borrow::Cow;
 use thiserror::Error;
 
 use crate::curves::curve::CurvePoint;
@@ -239,7 +241,8 @@ impl LeastReaction {
 }
 
 /// Comparison of three ways to make one motion of the end effector from one pose.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(into = "StatedVerdicts")]
 pub struct Verdicts {
     /// Constant b: no reaction, if feasible.
     pub fixed: FixedB,
@@ -250,21 +253,46 @@ pub struct Verdicts {
 }
 
 /// Serialised as the feasibility of constant b, the other base moments, and whether minimum norm keeps the limits.
-impl Serialize for Verdicts {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("fixed_b_serves", &(self.fixed == FixedB::Serves))?;
-        if let FixedB::Leaves { u, .. } = &self.fixed {
-            map.serialize_entry("fixed_b_until", u)?;
+#[derive(JsonSchema, Serialize)]
+struct StatedVerdicts {
+    fixed_b_serves: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fixed_b_until: Option<f64>,
+    least_peak: f64,
+    least_rms: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    minimum_norm_peak: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    minimum_norm_rms: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    minimum_norm_keeps_limits: Option<bool>,
+}
+
+impl From<Verdicts> for StatedVerdicts {
+    fn from(of: Verdicts) -> Self {
+        let norm = of.minimum_norm.ok();
+        Self {
+            fixed_b_serves: of.fixed == FixedB::Serves,
+            fixed_b_until: match of.fixed {
+                FixedB::Leaves { u, .. } => Some(u),
+                FixedB::Serves => None,
+            },
+            least_peak: of.least.peak,
+            least_rms: of.least.rms,
+            minimum_norm_peak: norm.as_ref().map(|norm| norm.reaction.peak),
+            minimum_norm_rms: norm.as_ref().map(|norm| norm.reaction.rms),
+            minimum_norm_keeps_limits: norm.as_ref().map(|norm| norm.keeps_limits),
         }
-        map.serialize_entry("least_peak", &self.least.peak)?;
-        map.serialize_entry("least_rms", &self.least.rms)?;
-        if let Ok(norm) = &self.minimum_norm {
-            map.serialize_entry("minimum_norm_peak", &norm.reaction.peak)?;
-            map.serialize_entry("minimum_norm_rms", &norm.reaction.rms)?;
-            map.serialize_entry("minimum_norm_keeps_limits", &norm.keeps_limits)?;
-        }
-        map.end()
+    }
+}
+
+impl JsonSchema for Verdicts {
+    fn schema_name() -> Cow<'static, str> {
+        StatedVerdicts::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        StatedVerdicts::json_schema(generator)
     }
 }
 

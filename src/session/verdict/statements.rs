@@ -14,6 +14,7 @@
 
 mod moving;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Verdict;
@@ -34,7 +35,7 @@ const B_TOLERANCE: f64 = 1e-6;
 const MIN_SHOWN_OFF_RAD: f64 = 5e-4;
 
 /// Outcome of a statement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StatusLight {
     /// The condition for a base without reactions is met.
@@ -57,7 +58,7 @@ impl StatusLight {
 }
 
 /// One statement.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Statement {
     /// Outcome.
     #[serde(rename = "lamp")]
@@ -242,7 +243,7 @@ pub(crate) fn changes_b(run: &Run) -> bool {
 }
 
 /// The statements on a session.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Statements {
     /// Whether the machine is balanced.
     pub machine: Statement,

@@ -1,8 +1,10 @@
 //! [`DesignMeasures`]: a machine's mass, inertia and balance residuals, and its comparison with the machine of another
 //! run.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use super::summary::{SummaryColumn, column};
@@ -187,5 +189,21 @@ impl Serialize for DesignMeasures {
 impl DesignMeasures {
     fn beta(&self) -> Option<Beta> {
         self.comparison?.beta
+    }
+}
+
+impl JsonSchema for DesignMeasures {
+    fn schema_name() -> Cow<'static, str> {
+        "DesignMeasures".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let mut schema = json_schema!({ "type": "object", "properties": { "apart": { "type": "string" } } });
+        let properties = schema.get_mut("properties").and_then(|properties| properties.as_object_mut());
+        properties.into_iter().for_each(|properties| {
+            let number = || json_schema!({ "type": "number" }).to_value();
+            properties.extend(DESIGN_COLUMNS.iter().map(|column| (column.key.to_owned(), number())));
+        });
+        schema
     }
 }

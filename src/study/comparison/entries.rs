@@ -3,6 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
+use super::summary::OLD_NAMES;
 use super::{
     Alternative, BaselineMachines, ComparedRun, DESIGN_COLUMNS, DesignMeasures, SUMMARY_COLUMNS, alternatives,
 };
@@ -271,6 +272,8 @@ impl Comparison {
     /// Sorts by the column with a key; the greatest value comes first if `descending`. An unknown key sorts by none.
     pub fn sort_by_key(&mut self, key: &str, descending: bool) {
         self.version = Arc::default();
+        // Tables that are kept may still have an older name.
+        let key = OLD_NAMES.iter().find(|(_, old)| *old == key).map_or(key, |(name, _)| name);
         self.sort = column_keys().position(|known| known == key).map(|column| (column, descending));
     }
 

@@ -1,7 +1,11 @@
 //! [`ComparisonTable`]: results of several runs, without their frames.
 
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
+use super::summary::{OLD_NAMES, SummaryColumn};
 use super::{ComparedRun, DesignCandidate, DesignMeasures, SUMMARY_COLUMNS, Summary};
 use stillbase_session::scenario::Scenario;
 
@@ -91,7 +95,9 @@ impl Serialize for ComparisonRow {
             Ok(summary) => {
                 for column in SUMMARY_COLUMNS {
                     if let Some(value) = (column.value)(summary) {
-                        map.serialize_entry(column.key, &value)?;
+                        for name in names(&column) {
+                            map.serialize_entry(name, &value)?;
+                        }
                     }
                 }
                 map.serialize_entry("reactionless", &summary.reactionless)?;
@@ -100,11 +106,57 @@ impl Serialize for ComparisonRow {
                     map.serialize_entry("design", design)?;
                 }
                 if let Some(fault) = &summary.fault {
+                    map.serialize_entry("audit_failed", fault)?;
                     map.serialize_entry("audit", fault)?;
                 }
             }
             Err(why) => map.serialize_entry("refused", why)?,
         }
         map.end()
+    }
+}
+
+/// Returns the name of a result, and the one it had before, if any.
+fn names(column: &SummaryColumn) -> impl Iterator<Item = &'static str> {
+    let old = OLD_NAMES.iter().filter(move |(name, _)| *name == column.key).map(|(_, old)| *old);
+    std::iter::once(column.key).chain(old)
+}
+
+impl JsonSchema for ComparisonTable {
+    fn schema_name() -> Cow<'static, str> {
+        "ComparisonTable".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        <Vec<ComparisonRow>>::json_schema(generator)
+    }
+}
+
+impl JsonSchema for ComparisonRow {
+    fn schema_name() -> Cow<'static, str> {
+        "ComparisonRow".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let mut schema = json_schema!({
+            "type": "object",
+            "properties": {
+                "scenario": { "type": "string" },
+                "way": { "type": "string" },
+                "reactionless": { "type": "boolean" },
+                "verdict": { "type": "string" },
+                "design": generator.subschema_for::<DesignMeasures>(),
+                "audit_failed": { "type": "string" },
+                "audit": { "type": "string" },
+                "refused": { "type": "string" },
+            },
+            "required": ["scenario"],
+        });
+        let properties = schema.get_mut("properties").and_then(|properties| properties.as_object_mut());
+        properties.into_iter().for_each(|properties| {
+            let number = || json_schema!({ "type": "number" }).to_value();
+            properties.extend(SUMMARY_COLUMNS.iter().flat_map(names).map(|name| (name.to_owned(), number())));
+        });
+        schema
     }
 }

@@ -52,7 +52,7 @@ pub struct Summary {
 /// A column of a table.
 #[derive(Clone, Copy, Debug)]
 pub struct SummaryColumn<T = Summary> {
-    /// Key in JSON.
+    /// Name of the result.
     pub key: &'static str,
     /// Header of the column, in words.
     pub term: &'static str,
@@ -72,21 +72,21 @@ pub struct SummaryColumn<T = Summary> {
 
 /// Columns of the table, in order.
 pub const SUMMARY_COLUMNS: [SummaryColumn; 15] = [
-    column(["time", "time", "T", "time of the motion"], "s", 3, 14, |s| Some(s.time)),
-    column(["peak_moment", "peak moment", "peak n", "largest moment that the base feels"], "N m", 4, 24, |s| {
+    column(["duration", "time", "T", "time of the motion"], "s", 3, 14, |s| Some(s.time)),
+    column(["peak_felt_moment", "peak moment", "peak n", "largest moment that the base feels"], "N m", 4, 24, |s| {
         Some(s.peak_moment)
     }),
-    column(["rms_moment", "RMS moment", "rms n", "its root mean square"], "N m", 4, 10, |s| Some(s.rms_moment)),
+    column(["rms_felt_moment", "RMS moment", "rms n", "its root mean square"], "N m", 4, 10, |s| Some(s.rms_moment)),
     column(["moment_impulse", "moment impulse", "∫|n|dt", "its impulse"], "N m s", 4, 8, |s| Some(s.moment_impulse)),
-    column(["peak_force", "peak force", "peak f", "largest force on the base, from motion"], "N", 4, 23, |s| {
+    column(["peak_base_force", "peak force", "peak f", "largest force on the base, from motion"], "N", 4, 23, |s| {
         Some(s.peak_force)
     }),
-    column(["rms_force", "RMS force", "rms f", "its root mean square"], "N", 4, 6, |s| Some(s.rms_force)),
+    column(["rms_base_force", "RMS force", "rms f", "its root mean square"], "N", 4, 6, |s| Some(s.rms_force)),
     column(["force_impulse", "force impulse", "∫|f|dt", "its impulse"], "N s", 4, 5, |s| Some(s.force_impulse)),
     column(["base_shift", "base shift", "shift", "largest displacement of the base"], "m", 5, 19, |s| {
         Some(s.base_shift)
     }),
-    column(["base_tilt", "base angle", "angle", "largest angle of the base"], "rad", 5, 18, |s| Some(s.base_tilt)),
+    column(["base_angle", "base angle", "angle", "largest angle of the base"], "rad", 5, 18, |s| Some(s.base_tilt)),
     column(["miss", "miss", "miss", "distance of the end effector from its target at the end"], "m", 5, 15, |s| {
         Some(s.miss)
     }),
@@ -101,7 +101,7 @@ pub const SUMMARY_COLUMNS: [SummaryColumn; 15] = [
         s.saturated_at
     }),
     column(
-        ["peak_arm_moment", "peak arm moment", "peak n_B", "largest moment of the arm, before the wheel"],
+        ["peak_base_moment", "peak arm moment", "peak n_B", "largest moment of the arm, before the wheel"],
         "N m",
         4,
         13,
@@ -109,12 +109,16 @@ pub const SUMMARY_COLUMNS: [SummaryColumn; 15] = [
     ),
 ];
 
-impl SummaryColumn {
-    /// Returns the name in a CSV file, which calls the angle of the base an angle, not a tilt.
-    pub fn name(&self) -> &'static str {
-        if self.key == "base_tilt" { "base_angle" } else { self.key }
-    }
-}
+/// Results that JSON still has under an older name, until version 0.3: the name, and the older one.
+pub(super) const OLD_NAMES: [(&str, &str); 7] = [
+    ("duration", "time"),
+    ("peak_felt_moment", "peak_moment"),
+    ("rms_felt_moment", "rms_moment"),
+    ("peak_base_force", "peak_force"),
+    ("rms_base_force", "rms_force"),
+    ("base_angle", "base_tilt"),
+    ("peak_base_moment", "peak_arm_moment"),
+];
 
 pub(super) const fn column<T>(
     [key, term, head, meaning]: [&'static str; 4],

@@ -1,5 +1,6 @@
 //! [`StatedEquations`]: equations with their values as plain data for JSON, with symbols as plain text.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::equation::{Equality, Equation, Origin, Term};
@@ -8,7 +9,7 @@ use super::symbol::plain;
 use stillbase_mechanics::machine::Machine;
 
 /// Equations of a machine at an instant.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct StatedEquations {
     /// Name of the machine.
     pub machine: String,
@@ -32,7 +33,7 @@ pub struct StatedEquations {
 }
 
 /// An equation in words and numbers.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct StatedEquation {
     /// Number in the paper: `7`, `A1`.
     pub number: &'static str,
@@ -55,7 +56,7 @@ pub struct StatedEquation {
 }
 
 /// One equality.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct StatedLine {
     /// Axis, drive or pair of drives; empty if the equation has one line.
     pub name: String,
@@ -74,7 +75,7 @@ pub struct StatedLine {
 }
 
 /// A term of a sum.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct StatedTerm {
     /// Symbol, with its sign.
     pub symbol: String,
@@ -85,7 +86,7 @@ pub struct StatedTerm {
 }
 
 /// Contribution of one body to a term.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct StatedPart {
     /// Name of the body.
     pub from: String,

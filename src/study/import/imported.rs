@@ -1,5 +1,6 @@
 //! [`ImportedMotion`]: the reactions of a given motion, and the motion proposed in its place.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::given::GivenMotion;
@@ -10,7 +11,7 @@ use stillbase_session::scenario::Scenario;
 use stillbase_settings::number::fixed;
 
 /// The reactions of a given motion, and the motion proposed in its place.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, JsonSchema, Serialize)]
 pub struct ImportedMotion {
     /// Name of the machine.
     pub machine: String,
@@ -42,6 +43,7 @@ pub struct ImportedMotion {
     pub feasible: bool,
     /// Reason that there is no proposal.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<String>")]
     pub reason: Option<Advice>,
     /// The nearest motion without reactions.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -1,5 +1,6 @@
 //! Assessment of motions of a machine by their reactions, and the check that a proposed motion has none.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::given::GivenMotion;
@@ -21,7 +22,7 @@ use stillbase_session::{Refusal, Run, replay_while};
 const SIMULATION_SHARE: f64 = 0.8;
 
 /// Assessment of a motion that is followed exactly.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct MotionEffects {
     /// Largest |n_B|, N m.
     pub peak_base_moment: f64,
@@ -58,7 +59,7 @@ pub struct MotionEffects {
 }
 
 /// A proposed motion, simulated.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Proposal {
     /// Method by which it was found: `same-tip`, `turned`, `on-plane` or `as-given`.
     pub way: &'static str,

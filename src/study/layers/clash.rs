@@ -1,5 +1,6 @@
 //! [`Clash`]: two solids that meet at the heights that a machine has.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::contact::Contact;
@@ -13,7 +14,7 @@ const SAME_HEIGHT: f64 = 1e-9;
 const NAMED: usize = 4;
 
 /// Two solids that meet at the heights that a machine has.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Clash {
     /// Name of the first: a solid of a link.
     pub a: String,

@@ -1,5 +1,6 @@
 //! [`Clearance`]: how near solids of the same height come to each other along a task.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_exchange::cut::Cut;
 use stillbase_exchange::solids::Axle;
@@ -13,7 +14,7 @@ use super::way::TaskPoses;
 const SAME_HEIGHT: f64 = 1e-9;
 
 /// The least distance in plan between solids whose heights overlap.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Clearance {
     /// Name of the first: a solid of a link.
     pub a: String,

@@ -1,5 +1,6 @@
 //! [`Contact`]: two solids that overlap in plan, where and in which pose, and how many layers must lie between them.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_exchange::cut::Cut;
 use stillbase_exchange::solids::{Axle, LinkSolid, axles, link_solids};
@@ -19,7 +20,7 @@ const WORK: usize = 2_000_000;
 const WORK_OF_TASK: usize = 40_000_000;
 
 /// Two solids that overlap in plan in some pose, so that they cannot lie in one layer.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Contact {
     /// Name of the first: a solid of a link.
     pub a: String,

@@ -1,5 +1,6 @@
 //! [`LayersReport`]: the layers of a machine, their heights, and the tilt that is left.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_mechanics::machine::Machine;
 
@@ -8,7 +9,7 @@ use super::clearance::Clearance;
 use super::contact::Contact;
 
 /// Layer of a link.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct LinkLayer {
     /// Name of the link.
     pub link: String,
@@ -19,7 +20,7 @@ pub struct LinkLayer {
 }
 
 /// A quantity before and after a change of heights.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Change {
     /// At the heights of the given machine.
     pub before: f64,
@@ -28,7 +29,7 @@ pub struct Change {
 }
 
 /// An order of the links of a machine in layers.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, JsonSchema, Serialize)]
 pub struct LayersReport {
     /// The layer of each link, in the order of the links.
     pub layers: Vec<LinkLayer>,

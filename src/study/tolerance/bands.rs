@@ -5,6 +5,7 @@
 //! expansion where the nominal f_B is zero. So these two and all percentiles are sampled. [`Agreement`] compares
 //! first-order with other results.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::deviate::CHUNK;
@@ -15,7 +16,7 @@ use super::statistics::quantile;
 pub const PERCENTILES: [f64; 5] = [5.0, 25.0, 50.0, 75.0, 95.0];
 
 /// Bands of moment and force over time.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Bands {
     /// Instants, s.
     pub time: Vec<f64>,
@@ -28,7 +29,7 @@ pub struct Bands {
 }
 
 /// Band of n_B over time, N m.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct MomentBand {
     /// n_B of the nominal machine: the mean to first order, unless distributions are truncated.
     pub nominal: Vec<f64>,
@@ -47,7 +48,7 @@ pub struct MomentBand {
 }
 
 /// Band of |f_B| over time, N.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct ForceBand {
     /// |f_B| of the nominal machine: the mean to first order.
     pub nominal: Vec<f64>,
@@ -178,7 +179,7 @@ impl ForceBand {
 }
 
 /// Difference of two results over time, in standard deviations at each instant unless stated otherwise.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize)]
 pub struct BandDifference {
     /// Largest difference.
     #[serde(rename = "worst")]
@@ -190,7 +191,7 @@ pub struct BandDifference {
 }
 
 /// Agreement of first-order results with exact or sampled ones.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Agreement {
     /// Tolerance if neither result is sampled, in standard deviations.
     pub tolerance: f64,

@@ -15,9 +15,11 @@
 //!
 //! n_B includes the moment of the weight. f_B is the dynamic part only, without the constant weight M g.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use nalgebra::DVector;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
 
 use super::ToleranceError;
@@ -33,6 +35,7 @@ use stillbase_session::scenario::Spread;
 
 /// Reactions of one machine on the motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[serde(into = "StatedOutcome")]
 pub struct SampleOutcome {
     /// Largest |n_B|, N m.
     pub peak_moment: f64,
@@ -42,6 +45,44 @@ pub struct SampleOutcome {
     pub rms_moment: f64,
     /// Root mean square of the dynamic |f_B| over time, N.
     pub rms_force: f64,
+}
+
+/// How an outcome is serialised: its four numbers, and each once more under an older name that version 0.3 drops.
+#[derive(JsonSchema, Serialize)]
+struct StatedOutcome {
+    peak_base_moment: f64,
+    peak_base_force: f64,
+    rms_base_moment: f64,
+    rms_base_force: f64,
+    peak_moment: f64,
+    peak_force: f64,
+    rms_moment: f64,
+    rms_force: f64,
+}
+
+impl From<SampleOutcome> for StatedOutcome {
+    fn from(SampleOutcome { peak_moment, peak_force, rms_moment, rms_force }: SampleOutcome) -> Self {
+        Self {
+            peak_base_moment: peak_moment,
+            peak_base_force: peak_force,
+            rms_base_moment: rms_moment,
+            rms_base_force: rms_force,
+            peak_moment,
+            peak_force,
+            rms_moment,
+            rms_force,
+        }
+    }
+}
+
+impl JsonSchema for SampleOutcome {
+    fn schema_name() -> Cow<'static, str> {
+        StatedOutcome::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        StatedOutcome::json_schema(generator)
+    }
 }
 
 /// Random machines around a nominal one, and a motion that all of them track perfectly.

@@ -11,10 +11,12 @@
 //! # Source
 //! Moments of the normal distribution truncated at α: E[zᵏ] = (k − 1) E[zᵏ⁻²] + αᵏ⁻¹ φ(α)/(1 − Φ(α)), by parts.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, SQRT_2};
 
-use serde::ser::{Serialize, SerializeStruct, Serializer};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::Serialize;
 
 use super::ToleranceError;
 use super::deviate::inverse_normal;
@@ -56,7 +58,8 @@ impl VariedQuantity {
 }
 
 /// One number of the machine that varies.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(into = "StatedParameter")]
 pub struct UncertainParameter {
     /// Key of the setting: `link.5.com`.
     pub key: String,
@@ -146,17 +149,38 @@ const MAX_TRUNCATED: f64 = 0.1;
 const MAX_VALUE: f64 = 1e6;
 
 /// Serialised as key, unit, nominal value, spread, and the statistics of the drawn values.
-impl Serialize for UncertainParameter {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut fields = serializer.serialize_struct("Parameter", 7)?;
-        fields.serialize_field("key", &self.key)?;
-        fields.serialize_field("unit", self.unit)?;
-        fields.serialize_field("nominal", &self.nominal)?;
-        fields.serialize_field("spread", &self.spread.to_string())?;
-        fields.serialize_field("deviation", &self.deviation)?;
-        fields.serialize_field("mean_deviation", &self.mean_deviation())?;
-        fields.serialize_field("cut", &self.cut)?;
-        fields.end()
+#[derive(JsonSchema, Serialize)]
+struct StatedParameter {
+    key: String,
+    unit: &'static str,
+    nominal: f64,
+    spread: String,
+    deviation: f64,
+    mean_deviation: f64,
+    cut: f64,
+}
+
+impl From<UncertainParameter> for StatedParameter {
+    fn from(of: UncertainParameter) -> Self {
+        Self {
+            mean_deviation: of.mean_deviation(),
+            key: of.key,
+            unit: of.unit,
+            nominal: of.nominal,
+            spread: of.spread.to_string(),
+            deviation: of.deviation,
+            cut: of.cut,
+        }
+    }
+}
+
+impl JsonSchema for UncertainParameter {
+    fn schema_name() -> Cow<'static, str> {
+        StatedParameter::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        StatedParameter::json_schema(generator)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{
@@ -31,7 +32,7 @@ pub struct EnsemblePart<'a> {
 }
 
 /// Results of a part of the machines.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct PartReport {
     /// Name of the scenario.
     pub scenario: String,
@@ -44,6 +45,8 @@ pub struct PartReport {
     /// Seed of the random machines.
     pub seed: u64,
     /// Duration of the motion, s.
+    pub duration: f64,
+    /// The same, under an older name that version 0.3 drops.
     pub motion_time: f64,
     /// Parameters that vary.
     pub parameters: Vec<UncertainParameter>,
@@ -87,6 +90,7 @@ impl PartReport {
             samples,
             shard: [first, first + outcomes.len() as u64],
             seed: ensemble.seed(),
+            duration: run.plan().motion.duration(),
             motion_time: run.plan().motion.duration(),
             parameters: ensemble.parameters().to_vec(),
             nominal,

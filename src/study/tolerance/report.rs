@@ -1,12 +1,14 @@
 //! Results over many machines: distributions, fractions within limits, and simulation against perfect tracking.
 
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
+use std::borrow::Cow;
 
 use super::ensemble::SampleOutcome;
 use super::statistics::{Histogram, Quantiles, Yield};
 
 /// Distribution of a quantity over all machines.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Distribution {
     /// Mean.
     pub mean: f64,
@@ -38,6 +40,7 @@ impl Distribution {
 
 /// Distributions of the four quantities of an outcome.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(into = "StatedDistributions")]
 pub struct Distributions {
     /// Largest |n_B|, N m.
     pub peak_moment: Distribution,
@@ -47,6 +50,44 @@ pub struct Distributions {
     pub rms_moment: Distribution,
     /// Root mean square of the dynamic |f_B| over time, N.
     pub rms_force: Distribution,
+}
+
+/// How distributions are serialised: all four, and each once more under an older name that version 0.3 drops.
+#[derive(JsonSchema, Serialize)]
+struct StatedDistributions {
+    peak_base_moment: Distribution,
+    peak_base_force: Distribution,
+    rms_base_moment: Distribution,
+    rms_base_force: Distribution,
+    peak_moment: Distribution,
+    peak_force: Distribution,
+    rms_moment: Distribution,
+    rms_force: Distribution,
+}
+
+impl From<Distributions> for StatedDistributions {
+    fn from(Distributions { peak_moment, peak_force, rms_moment, rms_force }: Distributions) -> Self {
+        Self {
+            peak_base_moment: peak_moment.clone(),
+            peak_base_force: peak_force.clone(),
+            rms_base_moment: rms_moment.clone(),
+            rms_base_force: rms_force.clone(),
+            peak_moment,
+            peak_force,
+            rms_moment,
+            rms_force,
+        }
+    }
+}
+
+impl JsonSchema for Distributions {
+    fn schema_name() -> Cow<'static, str> {
+        StatedDistributions::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        StatedDistributions::json_schema(generator)
+    }
 }
 
 impl Distributions {
@@ -63,7 +104,7 @@ impl Distributions {
 }
 
 /// Number of machines within a limit.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct LimitYield {
     /// Limit, N m or N; `None` if two limits apply together.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -74,7 +115,7 @@ pub struct LimitYield {
 }
 
 /// Numbers of machines within the given limits.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Yields {
     /// Within the limit on peak |n_B|, N m.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -104,7 +145,7 @@ impl Yields {
 }
 
 /// Comparison of simulated machines with the same ones under perfect tracking.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct TrackingComparison {
     /// Largest difference of peak |n_B|, N m.
     pub peak_moment_difference: f64,

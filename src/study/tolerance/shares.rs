@@ -7,12 +7,13 @@
 //! | ∂n_B/∂p | at the nominal machine, exact | N m per unit of p |
 //! | s_p | ∫(∂n_B/∂p σ_p)² dt / Σ_r ∫(∂n_B/∂r σ_r)² dt; for f_B with \|∂f_B/∂p\| | 1 |
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::ensemble::Ensemble;
 
 /// First-order contribution of one parameter.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Share {
     /// Key of the setting.
     pub key: String,
@@ -31,7 +32,7 @@ pub struct Share {
 }
 
 /// First-order contributions of all parameters.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Shares {
     /// Contributions, in the order of the parameters.
     pub parameters: Vec<Share>,

@@ -5,10 +5,11 @@
 //! packages* (1996), type 7). Confidence interval of a proportion: E. B. Wilson, *Probable inference, the law of
 //! succession, and statistical inference* (1927).
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Quantiles of a sample.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Quantiles {
     /// Levels, 0 to 1: the fraction of the sample below each value.
     pub levels: Vec<f64>,
@@ -37,7 +38,7 @@ pub(super) fn quantile(sorted: &[f64], level: f64) -> Option<f64> {
 }
 
 /// Histogram of a sample, with equal intervals between its extremes.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Histogram {
     /// Edges of the intervals: one more than counts.
     pub edges: Vec<f64>,
@@ -62,7 +63,7 @@ impl Histogram {
 }
 
 /// Number and fraction of machines within a limit.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Yield {
     /// Number of machines within the limit.
     pub good: u64,

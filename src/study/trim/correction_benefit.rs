@@ -14,6 +14,7 @@
 //! Scheffé (1953), an interval valid for any such choice uses the root of the 95 % quantile of χ² instead of 1.96.
 
 use nalgebra::{DMatrix, DVector};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::adopted_parameters::AdoptedParameters;
@@ -24,7 +25,7 @@ use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_settings::number::fixed_or_scientific;
 
 /// Effect of a change over the measured motions.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct CorrectionBenefit {
     /// Root mean square force of imbalance before and after the change, N.
     pub force: [f64; 2],

@@ -1,5 +1,6 @@
 //! [`correct_machine`]: finds the least change of counterweights or links that removes the measured imbalance.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -14,7 +15,7 @@ use stillbase_mechanics::machine::{Counterweight, Inertia, Machine, MachineError
 use stillbase_mechanics::planar::Vector;
 
 /// Change of one number.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct ParameterChange {
     /// Key of the number.
     pub key: String,

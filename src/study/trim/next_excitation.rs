@@ -1,6 +1,7 @@
 //! [`next_excitation`]: finds the motion that would add most information on the least known unknown.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::fit::Fit;
@@ -11,7 +12,7 @@ use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 
 /// A motion to measure next: each drive moves as a sine about the middle of its measured range.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Excitation {
     /// Indices of the drives that move, and their senses, ±1.
     #[serde(skip)]

@@ -1,5 +1,6 @@
 //! [`TrimReport`]: report on a measurement.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::adopted_parameters::AdoptedParameters;
@@ -13,7 +14,7 @@ use stillbase_mechanics::planar::Vector;
 use stillbase_settings::number::{fixed, fixed_or_scientific};
 
 /// Identified values of a machine, their correction, and the next measurement.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct TrimReport {
     /// Name of the machine.
     pub machine: String,
@@ -47,7 +48,7 @@ pub struct TrimReport {
 }
 
 /// Effect of a change, and whether it is significant.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct TrimImprovement {
     /// Effect of the change.
     #[serde(flatten)]
@@ -57,7 +58,7 @@ pub struct TrimImprovement {
 }
 
 /// An unknown of (7) and (8), or a momentum.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Number {
     /// Name of the unknown.
     pub name: String,
@@ -89,7 +90,7 @@ pub struct Number {
 }
 
 /// Proposal for the next measurement.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Suggestion {
     /// Name of the least known unknown.
     pub worst: String,
@@ -121,7 +122,7 @@ impl Suggestion {
 }
 
 /// A motion to measure next.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct ExcitationReport {
     /// Description in words.
     pub motion: String,

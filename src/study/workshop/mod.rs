@@ -9,6 +9,7 @@ mod tails;
 
 use std::fmt;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -123,7 +124,7 @@ pub struct CutRequest {
 }
 
 /// What is told of a machine that is balanced as it is cut.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct BarsReport {
     /// Mass of all parts and lumps, kg.
     pub mass: f64,

@@ -1,5 +1,6 @@
 //! Conditions under which a curve is followed, and reasons why it stops.
 
+use schemars::JsonSchema;
 use serde::ser::{Serialize, Serializer};
 use thiserror::Error;
 
@@ -28,7 +29,7 @@ pub enum SheetEnd {
 }
 
 /// A curve that cannot be followed on its plane.
-#[derive(Clone, Debug, PartialEq, Error, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, Error, JsonSchema, serde::Serialize)]
 #[error("{}", self.in_words())]
 pub struct Blocked {
     /// b, rad.
@@ -38,9 +39,11 @@ pub struct Blocked {
     pub s: f64,
     /// The first point that cannot be passed, m.
     #[serde(rename = "point")]
+    #[schemars(with = "[f64; 2]")]
     pub at: Vector,
     /// Reason why it stops there.
     #[serde(rename = "reason")]
+    #[schemars(with = "String")]
     pub stop: SheetEnd,
     /// Whether no pose of this plane reaches the curve just beyond this point. The curve then leaves the workspace,
     /// not only the sheet.

@@ -1,0 +1,98 @@
+//! The dictionary of results: [`ResultRow`], with name, unit, meaning, sign and frame of everything that is answered,
+//! recorded or written as a column. `--json`, JSON Schema, signals, help and the guide take them from here.
+
+mod chance;
+mod design;
+mod machine;
+mod motion;
+mod places;
+mod records;
+mod signals;
+
+pub use signals::SIGNALS;
+
+/// A result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ResultRow {
+    /// Name; where the same name means another thing, the property or the command that holds it is before it, with a
+    /// dot. Of a signal it is the path, in which `*` stands for the name of a drive, an angle or a pin.
+    pub name: &'static str,
+    /// Symbol in the paper's notation, with `*` for an index; empty if there is none.
+    pub symbol: &'static str,
+    /// SI unit: `1` for a pure number, empty for what is no number.
+    pub unit: &'static str,
+    /// Meaning, in words.
+    pub meaning: &'static str,
+    /// What a positive value means; empty if that is plain.
+    pub sign: &'static str,
+    /// Axes and origin to which it refers; empty if it refers to none.
+    pub frame: &'static str,
+    /// Name that replaces this one; empty if this one stays.
+    pub newer: &'static str,
+}
+
+/// Axes of the base.
+const BASE: &str = "axes of the base at the start, origin B";
+/// Axes of a link.
+const LINK: &str = "the link: along it from root to tip";
+/// Sense of angles and moments.
+const TURN: &str = "counter-clockwise";
+
+/// Version in which older names end.
+pub const OLD_NAMES_END: &str = "0.3";
+
+/// Returns a result.
+const fn row(name: &'static str, unit: &'static str, meaning: &'static str) -> ResultRow {
+    ResultRow { name, symbol: "", unit, meaning, sign: "", frame: "", newer: "" }
+}
+
+/// Returns an older name of a result.
+const fn old(name: &'static str, unit: &'static str, newer: &'static str) -> ResultRow {
+    ResultRow { newer, ..row(name, unit, "") }
+}
+
+impl ResultRow {
+    const fn sign(self, sign: &'static str) -> Self {
+        Self { sign, ..self }
+    }
+
+    const fn frame(self, frame: &'static str) -> Self {
+        Self { frame, ..self }
+    }
+
+    /// Returns meaning, unit, sign and frame in sentences.
+    pub fn in_words(&self) -> String {
+        if !self.newer.is_empty() {
+            return format!("Older name of {}, until version {OLD_NAMES_END}.", self.newer);
+        }
+        let unit = match self.unit {
+            "" | "1" => String::new(),
+            unit => format!(" Unit: {unit}."),
+        };
+        let sign = if self.sign.is_empty() { String::new() } else { format!(" Positive: {}.", self.sign) };
+        let frame = if self.frame.is_empty() { String::new() } else { format!(" Frame: {}.", self.frame) };
+        format!("{}{unit}{sign}{frame}", self.meaning)
+    }
+}
+
+/// All results but signals, part by part.
+pub const RESULTS: &[(&str, &[ResultRow])] = &[
+    ("Runs and motions", motion::ROWS),
+    ("Machines", machine::ROWS),
+    ("Design", design::ROWS),
+    ("Poses and workspaces", places::ROWS),
+    ("Tolerances, spectra, trim", chance::ROWS),
+    ("Files and messages", records::ROWS),
+];
+
+/// Returns a result by its name and by what holds it: a property, or the command at the top.
+pub fn find(holder: &str, name: &str) -> Option<&'static ResultRow> {
+    let all = || RESULTS.iter().flat_map(|(_, rows)| rows.iter());
+    let own = |row: &&ResultRow| row.name.split_once('.').is_some_and(|both| both == (holder, name));
+    all().find(own).or_else(|| all().find(|row| row.name == name))
+}
+
+/// Returns a signal by its path, in which `*` stands for the name of a drive, an angle or a pin.
+pub fn signal(path: &str) -> Option<&'static ResultRow> {
+    SIGNALS.iter().find(|row| row.name == path)
+}

@@ -1,0 +1,38 @@
+//! Results on poses, the b that reach points, and workspaces.
+
+use super::{BASE, ResultRow, TURN, row};
+
+pub(super) const ROWS: &[ResultRow] = &[
+    row("points", "", "The points that were asked for."),
+    row("point", "m", "The point.").frame(BASE),
+    row("intervals", "rad", "Intervals of b that reach the point; the upper end may exceed the period."),
+    row("overlap", "rad", "Intervals of b that reach all points."),
+    row("period", "rad", "Period of b."),
+    row("poses", "", "The poses that reach the point on the plane."),
+    row("poses.a", "rad", "Relative joint angles.").sign(TURN),
+    row("det", "m²", "|det ∂(x, y)/∂(a_1, a_2)| on the plane; 0 on a fold."),
+    row("manipulability", "m²", "√det(J Jᵀ) of the Jacobian in absolute drive angles."),
+    row("worst_torque_per_force", "N m/N", "Largest drive torque for a force at the end effector."),
+    row("side", "1", "Signs of sin(q_2 − q_1), sin(q_3 − q_2) and sin(q_3 − q_1)."),
+    row("distance", "m", "Distance of the point from the boundary.").sign("inside"),
+    row("area", "m²", "Area; 0 if the workspace is a curve."),
+    row("sheet_area", "m²", "∫|det|: larger than the area if several poses reach one point."),
+    row("workspace.length", "m", "Length of the curve, of machines without closed-form planes."),
+    row("x_min", "m", "Smallest x.").frame(BASE),
+    row("x_max", "m", "Largest x.").frame(BASE),
+    row("y_min", "m", "Smallest y.").frame(BASE),
+    row("y_max", "m", "Largest y.").frame(BASE),
+    row("loops", "m", "Loops of the boundary; outer loops run counter-clockwise.").frame(BASE),
+    row("curve", "m", "The curve that two drives reach.").frame(BASE),
+    row("interior_singularity", "", "Whether a fold runs through the interior."),
+    row("sheets", "1", "Largest number of poses at one point."),
+    row("areas_by_poses", "m²", "Areas that at least 1, 2, 3, … poses reach."),
+    row("fold_curves", "m", "Folds, where two poses meet.").frame(BASE),
+    row("cusps", "m", "Cusps, where folds turn back.").frame(BASE),
+    row("inner_limits", "m", "Joint limits in the interior.").frame(BASE),
+    row("change_point_curves", "", "Change points, where the linkage becomes flat."),
+    row("areas_by_side", "", "Parts of the workspace on both sides of the change points."),
+    row("pair", "1", "The two drives, counted from 1."),
+    row("half_turns", "1", "q_l − q_k in multiples of π; its lower bound for a part of the workspace."),
+    row("line", "m", "Points of the curve.").frame(BASE),
+];

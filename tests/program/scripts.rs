@@ -1,0 +1,177 @@
+//! For scripts: judgements as exit statuses, standard input and output, quiet runs, completions and manual pages.
+
+use std::io::Write;
+
+use super::*;
+
+/// What the program answers to a text on standard input.
+fn given(input: &str, args: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stillbase"));
+    command.args(args).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("the program starts");
+    child.stdin.take().expect("a pipe").write_all(input.as_bytes()).expect("it reads");
+    child.wait_with_output().expect("it ends")
+}
+
+#[test]
+fn strict_ends_with_one_where_something_is_not_good() {
+    for (args, good) in [
+        (&["check", "nine-link"][..], true),
+        (&["check", "nine-link-table-1"], false),
+        (&["simulate", "case-3", "--every", "1000"], true),
+        (&["simulate", "case-1", "--every", "1000"], false),
+        (&["simulate", "case-3", "--every", "1000", "--set", "drive.1.torque_limit=0.5"], false),
+        (&["simulate", "case-3", "--json"], true),
+        (&["joints", "case-3"], true),
+        (&["joints", "case-1"], false),
+        (&["compare", "case-3", "change-b"], false),
+        (&["spectrum", "case-1", "--limit-moment", "1000"], true),
+        (&["spectrum", "case-1", "--limit-moment", "1e-9"], false),
+        (&["tolerance", "case-3", "--samples", "50", "--limit-moment", "1000"], true),
+        (&["tolerance", "case-3", "--samples", "50", "--limit-moment", "1e-9"], false),
+        (&["plan", "nine-link", "0.5,0.5", "0.55,0.9"], true),
+        (&["plan", "nine-link-bare", "0.5,0.5", "0.55,0.9"], false),
+        (&["export", "case-1", "--what", "simulated", "--rate", "10"], false),
+        (&["learn", "nine-link-table-1", "--equation", "7"], false),
+    ] {
+        let plain = stillbase(args);
+        let strict = stillbase(&[args, &["--strict"]].concat());
+        assert_eq!(plain.status.code(), Some(0), "{args:?}: {}", text(&plain.stderr));
+        assert_eq!(strict.status.code(), Some(i32::from(!good)), "{args:?}: {}", text(&strict.stderr));
+        assert_eq!((strict.stdout, strict.stderr), (plain.stdout, plain.stderr), "{args:?}: the same answer");
+    }
+    fails(&["keys", "friction", "--strict"], 2, &["--strict"]);
+}
+
+#[test]
+fn a_dash_is_standard_input_and_output() {
+    let scenario =
+        "machine = \"nine-link\"\n[task]\nkind = \"reactionless\"\nfrom = [0.5, 0.5]\nto = [0.55, 0.9]\nb = 2.4\n";
+    let run = given(scenario, &["simulate", "-", "--json", "--every", "1000"]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let run: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    assert_eq!(run["verdict"]["reactionless"], true);
+    // A machine, also as a scenario whose machine is meant.
+    for input in [NINE_LINK, scenario] {
+        let checked = given(input, &["check", "-", "--json"]);
+        let checked: Value = serde_json::from_slice(&checked.stdout).expect("JSON");
+        assert_eq!(checked["force_balanced"], true);
+    }
+    // Out and in again.
+    let planned = stillbase(&["plan", "nine-link", "0.5,0.5", "0.55,0.9", "-o", "-"]);
+    assert!(text(&planned.stderr).contains("peak"), "{}", text(&planned.stderr));
+    let again = given(text(&planned.stdout), &["simulate", "-", "--every", "1000"]);
+    assert_eq!(again.status.code(), Some(0), "{}", text(&again.stderr));
+    let designed = stillbase(&["design", "nine-link-table-1", "-o", "-", "--quiet"]);
+    assert!(designed.stderr.is_empty(), "{}", text(&designed.stderr));
+    let checked = given(text(&designed.stdout), &["check", "-", "--strict"]);
+    assert_eq!(checked.status.code(), Some(0), "{}", text(&checked.stderr));
+    for args in
+        [&["simulate", "case-1", "-o", "-"][..], &["joints", "case-1", "-o", "-"], &["spectrum", "case-1", "-o", "-"]]
+    {
+        let out = stillbase(args);
+        let head = text(&out.stdout).lines().next().expect("a head").to_owned();
+        assert!(["time s,", "frequency Hz,"].iter().any(|start| head.starts_with(start)), "{head}");
+    }
+    let table = prints(&["compare", "case-1", "case-3", "-o", "-"]);
+    assert!(table.starts_with("scenario,reactionless,refused,duration s,peak_felt_moment N m,"), "{table}");
+    // What is wrong there is told by its line; what cannot be read is refused.
+    let wrong = given("machine = \"nine-link\"\n[task]\nkind = 3\n", &["simulate", "-"]);
+    assert!(
+        wrong.status.code() == Some(2) && text(&wrong.stderr).contains("standard input:3"),
+        "{}",
+        text(&wrong.stderr)
+    );
+    fails(&["simulate", "case-1", "--json", "-o", "-"], 2, &["both want standard output"]);
+    fails(&["headless", "case-1", "-o", "-"], 2, &[".rrd"]);
+    fails(&["tolerance", "case-1", "--samples", "10", "-o", "-"], 2, &[".parquet"]);
+}
+
+#[test]
+fn tables_are_parquet_where_they_are_csv() {
+    let folder = Folder::new("parquet");
+    for args in [
+        &["compare", "case-1", "case-3"][..],
+        &["joints", "case-1"],
+        &["spectrum", "case-1"],
+        &["export", "case-3"],
+        &["simulate", "case-3"],
+    ] {
+        let [csv, parquet] = ["table.csv", "table.parquet"].map(|name| folder.path(&format!("{}-{name}", args[0])));
+        for file in [&csv, &parquet] {
+            let out = stillbase(&[args, &["-o", &file.display().to_string()]].concat());
+            assert_eq!(out.status.code(), Some(0), "{args:?}: {}", text(&out.stderr));
+        }
+        let csv = fs::read_to_string(csv).expect("CSV");
+        let reader = parquet::file::reader::SerializedFileReader::new(fs::File::open(&parquet).expect("a file"))
+            .expect("Parquet");
+        let metadata = parquet::file::reader::FileReader::metadata(&reader).clone();
+        assert_eq!(metadata.file_metadata().num_rows() as usize + 1, csv.lines().count(), "{args:?}");
+        let names: Vec<&str> = metadata.file_metadata().schema_descr().columns().iter().map(|c| c.name()).collect();
+        assert_eq!(csv.lines().next().expect("a head"), names.join(","), "{args:?}");
+        // The first number of the last row.
+        let rows = parquet::file::reader::FileReader::get_row_iter(&reader, None).expect("rows");
+        let last = rows.last().expect("a row").expect("a row");
+        let first = last.get_column_iter().find_map(|(name, field)| match field {
+            parquet::record::Field::Double(x) => Some((name.clone(), *x)),
+            _ => None,
+        });
+        let (name, x) = first.expect("a number");
+        let at = names.iter().position(|own| *own == name).expect("a column");
+        let cell: f64 =
+            csv.lines().last().expect("a row").split(',').nth(at).expect("a cell").parse().expect("a number");
+        assert_eq!(cell, x, "{args:?}: {name}");
+    }
+    fails(&["joints", "case-1", "-o", "pins.txt"], 2, &[".csv or .parquet"]);
+}
+
+#[test]
+fn quiet_says_nothing_but_errors() {
+    let out = stillbase(&["simulate", "case-1", "--every", "1000", "--quiet"]);
+    assert!(out.status.success() && out.stderr.is_empty() && !out.stdout.is_empty(), "{}", text(&out.stderr));
+    let loud = stillbase(&["simulate", "case-1", "--every", "1000"]);
+    assert!(!loud.stderr.is_empty() && loud.stdout == out.stdout);
+    fails(&["simulate", "no-such", "--quiet"], 2, &["no such scenario"]);
+}
+
+#[test]
+fn completions_know_every_command() {
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = prints(&["completions", shell]);
+        assert!(script.contains("workspace") && script.contains("counterweights"), "{shell}");
+    }
+    fails(&["completions", "tcl"], 2, &["bash"]);
+}
+
+#[test]
+fn manual_pages_are_printed_or_written() {
+    let page = prints(&["man"]);
+    assert!(page.starts_with(".ie") && page.contains("Zero reaction manipulators"), "{page}");
+    let folder = Folder::new("man");
+    let place = folder.0.display().to_string();
+    prints(&["man", "-o", &place]);
+    let check = fs::read_to_string(folder.path("stillbase-check.1")).expect("a page");
+    assert!(check.contains("stillbase\\-check") && check.contains("force balanced"), "{check}");
+    fails(&["man", "-o", &place], 2, &["exists", "--force"]);
+    prints(&["man", "-o", &place, "--force"]);
+    fails(&["man", "-o", &word(folder.path("no"))], 2, &["no folder"]);
+}
+
+#[test]
+fn the_version_names_commit_and_profile() {
+    let version = prints(&["--version"]);
+    assert!(version.starts_with(concat!("stillbase ", env!("CARGO_PKG_VERSION"), " (")), "{version}");
+    assert!(version.contains("profile dev)") || version.contains("profile release)"), "{version}");
+}
+
+#[test]
+fn a_misspelt_command_is_answered_with_the_nearest_even_with_arguments() {
+    for args in [
+        &["chek", "nine-link"][..],
+        &["chek", "nine-link", "--json"],
+        &["chek", "nine-link", "--set", "payload.mass=0.1"],
+        &["chek"],
+    ] {
+        fails(args, 2, &["chek", "stillbase check"]);
+    }
+}
