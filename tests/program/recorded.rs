@@ -69,7 +69,10 @@ fn a_change_of_the_plant_is_found_with_its_instant() {
     prints(&["headless", "case-1", "-o", &before]);
     prints(&["headless", "case-1", "-o", &after, "--set", "plant.payload.mass=0.05"]);
     let got = ends(&["diff", &before, &after], 1);
-    assert!(got.starts_with("case-1: ") && got.contains("signals differ") && got.contains("the first is com/x"), "{got}");
+    assert!(
+        got.starts_with("case-1: ") && got.contains("signals differ") && got.contains("the first is com/x"),
+        "{got}"
+    );
     assert!(got.contains("moment/total"), "{got}");
     // Within a tolerance of the size of the difference, it is none.
     ends(&["diff", &before, &after, "--tolerance", "100"], 0);

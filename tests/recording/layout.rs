@@ -81,8 +81,10 @@ fn pictures_stand_beside_each_other_and_in_their_case() {
         return;
     }
     let folder = Folder::new("pictured");
-    let options =
-        Options { pictures: Some(Pictures { fps: 10.0, width: 64, height: 40, pin_forces: false }), ..Options::default() };
+    let options = Options {
+        pictures: Some(Pictures { fps: 10.0, width: 64, height: 40, pin_forces: false }),
+        ..Options::default()
+    };
     let cases = [short("case-1"), short("case-3")];
     record(&cases, &folder.path("two.rrd"), &options, &mut quietly).expect("two cases");
     let parts = parts(&Contents::of(&folder.path("two.rrd")));
@@ -126,7 +128,9 @@ fn every_plot_has_room_for_two_numbers() {
         let contents = Contents::of(&file);
         let classes = layout_texts(&contents, "ViewBlueprint:class_identifier");
         for (page, views) in layout_texts(&contents, "ContainerBlueprint:contents") {
-            let is_plot = |view: &String| classes.get(&format!("/{}", view.trim_start_matches('/'))).is_some_and(|class| class[0] == "TimeSeries");
+            let is_plot = |view: &String| {
+                classes.get(&format!("/{}", view.trim_start_matches('/'))).is_some_and(|class| class[0] == "TimeSeries")
+            };
             if !views.iter().all(is_plot) {
                 continue;
             }
