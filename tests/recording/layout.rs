@@ -67,7 +67,7 @@ fn a_view_has_its_identifier_for_good_and_shares_it_with_nothing() {
     }
     // What a case shows in a tab of its own is the same view in every recording that has it.
     for (class, origin, recordings) in
-        [("TimeSeries", "/case-3/signals", 3), ("3D", "/case-3/tower", 3), ("3D", "/spacecraft", 2)]
+        [("TimeSeries", "/case-3/signals", 3), ("3D", "/case-3/tower", 3), ("TextDocument", "/spacecraft/notes", 2)]
     {
         let seen = &tabs[&(class.to_owned(), origin.to_owned())];
         assert!(seen.len() == recordings && seen.iter().all(|ids| *ids == seen[0]), "{class} of {origin}: {seen:?}");
