@@ -89,7 +89,7 @@ impl LearnArguments {
         let chosen: Vec<&Equation> = all.iter().filter(is_chosen).collect();
         let answer = StatedEquations::of(&machine, &state, chosen.iter().copied());
         self.format.print(&answer, |_| {
-            let texts: Vec<String> = chosen.iter().map(|equation| equation_text(equation)).collect();
+            let texts: Vec<String> = chosen.iter().map(|equation| equation_text(equation, MAX_WIDTH)).collect();
             format!("{}\n\n{}", state_text(&machine, &state), texts.join("\n"))
         })?;
         self.strict.require(answer.equations.iter().all(|equation| equation.holds != Some(false)))
@@ -155,3 +155,6 @@ impl LearnArguments {
 
 /// Maximum magnitude of a given angle, rate or acceleration, rad, rad/s or rad/s².
 const MAX_MAGNITUDE: f64 = 1e6;
+
+/// Maximum width of a line of terms, characters.
+const MAX_WIDTH: usize = 100;

@@ -13,27 +13,37 @@ use stillbase_study::equations::{DriveState, Equation, equation_text, equations,
 pub const NOTES_PATH: &str = "notes";
 
 /// Equations of the document: what reaches the base, what makes it zero, and the planes on which it stays so.
-const EQUATIONS: [&str; 7] = ["1", "5", "7", "8", "11", "12", "13"];
+const EQUATIONS: [&str; 6] = ["5", "7", "8", "11", "12", "13"];
+
+/// Maximum width of a line of terms, characters: more do not fit beside the plots.
+const MAX_WIDTH: usize = 62;
 
 /// Maximum number of characters of a note or of a name.
 const MAX_CHARS: usize = 300;
 
-/// Returns the document of a run that has ended at a frame.
-pub fn document(run: &Run, frame: &Frame, verdict: &Verdict, statements: &Statements) -> String {
-    let scenario = run.scenario();
+/// Returns the document of a scenario whose run has ended at a frame.
+pub fn document(
+    scenario: &Scenario,
+    (run, frame): (&Run, &Frame),
+    verdict: &Verdict,
+    statements: &Statements,
+) -> String {
     let mut text = format!("# {}\n\n{}.\n\n", title(scenario), cell(&verdict.sentence(), MAX_CHARS));
-    let Statements { machine, plan, run: ended } = statements;
-    for (what, statement) in [("Machine", machine), ("Plan", plan), ("Run", ended)] {
+    let Statements { machine: built, plan, run: ended } = statements;
+    for (what, statement) in [("Machine", built), ("Plan", plan), ("Run", ended)] {
         let [words, why] = [statement.words.as_ref(), statement.why.as_ref()].map(|words: &str| cell(words, MAX_CHARS));
         text += &format!("* **{what}:** {words} ({why})\n");
     }
     text += &written(&scenario.notes, &scenario.bookmarks);
-    text += "\n## Equations of the paper, with numbers\n";
     let state = DriveState::of(run, frame);
-    text += &block(&state_text(&scenario.machine, &state));
-    let all = equations(&scenario.machine, &state, Preset::Table1);
+    // Edits may have changed the machine.
+    let machine = &run.scenario().machine;
+    let instant = state_text(machine, &state).lines().map(|line| cell(line, MAX_CHARS)).collect::<Vec<_>>();
+    text += &format!("\n## Equations of the paper, with numbers\n\n{}.\n", instant.join(". "));
+    text += "\nIn them, ′ and ″ are the first and the second derivative by time.\n";
+    let all = equations(machine, &state, Preset::Table1);
     let chosen: Vec<&Equation> = all.iter().filter(|equation| EQUATIONS.contains(&equation.number)).collect();
-    chosen.into_iter().for_each(|equation| text += &block(&equation_text(equation)));
+    chosen.into_iter().for_each(|equation| text += &block(&equation_text(equation, MAX_WIDTH)));
     text
 }
 
@@ -59,6 +69,7 @@ fn written(notes: &[Note], bookmarks: &[Bookmark]) -> String {
 
 /// Returns a block in letters of one width, so that values stand below their symbols.
 fn block(text: &str) -> String {
-    // Names of links come from the user, and must not end the block.
-    format!("\n```text\n{}\n```\n", text.trim_end().replace("```", "‵‵‵"))
+    // Names of links come from the user, and must not end the block. The viewer's letters of one width have no dots.
+    let text = text.trim_end().replace("```", "‵‵‵").replace('ṙ', "r′").replace('\u{307}', "′").replace('\u{308}', "″");
+    format!("\n```text\n{text}\n```\n")
 }

@@ -75,11 +75,15 @@ impl Preview {
         let held = |signal: &Signal| charts.iter().position(|(chart, _)| chart.contains(signal));
         let drawn: Vec<_> = signals.iter().filter_map(|signal| Some((held(signal)?, signal.clone()))).collect();
         let (mut b, mut first) = (none, None);
-        let (mut extent, every) = (Vec::new(), (steps(scenario) / EXTENT_POSES).max(1));
+        let (mut extent, mut linkage) = (Vec::new(), None::<(Machine, LinkageModel)>);
+        let every = (steps(scenario) / EXTENT_POSES).max(1);
         let run = replay_while(scenario, |run, frame| {
             first.get_or_insert(*frame);
             if frame.step.is_multiple_of(every) {
-                extent.extend(pins(&run.scenario().machine, frame));
+                let machine = &run.scenario().machine;
+                let known = linkage.take().filter(|(of, _)| of == machine);
+                let (_, known) = linkage.insert(known.unwrap_or_else(|| (machine.clone(), LinkageModel::of(machine))));
+                extent.extend(ends(known, frame));
             }
             wider(&mut b, frame.b);
             drawn.iter().for_each(|(i, signal)| wider(&mut charts[*i].1, signal.value(frame)));
@@ -129,13 +133,12 @@ impl Preview {
 }
 
 /// Number of poses of a run by which the space that its machine needs is found.
-const EXTENT_POSES: u64 = 40;
+const EXTENT_POSES: u64 = 24;
 
 /// Returns where the links of a machine end at an instant, m.
-fn pins(machine: &Machine, frame: &Frame) -> Vec<[f64; 3]> {
-    let bars = LinkageModel::of(machine).flat(&frame.q.units());
-    let ends = bars.iter().flat_map(|bar| bar.ends);
-    ends.map(|end| end + frame.base.at).map(|end| [end.re, end.im, 0.0]).collect()
+fn ends(linkage: &LinkageModel, frame: &Frame) -> impl Iterator<Item = [f64; 3]> {
+    let ends = linkage.flat(&frame.q.units()).into_iter().flat_map(|bar| bar.ends);
+    ends.map(|end| end + frame.base.at).map(|end| [end.re, end.im, 0.0])
 }
 
 /// Path of the comparison of the machines of several cases.

@@ -293,7 +293,7 @@ impl<'a> Recorder<'a> {
             verdict: &verdict,
         };
         self.events.write(self.store, self.root, &recorded)?;
-        let document = TextDocument::from_markdown(notes::document(run, frame, &verdict, &statements));
+        let document = TextDocument::from_markdown(notes::document(self.scenario, (run, frame), &verdict, &statements));
         self.store.fixed(&under(self.root, notes::NOTES_PATH), &document)?;
         let path = EntityPath::properties() / EntityPathPart::new(self.scenario.name.as_str());
         self.store.fixed(&path, &properties(self.scenario, (&frame.peaks, &verdict, &statements), run.plan()))?;

@@ -309,7 +309,10 @@ impl EventLog {
     pub fn hindrance(&self) -> Option<Hindrance> {
         let Seen { reach, saturated, limited, .. } = self.now;
         let is_beyond = matches!(reach, Some(Reach::Outside { .. }));
-        Hindrance::ALL.into_iter().zip([is_beyond, saturated, limited != 0]).find_map(|(what, holds)| holds.then_some(what))
+        Hindrance::ALL
+            .into_iter()
+            .zip([is_beyond, saturated, limited != 0])
+            .find_map(|(what, holds)| holds.then_some(what))
     }
 
     /// Returns the event of the largest |n_B|.

@@ -162,7 +162,11 @@ fn toml_blocks_are_read() {
         for block in blocks(&text) {
             let place = format!("{page}:{}", block.line);
             let kind = block.kind.split(' ').next().expect("a word");
-            assert!(KINDS.contains(&block.kind) || ["toml", "csv", "json", "python", "text"].contains(&kind), "{place}: {}", block.kind);
+            assert!(
+                KINDS.contains(&block.kind) || ["toml", "csv", "json", "python", "text"].contains(&kind),
+                "{place}: {}",
+                block.kind
+            );
             if kind != "toml" {
                 continue;
             }

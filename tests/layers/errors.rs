@@ -88,6 +88,8 @@ errors! {
     stillbase::picture::render::offscreen::NoPicture,
     #[cfg(feature = "record")]
     stillbase::recording::RecordError,
+    #[cfg(feature = "record")]
+    stillbase::recording::ViewerError,
     #[cfg(feature = "window")]
     stillbase::app::window::WindowError,
 }

@@ -64,7 +64,15 @@ const EDGES: &[(&str, &[&str])] = &[
     ("std::net", &[]),
     (
         "std::process",
-        &["commands/exit.rs", "files/draft.rs", "files/fault.rs", "files/new_file.rs", "files/video.rs", "main.rs", "recording/viewer.rs"],
+        &[
+            "commands/exit.rs",
+            "files/draft.rs",
+            "files/fault.rs",
+            "files/new_file.rs",
+            "files/video.rs",
+            "main.rs",
+            "recording/viewer.rs",
+        ],
     ),
     // Text comes in at one place; everything else of the core takes it from there.
     (

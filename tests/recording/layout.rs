@@ -67,7 +67,7 @@ fn a_view_has_its_identifier_for_good_and_shares_it_with_nothing() {
     }
     // What a case shows in a tab of its own is the same view in every recording that has it.
     for (class, origin, recordings) in
-        [("TimeSeries", "/case-3/signals", 3), ("3D", "/case-3/tower", 3), ("3D", "/spacecraft", 2)]
+        [("TimeSeries", "/case-3/signals", 3), ("3D", "/case-3/tower", 3), ("TextDocument", "/spacecraft/notes", 2)]
     {
         let seen = &tabs[&(class.to_owned(), origin.to_owned())];
         assert!(seen.len() == recordings && seen.iter().all(|ids| *ids == seen[0]), "{class} of {origin}: {seen:?}");
@@ -128,7 +128,9 @@ fn every_plot_has_room_for_two_numbers() {
         let contents = Contents::of(&file);
         let classes = layout_texts(&contents, "ViewBlueprint:class_identifier");
         for (page, views) in layout_texts(&contents, "ContainerBlueprint:contents") {
-            let is_plot = |view: &String| classes.get(&format!("/{}", view.trim_start_matches('/'))).is_some_and(|class| class[0] == "TimeSeries");
+            let is_plot = |view: &String| {
+                classes.get(&format!("/{}", view.trim_start_matches('/'))).is_some_and(|class| class[0] == "TimeSeries")
+            };
             if !views.iter().all(is_plot) {
                 continue;
             }

@@ -110,11 +110,20 @@ fn drives_named_like_rows_stay_apart() {
         let (path, k) = contents.series(&scenario.name, &signal);
         assert_eq!(contents.texts(&path, "paths")[k], signal.path);
         let (steps, _, values) = contents.signal(&scenario.name, &signal);
-        assert!(steps.iter().zip(&values).all(|(step, x)| signal.value(&frames[*step as usize]) == *x), "{}", signal.path);
+        assert!(
+            steps.iter().zip(&values).all(|(step, x)| signal.value(&frames[*step as usize]) == *x),
+            "{}",
+            signal.path
+        );
         let widths = contents.at(&path).into_iter().find_map(|c| c.components().get_array("SeriesLines:widths".into()));
         let widths = widths.expect("widths");
         let widths = widths.values().as_any().downcast_ref::<Float32Array>().expect("numbers").values();
         let is_thin = widths[k] < 1.0;
-        assert_eq!(is_thin, signal.path.starts_with("reference/") || signal.path == "pose/b_reference", "{}", signal.path);
+        assert_eq!(
+            is_thin,
+            signal.path.starts_with("reference/") || signal.path == "pose/b_reference",
+            "{}",
+            signal.path
+        );
     }
 }

@@ -20,15 +20,14 @@ pub fn state_text(machine: &Machine, state: &DriveState) -> String {
     format!("{}, {when}\n{motion}", machine.name())
 }
 
-/// Maximum width of a line of terms, characters.
-const MAX_WIDTH: usize = 100;
 /// Indent of lines, characters.
 const INDENT: usize = 4;
 /// Decimals of numbers.
 const DECIMALS: usize = 6;
 
-/// Formats an equation: number, title and meaning, then each line with its values below the symbols.
-pub fn equation_text(equation: &Equation) -> String {
+/// Formats an equation: number, title and meaning, then each line with its values below the symbols. A line of terms is at
+/// most `width` characters long, behind its name.
+pub fn equation_text(equation: &Equation, width: usize) -> String {
     let colon = if equation.form.is_empty() { "" } else { ": " };
     let mut text = format!("({}) {}{colon}{}\n", equation.number, equation.title, plain(equation.form));
     let mut say = |words: &str| text.push_str(&format!("{:INDENT$}{words}\n", ""));
@@ -37,7 +36,7 @@ pub fn equation_text(equation: &Equation) -> String {
     match &equation.lines {
         Err(why) => say(&format!("Not for this machine: {why}.")),
         Ok(lines) => {
-            lines.iter().for_each(|line| text.push_str(&of_terms(line)));
+            lines.iter().for_each(|line| text.push_str(&of_terms(line, width)));
             text.push_str(&format!("{:INDENT$}{}\n", "", verdict(equation)));
         }
     }
@@ -58,9 +57,9 @@ fn verdict(equation: &Equation) -> String {
 }
 
 /// Formats a line of terms: symbols, and below each its number.
-fn of_terms(line: &Equality) -> String {
+fn of_terms(line: &Equality, most: usize) -> String {
     let mut rows: Vec<[String; 2]> = Vec::new();
-    let mut width = MAX_WIDTH;
+    let mut width = most;
     let cells = cells(line, DECIMALS);
     for (i, cell) in cells.iter().enumerate() {
         let [mut symbol, mut number] = both(cell);
@@ -71,7 +70,7 @@ fn of_terms(line: &Equality) -> String {
         for text in [&mut symbol, &mut number] {
             *text += &" ".repeat(wide - text.chars().count());
         }
-        if width + wide + 1 > MAX_WIDTH {
+        if width + wide + 1 > most {
             rows.push(Default::default());
             width = 0;
         }
