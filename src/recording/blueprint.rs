@@ -442,9 +442,12 @@ impl Layout<'_> {
     }
 }
 
+/// Whether a chart of a group belongs to a page.
+type IsOfPage = fn(&Chart, &str) -> bool;
+
 /// Pages of plots: their names, and which charts stand on them, by chart and group of its first signal. The fewer stand
 /// on a page, the more numbers fit beside their axes.
-const PAGES: [(&str, fn(&Chart, &str) -> bool); 4] = [
+const PAGES: [(&str, IsOfPage); 4] = [
     ("Torque and base", |chart, group| is_beside(chart) && is_load(group)),
     ("Motion", |chart, group| is_beside(chart) && !is_load(group)),
     ("Pins and tilt", |chart, group| !is_beside(chart) && ["pin", "tilt"].contains(&group)),

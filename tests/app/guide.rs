@@ -103,6 +103,9 @@ fn links_lead_on_and_buttons_back() {
     h.get_by_label("Forward: guide").click();
     h.run_steps(3);
     assert_eq!(place(&h), Some(GuidePage::Planning.into()));
+    // The last page of the list is below its edge.
+    h.get_by_label("Page: Speed").scroll_to_me();
+    h.run_steps(3);
     h.get_by_label("Page: Speed").click();
     h.run_steps(3);
     assert_eq!(place(&h), Some(GuidePage::Speed.into()));

@@ -169,7 +169,7 @@ fn endings_say_what_is_written() {
         (&["joints", "case-3"], ".csv"),
         (&["export", "case-3"], ".csv"),
         (&["spectrum", "case-3"], ".csv"),
-        (&["compare", "case-3"], ".csv or .rrd"),
+        (&["compare", "case-3"], ".csv or .parquet or .rrd"),
         (&["headless", "case-3"], ".rrd"),
         (&["design", "nine-link"], ".toml"),
         (&["plan", "case-3"], ".toml"),

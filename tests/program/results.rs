@@ -51,7 +51,7 @@ fn a_choice_of_nothing_is_refused() {
     fails(&["simulate", "--from", "7", "-o", &file], 2, &["within the run", "1.000 s"]);
     fails(&["simulate", "--from=-1"], 2, &["0 or later"]);
     fails(&["simulate", "-o", &word(folder.path("no.xls"))], 2, &[".csv or .parquet"]);
-    fails(&["joints", "-o", &word(folder.path("no.parquet"))], 2, &[".csv"]);
+    fails(&["joints", "-o", &word(folder.path("no.xls"))], 2, &[".csv or .parquet"]);
     assert!(folder.names().is_empty());
 }
 

@@ -37,6 +37,7 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("radius", "m", "Radius of a disc, or outer radius of a ring; 0 for a point."),
     row("inner_radius", "m", "Inner radius of a ring."),
     row("half", "", "Whether it is half a ring or half a disc."),
+    row("turned", "", "Whether half a ring has its round side towards the root of its link."),
     row("length", "m", "Length of a box along the link."),
     row("width", "m", "Width of a box across the link."),
     row("fixed", "", "Whether a counterweight stays as it is."),
@@ -53,8 +54,8 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("qd", "rad/s", "Rates of the drives.").sign(TURN),
     row("qdd", "rad/s²", "Accelerations of the drives.").sign(TURN),
     // Equations.
-    row("learn.time", "s", "Instant of the run."),
-    row("planned_time", "s", "Instant of the planned motion, if the run is at rest."),
+    row("learn.time", "s", "Time of the run."),
+    row("planned_time", "s", "Time of the planned motion, if the run is at rest."),
     row("equations", "", "The equations that were asked for."),
     row("number", "", "Number of the equation in the paper."),
     row("title", "", "Title in plain words."),

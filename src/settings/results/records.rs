@@ -6,6 +6,7 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("scenario", "", "Name of the scenario."),
     row("file", "", "The file that was written, or read."),
     row("recordings", "", "The recorded scenarios."),
+    row("viewer", "", "Address of the viewer to which the recording went."),
     row("units", "", "Unit of each signal."),
     row("signals", "", "Values of each signal at all times."),
     row("simulate.time", "s", "Times of the rows."),
