@@ -10,12 +10,15 @@ use super::failure::Failure;
 use super::input::{Settings, scenario};
 use super::output::check_size;
 
+/// A name and the signals of each case; a table has one case without a name.
+type Cases = Vec<(Option<String>, SignalTable)>;
+
 /// Where signals come from.
 pub struct SignalSource {
     /// What the command line calls it.
     pub name: String,
-    /// Its cases: a name and the signals of each; a table has one case without a name.
-    pub cases: Vec<(Option<String>, SignalTable)>,
+    /// Its cases.
+    pub cases: Cases,
 }
 
 impl SignalSource {
@@ -35,14 +38,14 @@ impl SignalSource {
 }
 
 #[cfg(feature = "record")]
-fn recorded(name: &str) -> Option<Result<Vec<(Option<String>, SignalTable)>, Failure>> {
+fn recorded(name: &str) -> Option<Result<Cases, Failure>> {
     let cases = stillbase_files::recorded::CaseName::of(name)?.cases();
     let named = |case: stillbase_files::recorded::RecordedCase| (Some(case.name), case.table);
     Some(cases.map(|cases| cases.into_iter().map(named).collect()).map_err(Failure::wrong_input))
 }
 
 #[cfg(not(feature = "record"))]
-fn recorded(_: &str) -> Option<Result<Vec<(Option<String>, SignalTable)>, Failure>> {
+fn recorded(_: &str) -> Option<Result<Cases, Failure>> {
     None
 }
 

@@ -41,8 +41,7 @@ fn counterweights_of_every_shape_stay_in_the_picture() {
             spec.counterweights.push(Counterweight::new(link, 1.0, [-0.1, 0.0], shape));
         }
         let machine = Machine::new(spec).expect("valid");
-        for machine in [machine.clone(), machine.with_bars(&BarStock::default(), &vec![[-0.2, 0.6]; 9]).expect("bars")]
-        {
+        for machine in [machine.clone(), machine.with_bars(&BarStock::default(), &[[-0.2, 0.6]; 9]).expect("bars")] {
             for bounds in painted(&machine, frame) {
                 assert!(frame.expand(8.0).contains_rect(bounds), "{shape:?}: {bounds:?}");
             }

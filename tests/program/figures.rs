@@ -25,9 +25,12 @@ fn rows(csv: &str) -> Vec<Vec<String>> {
     reader.records().map(|row| row.expect("a row").iter().map(str::to_owned).collect()).collect()
 }
 
-/// The points of each curve, in the order of the file.
-fn curves(csv: &str) -> Vec<((String, String), Vec<[f64; 2]>)> {
-    let mut all: Vec<((String, String), Vec<[f64; 2]>)> = Vec::new();
+/// The points of a curve.
+type Points = Vec<[f64; 2]>;
+
+/// The points of each curve with the names of its plot and of itself, in the order of the file.
+fn curves(csv: &str) -> Vec<((String, String), Points)> {
+    let mut all: Vec<((String, String), Points)> = Vec::new();
     for row in rows(csv) {
         let [plot, curve, x, y] = &row[..] else { panic!("{row:?}") };
         let point = [x, y].map(|x| x.parse().expect("a number"));
@@ -135,7 +138,7 @@ fn drawn_curves_pass_through_their_numbers() {
         let lines: Vec<_> = drawing.descendants().filter(is_curve).collect();
         let curves = curves(&table);
         assert_eq!(lines.len(), curves.len(), "{name}");
-        let mut of_plot: BTreeMap<&str, Vec<(&Vec<[f64; 2]>, Vec<[f64; 2]>)>> = BTreeMap::new();
+        let mut of_plot: BTreeMap<&str, Vec<(&Points, Points)>> = BTreeMap::new();
         for (line, ((plot, _), points)) in lines.iter().zip(&curves) {
             let mut drawn = vertices(line.attribute("d").expect("a path"));
             if line.attribute("d").is_some_and(|path| path.ends_with('Z')) {
