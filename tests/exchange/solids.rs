@@ -8,8 +8,10 @@ use stillbase::exchange::drawing::{Sheet, dxf};
 use stillbase::exchange::form::Form;
 use stillbase::exchange::mjcf::middle;
 use stillbase::exchange::parts::PartsList;
+use stillbase::exchange::solids::{axles, link_solids};
 use stillbase::exchange::stl::{SolidMesh, SolidsError, solids, stl};
-use stillbase::mechanics::machine::{Counterweight, Machine, builtin};
+use stillbase::mechanics::machine::{Counterweight, CounterweightShape, Machine, builtin};
+use stillbase::mechanics::planar::Vector;
 use stillbase::mechanics::sketch::Template;
 use stillbase::study::layers::{LayersRequest, find_layers};
 
@@ -142,6 +144,37 @@ fn drawings_declare_their_layers() {
             assert!(tables.contains(&format!("LAYER\n2\n{layer}\n")), "{}: {layer}", flat.name());
         }
     }
+}
+
+/// A spacer ends at what lies under it, also at a counterweight whose edge does not reach the pin.
+#[test]
+fn spacers_run_through_nothing_of_their_links() {
+    let cut = Cut::default();
+    let mut seen = 0;
+    for gap in [-0.02, 0.001, 0.0045, 0.0055, 0.0065] {
+        let mut spec = builtin("two-drive").expect("built in").spec().clone();
+        for link in &mut spec.links {
+            link.axial = 0.0;
+        }
+        let link = spec.links[1].name.clone();
+        let shape = CounterweightShape::Disc { radius: 0.03 };
+        spec.counterweights = vec![Counterweight::new(link, 0.6, [-0.03 - gap, 0.0], shape)];
+        let machine = stacked(&Machine::new(spec).expect("valid"), cut);
+        let solids = link_solids(&machine, &cut);
+        for axle in axles(&machine) {
+            for spacer in axle.spacers(&machine, &cut, &solids) {
+                for solid in &solids {
+                    let Some((_, along)) = axle.links.iter().find(|(link, _)| *link == solid.link) else { continue };
+                    let is_under = solid.plan.distance(Vector::new(*along, 0.0)) < cut.spacer_radius() - 1e-9;
+                    let [low, high] = solid.faces(&machine);
+                    let meets = spacer.faces[0] < high - 1e-9 && spacer.faces[1] > low + 1e-9;
+                    assert!(!(is_under && meets), "{gap}: {} meets spacer {}", solid.name(&machine), spacer.number);
+                    seen += usize::from(is_under);
+                }
+            }
+        }
+    }
+    assert!(seen > 20, "{seen}");
 }
 
 #[test]

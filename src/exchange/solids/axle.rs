@@ -54,11 +54,11 @@ impl Axle {
     /// lowest link. `solids` are those of all links.
     pub fn spacers(&self, machine: &Machine, cut: &Cut, solids: &[LinkSolid]) -> Vec<Spacer> {
         let Some([base, _]) = self.faces(machine, cut) else { return Vec::new() };
-        // A disc or a lump around the pin is thicker than its bar.
+        // A disc or a lump that reaches under a spacer is thicker than its bar.
         let around = |j: usize| {
             let along = self.links.iter().find(|(own, _)| *own == j).map_or(0.0, |(_, along)| *along);
             let own = solids.iter().filter(|solid| solid.link == j);
-            let covering = own.filter(|solid| solid.plan.distance(Vector::new(along, 0.0)) < 0.0);
+            let covering = own.filter(|solid| solid.plan.distance(Vector::new(along, 0.0)) < cut.spacer_radius());
             let height = machine.spec().links[j].axial;
             covering
                 .map(|solid| solid.faces(machine))
