@@ -308,6 +308,11 @@ impl SimulateArguments {
     }
 }
 
+/// Returns whether a name is the path of a signal, or the first part of it.
+pub fn is_name_of(name: &str, path: &str) -> bool {
+    path == name || path.split('/').next() == Some(name)
+}
+
 /// Returns the failure that no signal among some has a name.
 pub fn unknown_signal<'a>(name: &str, paths: impl Iterator<Item = &'a str>) -> Failure {
     let mut known: Vec<&str> = Vec::new();

@@ -9,7 +9,7 @@ use stillbase_files::row_file::ROW_ENDINGS;
 use super::failure::Failure;
 use super::output::Format;
 use super::rows::Rows;
-use super::simulate::unknown_signal;
+use super::simulate::{is_name_of, unknown_signal};
 
 /// Print the signals of a recording as CSV or Parquet
 #[derive(Args)]
@@ -43,13 +43,12 @@ impl TableArguments {
         };
         let mut table = name.only_case().map_err(Failure::wrong_input)?.table;
         if !self.signals.is_empty() {
-            let is_of = |path: &str, name: &String| path == name || path.split('/').next() == Some(name);
-            let has = |name: &&String| table.columns.iter().any(|column| is_of(&column.path, name));
+            let has = |name: &&String| table.columns.iter().any(|column| is_name_of(name, &column.path));
             if let Some(unknown) = self.signals.iter().find(|name| !has(name)) {
                 let paths = table.columns.iter().map(|column| column.path.as_str());
                 return Err(unknown_signal(unknown, paths).with_context("--signals"));
             }
-            table.columns.retain(|column| self.signals.iter().any(|name| is_of(&column.path, name)));
+            table.columns.retain(|column| self.signals.iter().any(|name| is_name_of(name, &column.path)));
         }
         let mut rows = Rows::begin(self.output.as_deref(), self.force, &table.heads())?;
         for row in 0..table.time.len() {

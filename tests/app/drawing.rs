@@ -4,7 +4,7 @@ use egui::{Key, Modifiers, Pos2};
 use egui_kittest::kittest::Queryable as _;
 use stillbase::app::{PenChange, PenTool, Preferences, SessionCommand, Switch, ViewChange};
 use stillbase::mechanics::machine::place_of;
-use stillbase::mechanics::sketch::{BarEnd, Place, Sketch, SketchRefusal, SketchStep, Template};
+use stillbase::mechanics::sketch::{BarEnd, Place, SketchRefusal, SketchStep, Template};
 use stillbase::picture::paint::labels;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::picture::scene::sketching::SketchItem;
@@ -13,7 +13,8 @@ use stillbase::session::Edit;
 use stillbase::session::scenario::Scenario;
 use stillbase::settings::number::fixed;
 
-use super::{Window, drag, on_screen, seen, session, window, window_liked, window_of, written};
+use super::sketching::{at, sketch, tip};
+use super::{Window, drag, on_screen, session, window, window_liked, window_of, written};
 use crate::Test;
 
 pub const TESTS: &[Test] = tests![
@@ -35,21 +36,6 @@ fn drawing(template: Template) -> Window {
     h.state_mut().app_state_mut().carry_out(SessionCommand::NewDrawing(template));
     h.run_steps(6);
     h
-}
-
-fn sketch(h: &Window) -> Sketch {
-    session(h).scenario().drawing()
-}
-
-fn at(h: &Window, x: f64, y: f64) -> Pos2 {
-    seen(h, [x, y, 0.0])
-}
-
-/// Where the pin at the end of a bar is on the screen.
-fn tip(h: &Window, bar: usize) -> Pos2 {
-    let sketch = sketch(h);
-    let place = sketch.at(sketch.bars[bar].tip);
-    at(h, place.re, place.im)
 }
 
 fn click(h: &mut Window, pos: Pos2) {

@@ -46,17 +46,17 @@ fn drawing(template: Template, theme: Theme) -> Window {
     h
 }
 
-fn sketch(h: &Window) -> Sketch {
+pub(super) fn sketch(h: &Window) -> Sketch {
     session(h).scenario().drawing()
 }
 
 /// Where a point of the drawing is on the screen.
-fn at(h: &Window, x: f64, y: f64) -> Pos2 {
+pub(super) fn at(h: &Window, x: f64, y: f64) -> Pos2 {
     seen(h, [x, y, 0.0])
 }
 
 /// Where the pin at the end of a bar is on the screen.
-fn tip(h: &Window, bar: usize) -> Pos2 {
+pub(super) fn tip(h: &Window, bar: usize) -> Pos2 {
     let sketch = sketch(h);
     let place = sketch.at(sketch.bars[bar].tip);
     at(h, place.re, place.im)
