@@ -3,14 +3,14 @@
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
-use stillbase_settings::number::{at_most_digits, counted};
+use stillbase_settings::number::{at_most_digits, counted, significant};
 use stillbase_simulation::signal_table::SignalTable;
 use stillbase_study::difference::{Departure, SignalDifference, TableDifference, Tolerances};
 
 use super::failure::Failure;
 use super::output::{Format, TextTable};
 use super::signal_source::SignalSource;
-use super::simulate::unknown_signal;
+use super::simulate::{is_name_of, unknown_signal};
 
 /// Compare two recordings, tables or scenarios, signal by signal
 ///
@@ -72,7 +72,7 @@ impl ToleranceOptions {
     /// If there is such a name.
     pub fn check<'a>(&self, tables: impl IntoIterator<Item = &'a SignalTable>) -> Result<(), Failure> {
         let columns: Vec<&str> = tables.into_iter().flat_map(|t| t.columns.iter().map(|c| c.path.as_str())).collect();
-        let is_known = |name: &str| columns.iter().any(|path| *path == name || path.split('/').next() == Some(name));
+        let is_known = |name: &str| columns.iter().any(|path| is_name_of(name, path));
         match self.given.iter().filter_map(|(name, _)| name.as_ref()).find(|name| !is_known(name)) {
             Some(name) => Err(unknown_signal(name, columns.iter().copied()).with_context("--tolerance")),
             None => Ok(()),
@@ -238,15 +238,14 @@ impl Case {
         rows.sort_by(|a, b| excess(b).total_cmp(&excess(a)));
         let head = ["signal", "unit", "largest difference", "at s", "tolerance", "exceeded from s"];
         let mut table = TextTable::new(head).with_words(1);
-        let number = |x: f64| at_most_digits(x, 3);
         for row in rows.iter().take(MAX_ROWS) {
             let first = row.first.as_ref().map_or_else(String::new, |first| at_most_digits(first.time, 6));
             table.row([
                 row.signal.clone(),
                 row.unit.clone(),
-                row.largest.difference.map_or_else(|| "no number".into(), number),
+                row.largest.difference.map_or_else(|| "no number".into(), significant),
                 at_most_digits(row.largest.time, 6),
-                number(row.tolerance),
+                significant(row.tolerance),
                 first,
             ]);
         }
