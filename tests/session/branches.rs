@@ -3,7 +3,7 @@
 use stillbase::session::scenario::{Bookmark, MAX_BOOKMARKS, MAX_BRANCHES, Scenario};
 use stillbase::session::{Edit, Session, replay};
 
-use super::{coarse, do_it, drag, open, same};
+use super::{coarse, do_it, drag, open, same, set, slide};
 
 fn again(session: &Session) -> Session {
     let saved = session.to_scenario();
@@ -154,6 +154,24 @@ fn plans_and_hands_are_left_whole() {
     session.apply(Edit::of("task", toml::Table::new())).expect("back to the path");
     assert_eq!(session.branch_count(), 2);
     assert!(session.forks()[1].title.starts_with("drag target"), "{:?}", session.forks());
+}
+
+/// A branch that does what the run does diverges from it nowhere before its end, however far the run has come.
+#[test]
+fn an_equal_branch_diverges_nowhere() {
+    let mut session = open(coarse());
+    session.play();
+    session.tick(1);
+    session.step_by(-1);
+    for edit in [set("length.l1", "0.55"), slide(1.8), Edit::of("task", toml::Table::new())] {
+        do_it(&mut session, edit);
+    }
+    let forks = session.forks();
+    assert_eq!((forks.len(), forks[0].title.as_str()), (2, "as planned"));
+    assert_eq!(forks[0].from, forks[0].to);
+    session.tick(20);
+    assert_eq!(session.forks(), forks);
+    assert_eq!(again(&session).forks(), forks);
 }
 
 /// What was led by hand is kept where another path takes its place, once for each gesture; undo brings it back.

@@ -27,20 +27,25 @@ impl Session {
     pub fn forks(&self) -> Arc<Vec<Fork>> {
         let branches = &self.document.branches;
         // Differences do not depend on how far the run goes beyond the longest branch.
-        let end = self.document.end.min(branches.iter().map(|left| left.end).max().unwrap_or(0));
+        let end = self.end_of_motion().min(branches.iter().map(|left| left.end).max().unwrap_or(0));
         self.run.queries().ask::<QuickWork<Forks>>(&(ByIdentity(branches.clone()), self.edits.clone(), end))
     }
 
     fn fork(&self, left: &LeftBranch) -> Fork {
-        left.difference_from(&self.edits, self.document.end)
+        left.difference_from(&self.edits, self.end_of_motion())
+    }
+
+    /// Returns the step at which the motion of the run on display ends, whether or not it has come that far.
+    fn end_of_motion(&self) -> u64 {
+        let last = (self.length() / self.scenario().step).round() as u64;
+        let end = if self.frames.last().is_some_and(|frame| frame.is_finite()) { last } else { 0 };
+        end.min(MAX_FRAMES as u64 - 1).max(self.document.end)
     }
 
     /// Returns the run on display as a branch.
     fn as_left(&self) -> LeftBranch {
-        let last = (self.length() / self.scenario().step).round() as u64;
-        let end = if self.frames.last().is_some_and(|frame| frame.is_finite()) { last } else { 0 };
         let (script, step) = (self.document.script.clone(), self.scenario().step);
-        LeftBranch { script, end: end.min(MAX_FRAMES as u64 - 1).max(self.document.end), step }
+        LeftBranch { script, end: self.end_of_motion(), step }
     }
 
     /// Returns the branches with the present run added, and the new value of `branch_events`.
