@@ -149,9 +149,10 @@ impl SessionSource {
             let text = text.map_err(|why| NotOpened::unread(&why))?;
             return Ok(Opened::Table(path.clone(), TableText { name: path.display().to_string(), text }));
         }
-        let (FoundScenario { scenario, note, left_out }, left_off, path) = match self {
+        let (FoundScenario { scenario, note, left_out, recorded }, left_off, path) = match self {
             Self::Scenario(scenario) => {
-                (FoundScenario { scenario: *scenario, note: None, left_out: Vec::new() }, None, PathBuf::new())
+                let found = FoundScenario { scenario: *scenario, note: None, left_out: Vec::new(), recorded: None };
+                (found, None, PathBuf::new())
             }
             Self::File(path) | Self::Journal(path) => {
                 let text = stillbase_files::text::read(&path).unwrap_or_default();
@@ -169,6 +170,13 @@ impl SessionSource {
                 session.seek_while(time.min(session.length()), watch);
             }
         }
+        let note = recorded.map_or(note.clone(), |case| {
+            let of = path.file_name().unwrap_or_default().to_string_lossy();
+            let difference = case.simulated_again(&scenario, &case.tolerances());
+            let found = difference.map_or_else(|why| why.to_string(), |difference| difference.sentence(""));
+            let found = format!("{of}, simulated again: {found}");
+            Some(note.map_or(found.clone(), |note| format!("{found}; {note}")))
+        });
         Ok(Opened::Session(Box::new(OpenedSession {
             session,
             note,

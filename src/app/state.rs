@@ -135,7 +135,7 @@ impl AppState {
         self.hints = liked.hints;
         self.saving.recent.clone_from(&liked.recent);
         let usual = Scenario::builtin("case-3").is_some_and(|case| case == *self.session.scenario());
-        if liked.hints && usual && liked.layout == Layout::Explore {
+        if liked.hints && usual && self.watched.is_none() && liked.layout == Layout::Explore {
             // Nothing was done yet: the hints accompany the person's own session, and set none aside.
             self.intro = Some(Intro::of(&self.session));
             self.view_state.pair = Some(Pair::demonstration());

@@ -22,6 +22,7 @@ use std::path::PathBuf;
 use crate::jobs::Threads;
 use crate::{AppState, Preferences, ResumePoint, SessionCommand};
 use stillbase_files::preferences;
+use stillbase_files::recorded_case::is_recording;
 use stillbase_picture::scene::palette::Theme;
 use stillbase_session::scenario::Scenario;
 
@@ -36,10 +37,14 @@ pub fn run(scenario: Scenario, file: Option<PathBuf>, theme: Option<Theme>) -> R
     let liked = Preferences { theme: theme.unwrap_or(liked.theme), ..liked }.sound();
     let mut app_state = AppState::open_or_explain(scenario, liked.theme)?
         .with_workers(Threads::Background)
+        .watching(file.clone())
         .with_preferences(&liked)
-        .offering_recovery(keeper::find_left_session())
-        .watching(file.clone());
-    let left = file.filter(|file| ResumePoint::of(&stillbase_files::text::read(file).unwrap_or_default()).is_some());
+        .offering_recovery(keeper::find_left_session());
+    // What the file says of where it was left, and whether a recording can be had again, is told by opening it.
+    let left = file.filter(|file| {
+        is_recording(&file.to_string_lossy())
+            || ResumePoint::of(&stillbase_files::text::read(file).unwrap_or_default()).is_some()
+    });
     if let Some(file) = left {
         app_state.carry_out(SessionCommand::OpenFile(file));
     } else if app_state.view_state().status.message.is_none() && app_state.session().run().waiting().is_none() {

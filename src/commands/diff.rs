@@ -3,7 +3,7 @@
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
-use stillbase_settings::number::{at_most_digits, counted, significant};
+use stillbase_settings::number::{at_most_digits, significant};
 use stillbase_simulation::signal_table::SignalTable;
 use stillbase_study::difference::{Departure, SignalDifference, TableDifference, Tolerances};
 
@@ -203,8 +203,6 @@ impl Place {
     }
 }
 
-/// Largest difference that is told in units in the last place: beyond it the numbers themselves say more.
-const MAX_UNITS: u64 = 1_000_000;
 /// Maximum number of signals in a printed table.
 const MAX_ROWS: usize = 20;
 
@@ -216,7 +214,7 @@ impl Case {
             case: name.into(),
             equal: difference.is_equal(),
             within: difference.is_within(),
-            sentence: sentence(name, difference),
+            sentence: difference.sentence(name),
             ends: difference.ends.map(finite),
             instants: difference.instants,
             interpolated: difference.interpolated,
@@ -267,57 +265,5 @@ impl Row {
             largest: Place::of(&signal.largest),
             first: signal.first.as_ref().map(Place::of),
         }
-    }
-}
-
-/// Returns what the comparison of a case found.
-fn sentence(name: &str, difference: &TableDifference) -> String {
-    let of = if name.is_empty() { String::new() } else { format!("{name}: ") };
-    if difference.overlap.is_none() {
-        return format!("{of}no instant that both have");
-    }
-    let (signals, instants) = (counted(difference.signals.len(), "signal"), counted(difference.instants, "instant"));
-    let between = match difference.interpolated {
-        0 => String::new(),
-        count => format!(", {count} of them interpolated"),
-    };
-    let mut found = Vec::new();
-    if let Some((signal, first)) = difference.first() {
-        let count = difference.signals.iter().filter(|signal| signal.first.is_some()).count();
-        let ulps = match first.units_in_the_last_place() {
-            Some(ulps) if ulps <= MAX_UNITS => format!(", by {}", counted(ulps, "unit")) + " in the last place",
-            _ => String::new(),
-        };
-        let [a, b] = first.values;
-        let unit = if signal.unit == "1" { String::new() } else { format!(" {}", signal.unit) };
-        found.push(format!(
-            "{count} of {signals} differ at {instants}{between}; the first is {} at {} s: {a:?} and {b:?}{unit}{ulps}",
-            signal.path,
-            at_most_digits(first.time, 9),
-        ));
-    }
-    if !difference.has_same_end() {
-        let [a, b] = difference.ends;
-        found.push(format!("the first ends at {} s, the second at {} s", at_most_digits(a, 9), at_most_digits(b, 9)));
-    }
-    for (place, paths) in ["first", "second"].iter().zip(&difference.unmatched) {
-        if let Some(path) = paths.first() {
-            found.push(format!("only the {place} has {path}{}", others(paths.len())));
-        }
-    }
-    if let Some((path, [a, b])) = difference.units.first() {
-        found.push(format!("{path} is in {a} and in {b}{}", others(difference.units.len())));
-    }
-    let how = if difference.is_equal() { "equal" } else { "within tolerance" };
-    match found.is_empty() {
-        true => format!("{of}{how}: {signals} at {instants}{between}"),
-        false => format!("{of}{}", found.join("; ")),
-    }
-}
-
-fn others(count: usize) -> String {
-    match count {
-        0 | 1 => String::new(),
-        count => format!(" and {} more", count - 1),
     }
 }

@@ -19,7 +19,7 @@ use stillbase_settings::text::{plain, shell_word, shorten_message};
 use super::failure::{Failure, RefusedScenario};
 use super::input::WrongNumber;
 use super::misnamed::Misnamed;
-use super::output::Format;
+use super::output::{Format, has_answered};
 
 /// Whether notes are left out.
 static IS_QUIET: AtomicBool = AtomicBool::new(false);
@@ -96,14 +96,13 @@ pub struct FailureReport<'a> {
 }
 
 /// Prints the reason of a failure in one line, and a line for each proposal that leads out of it; returns the exit
-/// status. With `as_json`, also prints the reason and the proposals of a refused scenario on standard output, unless
-/// the answer there already holds them. `line` is the command line that has failed.
+/// status. With `as_json`, also prints the reason and the proposals on standard output, unless an answer is there
+/// already. `line` is the command line that has failed.
 pub fn exit_code(done: Result<(), Failure>, as_json: bool, line: &Line<'_>) -> ExitCode {
     let Err(failure) = done else { return ExitCode::SUCCESS };
-    // A failure other than a refusal may follow an answer; it prints no second object.
-    let RefusedScenario { failure, mut proposals, misnamed, faults, is_printed } = match failure {
+    let RefusedScenario { failure, mut proposals, misnamed, faults } = match failure {
         Failure::Refused(refused) => *refused,
-        failure => RefusedScenario { failure, proposals: Vec::new(), misnamed: None, faults: None, is_printed: true },
+        failure => RefusedScenario { failure, proposals: Vec::new(), misnamed: None, faults: None },
     };
     proposals.extend(misnamed.iter().flat_map(|misnamed| instead(misnamed, line)));
     let (status, why) = match failure {
@@ -112,7 +111,7 @@ pub fn exit_code(done: Result<(), Failure>, as_json: bool, line: &Line<'_>) -> E
         Failure::ReaderGone | Failure::Refused(_) => return ExitCode::SUCCESS,
         Failure::Told => return ExitCode::FAILURE,
     };
-    if as_json && !is_printed {
+    if as_json && !has_answered() {
         // If this fails because standard output cannot be written, standard error still gives the reason.
         let list = faults.as_ref().map(|(_, faults)| &faults.list[..]);
         let more_faults = faults.as_ref().map(|(_, faults)| faults.more);

@@ -51,13 +51,11 @@ pub struct RefusedScenario {
     pub misnamed: Option<Misnamed>,
     /// The file that was read, and all its faults.
     pub faults: Option<(String, Faults)>,
-    /// Whether the answer on standard output already holds all of it.
-    pub is_printed: bool,
 }
 
 impl RefusedScenario {
     fn of(failure: Failure, proposals: Vec<Proposal>) -> Self {
-        Self { failure, proposals, misnamed: None, faults: None, is_printed: false }
+        Self { failure, proposals, misnamed: None, faults: None }
     }
 }
 
@@ -134,12 +132,6 @@ impl Failure {
         }
     }
 
-    /// Returns the failure with ways out of it that the answer on standard output already holds.
-    #[must_use]
-    pub fn with_printed_proposals(self, proposals: Vec<Proposal>) -> Self {
-        Self::Refused(Box::new(RefusedScenario { is_printed: true, ..RefusedScenario::of(self, proposals) }))
-    }
-
     /// Returns the failure with `what` before its reason.
     #[must_use]
     pub fn with_context(self, what: impl Display) -> Self {
@@ -162,7 +154,6 @@ impl Failure {
 }
 
 impl From<FileError> for Failure {
-    /// Commands read machines and scenarios before they print. So `--json` prints the reason even without proposals.
     fn from(e: FileError) -> Self {
         let misnamed = Misnamed::machine(&e);
         let nearest = misnamed.as_ref().map_or_else(String::new, Misnamed::nearest_file);
@@ -171,7 +162,6 @@ impl From<FileError> for Failure {
 }
 
 impl From<ScenarioError> for Failure {
-    /// As for [`FileError`].
     fn from(e: ScenarioError) -> Self {
         let misnamed = Misnamed::scenario(&e);
         let nearest = misnamed.as_ref().map_or_else(String::new, Misnamed::nearest_file);

@@ -6,6 +6,8 @@ use std::path::PathBuf;
 use clap::Args;
 #[cfg(feature = "window")]
 use stillbase_app::window::WindowError;
+#[cfg(feature = "window")]
+use stillbase_files::recorded_case::is_recording;
 #[cfg(feature = "ui")]
 use stillbase_picture::scene::palette::Theme;
 use stillbase_session::scenario::Scenario;
@@ -52,7 +54,7 @@ impl OpenArguments {
     #[cfg(feature = "window")]
     fn file(&self) -> Option<PathBuf> {
         let file = PathBuf::from(&self.scenario);
-        let is_file = Scenario::builtin(&self.scenario).is_none() && file.is_file();
+        let is_file = Scenario::builtin(&self.scenario).is_none() && (file.is_file() || is_recording(&self.scenario));
         (is_file && self.settings.is_empty()).then_some(file)
     }
 

@@ -18,6 +18,14 @@ use super::failure::Failure;
 /// Whether a file takes standard output.
 static IS_TAKEN: AtomicBool = AtomicBool::new(false);
 
+/// Whether an answer was printed as JSON.
+static HAS_ANSWERED: AtomicBool = AtomicBool::new(false);
+
+/// Returns whether an answer was printed as JSON; a failure after it prints no second object.
+pub fn has_answered() -> bool {
+    HAS_ANSWERED.load(Ordering::Relaxed)
+}
+
 /// Output format of a command.
 #[derive(clap::Args)]
 pub struct Format {
@@ -61,6 +69,7 @@ impl Format {
             }
             return Ok(());
         }
+        HAS_ANSWERED.fetch_or(self.json, Ordering::Relaxed);
         let mut out = io::stdout().lock();
         out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|e| Failure::standard_output(&e))
     }

@@ -132,7 +132,7 @@ impl PlanArguments {
             Err(refusal) => {
                 let refusal = Failure::from(refusal);
                 let proposals = answer.obstacle.map(|obstacle| obstacle.proposals).unwrap_or_default();
-                return Err(refusal.with_printed_proposals(proposals));
+                return Err(refusal.with_proposals(proposals));
             }
         };
         let Statements { machine, plan, .. } = Statements::of(&run, &run.frame());

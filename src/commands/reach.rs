@@ -81,7 +81,7 @@ impl ReachArguments {
         self.format.print(&answer, table)?;
         let said = || why.map_or("no b serves all points".into(), |w| w.in_words(&point_name));
         match apart {
-            true => Err(Failure::no_answer(said()).with_printed_proposals(answer.proposals)),
+            true => Err(Failure::no_answer(said()).with_proposals(answer.proposals)),
             false => Ok(()),
         }
     }

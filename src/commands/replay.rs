@@ -4,12 +4,10 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_files::recorded::CaseName;
-use stillbase_study::difference::{TableDifference, Tolerances};
 
 use super::diff::{Case, ToleranceOptions};
 use super::failure::Failure;
 use super::output::Format;
-use super::signal_source::table_of;
 
 /// Simulate a recorded session again and compare every signal with the recording
 ///
@@ -31,10 +29,6 @@ pub struct ReplayArguments {
     #[command(flatten)]
     format: Format,
 }
-
-/// Largest permitted difference of a recording of another version, absolute in SI units, and relative to the largest
-/// value of the signal.
-const OTHER_VERSION: f64 = 1e-9;
 
 #[derive(JsonSchema, Serialize)]
 pub struct Answer {
@@ -64,10 +58,10 @@ impl ReplayArguments {
         let own = env!("CARGO_PKG_VERSION");
         let mut cases = Vec::with_capacity(recorded.len());
         for case in recorded {
-            let all = if case.version == own { 0.0 } else { OTHER_VERSION };
-            let tolerances = self.tolerance.over(Tolerances { all, relative: all, named: Vec::new() });
-            let again = table_of(&case.scenario()?)?;
-            let difference = TableDifference::between(&case.table, &again, &tolerances);
+            let tolerances = self.tolerance.over(case.tolerances());
+            let scenario = case.scenario()?;
+            let difference = case.simulated_again(&scenario, &tolerances);
+            let difference = difference.map_err(|e| Failure::refused(&scenario, e))?;
             let versions = [case.version, own.to_owned()];
             cases.push(Replayed { versions, case: Case::of(&case.name, &difference) });
         }

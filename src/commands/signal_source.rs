@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use stillbase_session::replay_if;
+use stillbase_session::signal_table;
 use stillbase_simulation::signal_table::SignalTable;
-use stillbase_simulation::signals::signals;
 
 use super::failure::Failure;
 use super::input::{Settings, scenario};
@@ -60,9 +59,6 @@ fn simulated(name: &str) -> Result<(Option<String>, SignalTable), Failure> {
 /// # Errors
 /// If it cannot run, or has too many steps.
 pub fn table_of(scenario: &stillbase_session::scenario::Scenario) -> Result<SignalTable, Failure> {
-    let signals = signals(&scenario.machine);
-    let mut table = SignalTable::of(&signals);
-    let fits = |last: u64| check_size(last + 1, signals.len() + 1, true);
-    replay_if(scenario, fits, |_, frame| table.push(&signals, frame)).map_err(|e| Failure::refused(scenario, e))?;
-    Ok(table)
+    let fits = |last: u64, signals: usize| check_size(last + 1, signals + 1, true);
+    signal_table(scenario, fits, |_, _| true).map_err(|e| Failure::refused(scenario, e))
 }

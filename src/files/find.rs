@@ -3,6 +3,9 @@
 use std::io::ErrorKind;
 use std::path::Path;
 
+use super::recorded_case::RecordedCase;
+#[cfg(not(feature = "record"))]
+use super::recorded_case::is_recording;
 use super::text::{STANDARD_INPUT, read};
 use stillbase_exchange::import::{ImportedMachine, faults, import};
 use stillbase_mechanics::machine::{self, FileError, Machine, MachineError};
@@ -64,7 +67,9 @@ fn found(name: &str, folder: Option<&Path>, takes_scenarios: bool) -> Result<Fou
     }
     if let Some(found) = recorded(name).filter(|_| takes_scenarios) {
         let found = found.map_err(|why| wrong_file(name, Faults::one(whole_file(why.to_string()))))?;
-        return machine_of(&found.scenario, name);
+        let of_scenario = machine_of(&found.scenario, name)?;
+        let left_out = found.note.into_iter().chain(of_scenario.left_out).collect();
+        return Ok(FoundMachine { left_out, ..of_scenario });
     }
     let file = folder.map_or_else(|| name.into(), |folder| folder.join(name));
     let other = |file: String| wrong_file(&file, Faults::one(whole_file(IS_SCENARIO)));
@@ -142,6 +147,8 @@ pub struct FoundScenario {
     pub note: Option<String>,
     /// What was left out of the model of another program; empty for files of this one.
     pub left_out: Vec<String>,
+    /// The recording that holds the scenario, if one does.
+    pub recorded: Option<Box<RecordedCase>>,
 }
 
 /// Returns a scenario by built-in name or by file. A machine file that the scenario names is resolved in the folder of
@@ -151,7 +158,7 @@ pub struct FoundScenario {
 /// If there is no such scenario, machine or file, the file is neither, or no task can be stated for the machine.
 pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
     if let Some(scenario) = Scenario::builtin(name) {
-        return Ok(FoundScenario { scenario, note: None, left_out: Vec::new() });
+        return Ok(FoundScenario { scenario, note: None, left_out: Vec::new(), recorded: None });
     }
     if let Some(scenario) = recorded(name) {
         return scenario;
@@ -184,7 +191,7 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
         Ok(MachineFile { machine, design })
     };
     let scenario = Scenario::parse(&text, name, Some(&find))?;
-    Ok(FoundScenario { scenario, note: None, left_out: Vec::new() })
+    Ok(FoundScenario { scenario, note: None, left_out: Vec::new(), recorded: None })
 }
 
 /// Returns the session of a recording, the first of several; `None` if the name is not that of a recording.
@@ -192,21 +199,26 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
 fn recorded(name: &str) -> Option<Result<FoundScenario, ScenarioError>> {
     let wrong = |message: String| ScenarioError::Syntax { file: shortened(name, 300), line: None, message };
     let cases = crate::recorded::CaseName::of(name)?.cases().map_err(|why| wrong(why.why));
-    let first = |cases: Vec<crate::recorded::RecordedCase>| {
+    let first = |mut cases: Vec<RecordedCase>| {
         let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
-        let [first, .., last] = &names[..] else { return Ok((cases[0].scenario()?, None)) };
-        let all = shortened(&names.join(", "), 300);
-        let note = format!("{name} holds the cases {all}: taken is {first}; {name}:{last} names another");
-        Ok((cases[0].scenario()?, Some(note)))
+        let note = match &names[..] {
+            [first, .., last] => {
+                let all = shortened(&names.join(", "), 300);
+                Some(format!("{name} holds the cases {all}: taken is {first}; {name}:{last} names another"))
+            }
+            _ => None,
+        };
+        let case = cases.swap_remove(0);
+        let (scenario, recorded) = (case.scenario()?, Some(Box::new(case)));
+        Ok(FoundScenario { scenario, note, left_out: Vec::new(), recorded })
     };
-    Some(cases.and_then(first).map(|(scenario, note)| FoundScenario { scenario, note, left_out: Vec::new() }))
+    Some(cases.and_then(first))
 }
 
 #[cfg(not(feature = "record"))]
 fn recorded(name: &str) -> Option<Result<FoundScenario, ScenarioError>> {
     let message = "this build reads no recordings: want a TOML file".into();
-    let is_recording = name.to_ascii_lowercase().ends_with(".rrd");
-    is_recording.then(|| Err(ScenarioError::Syntax { file: shortened(name, 300), line: None, message }))
+    is_recording(name).then(|| Err(ScenarioError::Syntax { file: shortened(name, 300), line: None, message }))
 }
 
 /// Makes a scenario for a machine, whose name or file is `name`. The scenario has the brief of the file.
@@ -224,5 +236,5 @@ fn scenario_for(name: &str, of: MachineFile) -> Result<FoundScenario, ScenarioEr
         task.to[1],
         ShortNumber(task.time)
     );
-    Ok(FoundScenario { scenario, note: Some(made), left_out: Vec::new() })
+    Ok(FoundScenario { scenario, note: Some(made), left_out: Vec::new(), recorded: None })
 }

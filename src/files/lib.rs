@@ -22,6 +22,7 @@ mod parquet_rows;
 pub mod preferences;
 #[cfg(feature = "record")]
 pub mod recorded;
+pub mod recorded_case;
 #[cfg(feature = "rows")]
 #[doc(hidden)]
 pub mod row_file;

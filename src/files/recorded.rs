@@ -1,15 +1,18 @@
 //! Reads recordings of the Rerun viewer's format: the session and the signals of each case.
 
-use std::io::{self, BufReader};
+use std::fs::File;
+use std::io::{self, BufReader, Read as _, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use re_chunk::Chunk;
-use re_log_encoding::DecoderApp;
+use re_log_encoding::{Decodable as _, DecoderApp, StreamFooter};
 use re_log_types::{EntityPath, EntityPathPart, LogMsg, StoreKind};
 use thiserror::Error;
 
-use stillbase_session::scenario::{Scenario, ScenarioError};
 use stillbase_simulation::signal_table::{SignalColumn, SignalTable};
+
+use crate::recorded_case::ENDING;
+pub use crate::recorded_case::RecordedCase;
 
 /// Application name of recordings.
 pub const APPLICATION: &str = "stillbase";
@@ -22,24 +25,8 @@ pub const PATHS: &str = "paths";
 /// See [`PATHS`].
 pub const UNITS: &str = "units";
 
-/// Ending of the name of a recording.
-const ENDING: &str = ".rrd";
-
 /// Largest file that is read, bytes.
 const MAX_FILE_BYTES: u64 = 4 << 30;
-
-/// A case of a recording.
-#[derive(Clone, Debug)]
-pub struct RecordedCase {
-    /// Name of its scenario.
-    pub name: String,
-    /// Version of the program that recorded it.
-    pub version: String,
-    /// Its session as TOML: scenario, machine and edits.
-    pub session: String,
-    /// Its signals, at the recorded steps.
-    pub table: SignalTable,
-}
 
 /// Why a recording is not read.
 #[derive(Debug, Error)]
@@ -51,16 +38,6 @@ pub struct ReadError {
     pub why: String,
 }
 
-impl RecordedCase {
-    /// Returns the recorded scenario with its edits.
-    ///
-    /// # Errors
-    /// If this version of the program cannot read it.
-    pub fn scenario(&self) -> Result<Scenario, ScenarioError> {
-        Scenario::parse(&self.session, &self.name, None)
-    }
-}
-
 /// Returns the cases of a recording, in the order in which they were recorded; at least one.
 ///
 /// # Errors
@@ -69,7 +46,10 @@ pub fn cases(file: &Path) -> Result<Vec<RecordedCase>, ReadError> {
     let refused = |why: String| ReadError { file: file.into(), why };
     let unreadable = |why: io::Error| refused(format!("{why}: want a recording that can be read"));
     let wrong = |why: String| refused(format!("{why}: want a whole recording of `stillbase headless`"));
-    let opened = crate::text::open(file, MAX_FILE_BYTES).map_err(unreadable)?;
+    let mut opened = crate::text::open(file, MAX_FILE_BYTES).map_err(unreadable)?;
+    if !is_finished(&mut opened).map_err(unreadable)? {
+        return Err(wrong("it is no recording, or its end is missing".into()));
+    }
     let mut cases = Cases::default();
     for message in DecoderApp::decode_lazy(BufReader::new(opened)) {
         let message = message.map_err(|e| wrong(e.to_string()))?;
@@ -83,10 +63,27 @@ pub fn cases(file: &Path) -> Result<Vec<RecordedCase>, ReadError> {
             cases.take(&chunk);
         }
     }
+    let names = cases.properties.iter().map(|case| &case.name);
+    if let Some(name) = names.clone().enumerate().find_map(|(i, name)| names.clone().skip(i + 1).find(|n| *n == name)) {
+        return Err(refused(format!(
+            "it holds two cases that are called {name}: want recordings merged by other names"
+        )));
+    }
     match cases.properties.is_empty() {
         true => Err(wrong("it holds no session".into())),
         false => cases.properties.iter().map(|case| cases.whole(case).map_err(wrong)).collect(),
     }
+}
+
+/// Returns whether a file ends as a finished recording does: with a footer, after which nothing follows.
+fn is_finished(file: &mut File) -> io::Result<bool> {
+    let mut end = [0; StreamFooter::ENCODED_SIZE_BYTES];
+    let start = file.metadata()?.len().checked_sub(end.len() as u64);
+    let Some(start) = start else { return Ok(false) };
+    file.seek(SeekFrom::Start(start))?;
+    file.read_exact(&mut end)?;
+    file.rewind()?;
+    Ok(StreamFooter::from_rrd_bytes(&end).is_ok())
 }
 
 /// A name of a case on the command line, such as `cases.rrd` or `cases.rrd:case-2`.
@@ -219,9 +216,12 @@ impl Cases {
                 table.columns.push(SignalColumn { path: path.clone(), unit: unit.clone(), values });
             }
         }
+        if table.columns.is_empty() {
+            return Err(format!("{name}: version {version} of the program recorded it and named no signals"));
+        }
         match table.time.is_sorted_by(|a, b| a < b) && !table.time.is_empty() {
             true => Ok(RecordedCase { name: name.clone(), version: version.clone(), session: session.clone(), table }),
-            false => Err(format!("{name}: it names no signals in the order of time")),
+            false => Err(format!("{name}: its times do not increase")),
         }
     }
 }

@@ -20,7 +20,7 @@ pub struct Options {
     /// [`notes`](super::Recording::notes) say so.
     pub pictures: Option<Pictures>,
     /// Whether signals have a row at every step. Otherwise long runs have rows at a fixed rate: at least 100 a second,
-    /// and at least 500 in all.
+    /// and about 500 in all.
     pub every_step: bool,
     /// Whether an existing file is replaced.
     pub force: bool,

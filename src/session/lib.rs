@@ -51,7 +51,7 @@ pub use proposal::{
     Proposal, WayOut, improvements, proposals, proposals_for_machine, proposals_for_settings, proposals_for_values,
 };
 pub use refusal::Refusal;
-pub use replay::{base_loads, replay, replay_if, replay_while, with_start_edits};
+pub use replay::{base_loads, replay, replay_if, replay_while, signal_table, with_start_edits};
 pub use run::{Run, WaitReason};
 #[doc(hidden)]
 pub use run_ahead::RunAhead;

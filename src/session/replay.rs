@@ -6,6 +6,8 @@ use crate::{Refusal, Run, TimedEdit};
 use stillbase_query::Queries;
 use stillbase_simulation::audit::AuditFigure;
 use stillbase_simulation::frame::Frame;
+use stillbase_simulation::signal_table::SignalTable;
+use stillbase_simulation::signals::signals;
 
 /// Applies the edits at step 0 that precede the first drag. Returns the scenario without the other edits, and the
 /// number of the others.
@@ -63,6 +65,29 @@ fn whole(
     };
     let done = perform(scenario, &in_order(&scenario.edits), end, false, None, see);
     done.map_err(|failed| failed.named(&scenario.edits))
+}
+
+/// Returns the signals of a scenario at the instants that `keeps` chooses. Before the run begins, `allow` receives the
+/// number of the last step and the number of signals, and may refuse them.
+///
+/// # Errors
+/// As [`replay`], and the refusal of `allow`.
+pub fn signal_table(
+    scenario: &Scenario,
+    allow: impl FnOnce(u64, usize) -> Result<(), Refusal>,
+    mut keeps: impl FnMut(&Run, &Frame) -> bool,
+) -> Result<SignalTable, Refusal> {
+    // The first edits may draw another machine.
+    let (start, _) = with_start_edits(scenario)?;
+    let signals = signals(&start.machine);
+    let mut table = SignalTable::of(&signals);
+    let see = |run: &Run, frame: &Frame| {
+        if keeps(run, frame) {
+            table.push(&signals, frame);
+        }
+    };
+    replay_if(scenario, |last| allow(last, signals.len()), see)?;
+    Ok(table)
 }
 
 /// Returns the dynamic f_Bx and f_By, N, and the net moment on the base, N m, at every step of a scenario. Also returns

@@ -7,6 +7,9 @@ use super::range::shortened;
 /// Number of equally near names that are told; of more, none is meant more than another.
 const MAX_NEAREST: usize = 3;
 
+/// Number of letters from which on a word counts as the beginning of another.
+const MIN_BEGINNING: usize = 3;
+
 /// A name that nothing has.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownName {
@@ -42,12 +45,23 @@ impl fmt::Display for UnknownName {
 impl std::error::Error for UnknownName {}
 
 /// Returns the words that come nearest to a word, in their order, without regard to capitals; none if no word is near,
-/// or if too many are equally near. A word is near if at most half of the given letters are wrong.
+/// or if too many are equally near. A word that begins with the given one is near before all others; another one is near if
+/// at most half of the given letters are wrong.
 #[doc(hidden)]
 pub fn nearest_words<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
     let word = word.to_lowercase();
-    let most = word.chars().count() / 2;
-    let (mut nearest, mut apart) = (Vec::new(), most);
+    let letters = word.chars().count();
+    let (mut nearest, mut apart) = (Vec::new(), letters / 2);
+    let known: Vec<&str> = known.into_iter().collect();
+    let mut begun: Vec<&str> = Vec::new();
+    for one in &known {
+        if one.to_lowercase().starts_with(&word) && !begun.contains(one) {
+            begun.push(one);
+        }
+    }
+    if letters >= MIN_BEGINNING && (1..=MAX_NEAREST).contains(&begun.len()) {
+        return begun;
+    }
     for one in known {
         match letters_apart(&one.to_lowercase(), &word) {
             off if off < apart || (off == apart && nearest.is_empty()) => (nearest, apart) = (vec![one], off),

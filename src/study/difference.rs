@@ -4,10 +4,14 @@
 //! the other table has, to a nanosecond, is compared number by number; at another one its values are interpolated
 //! linearly.
 
+use stillbase_settings::number::{at_most_digits, counted};
 use stillbase_simulation::signal_table::{SignalColumn, SignalTable};
 
 /// Instants within this time of each other are the same, s: recordings count nanoseconds.
-const SAME_INSTANT_S: f64 = 1.5e-9;
+pub const SAME_INSTANT_S: f64 = 1.5e-9;
+
+/// Largest difference that is told in units in the last place: beyond it the numbers themselves say more.
+const MAX_UNITS: u64 = 1_000_000;
 
 /// Largest permitted differences.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -147,6 +151,62 @@ impl TableDifference {
     pub fn first(&self) -> Option<(&SignalDifference, &Departure)> {
         let all = self.signals.iter().filter_map(|signal| signal.first.as_ref().map(|first| (signal, first)));
         all.reduce(|before, next| if next.1.time < before.1.time { next } else { before })
+    }
+
+    /// Returns what the comparison found, in words that begin with a name, if there is one.
+    pub fn sentence(&self, name: &str) -> String {
+        let of = if name.is_empty() { String::new() } else { format!("{name}: ") };
+        if self.overlap.is_none() {
+            return format!("{of}no instant that both have");
+        }
+        let (signals, instants) = (counted(self.signals.len(), "signal"), counted(self.instants, "instant"));
+        let between = match self.interpolated {
+            0 => String::new(),
+            count => format!(", {count} of them interpolated"),
+        };
+        let mut found = Vec::new();
+        if let Some((signal, first)) = self.first() {
+            let count = self.signals.iter().filter(|signal| signal.first.is_some()).count();
+            let ulps = match first.units_in_the_last_place() {
+                Some(ulps) if ulps <= MAX_UNITS => format!(", by {}", counted(ulps, "unit")) + " in the last place",
+                _ => String::new(),
+            };
+            let [a, b] = first.values;
+            let unit = if signal.unit == "1" { String::new() } else { format!(" {}", signal.unit) };
+            found.push(format!(
+                "{count} of {signals} differ at {instants}{between}; the first is {} at {} s: {a:?} and {b:?}{unit}{ulps}",
+                signal.path,
+                at_most_digits(first.time, 9),
+            ));
+        }
+        if !self.has_same_end() {
+            let [a, b] = self.ends;
+            found.push(format!(
+                "the first ends at {} s, the second at {} s",
+                at_most_digits(a, 9),
+                at_most_digits(b, 9)
+            ));
+        }
+        for (place, paths) in ["first", "second"].iter().zip(&self.unmatched) {
+            if let Some(path) = paths.first() {
+                found.push(format!("only the {place} has {path}{}", others(paths.len())));
+            }
+        }
+        if let Some((path, [a, b])) = self.units.first() {
+            found.push(format!("{path} is in {a} and in {b}{}", others(self.units.len())));
+        }
+        let how = if self.is_equal() { "equal" } else { "within tolerance" };
+        match found.is_empty() {
+            true => format!("{of}{how}: {signals} at {instants}{between}"),
+            false => format!("{of}{}", found.join("; ")),
+        }
+    }
+}
+
+fn others(count: usize) -> String {
+    match count {
+        0 | 1 => String::new(),
+        count => format!(" and {} more", count - 1),
     }
 }
 

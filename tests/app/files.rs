@@ -30,6 +30,7 @@ pub const TESTS: &[Test] = tests![
     a_model_of_another_program_is_opened_as_a_machine,
     nothing_is_written_over,
     what_cannot_be_written_is_said,
+    a_recording_is_held_against_its_run,
     a_run_is_recorded_whole_or_not,
     a_dialog_that_is_left_does_nothing,
     a_machine_goes_elsewhere_from_the_design_view,
@@ -502,7 +503,6 @@ fn a_file_that_is_dropped_is_opened() {
     assert_eq!(folder.names(), ["one.toml"]);
 }
 
-/// A file that is there stays as it is, whatever it is; the dialog stays for another name.
 /// What the window writes for other programs it reads again, and a model that is none says why.
 fn a_model_of_another_program_is_opened_as_a_machine() {
     let folder = Folder::new("model");
@@ -527,6 +527,7 @@ fn a_model_of_another_program_is_opened_as_a_machine() {
     assert!(bad && said.contains("none.urdf"), "{said}");
 }
 
+/// A file that is there stays as it is, whatever it is; the dialog stays for another name.
 fn nothing_is_written_over() {
     let folder = Folder::new("window");
     for (ending, what) in [("toml", Ask::Save), ("rrd", Ask::Record)] {
@@ -574,6 +575,27 @@ fn what_cannot_be_written_is_said() {
             assert_eq!(folder.names(), ["plain", "sub"], "{what:?} {}", path.display());
         }
     }
+}
+
+/// A recording is opened like a session, is simulated again, and the message says whether both are equal.
+fn a_recording_is_held_against_its_run() {
+    let folder = Folder::new("window");
+    let mut h = window("case-2", Theme::Dark);
+    h.step();
+    let file = folder.path("run.rrd");
+    name_file(&mut h, Ask::Record, &file);
+    done(&h, "run.rrd");
+    let mut h = window("case-1", Theme::Dark);
+    drop_on(&mut h, &file);
+    h.run_steps(3);
+    done(&h, "run.rrd, simulated again: equal: ");
+    assert_eq!(session(&h).scenario().name, "case-2");
+    // A recording without its end is refused, and the session stays.
+    let bytes = fs::read(&file).expect("a recording");
+    drop_on(&mut h, &folder.file("cut.rrd", &bytes[..bytes.len() - 1]));
+    h.run_steps(3);
+    refused(&h, "its end is missing", true);
+    assert_eq!(session(&h).scenario().name, "case-2");
 }
 
 /// What is recorded is what has been seen; one that exists is left alone in `nothing_is_written_over`.

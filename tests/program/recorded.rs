@@ -62,6 +62,20 @@ fn a_recording_replays_to_the_same_numbers() {
     assert!(one.starts_with("busy: equal: "), "{one}");
 }
 
+/// Another machine that the first edit draws is recorded, and found again.
+#[test]
+fn a_recorded_drawing_replays_too() {
+    let folder = Folder::new("recorded");
+    let task = "machine = 'nine-link'\n[task]\nkind = 'minimum-norm'\nb = 1.539\nfrom = [0.364, 0.405]\n\
+                to = [0.344, 0.599]\ntime = 0.5\n";
+    let edit = "[[edit]]\nstep = 0\ndo = 'sketch'\ndraw = 'new'\ntemplate = 'serial-of-two'\n";
+    let session = word(folder.file("drawn.toml", [task, edit].concat()));
+    let file = word(folder.path("drawn.rrd"));
+    prints(&["headless", &session, "-o", &file]);
+    assert_eq!(object(&["replay", &file])["equal"], json!(true));
+    ends(&["diff", &file, &session], 0);
+}
+
 #[test]
 fn a_change_of_the_plant_is_found_with_its_instant() {
     let folder = Folder::new("recorded");
@@ -148,9 +162,19 @@ fn what_is_no_recording_and_no_table_is_refused() {
     prints(&["headless", "case-3", "-o", &word(whole.clone()), "--set", "task.time=0.2"]);
     let bytes = fs::read(&whole).expect("a recording");
     let lines = word(folder.file("lines.rrd", "time s,torque/1 N m\n0,1\n"));
-    let cut = word(folder.file("cut.rrd", &bytes[..bytes.len() / 3]));
     let empty = word(folder.file("empty.rrd", ""));
-    for file in [&lines, &cut, &empty] {
+    // Of several cases the first would be whole where the file is cut.
+    let several = folder.path("several.rrd");
+    prints(&["headless", "case-1", "case-3", "-o", &word(several.clone()), "--set", "task.time=0.2"]);
+    let several = fs::read(several).expect("a recording");
+    let cuts: Vec<String> = [(&bytes, 0.3), (&bytes, 0.9), (&several, 0.6), (&several, 0.99)]
+        .iter()
+        .enumerate()
+        .map(|(i, (bytes, share))| {
+            word(folder.file(&format!("cut-{i}.rrd"), &bytes[..(bytes.len() as f64 * share) as usize]))
+        })
+        .collect();
+    for file in [&lines, &empty].into_iter().chain(&cuts) {
         fails(&["replay", file], 2, &[file, "want a whole recording"]);
         fails(&["diff", file, "case-3"], 2, &[file]);
         fails(&["table", file], 2, &[file]);
