@@ -8,24 +8,29 @@ use stillbase_simulation::signal_table::SignalTable;
 use stillbase_study::difference::{Departure, SignalDifference, TableDifference, Tolerances};
 
 use super::failure::Failure;
+use super::input::Settings;
 use super::output::{Format, TextTable};
+use super::signal_choice::{SignalChoice, require_known};
 use super::signal_source::SignalSource;
-use super::simulate::{is_name_of, unknown_signal};
 
 /// Compare two recordings, tables or scenarios, signal by signal
 ///
-/// Each of the two is a recording (.rrd), a table of signals over time (.csv), or a scenario, which is run. A recording
-/// of several cases is compared case by case; `FILE.rrd:CASE` is one of them. The exit status is 0 if every signal stays
-/// within its tolerance, and 1 otherwise. By default no difference is permitted.
+/// Each of the two is a recording (.rrd), a table of signals over time (.csv, .parquet), or a scenario, which is run with
+/// the settings of `--set`. A recording of several cases is compared case by case; `FILE.rrd:CASE` is one of them. `-`
+/// is a scenario or CSV from standard input. The exit status is 0 if every signal stays within its tolerance, and 1
+/// otherwise. By default no difference is permitted.
 ///
 /// Both are compared at the instants of the one with fewer rows. At an instant that the other one lacks, its values are
-/// interpolated linearly.
+/// interpolated linearly. Two values that are no number are equal. A signal or a time that only one of both has is a
+/// difference, unless `--signals`, `--from` and `--to` leave it out.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   stillbase diff before.rrd after.rrd                             what a change of the program has changed
   stillbase diff case-3 my.toml --tolerance torque=0.01           within 0.01 N m, and all else equal
-  stillbase diff cases.rrd:case-1 measured.csv --tolerance 1e-3 --json")]
+  stillbase diff case-3 run.parquet --set plant.payload.mass=0.1  the scenario with a payload, and a table
+  stillbase simulate case-3 --set step=0.0005 | stillbase diff case-3 - --tolerance 1e-6
+  stillbase diff cases.rrd:case-1 measured.csv --signals angle,torque --tolerance 1e-3 --json")]
 pub struct DiffArguments {
     /// A recording, a table or a scenario
     #[arg(value_name = "A")]
@@ -35,6 +40,10 @@ pub struct DiffArguments {
     second: String,
     #[command(flatten)]
     tolerance: ToleranceOptions,
+    #[command(flatten)]
+    choice: SignalChoice,
+    #[command(flatten)]
+    settings: Settings,
     #[command(flatten)]
     format: Format,
 }
@@ -72,19 +81,15 @@ impl ToleranceOptions {
     /// If there is such a name.
     pub fn check<'a>(&self, tables: impl IntoIterator<Item = &'a SignalTable>) -> Result<(), Failure> {
         let columns: Vec<&str> = tables.into_iter().flat_map(|t| t.columns.iter().map(|c| c.path.as_str())).collect();
-        let is_known = |name: &str| columns.iter().any(|path| is_name_of(name, path));
-        match self.given.iter().filter_map(|(name, _)| name.as_ref()).find(|name| !is_known(name)) {
-            Some(name) => Err(unknown_signal(name, columns.iter().copied()).with_context("--tolerance")),
-            None => Ok(()),
-        }
+        let names = self.given.iter().filter_map(|(name, _)| name.as_ref());
+        require_known(names, columns.iter().copied()).map_err(|why| why.with_context("--tolerance"))
     }
 }
 
 impl DiffArguments {
     /// Compares both and prints the differences.
     pub fn run(&self) -> Result<(), Failure> {
-        let sources = [SignalSource::open(&self.first)?, SignalSource::open(&self.second)?];
-        self.tolerance.check(sources.iter().flat_map(|source| source.cases.iter().map(|(_, table)| table)))?;
+        let sources = self.sources()?;
         let tolerances = self.tolerance.over(Tolerances::default());
         let mut cases = Vec::new();
         let mut missing = Vec::new();
@@ -128,6 +133,34 @@ impl DiffArguments {
     }
 }
 
+impl DiffArguments {
+    /// Reads both sides; leaves of each what is to be compared.
+    fn sources(&self) -> Result<[SignalSource; 2], Failure> {
+        let files = [&self.first, &self.second].map(|name| SignalSource::of_file(name));
+        if !self.settings.is_empty() && files.iter().all(Option::is_some) {
+            let why = "neither of both is a scenario, so there is nothing to set: want a scenario, or no --set";
+            return Err(Failure::wrong_input(why).with_context("--set"));
+        }
+        let [first, second] = files;
+        let or_run = |file: Option<Result<SignalSource, Failure>>, name: &str| {
+            file.unwrap_or_else(|| SignalSource::of_scenario(name, &self.settings))
+        };
+        let mut sources = [or_run(first, &self.first)?, or_run(second, &self.second)?];
+        {
+            let tables = || sources.iter().flat_map(|source| source.cases.iter().map(|(_, table)| table));
+            self.tolerance.check(tables())?;
+            let paths = tables().flat_map(|table| table.columns.iter().map(|column| column.path.as_str()));
+            self.choice.check(paths)?;
+        }
+        for SignalSource { name, cases } in &mut sources {
+            for (_, table) in cases {
+                self.choice.apply(table).map_err(|why| why.with_context(&name))?;
+            }
+        }
+        Ok(sources)
+    }
+}
+
 #[derive(JsonSchema, Serialize)]
 pub struct Answer {
     /// Whether every number is equal.
@@ -150,6 +183,8 @@ pub struct Case {
     pub within: bool,
     /// What the comparison found, in words.
     pub sentence: String,
+    /// First time of both, s.
+    starts: [f64; 2],
     /// Last time of both, s.
     ends: [f64; 2],
     instants: usize,
@@ -217,6 +252,7 @@ impl Case {
             equal: difference.is_equal(),
             within: difference.is_within(),
             sentence: sentence(name, difference),
+            starts: difference.starts.map(finite),
             ends: difference.ends.map(finite),
             instants: difference.instants,
             interpolated: difference.interpolated,
@@ -274,7 +310,8 @@ impl Row {
 fn sentence(name: &str, difference: &TableDifference) -> String {
     let of = if name.is_empty() { String::new() } else { format!("{name}: ") };
     if difference.overlap.is_none() {
-        return format!("{of}no instant that both have");
+        let [[a, b], [c, d]] = [difference.starts, difference.ends].map(|both| both.map(|t| at_most_digits(t, 9)));
+        return format!("{of}no instant that both have: the first has {a} to {c} s, the second {b} to {d} s");
     }
     let (signals, instants) = (counted(difference.signals.len(), "signal"), counted(difference.instants, "instant"));
     let between = match difference.interpolated {
@@ -296,9 +333,16 @@ fn sentence(name: &str, difference: &TableDifference) -> String {
             at_most_digits(first.time, 9),
         ));
     }
-    if !difference.has_same_end() {
-        let [a, b] = difference.ends;
-        found.push(format!("the first ends at {} s, the second at {} s", at_most_digits(a, 9), at_most_digits(b, 9)));
+    let [starts, ends] = [difference.starts, difference.ends].map(|both| both.map(|t| at_most_digits(t, 9)));
+    for (is_same, word, [a, b]) in difference
+        .has_same_ends()
+        .into_iter()
+        .zip([("starts", starts), ("ends", ends)])
+        .map(|(is, (word, both))| (is, word, both))
+    {
+        if !is_same {
+            found.push(format!("the first {word} at {a} s, the second at {b} s"));
+        }
     }
     for (place, paths) in ["first", "second"].iter().zip(&difference.unmatched) {
         if let Some(path) = paths.first() {

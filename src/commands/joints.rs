@@ -15,7 +15,8 @@ use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, check_size};
 use super::rows::Rows;
 use super::simulate::require_audit;
-use super::strict::{Strict, is_run_good};
+use super::strict::{Strict, run_faults};
+use stillbase_session::verdict::Verdict;
 use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
 
 /// Print the forces on all pins and bearings over a run, how near it comes to change points, and the tilting moment
@@ -79,7 +80,7 @@ impl JointsArguments {
         let answer = extremes.report(&scenario.name, &run.frame());
         self.format.print(&answer, human)?;
         require_audit(&answer.scenario, answer.audit_failed)?;
-        self.strict.require(is_run_good(run.scenario(), &run.frame()))
+        self.strict.require(run_faults(&answer.scenario, &Verdict::of(run.scenario(), &run.frame())))
     }
 
     fn csv<'a>(&self, begun: &'a mut Option<Rows>, pins: &[Pin]) -> Result<&'a mut Rows, Failure> {

@@ -52,6 +52,7 @@ mod report;
 mod results;
 mod rows;
 mod schema;
+mod signal_choice;
 mod signal_source;
 mod simulate;
 mod sites;
@@ -59,7 +60,6 @@ mod sites;
 mod size;
 mod spectrum;
 mod strict;
-#[cfg(feature = "record")]
 mod table;
 mod tolerance;
 mod trim;
@@ -122,7 +122,6 @@ subcommands! {
     #[cfg(feature = "record")]
     Replay: replay::ReplayArguments => [replay::Answer],
     Diff: diff::DiffArguments => [diff::Answer],
-    #[cfg(feature = "record")]
     Table: table::TableArguments,
     Compare: compare::CompareArguments => [compare::Answer],
     Joints: joints::JointsArguments => [JointReport],

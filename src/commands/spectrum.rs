@@ -102,10 +102,13 @@ impl SpectrumArguments {
         let file = self.output.as_ref().map(|file| file.display().to_string());
         let answer = Answer { file, audit_failed: of.fault.clone(), of };
         self.format.print(&answer, |answer| text(&answer.of))?;
-        let mut limits = answer.of.axes.named().into_iter().filter_map(|(_, _, axis)| axis.limit.as_ref());
-        let is_good = limits.all(|limit| limit.within);
+        let limits =
+            answer.of.axes.named().into_iter().filter_map(|(name, _, axis)| Some((name, axis.limit.as_ref()?)));
+        let past = limits.filter(|(_, limit)| !limit.within);
+        let faults: Vec<String> =
+            past.map(|(name, _)| format!("{}: {name} past its limit", answer.of.scenario)).collect();
         require_audit(&answer.of.scenario, answer.audit_failed)?;
-        self.strict.require(is_good)
+        self.strict.require(faults)
     }
 }
 

@@ -123,23 +123,6 @@ impl CaseName {
         }
     }
 
-    /// Returns the case that it names.
-    ///
-    /// # Errors
-    /// As [`cases`](Self::cases), and if the recording has several, and the name states none.
-    pub fn only_case(&self) -> Result<RecordedCase, ReadError> {
-        let mut all = self.cases()?;
-        match (all.pop(), &all[..]) {
-            (Some(case), []) => Ok(case),
-            (last, others) => {
-                let names: Vec<String> = others.iter().chain(&last).map(|case| case.name.clone()).collect();
-                let example = format!("{}:{}", self.file.display(), names.first().map_or("", String::as_str));
-                let names = names.join(", ");
-                Err(self.refused(format!("it has the cases {names}: want one of them, such as {example}")))
-            }
-        }
-    }
-
     fn refused(&self, why: String) -> ReadError {
         ReadError { file: self.file.clone(), why }
     }

@@ -2,9 +2,10 @@
 //!
 //! The tables are compared at the instants of the one with fewer rows, within the time that both cover. An instant that
 //! the other table has, to a nanosecond, is compared number by number; at another one its values are interpolated
-//! linearly.
+//! linearly. Two values that are no number are equal. Tables that cover different times differ.
 
 use stillbase_simulation::signal_table::{SignalColumn, SignalTable};
+use stillbase_simulation::signals::is_name_of;
 
 /// Instants within this time of each other are the same, s: recordings count nanoseconds.
 const SAME_INSTANT_S: f64 = 1.5e-9;
@@ -23,8 +24,7 @@ pub struct Tolerances {
 impl Tolerances {
     /// Returns the largest permitted difference of a signal, in its unit, if its largest absolute value is `size`.
     fn of(&self, path: &str, size: f64) -> f64 {
-        let group = path.split('/').next().unwrap_or(path);
-        let own = self.named.iter().rev().find(|(name, _)| name == path || name == group);
+        let own = self.named.iter().rev().find(|(name, _)| is_name_of(name, path));
         own.map_or_else(|| self.all.max(self.relative * size), |(_, tolerance)| *tolerance)
     }
 }
@@ -32,6 +32,8 @@ impl Tolerances {
 /// The difference between two tables of signals, the first and the second.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableDifference {
+    /// First time of each table, s.
+    pub starts: [f64; 2],
     /// Last time of each table, s.
     pub ends: [f64; 2],
     /// Interval of time in which both have values, s; `None` if there is none.
@@ -103,6 +105,7 @@ impl TableDifference {
     /// Compares two tables.
     pub fn between(first: &SignalTable, second: &SignalTable, tolerances: &Tolerances) -> Self {
         let tables = [first, second];
+        let starts = tables.map(|table| table.time.first().copied().unwrap_or(f64::NAN));
         let ends = tables.map(|table| table.time.last().copied().unwrap_or(f64::NAN));
         let instants = Instants::of(tables);
         let interpolated = instants.rows.iter().filter(|[a, b]| !(a.is_exact() && b.is_exact())).count();
@@ -120,22 +123,22 @@ impl TableDifference {
             missing.map(|column| column.path.clone()).collect()
         };
         let unmatched = [only(first, second), only(second, first)];
-        Self { ends, overlap: instants.overlap, instants: instants.rows.len(), interpolated, signals, unmatched, units }
+        let (overlap, count) = (instants.overlap, instants.rows.len());
+        Self { starts, ends, overlap, instants: count, interpolated, signals, unmatched, units }
     }
 
     /// Returns whether the tables have the same signals over the same time, with no difference beyond its tolerance.
     pub fn is_within(&self) -> bool {
-        self.has_same_end()
+        self.has_same_ends() == [true; 2]
             && self.overlap.is_some()
             && self.unmatched.iter().all(Vec::is_empty)
             && self.units.is_empty()
             && self.signals.iter().all(|signal| signal.first.is_none())
     }
 
-    /// Returns whether both tables end at the same instant.
-    pub fn has_same_end(&self) -> bool {
-        let [a, b] = self.ends;
-        (a - b).abs() <= SAME_INSTANT_S
+    /// Returns whether both tables start, and whether both end, at the same instant.
+    pub fn has_same_ends(&self) -> [bool; 2] {
+        [self.starts, self.ends].map(is_same)
     }
 
     /// Returns whether every number that was compared is equal.
@@ -148,6 +151,11 @@ impl TableDifference {
         let all = self.signals.iter().filter_map(|signal| signal.first.as_ref().map(|first| (signal, first)));
         all.reduce(|before, next| if next.1.time < before.1.time { next } else { before })
     }
+}
+
+/// Returns whether two instants are the same.
+fn is_same([a, b]: [f64; 2]) -> bool {
+    (a - b).abs() <= SAME_INSTANT_S
 }
 
 /// A place between the rows of a table.
