@@ -61,7 +61,7 @@ impl JointsArguments {
             self.format.check_output(file, self.force, &ROW_ENDINGS)?;
         }
         let (mut csv, mut written) = (None, Ok(()));
-        let columns = if self.output.is_some() { 2 * pins.len() + 3 } else { 0 };
+        let columns = if self.output.is_some() { 2 * pins.len() + 5 } else { 0 };
         let run = replay_if(
             &scenario,
             |last| check_size(last + 1, columns, false),
@@ -89,7 +89,9 @@ impl JointsArguments {
             None => {
                 let axes = |pin: &Pin| ["x", "y"].map(|axis| format!("{} {axis} N", pin.name));
                 let head = ["time s".to_string()].into_iter().chain(pins.iter().flat_map(axes));
-                let head: Vec<String> = head.chain(["tilt x N m", "tilt y N m"].map(String::from)).collect();
+                // Older names stay beside newer ones until version 0.3.
+                let tilt = ["tilt/x N m", "tilt/y N m", "tilt x N m", "tilt y N m"];
+                let head: Vec<String> = head.chain(tilt.map(String::from)).collect();
                 Ok(begun.insert(Rows::begin(self.output.as_deref(), self.force, &head)?))
             }
         }
@@ -103,7 +105,8 @@ fn row(frame: &Frame, pins: usize) -> impl Iterator<Item = Option<f64>> {
         [force.map(|f| f.re), force.map(|f| f.im)]
     });
     let tilt = frame.inside.tilt.total();
-    [Some(frame.time)].into_iter().chain(forces).chain([Some(tilt.re), Some(tilt.im)])
+    let tilt = [Some(tilt.re), Some(tilt.im)];
+    [Some(frame.time)].into_iter().chain(forces).chain(tilt).chain(tilt)
 }
 
 fn human(answer: &JointReport) -> String {

@@ -30,6 +30,7 @@ mod joints;
 mod keys;
 mod layers;
 mod learn;
+mod lookup;
 mod machines;
 mod man;
 mod misnamed;
@@ -69,7 +70,7 @@ pub use exit::{Line, exit_code, usage};
 pub use input::words;
 pub use interrupt::watch;
 pub use open::OpenArguments;
-pub use program::Arguments;
+pub use program::{Arguments, name_commit};
 
 use failure::Failure;
 use stillbase_study::centres::{DesignReport, RebalanceReport};

@@ -48,5 +48,5 @@ pub fn bad_statements<'a>(
     statements: impl IntoIterator<Item = (&'static str, &'a Statement)>,
 ) -> impl Iterator<Item = String> {
     let bad = statements.into_iter().filter(|(_, statement)| statement.outcome == StatusLight::Bad);
-    bad.map(|(subject, statement)| format!("the {subject} {}", statement.words))
+    bad.map(|(subject, statement)| format!("{subject}: {}", statement.words))
 }

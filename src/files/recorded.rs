@@ -9,6 +9,7 @@ use re_log_types::{EntityPath, EntityPathPart, LogMsg, StoreKind};
 use thiserror::Error;
 
 use stillbase_session::scenario::{Scenario, ScenarioError};
+use stillbase_settings::results::newest_path;
 use stillbase_simulation::signal_table::{SignalColumn, SignalTable};
 
 /// Application name of recordings.
@@ -168,7 +169,7 @@ impl Cases {
                 self.properties.push(Properties { name, version, session });
             }
         } else if parts.len() >= 3 && parts[1].unescaped_str() == "signals" && chunk.is_static() {
-            let signals = texts(PATHS);
+            let signals: Vec<String> = texts(PATHS).iter().map(|path| newest_path(path).to_owned()).collect();
             if !signals.is_empty() {
                 let (nanos, values) = Default::default();
                 let topic = RecordedTopic { path: path.clone(), signals, units: texts(UNITS), nanos, values };

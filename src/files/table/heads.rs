@@ -2,6 +2,7 @@
 
 use super::column::unit_in_brackets;
 use stillbase_settings::range::{quote_clipped, shortened};
+use stillbase_settings::results::newest_path;
 use stillbase_simulation::signal_table::{SignalColumn, SignalTable};
 use stillbase_simulation::signals::name_and_unit as simulation_head;
 
@@ -23,7 +24,15 @@ impl SignalHeads {
     /// # Errors
     /// If there is no time, or nothing else, or two columns have one name; the error says what would be right.
     pub fn of<'a>(heads: impl IntoIterator<Item = &'a str>) -> Result<Self, String> {
-        let all: Vec<(String, String)> = heads.into_iter().map(name_and_unit).collect();
+        let mut all: Vec<(String, String)> = heads.into_iter().map(name_and_unit).collect();
+        let given: Vec<String> = all.iter().map(|(name, _)| name.clone()).collect();
+        // An older name counts if the newer one does not stand beside it.
+        let mut older = vec![false; all.len()];
+        for (i, (name, _)) in all.iter_mut().enumerate() {
+            let newest = newest_path(name).to_owned();
+            older[i] = newest != *name && given.contains(&newest);
+            *name = if older[i] { name.clone() } else { newest };
+        }
         let names = || shortened(&all.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", "), 300);
         let is_time = |(name, _): &(String, String)| ["t", "time"].contains(&name.to_lowercase().as_str());
         let Some(time) = all.iter().position(is_time) else {
@@ -38,7 +47,7 @@ impl SignalHeads {
         if let Some(i) = (1..all.len()).find(|i| all[..*i].iter().any(|(name, _)| *name == all[*i].0)) {
             return Err(format!("two columns {:?}: want different names", quote_clipped(&all[i].0)));
         }
-        let columns = all.into_iter().enumerate().filter(|(place, _)| *place != time);
+        let columns = all.into_iter().enumerate().filter(|(place, _)| *place != time && !older[*place]);
         Ok(Self { time, columns: columns.map(|(place, (name, unit))| (place, name, unit)).collect() })
     }
 

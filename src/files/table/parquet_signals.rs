@@ -15,6 +15,7 @@ use super::error::TableError;
 use super::heads::{SignalHeads, wrong_time};
 use super::reader::MAX_COLUMNS;
 use super::signals::MAX_BYTES;
+use crate::parquet_guard::guarded;
 use crate::parquet_rows::GROUP_ROWS;
 use stillbase_settings::range::quote_clipped;
 use stillbase_simulation::signal_table::SignalTable;
@@ -30,6 +31,11 @@ const NAMELESS_INDEX: &str = "__index_level_";
 /// # Errors
 /// If the file cannot be read or is no such table, or if its time does not increase.
 pub(super) fn parquet_signals(file: &Path) -> Result<SignalTable, TableError> {
+    let damaged = || TableError::of_file(&file.display().to_string(), "damaged: want a whole Parquet file");
+    guarded(|| read_signals(file), damaged)
+}
+
+fn read_signals(file: &Path) -> Result<SignalTable, TableError> {
     let name = file.display().to_string();
     let refused = |why: String| TableError::of_file(&name, why);
     let opened =
