@@ -178,13 +178,13 @@
 //! |---|---|---|
 //! | none | machines, plans, simulations, sessions, studies, models for other programs, scenes as data | 77 |
 //! | `tables` | motions from tables of numbers (CSV) | 80 |
-//! | `cli` | the program and its subcommands; parquet files of a study | 121 |
+//! | `cli` | the program and its subcommands; tables as Parquet | 122 |
 //! | `render` | pictures of scenes, drawn on the GPU by wgpu; films | 135 |
 //! | `ui` | panels, plots and figures for print, without a window | 183 |
 //! | `window` | the window around them | 290 |
 //! | `record` | recordings for the Rerun viewer | 314 |
 //!
-//! `window`, `record` and `cli` are enabled by default, 492 crates together. `tables`, `render` and `ui` are enabled by
+//! `window`, `record` and `cli` are enabled by default, 493 crates together. `tables`, `render` and `ui` are enabled by
 //! the features that need them.
 //!
 //! # Checking the interface

@@ -24,6 +24,7 @@ fn asks_for_json(matches: &ArgMatches) -> bool {
 
 fn main() -> ExitCode {
     name_runtime_folder();
+    option_env!("STILLBASE_COMMIT").into_iter().for_each(commands::name_commit);
     commands::watch();
     #[cfg(debug_assertions)]
     if let Ok(wanted) = std::env::var("STILLBASE_FAULT") {

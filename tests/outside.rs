@@ -85,6 +85,8 @@ fn main() -> ExitCode {
         #[cfg(feature = "cli")]
         ("pandas, rerun.experimental", page::TABLES),
         #[cfg(feature = "cli")]
+        ("pandas, pyarrow", page::PARQUET),
+        #[cfg(feature = "cli")]
         ("pandas, mujoco", page::IN_MUJOCO),
         #[cfg(feature = "cli")]
         ("pinocchio", page::IN_PINOCCHIO),

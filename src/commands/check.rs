@@ -161,7 +161,11 @@ impl CheckArguments {
             counterweights: machine.spec().counterweights.clone(),
         };
         let fits = clashes.as_ref().is_none_or(|clashes| clashes.as_ref().is_ok_and(Vec::is_empty));
-        let is_good = answer.force_balanced && answer.invariant && fits;
+        let found = [
+            (answer.force_balanced, "not force balanced"),
+            (answer.invariant, "not invariant"),
+            (fits, "its links run into each other"),
+        ];
         self.format.print(&answer, |answer| {
             let (force, coupling) = (inertia.force_residual(), inertia.invariance_residual());
             format!(
@@ -181,6 +185,7 @@ impl CheckArguments {
                 counterweights_table(&answer.counterweights),
             )
         })?;
-        self.strict.require(is_good)
+        let faults = found.into_iter().filter(|(is_good, _)| !is_good);
+        self.strict.require(faults.map(|(_, what)| format!("{}: {what}", machine.name())))
     }
 }

@@ -15,7 +15,7 @@ use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, distinct_name, scenario};
 use super::output::{Format, TextTable};
 use super::rows::Rows;
-use super::strict::{Strict, is_good};
+use super::strict::{Strict, run_faults};
 use stillbase_settings::number::{fixed, nine_digits};
 use stillbase_settings::text::sheet_cell;
 
@@ -83,13 +83,17 @@ impl CompareArguments {
             None => {}
         }
         let fault = faults().next().map(|(name, why)| Failure::untrusted(name, why));
-        let all_good = runs.rows().iter().all(|row| row.outcome.as_ref().is_ok_and(|run| is_good(&run.verdict)));
+        let faults = runs.rows().iter().flat_map(|row| match &row.outcome {
+            Ok(run) => run_faults(row.title(), &run.verdict),
+            Err(why) => vec![format!("{}: {why}", row.title())],
+        });
+        let faults: Vec<String> = faults.collect();
         self.format.print(&Answer { runs }, |Answer { runs }| match runs.have_designs() {
             true => format!("{}\n{}", table(runs.rows()), designs(runs.rows())),
             false => table(runs.rows()),
         })?;
         fault.map_or(Ok(()), Err)?;
-        self.strict.require(all_good)
+        self.strict.require(faults)
     }
 
     fn scenarios(&self) -> Result<Vec<(Option<&'static str>, Scenario)>, Failure> {

@@ -8,24 +8,29 @@ use stillbase_simulation::signal_table::SignalTable;
 use stillbase_study::difference::{Departure, SignalDifference, TableDifference, Tolerances};
 
 use super::failure::Failure;
+use super::input::Settings;
 use super::output::{Format, TextTable};
+use super::signal_choice::{SignalChoice, require_known};
 use super::signal_source::SignalSource;
-use super::simulate::{is_name_of, unknown_signal};
 
 /// Compare two recordings, tables or scenarios, signal by signal
 ///
-/// Each of the two is a recording (.rrd), a table of signals over time (.csv), or a scenario, which is run. A recording
-/// of several cases is compared case by case; `FILE.rrd:CASE` is one of them. The exit status is 0 if every signal stays
-/// within its tolerance, and 1 otherwise. By default no difference is permitted.
+/// Each of the two is a recording (.rrd), a table of signals over time (.csv, .parquet), or a scenario, which is run with
+/// the settings of `--set`. A recording of several cases is compared case by case; `FILE.rrd:CASE` is one of them. `-`
+/// is a scenario or CSV from standard input. The exit status is 0 if every signal stays within its tolerance, and 1
+/// otherwise. By default no difference is permitted.
 ///
 /// Both are compared at the instants of the one with fewer rows. At an instant that the other one lacks, its values are
-/// interpolated linearly.
+/// interpolated linearly. Two values that are no number are equal. A signal or a time that only one of both has is a
+/// difference, unless `--signals`, `--from` and `--to` leave it out.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   stillbase diff before.rrd after.rrd                             what a change of the program has changed
   stillbase diff case-3 my.toml --tolerance torque=0.01           within 0.01 N m, and all else equal
-  stillbase diff cases.rrd:case-1 measured.csv --tolerance 1e-3 --json")]
+  stillbase diff case-3 run.parquet --set plant.payload.mass=0.1  the scenario with a payload, and a table
+  stillbase simulate case-3 --set step=0.0005 | stillbase diff case-3 - --tolerance 1e-6
+  stillbase diff cases.rrd:case-1 measured.csv --signals angle,torque --tolerance 1e-3 --json")]
 pub struct DiffArguments {
     /// A recording, a table or a scenario
     #[arg(value_name = "A")]
@@ -35,6 +40,10 @@ pub struct DiffArguments {
     second: String,
     #[command(flatten)]
     tolerance: ToleranceOptions,
+    #[command(flatten)]
+    choice: SignalChoice,
+    #[command(flatten)]
+    settings: Settings,
     #[command(flatten)]
     format: Format,
 }
@@ -72,48 +81,44 @@ impl ToleranceOptions {
     /// If there is such a name.
     pub fn check<'a>(&self, tables: impl IntoIterator<Item = &'a SignalTable>) -> Result<(), Failure> {
         let columns: Vec<&str> = tables.into_iter().flat_map(|t| t.columns.iter().map(|c| c.path.as_str())).collect();
-        let is_known = |name: &str| columns.iter().any(|path| is_name_of(name, path));
-        match self.given.iter().filter_map(|(name, _)| name.as_ref()).find(|name| !is_known(name)) {
-            Some(name) => Err(unknown_signal(name, columns.iter().copied()).with_context("--tolerance")),
-            None => Ok(()),
-        }
+        let names = self.given.iter().filter_map(|(name, _)| name.as_ref());
+        require_known(names, columns.iter().copied()).map_err(|why| why.with_context("--tolerance"))
     }
 }
 
 impl DiffArguments {
     /// Compares both and prints the differences.
     pub fn run(&self) -> Result<(), Failure> {
-        let sources = [SignalSource::open(&self.first)?, SignalSource::open(&self.second)?];
-        self.tolerance.check(sources.iter().flat_map(|source| source.cases.iter().map(|(_, table)| table)))?;
+        let sources = self.sources()?;
         let tolerances = self.tolerance.over(Tolerances::default());
         let mut cases = Vec::new();
         let mut missing = Vec::new();
         let [first, second] = &sources;
         if let ([(a, left)], [(b, right)]) = (&first.cases[..], &second.cases[..]) {
-            let name = a.as_ref().or(b.as_ref()).map_or("", String::as_str);
-            cases.push(Case::of(name, &TableDifference::between(left, right, &tolerances)));
-        } else {
-            let named = |name: &Option<String>, source: &SignalSource| {
-                name.clone().ok_or_else(|| {
-                    let why = "want one case of the other file, such as cases.rrd:case-1: it has several";
-                    Failure::wrong_input(why).with_context(&source.name)
-                })
+            let name = match (a, b) {
+                (Some(a), Some(b)) if a != b => format!("{a} and {b}"),
+                _ => a.as_ref().or(b.as_ref()).cloned().unwrap_or_default(),
             };
-            for (name, left) in &first.cases {
-                let name = named(name, first)?;
-                match second.cases.iter().find(|(other, _)| other.as_ref() == Some(&name)) {
-                    Some((_, right)) => {
-                        cases.push(Case::of(&name, &TableDifference::between(left, right, &tolerances)))
+            cases.push(Case::of(&name, &TableDifference::between(left, right, &tolerances)));
+        } else {
+            // A table names no case.
+            for (table, several) in [(first, second), (second, first)] {
+                if table.cases.iter().any(|(name, _)| name.is_none()) {
+                    several.only_case()?;
+                }
+            }
+            let named = |source: &'_ SignalSource| source.cases.iter().filter_map(|(name, _)| name.clone()).collect();
+            let names: [Vec<String>; 2] = [named(first), named(second)];
+            for (name, (_, left)) in names[0].iter().zip(&first.cases) {
+                match names[1].iter().zip(&second.cases).find(|(other, _)| *other == name) {
+                    Some((_, (_, right))) => {
+                        cases.push(Case::of(name, &TableDifference::between(left, right, &tolerances)));
                     }
-                    None => missing.push((name, &first.name)),
+                    None => missing.push((name.clone(), &first.name)),
                 }
             }
-            for (name, _) in &second.cases {
-                let name = named(name, second)?;
-                if !first.cases.iter().any(|(other, _)| other.as_ref() == Some(&name)) {
-                    missing.push((name, &second.name));
-                }
-            }
+            let only = names[1].iter().filter(|name| !names[0].contains(name));
+            missing.extend(only.map(|name| (name.clone(), &second.name)));
         }
         let missing: Vec<String> =
             missing.iter().map(|(case, file)| format!("only {file} has the case {case}")).collect();
@@ -125,6 +130,34 @@ impl DiffArguments {
             parts.chain(answer.cases.iter().map(Case::text)).collect()
         })?;
         if within { Ok(()) } else { Err(Failure::Told) }
+    }
+}
+
+impl DiffArguments {
+    /// Reads both sides; leaves of each what is to be compared.
+    fn sources(&self) -> Result<[SignalSource; 2], Failure> {
+        let files = [&self.first, &self.second].map(|name| SignalSource::of_file(name));
+        if !self.settings.is_empty() && files.iter().all(Option::is_some) {
+            let why = "neither of both is a scenario, so there is nothing to set: want a scenario, or no --set";
+            return Err(Failure::wrong_input(why).with_context("--set"));
+        }
+        let [first, second] = files;
+        let or_run = |file: Option<Result<SignalSource, Failure>>, name: &str| {
+            file.unwrap_or_else(|| SignalSource::of_scenario(name, &self.settings))
+        };
+        let mut sources = [or_run(first, &self.first)?, or_run(second, &self.second)?];
+        {
+            let tables = || sources.iter().flat_map(|source| source.cases.iter().map(|(_, table)| table));
+            self.tolerance.check(tables())?;
+            let paths = tables().flat_map(|table| table.columns.iter().map(|column| column.path.as_str()));
+            self.choice.check(paths)?;
+        }
+        for SignalSource { name, cases } in &mut sources {
+            for (_, table) in cases {
+                self.choice.apply(table).map_err(|why| why.with_context(&name))?;
+            }
+        }
+        Ok(sources)
     }
 }
 
@@ -150,6 +183,8 @@ pub struct Case {
     pub within: bool,
     /// What the comparison found, in words.
     pub sentence: String,
+    /// First time of both, s.
+    starts: [f64; 2],
     /// Last time of both, s.
     ends: [f64; 2],
     instants: usize,
@@ -166,6 +201,9 @@ pub struct Case {
 struct Row {
     signal: String,
     unit: String,
+    /// Largest absolute value of the signal in either.
+    #[serde(skip)]
+    size: f64,
     tolerance: f64,
     within: bool,
     /// Where the difference is largest.
@@ -215,6 +253,7 @@ impl Case {
             equal: difference.is_equal(),
             within: difference.is_within(),
             sentence: difference.sentence(name),
+            starts: difference.starts.map(finite),
             ends: difference.ends.map(finite),
             instants: difference.instants,
             interpolated: difference.interpolated,
@@ -231,9 +270,9 @@ impl Case {
         if rows.is_empty() {
             return format!("{}\n", self.sentence);
         }
-        let excess =
-            |row: &Row| row.largest.difference.map_or(f64::INFINITY, |x| x / row.tolerance.max(f64::MIN_POSITIVE));
-        rows.sort_by(|a, b| excess(b).total_cmp(&excess(a)));
+        // Those beyond their tolerance first, then by the share of what the signal is at most.
+        let share = |row: &Row| row.largest.difference.map_or(f64::INFINITY, |x| x / row.size.max(f64::MIN_POSITIVE));
+        rows.sort_by(|a, b| a.within.cmp(&b.within).then(share(b).total_cmp(&share(a))));
         let head = ["signal", "unit", "largest difference", "at s", "tolerance", "exceeded from s"];
         let mut table = TextTable::new(head).with_words(1);
         for row in rows.iter().take(MAX_ROWS) {
@@ -260,6 +299,7 @@ impl Row {
         Self {
             signal: signal.path.clone(),
             unit: signal.unit.clone(),
+            size: signal.size,
             tolerance: signal.tolerance,
             within: signal.first.is_none(),
             largest: Place::of(&signal.largest),

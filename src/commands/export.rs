@@ -18,7 +18,8 @@ use super::input::{Settings, scenario};
 use super::output::{Format, check_size};
 use super::rows;
 use super::simulate::require_audit;
-use super::strict::{Strict, is_run_good};
+use super::strict::{Strict, run_faults};
+use stillbase_session::verdict::Verdict;
 use stillbase_settings::number::{counted, fixed};
 
 /// Write a motion as CSV or Parquet at the rate of a controller: angles, rates, accelerations, feed-forward torques
@@ -102,7 +103,7 @@ impl ExportArguments {
         let name = scenario.name.clone();
         // The first edits may draw another machine.
         let drives = with_start_edits(&scenario)?.0.machine.drives();
-        let (rows, duration, audit_failed, is_good) = match self.what {
+        let (rows, duration, audit_failed, faults) = match self.what {
             What::Reference => {
                 let (start, later) = with_start_edits(&scenario)?;
                 if later > 0 {
@@ -117,7 +118,7 @@ impl ExportArguments {
                     );
                 }
                 let (rows, duration) = self.reference(&Run::new(&start).map_err(|e| Failure::refused(&start, e))?)?;
-                (rows, duration, None, true)
+                (rows, duration, None, Vec::new())
             }
             What::Simulated => self.simulated(&scenario)?,
         };
@@ -154,7 +155,7 @@ impl ExportArguments {
             self.format.print(&answer, |_| String::new())?;
         }
         require_audit(&answer.scenario, answer.audit_failed)?;
-        self.strict.require(is_good)
+        self.strict.require(faults)
     }
 
     /// Returns the rows of the planned motion, and its duration, s.
@@ -179,9 +180,9 @@ impl ExportArguments {
         Ok(((0..=spaces).map(row).collect(), whole))
     }
 
-    /// Returns the rows of the simulated motion, its duration, s, the audit that it failed, if any, and whether the run
-    /// is good.
-    fn simulated(&self, scenario: &Scenario) -> Result<(Rows, f64, Option<String>, bool), Failure> {
+    /// Returns the rows of the simulated motion, its duration, s, the audit that it failed, if any, and what of the
+    /// run is not good.
+    fn simulated(&self, scenario: &Scenario) -> Result<(Rows, f64, Option<String>, Vec<String>), Failure> {
         let steps = 1.0 / (scenario.step * self.rate);
         let every = steps.round();
         if !(every >= 1.0 && (steps - every).abs() < 1e-6 * every) {
@@ -216,8 +217,8 @@ impl ExportArguments {
         })
         .map_err(|e| Failure::refused(scenario, e))?;
         let last = run.frame();
-        let is_good = is_run_good(run.scenario(), &last);
-        Ok((rows, last.time, last.first_violation().map(|lamp| lamp.to_string()), is_good))
+        let faults = run_faults(&scenario.name, &Verdict::of(run.scenario(), &last));
+        Ok((rows, last.time, last.first_violation().map(|lamp| lamp.to_string()), faults))
     }
 
     fn check_rows(&self, duration: f64) -> Result<(), Failure> {

@@ -11,7 +11,6 @@ use stillbase_exchange::form::{self, Form, ModelContent};
 use stillbase_exchange::mjcf::{hinges, usual_pose};
 use stillbase_exchange::stl;
 use stillbase_exchange::urdf::joint;
-use stillbase_files::write_new;
 use stillbase_mechanics::machine::Machine;
 use stillbase_settings::number::{counted, fixed};
 
@@ -19,7 +18,7 @@ use super::dimensions::Dimensions;
 use super::exit::print_message;
 use super::failure::Failure;
 use super::input::MachineArgument;
-use super::output::{Format, TextTable, check_output};
+use super::output::{Format, TextTable, write_text};
 
 /// Export a machine: a model for MuJoCo (.xml) or for ROS and Pinocchio (.urdf), drawings for cutting (.svg, .dxf),
 /// solids (.stl), or a parts list (.csv, .md)
@@ -103,7 +102,8 @@ impl ExportModelArguments {
     /// Writes the file.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
-        let form = Form::of(check_output(&self.output, self.force, &form::endings())?).map_err(Failure::wrong_input)?;
+        let form = Form::of(self.format.check_output(&self.output, self.force, &form::endings())?)
+            .map_err(Failure::wrong_input)?;
         self.check_options(form)?;
         if let Some(bad) = self.pose.iter().find(|q| !q.is_finite()) {
             return Err(Failure::wrong_input(format!("--pose {bad}: want finite angles in rad")));
@@ -112,8 +112,7 @@ impl ExportModelArguments {
         let cut = self.dimensions.cut(&machine);
         let text = form.written(&machine, &pose, &cut).map_err(Failure::wrong_input)?;
         let of = described(&machine, form, pose, &cut)?;
-        write_new(&self.output, text.as_bytes(), self.force)?;
-        print_message(format!("wrote {}", self.output.display()));
+        write_text(&self.output, &text, self.force)?;
         let left_out = form.left_out(&machine);
         for what in &left_out {
             print_message(format!("note: {}: left out: {what}", self.output.display()));

@@ -19,7 +19,7 @@ use super::output::{Format, TextTable, check_output};
 use super::progress::bar;
 use super::simulate::require_audit;
 use super::size::size;
-use super::strict::{Strict, is_good};
+use super::strict::{Strict, run_faults};
 use stillbase_settings::number::fixed;
 
 /// Simulate scenarios without a window and record them for the Rerun viewer
@@ -111,7 +111,7 @@ struct Row {
     /// Statements on machine, plan and run.
     statements: Statements,
     #[serde(skip)]
-    is_good: bool,
+    faults: Vec<String>,
     #[serde(skip)]
     answer: String,
     #[serde(skip)]
@@ -120,7 +120,9 @@ struct Row {
 
 impl From<Recording> for Row {
     fn from(recording: Recording) -> Self {
+        let faults = run_faults(&recording.scenario, &recording.verdict);
         Self {
+            faults,
             scenario: recording.scenario,
             file: recording.file.map(|file| file.display().to_string()),
             viewer: None,
@@ -135,7 +137,6 @@ impl From<Recording> for Row {
             audit_failed: recording.verdict.fault.as_ref().map(ToString::to_string),
             verdict: recording.verdict.sentence(),
             statements: recording.statements,
-            is_good: is_good(&recording.verdict),
             answer: recording.verdict.answer(),
             remarks: recording.verdict.remarks().into_iter().map(|r| r.long).collect(),
         }
@@ -165,7 +166,7 @@ impl HeadlessArguments {
         }
         self.format.print(&answer, table)?;
         answer.recordings.iter().try_for_each(|row| require_audit(&row.scenario, row.audit_failed.clone()))?;
-        self.strict.require(answer.recordings.iter().all(|row| row.is_good))
+        self.strict.require(answer.recordings.into_iter().flat_map(|row| row.faults))
     }
 
     /// Returns where the recording goes.

@@ -163,9 +163,15 @@ impl ImportArguments {
             finish_all([given_made?, made?])?;
             print_message(format!("wrote {} and {}", file.display(), given_file.display()));
         }
-        self.strict.require(imported.proposal.as_ref().is_none_or(|proposal| {
+        self.strict.require(imported.proposal.as_ref().into_iter().flat_map(|proposal| {
             let effects = &proposal.account;
-            proposal.reactionless && effects.over.is_none() && effects.past_limits <= 0.0
+            let found = [
+                (proposal.reactionless, "not reactionless"),
+                (effects.over.is_none(), "past a limit of a drive"),
+                (effects.past_limits <= 0.0, "past the limit of an angle"),
+            ];
+            let faults = found.into_iter().filter(|(is_good, _)| !is_good);
+            faults.map(|(_, what)| format!("the proposal is {what}"))
         }))
     }
 }

@@ -6,7 +6,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_exchange::import::{BaseBody, ImportedMachine};
-use stillbase_files::{is_same_place, write_new};
+use stillbase_files::is_same_place;
 use stillbase_mechanics::machine::{Inertia, Machine, to_toml};
 use stillbase_session::gentle_motion;
 use stillbase_session::scenario::Scenario;
@@ -16,7 +16,7 @@ use stillbase_simulation::plant::{Base, BaseKind};
 use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{Settings, read};
-use super::output::{Format, TextTable, check_output, yes};
+use super::output::{Format, TextTable, write_text, yes};
 
 /// Read a machine from a model of another program: planar URDF or MJCF whose links each follow one drive
 ///
@@ -87,7 +87,7 @@ impl ImportModelArguments {
     /// Reads the model, prints a summary, and writes the machine and a scenario if requested.
     pub fn run(&self) -> Result<(), Failure> {
         for file in [&self.output, &self.scenario].into_iter().flatten() {
-            check_output(file, self.force, &["toml"])?;
+            self.format.check_output(file, self.force, &["toml"])?;
         }
         if self.output.as_deref().zip(self.scenario.as_deref()).is_some_and(|(a, b)| is_same_place(a, b)) {
             return Err(Failure::wrong_input("-o and --scenario name one file: want two"));
@@ -108,12 +108,10 @@ impl ImportModelArguments {
             print_message(format!("note: {name}: {note}"));
         }
         if let Some(file) = &self.output {
-            write_new(file, to_toml(&machine).as_bytes(), self.force)?;
-            print_message(format!("wrote {}", file.display()));
+            write_text(file, &to_toml(&machine), self.force)?;
         }
         if let (Some(file), Some(scenario)) = (&self.scenario, &scenario) {
-            write_new(file, scenario.to_toml().as_bytes(), self.force)?;
-            print_message(format!("wrote {}", file.display()));
+            write_text(file, &scenario.to_toml(), self.force)?;
         }
         let inertia = Inertia::of(&machine);
         let answer = Answer {

@@ -15,7 +15,8 @@ use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, check_size};
 use super::rows::Rows;
 use super::simulate::require_audit;
-use super::strict::{Strict, is_run_good};
+use super::strict::{Strict, run_faults};
+use stillbase_session::verdict::Verdict;
 use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
 
 /// Print the forces on all pins and bearings over a run, how near it comes to change points, and the tilting moment
@@ -60,7 +61,7 @@ impl JointsArguments {
             self.format.check_output(file, self.force, &ROW_ENDINGS)?;
         }
         let (mut csv, mut written) = (None, Ok(()));
-        let columns = if self.output.is_some() { 2 * pins.len() + 3 } else { 0 };
+        let columns = if self.output.is_some() { 2 * pins.len() + 5 } else { 0 };
         let run = replay_if(
             &scenario,
             |last| check_size(last + 1, columns, false),
@@ -79,7 +80,7 @@ impl JointsArguments {
         let answer = extremes.report(&scenario.name, &run.frame());
         self.format.print(&answer, human)?;
         require_audit(&answer.scenario, answer.audit_failed)?;
-        self.strict.require(is_run_good(run.scenario(), &run.frame()))
+        self.strict.require(run_faults(&answer.scenario, &Verdict::of(run.scenario(), &run.frame())))
     }
 
     fn csv<'a>(&self, begun: &'a mut Option<Rows>, pins: &[Pin]) -> Result<&'a mut Rows, Failure> {
@@ -88,7 +89,9 @@ impl JointsArguments {
             None => {
                 let axes = |pin: &Pin| ["x", "y"].map(|axis| format!("{} {axis} N", pin.name));
                 let head = ["time s".to_string()].into_iter().chain(pins.iter().flat_map(axes));
-                let head: Vec<String> = head.chain(["tilt x N m", "tilt y N m"].map(String::from)).collect();
+                // Older names stay beside newer ones until version 0.3.
+                let tilt = ["tilt/x N m", "tilt/y N m", "tilt x N m", "tilt y N m"];
+                let head: Vec<String> = head.chain(tilt.map(String::from)).collect();
                 Ok(begun.insert(Rows::begin(self.output.as_deref(), self.force, &head)?))
             }
         }
@@ -102,7 +105,8 @@ fn row(frame: &Frame, pins: usize) -> impl Iterator<Item = Option<f64>> {
         [force.map(|f| f.re), force.map(|f| f.im)]
     });
     let tilt = frame.inside.tilt.total();
-    [Some(frame.time)].into_iter().chain(forces).chain([Some(tilt.re), Some(tilt.im)])
+    let tilt = [Some(tilt.re), Some(tilt.im)];
+    [Some(frame.time)].into_iter().chain(forces).chain(tilt).chain(tilt)
 }
 
 fn human(answer: &JointReport) -> String {

@@ -64,7 +64,10 @@ impl LayersArguments {
         let report = find_layers(&request).map_err(|why| Failure::from(why).with_context(machine.name()))?;
         self.new_machine.save(&report.machine, &design, format!("{}, stacked in layers", machine.name()))?;
         self.format.print(&report, |report| text(report, &machine) + &remarks(&machine, &cut))?;
-        self.strict.require(report.clashes.is_empty() && report.meetings.iter().all(|contact| contact.decided))
+        let clashes = (!report.clashes.is_empty()).then(|| "links that run into each other".to_owned());
+        let open = report.meetings.iter().any(|contact| !contact.decided);
+        self.strict
+            .require(clashes.into_iter().chain(open.then(|| "meetings of links that are not decided".to_owned())))
     }
 }
 

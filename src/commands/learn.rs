@@ -92,7 +92,8 @@ impl LearnArguments {
             let texts: Vec<String> = chosen.iter().map(|equation| equation_text(equation, MAX_WIDTH)).collect();
             format!("{}\n\n{}", state_text(&machine, &state), texts.join("\n"))
         })?;
-        self.strict.require(answer.equations.iter().all(|equation| equation.holds != Some(false)))
+        let broken = answer.equations.iter().filter(|equation| equation.holds == Some(false));
+        self.strict.require(broken.map(|equation| format!("Eq. ({}) does not hold", equation.number)))
     }
 
     /// Returns the machine and its state at the instant.

@@ -30,6 +30,7 @@ mod joints;
 mod keys;
 mod layers;
 mod learn;
+mod lookup;
 mod machines;
 mod man;
 mod misnamed;
@@ -52,6 +53,7 @@ mod report;
 mod results;
 mod rows;
 mod schema;
+mod signal_choice;
 mod signal_source;
 mod simulate;
 mod sites;
@@ -59,7 +61,6 @@ mod sites;
 mod size;
 mod spectrum;
 mod strict;
-#[cfg(feature = "record")]
 mod table;
 mod tolerance;
 mod trim;
@@ -69,7 +70,7 @@ pub use exit::{Line, exit_code, usage};
 pub use input::words;
 pub use interrupt::watch;
 pub use open::OpenArguments;
-pub use program::Arguments;
+pub use program::{Arguments, name_commit};
 
 use failure::Failure;
 use stillbase_study::centres::{DesignReport, RebalanceReport};
@@ -122,7 +123,6 @@ subcommands! {
     #[cfg(feature = "record")]
     Replay: replay::ReplayArguments => [replay::Answer],
     Diff: diff::DiffArguments => [diff::Answer],
-    #[cfg(feature = "record")]
     Table: table::TableArguments,
     Compare: compare::CompareArguments => [compare::Answer],
     Joints: joints::JointsArguments => [JointReport],

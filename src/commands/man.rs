@@ -12,6 +12,9 @@ use super::exit::print_message;
 use super::failure::Failure;
 use super::program::Arguments;
 
+/// The version that manual pages state.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
 /// Print the manual page, or write one for the program and one for each command
 #[derive(Args)]
 #[command(after_help = "\
@@ -30,7 +33,7 @@ pub struct ManArguments {
 impl ManArguments {
     /// Prints the page of the program, or writes all pages.
     pub fn run(&self) -> Result<(), Failure> {
-        let mut program = Arguments::program();
+        let mut program = Arguments::program().version(VERSION);
         program.build();
         let Some(folder) = &self.output else {
             let text = page(program)?;
@@ -40,7 +43,7 @@ impl ManArguments {
         let commands = program.get_subcommands().filter(|command| command.get_name() != "help").cloned();
         let named = |command: clap::Command| {
             let name = format!("stillbase-{}", command.get_name());
-            (name.clone(), command.name(name))
+            (name.clone(), command.name(name).version(VERSION))
         };
         let mut pages = vec![("stillbase".to_owned(), program.clone())];
         pages.extend(commands.map(named));

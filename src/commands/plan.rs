@@ -12,7 +12,7 @@ use stillbase_planning::pose_constant::PoseConstant;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::timing::TimeLaw;
 use stillbase_session::scenario::{FileContent, PathShape, Scenario, Task, TaskChange, TaskKind, content};
-use stillbase_session::verdict::{Statements, StatusLight};
+use stillbase_session::verdict::Statements;
 use stillbase_session::{Run, with_start_edits};
 use stillbase_simulation::plant::PlantDifferences;
 use stillbase_study::plan_summary::PlanSummary;
@@ -24,8 +24,8 @@ use super::input::{
     pose_constant, pose_space, refuse_ineffective, report_idle, report_left_out, report_tolerance,
 };
 use super::output::{Format, TextTable, is_standard, write_text};
-use super::strict::Strict;
-use stillbase_settings::number::{counted, fixed};
+use super::strict::{Strict, bad_statements};
+use stillbase_settings::number::{counted, fixed, significant};
 use stillbase_settings::word::Choice;
 
 /// Name of a plan for a machine, unless an output file gives it another.
@@ -136,8 +136,9 @@ impl PlanArguments {
             }
         };
         let Statements { machine, plan, .. } = Statements::of(&run, &run.frame());
-        let keeps_limits = answer.cost.is_none_or(|cost| cost.over.is_none());
-        let is_good = keeps_limits && [machine, plan].iter().all(|statement| statement.outcome != StatusLight::Bad);
+        let over = answer.cost.and_then(|cost| cost.over);
+        let over = over
+            .map(|(limit, factor)| format!("past a limit of a drive: {limit}, by the factor {}", significant(factor)));
         if let Some(file) = &self.output {
             // The name of the file tells plans apart in a recording or a table.
             if scenario.name == DEFAULT_NAME {
@@ -146,7 +147,7 @@ impl PlanArguments {
             }
             write_text(file, &scenario.to_toml(), self.force)?;
         }
-        self.strict.require(is_good)
+        self.strict.require(bad_statements([("machine", &machine), ("plan", &plan)]).chain(over))
     }
 
     /// Refuses options that have no effect on the task. Prints a note if the plan leaves out properties of plant or

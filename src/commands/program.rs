@@ -1,5 +1,7 @@
 //! The arguments of the whole program, from which help, completions and manual pages are made.
 
+use std::sync::OnceLock;
+
 use clap::{CommandFactory, Parser};
 
 use super::exit::silence_notes;
@@ -34,10 +36,18 @@ Examples:
 Units are SI and angles are radians. `-` reads a scenario or a machine from standard input. Exit status: 0 done, 1 the
 question has no answer, 2 wrong input.";
 
-/// Returns the version, the commit if `STILLBASE_COMMIT` named it while the program was built, and the profile.
+/// The commit that was built.
+static COMMIT: OnceLock<&str> = OnceLock::new();
+
+/// Says which commit was built, for `--version`.
+pub fn name_commit(commit: &'static str) {
+    COMMIT.get_or_init(|| commit);
+}
+
+/// Returns the version, the commit if it is known, and the profile.
 fn version() -> String {
     let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
-    let commit = option_env!("STILLBASE_COMMIT").map_or_else(String::new, |commit| format!("commit {commit}, "));
+    let commit = COMMIT.get().map_or_else(String::new, |commit| format!("commit {commit}, "));
     format!("{} ({commit}profile {profile})", env!("CARGO_PKG_VERSION"))
 }
 

@@ -8,7 +8,7 @@ use serde::Serialize;
 use stillbase_app::export::{ReportDone, write_report};
 use stillbase_app::{AppState, Switch, ViewChange};
 use stillbase_picture::scene::palette::Theme;
-use stillbase_session::verdict::{Statements, StatusLight};
+use stillbase_session::verdict::Statements;
 use stillbase_settings::number::counted;
 use stillbase_settings::text::shell_word;
 
@@ -17,7 +17,7 @@ use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, check_output};
 use super::simulate::require_audit;
-use super::strict::Strict;
+use super::strict::{Strict, bad_statements};
 
 /// Write a report on a run as one HTML page: verdicts, pictures, plots, task, settings and machine
 ///
@@ -83,9 +83,8 @@ impl ReportArguments {
             format!("{}: {pictures}, {plots}; {}\n", answer.file, answer.statements.line())
         })?;
         let Statements { machine, plan, run } = &answer.statements;
-        let is_good = [machine, plan, run].iter().all(|statement| statement.outcome != StatusLight::Bad);
         require_audit(&name, fault)?;
-        self.strict.require(is_good)
+        self.strict.require(bad_statements([("machine", machine), ("plan", plan), ("run", run)]))
     }
 
     /// Returns the command that writes the same report, without `--force` and `--json`.

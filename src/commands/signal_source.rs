@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use stillbase_files::table::{SIGNAL_ENDINGS, has_signal_head, signals_of};
+use stillbase_files::text::STANDARD_INPUT;
 use stillbase_session::signal_table;
 use stillbase_simulation::signal_table::SignalTable;
 
@@ -21,19 +23,56 @@ pub struct SignalSource {
 }
 
 impl SignalSource {
-    /// Reads a recording, a CSV or Parquet file, or runs a scenario.
+    /// Reads a recording or a table, CSV or Parquet, or CSV from standard input; `None` if the name is that of neither.
     ///
     /// # Errors
-    /// If there is no such file or scenario, it cannot be read, or the scenario cannot run.
-    pub fn open(name: &str) -> Result<Self, Failure> {
-        let ending = Path::new(name).extension().unwrap_or_default().to_ascii_lowercase();
+    /// If there is no such file, or it cannot be read.
+    pub fn of_file(name: &str) -> Option<Result<Self, Failure>> {
+        let named = |cases| Self { name: name.to_owned(), cases };
+        let of_table = |table: Result<SignalTable, _>| Ok(vec![(None, table?)]);
         let cases = match recorded(name) {
-            Some(cases) => cases?,
-            None if ending == "csv" => vec![(None, stillbase_files::table::signals(Path::new(name))?)],
-            None => vec![simulated(name)?],
+            Some(cases) => cases,
+            None if is_table(name) => of_table(stillbase_files::table::signals(Path::new(name))),
+            None if name == STANDARD_INPUT => {
+                let text = stillbase_files::text::read(Path::new(name)).ok().filter(|text| has_signal_head(text))?;
+                of_table(signals_of(&text, "standard input"))
+            }
+            None => return None,
         };
-        Ok(Self { name: name.to_owned(), cases })
+        Some(cases.map(named))
     }
+
+    /// Runs a scenario; its signals have a row at every step.
+    ///
+    /// # Errors
+    /// If there is no such scenario, or it cannot run.
+    pub fn of_scenario(name: &str, settings: &Settings) -> Result<Self, Failure> {
+        let scenario = scenario(name, settings)?;
+        let table = table_of(&scenario)?;
+        Ok(Self { name: name.to_owned(), cases: vec![(Some(scenario.name), table)] })
+    }
+
+    /// Returns the signals of its only case.
+    ///
+    /// # Errors
+    /// If it has several.
+    pub fn only_case(&self) -> Result<&SignalTable, Failure> {
+        match &self.cases[..] {
+            [(_, table)] => Ok(table),
+            several => {
+                let names: Vec<&str> = several.iter().filter_map(|(name, _)| name.as_deref()).collect();
+                let example = format!("{}:{}", self.name, names.first().copied().unwrap_or_default());
+                let why = format!("it has the cases {}: want one of them, such as {example}", names.join(", "));
+                Err(Failure::wrong_input(why).with_context(&self.name))
+            }
+        }
+    }
+}
+
+/// Returns whether a name is that of a table.
+fn is_table(name: &str) -> bool {
+    let ending = Path::new(name).extension().unwrap_or_default();
+    SIGNAL_ENDINGS.iter().any(|own| ending.eq_ignore_ascii_case(own))
 }
 
 #[cfg(feature = "record")]
@@ -46,12 +85,6 @@ fn recorded(name: &str) -> Option<Result<Cases, Failure>> {
 #[cfg(not(feature = "record"))]
 fn recorded(_: &str) -> Option<Result<Cases, Failure>> {
     None
-}
-
-/// Runs a scenario; its signals have a row at every step.
-fn simulated(name: &str) -> Result<(Option<String>, SignalTable), Failure> {
-    let scenario = scenario(name, &Settings::default())?;
-    table_of(&scenario).map(|table| (Some(scenario.name), table))
 }
 
 /// Returns the signals of a scenario at every step.

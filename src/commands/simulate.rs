@@ -13,16 +13,16 @@ use stillbase_mechanics::machine::Machine;
 use stillbase_session::verdict::{Statements, Verdict};
 use stillbase_session::{Run, replay_if, with_start_edits};
 use stillbase_simulation::frame::Frame;
-use stillbase_simulation::signals::{Signal, chosen_signals, row_heads, signals};
+use stillbase_simulation::signals::{Signal, row_heads, signals};
 
 use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, check_size};
 use super::rows::Rows;
-use super::strict::{Strict, is_run_good};
+use super::signal_choice::SignalChoice;
+use super::strict::{Strict, run_faults};
 use stillbase_settings::number::{counted, fixed};
-use stillbase_settings::range::quote_clipped;
 
 /// Run a scenario and print every signal over time, or some of them, as CSV or Parquet
 #[derive(Args)]
@@ -46,15 +46,8 @@ pub struct SimulateArguments {
     /// Print only every N-th step, and the last one
     #[arg(long, value_name = "N", default_value = "1", value_parser = every)]
     every: NonZeroU64,
-    /// Print only these signals, by name, such as torque/1, or by its first part, such as torque; default: all
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
-    signals: Vec<String>,
-    /// Print only rows from this time on, s
-    #[arg(long, value_name = "T", value_parser = instant)]
-    from: Option<f64>,
-    /// Print only rows up to this time, s
-    #[arg(long, value_name = "T", value_parser = instant)]
-    to: Option<f64>,
+    #[command(flatten)]
+    choice: SignalChoice,
     #[command(flatten)]
     settings: Settings,
     #[command(flatten)]
@@ -66,14 +59,6 @@ pub struct SimulateArguments {
 fn every(text: &str) -> Result<NonZeroU64, String> {
     text.trim().parse().map_err(|_| "want a whole number of steps, 1 or more".into())
 }
-
-fn instant(text: &str) -> Result<f64, String> {
-    let time = text.trim().parse().ok().filter(|time: &f64| time.is_finite() && *time >= 0.0);
-    time.ok_or_else(|| "want a time in s, 0 or later".into())
-}
-
-/// Tolerance of the bounds of a time interval, s.
-const TIME_TOLERANCE_S: f64 = 1e-9;
 
 /// Results of a run.
 #[derive(JsonSchema, Serialize)]
@@ -208,11 +193,6 @@ impl SimulateArguments {
         if let Some(file) = &self.output {
             self.format.check_output(file, self.force, &ROW_ENDINGS)?;
         }
-        let [from, to] = [self.from.unwrap_or(0.0), self.to.unwrap_or(f64::INFINITY)];
-        if from > to {
-            return Err(Failure::wrong_input(format!("--from {from} --to {to}: want the first before the second")));
-        }
-        let wanted = from - TIME_TOLERANCE_S..=to + TIME_TOLERANCE_S;
         let mut rows = 0_u64;
         // The CSV is begun at the first step, so that a run that cannot start prints nothing.
         let mut csv = None;
@@ -222,7 +202,7 @@ impl SimulateArguments {
         let fits = |last: u64| check_size(last / self.every + 2, table.len() + 1, self.format.json);
         let run = replay_if(&scenario, fits, |run, frame| {
             let is_due = frame.step % self.every == 0 || frame.step == run.last_step();
-            if !is_due || !wanted.contains(&frame.time) {
+            if !is_due || !self.choice.has_time(frame.time) {
                 return;
             }
             rows += 1;
@@ -238,19 +218,17 @@ impl SimulateArguments {
         .map_err(|e| Failure::refused(&scenario, e))?;
         written?;
         if rows == 0 {
-            let end = fixed(run.frame().time, 3);
-            let why = format!("no step from {from} to {to} s: want an interval with one, within the run, 0 to {end} s");
-            return Err(Failure::wrong_input(why).with_context(&scenario.name));
+            return Err(self.choice.no_row(run.frame().time).with_context(&scenario.name));
         }
         if let Some(csv) = csv {
             csv.finish()?;
         }
         let verdict = Outcome::of(&run);
-        let is_good = is_run_good(run.scenario(), &run.frame());
+        let faults = run_faults(&scenario.name, &Verdict::of(run.scenario(), &run.frame()));
         if !self.format.json && !self.writes_csv() {
             self.format.print(&verdict, |outcome| summary(outcome, &scenario.name, &table))?;
             require_audit(&scenario.name, verdict.audit_failed)?;
-            return self.strict.require(is_good);
+            return self.strict.require(faults);
         }
         if !self.format.json {
             let past = verdict.peak_felt_moment;
@@ -268,7 +246,7 @@ impl SimulateArguments {
                 print_message(format!("{}: {remark}", scenario.name));
             }
             require_audit(&scenario.name, verdict.audit_failed)?;
-            return self.strict.require(is_good);
+            return self.strict.require(faults);
         }
         let fault = verdict.audit_failed.clone();
         let name = scenario.name.clone();
@@ -281,7 +259,7 @@ impl SimulateArguments {
         };
         self.format.print(&answer, |_| String::new())?;
         require_audit(&name, fault)?;
-        self.strict.require(is_good)
+        self.strict.require(faults)
     }
 
     /// Whether rows are written: to a file, or without --json to standard output if it is not a terminal.
@@ -291,12 +269,10 @@ impl SimulateArguments {
 
     /// Returns the signals to print.
     fn table(&self, machine: &Machine) -> Result<Vec<Signal>, Failure> {
-        let all = signals(machine);
-        if self.signals.is_empty() {
-            return Ok(all);
-        }
-        chosen_signals(&all, &self.signals)
-            .map_err(|name| unknown_signal(name, all.iter().map(|s| s.path.as_str())).with_context("--signals"))
+        let mut all = signals(machine);
+        self.choice.check(all.iter().map(|signal| signal.path.as_str()))?;
+        all.retain(|signal| self.choice.has_signal(&signal.path));
+        Ok(all)
     }
 
     /// Returns the rows; the first call opens the file and writes its head.
@@ -306,23 +282,6 @@ impl SimulateArguments {
             None => Ok(begun.insert(Rows::begin(self.output.as_deref(), self.force, &row_heads(table))?)),
         }
     }
-}
-
-/// Returns whether a name is the path of a signal, or the first part of it.
-pub fn is_name_of(name: &str, path: &str) -> bool {
-    path == name || path.split('/').next() == Some(name)
-}
-
-/// Returns the failure that no signal among some has a name.
-pub fn unknown_signal<'a>(name: &str, paths: impl Iterator<Item = &'a str>) -> Failure {
-    let mut known: Vec<&str> = Vec::new();
-    for group in paths.filter_map(|path| path.split('/').next()) {
-        if !known.contains(&group) {
-            known.push(group);
-        }
-    }
-    let (name, known) = (quote_clipped(name), known.join(", "));
-    Failure::wrong_input(format!("no signal {name:?}: want one of {known}, or one of their parts"))
 }
 
 /// Formats the summary that a terminal gets instead of rows.

@@ -102,10 +102,13 @@ impl SpectrumArguments {
         let file = self.output.as_ref().map(|file| file.display().to_string());
         let answer = Answer { file, audit_failed: of.fault.clone(), of };
         self.format.print(&answer, |answer| text(&answer.of))?;
-        let mut limits = answer.of.axes.named().into_iter().filter_map(|(_, _, axis)| axis.limit.as_ref());
-        let is_good = limits.all(|limit| limit.within);
+        let limits =
+            answer.of.axes.named().into_iter().filter_map(|(name, _, axis)| Some((name, axis.limit.as_ref()?)));
+        let past = limits.filter(|(_, limit)| !limit.within);
+        let faults: Vec<String> =
+            past.map(|(name, _)| format!("{}: {name} past its limit", answer.of.scenario)).collect();
         require_audit(&answer.of.scenario, answer.audit_failed)?;
-        self.strict.require(is_good)
+        self.strict.require(faults)
     }
 }
 
@@ -160,12 +163,20 @@ fn text(answer: &BaseSpectrum) -> String {
 }
 
 fn write(file: &Path, force: bool, of: &BaseSpectrum) -> Result<(), Failure> {
-    let heads = of.spectra.named().map(|(name, unit, _)| [format!("{name} {unit}/√Hz"), format!("{name} RMS {unit}")]);
-    let head: Vec<String> = ["frequency Hz".to_owned()].into_iter().chain(heads.into_iter().flatten()).collect();
+    let names = ["force_x", "force_y", "moment"];
+    let named = of.spectra.named();
+    let heads = names
+        .iter()
+        .zip(&named)
+        .flat_map(|(name, (_, unit, _))| [format!("{name} {unit}/√Hz"), format!("{name} cumulative_rms {unit}")]);
+    // Older names stay beside newer ones until version 0.3.
+    let older = named.iter().flat_map(|(name, unit, _)| [format!("{name} {unit}/√Hz"), format!("{name} RMS {unit}")]);
+    let head: Vec<String> = ["frequency Hz".to_owned()].into_iter().chain(heads).chain(older).collect();
     let mut rows = Rows::begin(Some(file), force, &head)?;
     for (m, frequency) in of.frequency().iter().enumerate() {
-        let columns = of.spectra.named().map(|(_, _, s)| [s.density[m], s.cumulative_rms[m]]);
-        rows.row([*frequency].into_iter().chain(columns.into_iter().flatten()))?;
+        let columns = named.map(|(_, _, s)| [s.density[m], s.cumulative_rms[m]]);
+        let columns = columns.into_iter().flatten();
+        rows.row([*frequency].into_iter().chain(columns.clone()).chain(columns))?;
     }
     rows.finish()
 }

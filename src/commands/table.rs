@@ -3,23 +3,25 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use stillbase_files::recorded::CaseName;
 use stillbase_files::row_file::ROW_ENDINGS;
 
 use super::failure::Failure;
 use super::output::Format;
 use super::rows::Rows;
-use super::simulate::{is_name_of, unknown_signal};
+use super::signal_choice::SignalChoice;
+use super::signal_source::SignalSource;
 
-/// Print the signals of a recording as CSV or Parquet
+/// Print the signals of a recording or a table as CSV or Parquet
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   stillbase table case-3.rrd -o case-3.csv
-  stillbase table cases.rrd:case-1 --signals torque,moment/total -o part.parquet")]
+  stillbase table cases.rrd:case-1 --signals torque,moment/total --to 0.5 -o part.parquet
+  stillbase table part.parquet")]
 pub struct TableArguments {
-    /// The recording; FILE.rrd:CASE is one of its cases
-    #[arg(value_name = "FILE.rrd")]
+    /// A recording (.rrd; FILE.rrd:CASE is one of its cases) or a table of signals over time (.csv, .parquet); `-` is
+    /// CSV from standard input
+    #[arg(value_name = "FILE")]
     file: String,
     /// Write the rows to this file, .csv or .parquet; by default CSV goes to standard output
     #[arg(short, long, value_name = "FILE")]
@@ -27,29 +29,25 @@ pub struct TableArguments {
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
-    /// Print only these signals, by name, such as torque/1, or by its first part, such as torque; default: all
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
-    signals: Vec<String>,
+    #[command(flatten)]
+    choice: SignalChoice,
 }
 
 impl TableArguments {
-    /// Writes a row for each recorded step.
+    /// Writes a row for each step.
     pub fn run(&self) -> Result<(), Failure> {
         if let Some(file) = &self.output {
             Format { json: false }.check_output(file, self.force, &ROW_ENDINGS)?;
         }
-        let Some(name) = CaseName::of(&self.file) else {
-            return Err(Failure::wrong_input("want a recording, FILE.rrd").with_context(&self.file));
-        };
-        let mut table = name.only_case().map_err(Failure::wrong_input)?.table;
-        if !self.signals.is_empty() {
-            let has = |name: &&String| table.columns.iter().any(|column| is_name_of(name, &column.path));
-            if let Some(unknown) = self.signals.iter().find(|name| !has(name)) {
-                let paths = table.columns.iter().map(|column| column.path.as_str());
-                return Err(unknown_signal(unknown, paths).with_context("--signals"));
-            }
-            table.columns.retain(|column| self.signals.iter().any(|name| is_name_of(name, &column.path)));
-        }
+        let source = SignalSource::of_file(&self.file).unwrap_or_else(|| {
+            let why = "want a recording or a table, FILE.rrd, FILE.csv or FILE.parquet; `stillbase simulate` has the \
+                       signals of a scenario";
+            Err(Failure::wrong_input(why).with_context(&self.file))
+        });
+        let source = source?;
+        let mut table = source.only_case()?.clone();
+        self.choice.check(table.columns.iter().map(|column| column.path.as_str()))?;
+        self.choice.apply(&mut table).map_err(|why| why.with_context(&self.file))?;
         let mut rows = Rows::begin(self.output.as_deref(), self.force, &table.heads())?;
         for row in 0..table.time.len() {
             rows.row(table.row(row))?;

@@ -16,6 +16,8 @@ mod new_file;
 #[doc(hidden)]
 pub mod new_folder;
 #[cfg(feature = "rows")]
+mod parquet_guard;
+#[cfg(feature = "rows")]
 mod parquet_rows;
 #[cfg(feature = "window")]
 #[doc(hidden)]

@@ -9,6 +9,7 @@ use re_log_encoding::{Decodable as _, DecoderApp, StreamFooter};
 use re_log_types::{EntityPath, EntityPathPart, LogMsg, StoreKind};
 use thiserror::Error;
 
+use stillbase_settings::results::newest_path;
 use stillbase_simulation::signal_table::{SignalColumn, SignalTable};
 
 use crate::recorded_case::ENDING;
@@ -120,23 +121,6 @@ impl CaseName {
         }
     }
 
-    /// Returns the case that it names.
-    ///
-    /// # Errors
-    /// As [`cases`](Self::cases), and if the recording has several, and the name states none.
-    pub fn only_case(&self) -> Result<RecordedCase, ReadError> {
-        let mut all = self.cases()?;
-        match (all.pop(), &all[..]) {
-            (Some(case), []) => Ok(case),
-            (last, others) => {
-                let names: Vec<String> = others.iter().chain(&last).map(|case| case.name.clone()).collect();
-                let example = format!("{}:{}", self.file.display(), names.first().map_or("", String::as_str));
-                let names = names.join(", ");
-                Err(self.refused(format!("it has the cases {names}: want one of them, such as {example}")))
-            }
-        }
-    }
-
     fn refused(&self, why: String) -> ReadError {
         ReadError { file: self.file.clone(), why }
     }
@@ -182,7 +166,7 @@ impl Cases {
                 self.properties.push(Properties { name, version, session });
             }
         } else if parts.len() >= 3 && parts[1].unescaped_str() == "signals" && chunk.is_static() {
-            let signals = texts(PATHS);
+            let signals: Vec<String> = texts(PATHS).iter().map(|path| newest_path(path).to_owned()).collect();
             if !signals.is_empty() {
                 let (nanos, values) = Default::default();
                 let topic = RecordedTopic { path: path.clone(), signals, units: texts(UNITS), nanos, values };

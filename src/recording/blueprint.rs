@@ -31,6 +31,7 @@ use super::topic::Topic;
 use stillbase_mechanics::balance::Condition;
 use stillbase_picture::charts::{Chart, ChartPlace};
 use stillbase_picture::scene::palette::{Palette, Theme, palette};
+use stillbase_simulation::signals::group_of;
 
 /// Writes the layout and makes the viewer open with it. `pictured` says whether there are offscreen pictures.
 ///
@@ -302,7 +303,7 @@ impl Layout<'_> {
         name: &str,
         holds: fn(&Chart, &str) -> bool,
     ) -> Result<Option<Part>, StoreError> {
-        let is_here = |chart: &&Chart| holds(chart, chart.signals[0].split('/').next().unwrap_or_default());
+        let is_here = |chart: &&Chart| holds(chart, group_of(chart.signals[0]));
         let charts: Vec<&Chart> = case.charts.iter().map(|(chart, _)| chart).filter(is_here).collect();
         let mut parts = Vec::new();
         for chart in &charts {

@@ -324,16 +324,17 @@ fn properties(
         .with_component::<Scalar>("peak_torque", numbers(&peaks.torque))
         .with_component::<Scalar>("peak_base_force", number(peaks.force))
         .with_component::<Scalar>("peak_base_moment", number(peaks.arm_moment))
-        .with_component::<Scalar>("forecast_time", number(forecast.time))
+        .with_component::<Scalar>("forecast_duration", number(forecast.time))
         .with_component::<Scalar>("forecast_peak_base_moment", number(forecast.moment))
         .with_component::<Scalar>("forecast_moment_impulse", number(forecast.impulse));
+    // Older names stay beside newer ones until version 0.3.
+    all = all.with_component::<Scalar>("forecast_time", number(forecast.time));
     let Statements { machine, plan: held, run } = statements;
     for (name, statement) in [("statement_machine", machine), ("statement_plan", held), ("statement_run", run)] {
         let text = format!("{} ({})", statement.words, statement.why);
         all = all.with_component::<Text>(name, words(&text));
     }
     if let Some(moment) = verdict.past_wheel {
-        // Its older name stays beside it until version 0.3.
         for name in ["peak_felt_moment", "peak_moment_past_wheel"] {
             all = all.with_component::<Scalar>(name, number(moment));
         }
@@ -341,11 +342,14 @@ fn properties(
     if let Some(price) = price {
         all = all
             .with_component::<Scalar>("delta_b", number(price.delta_b()))
+            .with_component::<Scalar>("least_peak", number(price.least_peak(forecast.time)))
             .with_component::<Scalar>("least_peak_base_moment", number(price.least_peak(forecast.time)));
     }
     if let Some(pace) = pace {
         if let Some(limit) = pace.leading {
-            all = all.with_component::<Text>("limit", words(&limit.to_string()));
+            for name in ["limiting", "limit"] {
+                all = all.with_component::<Text>(name, words(&limit.to_string()));
+            }
         }
         if let Some(gap) = pace.gap() {
             all = all.with_component::<Scalar>("gap", number(gap));

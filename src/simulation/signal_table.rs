@@ -45,6 +45,15 @@ impl SignalTable {
         self.columns.iter().find(|column| column.path == path)
     }
 
+    /// Leaves the rows of some times, s.
+    pub fn retain_times(&mut self, is_kept: impl Fn(f64) -> bool) {
+        let kept: Vec<bool> = self.time.iter().map(|time| is_kept(*time)).collect();
+        for values in self.columns.iter_mut().map(|column| &mut column.values).chain([&mut self.time]) {
+            let mut kept = kept.iter();
+            values.retain(|_| kept.next().is_some_and(|kept| *kept));
+        }
+    }
+
     /// Returns time and signals as heads of columns: the name and the unit of each.
     pub fn heads(&self) -> Vec<String> {
         let heads = self.columns.iter().map(|column| format!("{} {}", column.path, column.unit));

@@ -73,8 +73,18 @@ impl Signal {
 
     /// Returns the first part of the path: signals of one group share a plot and a unit.
     pub fn group(&self) -> &str {
-        self.path.split('/').next().unwrap_or(&self.path)
+        group_of(&self.path)
     }
+}
+
+/// Returns the first part of the path of a signal, the name of its group.
+pub fn group_of(path: &str) -> &str {
+    path.split('/').next().unwrap_or(path)
+}
+
+/// Returns whether a name is that of a signal with a path: the path itself, or the name of its group.
+pub fn is_name_of(name: &str, path: &str) -> bool {
+    name == path || name == group_of(path)
 }
 
 /// Groups of signals that drives limit, with the key of the limit, and the limit of a drive.
@@ -102,18 +112,6 @@ const UNITS: [&str; 17] = [
 pub fn name_and_unit(head: &str) -> (&str, &str) {
     let parts = |unit: &'static str| head.strip_suffix(unit)?.strip_suffix(' ').map(|name| (name, unit));
     UNITS.into_iter().find_map(parts).unwrap_or((head, ""))
-}
-
-/// Returns the signals of some names, in the order of the table. A name is a path, or the first part of several paths.
-///
-/// # Errors
-/// If no signal has one of the names; the error is that name.
-pub fn chosen_signals<'a>(table: &[Signal], names: &'a [String]) -> Result<Vec<Signal>, &'a String> {
-    let is_of = |signal: &Signal, name: &String| signal.path == *name || signal.group() == name;
-    match names.iter().find(|name| !table.iter().any(|signal| is_of(signal, name))) {
-        Some(unknown) => Err(unknown),
-        None => Ok(table.iter().filter(|signal| names.iter().any(|name| is_of(signal, name))).cloned().collect()),
-    }
 }
 
 /// Query for the signals of a machine.

@@ -2,10 +2,13 @@
 //!
 //! The tables are compared at the instants of the one with fewer rows, within the time that both cover. An instant that
 //! the other table has, to a nanosecond, is compared number by number; at another one its values are interpolated
-//! linearly.
+//! linearly, and a signal that is only 0 or 1 has both values of the step in which it switches. Two values that are no
+//! number are equal. Tables that cover different times differ; where a tolerance is given, up to a row of the coarser one
+//! may be missing at the start and at the end.
 
 use stillbase_settings::number::{at_most_digits, counted};
 use stillbase_simulation::signal_table::{SignalColumn, SignalTable};
+use stillbase_simulation::signals::is_name_of;
 
 /// Instants within this time of each other are the same, s: recordings count nanoseconds.
 pub const SAME_INSTANT_S: f64 = 1.5e-9;
@@ -25,10 +28,14 @@ pub struct Tolerances {
 }
 
 impl Tolerances {
+    /// Returns whether any difference is permitted.
+    fn permit_any(&self) -> bool {
+        self.all > 0.0 || self.relative > 0.0 || self.named.iter().any(|(_, tolerance)| *tolerance > 0.0)
+    }
+
     /// Returns the largest permitted difference of a signal, in its unit, if its largest absolute value is `size`.
     fn of(&self, path: &str, size: f64) -> f64 {
-        let group = path.split('/').next().unwrap_or(path);
-        let own = self.named.iter().rev().find(|(name, _)| name == path || name == group);
+        let own = self.named.iter().rev().find(|(name, _)| is_name_of(name, path));
         own.map_or_else(|| self.all.max(self.relative * size), |(_, tolerance)| *tolerance)
     }
 }
@@ -36,8 +43,14 @@ impl Tolerances {
 /// The difference between two tables of signals, the first and the second.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableDifference {
+    /// First time of each table, s.
+    pub starts: [f64; 2],
     /// Last time of each table, s.
     pub ends: [f64; 2],
+    /// Largest permitted difference of the starts, and of the ends, s.
+    pub time_tolerance: f64,
+    /// Number of rows of each table.
+    pub rows: [usize; 2],
     /// Interval of time in which both have values, s; `None` if there is none.
     pub overlap: Option<[f64; 2]>,
     /// Number of compared instants.
@@ -59,6 +72,8 @@ pub struct SignalDifference {
     pub path: String,
     /// Its unit.
     pub unit: String,
+    /// Largest absolute value in either table, in the signal's unit.
+    pub size: f64,
     /// Largest permitted difference, in the signal's unit.
     pub tolerance: f64,
     /// Where the difference is largest.
@@ -107,6 +122,7 @@ impl TableDifference {
     /// Compares two tables.
     pub fn between(first: &SignalTable, second: &SignalTable, tolerances: &Tolerances) -> Self {
         let tables = [first, second];
+        let starts = tables.map(|table| table.time.first().copied().unwrap_or(f64::NAN));
         let ends = tables.map(|table| table.time.last().copied().unwrap_or(f64::NAN));
         let instants = Instants::of(tables);
         let interpolated = instants.rows.iter().filter(|[a, b]| !(a.is_exact() && b.is_exact())).count();
@@ -124,27 +140,36 @@ impl TableDifference {
             missing.map(|column| column.path.clone()).collect()
         };
         let unmatched = [only(first, second), only(second, first)];
-        Self { ends, overlap: instants.overlap, instants: instants.rows.len(), interpolated, signals, unmatched, units }
+        let (overlap, count) = (instants.overlap, instants.rows.len());
+        let rows = tables.map(|table| table.time.len());
+        let row = |table: &SignalTable| table.time.windows(2).map(|two| two[1] - two[0]).fold(0.0, f64::max);
+        let time_tolerance = match tolerances.permit_any() {
+            true => SAME_INSTANT_S + tables.map(row).into_iter().fold(0.0, f64::max),
+            false => SAME_INSTANT_S,
+        };
+        let instants = count;
+        Self { starts, ends, time_tolerance, rows, overlap, instants, interpolated, signals, unmatched, units }
     }
 
     /// Returns whether the tables have the same signals over the same time, with no difference beyond its tolerance.
     pub fn is_within(&self) -> bool {
-        self.has_same_end()
+        self.has_same_ends() == [true; 2]
             && self.overlap.is_some()
             && self.unmatched.iter().all(Vec::is_empty)
             && self.units.is_empty()
             && self.signals.iter().all(|signal| signal.first.is_none())
     }
 
-    /// Returns whether both tables end at the same instant.
-    pub fn has_same_end(&self) -> bool {
-        let [a, b] = self.ends;
-        (a - b).abs() <= SAME_INSTANT_S
+    /// Returns whether both tables start, and whether both end, at the same instant within the tolerance.
+    pub fn has_same_ends(&self) -> [bool; 2] {
+        [self.starts, self.ends].map(|[a, b]| (a - b).abs() <= self.time_tolerance)
     }
 
-    /// Returns whether every number that was compared is equal.
+    /// Returns whether both cover the same time, and every number that was compared is equal.
     pub fn is_equal(&self) -> bool {
-        self.is_within() && self.signals.iter().all(|signal| signal.largest.size() == 0.0)
+        [self.starts, self.ends].into_iter().all(is_same)
+            && self.is_within()
+            && self.signals.iter().all(|signal| signal.largest.size() == 0.0)
     }
 
     /// Returns the signal that exceeds its tolerance first; of several, the one that comes first in the tables.
@@ -157,7 +182,8 @@ impl TableDifference {
     pub fn sentence(&self, name: &str) -> String {
         let of = if name.is_empty() { String::new() } else { format!("{name}: ") };
         if self.overlap.is_none() {
-            return format!("{of}no instant that both have");
+            let [[a, b], [c, d]] = [self.starts, self.ends].map(|both| both.map(|t| at_most_digits(t, 9)));
+            return format!("{of}no instant that both have: the first has {a} to {c} s, the second {b} to {d} s");
         }
         let (signals, instants) = (counted(self.signals.len(), "signal"), counted(self.instants, "instant"));
         let between = match self.interpolated {
@@ -179,13 +205,13 @@ impl TableDifference {
                 at_most_digits(first.time, 9),
             ));
         }
-        if !self.has_same_end() {
-            let [a, b] = self.ends;
-            found.push(format!(
-                "the first ends at {} s, the second at {} s",
-                at_most_digits(a, 9),
-                at_most_digits(b, 9)
-            ));
+        for ((word, both), is_same) in
+            [("starts", self.starts), ("ends", self.ends)].into_iter().zip(self.has_same_ends())
+        {
+            if !is_same {
+                let [a, b] = both.map(|t| at_most_digits(t, 9));
+                found.push(format!("the first {word} at {a} s, the second at {b} s"));
+            }
         }
         for (place, paths) in ["first", "second"].iter().zip(&self.unmatched) {
             if let Some(path) = paths.first() {
@@ -196,8 +222,10 @@ impl TableDifference {
             found.push(format!("{path} is in {a} and in {b}{}", others(self.units.len())));
         }
         let how = if self.is_equal() { "equal" } else { "within tolerance" };
+        let [a, b] = self.rows;
+        let rows = if a == b { String::new() } else { format!(", of {a} and {b} rows") };
         match found.is_empty() {
-            true => format!("{of}{how}: {signals} at {instants}{between}"),
+            true => format!("{of}{how}: {signals} at {instants}{between}{rows}"),
             false => format!("{of}{}", found.join("; ")),
         }
     }
@@ -208,6 +236,11 @@ fn others(count: usize) -> String {
         0 | 1 => String::new(),
         count => format!(" and {} more", count - 1),
     }
+}
+
+/// Returns whether two instants are the same.
+fn is_same([a, b]: [f64; 2]) -> bool {
+    (a - b).abs() <= SAME_INSTANT_S
 }
 
 /// A place between the rows of a table.
@@ -273,11 +306,20 @@ impl Instants {
 
     /// Compares a signal; `None` if there is no instant.
     fn compare(&self, columns: [&SignalColumn; 2], tolerances: &Tolerances) -> Option<SignalDifference> {
-        let size = columns.iter().flat_map(|column| &column.values).fold(0.0_f64, |most, x| most.max(x.abs()));
+        let values = || columns.iter().flat_map(|column| &column.values);
+        let size = values().filter(|x| x.is_finite()).fold(0.0_f64, |most, x| most.max(x.abs()));
+        let is_switch = values().all(|x| [0.0, 1.0].contains(x));
         let tolerance = tolerances.of(&columns[0].path, size);
         let departures = self.time.iter().zip(&self.rows).map(|(time, places)| {
             let [a, b] = places;
-            Departure { time: *time, values: [a.value(&columns[0].values), b.value(&columns[1].values)] }
+            let mut both = [a.value(&columns[0].values), b.value(&columns[1].values)];
+            if is_switch {
+                for (i, place) in places.iter().enumerate().filter(|(_, place)| !place.is_exact()) {
+                    let [from, to] = [0, 1].map(|after| columns[i].values[place.row + after]);
+                    both[i] = if to == both[1 - i] { to } else { from };
+                }
+            }
+            Departure { time: *time, values: both }
         });
         let (mut largest, mut first) = (None::<Departure>, None);
         for departure in departures {
@@ -289,6 +331,6 @@ impl Instants {
             }
         }
         let (path, unit) = (columns[0].path.clone(), columns[0].unit.clone());
-        Some(SignalDifference { path, unit, tolerance, largest: largest?, first })
+        Some(SignalDifference { path, unit, size, tolerance, largest: largest?, first })
     }
 }

@@ -2,4 +2,6 @@
 
 #[cfg(feature = "cli")]
 mod shards;
+#[cfg(feature = "cli")]
+mod signals;
 mod table;

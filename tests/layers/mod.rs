@@ -48,7 +48,7 @@ const EDGES: &[(&str, &[&str])] = &[
             "recording/viewer.rs",
         ],
     ),
-    ("std::env", &["main.rs", "app/window.rs", "app/window/error.rs", "app/window/chooser/portal.rs"]),
+    ("std::env", &["build.rs", "main.rs", "app/window.rs", "app/window/error.rs", "app/window/chooser/portal.rs"]),
     (
         "std::thread",
         &[
@@ -78,8 +78,10 @@ const EDGES: &[(&str, &[&str])] = &[
     (
         "std::fs",
         &[
+            "build.rs",
             "files/draft.rs",
             "files/shards/rows.rs",
+            "files/table/parquet_signals.rs",
             "files/shards/checksum.rs",
             "files/new_file.rs",
             "files/new_folder.rs",
@@ -231,7 +233,8 @@ fn what_is_derived_is_kept_by_queries_alone() {
         ("session/scenario/catalog.rs", "the scenarios that come along"),
         ("picture/scene/stage/workspace.rs", "bounds that follow from the planes it holds"),
         ("planning/pose_space/pattern.rs", "patterns that follow from the space they are of"),
-        ("files/shards/rows.rs", "whether a thread reads a file whose panics are errors of the file"),
+        ("commands/program.rs", "the commit that was built, which the program names once"),
+        ("files/parquet_guard.rs", "whether a thread reads a file whose panics are errors of the file"),
     ];
     const SAME: &[(&str, &str)] = &[
         ("mechanics/machine/model.rs", "what copies of a machine share needs no comparison"),

@@ -8,6 +8,7 @@ use super::python::python;
 use crate::Test;
 
 pub const TABLES: &[Test] = tests![a_run_is_a_table, a_recording_is_a_table];
+pub const PARQUET: &[Test] = tests![what_pandas_writes_is_read];
 pub const IN_MUJOCO: &[Test] = tests![the_same_motion_in_mujoco];
 pub const IN_PINOCCHIO: &[Test] = tests![the_mass_matrix_by_pinocchio];
 
@@ -49,6 +50,43 @@ fn runs(script: &str) {
 
 fn a_run_is_a_table() {
     runs("table.py");
+}
+
+/// What pandas makes of a run, with gaps, its index and its own compression, is the same table.
+fn what_pandas_writes_is_read() {
+    let folder = Folder::new("pandas");
+    let script = "import sys, pandas as pd\n\
+                  table = pd.read_csv('run.csv', index_col='time s')\n\
+                  table['torque/1 N m'] = table['torque/1 N m'].where(table.index > 0.1)\n\
+                  table['payload/held 1'] = table['payload/held 1'].astype('int32')\n\
+                  table.to_parquet('run.parquet')\n\
+                  table.to_csv('gaps.csv')\n\
+                  table.reset_index().iloc[::2].query('`time s` > 0.05').to_parquet('part.parquet')\n\
+                  table.to_parquet('zstd.parquet', compression='zstd')\n\
+                  table.assign(word='a').to_parquet('text.parquet')\n";
+    let program = |args: &[&str]| {
+        let run =
+            std::process::Command::new(env!("CARGO_BIN_EXE_stillbase")).args(args).current_dir(&folder.0).output();
+        let run = run.expect("the program starts");
+        let said = String::from_utf8_lossy(&run.stdout).into_owned() + &String::from_utf8_lossy(&run.stderr);
+        (run.status.code(), said)
+    };
+    assert_eq!(program(&["simulate", "case-3", "--set", "task.time=0.3", "-o", "run.csv"]).0, Some(0));
+    let run = python().args(["-c", script]).current_dir(&folder.0).stdin(Stdio::null()).output().expect("it was there");
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    for line in [
+        "diff gaps.csv run.parquet",
+        "diff case-3 part.parquet --set task.time=0.3 --from 0.052 --signals angle,moment",
+    ] {
+        let (status, said) = program(&line.split(' ').collect::<Vec<_>>());
+        assert_eq!(status, Some(0), "{line}: {said}");
+    }
+    let (status, said) = program(&["diff", "run.csv", "run.parquet"]);
+    assert!(status == Some(1) && said.contains("1 of ") && said.contains("torque/1"), "{said}");
+    let (status, said) = program(&["table", "zstd.parquet"]);
+    assert!(status == Some(2) && said.contains("without compression, or with Snappy"), "{said}");
+    let (status, said) = program(&["table", "text.parquet"]);
+    assert!(status == Some(2) && said.contains("column word: text: want numbers"), "{said}");
 }
 
 fn a_recording_is_a_table() {

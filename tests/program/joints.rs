@@ -64,7 +64,9 @@ fn joints_writes_forces_as_csv_and_says_why_there_are_none() {
     let file = word(folder.path("pins.csv"));
     prints(&["joints", "case-3", "-o", &file]);
     let mut reader = csv::Reader::from_path(&file).expect("a file");
-    assert_eq!(reader.headers().expect("a head").len(), 1 + 24 + 2);
+    let head: Vec<String> = reader.headers().expect("a head").iter().map(String::from).collect();
+    assert_eq!(head.len(), 1 + 24 + 4);
+    assert_eq!(head[25..], ["tilt/x N m", "tilt/y N m", "tilt x N m", "tilt y N m"], "older names beside newer ones");
     let rows: Vec<Vec<f64>> = reader.deserialize().collect::<Result<_, _>>().expect("numbers");
     assert_eq!(rows.len(), 1001);
     // Nothing reaches the base: its three bearings cancel, though each carries newtons.

@@ -144,6 +144,52 @@ fn a_long_run_has_rows_at_a_fixed_rate_and_a_row_at_every_step_on_request() {
 }
 
 #[test]
+fn a_run_is_compared_with_its_table_in_any_form() {
+    let folder = Folder::new("recorded");
+    let [csv, parquet, again] = ["run.csv", "run.parquet", "again.csv"].map(|name| word(folder.path(name)));
+    let set = ["--set", "plant.payload.mass=0.1", "--set", "task.time=0.3"];
+    for file in [&csv, &parquet] {
+        prints(&[&["simulate", "case-3", "-o", file][..], &set].concat());
+        // The settings are those of the scenario, on either side.
+        ends(&[&["diff", "case-3", file][..], &set].concat(), 0);
+        ends(&[&["diff", file, "case-3"][..], &set].concat(), 0);
+        let got = ends(&["diff", file, "case-3", "--set", "task.time=0.3"], 1);
+        assert!(got.starts_with("case-3: ") && got.contains("signals differ"), "{got}");
+        fails(&["diff", file, file, "--set", "task.time=0.3"], 2, &["--set: neither of both is a scenario"]);
+    }
+    ends(&[&["diff", "case-3", "case-3"][..], &set].concat(), 0);
+    ends(&["diff", &csv, &parquet, "--tolerance", "0"], 0);
+    fails(&["diff", &csv, "case-3", "--set", "payload.mas=1"], 2, &["payload.mas"]);
+    // A table becomes one of another form, as it is.
+    prints(&["table", &parquet, "-o", &again]);
+    assert!(fs::read(&again).expect("a table") == fs::read(&csv).expect("a table"));
+    let part = prints(&["table", &parquet, "--signals", "torque/1", "--from", "0.1", "--to", "0.102"]);
+    assert_eq!(part.lines().count(), 4, "{part}");
+    fails(&["table", "case-3"], 2, &["want a recording or a table", "stillbase simulate"]);
+    fails(&["table", &csv, "--from", "5"], 2, &["no step from 5 to inf s", "0 to 0.300 s"]);
+    // What only one of both has is a difference, unless it is left out.
+    let short = word(folder.file("short.csv", &part));
+    let got = ends(&[&["diff", "case-3", &short][..], &set].concat(), 1);
+    assert!(
+        got.contains("the first starts at 0 s, the second at 0.1 s; the first ends at 0.3 s, the second at 0.102 s"),
+        "{got}"
+    );
+    assert!(got.contains("only the first has "), "{got}");
+    let chosen = ["--signals", "torque/1", "--from", "0.1", "--to", "0.102"];
+    ends(&[&["diff", "case-3", &short][..], &set, &chosen].concat(), 0);
+    let late = word(folder.file("late.csv", "torque/1 N m,t\n0,7\n0,8\n"));
+    let got = ends(&["diff", &short, &late], 1);
+    assert!(got.contains("no instant that both have: the first has 0.1 to 0.102 s, the second 7 to 8 s"), "{got}");
+    // No number equals no number, in both forms.
+    let [a, b] = [("a.csv", "t,x m\n0,\n1,2\n"), ("b.csv", "time s,x m\n0,NaN\n1,2\n")]
+        .map(|(name, text)| word(folder.file(name, text)));
+    ends(&["diff", &a, &b], 0);
+    let of_b = word(folder.path("b.parquet"));
+    prints(&["table", &b, "-o", &of_b]);
+    ends(&["diff", &a, &of_b], 0);
+}
+
+#[test]
 fn a_recorded_session_is_a_scenario_like_any_other() {
     let folder = Folder::new("recorded");
     let file = word(folder.path("both.rrd"));
@@ -182,7 +228,8 @@ fn what_is_no_recording_and_no_table_is_refused() {
     fails(&["replay", "case-3"], 2, &["want a recording, FILE.rrd"]);
     fails(&["replay", &word(folder.path("none.rrd"))], 2, &["none.rrd"]);
     let tables = [
-        ("torque/1 N m,time s\n0,1\n", "time s"),
+        ("torque/1 N m,x m\n0,1\n", "no column for the time among torque/1, x"),
+        ("time ms,x m\n0,1\n", "want"),
         ("time s,torque/1 N m\n0,1\n0,1\n", ":3: column time"),
         ("time s,torque/1 N m\n0,one\n", ":2: column torque/1: \"one\""),
         ("time s,torque/1 N m\n0\n", ":2: column torque/1: nothing there"),

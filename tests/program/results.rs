@@ -48,7 +48,7 @@ fn a_choice_of_nothing_is_refused() {
     let file = word(folder.path("no.csv"));
     fails(&["simulate", "--signals", "torq", "-o", &file], 2, &["torq", "torque", "moment"]);
     fails(&["simulate", "--from", "0.5", "--to", "0.25", "-o", &file], 2, &["want the first before the second"]);
-    fails(&["simulate", "--from", "7", "-o", &file], 2, &["within the run", "1.000 s"]);
+    fails(&["simulate", "--from", "7", "-o", &file], 2, &["within 0 to 1.000 s"]);
     fails(&["simulate", "--from=-1"], 2, &["0 or later"]);
     fails(&["simulate", "-o", &word(folder.path("no.xls"))], 2, &[".csv or .parquet"]);
     fails(&["joints", "-o", &word(folder.path("no.xls"))], 2, &[".csv or .parquet"]);

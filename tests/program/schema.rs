@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use stillbase::settings::results::{RESULTS, SIGNALS, find};
+use stillbase::settings::results::{RESULTS, SIGNALS, column, find, signal};
 
 use super::net::{asked, each_line, lines};
 use super::*;
@@ -161,7 +161,9 @@ fn what_commands_print_is_what_their_schema_says() {
         report two-drive -o two.html\nexport two-drive\nreplay a.rrd\ncompare case-1 case-3 -o both.parquet\n\
         headless wheel case-1 -o two.rrd --json ; replay two.rrd ; diff two.rrd:wheel two.rrd:case-1\n\
         dynamics nine-link --states states.json\ndesign nine-link-bare two-drive --counterweights --front 3\n\
-        export wheel --rate 500 --what simulated -o wheel.csv\nlayers scara\ncheck nothing.toml";
+        export wheel --rate 500 --what simulated -o wheel.csv\nlayers scara\ncheck nothing.toml\n\
+        export case-1 --what simulated --rate 250 -o a.csv --set plant.link.5.com=-0.03 ; trim a.csv nine-link\n\
+        diff case-1 case-3";
     let line_count = lines().len();
     let all = lines().into_iter().chain(more.lines().map(str::trim)).collect();
     let answers = each_line(all, |i, line| {
@@ -196,9 +198,9 @@ fn what_commands_print_is_what_their_schema_says() {
         assert!(found.is_empty(), "{}", found.join("\n"));
         tried.insert(name.to_owned());
     }
-    // Measured base forces are asked for elsewhere, with a file of their own; pictures need an adapter.
+    // Pictures need an adapter.
     let without: Vec<&String> =
-        schemas.keys().filter(|name| !tried.contains(*name) && !["trim", "render"].contains(&name.as_str())).collect();
+        schemas.keys().filter(|name| !tried.contains(*name) && name.as_str() != "render").collect();
     assert!(without.is_empty(), "no output was held against the schema of {without:?}");
 }
 
@@ -244,7 +246,8 @@ fn the_dictionary_has_each_name_once_with_unit_and_meaning() {
         assert_eq!(row.meaning.is_empty(), is_old, "{}", row.name);
         assert!(row.in_words().split_whitespace().count() <= 40, "{}", row.in_words());
         if is_old {
-            let now = find("", row.newer).unwrap_or_else(|| panic!("no result {}", row.newer));
+            let now = find("", row.newer).or_else(|| signal(row.newer));
+            let now = now.unwrap_or_else(|| panic!("no result {}", row.newer));
             assert_eq!((now.unit, now.newer), (row.unit, ""), "{}", row.name);
         }
     }
@@ -262,6 +265,100 @@ fn the_dictionary_has_each_name_once_with_unit_and_meaning() {
             "{}",
             signal.path
         );
+    }
+}
+
+/// The heads of the columns of a CSV file, without the lines about it.
+fn heads(file: &Path) -> Vec<String> {
+    let text = fs::read_to_string(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+    let head = text.lines().find(|line| !line.starts_with('#')).expect("a head").trim_end();
+    head.split(',').map(|cell| cell.trim_matches('"').to_owned()).collect()
+}
+
+#[test]
+fn the_dictionary_knows_every_column() {
+    let folder = Folder::new("columns");
+    let base = ["--set", "base.kind=free", "--set", "base.mass=30", "--set", "base.inertia=2"];
+    let mut tables: Vec<(&str, Vec<&str>)> = vec![
+        ("simulate", vec!["case-3", "--every", "1000"]),
+        ("simulate", vec!["four-drive", "--every", "1000"]),
+        ("export", vec!["case-3", "--rate", "10"]),
+        ("export", [&["case-1", "--rate", "10", "--what", "simulated"][..], &base].concat()),
+        ("joints", vec!["case-1"]),
+        ("spectrum", vec!["case-1"]),
+        ("compare", vec!["case-1", "two-drive"]),
+        ("export-model", vec!["nine-link"]),
+        ("export-model", vec!["scara"]),
+    ];
+    if cfg!(feature = "ui") {
+        tables.push(("figures", vec!["case-1", "--what", "torque,moment"]));
+    }
+    let mut unknown = BTreeSet::new();
+    for (i, (command, args)) in tables.iter().enumerate() {
+        let ending = if *command == "figures" { "svg" } else { "csv" };
+        let file = folder.path(&format!("{i}.{ending}"));
+        let name = word(file.clone());
+        let out = stillbase(&[&[*command][..], args, &["-o", &name]].concat());
+        assert_eq!(out.status.code(), Some(0), "{command}: {}", text(&out.stderr));
+        for head in heads(&file.with_extension("csv")) {
+            // A comparison has results of runs and of machines.
+            let holders: &[&str] = if *command == "compare" { &["runs", "design"] } else { &[command] };
+            if !holders.iter().any(|holder| column(holder, &head).is_some()) {
+                unknown.insert(format!("{command}: {head}"));
+            }
+        }
+    }
+    // A study has a column for each number that varies, named by its key, and the outcome.
+    let file = word(folder.path("study.parquet"));
+    prints(&["tolerance", "case-1", "--samples", "4", "--spread", "link.5.com=normal:0.001", "-o", &file]);
+    let reader = parquet::file::reader::SerializedFileReader::new(fs::File::open(&file).expect("a file"));
+    let reader = reader.expect("Parquet");
+    let schema = parquet::file::reader::FileReader::metadata(&reader).file_metadata().schema_descr_ptr();
+    let names: Vec<&str> =
+        schema.columns().iter().map(|c| c.name()).filter(|name| !name.starts_with("link.")).collect();
+    assert_eq!(names.len(), 5, "{names:?}");
+    unknown.extend(
+        names.iter().filter(|name| column("tolerance", name).is_none()).map(|name| format!("tolerance: {name}")),
+    );
+    assert!(unknown.is_empty(), "{} columns without meaning: {unknown:?}", unknown.len());
+    assert!(
+        column("joints", "tilt/z N m").is_none()
+            && column("export", "q").is_none()
+            && column("simulate", "torque/1 N").is_none()
+    );
+}
+
+#[cfg(feature = "record")]
+#[test]
+fn the_dictionary_knows_every_property_of_a_recording() {
+    let folder = Folder::new("properties");
+    let file = folder.path("all.rrd");
+    let scenarios = ["case-1", "change-b", "circle", "drift", "wheel"];
+    prints(&[&["headless"][..], &scenarios, &["-o", &word(file.clone())]].concat());
+    let smooth = folder.path("smooth.rrd");
+    let jerk = ["drive.1.jerk_limit=900", "drive.2.jerk_limit=900", "drive.3.jerk_limit=900"];
+    let set: Vec<&str> = jerk.iter().chain(&["task.law=fastest-smooth"]).flat_map(|set| ["--set", set]).collect();
+    prints(&[&["headless", "case-1", "-o", &word(smooth.clone())][..], &set].concat());
+    let mut seen = BTreeSet::new();
+    for file in [file, smooth] {
+        let opened = std::io::BufReader::new(fs::File::open(&file).expect("a file"));
+        for message in re_log_encoding::DecoderApp::decode_lazy(opened) {
+            let re_log_types::LogMsg::ArrowMsg(_, message) = message.expect("whole") else { continue };
+            let chunk = re_chunk::Chunk::from_arrow_msg(&message).expect("a chunk");
+            if scenarios.iter().any(|name| chunk.entity_path().to_string() == format!("/__properties/{name}")) {
+                seen.extend(chunk.components().values().map(|own| own.descriptor.component.to_string()));
+            }
+        }
+    }
+    assert!(["forecast_duration", "gap", "drift_3"].iter().all(|name| seen.contains(*name)), "{seen:?}");
+    let unknown: Vec<&String> = seen.iter().filter(|name| column("recording", name).is_none()).collect();
+    assert!(unknown.is_empty(), "{} properties without meaning: {unknown:?}", unknown.len());
+    // What has an older name in a recording has both.
+    for row in RESULTS.iter().flat_map(|(_, rows)| *rows).filter(|row| !row.newer.is_empty()) {
+        if let Some(older) = row.name.strip_prefix("recording.") {
+            let newer = row.newer.strip_prefix("recording.").unwrap_or(row.newer);
+            assert!(seen.contains(older) && seen.contains(newer), "{older} and {newer}");
+        }
     }
 }
 

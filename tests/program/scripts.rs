@@ -38,9 +38,100 @@ fn strict_ends_with_one_where_something_is_not_good() {
         let strict = stillbase(&[args, &["--strict"]].concat());
         assert_eq!(plain.status.code(), Some(0), "{args:?}: {}", text(&plain.stderr));
         assert_eq!(strict.status.code(), Some(i32::from(!good)), "{args:?}: {}", text(&strict.stderr));
-        assert_eq!((strict.stdout, strict.stderr), (plain.stdout, plain.stderr), "{args:?}: the same answer");
+        assert_eq!(strict.stdout, plain.stdout, "{args:?}: the same answer");
+        let more = text(&strict.stderr).strip_prefix(text(&plain.stderr)).expect("the same notes");
+        assert_eq!(more.starts_with("stillbase: --strict: ") && more.lines().count() == 1, !good, "{args:?}: {more}");
     }
     fails(&["keys", "friction", "--strict"], 2, &["--strict"]);
+}
+
+#[test]
+fn strict_says_what_is_not_good() {
+    let folder = Folder::new("strict");
+    let missed = folder.file(
+        "missed.toml",
+        "machine = \"nine-link\"\nduration = 0.5\n[task]\nkind = \"reactionless\"\nfrom = [0.5, 0.5]\nto = [0.55, 0.9]\nb = 2.4\n",
+    );
+    let missed = word(missed);
+    for (args, words) in [
+        (&["check", "nine-link-table-1"][..], "nine-link-table-1: not force balanced"),
+        (&["check", "nine-link-table-1"], "nine-link-table-1: not invariant"),
+        (&["simulate", "case-1", "--every", "1000"], "case-1: not reactionless"),
+        (
+            &["simulate", "case-1", "--every", "1000", "--set", "plant.force=-60,60"],
+            "past the limit of the angle a1 by ",
+        ),
+        (&["simulate", "case-3", "--every", "1000", "--set", "drive.1.torque_limit=0.5"], "past a limit of a drive"),
+        (&["simulate", &missed, "--every", "100"], "missed: off its target by "),
+        (&["plan", "nine-link-bare", "0.5,0.5", "0.55,0.9"], "machine: off balance by "),
+        (&["learn", "nine-link-table-1", "--equation", "7"], "Eq. (7) does not hold"),
+        (&["spectrum", "case-1", "--limit-moment", "1:1e-9,100:1e-9"], "case-1: n_B past its limit"),
+        (
+            &["tolerance", "case-3", "--samples", "20", "--limit-moment", "1e-9"],
+            "20 of 20 machines past the limit of the moment",
+        ),
+        (&["compare", "case-1", "case-3"], "case-1: not reactionless"),
+    ] {
+        for more in [&["--strict"][..], &["--strict", "--quiet"], &["--strict", "--json"]] {
+            let out = stillbase(&[args, more].concat());
+            let said = text(&out.stderr);
+            assert_eq!(out.status.code(), Some(1), "{args:?}: {said}");
+            let last = said.lines().last().unwrap_or_default();
+            assert!(last.starts_with("stillbase: --strict: ") && last.contains(words), "{args:?}: {said}");
+            assert!(more != ["--strict", "--quiet"] || said.lines().count() == 1, "{said}");
+        }
+    }
+    // What cannot be trusted ends with 1 in any case.
+    let rough = ["simulate", "case-3", "--every", "100", "--set", "step=0.01", "--set", "plant.friction.viscous=2500"];
+    for more in [&[][..], &["--strict"], &["--quiet"]] {
+        let out = stillbase(&[&rough, more].concat());
+        assert_eq!(out.status.code(), Some(1), "{}", text(&out.stderr));
+        assert!(text(&out.stderr).contains("audit failed: step: "), "{}", text(&out.stderr));
+    }
+}
+
+/// What bash completes after words, the last of which is begun.
+fn completed(script: &Path, words: &[&str]) -> Vec<String> {
+    let line = "source \"$1\"; shift; COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); \
+                _stillbase stillbase \"${COMP_WORDS[COMP_CWORD]}\" \"${COMP_WORDS[COMP_CWORD - 1]}\"; \
+                printf '%s\\n' \"${COMPREPLY[@]}\"";
+    let out = Command::new("bash").args(["--norc", "-c", line, "bash"]).arg(script).args(words).output();
+    let out = out.expect("bash");
+    assert!(out.stderr.is_empty(), "{}", text(&out.stderr));
+    text(&out.stdout).lines().map(str::to_owned).collect()
+}
+
+#[cfg(unix)]
+#[test]
+fn bash_completes_commands_options_and_their_words() {
+    if Command::new("bash").arg("--version").output().is_err() {
+        return;
+    }
+    let folder = Folder::new("completions");
+    let script = folder.file("stillbase.bash", prints(&["completions", "bash"]));
+    let of = |words: &[&str]| completed(&script, words);
+    assert_eq!(of(&["stillbase", "sim"]), ["simulate"]);
+    assert_eq!(of(&["stillbase", "export-model", "--fo"]), ["--force"]);
+    assert_eq!(of(&["stillbase", "diff", "--tol"]), ["--tolerance"]);
+    assert!(of(&["stillbase", "export", "case-1", "--what", ""]).contains(&"simulated".to_owned()));
+    assert!(of(&["stillbase", ""]).contains(&"workspace".to_owned()));
+    assert!(of(&["stillbase", "simulate", "--"]).contains(&"--signals".to_owned()));
+}
+
+#[test]
+fn a_dash_is_a_table_or_a_scenario_of_a_comparison() {
+    let csv = prints(&["simulate", "case-3", "--set", "task.time=0.3"]);
+    let same = given(&csv, &["diff", "case-3", "-", "--set", "task.time=0.3"]);
+    assert_eq!(same.status.code(), Some(0), "{}{}", text(&same.stdout), text(&same.stderr));
+    let other = given(&csv, &["diff", "-", "case-3"]);
+    assert_eq!(other.status.code(), Some(1), "{}", text(&other.stdout));
+    let scenario =
+        "machine = \"nine-link\"\n[task]\nkind = \"reactionless\"\nfrom = [0.5, 0.5]\nto = [0.55, 0.9]\nb = 2.4\n";
+    let same = given(scenario, &["diff", "-", "case-3"]);
+    assert_eq!(same.status.code(), Some(0), "{}{}", text(&same.stdout), text(&same.stderr));
+    let part = given(&csv, &["table", "-", "--signals", "torque/1", "-o", "-"]);
+    assert!(text(&part.stdout).starts_with("time s,torque/1 N m\n"), "{}", text(&part.stderr));
+    fails(&["table", "-"], 2, &["want a recording or a table"]);
 }
 
 #[test]
@@ -72,6 +163,25 @@ fn a_dash_is_standard_input_and_output() {
         let out = stillbase(args);
         let head = text(&out.stdout).lines().next().expect("a head").to_owned();
         assert!(["time s,", "frequency Hz,"].iter().any(|start| head.starts_with(start)), "{head}");
+    }
+    // A model goes out as the first of its formats, and comes in again.
+    let model = stillbase(&["export-model", "two-drive", "-o", "-"]);
+    assert!(text(&model.stdout).contains("<mujoco"), "{}", text(&model.stderr));
+    let back = given(text(&model.stdout), &["import-model", "-", "-o", "-"]);
+    assert_eq!(back.status.code(), Some(0), "{}", text(&back.stderr));
+    let checked = given(text(&back.stdout), &["check", "-", "--json"]);
+    assert_eq!(checked.status.code(), Some(0), "{}", text(&checked.stderr));
+    // Samples, states and measured forces come in.
+    let samples = prints(&["export", "case-1", "--what", "simulated", "--rate", "250"]);
+    let states = r#"[{"q": [0.1, 0.2, 0.3], "qd": [0, 0, 1], "qdd": [0, 1, 0]}]"#;
+    for (input, args) in [
+        (&samples[..], &["import", "-", "--json"][..]),
+        (&samples, &["trim", "-", "nine-link", "--json"]),
+        (states, &["dynamics", "nine-link", "--states", "-", "--json"]),
+    ] {
+        let out = given(input, args);
+        assert_eq!(out.status.code(), Some(0), "{args:?}: {}", text(&out.stderr));
+        assert!(serde_json::from_slice::<Value>(&out.stdout).is_ok_and(|value| value.is_object()), "{args:?}");
     }
     let table = prints(&["compare", "case-1", "case-3", "-o", "-"]);
     assert!(table.starts_with("scenario,reactionless,refused,duration s,peak_felt_moment N m,"), "{table}");
@@ -152,6 +262,11 @@ fn manual_pages_are_printed_or_written() {
     prints(&["man", "-o", &place]);
     let check = fs::read_to_string(folder.path("stillbase-check.1")).expect("a page");
     assert!(check.contains("stillbase\\-check") && check.contains("force balanced"), "{check}");
+    for name in ["stillbase.1", "stillbase-check.1", "stillbase-diff.1"] {
+        let page = fs::read_to_string(folder.path(name)).expect("a page");
+        let title = page.lines().find(|line| line.starts_with(".TH")).expect("a title");
+        assert!(title.contains(env!("CARGO_PKG_VERSION")), "{name}: {title}");
+    }
     fails(&["man", "-o", &place], 2, &["exists", "--force"]);
     prints(&["man", "-o", &place, "--force"]);
     fails(&["man", "-o", &word(folder.path("no"))], 2, &["no folder"]);
@@ -162,6 +277,18 @@ fn the_version_names_commit_and_profile() {
     let version = prints(&["--version"]);
     assert!(version.starts_with(concat!("stillbase ", env!("CARGO_PKG_VERSION"), " (")), "{version}");
     assert!(version.contains("profile dev)") || version.contains("profile release)"), "{version}");
+    // The commit is that of the checkout, or the one that the build was told.
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let head = Command::new("git").args(["rev-parse", "HEAD"]).current_dir(root).output();
+    let head = head.ok().filter(|out| out.status.success() && root.join(".git").exists());
+    match option_env!("STILLBASE_COMMIT") {
+        Some(commit) => {
+            assert!(version.contains(&format!("(commit {commit}, ")), "{version}");
+            let is_told = std::env::var_os("STILLBASE_COMMIT").is_some();
+            assert!(is_told || head.is_none_or(|head| text(&head.stdout).starts_with(commit)), "{version}");
+        }
+        None => assert!(head.is_none() && !version.contains("commit"), "{version}"),
+    }
 }
 
 #[test]

@@ -186,7 +186,10 @@ fn spectrum_says_what_is_kept() {
     let folder = folder("spectrum");
     said_in(&folder, &["spectrum", "case-1", "-o", "s.csv"], 0);
     let csv = fs::read_to_string(folder.join("s.csv")).expect("there");
-    assert!(csv.starts_with("frequency Hz,f_Bx N/√Hz,f_Bx RMS N,f_By N/√Hz,f_By RMS N,n_B N m/√Hz,n_B RMS N m\n"));
+    let newer = "force_x N/√Hz,force_x cumulative_rms N,force_y N/√Hz,force_y cumulative_rms N,moment N m/√Hz,\
+                 moment cumulative_rms N m";
+    let older = "f_Bx N/√Hz,f_Bx RMS N,f_By N/√Hz,f_By RMS N,n_B N m/√Hz,n_B RMS N m";
+    assert!(csv.starts_with(&format!("frequency Hz,{newer},{older}\n")), "{csv:.300}");
     assert_eq!(csv.lines().count(), 502);
     assert!(said_in(&folder, &["spectrum", "case-1", "-o", "s.csv"], 2).contains("exists"));
     fails(&["spectrum", "case-1", "--limit-moment", "2:1,1:1"], 2, &["rising"]);

@@ -54,13 +54,17 @@ fn what_was_foreseen_is_told() {
         let run = stillbase::session::Run::new(scenario).expect("it runs");
         let plan = run.plan();
         let told = |name: &'static str| contents.numbers(&format!("/__properties/{}", scenario.name), name);
-        assert_eq!(told("forecast_time"), [plan.forecast.time]);
+        for name in ["forecast_duration", "forecast_time"] {
+            assert_eq!(told(name), [plan.forecast.time]);
+        }
         assert_eq!(told("forecast_peak_base_moment"), [plan.forecast.moment]);
         assert_eq!(told("forecast_moment_impulse"), [plan.forecast.impulse]);
         let price: Vec<f64> = plan.price.iter().map(|p| p.delta_b()).collect();
         assert_eq!((told("delta_b"), price.len()), (price.clone(), usize::from(scenario.name == "change-b")));
         let least: Vec<f64> = plan.price.iter().map(|p| p.least_peak(plan.forecast.time)).collect();
-        assert_eq!(told("least_peak_base_moment"), least);
+        for name in ["least_peak", "least_peak_base_moment"] {
+            assert_eq!(told(name), least);
+        }
         let gap: Vec<f64> = plan.pace.iter().filter_map(|pace| pace.gap()).collect();
         assert_eq!((told("gap"), gap.len()), (gap.clone(), usize::from(scenario.name == "smooth")));
         let drift = told("drift_2");
@@ -69,8 +73,10 @@ fn what_was_foreseen_is_told() {
             assert_eq!(*drift, end[1] - start[1]);
         }
     }
-    let limit = contents.texts("/__properties/circle", "limit");
-    assert!(limit.iter().any(|l| l.contains("of drive")), "{limit:?}");
+    for name in ["limiting", "limit"] {
+        let limit = contents.texts("/__properties/circle", name);
+        assert!(limit.iter().any(|l| l.contains("of drive")), "{limit:?}");
+    }
 }
 
 #[test]

@@ -68,6 +68,8 @@ fn what_only_one_table_has_is_a_difference() {
     assert!(!difference.is_within());
     let shorter = table(&[0.0], &[("torque/1", "N m", &[1.0]), ("old", "m", &[0.0])]);
     assert!(!between(&a, &shorter).is_within() && between(&a, &shorter).signals.iter().all(|s| s.first.is_none()));
+    let later = table(&[1.0], &[("torque/1", "N m", &[1.0]), ("old", "m", &[0.0])]);
+    assert_eq!((between(&a, &later).has_same_ends(), between(&a, &later).is_within()), ([false, true], false));
     let apart = table(&[2.0, 3.0], &[("torque/1", "N m", &[1.0, 1.0]), ("old", "m", &[0.0, 0.0])]);
     assert_eq!((between(&a, &apart).overlap, between(&a, &apart).is_within()), (None, false));
     let none = SignalTable::default();
@@ -109,7 +111,7 @@ proptest! {
         let straight = between(&sampled(&a, 0.0), &sampled(&b, 0.0));
         prop_assert!(straight.signals[0].largest.size() < 1e-12);
         prop_assert_eq!(straight.instants, a.len().min(b.len()));
-        prop_assert!(straight.has_same_end());
+        prop_assert_eq!(straight.has_same_ends(), [true; 2]);
         let finer = if a.len() <= b.len() { &b } else { &a };
         let widest = finer.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
         let bent = between(&sampled(&a, bend), &sampled(&b, bend));

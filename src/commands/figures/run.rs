@@ -13,7 +13,7 @@ use stillbase_picture::scene::palette::Theme;
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_settings::number::fixed;
 use stillbase_settings::text::shell_word;
-use stillbase_simulation::signals::signals;
+use stillbase_simulation::signals::{group_of, signals};
 use stillbase_study::workspace::WorkspaceReport;
 
 use super::{FiguresArguments, write};
@@ -123,8 +123,8 @@ fn plot(part: RunFigure, app_state: &AppState, width: f32) -> Result<(PrintPlot,
         }
         part => {
             let (word, charts) = (part.word(), charts(scenario, false));
-            let group = |path: &str| path.split('/').next().is_some_and(|group| group == word);
-            let chart = charts.iter().find(|chart| chart.signals.first().is_some_and(|path| group(path)));
+            let is_of = |path: &&str| group_of(path) == word;
+            let chart = charts.iter().find(|chart| chart.signals.first().is_some_and(is_of));
             let chart = chart.ok_or_else(|| {
                 Failure::no_answer(format!("{}: this run has no {word}: want another part", scenario.name))
             })?;

@@ -134,10 +134,14 @@ impl From<ShardError> for Failure {
     }
 }
 
-/// Returns whether every machine is within the limits that are given.
-fn all_within(yields: &Yields) -> bool {
-    let Yields { moment, force, both } = yields;
-    [moment, force, both].into_iter().flatten().all(|limit| limit.count.good == limit.count.total)
+/// Returns of which limits how many machines are past.
+fn past_limits(yields: &Yields) -> impl Iterator<Item = String> {
+    let Yields { moment, force, .. } = yields;
+    [("moment", moment), ("force", force)].into_iter().filter_map(|(what, limit)| {
+        let count = limit.as_ref()?.count;
+        let past = count.total - count.good;
+        (past > 0).then(|| format!("{past} of {} past the limit of the {what}", counted(count.total, "machine")))
+    })
 }
 
 impl ToleranceArguments {
@@ -165,7 +169,7 @@ impl ToleranceArguments {
         };
         print_message(format!("wrote {}", answer.file));
         self.format.print(&answer, MergedParts::text)?;
-        self.strict.require(all_within(&answer.yields))
+        self.strict.require(past_limits(&answer.yields))
     }
 
     /// Returns the tolerances of the scenario, overridden by those of the command line.
@@ -242,7 +246,7 @@ impl ToleranceArguments {
             print_message(format!("wrote {file}"));
         }
         self.format.print(&answer, |answer| report::text(&answer.report))?;
-        self.strict.require(all_within(&answer.report.yields))
+        self.strict.require(past_limits(&answer.report.yields))
     }
 
     /// Evaluates the machines of a range and writes them if requested. Returns their outcomes and, if these are

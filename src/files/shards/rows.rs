@@ -1,13 +1,11 @@
 //! Files of samples, CSV or Parquet, with one row for each machine and a header that identifies the study.
 
-use std::cell::Cell;
 use std::fmt;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::ops::ControlFlow;
-use std::panic::{self, AssertUnwindSafe};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Once};
+use std::sync::Arc;
 
 use parquet::basic::{Compression, Type as Physical};
 use parquet::column::reader::get_typed_column_reader;
@@ -20,6 +18,7 @@ use parquet::schema::types::Type;
 use super::checksum::{self, CHECKSUM_BLANK, CHECKSUM_PREFIX, CheckedFile, ChecksumPlace};
 use super::error::{ShardError, shard_error};
 use super::hash::fnv_1a;
+use crate::parquet_guard::guarded;
 use crate::parquet_rows::{GROUP_ROWS, ParquetHead, ParquetRows};
 use crate::{NewFile, WriteError};
 use stillbase_session::scenario::{Scenario, Tolerance};
@@ -376,7 +375,7 @@ impl StudyPart {
             }
             Reader::Parquet(reader) => {
                 for group in 0..reader.num_row_groups() {
-                    let (samples, columns) = guarded(&file, || group_of(&file, &reader, group, row.len()))?;
+                    let (samples, columns) = guarded(|| group_of(&file, &reader, group, row.len()), || foreign(&file))?;
                     for (i, sample) in samples.iter().enumerate() {
                         row.iter_mut().zip(&columns).for_each(|(value, column)| *value = column[i]);
                         if see(u64::try_from(*sample).unwrap_or(u64::MAX), &row)?.is_break() {
@@ -424,7 +423,7 @@ fn parquet_reader(file: &Path, mut opened: File) -> Result<SerializedFileReader<
         (magic == *b"PAR1" && contents <= MAX_CONTENTS_BYTES && contents + 12 <= length).then_some(length)
     };
     let length = contents().ok_or_else(|| foreign(file))?;
-    let reader = guarded(file, || SerializedFileReader::new(opened).map_err(parquet_failure(file)))?;
+    let reader = guarded(|| SerializedFileReader::new(opened).map_err(parquet_failure(file)), || foreign(file))?;
     let contents = reader.metadata();
     let columns = contents.file_metadata().schema().get_fields().len();
     let within = |group: &RowGroupMetaData| {
@@ -465,30 +464,6 @@ fn group_of(
     }
     let whole = samples.len() == count && columns.iter().all(|column| column.len() == count);
     if whole { Ok((samples, columns)) } else { Err(foreign(file)) }
-}
-
-thread_local! {
-    /// Whether this thread reads a Parquet file, so that a panic is an error of the file and is not printed.
-    static IS_GUARDED: Cell<bool> = const { Cell::new(false) };
-}
-
-/// Calls the Parquet reader, and turns its panics, which some damaged files cause, into errors. Panics of other threads
-/// are printed as ever.
-fn guarded<T>(file: &Path, read: impl FnOnce() -> Result<T, ShardError>) -> Result<T, ShardError> {
-    static HOOK: Once = Once::new();
-    // The hook belongs to the whole program, so it is laid once, and stays.
-    HOOK.call_once(|| {
-        let print = panic::take_hook();
-        panic::set_hook(Box::new(move |of| {
-            if !IS_GUARDED.get() {
-                print(of);
-            }
-        }));
-    });
-    IS_GUARDED.set(true);
-    let done = panic::catch_unwind(AssertUnwindSafe(read));
-    IS_GUARDED.set(false);
-    done.unwrap_or_else(|_| Err(foreign(file)))
 }
 
 /// Returns the number of rows of a row group; `None` if this program could not have written the group.

@@ -1,5 +1,5 @@
-//! Reads motions from CSV tables of other programs. Columns are found by name and unit, and errors name file, line and
-//! column.
+//! Reads tables of other programs: motions from CSV, signals also from Parquet. Columns are found by name and unit, and
+//! errors name file, line and column.
 //!
 //! | content | reader |
 //! |---|---|
@@ -11,8 +11,11 @@
 mod angle;
 mod column;
 mod error;
+mod heads;
 mod kind;
 mod measured;
+#[cfg(feature = "rows")]
+mod parquet_signals;
 mod reader;
 mod samples;
 mod signals;
@@ -21,4 +24,4 @@ pub use error::TableError;
 pub use kind::TableData;
 pub use measured::{MAX_ROWS, motions};
 pub use samples::{SampleTable, samples};
-pub use signals::signals;
+pub use signals::{SIGNAL_ENDINGS, has_signal_head, signals, signals_of};

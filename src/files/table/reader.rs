@@ -7,7 +7,7 @@ use stillbase_settings::range::quote_clipped;
 /// Largest magnitude of a number, in SI units.
 const MAX_NUMBER: f64 = 1e11;
 /// Maximum number of columns of a table.
-const MAX_COLUMNS: usize = 1000;
+pub(super) const MAX_COLUMNS: usize = 1000;
 
 /// Reads the rows of a table, one after the other.
 pub(super) struct TableReader<'a> {

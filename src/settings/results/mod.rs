@@ -2,6 +2,7 @@
 //! recorded or written as a column. `--json`, JSON Schema, signals, help and the guide take them from here.
 
 mod chance;
+mod columns;
 mod design;
 mod machine;
 mod motion;
@@ -83,6 +84,7 @@ pub const RESULTS: &[(&str, &[ResultRow])] = &[
     ("Poses and workspaces", places::ROWS),
     ("Tolerances, spectra, trim", chance::ROWS),
     ("Files and messages", records::ROWS),
+    ("Columns of tables, properties of recordings", columns::ROWS),
 ];
 
 /// Returns a result by its name and by what holds it: a property, or the command at the top.
@@ -90,6 +92,40 @@ pub fn find(holder: &str, name: &str) -> Option<&'static ResultRow> {
     let all = || RESULTS.iter().flat_map(|(_, rows)| rows.iter());
     let own = |row: &&ResultRow| row.name.split_once('.').is_some_and(|both| both == (holder, name));
     all().find(own).or_else(|| all().find(|row| row.name == name))
+}
+
+/// Returns what a column of a table of a command holds, by its head: the name, then the unit if there is one. Properties
+/// of a recording are those of the command `recording`.
+pub fn column(command: &str, head: &str) -> Option<&'static ResultRow> {
+    let is_it = |name: &str, row: &ResultRow| {
+        let name_of = |head| is_named(name, head);
+        name_of(head) || (head.strip_suffix(row.unit).and_then(|rest| rest.strip_suffix(' ')).is_some_and(name_of))
+    };
+    let all = || RESULTS.iter().flat_map(|(_, rows)| rows.iter());
+    let own = |row: &&ResultRow| row.name.split_once('.').is_some_and(|(of, name)| of == command && is_it(name, row));
+    all().find(own).or_else(|| all().chain(SIGNALS).find(|row| is_it(row.name, row)))
+}
+
+/// Returns whether a name is one, or is one with `*` in the place of some part of it.
+fn is_named(pattern: &str, name: &str) -> bool {
+    match pattern.split_once('*') {
+        Some((before, after)) => {
+            let part = name.strip_prefix(before).and_then(|rest| rest.strip_suffix(after));
+            // Drives are counted where no stroke separates the name: q1.
+            part.is_some_and(|part| match before.is_empty() || before.ends_with('/') {
+                true => !part.is_empty(),
+                false => part.parse::<usize>().is_ok(),
+            })
+        }
+        None => pattern == name,
+    }
+}
+
+/// Returns the path of the signal that had an older name; the name itself if none had it.
+pub fn newest_path(name: &str) -> &str {
+    let rows = RESULTS.iter().flat_map(|(_, rows)| rows.iter()).filter(|row| signal(row.newer).is_some());
+    let own = |row: &&ResultRow| row.name.split_once('.').map_or(row.name, |(_, name)| name) == name;
+    rows.into_iter().find(own).map_or(name, |row| row.newer)
 }
 
 /// Returns a signal by its path, in which `*` stands for the name of a drive, an angle or a pin.

@@ -8,7 +8,7 @@ use stillbase_query::{Sequence, answer_sequence};
 use stillbase_session::Run;
 use stillbase_settings::number::fixed;
 use stillbase_simulation::frame::Frame;
-use stillbase_simulation::signals::Signal;
+use stillbase_simulation::signals::{Signal, group_of};
 use stillbase_study::samples::SignalSamples;
 
 /// Number of poses along a run.
@@ -17,7 +17,7 @@ const POSES: usize = 9;
 /// Returns the signals of a chart over the time of a run, in SI units.
 pub fn chart_plot(chart: &Chart, signals: &[Signal], frames: &Sequence<Frame>) -> PrintPlot {
     let own: Vec<Signal> = signals.iter().filter(|signal| chart.contains(signal)).cloned().collect();
-    let name = chart.signals.first().and_then(|path| path.split('/').next()).unwrap_or_default();
+    let name = chart.signals.first().map_or("", |path| group_of(path));
     let unit = chart.si_unit();
     let axis = if unit.is_empty() { chart.title.to_owned() } else { format!("{} ({unit})", chart.title) };
     over_time(name, axis, chart.min_range / chart.scale, &own, frames)
