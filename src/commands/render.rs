@@ -11,6 +11,7 @@ use stillbase_picture::scene::palette::Theme;
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_settings::number::{counted, fixed};
 
+use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::open::ThemeName;
@@ -161,7 +162,8 @@ impl RenderArguments {
         let Some(FilmRange(range)) = self.film else {
             let at = within(self.at.unwrap_or(end), end, "--at")?;
             app_state.carry_out(SessionCommand::Seek(at));
-            write_picture(&mut app_state, &picture, &self.output, self.force, &mut |_| true)?;
+            let note = write_picture(&mut app_state, &picture, &self.output, self.force, &mut |_| true)?;
+            note.into_iter().for_each(|note| print_message(format!("note: {note}")));
             return self.print(FilmDone { pictures: 1, times: [at; 2] });
         };
         let [from, to] = range.unwrap_or([0.0, end]);

@@ -50,9 +50,10 @@ impl AppState {
         let (copy, order) = (self.copy(), self.order(look));
         Box::new(move |ticket, path, force| {
             let goes_on = &mut |done| ticket.goes_on(done);
-            write_picture(&mut copy.open(), &order, path, force, goes_on).map_err(|e| e.to_string())?;
+            let note = write_picture(&mut copy.open(), &order, path, force, goes_on).map_err(|e| e.to_string())?;
             let [width, height] = order.size_px;
-            Ok(format!("saved {}, {width} × {height} pixels", absolute(path)))
+            let note = note.map_or_else(String::new, |note| format!("; {note}"));
+            Ok(format!("saved {}, {width} × {height} pixels{note}", absolute(path)))
         })
     }
 
