@@ -25,10 +25,10 @@ impl AppState {
     /// Writes a result to a file.
     pub(super) fn export(&mut self, path: &Path, wanted: &Export) -> Result<(), String> {
         self.require_machine()?;
-        if let Export::Film(_) = wanted {
+        if let Export::Film(choice) = wanted {
             // The path is checked first, so that a wrong one is refused before the film is drawn.
             let replaces = self.saving.replaces.as_deref() == Some(path);
-            export::check_film(path, replaces).map_err(|e| e.to_string())?;
+            export::check_film(path, &self.order(&choice.look), replaces).map_err(|e| e.to_string())?;
         }
         self.write(path, Activity::Exporting, BUSY, AfterWriting::Nothing, |app_state| {
             Ok(match wanted {

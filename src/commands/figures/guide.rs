@@ -76,9 +76,9 @@ const PICTURES: [(&str, Shown); 13] = [
     ("workshop", Shown::Window("case-3", 0.62, stacked)),
     ("tower", Shown::Scene("case-3", 0.62, ViewKind::Tower)),
     ("joints", Shown::Scene("case-1", 0.5, ViewKind::Joints)),
-    ("paper-table-1", Shown::Paper(&[PaperFigure::Table1], 3.0)),
-    ("paper-fig-3", Shown::Paper(&[PaperFigure::Fig3], 3.0)),
-    ("paper-fig-4", Shown::Paper(&[PaperFigure::Fig4], 3.0)),
+    ("paper-table-1", Shown::Paper(&[PaperFigure::Table1], 4.0)),
+    ("paper-fig-3", Shown::Paper(&[PaperFigure::Fig3], 4.0)),
+    ("paper-fig-4", Shown::Paper(&[PaperFigure::Fig4], 4.0)),
     ("paper-fig-5", Shown::Paper(&[PaperFigure::Fig5a, PaperFigure::Fig5b, PaperFigure::Fig5c], 2.0)),
 ];
 
