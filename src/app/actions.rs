@@ -392,10 +392,10 @@ pub const ACTIONS: &[Action] = actions![
         |s, v| plot_file(s, v, PlotFile::Png);
     Export, "Drawing of the first plot as SVG" = "picture image vector export figure save", [], "menu of a plot",
         |s, v| plot_file(s, v, PlotFile::Svg);
-    Export, "Picture of the scene or the whole window as PNG" = "image export screenshot snapshot figure save transparent", [on(CTRL, Key::E)], "top bar, File", |_, v| {
+    Export, "Picture of the scene or the whole window: PNG, WebP, SVG or PDF" = "image export screenshot snapshot figure save transparent outlines vector print", [on(CTRL, Key::E)], "top bar, File", |_, v| {
         export(Export::picture(v.arrangement.theme))
     };
-    Export, "Film of the run: GIF, animated PNG, MP4 or pictures" = "movie video animation export mp4 frames save", [on(CTRL_SHIFT, Key::E)], "top bar, File", |_, v| {
+    Export, "Film of the run: GIF, animated PNG or WebP, MP4 or pictures" = "movie video animation export mp4 webp frames save transparent", [on(CTRL_SHIFT, Key::E)], "top bar, File", |_, v| {
         export(Export::film(v.arrangement.theme))
     };
     Export, "Values of signals as CSV or Parquet" = "export table data numbers spreadsheet excel columns save", [], "top bar, File", |_, _| export(Export::values());

@@ -113,7 +113,8 @@ impl PictureOrder {
         let mut figures = vec![([0.0; 2], scene_figure(&Arc::new(scene), &camera, self.scene_size()))];
         figures.extend(self.plot_figures(app_state));
         let scenario = app_state.session().scenario();
-        let (title, at) = (scenario.title.clone(), fixed(app_state.session().frame().time, 3));
+        let title = if scenario.title.is_empty() { &scenario.name } else { &scenario.title }.clone();
+        let at = fixed(app_state.session().frame().time, 3);
         let made = format!("{} at {at} s", scenario.name);
         Ok(Page { size: self.size(), point_mm: self.scale * PIXEL_MM, title, made, figures })
     }

@@ -106,6 +106,17 @@ impl Settings {
         self.pairs.iter().map(|(key, value)| format!(" --set {}", shell_word(&format!("{key}={value}")))).collect()
     }
 
+    /// Returns the keys that are set.
+    pub fn keys(&self) -> impl Iterator<Item = &str> {
+        self.pairs.iter().map(|(key, _)| key.as_str())
+    }
+
+    /// Returns the settings of some keys.
+    #[must_use]
+    pub fn of_keys(&self, is_wanted: impl Fn(&str) -> bool) -> Self {
+        Self { pairs: self.pairs.iter().filter(|(key, _)| is_wanted(key)).cloned().collect() }
+    }
+
     /// Whether a key is set.
     pub fn sets(&self, key: &str) -> bool {
         self.pairs.iter().any(|(given, _)| given == key)

@@ -11,6 +11,7 @@ use stillbase_picture::scene::palette::Theme;
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_settings::number::{counted, fixed};
 
+use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::open::ThemeName;
@@ -20,8 +21,8 @@ use super::size::size;
 
 /// Draw a picture or a film of a run, without a display
 ///
-/// A still picture shows the instant --at: as pixels in a .png or .webp, or the view from above as outlines in a .svg
-/// or .pdf. With --film the run is shown from one time to another. A .gif (slides and mail) or an animated .png or .webp
+/// A still picture shows the instant --at: as pixels in a .png or .webp, or the view from above, and no other, as
+/// outlines in a .svg or .pdf. With --film the run is shown from one time to another. A .gif (slides and mail) or an animated .png or .webp
 /// (all colours) repeats forever. A .mp4 is written by the program ffmpeg. A name without an ending gives a folder of
 /// numbered pictures.
 #[derive(Args)]
@@ -61,8 +62,8 @@ pub struct RenderArguments {
     /// Width and height, pixels
     #[arg(long, value_name = "WxH", default_value = "1280x800", value_parser = size)]
     size: [u32; 2],
-    /// Draw nothing behind the scene, to lay it over a page or a slide
-    #[arg(long, conflicts_with = "film")]
+    /// Draw nothing behind the scene, to lay it over a page or a slide; not in .mp4
+    #[arg(long)]
     transparent: bool,
     /// Draw the plots of the window right of the view
     #[arg(long)]
@@ -139,11 +140,13 @@ fn factor(text: &str) -> Result<f64, String> {
 impl RenderArguments {
     /// Draws, and writes the file.
     pub fn run(&self) -> Result<(), Failure> {
+        let shot = Shot::from(self.view);
+        let Self { transparent, plots, .. } = *self;
+        let picture = PictureOrder { transparent, plots, ..PictureOrder::new(shot, self.theme.into(), self.size) };
         match self.film {
-            Some(_) => drop(check_film(&self.output, self.force)?),
+            Some(_) => drop(check_film(&self.output, &picture, self.force)?),
             None => drop(check_output(&self.output, self.force, &PictureForm::ALL.map(PictureForm::ending))?),
         }
-        let shot = Shot::from(self.view);
         if self.transparent && shot == Shot::Window {
             let why = "the window has no background to leave out: want a view, such as --view flat";
             return Err(Failure::wrong_input(why).with_context("--transparent"));
@@ -156,12 +159,11 @@ impl RenderArguments {
         let mut app_state =
             AppState::new(scenario.clone(), Theme::Dark).map_err(|why| Failure::refused(&scenario, why))?;
         let end = app_state.run_to_end();
-        let Self { transparent, plots, .. } = *self;
-        let picture = PictureOrder { transparent, plots, ..PictureOrder::new(shot, self.theme.into(), self.size) };
         let Some(FilmRange(range)) = self.film else {
             let at = within(self.at.unwrap_or(end), end, "--at")?;
             app_state.carry_out(SessionCommand::Seek(at));
-            write_picture(&mut app_state, &picture, &self.output, self.force, &mut |_| true)?;
+            let note = write_picture(&mut app_state, &picture, &self.output, self.force, &mut |_| true)?;
+            note.into_iter().for_each(|note| print_message(format!("note: {note}")));
             return self.print(FilmDone { pictures: 1, times: [at; 2] });
         };
         let [from, to] = range.unwrap_or([0.0, end]);

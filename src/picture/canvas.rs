@@ -79,9 +79,7 @@ impl Canvas {
         let behind = Some(paint::colour(scene.background));
         let draw = |ui: &mut egui::Ui| {
             labels::paint_still(ui, scene, camera, figures.first().map(|([left, _], _)| *left));
-            for (corner, figure) in figures {
-                paint_figure(ui.painter(), (*corner).into(), figure);
-            }
+            paint_figures(ui, figures);
         };
         if !self.fonts {
             paint::install_fonts(&self.ctx);
@@ -91,6 +89,25 @@ impl Canvas {
         }
         self.pass(behind, draw);
         self.read()
+    }
+
+    /// Draws figures with their upper left corners, points, over a colour of their own.
+    ///
+    /// # Errors
+    /// If the picture cannot be read back.
+    pub fn figures(&mut self, figures: &[([f32; 2], Figure)]) -> Result<Picture, NoPicture> {
+        let behind = figures.first().map(|(_, figure)| paint::colour(figure.background));
+        self.load_fonts(behind);
+        self.pass(behind, |ui| paint_figures(ui, figures));
+        self.read()
+    }
+
+    /// Loads the fonts, which are there from the next pass on.
+    fn load_fonts(&mut self, behind: Option<egui::Color32>) {
+        if !std::mem::replace(&mut self.fonts, true) {
+            paint::install_fonts(&self.ctx);
+            self.pass(behind, |_| ());
+        }
     }
 
     fn read(&mut self) -> Result<Picture, NoPicture> {
@@ -115,5 +132,11 @@ impl Canvas {
         let behind = behind.unwrap_or_else(|| self.ctx.global_style().visuals.panel_fill);
         let sheet = RenderTarget { view: &view, size_px: self.size_px, pixels_per_point: scale, behind };
         self.gui.draw(&sheet, &mut output.textures_delta, &shapes);
+    }
+}
+
+fn paint_figures(ui: &egui::Ui, figures: &[([f32; 2], Figure)]) {
+    for (corner, figure) in figures {
+        paint_figure(ui.painter(), (*corner).into(), figure);
     }
 }

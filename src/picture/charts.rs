@@ -9,7 +9,6 @@ pub mod legend;
 mod limit_names;
 pub mod range;
 pub mod search;
-pub mod svg;
 
 use self::axis::AxisKind;
 use super::scene::Rgba;

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use gif::{Encoder, Frame, Repeat};
+use gif::{DisposalMethod, Encoder, Frame, Repeat};
 
 use crate::render::offscreen::{Picture, png_encoder};
 use crate::webp::WebpFilm;
@@ -83,7 +83,10 @@ impl<W: Write> Film<W> {
             FilmEncoder::Gif(encoder) => {
                 let side = |side: u32| u16::try_from(side).map_err(io::Error::other);
                 let (width, height, mut rgba) = (side(picture.width)?, side(picture.height)?, picture.rgba);
+                whole_or_none(&mut rgba);
                 let mut frame = Frame::from_rgba_speed(width, height, &mut rgba, QUANTISATION_SPEED);
+                // Nothing of a picture shows through the transparent parts of the next.
+                frame.dispose = if frame.transparent.is_some() { DisposalMethod::Background } else { frame.dispose };
                 // Rounded sums, not the rounded delay, so that the film is as long as the run.
                 let until = |count: u32| (f64::from(count) * GIF_DELAYS_PER_SECOND / self.fps).round() as u64;
                 let mut delay = until(self.count + 1) - until(self.count);
@@ -119,6 +122,13 @@ impl<W: Write> Film<W> {
             FilmEncoder::Png(writer) => Ok(writer.finish()?),
             FilmEncoder::Webp(to, film) => film.write(to),
         }
+    }
+}
+
+/// Makes each pixel opaque or transparent, whichever it is more nearly: a GIF knows nothing between.
+fn whole_or_none(rgba: &mut [u8]) {
+    for pixel in rgba.chunks_exact_mut(4) {
+        pixel[3] = if pixel[3] < 128 { 0 } else { 255 };
     }
 }
 

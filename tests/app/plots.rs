@@ -344,7 +344,7 @@ fn a_plot_is_written_to_files() {
     assert_eq!(text.lines().count(), 102);
     assert!(text.starts_with("time s,torque/1 N m,torque/2 N m,torque/3 N m\n0.2,"), "{text}");
     let (svg, _) = write(PlotFile::Svg, "plot.svg");
-    assert!(String::from_utf8(svg).expect("UTF-8").contains(">Torque</tspan>"));
+    assert!(String::from_utf8(svg).expect("UTF-8").contains("aria-label=\"Torque\""));
     let (png, Message { text: said, is_problem: bad }) = write(PlotFile::Png, "plot.png");
     assert!(!bad, "{said}");
     let picture = image::load_from_memory(&png).expect("a picture").to_rgba8();

@@ -19,6 +19,10 @@ pub const TESTS: &[Test] = tests![
     design_is_current,
     draw_is_current,
     workshop_is_current,
+    paper_table_1_is_current,
+    paper_fig_3_is_current,
+    paper_fig_4_is_current,
+    paper_fig_5_is_current,
     no_picture_is_left_over,
     films_and_pictures_are_rendered,
 ];
@@ -111,6 +115,22 @@ fn workshop_is_current() {
     is_current("workshop");
 }
 
+fn paper_table_1_is_current() {
+    is_current("paper-table-1");
+}
+
+fn paper_fig_3_is_current() {
+    is_current("paper-fig-3");
+}
+
+fn paper_fig_4_is_current() {
+    is_current("paper-fig-4");
+}
+
+fn paper_fig_5_is_current() {
+    is_current("paper-fig-5");
+}
+
 fn joints_is_current() {
     is_current("joints");
 }
@@ -122,7 +142,7 @@ fn no_picture_is_left_over() {
         entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
     let both = |stem: &str| ["dark", "light"].map(|theme| format!("{stem}-{theme}.png"));
     let compared = TESTS.iter().filter_map(|(name, _)| name.rsplit("::").next()?.strip_suffix("_is_current"));
-    assert_eq!(kept, compared.flat_map(both).collect());
+    assert_eq!(kept, compared.map(|stem| stem.replace('_', "-")).flat_map(|stem| both(&stem)).collect());
     let said = figures(&Folder::new("figures"), "none").stderr;
     let said = String::from_utf8(said).expect("UTF-8");
     let names = said.split("[possible values: ").nth(1).and_then(|rest| rest.split(']').next());

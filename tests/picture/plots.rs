@@ -9,9 +9,9 @@ use stillbase::picture::charts::figure::{Figure, FigureItem, PlotContext, dashes
 use stillbase::picture::charts::legend::{RunName, figure};
 use stillbase::picture::charts::range::TimeExtent;
 use stillbase::picture::charts::search::search;
-use stillbase::picture::charts::svg::svg;
 use stillbase::picture::notation::{AngleUnit, Notation};
 use stillbase::picture::numbers::{at_step, round_ticks, ticks};
+use stillbase::picture::print::{Page, svg, svg_element};
 use stillbase::picture::scene::palette::{Theme, palette};
 use stillbase::picture::scene::thin::simplify_line;
 use stillbase::session::Session;
@@ -198,6 +198,12 @@ proptest! {
     }
 }
 
+/// The words of the letters in a drawing.
+fn labels(drawing: &str) -> Vec<String> {
+    let page = roxmltree::Document::parse(drawing).expect("an SVG");
+    page.descendants().filter_map(|node| node.attribute("aria-label").map(str::to_owned)).collect()
+}
+
 /// Read by a parser of XML: every curve that is on, its title and its numbers stand there, and nothing that is off.
 #[test]
 fn a_drawing_holds_what_the_plot_shows() {
@@ -216,17 +222,22 @@ fn a_drawing_holds_what_the_plot_shows() {
     for plot in [&plots[0], plots.last().expect("one's own")] {
         let drawn = PlotLines::of(plot, &samples, &[], [0.0, 1.0], 600, true);
         let figure = Figure::of(plot, &drawn, [720.0, 320.0], &look, &[]);
-        let text = svg(&figure);
-        let opened = text.matches("<text").count();
-        assert_eq!(opened, text.matches("</text>").count());
-        assert_eq!(text.matches("<tspan").count(), text.matches("</tspan>").count());
-        assert!(text.contains(&plot.title.replace('&', "&amp;")) && text.ends_with("</svg>\n"), "{text}");
-        assert!(!text.contains("NaN") && !text.contains("inf"));
+        let text = svg(&Page::of_web(figure.clone()));
+        let labels = labels(&text);
+        assert!(labels.contains(&plot.heading()), "{labels:?}");
+        assert!(plot.unit().is_empty() || labels.contains(&plot.unit().to_string()), "{labels:?}");
+        assert!(!text.contains("NaN") && !text.contains("inf") && !text.contains("<text"), "letters are outlines");
+        // In a page of the web the same words can be found, over their outlines.
+        let element = svg_element(&Page::of_web(figure.clone()));
+        let page = roxmltree::Document::parse(&element).expect("an SVG");
+        let texts: Vec<&str> =
+            page.descendants().filter(|node| node.has_tag_name("text")).filter_map(|node| node.text()).collect();
+        assert_eq!(texts.iter().map(|text| text.trim()).collect::<Vec<_>>(), labels);
         let curves =
             figure.items.iter().filter(|i| matches!(i, FigureItem::Line { points, .. } if points.len() > 2)).count();
         assert_eq!(curves, plot.shown().count());
         for curve in &plot.curves {
-            assert_eq!(text.contains(&curve.signal.symbol), curve.on, "{}", curve.signal.symbol);
+            assert_eq!(labels.contains(&curve.signal.symbol), curve.on, "{}", curve.signal.symbol);
         }
         // Every curve stays within its axes, which hold the greatest value of all samples.
         let [left, top, right, bottom] = figure.axes.sides;
@@ -472,9 +483,10 @@ fn a_picture_names_the_runs_laid_over() {
         assert!(named.size[1] > plain.size[1] && plain.size == size);
         let height = |figure: &Figure| figure.axes.sides[3] - figure.axes.sides[1];
         assert!((height(&named) - height(&plain)).abs() < 1e-3, "the axes keep their size");
-        let text = svg(&named);
-        assert!(text.contains("the run on disp") && text.contains(">3  <") && text.contains(">8  <"), "{text}");
-        assert!(text.contains("Other &lt;pose&gt;") && !text.contains(&long) && text.contains('…'), "{text}");
+        let words = labels(&svg(&Page::of_web(named.clone())));
+        let has = |start: &str| words.iter().any(|label| label.starts_with(start));
+        assert!(has("the run on disp") && has("3") && has("8") && has("Other <pose>"), "{words:?}");
+        assert!(!words.contains(&long) && words.iter().any(|label| label.ends_with('…')), "{words:?}");
         let samples: Vec<_> = named
             .items
             .iter()
@@ -492,5 +504,5 @@ fn a_picture_names_the_runs_laid_over() {
         }));
     }
     assert!(figure(&[], 800.0, &p).is_none());
-    assert!(figure(&runs, 800.0, &p).is_some_and(|figure| svg(&figure).contains("Other")));
+    assert!(figure(&runs, 800.0, &p).is_some_and(|figure| svg(&Page::of_web(figure)).contains("Other")));
 }

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::Read;
 
 use super::{stillbase_in, text};
 use crate::folder::Folder;
@@ -102,6 +103,51 @@ fn numbers_of_the_papers_figures_are_its_answers() {
     assert_eq!(table[0][..6], ["1", "0.5", "7", "0.2501", "-0.2214", table[0][5].as_str()]);
 }
 
+/// The command in a table of numbers.
+fn made(csv: &str) -> &str {
+    csv.lines().find_map(|line| line.strip_prefix("# Made by: ")).expect("a command")
+}
+
+/// Settings change every figure that depends on them, and the command of a figure names no others.
+#[test]
+fn settings_reach_every_figure_of_the_paper() {
+    let folder = Folder::new("settings");
+    draw(&folder, &["figures", "--paper", "all", "-o", "plain"]);
+    let all = ["--set", "length.l1=0.6", "--set", "limits.a1=0.4,2.9", "--set", "plant.payload.mass=0.1"];
+    draw(&folder, &[&["figures", "--paper", "all", "-o", "changed", "--time", "2"][..], &all].concat());
+    for name in FIGURES {
+        let [plain, changed] = ["plain", "changed"].map(|from| read(&folder, &format!("{from}/{name}.csv")));
+        assert_ne!(rows(&plain), rows(&changed), "{name}");
+        let command = made(&changed);
+        let is_motion = name.starts_with("fig-5");
+        for (option, is_used) in [
+            ("--set length.l1=0.6", true),
+            ("--set limits.a1=0.4,2.9", name != "table-1"),
+            ("--set plant.payload.mass=0.1", is_motion),
+            ("--time 2", is_motion),
+        ] {
+            assert_eq!(command.contains(option), is_used, "{name}: {command}");
+        }
+        let other = Folder::new("settings");
+        draw(&other, &command.split(' ').skip(1).collect::<Vec<_>>());
+        assert_eq!(read(&other, &format!("{name}.csv")), changed, "{command}");
+    }
+    // Each setting by itself, with what it changes by the equation of the figure.
+    draw(&folder, &["figures", "--paper", "table-1", "-o", "com", "--set", "link.5.com=0"]);
+    let table = rows(&read(&folder, "com/table-1.csv"));
+    let fifth = table.iter().find(|row| row[0] == "5").expect("link 5");
+    assert_eq!(fifth[4..], ["0", "0"], "both columns");
+    // Eq. (7) with the mass of link 5 moved to its root.
+    let plain = rows(&read(&folder, "plain/table-1.csv"));
+    let [mass, com]: [f64; 2] = {
+        let own = plain.iter().find(|row| row[0] == "5").expect("link 5");
+        [&own[2], &own[5]].map(|cell| cell.parse().expect("a number"))
+    };
+    let left = table.iter().filter(|row| row[0].starts_with("Eq. (7)")).map(|row| row[5].parse::<f64>().expect("left"));
+    let most = left.fold(0.0, |most: f64, x| most.max(x.abs()));
+    close("Eq. (7)", most, (mass * com).abs(), 1e-12);
+}
+
 /// The vertices of a path of straight lines.
 fn vertices(path: &str) -> Vec<[f64; 2]> {
     let pairs = path.trim_end_matches('Z').split(['M', 'L']).filter(|part| !part.is_empty());
@@ -192,13 +238,115 @@ fn the_command_in_a_figure_writes_it_again() {
     }
 }
 
-/// Each object of a PDF begins where its table says, and its title and its command are there.
+/// Parts stand one below the other in the order in which they are asked for.
 #[test]
-fn a_pdf_is_where_its_table_says() {
+fn parts_of_a_run_stand_in_order() {
+    let folder = Folder::new("order");
+    let orders = ["linkage,torque,workspace", "torque,workspace,linkage", "torque,linkage,workspace"];
+    let clips = orders.map(|order| {
+        draw(&folder, &["figures", "case-1", "--what", order, "-o", "run.svg", "--force"]);
+        let drawing = read(&folder, "run.svg");
+        let page = roxmltree::Document::parse(&drawing).expect("an SVG");
+        let number = |node: &roxmltree::Node<'_, '_>, name: &str| -> f64 {
+            node.attribute(name).expect(name).parse().expect("a number")
+        };
+        // Each part clips its curves to its axes; those of the drawing are the widest.
+        let mut clips: Vec<(f64, f64)> = Vec::new();
+        for rect in page.descendants().filter(|node| node.has_tag_name("rect")) {
+            clips.push((number(&rect, "y"), number(&rect, "width")));
+        }
+        clips.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let widest = clips.iter().fold(0.0_f64, |most, (_, width)| most.max(*width));
+        let place = clips.iter().position(|(_, width)| *width == widest).expect("the drawing");
+        (clips.len(), place)
+    });
+    assert_eq!(clips, [(3, 0), (3, 2), (3, 1)]);
+}
+
+/// An outline with how it is painted: the operator of PDF, colour, width of a line and dashes.
+#[derive(Debug, PartialEq)]
+struct Outline {
+    places: Vec<f64>,
+    operator: String,
+    colour: [u8; 3],
+    width: Option<f64>,
+    dash: Option<[f64; 2]>,
+    is_clipped: bool,
+}
+
+/// Outlines of an SVG in order of painting.
+fn outlines_of_svg(drawing: &str) -> Vec<Outline> {
+    let page = roxmltree::Document::parse(drawing).expect("an SVG");
+    let outline = |node: roxmltree::Node<'_, '_>| {
+        let number = |name: &str| node.attribute(name).map(|x| x.parse().expect("a number"));
+        let path = node.attribute("d").expect("a path");
+        let words = path.split(|c: char| c.is_ascii_alphabetic() || c == ' ').filter(|word| !word.is_empty());
+        let is_line = node.has_attribute("stroke");
+        let tone = node.attribute(if is_line { "stroke" } else { "fill" }).expect("a colour");
+        let channel = |i: usize| u8::from_str_radix(&tone[2 * i + 1..2 * i + 3], 16).expect("a colour");
+        let operator = match (is_line, node.has_attribute("fill-rule")) {
+            (true, _) => "S",
+            (false, true) => "f*",
+            (false, false) => "f",
+        };
+        Outline {
+            places: words.map(|x| x.parse().expect("a number")).collect(),
+            operator: operator.into(),
+            colour: [0, 1, 2].map(channel),
+            width: number("stroke-width"),
+            dash: node.attribute("stroke-dasharray").map(|lengths| {
+                let (on, off) = lengths.split_once(' ').expect("two lengths");
+                [on, off].map(|x| x.parse().expect("a number"))
+            }),
+            is_clipped: node.has_attribute("clip-path"),
+        }
+    };
+    page.descendants().filter(|node| node.has_tag_name("path")).map(outline).collect()
+}
+
+/// Outlines of the content of a PDF in order of painting, with its transformation.
+fn outlines_of_pdf(content: &str) -> (Vec<f64>, Vec<Outline>) {
+    let (mut outlines, mut numbers, mut places): (Vec<Outline>, Vec<f64>, Vec<f64>) = Default::default();
+    let (mut placed, mut colour, mut width, mut dash, mut is_clipped) = (Vec::new(), [0; 3], None, None, false);
+    for word in content.split_whitespace() {
+        let word = word.trim_matches(['[', ']']);
+        if let Ok(x) = word.parse::<f64>() {
+            numbers.push(x);
+            continue;
+        }
+        let own = std::mem::take(&mut numbers);
+        match word {
+            "cm" => placed = own,
+            "q" => (width, dash, is_clipped) = (None, None, false),
+            "RG" | "rg" => colour = [0, 1, 2].map(|i| (255.0 * own[i]).round() as u8),
+            "w" => width = Some(own[0]),
+            "d" => dash = Some([own[0], own[1]]),
+            "W" => is_clipped = true,
+            "m" | "l" | "c" => places.extend(own),
+            "S" | "f" | "f*" => {
+                let (places, operator) = (std::mem::take(&mut places), word.into());
+                outlines.push(Outline { places, operator, colour, width, dash, is_clipped });
+            }
+            _ => {}
+        }
+    }
+    (placed, outlines)
+}
+
+/// Each object of a PDF begins where its table says; its title and its command are there; and it paints the outlines of
+/// the SVG in the same order, colours, widths and dashes, to the decimals of the SVG, on a sheet of the same size.
+#[test]
+fn a_pdf_paints_what_the_svg_does() {
     let folder = Folder::new("pdf");
     draw(&folder, &["figures", "--paper", "all", "-o", "all"]);
-    draw(&folder, &["figures", "case-3", "--what", "torque,linkage", "-o", "all/run.pdf"]);
-    draw(&folder, &["render", "case-3", "-o", "all/view.pdf", "--theme", "light", "--transparent"]);
+    for ending in ["pdf", "svg"] {
+        draw(
+            &folder,
+            &["figures", "case-3", "--what", "torque,linkage", "-o", &format!("all/run.{ending}"), "--force"],
+        );
+        let view = format!("all/view.{ending}");
+        draw(&folder, &["render", "case-3", "-o", &view, "--theme", "light", "--transparent", "--plots"]);
+    }
     for name in FIGURES.into_iter().chain(["run", "view"]) {
         let bytes = fs::read(folder.path(&format!("all/{name}.pdf"))).expect("a file");
         let words = String::from_utf8_lossy(&bytes);
@@ -216,11 +364,119 @@ fn a_pdf_is_where_its_table_says() {
         let (_, count) = lines.next().and_then(|head| head.split_once(' ')).expect("a head");
         let places: Vec<&str> = lines.take(count.trim().parse().expect("a number")).collect();
         assert!(places.len() > 5, "{name}");
-        for (i, place) in places.iter().enumerate().filter(|(_, place)| place.contains(" n")) {
-            let at: usize = place.split(' ').next().expect("a place").parse().expect("a number");
-            assert!(bytes[at..].starts_with(format!("{i} 0 obj").as_bytes()), "{name}: object {i}");
+        let object = |i: usize| -> usize { places[i].split(' ').next().expect("a place").parse().expect("a number") };
+        for (i, _) in places.iter().enumerate().filter(|(_, place)| place.contains(" n")) {
+            assert!(bytes[object(i)..].starts_with(format!("{i} 0 obj").as_bytes()), "{name}: object {i}");
         }
         assert!(words.contains("/FlateDecode") && words.contains("/Subject"), "{name}");
+        let content = &bytes[object(4)..];
+        let begin = content.windows(7).position(|part| part == b"stream\n").expect("a stream") + 7;
+        let mut unpacked = String::new();
+        let unpacking = flate2::read::ZlibDecoder::new(&content[begin..]).read_to_string(&mut unpacked);
+        unpacking.unwrap_or_else(|why| panic!("{name}: {why}"));
+        let (placed, painted) = outlines_of_pdf(&unpacked);
+        let drawing = read(&folder, &format!("all/{name}.svg"));
+        let drawn = outlines_of_svg(&drawing);
+        assert_eq!(painted.len(), drawn.len(), "{name}");
+        assert!(drawn.len() > 20, "{name}");
+        for (i, (own, other)) in painted.iter().zip(&drawn).enumerate() {
+            let is_near = |a: &f64, b: &f64| (a - b).abs() < 0.006;
+            let same = own.places.len() == other.places.len()
+                && own.places.iter().zip(&other.places).all(|(a, b)| is_near(a, b))
+                && (&own.operator, own.is_clipped) == (&other.operator, other.is_clipped)
+                && own.colour.iter().zip(&other.colour).all(|(a, b)| a.abs_diff(*b) <= 1)
+                && own.width.zip(other.width).is_none_or(|(a, b)| is_near(&a, &b))
+                && own.width.is_some() == other.width.is_some()
+                && own.dash.is_some() == other.dash.is_some()
+                && own.dash.zip(other.dash).is_none_or(|(a, b)| is_near(&a[0], &b[0]) && is_near(&a[1], &b[1]));
+            assert!(same, "{name}, outline {i}: {own:?}, in the SVG {other:?}");
+        }
+        // The sheet: y upwards from its lower edge, in points of 1/72 inch, as large as the SVG in mm.
+        let page = roxmltree::Document::parse(&drawing).expect("an SVG");
+        let mm = |name: &str| -> f64 {
+            let side = page.root_element().attribute(name).and_then(|side| side.strip_suffix("mm")).expect("a length");
+            side.parse().expect("a number")
+        };
+        let (_, sheet) = words.split_once("/MediaBox [").expect("a sheet");
+        let sheet: Vec<f64> =
+            sheet[..sheet.find(']').expect("an end")].split(' ').map(|x| x.parse().expect("a number")).collect();
+        for (side, name) in sheet[2..].iter().zip(["width", "height"]) {
+            close(name, side * 25.4 / 72.0, mm(name), 2e-3);
+        }
+        let [scale, _, _, up, _, above] = placed[..] else { panic!("{name}: {placed:?}") };
+        let view: Vec<f64> = page
+            .root_element()
+            .attribute("viewBox")
+            .map(|sides| sides.split(' ').map(|x| x.parse().expect("a number")).collect())
+            .expect("a view");
+        close("scale", scale * view[2], sheet[2], 2e-3);
+        close("upwards", -up, scale, 1e-6);
+        close("height", above, sheet[3], 1e-3);
+    }
+}
+
+/// A letter that the font lacks is drawn as a box, and named.
+#[test]
+fn letters_that_the_font_lacks_are_boxes() {
+    let folder = Folder::new("letters");
+    let machine = include_str!("../../assets/machines/two-drive.toml");
+    let named = |name: &str| machine.replace("\"3\"", &format!("\"{name}\""));
+    folder.file("foreign.toml", named("日本"));
+    folder.file("known.toml", named("Ärmel"));
+    let table = |file: &str| {
+        let out = folder.run(&["figures", "--paper", "table-1", "--machine", file, "--force"]);
+        let said = text(&out.stderr).to_owned();
+        assert!(out.status.success(), "{said}");
+        (read(&folder, "table-1.svg"), said)
+    };
+    let (drawing, said) = table("foreign.toml");
+    assert!(said.contains("note: the font of pictures lacks 日 本: boxes stand in their places"), "{said}");
+    let page = roxmltree::Document::parse(&drawing).expect("an SVG");
+    let cell = page.descendants().find(|node| node.attribute("aria-label") == Some("日本")).expect("its cell");
+    // Two boxes, each with an outer and an inner line.
+    let outlines = cell.attribute("d").expect("a path").matches('M').count();
+    assert!(outlines >= 4, "{outlines}");
+    let (_, said) = table("known.toml");
+    assert!(!said.contains("lacks"), "{said}");
+}
+
+/// A scenario without a title is called by its name.
+#[test]
+fn a_title_does_not_end_in_a_colon() {
+    let folder = Folder::new("title");
+    let scenario = include_str!("../../assets/scenarios/case-3.toml");
+    let untitled: Vec<&str> = scenario.lines().filter(|line| !line.starts_with("title")).collect();
+    folder.file("own.toml", untitled.join("\n"));
+    draw(&folder, &["figures", "own.toml", "--what", "torque", "-o", "a.svg"]);
+    draw(&folder, &["render", "own.toml", "-o", "b.svg"]);
+    assert_eq!(read(&folder, "a.csv").lines().next(), Some("# case-3"));
+    for name in ["a.svg", "b.svg"] {
+        assert!(read(&folder, name).contains("<title>case-3</title>"), "{name}");
+    }
+}
+
+/// Names within one drawing differ from those of another, since both may stand in one page of the web.
+#[test]
+fn names_in_drawings_do_not_clash() {
+    let folder = Folder::new("names");
+    draw(&folder, &["figures", "--paper", "all"]);
+    draw(&folder, &["figures", "case-1", "--what", "torque,moment", "-o", "run.svg"]);
+    let mut known: BTreeMap<String, String> = BTreeMap::new();
+    for name in FIGURES.into_iter().chain(["run"]) {
+        let drawing = read(&folder, &format!("{name}.svg"));
+        let page = roxmltree::Document::parse(&drawing).expect("an SVG");
+        let ids: Vec<&str> = page.descendants().filter_map(|node| node.attribute("id")).collect();
+        assert_eq!(ids.is_empty(), name == "table-1", "{name}");
+        for id in &ids {
+            if let Some(other) = known.insert((*id).to_owned(), name.to_owned()) {
+                panic!("{id} is in {other} and in {name}");
+            }
+        }
+        // Each name that is used is its own.
+        for used in page.descendants().filter_map(|node| node.attribute("clip-path")) {
+            let id = used.strip_prefix("url(#").and_then(|id| id.strip_suffix(')'));
+            assert!(id.is_some_and(|id| ids.contains(&id)), "{name}: {used}");
+        }
     }
 }
 
@@ -238,7 +494,18 @@ fn wrong_figures_are_refused() {
         (&["figures", "--paper", "fig-3", "--machine", "two-drive"], "three"),
         (&["figures", "--paper", "fig-3", "--width", "10"], "40 to 400"),
         (&["figures", "--paper", "fig-5a", "--b", "40"], "b"),
+        (&["figures", "--paper", "all"], "fig-4.csv exists"),
+        (&["figures", "--paper", "table-1", "--set", "limits.a1=0,2"], "--paper fig-3 or fig-4 or fig-5a"),
+        (&["figures", "--paper", "fig-3", "--set", "task.time=2"], "--paper fig-5a or fig-5b or fig-5c"),
+        (&["figures", "--paper", "fig-5a", "--set", "tolerance.seed=3"], "--set tolerance.seed has no use here"),
+        (&["figures", "--paper", "all", "--set", "gravityy=0,1"], "no setting gravityy"),
+        (&["figures", "--paper", "fig-4", "--time", "2"], "--paper fig-5a or fig-5b or fig-5c"),
+        (&["figures", "--paper", "fig-4", "--point", "0.5,0.5", "--point", "0.4,0.5"], "--point has no use here"),
+        (&["figures", "--paper", "fig-3", "--b", "2", "--b", "3"], "a second --b has no use here: want --paper fig-4"),
+        (&["figures", "--paper", "table-1", "--b", "2"], "--b has no use here: want --paper fig-3 or fig-4"),
         (&["figures", "case-3", "--what", "torque", "-o", "a.png"], ".svg or .pdf"),
+        (&["figures", "case-3", "--what", "torque,snapshots", "--at", "0.5", "-o", "a.svg"], "want --what linkage"),
+        (&["figures", "case-3", "--what", "torque", "-o", "fig-4.svg"], "fig-4.csv exists"),
         (&["figures", "case-3", "--what", "torque"], "--output"),
         (&["figures", "case-3", "--what", "friction", "-o", "a.svg"], "this run has no friction"),
         (&["figures", "case-3", "--what", "linkage", "--at", "9", "-o", "a.svg"], "within the run, 0 to 1.000 s"),

@@ -52,12 +52,7 @@ pub fn show(
                     look_rows(ui, look, &view_state.displayed);
                     let words = PictureForm::ALL.map(|form| (form, form.words()));
                     form_row(ui, form, &words, "Format of the picture", view_state);
-                    let has_scene = look.shot != Shot::Window;
-                    ui.label("Background");
-                    let tick = egui::Checkbox::new(&mut look.transparent, "transparent, to lay over a page or a slide");
-                    ui.add_enabled(has_scene, tick).on_disabled_hover_text("the scene alone can be transparent");
-                    look.transparent &= has_scene;
-                    ui.end_row();
+                    background_row(ui, look, None);
                 }
                 Export::Film(choice) => film_rows(ui, choice, session, view_state),
                 Export::Values(choice) => {
@@ -150,6 +145,19 @@ fn look_rows(ui: &mut Ui, look: &mut Look, display: &DisplaySize) {
     ui.end_row();
 }
 
+/// Draws the choice of the background; `opaque` is the format if it has no transparency.
+fn background_row(ui: &mut Ui, look: &mut Look, opaque: Option<&str>) {
+    ui.label("Background");
+    let refusal = match opaque {
+        _ if look.shot == Shot::Window => Some("the scene alone can be transparent".to_owned()),
+        opaque => opaque.map(|form| format!("{form} has no transparency")),
+    };
+    let tick = egui::Checkbox::new(&mut look.transparent, "transparent, to lay over a page or a slide");
+    ui.add_enabled(refusal.is_none(), tick).on_disabled_hover_text(refusal.as_deref().unwrap_or_default());
+    look.transparent &= refusal.is_none();
+    ui.end_row();
+}
+
 /// Draws the choice between the time that plots show and the whole run.
 fn time_row(ui: &mut Ui, whole: &mut bool, session: &Session, view_state: &ViewState) {
     let words = |of: TimeChoice| times_in_words(of.of(session, view_state));
@@ -191,6 +199,8 @@ fn film_rows(ui: &mut Ui, choice: &mut FilmChoice, session: &Session, view_state
     time_row(ui, &mut choice.whole, session, view_state);
     let words = FilmForm::ALL.map(|form| (form, form.words()));
     form_row(ui, &mut choice.form, &words, "Format of the film", view_state);
+    let opaque = (!choice.form.can_be_transparent()).then_some(choice.form.words()[0]);
+    background_row(ui, &mut choice.look, opaque);
     ui.label("Pace");
     ui.horizontal(|ui| {
         name(&ui.add(DragValue::new(&mut choice.fps).range(1.0..=50.0).max_decimals(1)), "Pictures per second");

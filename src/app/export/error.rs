@@ -51,6 +51,9 @@ pub enum ExportError {
         .0.display()
     )]
     FilmEnding(PathBuf),
+    /// The film cannot be transparent.
+    #[error("{}: a film in MP4 has no transparency: want .gif, .png, .webp, or a folder of pictures", .0.display())]
+    NoTransparency(PathBuf),
     /// The film would be too long.
     #[error("a film of {count} pictures: want at most {most}, by fewer pictures per second or a shorter time")]
     TooMany {

@@ -67,8 +67,7 @@ pub fn write_film(
     force: bool,
     goes_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<FilmDone, ExportError> {
-    let (form, count) = (FilmForm::of(file)?, order.count()?);
-    check_film(file, force)?;
+    let (form, count) = (check_film(file, &order.picture, force)?, order.count()?);
     let mut canvas = order.picture.canvas()?;
     let mut each = |push: &mut dyn FnMut(Picture) -> Result<(), ExportError>| {
         for i in 0..count {
@@ -109,12 +108,15 @@ pub fn write_film(
     Ok(FilmDone { pictures: count, times: order.times })
 }
 
-/// Checks that a film can be written: its ending, its place, and its encoder.
+/// Checks that a film of such pictures can be written: its ending, its place, and its encoder.
 ///
 /// # Errors
 /// If one of these does not hold.
-pub fn check_film(file: &Path, force: bool) -> Result<FilmForm, ExportError> {
+pub fn check_film(file: &Path, picture: &PictureOrder, force: bool) -> Result<FilmForm, ExportError> {
     let form = FilmForm::of(file)?;
+    if picture.transparent && !form.can_be_transparent() {
+        return Err(ExportError::NoTransparency(file.into()));
+    }
     match form {
         FilmForm::Frames => check_new_folder(file, force)?,
         FilmForm::Mp4 if !has_encoder() => return Err(VideoError::NoEncoder.into()),

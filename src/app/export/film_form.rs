@@ -45,6 +45,11 @@ impl FilmForm {
         }
     }
 
+    /// Whether its pictures can be transparent.
+    pub fn can_be_transparent(self) -> bool {
+        self != Self::Mp4
+    }
+
     /// Returns the format of a file by its extension; a name without one is a folder of pictures.
     ///
     /// # Errors

@@ -9,7 +9,7 @@ use stillbase_picture::print::{pdf, svg};
 use stillbase_picture::webp;
 
 /// Draws the instant that `app_state` shows and writes it in the format of the file's ending, unless `goes_on` stops it
-/// before.
+/// before. Returns what to say of letters that the font lacks.
 ///
 /// # Errors
 /// If the picture cannot be drawn or written, or is stopped.
@@ -19,13 +19,15 @@ pub fn write_picture(
     file: &Path,
     force: bool,
     goes_on: &mut dyn FnMut(f64) -> bool,
-) -> Result<(), ExportError> {
+) -> Result<Option<String>, ExportError> {
     stillbase_files::check_new(file, force)?;
     let form = PictureForm::of(file)?;
     let failed = |source| ExportError::Encoding { file: file.into(), source };
+    let mut note = None;
     let bytes = if form.has_outlines() {
         let page = order.page(app_state);
         let page = page.map_err(|why| ExportError::NoOutlines { file: file.into(), why })?;
+        note = page.note();
         if form == PictureForm::Svg { svg(&page).into_bytes() } else { pdf(&page) }
     } else {
         let picture = order.draw(&mut order.canvas()?, app_state)?;
@@ -34,5 +36,6 @@ pub fn write_picture(
     if !goes_on(1.0) {
         return Err(ExportError::Stopped);
     }
-    Ok(stillbase_files::write_new(file, &bytes, force)?)
+    stillbase_files::write_new(file, &bytes, force)?;
+    Ok(note)
 }

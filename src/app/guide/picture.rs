@@ -33,7 +33,21 @@ macro_rules! pictures {
 /// Largest width on the display, pixels, at which the texture has half the resolution of the picture.
 const SMALL_WIDTH_PX: f32 = 800.0;
 
-pictures!["window", "tower", "joints", "design", "draw", "workshop", "spacecraft", "compare", "tolerances"];
+pictures![
+    "window",
+    "tower",
+    "joints",
+    "design",
+    "draw",
+    "workshop",
+    "spacecraft",
+    "compare",
+    "tolerances",
+    "paper-table-1",
+    "paper-fig-3",
+    "paper-fig-4",
+    "paper-fig-5",
+];
 
 /// Returns the name of a picture from its address: the file without theme and extension.
 pub fn name_of(address: &str) -> &str {

@@ -8,8 +8,7 @@ use stillbase_picture::charts::choice::Plot;
 use stillbase_picture::charts::drawn::PlotLines;
 use stillbase_picture::charts::figure::{Figure, PlotContext};
 use stillbase_picture::charts::legend::run_names;
-use stillbase_picture::charts::svg::svg;
-use stillbase_picture::paint::figure::paint_figure;
+use stillbase_picture::print::{Page, svg};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_query::{QuickWork, answer_sequence};
 use stillbase_simulation::signals::Signal;
@@ -44,8 +43,8 @@ pub fn written(what: &DisplayContext<'_>, name: &str, file: PlotFile) -> Result<
             let (signals, frames) = (columns(plot), session.frames().clone());
             Box::new(move || Ok(answer_sequence::<SignalSamples>(&signals, &frames).csv(range).into_bytes()))
         }
-        PlotFile::Svg => Box::new(move || Ok(svg(&figure).into_bytes())),
-        PlotFile::Png => Box::new(move || png(&figure)),
+        PlotFile::Svg => Box::new(move || Ok(svg(&Page::of_web(figure)).into_bytes())),
+        PlotFile::Png => Box::new(move || png(figure)),
     })
 }
 
@@ -71,16 +70,8 @@ pub fn columns(plot: &Plot<'_>) -> Vec<Signal> {
     plot.against.iter().chain(plot.shown()).map(|curve| curve.signal.clone()).collect()
 }
 
-fn png(figure: &Figure) -> Result<Vec<u8>, String> {
+fn png(figure: Figure) -> Result<Vec<u8>, String> {
     let mut canvas = Canvas::new(figure.size.map(|side| 2 * side.ceil() as u32), 2.0).map_err(|why| why.to_string())?;
-    let mut has_fonts = false;
-    let picture = canvas.draw(|ui| {
-        // Fonts are available from the second pass on.
-        if std::mem::replace(&mut has_fonts, true) {
-            paint_figure(ui.painter(), egui::Pos2::ZERO, figure);
-        } else {
-            stillbase_picture::paint::install_fonts(ui.ctx());
-        }
-    });
-    picture.map_err(|why| why.to_string())?.to_png().map_err(|why| format!("no picture: {why}"))
+    let picture = canvas.figures(&[([0.0; 2], figure)]).map_err(|why| why.to_string())?;
+    picture.to_png().map_err(|why| format!("no picture: {why}"))
 }

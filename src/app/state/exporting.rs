@@ -25,10 +25,10 @@ impl AppState {
     /// Writes a result to a file.
     pub(super) fn export(&mut self, path: &Path, wanted: &Export) -> Result<(), String> {
         self.require_machine()?;
-        if let Export::Film(_) = wanted {
+        if let Export::Film(choice) = wanted {
             // The path is checked first, so that a wrong one is refused before the film is drawn.
             let replaces = self.saving.replaces.as_deref() == Some(path);
-            export::check_film(path, replaces).map_err(|e| e.to_string())?;
+            export::check_film(path, &self.order(&choice.look), replaces).map_err(|e| e.to_string())?;
         }
         self.write(path, Activity::Exporting, BUSY, AfterWriting::Nothing, |app_state| {
             Ok(match wanted {
@@ -50,9 +50,10 @@ impl AppState {
         let (copy, order) = (self.copy(), self.order(look));
         Box::new(move |ticket, path, force| {
             let goes_on = &mut |done| ticket.goes_on(done);
-            write_picture(&mut copy.open(), &order, path, force, goes_on).map_err(|e| e.to_string())?;
+            let note = write_picture(&mut copy.open(), &order, path, force, goes_on).map_err(|e| e.to_string())?;
             let [width, height] = order.size_px;
-            Ok(format!("saved {}, {width} × {height} pixels", absolute(path)))
+            let note = note.map_or_else(String::new, |note| format!("; {note}"));
+            Ok(format!("saved {}, {width} × {height} pixels{note}", absolute(path)))
         })
     }
 

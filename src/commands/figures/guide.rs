@@ -10,6 +10,8 @@ use stillbase_exchange::cut::Cut;
 use stillbase_files::write_new;
 use stillbase_mechanics::machine;
 use stillbase_mechanics::sketch::Sketch;
+use stillbase_picture::canvas::Canvas;
+use stillbase_picture::render::offscreen::Picture;
 use stillbase_picture::scene::palette::Theme;
 use stillbase_picture::scene::sketching::SketchItem;
 use stillbase_picture::scene::views::ViewKind;
@@ -19,39 +21,65 @@ use stillbase_session::{Edit, Run, parts};
 use stillbase_settings::range::quote_clipped;
 use stillbase_study::layers::{LayersRequest, find_layers};
 
+use super::paper::{PaperFigure, beside};
 use crate::exit::print_message;
 use crate::failure::Failure;
 
 /// Content of a picture.
 enum Shown {
-    /// The window after these commands.
-    Window(fn() -> Vec<Command>),
-    /// A view alone.
-    Scene(ViewKind),
+    /// The window at an instant of a scenario, s, after these commands.
+    Window(&'static str, f64, fn() -> Vec<Command>),
+    /// A view alone at an instant of a scenario, s.
+    Scene(&'static str, f64, ViewKind),
+    /// Figures of the paper beside each other; pixels per point.
+    Paper(&'static [PaperFigure], f32),
 }
 
 impl Shown {
+    /// Draws the picture in both themes.
+    fn draw(&self) -> Result<[Picture; 2], Failure> {
+        let (scenario, time, commands) = match self {
+            Self::Window(scenario, time, commands) => (scenario, time, commands()),
+            Self::Scene(scenario, time, _) => (scenario, time, Vec::new()),
+            Self::Paper(figures, scale) => {
+                let drawn = |theme| paper_picture(figures, theme, *scale);
+                return Ok([drawn(Theme::Dark)?, drawn(Theme::Light)?]);
+            }
+        };
+        let mut app_state = opened(scenario, *time)?;
+        commands.into_iter().for_each(|command| app_state.carry_out(command));
+        let [dark, light] = [Theme::Dark, Theme::Light].map(|theme| self.order(theme));
+        // Both themes share a canvas, so that its fonts are loaded once.
+        let mut canvas = dark.canvas().map_err(Failure::no_answer)?;
+        let mut drawn = |order: PictureOrder| order.draw(&mut canvas, &mut app_state).map_err(Failure::no_answer);
+        Ok([drawn(dark)?, drawn(light)?])
+    }
+
     fn order(&self, theme: Theme) -> PictureOrder {
         match self {
-            Self::Window(_) => PictureOrder { scale: 1.0, ..PictureOrder::new(Shot::Window, theme, [1440, 900]) },
-            Self::Scene(view) => {
+            Self::Scene(.., view) => {
                 PictureOrder { scale: 1.25, ..PictureOrder::new(Shot::View(*view), theme, [1200, 1000]) }
             }
+            _ => PictureOrder { scale: 1.0, ..PictureOrder::new(Shot::Window, theme, [1440, 900]) },
         }
     }
 }
 
-/// The pictures: name, scenario, time in s, and content.
-const PICTURES: [(&str, &str, f64, Shown); 9] = [
-    ("window", "case-3", 0.62, Shown::Window(Vec::new)),
-    ("spacecraft", "spacecraft", 0.75, Shown::Window(Vec::new)),
-    ("compare", "case-1", 0.62, Shown::Window(side_by_side)),
-    ("tolerances", "case-3", 0.62, Shown::Window(study)),
-    ("design", "nine-link-bare", 0.62, Shown::Window(designed)),
-    ("draw", "case-3", 0.62, Shown::Window(drawn)),
-    ("workshop", "case-3", 0.62, Shown::Window(stacked)),
-    ("tower", "case-3", 0.62, Shown::Scene(ViewKind::Tower)),
-    ("joints", "case-1", 0.5, Shown::Scene(ViewKind::Joints)),
+/// The pictures with their names.
+const PICTURES: [(&str, Shown); 13] = [
+    ("window", Shown::Window("case-3", 0.62, Vec::new)),
+    ("spacecraft", Shown::Window("spacecraft", 0.75, Vec::new)),
+    ("compare", Shown::Window("case-1", 0.62, side_by_side)),
+    ("tolerances", Shown::Window("case-3", 0.62, study)),
+    ("design", Shown::Window("nine-link-bare", 0.62, designed)),
+    ("draw", Shown::Window("case-3", 0.62, drawn)),
+    ("workshop", Shown::Window("case-3", 0.62, stacked)),
+    ("tower", Shown::Scene("case-3", 0.62, ViewKind::Tower)),
+    ("joints", Shown::Scene("case-1", 0.5, ViewKind::Joints)),
+    ("paper-table-1", Shown::Paper(&[PaperFigure::Table1], 4.0)),
+    ("paper-fig-3", Shown::Paper(&[PaperFigure::Fig3], 4.0)),
+    ("paper-fig-4", Shown::Paper(&[PaperFigure::Fig4], 4.0)),
+    ("paper-fig-5", Shown::Paper(&[PaperFigure::Fig5a, PaperFigure::Fig5b, PaperFigure::Fig5c], 2.0)),
 ];
 
 /// Returns the names of the pictures.
@@ -68,22 +96,22 @@ pub fn draw(names: &[String], folder: &Path, force: bool) -> Result<(), Failure>
         return Err(Failure::wrong_input(format!("{why}, or --what for figures of a run")));
     }
     let is_chosen = |name: &str| names.is_empty() || names.iter().any(|picture| picture == name);
-    for (name, scenario, time, shown) in PICTURES.iter().filter(|(name, ..)| is_chosen(name)) {
-        let mut app_state = opened(scenario, *time)?;
-        if let Shown::Window(commands) = shown {
-            commands().into_iter().for_each(|command| app_state.carry_out(command));
-        }
-        // Both themes share a canvas, so that its fonts are loaded once.
-        let mut canvas = shown.order(Theme::Dark).canvas().map_err(Failure::no_answer)?;
-        for (theme, word) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
-            let drawn = shown.order(theme).draw(&mut canvas, &mut app_state);
-            let picture = drawn.map_err(Failure::no_answer)?;
+    for (name, shown) in PICTURES.iter().filter(|(name, _)| is_chosen(name)) {
+        for (picture, word) in shown.draw()?.iter().zip(["dark", "light"]) {
             let file = folder.join(format!("{name}-{word}.png"));
             write_new(&file, &picture.to_png().map_err(Failure::no_answer)?, force)?;
             print_message(format!("wrote {}", file.display()));
         }
     }
     Ok(())
+}
+
+/// Draws figures of the paper beside each other.
+fn paper_picture(figures: &[PaperFigure], theme: Theme, scale: f32) -> Result<Picture, Failure> {
+    let page = beside(figures, theme)?;
+    let size = page.size.map(|side| (scale * side).ceil() as u32);
+    let mut canvas = Canvas::new(size, scale).map_err(Failure::no_answer)?;
+    canvas.figures(&page.figures).map_err(Failure::no_answer)
 }
 
 /// Returns commands that open the comparison, show two alternatives in plots and scene, and draw snapshots.

@@ -24,7 +24,7 @@ use run::RunFigure;
 /// .svg or .pdf, with its numbers in a .csv beside it. Widths are in mm; type is drawn as outlines, so no font is
 /// needed; lines differ in dashes, so grey is enough. The title of each file and the head of its .csv hold the command
 /// that writes it again. Without these options, pictures of the guide are drawn: all, or those that are named.
-#[derive(Args)]
+#[derive(Args, Default)]
 #[command(after_help = "\
 Examples:
   stillbase figures --paper all -o figures
@@ -51,7 +51,8 @@ pub struct FiguresArguments {
     /// Point of the end effector, m, of Fig. 3 and Fig. 5; given twice, A and B; default: 0.5,0.5 and 0.55,0.9
     #[arg(long, value_name = "X,Y", requires = "paper", value_parser = point)]
     point: Vec<Vector>,
-    /// Pose constant b, rad; may be repeated for Fig. 4, and the first is that of Fig. 5; default: 2.4 and 5
+    /// Pose constant b, rad; may be repeated for Fig. 4, the first is that of Fig. 5 and near those of Fig. 3; default: 2.4
+    /// and 5
     #[arg(long, value_name = "B", requires = "paper", value_parser = pose_constant)]
     b: Vec<f64>,
     /// Duration of the motions of Fig. 5, s; default: 1
@@ -100,10 +101,9 @@ impl FiguresArguments {
         self.width.unwrap_or(COLUMN_MM) * POINTS_PER_MM
     }
 
-    /// Returns the options of width and settings as a shell takes them, each with a space in front.
-    fn as_typed(&self) -> String {
-        let width = self.width.map_or_else(String::new, |width| format!(" --width {width}"));
-        format!("{width}{}", self.settings.as_typed())
+    /// Returns the option of the width as a shell takes it, with a space in front.
+    fn typed_width(&self) -> String {
+        self.width.map_or_else(String::new, |width| format!(" --width {width}"))
     }
 }
 
@@ -122,6 +122,7 @@ fn write(figure: &PrintedFigure, files: &[PathBuf], force: bool) -> Result<(), F
         begun.push(stillbase_files::write_temporary(file, &content, force)?);
     }
     begun.into_iter().try_for_each(NewFile::finish)?;
+    figure.page.note().into_iter().for_each(|note| print_message(format!("note: {note}")));
     files.iter().for_each(|file| print_message(format!("wrote {}", file.display())));
     Ok(())
 }

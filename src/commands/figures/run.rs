@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use clap::ValueEnum;
 use stillbase_app::{AppState, PictureOrder, SessionCommand, Shot};
+use stillbase_files::check_new;
 use stillbase_picture::charts::charts;
 use stillbase_picture::charts::figure::Figure;
-use stillbase_picture::print::paper::{PrintedFigure, chart_plot, snapshots_plot, workspaces};
-use stillbase_picture::print::{PrintPlot, scene_figure};
+use stillbase_picture::print::paper::{PrintPart, PrintedFigure, chart_plot, snapshots_plot, workspaces};
+use stillbase_picture::print::scene_figure;
 use stillbase_picture::scene::palette::Theme;
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_settings::number::fixed;
@@ -18,7 +19,7 @@ use stillbase_study::workspace::WorkspaceReport;
 
 use super::{FiguresArguments, write};
 use crate::failure::Failure;
-use crate::input::{pose_space, scenario};
+use crate::input::{no_use, pose_space, scenario};
 use crate::output::check_output;
 
 /// A part of the figures of a run.
@@ -63,6 +64,13 @@ impl RunFigure {
 /// Draws parts of a run into one file, with the numbers in another beside it.
 pub fn draw(wanted: &FiguresArguments, file: &Path) -> Result<(), Failure> {
     check_output(file, wanted.force, &["svg", "pdf"])?;
+    let mut files = vec![file.to_owned()];
+    let has_numbers = wanted.what.iter().any(|part| *part != RunFigure::Linkage);
+    files.extend(has_numbers.then(|| file.with_extension("csv")));
+    files.iter().try_for_each(|file| check_new(file, wanted.force))?;
+    if wanted.at.is_some() && !wanted.what.contains(&RunFigure::Linkage) {
+        return Err(no_use("--at", "--what linkage: the other parts show the whole run"));
+    }
     let [name] = &wanted.names[..] else {
         return Err(Failure::wrong_input("several scenarios: want one with --what"));
     };
@@ -77,22 +85,19 @@ pub fn draw(wanted: &FiguresArguments, file: &Path) -> Result<(), Failure> {
     }
     app_state.carry_out(SessionCommand::Seek(at.min(end)));
     let width = wanted.width_points();
-    let mut plots: Vec<(PrintPlot, f32)> = Vec::new();
-    let mut linkage = None;
+    let mut parts: Vec<PrintPart> = Vec::new();
     for part in &wanted.what {
-        match part {
-            RunFigure::Linkage => linkage = Some(linkage_figure(&mut app_state, width)),
-            part => plots.push(plot(*part, &app_state, width)?),
-        }
+        parts.push(match part {
+            RunFigure::Linkage => PrintPart::Drawing(linkage_figure(&mut app_state, width)),
+            part => plot(*part, &app_state, width)?,
+        });
     }
     let made = made(wanted, name, file);
-    let title = format!("{}: {}", scenario.name, scenario.title);
-    let mut figure = PrintedFigure::of(&title, &made, width, &plots);
-    if let Some(drawn) = linkage {
-        figure.add_on_top(drawn, width);
-    }
-    let mut files = vec![file.to_owned()];
-    files.extend((!plots.is_empty()).then(|| file.with_extension("csv")));
+    let title = match &scenario.title[..] {
+        "" => scenario.name.clone(),
+        title => format!("{}: {title}", scenario.name),
+    };
+    let figure = PrintedFigure::of(&title, &made, width, parts);
     write(&figure, &files, wanted.force)
 }
 
@@ -102,11 +107,15 @@ fn made(wanted: &FiguresArguments, name: &str, file: &Path) -> String {
     let at = wanted.at.map_or_else(String::new, |at| format!(" --at {at}"));
     let file = file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let (name, file, what) = (shell_word(name), shell_word(&file), what.join(","));
-    format!("stillbase figures {name} --what {what}{at} -o {file}{}", wanted.as_typed())
+    format!(
+        "stillbase figures {name} --what {what}{at} -o {file}{}{}",
+        wanted.typed_width(),
+        wanted.settings.as_typed()
+    )
 }
 
-/// Returns a plot with the height of its axes, points.
-fn plot(part: RunFigure, app_state: &AppState, width: f32) -> Result<(PrintPlot, f32), Failure> {
+/// Returns a part with curves.
+fn plot(part: RunFigure, app_state: &AppState, width: f32) -> Result<PrintPart, Failure> {
     let session = app_state.session();
     let (scenario, frames) = (session.scenario(), session.frames());
     match part {
@@ -115,11 +124,11 @@ fn plot(part: RunFigure, app_state: &AppState, width: f32) -> Result<(PrintPlot,
             let b = scenario.task.b;
             let report = WorkspaceReport::of(&scenario.machine, &space, b, &[]);
             let report = report.ok_or_else(|| Failure::no_answer("the joint limits leave no pose: want wider ones"))?;
-            Ok((workspaces(&[(b, report)]), DRAWING_HEIGHT * width))
+            Ok(PrintPart::Plot(workspaces(Theme::Light, &[(b, report)]), DRAWING_HEIGHT * width))
         }
         RunFigure::Snapshots => {
             let linkage = app_state.views().stage().linkage();
-            Ok((snapshots_plot(session.run(), linkage, frames), DRAWING_HEIGHT * width))
+            Ok(PrintPart::Plot(snapshots_plot(Theme::Light, session.run(), linkage, frames), DRAWING_HEIGHT * width))
         }
         part => {
             let (word, charts) = (part.word(), charts(scenario, false));
@@ -128,7 +137,10 @@ fn plot(part: RunFigure, app_state: &AppState, width: f32) -> Result<(PrintPlot,
             let chart = chart.ok_or_else(|| {
                 Failure::no_answer(format!("{}: this run has no {word}: want another part", scenario.name))
             })?;
-            Ok((chart_plot(chart, &signals(&scenario.machine), frames), PLOT_HEIGHT * width))
+            Ok(PrintPart::Plot(
+                chart_plot(Theme::Light, chart, &signals(&scenario.machine), frames),
+                PLOT_HEIGHT * width,
+            ))
         }
     }
 }

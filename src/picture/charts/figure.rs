@@ -92,6 +92,8 @@ pub struct Axes {
 pub const LEFT_MARGIN: f32 = 42.0;
 /// Width of the margin for the numbers of overlaid runs, points.
 const RUN_MARGIN: f32 = 14.0;
+/// Length of the ticks below the axes, with a little more, points.
+const TICK_ROOM: f32 = 4.0;
 /// Height of the margin for the tick labels of the horizontal axis, points.
 pub const BOTTOM_MARGIN: f32 = 15.0;
 
@@ -102,6 +104,12 @@ impl Axes {
         let has_runs = drawn.lines.iter().any(|line| line.run.is_some());
         let right = right - if has_runs { RUN_MARGIN } else { 2.0 };
         Self { sides: [left + LEFT_MARGIN, top, right, bottom - BOTTOM_MARGIN], x: drawn.x, y: drawn.y }
+    }
+
+    /// Returns left, top, right and bottom of the rectangle that clips lines; ticks end below the axes.
+    pub fn clip(&self) -> [f32; 4] {
+        let [left, top, right, bottom] = self.sides;
+        [left, top, right, bottom + TICK_ROOM]
     }
 
     /// Maps a point (x, y) of values to the screen, points.
@@ -298,6 +306,8 @@ fn cursors(plot: &Plot<'_>, axes: &Axes, look: &PlotContext<'_>) -> Vec<FigureIt
 /// A picture of a plot, with its title.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
+    /// What it shows.
+    pub title: String,
     /// Width and height, points.
     pub size: [f32; 2],
     /// Background colour.
@@ -358,6 +368,6 @@ impl Figure {
         items.push(FigureItem::Text { at: [width - 16.0, 12.0], anchor: [1.0, 0.0], words: names });
         items.extend(legend::items(runs, [16.0, 34.0], width - 32.0, p));
         items.extend(body(plot, drawn, &axes, look));
-        Self { size: [width, height], background: p.panel, axes, items }
+        Self { title: plot.heading(), size: [width, height], background: p.panel, axes, items }
     }
 }

@@ -73,5 +73,5 @@ pub fn figure(runs: &[RunName], width: f32, p: &Palette) -> Option<Figure> {
     let size = [width, height(runs, width - 16.0) + 8.0];
     let axes = Axes { sides: [0.0, 0.0, size[0], size[1]], x: [0.0, 1.0], y: [0.0, 1.0] };
     let items = items(runs, [8.0, 4.0], width - 16.0, p);
-    (!items.is_empty()).then_some(Figure { size, background: p.panel, axes, items })
+    (!items.is_empty()).then_some(Figure { title: "Runs".into(), size, background: p.panel, axes, items })
 }

@@ -1,17 +1,18 @@
 //! Paints the items of a figure with egui.
 
 use egui::text::{LayoutJob, TextFormat};
-use egui::{Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
+use egui::{Align, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 
 use super::{bold, colour, plain};
 use crate::charts::figure::{Axes, Figure, FigureItem};
+use crate::print::glyphs;
 use crate::scene::fill;
 
 /// Paints items; their coordinates are relative to `origin`.
 pub fn items(painter: &Painter, origin: Pos2, axes: &Axes, items: &[FigureItem]) {
-    let [left, top, right, bottom] = axes.sides;
+    let [left, top, right, bottom] = axes.clip();
     let at = |[x, y]: [f32; 2]| origin + vec2(x, y);
-    let within = Rect::from_min_max(at([left, top]), at([right, bottom + 4.0]));
+    let within = Rect::from_min_max(at([left, top]), at([right, bottom]));
     let inner = painter.with_clip_rect(within.intersect(painter.clip_rect()));
     for item in items {
         match item {
@@ -42,8 +43,13 @@ pub fn items(painter: &Painter, origin: Pos2, axes: &Axes, items: &[FigureItem])
             FigureItem::Text { at: place, anchor: [across, down], words } => {
                 let mut job = LayoutJob::default();
                 for words in words {
-                    let font = if words.bold { bold(words.size) } else { plain(words.size) };
-                    job.append(&words.text, 0.0, TextFormat::simple(font, colour(words.colour)));
+                    for (piece, is_index) in glyphs::pieces(&words.text) {
+                        let size = if is_index { glyphs::INDEX_SIZE * words.size } else { words.size };
+                        let font = if words.bold { bold(size) } else { plain(size) };
+                        let valign = if is_index { Align::BOTTOM } else { Align::Center };
+                        let format = TextFormat { valign, ..TextFormat::simple(font, colour(words.colour)) };
+                        job.append(&piece, 0.0, format);
+                    }
                 }
                 let galley = painter.layout_job(job);
                 let from = at(*place) - vec2(*across, *down) * galley.size();

@@ -4,7 +4,7 @@ use skrifa::instance::{LocationRef, Size};
 use skrifa::outline::{DrawSettings, OutlinePen};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
 
-use super::shape::{Paint, PathStep, Shape};
+use super::shape::{Paint, PathStep, Shape, ShapeWords};
 use crate::charts::figure::FigureText;
 use crate::paint::FONT_FILES;
 
@@ -20,8 +20,9 @@ fn fonts(bold: bool) -> impl Iterator<Item = FontRef<'static>> {
     [own, signs].into_iter().filter_map(|(_, bytes)| FontRef::new(bytes).ok())
 }
 
-/// Size of the letters of an index, and their distance below the line, as fractions of the font size.
-const INDEX_SIZE: f32 = 0.68;
+/// Size of the letters of an index, and their distance below the line, as fractions of the font size. What follows a
+/// letter and `_`, as in n_B, is its index.
+pub const INDEX_SIZE: f32 = 0.68;
 const INDEX_DROP: f32 = 0.2;
 
 /// A letter at its place.
@@ -33,25 +34,41 @@ struct Glyph {
     at: [f32; 2],
 }
 
-/// Returns the letters of a text, and its width, points. What follows a letter and `_`, as in n_B, is its index.
+/// Returns the letters of a text, and its width, points.
 fn laid_out(text: &str, size: f32, bold: bool) -> (Vec<Glyph>, f32) {
     let fonts: Vec<FontRef<'static>> = fonts(bold).collect();
-    let letters: Vec<char> = text.chars().collect();
-    let (mut glyphs, mut x, mut is_index) = (Vec::new(), 0.0, false);
-    for (i, letter) in letters.iter().enumerate() {
-        is_index &= letter.is_alphanumeric();
-        if begins_index(&letters, i) {
-            is_index = true;
-            continue;
-        }
-        let found = fonts.iter().find_map(|font| Some((font, font.charmap().map(*letter)?)));
-        let Some((font, id)) = found else { continue };
+    let (mut glyphs, mut x) = (Vec::new(), 0.0);
+    let pieces = pieces(text).into_iter();
+    for (letter, is_index) in
+        pieces.flat_map(|(piece, is_index)| piece.chars().map(move |c| (c, is_index)).collect::<Vec<_>>())
+    {
+        let found = fonts.iter().find_map(|font| Some((font, font.charmap().map(letter)?)));
+        // The first glyph of a font stands for all letters that it lacks.
+        let Some((font, id)) = found.or_else(|| Some((fonts.first()?, GlyphId::NOTDEF))) else { continue };
         let (size, down) = if is_index { (INDEX_SIZE * size, INDEX_DROP * size) } else { (size, 0.0) };
         glyphs.push(Glyph { font: font.clone(), id, size, at: [x, down] });
         let metrics = font.glyph_metrics(Size::new(size), LocationRef::default());
         x += metrics.advance_width(id).unwrap_or(0.5 * size);
     }
     (glyphs, x)
+}
+
+/// Returns the pieces of a text in order, each with whether it is an index.
+pub fn pieces(text: &str) -> Vec<(String, bool)> {
+    let letters: Vec<char> = text.chars().collect();
+    let (mut pieces, mut is_index): (Vec<(String, bool)>, bool) = (Vec::new(), false);
+    for (i, letter) in letters.iter().enumerate() {
+        is_index &= letter.is_alphanumeric();
+        if begins_index(&letters, i) {
+            is_index = true;
+            continue;
+        }
+        match pieces.last_mut().filter(|(_, of)| *of == is_index) {
+            Some((piece, _)) => piece.push(*letter),
+            None => pieces.push((letter.to_string(), is_index)),
+        }
+    }
+    pieces
 }
 
 /// Whether the letter at a place is the `_` of a symbol: behind one letter alone, before one or two.
@@ -65,6 +82,13 @@ fn begins_index(letters: &[char], i: usize) -> bool {
 /// Returns the width of a text, points.
 pub fn width(text: &str, size: f32, bold: bool) -> f32 {
     laid_out(text, size, bold).1
+}
+
+/// Returns the letters of a text that no font has.
+pub fn missing(text: &str, bold: bool) -> Vec<char> {
+    let fonts: Vec<FontRef<'static>> = fonts(bold).collect();
+    let has = |letter: char| fonts.iter().any(|font| font.charmap().map(letter).is_some());
+    text.chars().filter(|letter| !has(*letter)).collect()
 }
 
 /// Returns the shapes of a line of text; `anchor` is the position of the point `at` within it, as in a figure.
@@ -85,7 +109,8 @@ pub fn text(words: &[FigureText], at: [f32; 2], anchor: [f32; 2]) -> Vec<Shape> 
             }
         }
         if !pen.steps.is_empty() {
-            shapes.push(Shape { steps: pen.steps, paint: Paint::Fill(own.colour), clip: None });
+            let words = ShapeWords { text: own.text.clone(), at: [x, y], size: own.size, width: along };
+            shapes.push(Shape { steps: pen.steps, paint: Paint::Fill(own.colour), clip: None, words: Some(words) });
         }
         x += along;
     }

@@ -1,7 +1,7 @@
 //! Figures fit for print. A [`Page`] of figures becomes shapes, lettering included, from which SVG and PDF are written:
 //! so both look the same, and neither needs a font.
 
-mod glyphs;
+pub(crate) mod glyphs;
 mod numbers;
 mod page;
 pub mod paper;
@@ -16,4 +16,4 @@ pub use page::{PIXEL_MM, POINTS_PER_MM, Page};
 pub use pdf::pdf;
 pub use plot::{PrintCurve, PrintPlot, PrintWords, pen};
 pub use scene::scene_figure;
-pub use svg::svg;
+pub use svg::{svg, svg_element};

@@ -41,6 +41,8 @@ pub struct PrintWords {
 /// Curves in axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PrintPlot {
+    /// Colours of axes and words.
+    pub theme: Theme,
     /// Name in the table of numbers.
     pub name: String,
     /// What it shows, above the axes.
@@ -69,6 +71,11 @@ const TICK: f32 = 2.6;
 const SAMPLE: f32 = 18.0;
 /// Largest distance of a drawn curve from its points, points.
 const THINNING: f32 = 0.01;
+/// Radius of a dot, and how far from its centre its words stand, points.
+const DOT: f32 = 1.8;
+const DOT_GAP: f32 = 3.0;
+/// Distance from which on words are clear of what is drawn, points.
+const CLEAR: f32 = 4.0;
 /// Free space around the curves, as a fraction of their range.
 const MARGIN: f64 = 0.06;
 
@@ -81,7 +88,7 @@ impl PrintPlot {
     /// Returns the figure; `size` is its width and the height of its axes, points. With equal scales the axes are as
     /// high as the curves need, at most that height.
     pub fn figure(&self, [width, height]: [f32; 2]) -> Figure {
-        let p = palette(Theme::Light);
+        let p = palette(self.theme);
         let legend = self.legend(width - LEFT - RIGHT);
         let rows = legend.last().map_or(0, |(row, ..)| row + 1) as f32;
         let heads = if self.head.is_empty() { 0.0 } else { LINE };
@@ -121,25 +128,28 @@ impl PrintPlot {
             let PrintCurve { width, colour, dash, .. } = *curve;
             items.push(FigureItem::Line { points, width, colour, dash, inside: true });
         }
-        for words in &self.words {
-            let [x, y] = axes.place(words.at);
-            if words.dot {
-                // The lower of two points has its words below it, clear of what joins them.
-                let is_lower = self.words.iter().any(|other| other.dot && other.at[1] > words.at[1]);
-                let (down, anchor) = if is_lower { (0.5, 0.0) } else { (-1.0, 1.0) };
-                items.push(FigureItem::Dot { at: [x, y], radius: 1.8, colour: p.ink });
-                items.push(text([x + 3.5, y + down], [0.0, anchor], &words.text, p.ink, true));
-            } else {
-                items.push(text([x, y], [0.5, 0.5], &words.text, p.ink, false));
+        let dots: Vec<[f32; 2]> =
+            self.words.iter().filter(|words| words.dot).map(|words| axes.place(words.at)).collect();
+        let lines: Vec<&[[f32; 2]]> = items.iter().filter_map(line_inside).collect();
+        let beside = |words: &PrintWords| clearest_place(axes.place(words.at), &words.text, &axes, (&lines, &dots));
+        let beside: Vec<Option<Place>> = self.words.iter().map(|words| words.dot.then(|| beside(words))).collect();
+        for (words, beside) in self.words.iter().zip(beside) {
+            let at = axes.place(words.at);
+            match beside {
+                Some(Place { at: place, anchor }) => {
+                    items.push(FigureItem::Dot { at, radius: DOT, colour: p.ink });
+                    items.push(text(place, anchor, &words.text, p.ink, true));
+                }
+                None => items.push(text(at, [0.5, 0.5], &words.text, p.ink, false)),
             }
         }
         let bottom = sides[3] + LINE + LINE + 4.0;
-        Figure { size: [width, bottom], background: p.background, axes, items }
+        Figure { title: self.name.clone(), size: [width, bottom], background: p.background, axes, items }
     }
 
     /// Draws the frame with its ticks and their numbers, and the name of the horizontal axis.
     fn frame(&self, axes: &Axes, items: &mut Vec<FigureItem>) {
-        let p = palette(Theme::Light);
+        let p = palette(self.theme);
         let [left, top, right, bottom] = axes.sides;
         let mut line = |points: Vec<[f32; 2]>, width| {
             items.push(FigureItem::Line { points, width, colour: p.ink, dash: None, inside: false });
@@ -168,7 +178,9 @@ impl PrintPlot {
 
     /// Returns the ranges of the axes.
     fn ranges(&self) -> [[f64; 2]; 2] {
-        let all = || self.curves.iter().flat_map(|curve| &curve.points).filter(|p| p.iter().all(|x| x.is_finite()));
+        let dots = || self.words.iter().filter(|words| words.dot).map(|words| &words.at);
+        let curves = || self.curves.iter().flat_map(|curve| &curve.points);
+        let all = || curves().chain(dots()).filter(|p| p.iter().all(|x| x.is_finite()));
         let range = |i: usize, margin: f64| {
             let [low, high] =
                 all().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p[i]), high.max(p[i])]);
@@ -197,6 +209,51 @@ impl PrintPlot {
         }
         all
     }
+}
+
+/// Returns the points of a line within the axes.
+fn line_inside(item: &FigureItem) -> Option<&[[f32; 2]]> {
+    match item {
+        FigureItem::Line { points, inside: true, .. } => Some(points),
+        _ => None,
+    }
+}
+
+/// Where words stand: a point, and its position within them.
+struct Place {
+    at: [f32; 2],
+    anchor: [f32; 2],
+}
+
+/// Returns the place of words beside a dot that is farthest from lines and other dots; of equal ones the first.
+fn clearest_place([x, y]: [f32; 2], words: &str, axes: &Axes, (lines, dots): (&[&[[f32; 2]]], &[[f32; 2]])) -> Place {
+    let [left, top, right, bottom] = axes.sides;
+    let (wide, high) = (glyphs::width(words, TYPE, true), TYPE);
+    let room = |[across, down]: [f32; 2]| {
+        let corner =
+            [x + across * DOT_GAP - 0.5 * (1.0 - across) * wide, y + down * DOT_GAP - 0.5 * (1.0 - down) * high];
+        let sides = [corner[0], corner[1], corner[0] + wide, corner[1] + high];
+        let is_inside = sides[0] > left && sides[1] > top && sides[2] < right && sides[3] < bottom;
+        let to_lines = lines.iter().flat_map(|points| points.windows(2)).map(|ends| distance(sides, ends[0], ends[1]));
+        let to_dots = dots.iter().filter(|dot| **dot != [x, y]).map(|dot| distance(sides, *dot, *dot) - DOT);
+        let nearest = to_lines.chain(to_dots).fold(CLEAR, f32::min);
+        if is_inside { nearest } else { nearest - CLEAR }
+    };
+    let sides = [[1.0, -1.0], [1.0, 1.0], [-1.0, -1.0], [-1.0, 1.0], [1.0, 0.0], [-1.0, 0.0], [0.0, -1.0], [0.0, 1.0]];
+    let best = sides.into_iter().rev().max_by(|a, b| room(*a).total_cmp(&room(*b))).unwrap_or([1.0, -1.0]);
+    let [across, down] = best;
+    Place { at: [x + across * DOT_GAP, y + down * DOT_GAP], anchor: best.map(|side| 0.5 * (1.0 - side)) }
+}
+
+/// Returns the distance of a straight line from a rectangle, nearly: that of points along the line.
+fn distance([left, top, right, bottom]: [f32; 4], from: [f32; 2], to: [f32; 2]) -> f32 {
+    let count = ((to[0] - from[0]).hypot(to[1] - from[1])).ceil().clamp(1.0, 400.0) as u16;
+    let of = |i: u16| {
+        let share = f32::from(i) / f32::from(count);
+        let [x, y] = [0, 1].map(|k| from[k] + share * (to[k] - from[k]));
+        (left - x).max(x - right).max(0.0).hypot((top - y).max(y - bottom).max(0.0))
+    };
+    (0..=count).map(of).fold(f32::INFINITY, f32::min)
 }
 
 /// Returns the ranges and the size of axes, points, in which both have the same scale.

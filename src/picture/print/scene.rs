@@ -63,7 +63,7 @@ pub fn scene_figure(scene: &Arc<Scene>, camera: &Camera, size: [f32; 2]) -> Figu
     }
     let [width, height] = size;
     let axes = Axes { sides: [0.0, 0.0, width, height], x: [0.0, 1.0], y: [0.0, 1.0] };
-    Figure { size, background: scene.background, axes, items }
+    Figure { title: "View from above".into(), size, background: scene.background, axes, items }
 }
 
 /// Where points of a scene lie in the figure.

@@ -43,6 +43,21 @@ pub struct Shape {
     pub paint: Paint,
     /// Left, top, right and bottom of the rectangle that clips it, points.
     pub clip: Option<[f32; 4]>,
+    /// The words of which it is the outline.
+    pub words: Option<ShapeWords>,
+}
+
+/// Words in a line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShapeWords {
+    /// The words.
+    pub text: String,
+    /// Left end of their baseline, points.
+    pub at: [f32; 2],
+    /// Font size, points.
+    pub size: f32,
+    /// Width, points.
+    pub width: f32,
 }
 
 /// Distance of the control points of a quarter circle from its ends, as a fraction of the radius.
@@ -60,22 +75,22 @@ impl Shape {
                 let mut steps = line(open.iter().map(|p| at(*p)));
                 steps.extend(closed.then_some(PathStep::Close));
                 let paint = Paint::Stroke { colour: *colour, width: *width, dash: *dash };
-                vec![Self { steps, paint, clip: inside.then_some(clip) }]
+                vec![Self { steps, paint, clip: inside.then_some(clip), words: None }]
             }
             FigureItem::Area { loops, colour, inside } => {
                 let closed = |points: &Vec<[f32; 2]>| {
                     line(points.iter().map(|p| at(*p))).into_iter().chain([PathStep::Close]).collect::<Vec<_>>()
                 };
                 let steps = loops.iter().filter(|points| points.len() > 2).flat_map(closed).collect();
-                vec![Self { steps, paint: Paint::FillEvenOdd(*colour), clip: inside.then_some(clip) }]
+                vec![Self { steps, paint: Paint::FillEvenOdd(*colour), clip: inside.then_some(clip), words: None }]
             }
             FigureItem::Rectangle { sides: [left, top, right, bottom], colour } => {
                 let corners = [[*left, *top], [*right, *top], [*right, *bottom], [*left, *bottom]];
                 let steps = line(corners.map(at)).into_iter().chain([PathStep::Close]).collect();
-                vec![Self { steps, paint: Paint::Fill(*colour), clip: None }]
+                vec![Self { steps, paint: Paint::Fill(*colour), clip: None, words: None }]
             }
             FigureItem::Dot { at: centre, radius, colour } => {
-                vec![Self { steps: circle(at(*centre), *radius), paint: Paint::Fill(*colour), clip: None }]
+                vec![Self { steps: circle(at(*centre), *radius), paint: Paint::Fill(*colour), clip: None, words: None }]
             }
             FigureItem::Text { at: place, anchor, words } => super::glyphs::text(words, at(*place), *anchor),
         }

@@ -2,26 +2,43 @@
 
 use std::fmt::Write as _;
 
+use flate2::Crc;
+
 use super::page::Page;
-use super::shape::{Paint, PathStep, Shape};
+use super::shape::{Paint, PathStep, ShapeWords};
 use crate::report::markup::escaped;
 use crate::scene::Rgba;
 use stillbase_settings::number::fixed;
 
-/// Returns the text of the SVG file.
+/// Returns the text of the SVG file. Letters are outlines with their words as labels, so no font is needed.
 pub fn svg(page: &Page) -> String {
+    format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{}", written(page, &label))
+}
+
+/// Returns the element of a drawing within a page of the web. Its words lie over their outlines as text without a
+/// colour, so that they can be found and copied.
+pub fn svg_element(page: &Page) -> String {
+    written(page, &unseen_text)
+}
+
+/// Writes a page; `worded` returns the attributes of the outline of words, and what follows it.
+fn written(page: &Page, worded: &dyn Fn(&ShapeWords) -> (String, String)) -> String {
     let [width, height] = page.size;
     let mm = |points: f32| n(points * page.point_mm);
-    let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+    let mut text = String::new();
     let _ = writeln!(
         text,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {} {}\" role=\"img\">",
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {} {}\" \
+         role=\"group\">",
         mm(width),
         mm(height),
         n(width),
         n(height)
     );
-    let _ = writeln!(text, "<title>{}</title>\n<desc>{}</desc>", escaped(&page.title), escaped(&page.made));
+    let _ = writeln!(text, "<title>{}</title>", escaped(&page.title));
+    if !page.made.is_empty() {
+        let _ = writeln!(text, "<desc>{}</desc>", escaped(&page.made));
+    }
     let shapes = page.shapes();
     let mut clips: Vec<[f32; 4]> = Vec::new();
     for clip in shapes.iter().filter_map(|shape| shape.clip) {
@@ -29,19 +46,42 @@ pub fn svg(page: &Page) -> String {
             clips.push(clip);
         }
     }
+    let paths: Vec<String> = shapes.iter().map(|shape| path(&shape.steps)).collect();
+    // Names of one drawing differ from those of others, with which it may stand in one page.
+    let mut sum = Crc::new();
+    [&page.title].into_iter().chain(&paths).for_each(|text| sum.update(text.as_bytes()));
+    let name = |i: usize| format!("axes-{:08x}-{}", sum.sum(), i + 1);
     for (i, [left, top, right, bottom]) in clips.iter().enumerate() {
         let [x, y, w, h] = [*left, *top, right - left, bottom - top].map(n);
-        let _ = writeln!(
-            text,
-            "<clipPath id=\"axes-{}\"><rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\"/></clipPath>",
-            i + 1
-        );
+        let rect = format!("<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\"/>");
+        let _ = writeln!(text, "<clipPath id=\"{}\">{rect}</clipPath>", name(i));
     }
-    for shape in &shapes {
+    for (shape, path) in shapes.iter().zip(&paths) {
         let clip = shape.clip.and_then(|clip| clips.iter().position(|known| *known == clip));
-        let _ = writeln!(text, "{}", element(shape, clip));
+        let clip = clip.map_or_else(String::new, |i| format!(" clip-path=\"url(#{})\"", name(i)));
+        let (named, after) = shape.words.as_ref().map(worded).unwrap_or_default();
+        let _ = writeln!(text, "<path d=\"{path}\"{}{clip}{named}/>{after}", paint(shape.paint));
     }
     text + "</svg>\n"
+}
+
+/// Returns the words as a label of their outline.
+fn label(words: &ShapeWords) -> (String, String) {
+    (format!(" role=\"img\" aria-label=\"{}\"", escaped(words.text.trim())), String::new())
+}
+
+/// Returns the words as text without a colour over their outline.
+fn unseen_text(words: &ShapeWords) -> (String, String) {
+    let ShapeWords { text, at, size, width } = words;
+    let [x, y] = at.map(|x| short(x, 2));
+    let text = format!(
+        "<text x=\"{x}\" y=\"{y}\" font-size=\"{}\" textLength=\"{}\" lengthAdjust=\"spacingAndGlyphs\" \
+         fill=\"none\" xml:space=\"preserve\">{}</text>",
+        n(*size),
+        n(*width),
+        escaped(text)
+    );
+    (" aria-hidden=\"true\"".into(), text)
 }
 
 /// Writes a place in points with two decimals: to 4 µm.
@@ -61,9 +101,9 @@ fn short(x: f32, decimals: usize) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
 }
 
-fn element(shape: &Shape, clip: Option<usize>) -> String {
+fn path(steps: &[PathStep]) -> String {
     let mut path = String::new();
-    for step in &shape.steps {
+    for step in steps {
         let _ = match step {
             PathStep::Move(p) => write!(path, "M{}", place(*p)),
             PathStep::Line(p) => write!(path, "L{}", place(*p)),
@@ -71,7 +111,11 @@ fn element(shape: &Shape, clip: Option<usize>) -> String {
             PathStep::Close => write!(path, "Z"),
         };
     }
-    let paint = match shape.paint {
+    path
+}
+
+fn paint(paint: Paint) -> String {
+    match paint {
         Paint::Fill(colour) => tone("fill", colour),
         Paint::FillEvenOdd(colour) => format!("{} fill-rule=\"evenodd\"", tone("fill", colour)),
         Paint::Stroke { colour, width, dash } => {
@@ -82,9 +126,7 @@ fn element(shape: &Shape, clip: Option<usize>) -> String {
             let stroke = tone("stroke", colour);
             format!(" fill=\"none\"{stroke} stroke-width=\"{}\" stroke-linejoin=\"round\"{dash}", n(width))
         }
-    };
-    let clip = clip.map_or_else(String::new, |i| format!(" clip-path=\"url(#axes-{})\"", i + 1));
-    format!("<path d=\"{path}\"{paint}{clip}/>")
+    }
 }
 
 /// Returns the attributes of a colour; `what` is `fill` or `stroke`.

@@ -11,8 +11,8 @@ use std::fmt::Write as _;
 use markup::{base64, escaped};
 
 use super::charts::figure::Figure;
-use super::charts::svg::svg_element;
 use super::notation::Notation;
+use super::print::{Page, svg_element};
 use stillbase_session::Run;
 use stillbase_simulation::frame::Frame;
 use stillbase_study::comparison::Comparison;
@@ -90,14 +90,11 @@ impl Report<'_> {
     }
 
     fn figures_html(&self) -> String {
-        let figures = self.figures.iter().enumerate();
-        let legend = self.legend.map(|legend| svg_element(legend, "legend"));
+        let element = |figure: &Figure| svg_element(&Page::of_web(figure.clone()));
+        let legend = self.legend.map(element);
         let legend = legend.map_or_else(String::new, |legend| format!("<div class=\"legend\">{legend}</div>\n"));
         legend
-            + &row_of(
-                "row small",
-                figures.map(|(i, figure)| format!("<figure>{}</figure>\n", svg_element(figure, &format!("axes-{i}")))),
-            )
+            + &row_of("row small", self.figures.iter().map(|figure| format!("<figure>{}</figure>\n", element(figure))))
     }
 
     fn repeat(&self) -> String {

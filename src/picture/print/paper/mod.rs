@@ -25,35 +25,40 @@ pub struct PrintedFigure {
     pub numbers: NumberTable,
 }
 
+/// A part of a page.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PrintPart {
+    /// Curves, whose axes have this height, points.
+    Plot(PrintPlot, f32),
+    /// A drawing, which is scaled to the width of the page.
+    Drawing(Figure),
+}
+
 impl PrintedFigure {
-    /// Returns plots one below the other, of a width and with axes of these heights, points; `made` is the command that
-    /// writes them.
-    pub fn of(title: &str, made: &str, width: f32, plots: &[(PrintPlot, f32)]) -> Self {
-        let figures = plots.iter().map(|(plot, height)| plot.figure([width, *height]));
+    /// Returns parts one below the other, of a width in points; `made` is the command that writes them.
+    pub fn of(title: &str, made: &str, width: f32, parts: Vec<PrintPart>) -> Self {
+        let (mut figures, mut plots) = (Vec::new(), Vec::new());
+        for part in parts {
+            match part {
+                PrintPart::Plot(plot, height) => {
+                    figures.push(plot.figure([width, height]));
+                    plots.push(plot);
+                }
+                PrintPart::Drawing(figure) => {
+                    let by = width / figure.size[0];
+                    figures.push(figure.scaled(by));
+                }
+            }
+        }
         let page = Page::stacked(title.into(), format!("Made by: {made}"), figures);
         let about = [page.title.clone(), page.made.clone()];
-        let plots: Vec<PrintPlot> = plots.iter().map(|(plot, _)| plot.clone()).collect();
         Self { numbers: curves_table(&about, &plots), page }
     }
 }
 
-impl PrintedFigure {
-    /// Adds a figure above the others, scaled to a width, points.
-    pub fn add_on_top(&mut self, figure: Figure, width: f32) {
-        let [own_width, height] = figure.size;
-        let figure = figure.scaled(width / own_width);
-        let down = height * width / own_width;
-        for ([_, y], _) in &mut self.page.figures {
-            *y += down;
-        }
-        self.page.size = [self.page.size[0].max(width), self.page.size[1] + down];
-        self.page.figures.insert(0, ([0.0; 2], figure));
-    }
-}
-
 /// Returns Fig. 3: q_1 against the pose constants b of points, which have names, with the b of all of them shaded.
-pub fn which_b(points: &[(String, Vector)], curves: &PoseCurves) -> PrintPlot {
-    let p = palette(Theme::Light);
+pub fn which_b(theme: Theme, points: &[(String, Vector)], curves: &PoseCurves) -> PrintPlot {
+    let p = palette(theme);
     let mut all = Vec::new();
     for (i, ((name, at), branches)) in points.iter().zip(&curves.of_points).enumerate() {
         let (width, dash) = pen(i);
@@ -68,6 +73,7 @@ pub fn which_b(points: &[(String, Vector)], curves: &PoseCurves) -> PrintPlot {
         }
     }
     PrintPlot {
+        theme,
         name: "poses".into(),
         head: String::new(),
         axes: ["pose constant b (rad)", "angle of drive 1, q₁ (rad)"].map(String::from),
@@ -86,8 +92,8 @@ fn named_band([from, to]: [f64; 2], curves: &[PrintCurve]) -> PrintWords {
 }
 
 /// Returns Fig. 4: the reactionless workspaces of several b, rad.
-pub fn workspaces(all: &[(f64, WorkspaceReport)]) -> PrintPlot {
-    let p = palette(Theme::Light);
+pub fn workspaces(theme: Theme, all: &[(f64, WorkspaceReport)]) -> PrintPlot {
+    let p = palette(theme);
     let mut curves = Vec::new();
     let words = vec![PrintWords { at: [0.0; 2], text: "base".into(), dot: true }];
     for (i, (b, report)) in all.iter().enumerate() {
@@ -106,6 +112,7 @@ pub fn workspaces(all: &[(f64, WorkspaceReport)]) -> PrintPlot {
         }
     }
     PrintPlot {
+        theme,
         name: "workspaces".into(),
         head: String::new(),
         axes: ["x (m)", "y (m)"].map(String::from),

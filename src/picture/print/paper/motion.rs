@@ -15,23 +15,30 @@ use stillbase_study::samples::SignalSamples;
 const POSES: usize = 9;
 
 /// Returns the signals of a chart over the time of a run, in SI units.
-pub fn chart_plot(chart: &Chart, signals: &[Signal], frames: &Sequence<Frame>) -> PrintPlot {
+pub fn chart_plot(theme: Theme, chart: &Chart, signals: &[Signal], frames: &Sequence<Frame>) -> PrintPlot {
     let own: Vec<Signal> = signals.iter().filter(|signal| chart.contains(signal)).cloned().collect();
     let name = chart.signals.first().map_or("", |path| group_of(path));
     let unit = chart.si_unit();
     let axis = if unit.is_empty() { chart.title.to_owned() } else { format!("{} ({unit})", chart.title) };
-    over_time(name, axis, chart.min_range / chart.scale, &own, frames)
+    over_time(theme, name, axis, chart.min_range / chart.scale, &own, frames)
 }
 
 /// Returns torques and base moment over the time of a run.
-pub fn torque_plot(signals: &[Signal], frames: &Sequence<Frame>) -> PrintPlot {
+pub fn torque_plot(theme: Theme, signals: &[Signal], frames: &Sequence<Frame>) -> PrintPlot {
     let is_shown = |signal: &&Signal| signal.group() == "torque" || signal.path == "moment/total";
     let own: Vec<Signal> = signals.iter().filter(is_shown).cloned().collect();
-    over_time("torques", "torques and base moment (N m)".into(), 0.1, &own, frames)
+    over_time(theme, "torques", "torques and base moment (N m)".into(), 0.1, &own, frames)
 }
 
-fn over_time(name: &str, axis: String, least: f64, signals: &[Signal], frames: &Sequence<Frame>) -> PrintPlot {
-    let p = palette(Theme::Light);
+fn over_time(
+    theme: Theme,
+    name: &str,
+    axis: String,
+    least: f64,
+    signals: &[Signal],
+    frames: &Sequence<Frame>,
+) -> PrintPlot {
+    let p = palette(theme);
     let samples: SignalSamples = answer_sequence(&signals.to_vec(), frames);
     let mut others = 0;
     let curve = |(i, signal): (usize, &Signal)| {
@@ -49,6 +56,7 @@ fn over_time(name: &str, axis: String, least: f64, signals: &[Signal], frames: &
         PrintCurve { name: signal.symbol.clone(), points, colour, width, dash, fill: None, in_legend: true }
     };
     PrintPlot {
+        theme,
         name: name.into(),
         head: String::new(),
         axes: ["time (s)".into(), axis],
@@ -61,8 +69,8 @@ fn over_time(name: &str, axis: String, least: f64, signals: &[Signal], frames: &
 }
 
 /// Returns poses of the links up to the end effector at equal intervals of a run, from light to dark, and its path.
-pub fn snapshots_plot(run: &Run, linkage: &LinkageModel, frames: &Sequence<Frame>) -> PrintPlot {
-    let p = palette(Theme::Light);
+pub fn snapshots_plot(theme: Theme, run: &Run, linkage: &LinkageModel, frames: &Sequence<Frame>) -> PrintPlot {
+    let p = palette(theme);
     let last = frames.len().saturating_sub(1);
     let mut curves = Vec::new();
     let mut previous = None;
@@ -101,6 +109,7 @@ pub fn snapshots_plot(run: &Run, linkage: &LinkageModel, frames: &Sequence<Frame
         dot: true,
     });
     PrintPlot {
+        theme,
         name: "snapshots".into(),
         head: String::new(),
         axes: ["x (m)", "y (m)"].map(String::from),

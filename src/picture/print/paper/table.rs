@@ -2,6 +2,7 @@
 
 use super::PrintedFigure;
 use crate::charts::figure::{Axes, Figure, FigureItem, FigureText};
+use crate::print::glyphs;
 use crate::print::numbers::NumberTable;
 use crate::print::page::Page;
 use crate::scene::palette::{Theme, palette};
@@ -21,6 +22,9 @@ pub struct TableColumn {
 /// Sizes, points.
 const TYPE: f32 = 7.5;
 const ROW: f32 = 10.5;
+/// Least gap between columns, and distance from the sides of the page.
+const GAP: f32 = 9.0;
+const SIDE: f32 = 4.0;
 
 /// A row of cells; a line is drawn above it if it begins a part.
 struct Row {
@@ -33,7 +37,13 @@ struct Row {
 ///
 /// # Errors
 /// If there is no machine, or their links differ in number.
-pub fn parameters(title: &str, made: &str, columns: &[TableColumn], width: f32) -> Result<PrintedFigure, String> {
+pub fn parameters(
+    theme: Theme,
+    title: &str,
+    made: &str,
+    columns: &[TableColumn],
+    width: f32,
+) -> Result<PrintedFigure, String> {
     let Some(first) = columns.first() else { return Err("want a machine".into()) };
     let machine = &first.machine;
     if columns.iter().any(|column| column.machine.links().len() != machine.links().len()) {
@@ -65,11 +75,11 @@ pub fn parameters(title: &str, made: &str, columns: &[TableColumn], width: f32) 
         rows.push(Row { cells: [name.clone()].into_iter().chain(numbers).collect(), begins: i == 0, bold: false });
     }
     for (i, (name, unit, values)) in residuals.iter().enumerate() {
-        let values = values.iter().map(|x| format!("{x:.1e}").replace('-', "−"));
+        let values = values.iter().map(|x| if *x == 0.0 { "0".into() } else { format!("{x:.1e}").replace('-', "−") });
         let blank = [format!("{name} ({unit})"), String::new(), String::new(), String::new()];
         rows.push(Row { cells: blank.into_iter().chain(values).collect(), begins: i == 0, bold: false });
     }
-    let figure = drawn(&rows, width);
+    let figure = drawn(theme, &rows, width);
     let page = Page::stacked(title.into(), format!("Made by: {made}"), [figure]);
     let number = |x: &f64| (x + 0.0).to_string();
     let mut table = NumberTable { about: vec![page.title.clone(), page.made.clone()], head, rows: Vec::new() };
@@ -102,13 +112,33 @@ fn residuals(columns: &[TableColumn]) -> Vec<(String, &'static str, Vec<f64>)> {
     force.chain(moment).collect()
 }
 
-fn drawn(rows: &[Row], width: f32) -> Figure {
-    let p = palette(Theme::Light);
+fn drawn(theme: Theme, rows: &[Row], width: f32) -> Figure {
     let columns = rows.iter().map(|row| row.cells.len()).max().unwrap_or(1);
-    let (left, right) = (4.0, width - 4.0);
-    // The first column takes what the numbers leave.
-    let step = (right - left) * 0.82 / (columns.max(2) - 1) as f32;
-    let end = |c: usize| right - step * (columns - 1 - c) as f32;
+    let wide = |row: &Row, c: usize| row.cells.get(c).map_or(0.0, |cell| glyphs::width(cell, TYPE, row.bold));
+    // The first cell of a row may reach over empty ones.
+    let is_short = |row: &Row, c: usize| c > 0 || row.cells.get(1).is_some_and(|next| !next.is_empty());
+    let widest =
+        |c: usize| rows.iter().filter(|row| is_short(row, c)).fold(0.0_f32, |most, row| most.max(wide(row, c)));
+    let widths: Vec<f32> = (0..columns).map(widest).collect();
+    let long = rows.iter().map(|row| {
+        let empty = row.cells.iter().skip(1).take_while(|cell| cell.is_empty()).count();
+        let after: f32 = widths[(1 + empty).min(columns)..].iter().sum();
+        let gaps = columns - 1 - empty.min(columns - 1);
+        wide(row, 0) + after + GAP * gaps as f32
+    });
+    let least = widths.iter().sum::<f32>() + GAP * (columns - 1) as f32;
+    let own = long.fold(least, f32::max) + 2.0 * SIDE;
+    // Where the page is too narrow, the type is smaller.
+    let figure = drawn_at(theme, rows, &widths, own.max(width));
+    if own > width { figure.scaled(width / own) } else { figure }
+}
+
+/// Draws the rows in columns that are at least this wide, with equal gaps.
+fn drawn_at(theme: Theme, rows: &[Row], widths: &[f32], width: f32) -> Figure {
+    let p = palette(theme);
+    let (left, right) = (SIDE, width - SIDE);
+    let gap = (right - left - widths.iter().sum::<f32>()) / (widths.len().max(2) - 1) as f32;
+    let end = |c: usize| left + widths[..=c].iter().sum::<f32>() + gap * c as f32;
     let rule = |y: f32, width: f32| FigureItem::Line {
         points: vec![[left, y], [right, y]],
         width,
@@ -132,5 +162,5 @@ fn drawn(rows: &[Row], width: f32) -> Figure {
     y += 2.0;
     items.push(rule(y, 0.8));
     let axes = Axes { sides: [0.0, 0.0, width, y + 5.0], x: [0.0, 1.0], y: [0.0, 1.0] };
-    Figure { size: [width, y + 5.0], background: p.background, axes, items }
+    Figure { title: "parameters".into(), size: [width, y + 5.0], background: p.background, axes, items }
 }
