@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_session::scenario::Scenario;
 use stillbase_study::comparison::{
-    ComparisonRow, ComparisonTable, DESIGN_COLUMNS, SUMMARY_COLUMNS, Summary, alternatives,
+    ComparisonRow, ComparisonTable, DESIGN_COLUMNS, OLD_NAMES, SUMMARY_COLUMNS, Summary, alternatives,
 };
 
 use super::exit::print_message;
@@ -17,7 +17,6 @@ use super::output::{Format, TextTable};
 use super::rows::Rows;
 use super::strict::{Strict, run_faults};
 use stillbase_settings::number::{fixed, nine_digits};
-use stillbase_settings::text::sheet_cell;
 
 /// Compare runs of one task done in several ways, or of several scenarios, by base reactions and cost
 ///
@@ -129,18 +128,23 @@ impl CompareArguments {
         let heads = SUMMARY_COLUMNS.iter().map(|c| format!("{} {}", c.key, c.unit));
         let machines =
             DESIGN_COLUMNS.iter().map(|c| if c.unit == "1" { c.key.into() } else { format!("{} {}", c.key, c.unit) });
-        let heads: Vec<String> = heads.chain(machines).collect();
+        // Older names stay at the end, until version 0.3.
+        let known = |name: &str| SUMMARY_COLUMNS.iter().find(|column| column.key == name);
+        let old: Vec<_> = OLD_NAMES.iter().filter_map(|(name, old)| Some((known(name)?, *old))).collect();
+        let old_heads = old.iter().map(|(column, old)| format!("{old} {}", column.unit));
+        let heads: Vec<String> = heads.chain(machines).chain(old_heads).collect();
         let mut rows =
             Rows::begin_with(Some(file), self.force, ("run", &["scenario", "reactionless", "refused"]), &heads)?;
         for row in runs {
             let values = SUMMARY_COLUMNS.iter().map(|c| (c.value)(row.outcome.as_ref().ok()?));
             let machine = DESIGN_COLUMNS.iter().map(|c| (c.value)(row.design.as_ref()?));
-            let values = values.chain(machine).map(|value| value.map(nine));
+            let old = old.iter().map(|(column, _)| (column.value)(row.outcome.as_ref().ok()?));
+            let values = values.chain(machine).chain(old).map(|value| value.map(nine));
             let (verdict, why) = match &row.outcome {
                 Ok(summary) => (summary.verdict.answer(), ""),
                 Err(why) => (String::new(), why.as_str()),
             };
-            rows.named_row(&[&sheet_cell(&row.name), &verdict, &sheet_cell(why)], values)?;
+            rows.named_row(&[&row.name, &verdict, why], values)?;
         }
         rows.finish()
     }
@@ -174,10 +178,13 @@ fn designs(rows: &[ComparisonRow]) -> String {
 fn table(rows: &[ComparisonRow]) -> String {
     let good: Vec<&Summary> = rows.iter().filter_map(|r| r.outcome.as_ref().ok()).collect();
     let moves = good.iter().any(|s| s.base_shift > 0.0 || s.base_tilt > 0.0);
+    // Without a wheel the base feels all of the moment.
+    let has_wheel = good.iter().any(|s| s.wheel_rate.is_some());
     let columns: Vec<_> = SUMMARY_COLUMNS
         .iter()
         .filter(|c| moves || !matches!(c.key, "base_shift" | "base_angle"))
         .filter(|c| good.iter().any(|s| (c.value)(s).is_some()))
+        .filter(|c| has_wheel || c.key != "peak_base_moment")
         .collect();
     let heads = columns.iter().map(|c| format!("{} {}", c.head, c.unit));
     let mut table = TextTable::new(["run".to_owned()].into_iter().chain(heads).chain(["reactionless".into()]));

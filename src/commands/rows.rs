@@ -4,7 +4,7 @@ use std::io::{self, StdoutLock};
 use std::path::{Path, PathBuf};
 
 use stillbase_files::row_file::RowFile;
-use stillbase_settings::text::plain;
+use stillbase_settings::text::{plain, sheet_cell};
 
 use super::exit::print_message;
 use super::failure::Failure;
@@ -75,7 +75,10 @@ impl Rows {
         self.row.extend(values.into_iter().map(|x| x.into().map(|x| x + 0.0)));
         match &mut self.sink {
             Sink::File(file, _) => Ok(file.named_row(texts, &self.row)?),
-            Sink::Standard(writer) => writer.serialize((texts, &self.row)).map_err(failure),
+            Sink::Standard(writer) => {
+                let texts: Vec<_> = texts.iter().map(|text| sheet_cell(text)).collect();
+                writer.serialize((texts, &self.row)).map_err(failure)
+            }
         }
     }
 

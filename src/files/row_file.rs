@@ -7,6 +7,7 @@ use parquet::errors::ParquetError;
 
 use super::parquet_rows::{ParquetHead, ParquetRows};
 use super::{NewFile, WriteError};
+use stillbase_settings::text::sheet_cell;
 
 /// File name extensions of rows of numbers.
 pub const ROW_ENDINGS: [&str; 2] = ["csv", "parquet"];
@@ -95,6 +96,7 @@ impl RowFile {
         match &mut self.out {
             Out::Csv(writer) => {
                 let row = values.iter().map(|x| x.map(|x| x + 0.0));
+                let texts: Vec<_> = texts.iter().map(|text| sheet_cell(text)).collect();
                 let done = writer.serialize((texts, row.collect::<Vec<_>>()));
                 done.map_err(|e| csv_error(&self.file, e))
             }

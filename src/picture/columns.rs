@@ -36,7 +36,7 @@ impl RunColumn {
                 [["peak moment felt", "peak n felt"], ["largest moment on the base, past a wheel"; 2]]
             }
             "rms_felt_moment" => [["RMS moment felt", "rms n felt"], ["its root mean square"; 2]],
-            "moment_impulse" => [["moment felt, impulse", "∫|n felt|dt"], ["its impulse"; 2]],
+            "felt_moment_impulse" => [["moment felt, impulse", "∫|n felt|dt"], ["its impulse"; 2]],
             _ => return of,
         };
         let named = usize::from(notation.names == NameOrder::Symbols);
@@ -49,9 +49,13 @@ impl RunColumn {
         let runs = || comparison.entries().iter().filter_map(|entry| Some(&entry.outcome.as_ref().ok()?.summary));
         let moves = runs().any(|run| run.base_shift > 0.0 || run.base_tilt > 0.0);
         let has_value = |column: &SummaryColumn| runs().any(|run| (column.value)(run).is_some());
-        let is_shown = |column: &SummaryColumn| has_value(column) && (moves || !OF_MOVING_BASE.contains(&column.key));
-        // Beside the moment of the arm, that on the base is called what it is: what passes the wheel.
-        let has_wheel = runs().any(|run| run.peak_arm_moment.is_some());
+        // Beside the moment of the arm, that on the base is called what it is: what passes the wheel. Without a wheel both
+        // are the same.
+        let has_wheel = runs().any(|run| run.wheel_rate.is_some());
+        let is_shown = |column: &SummaryColumn| {
+            let is_of_these = moves || !OF_MOVING_BASE.contains(&column.key);
+            has_value(column) && is_of_these && (has_wheel || column.key != "peak_base_moment")
+        };
         let of_runs = SUMMARY_COLUMNS.iter().enumerate().filter(|(_, column)| is_shown(column));
         let of_runs = of_runs.map(|(at, column)| Self::past_wheel(at, column, notation, has_wheel));
         let designs = if comparison.has_designs() { &DESIGN_COLUMNS[..] } else { &[] };

@@ -79,7 +79,7 @@ fn the_wheel_says_when_it_saturates() {
     let small_run = run_of(&small, Alternative::Wheel).summary;
     assert!(!small_run.reactionless && small_run.saturated_at.is_some_and(|t| t > 0.0 && t < 0.5));
     // What the arm transmits is told beside what is left.
-    assert!(ample.peak_moment < 1e-9 && ample.peak_arm_moment.is_some_and(|n| n > 1.0));
+    assert!(ample.peak_moment < 1e-9 && ample.peak_arm_moment > 1.0);
     // The others go without it.
     assert!(run_of(&small, Alternative::StraightLine).summary.wheel_rate.is_none());
 }

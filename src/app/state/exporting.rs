@@ -112,9 +112,14 @@ impl AppState {
         plots::figures(&what, times, size, &palette(theme))
     }
 
-    /// Simulates the run to its end and shows that instant; returns its time, s.
+    /// Simulates the run to its end, that of its motion or of the duration that the scenario states, whichever is later.
+    /// Shows that instant; returns its time, s.
     pub fn run_to_end(&mut self) -> f64 {
         self.carry_out(SessionCommand::Seek(self.session.length()));
+        let left = self.session.run().last_step().saturating_sub(self.session.frame().step);
+        if left > 0 {
+            self.carry_out(SessionCommand::Step(i64::try_from(left).unwrap_or(i64::MAX)));
+        }
         self.session.frame().time
     }
 }

@@ -12,7 +12,8 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("rms_base_moment", "N m", "Root mean square of the moment n_B of the arm."),
     row("peak_felt_moment", "N m", "Largest moment that the base feels: n_B less the torque of a reaction wheel."),
     row("rms_felt_moment", "N m", "Root mean square of the moment that the base feels past a reaction wheel."),
-    row("moment_impulse", "N m s", "Impulse of the moment on the base, ∫ |n| dt."),
+    row("moment_impulse", "N m s", "Impulse of the moment on the base, ∫ |n_B| dt."),
+    row("felt_moment_impulse", "N m s", "Impulse of the moment that the base feels, past a reaction wheel, ∫ |n| dt."),
     row("force_impulse", "N s", "Impulse of the dynamic force on the base, ∫ |f_B| dt."),
     row("peak_tilt", "N m", "Largest moment that tilts the base about an axis in its plane."),
     row("base_shift", "m", "Largest displacement of the base from its place at the start."),
@@ -121,5 +122,6 @@ pub(super) const ROWS: &[ResultRow] = &[
     old("runs.peak_moment", "N m", "peak_felt_moment"),
     old("runs.rms_moment", "N m", "rms_felt_moment"),
     old("runs.peak_arm_moment", "N m", "peak_base_moment"),
+    old("runs.moment_impulse", "N m s", "felt_moment_impulse"),
     old("runs.audit", "", "audit_failed"),
 ];

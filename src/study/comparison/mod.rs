@@ -12,7 +12,7 @@ pub use design::{DESIGN_COLUMNS, DesignCandidate, DesignMeasures};
 pub use difference::SignalDifference;
 pub use entries::{AlternativeRuns, Comparison, ComparisonEntry, ComparisonOutcome, RefusedRun};
 pub use row::{BaselineMachines, ComparisonRow, ComparisonTable};
-pub use summary::{SUMMARY_COLUMNS, Summary, SummaryColumn};
+pub use summary::{OLD_NAMES, SUMMARY_COLUMNS, Summary, SummaryColumn};
 
 use stillbase_mechanics::machine::Machine;
 use stillbase_query::Sequence;

@@ -19,8 +19,8 @@ pub struct Summary {
     pub rms_force: f64,
     /// ∫ |f_B| dt, N s.
     pub force_impulse: f64,
-    /// Largest |n_B| that the arm transmits, N m; only if the base has a reaction wheel.
-    pub peak_arm_moment: Option<f64>,
+    /// Largest |n_B| that the arm transmits, before a reaction wheel, N m.
+    pub peak_arm_moment: f64,
     /// Largest |moment| on the base, after the reaction wheel, N m.
     pub peak_moment: f64,
     /// Root mean square of the moment on the base, N m.
@@ -77,7 +77,9 @@ pub const SUMMARY_COLUMNS: [SummaryColumn; 15] = [
         Some(s.peak_moment)
     }),
     column(["rms_felt_moment", "RMS moment", "rms n", "its root mean square"], "N m", 4, 10, |s| Some(s.rms_moment)),
-    column(["moment_impulse", "moment impulse", "∫|n|dt", "its impulse"], "N m s", 4, 8, |s| Some(s.moment_impulse)),
+    column(["felt_moment_impulse", "moment impulse", "∫|n|dt", "its impulse"], "N m s", 4, 8, |s| {
+        Some(s.moment_impulse)
+    }),
     column(["peak_base_force", "peak force", "peak f", "largest force on the base, from motion"], "N", 4, 23, |s| {
         Some(s.peak_force)
     }),
@@ -105,15 +107,16 @@ pub const SUMMARY_COLUMNS: [SummaryColumn; 15] = [
         "N m",
         4,
         13,
-        |s| s.peak_arm_moment,
+        |s| Some(s.peak_arm_moment),
     ),
 ];
 
-/// Results that JSON still has under an older name, until version 0.3: the name, and the older one.
-pub(super) const OLD_NAMES: [(&str, &str); 7] = [
+/// Results that JSON and tables still have under an older name, until version 0.3: the name, and the older one.
+pub const OLD_NAMES: [(&str, &str); 8] = [
     ("duration", "time"),
     ("peak_felt_moment", "peak_moment"),
     ("rms_felt_moment", "rms_moment"),
+    ("felt_moment_impulse", "moment_impulse"),
     ("peak_base_force", "peak_force"),
     ("rms_base_force", "rms_force"),
     ("base_angle", "base_tilt"),
@@ -141,7 +144,7 @@ impl Summary {
             peak_force: peaks.force,
             rms_force: totals.force_rms(),
             force_impulse: totals.force_impulse,
-            peak_arm_moment: verdict.past_wheel.map(|_| verdict.arm_moment),
+            peak_arm_moment: verdict.arm_moment,
             peak_moment: peaks.moment,
             rms_moment: totals.moment_rms(),
             moment_impulse: totals.moment_impulse,
