@@ -118,7 +118,7 @@ fn parquet_of_others_is_read() {
         assert_eq!((torque[0], torque[1].is_nan(), torque[2], torque[5]), (1.5, true, 2.5, 2.5));
         assert_eq!(values("moment")[..3], [0.25, 0.5, 0.75]);
         assert_eq!((values("count")[2], values("count")[3]), (-3.0, 3.0));
-        assert_eq!(values("big")[..3], [9.223372036854775807e18, 1.8446744073709551615e19, 0.0], "without a sign");
+        assert_eq!(values("big")[..3], [i64::MAX as f64, u64::MAX as f64, 0.0], "without a sign");
         assert_eq!(values("held")[..3], [1.0, 0.0, 1.0]);
     }
 }

@@ -52,6 +52,8 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("export-model.centre of mass", "m", "Place of the centre of mass along the link.").frame(LINK),
     row("export-model.left of axis", "m", "Distance of the centre of mass from the axis.").sign("to the left"),
     row("export-model.root pinned to", "", "What the root of the link is pinned to."),
+    row("export-model.connects", "", "The links that a pin connects."),
+    row("export-model.pin diameter", "m", "Diameter of the pin."),
     row("export-model.height", "m", "Height of its middle above the middle of layer 0."),
     row("export-model.on link", "", "The link that carries it."),
     row("export-model.material", "", "Material."),
