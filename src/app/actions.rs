@@ -4,7 +4,7 @@
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::command::CameraMove;
-use super::export::Export;
+use super::export::{Export, PictureForm};
 use super::sketching::fields;
 use super::theme::other;
 use super::{
@@ -389,9 +389,9 @@ pub const ACTIONS: &[Action] = actions![
     Export, "Values of the first plot as CSV" = "export table data numbers spreadsheet excel signals save", [],
         "menu of a plot", |s, v| plot_file(s, v, PlotFile::Csv);
     Export, "Picture of the first plot as PNG" = "image export screenshot figure save", [], "menu of a plot",
-        |s, v| plot_file(s, v, PlotFile::Png);
+        |s, v| plot_file(s, v, PlotFile::Picture(PictureForm::Png));
     Export, "Drawing of the first plot as SVG" = "picture image vector export figure save", [], "menu of a plot",
-        |s, v| plot_file(s, v, PlotFile::Svg);
+        |s, v| plot_file(s, v, PlotFile::Picture(PictureForm::Svg));
     Export, "Picture of the scene or the whole window: PNG, WebP, SVG or PDF" = "image export screenshot snapshot figure save transparent outlines vector print", [on(CTRL, Key::E)], "top bar, File", |_, v| {
         export(Export::picture(v.arrangement.theme))
     };

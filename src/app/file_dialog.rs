@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::export::Export;
+use super::export::{Export, PictureForm};
 use stillbase_exchange::form;
 use stillbase_session::Session;
 
@@ -37,22 +37,33 @@ pub enum FilePurpose {
 pub enum PlotFile {
     /// The samples within the time range on display.
     Csv,
-    /// A vector drawing.
-    Svg,
-    /// A raster picture.
-    Png,
+    /// A picture.
+    Picture(PictureForm),
 }
 
 impl PlotFile {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Csv, Self::Svg, Self::Png];
+    pub const ALL: [Self; 5] = [
+        Self::Csv,
+        Self::Picture(PictureForm::Svg),
+        Self::Picture(PictureForm::Pdf),
+        Self::Picture(PictureForm::Png),
+        Self::Picture(PictureForm::Webp),
+    ];
 
     /// Returns its name.
     pub fn words(self) -> &'static str {
         match self {
             Self::Csv => "CSV",
-            Self::Svg => "SVG",
-            Self::Png => "PNG",
+            Self::Picture(form) => form.words()[0],
+        }
+    }
+
+    /// Returns the file name extension.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Picture(form) => form.ending(),
         }
     }
 }
@@ -67,8 +78,15 @@ impl FilePurpose {
             Self::Export(wanted) => [wanted.title(), "Save", wanted.example()],
             Self::Machine => ["Take the machine along", "Save", "machine.urdf"],
             Self::Plot(_, PlotFile::Csv) => ["Save the values of the time shown", "Save", "plot.csv"],
-            Self::Plot(_, PlotFile::Svg) => ["Save the plot as a drawing", "Save", "plot.svg"],
-            Self::Plot(_, PlotFile::Png) => ["Save the plot as a picture", "Save", "plot.png"],
+            Self::Plot(_, PlotFile::Picture(form)) => {
+                let example = match form {
+                    PictureForm::Png => "plot.png",
+                    PictureForm::Webp => "plot.webp",
+                    PictureForm::Svg => "plot.svg",
+                    PictureForm::Pdf => "plot.pdf",
+                };
+                ["Save the plot as a picture", "Save", example]
+            }
         }
     }
 

@@ -3,6 +3,7 @@
 use egui::accesskit::Toggled;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, Pos2, TouchPhase, pos2, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use stillbase::app::export::PictureForm;
 use stillbase::app::{Command, Message, PlotFile, SessionCommand, ViewChange};
 use stillbase::picture::charts::choice::PlotChange;
 use stillbase::picture::scene::palette::Theme;
@@ -343,15 +344,20 @@ fn a_plot_is_written_to_files() {
     assert!(!bad && said.contains("plot.csv"), "{said}");
     assert_eq!(text.lines().count(), 102);
     assert!(text.starts_with("time s,torque/1 N m,torque/2 N m,torque/3 N m\n0.2,"), "{text}");
-    let (svg, _) = write(PlotFile::Svg, "plot.svg");
+    let (svg, _) = write(PlotFile::Picture(PictureForm::Svg), "plot.svg");
     assert!(String::from_utf8(svg).expect("UTF-8").contains("aria-label=\"Torque\""));
-    let (png, Message { text: said, is_problem: bad }) = write(PlotFile::Png, "plot.png");
+    let (png, Message { text: said, is_problem: bad }) = write(PlotFile::Picture(PictureForm::Png), "plot.png");
     assert!(!bad, "{said}");
     let picture = image::load_from_memory(&png).expect("a picture").to_rgba8();
     assert_eq!(picture.dimensions(), (1440, 640));
     // The title is there: bright on the panel's colour.
     let bright = picture.pixels().filter(|p| p.0[0] > 200 && p.0[1] > 200 && p.0[2] > 200).count();
     assert!(bright > 200, "{bright} bright pixels");
+    let (pdf, _) = write(PlotFile::Picture(PictureForm::Pdf), "plot.pdf");
+    assert!(pdf.starts_with(b"%PDF-1."));
+    let (webp, _) = write(PlotFile::Picture(PictureForm::Webp), "plot.webp");
+    let smaller = image_webp::WebPDecoder::new(std::io::Cursor::new(&webp)).expect("a WebP");
+    assert_eq!(smaller.dimensions(), (1440, 640));
     // What is there stays there.
     let (same, Message { text: said, is_problem: bad }) = write(PlotFile::Csv, "plot.svg");
     assert!(bad && said.contains("exists") && String::from_utf8(same).expect("UTF-8").starts_with("<?xml"), "{said}");

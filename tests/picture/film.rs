@@ -138,3 +138,50 @@ fn a_still_webp_holds_every_pixel() {
     let none = stillbase::picture::render::offscreen::Picture { width: 0, height: 4, rgba: Vec::new() };
     assert!(stillbase::picture::webp::still(&none).is_err(), "no pixels");
 }
+
+/// A picture with a square that moves to the right over nothing.
+fn clear_picture(i: u32) -> Picture {
+    let mut own = picture(i);
+    for pixel in own.rgba.chunks_exact_mut(4) {
+        pixel[3] = if pixel[0] == 240 { 255 } else { 0 };
+    }
+    own
+}
+
+/// What is transparent stays so in every format, and nothing of a picture stands in the next.
+#[test]
+fn a_film_may_be_transparent() {
+    let written = |format: FilmFormat| {
+        let mut bytes = Vec::new();
+        let mut film = Film::begin(&mut bytes, format, SIZE, COUNT, FPS).expect("a head");
+        (0..COUNT).for_each(|i| film.push(clear_picture(i)).expect("a picture"));
+        film.finish().expect("an end");
+        bytes
+    };
+    let alpha = |rgba: &[u8]| rgba.chunks_exact(4).map(|pixel| pixel[3]).collect::<Vec<_>>();
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::RGBA);
+    let bytes = written(FilmFormat::Gif);
+    let mut decoder = options.read_info(Cursor::new(&bytes)).expect("a GIF");
+    for i in 0..COUNT {
+        let frame = decoder.read_next_frame().expect("a GIF").expect("a picture");
+        assert_eq!(alpha(&frame.buffer), alpha(&clear_picture(i).rgba), "picture {i} of the GIF");
+        assert_eq!(frame.dispose, gif::DisposalMethod::Background, "it goes before the next comes");
+    }
+    let bytes = written(FilmFormat::Png);
+    let mut reader = png::Decoder::new(Cursor::new(&bytes)).read_info().expect("a PNG");
+    for i in 0..COUNT {
+        let mut rgba = vec![0; reader.output_buffer_size().expect("a size")];
+        reader.next_frame(&mut rgba).expect("a picture");
+        assert_eq!(rgba, clear_picture(i).rgba, "picture {i} of the PNG");
+        let control = reader.info().frame_control().expect("its control");
+        assert_eq!(control.blend_op, png::BlendOp::Source, "it replaces what was there");
+    }
+    let bytes = written(FilmFormat::Webp);
+    let mut decoder = image_webp::WebPDecoder::new(Cursor::new(&bytes)).expect("a WebP");
+    for i in 0..COUNT {
+        let mut rgba = vec![0; decoder.output_buffer_size().expect("a size")];
+        decoder.read_frame(&mut rgba).expect("a picture");
+        assert_eq!(alpha(&rgba), alpha(&clear_picture(i).rgba), "picture {i} of the WebP");
+    }
+}

@@ -513,6 +513,13 @@ fn wrong_figures_are_refused() {
         (&["figures", "window", "--width", "90"], "want --paper or --what"),
         (&["render", "case-3", "-o", "a.svg", "--view", "space"], "view from above"),
         (&["render", "case-3", "-o", "a.svg", "--view", "window"], "view from above"),
+        (&["render", "case-3", "-o", "a.pdf", "--view", "joints"], "view from above alone"),
+        (&["render", "case-3", "-o", "a.svg", "--film"], ".gif, .png, .webp or .mp4"),
+        (
+            &["render", "case-3", "-o", "a.mp4", "--film", "--transparent"],
+            "no transparency: want .gif, .png, .webp, or a folder",
+        ),
+        (&["render", "case-3", "-o", "a.gif", "--film", "--transparent", "--view", "window"], "no background"),
         (&["render", "case-3", "-o", "a.bmp"], ".png or .webp or .svg or .pdf"),
         (&["render", "case-3", "-o", "a.svg", "--plots", "--view", "window"], "own plots"),
     ] {

@@ -5,8 +5,6 @@ use std::path::Path;
 use super::{ExportError, PictureForm};
 use crate::AppState;
 use crate::shot::PictureOrder;
-use stillbase_picture::print::{pdf, svg};
-use stillbase_picture::webp;
 
 /// Draws the instant that `app_state` shows and writes it in the format of the file's ending, unless `goes_on` stops it
 /// before. Returns what to say of letters that the font lacks.
@@ -28,10 +26,9 @@ pub fn write_picture(
         let page = order.page(app_state);
         let page = page.map_err(|why| ExportError::NoOutlines { file: file.into(), why })?;
         note = page.note();
-        if form == PictureForm::Svg { svg(&page).into_bytes() } else { pdf(&page) }
+        form.of_page(&page)
     } else {
-        let picture = order.draw(&mut order.canvas()?, app_state)?;
-        if form == PictureForm::Webp { webp::still(&picture) } else { picture.to_png() }.map_err(failed)?
+        form.of_pixels(&order.draw(&mut order.canvas()?, app_state)?).map_err(failed)?
     };
     if !goes_on(1.0) {
         return Err(ExportError::Stopped);

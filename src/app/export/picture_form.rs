@@ -1,8 +1,14 @@
 //! [`PictureForm`]: the formats of a picture.
 
+use std::io;
 use std::path::Path;
 
 use super::ExportError;
+use stillbase_picture::canvas::Canvas;
+use stillbase_picture::charts::figure::Figure;
+use stillbase_picture::print::{Page, pdf, svg};
+use stillbase_picture::render::offscreen::Picture;
+use stillbase_picture::webp;
 
 /// Format of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,6 +50,33 @@ impl PictureForm {
     /// Whether it consists of outlines, not of pixels.
     pub fn has_outlines(self) -> bool {
         matches!(self, Self::Svg | Self::Pdf)
+    }
+
+    /// Returns the file of outlines.
+    pub(super) fn of_page(self, page: &Page) -> Vec<u8> {
+        if self == Self::Pdf { pdf(page) } else { svg(page).into_bytes() }
+    }
+
+    /// Returns the file of pixels.
+    ///
+    /// # Errors
+    /// If the format cannot hold the picture.
+    pub(super) fn of_pixels(self, picture: &Picture) -> io::Result<Vec<u8>> {
+        if self == Self::Webp { webp::still(picture) } else { picture.to_png() }
+    }
+
+    /// Returns the file of a figure, in pixels at twice its points.
+    ///
+    /// # Errors
+    /// If it cannot be drawn; the text says why.
+    pub(crate) fn of_figure(self, figure: Figure) -> Result<Vec<u8>, String> {
+        if self.has_outlines() {
+            return Ok(self.of_page(&Page::of_web(figure)));
+        }
+        let size = figure.size.map(|side| 2 * side.ceil() as u32);
+        let mut canvas = Canvas::new(size, 2.0).map_err(|why| why.to_string())?;
+        let picture = canvas.figures(&[([0.0; 2], figure)]).map_err(|why| why.to_string())?;
+        self.of_pixels(&picture).map_err(|why| format!("no picture: {why}"))
     }
 
     /// Returns the format of a file by its extension.

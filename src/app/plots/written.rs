@@ -3,12 +3,10 @@
 use super::prepared::{PlotPreparation, extent, laid_over, shown_signals};
 use super::shown::DisplayContext;
 use crate::PlotFile;
-use stillbase_picture::canvas::Canvas;
 use stillbase_picture::charts::choice::Plot;
 use stillbase_picture::charts::drawn::PlotLines;
 use stillbase_picture::charts::figure::{Figure, PlotContext};
 use stillbase_picture::charts::legend::run_names;
-use stillbase_picture::print::{Page, svg};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_query::{QuickWork, answer_sequence};
 use stillbase_simulation::signals::Signal;
@@ -43,8 +41,7 @@ pub fn written(what: &DisplayContext<'_>, name: &str, file: PlotFile) -> Result<
             let (signals, frames) = (columns(plot), session.frames().clone());
             Box::new(move || Ok(answer_sequence::<SignalSamples>(&signals, &frames).csv(range).into_bytes()))
         }
-        PlotFile::Svg => Box::new(move || Ok(svg(&Page::of_web(figure)).into_bytes())),
-        PlotFile::Png => Box::new(move || png(figure)),
+        PlotFile::Picture(form) => Box::new(move || form.of_figure(figure)),
     })
 }
 
@@ -68,10 +65,4 @@ pub fn figures(what: &DisplayContext<'_>, times: [f64; 2], size: [f32; 2], palet
 /// Returns the signals whose values a plot shows.
 pub fn columns(plot: &Plot<'_>) -> Vec<Signal> {
     plot.against.iter().chain(plot.shown()).map(|curve| curve.signal.clone()).collect()
-}
-
-fn png(figure: Figure) -> Result<Vec<u8>, String> {
-    let mut canvas = Canvas::new(figure.size.map(|side| 2 * side.ceil() as u32), 2.0).map_err(|why| why.to_string())?;
-    let picture = canvas.figures(&[([0.0; 2], figure)]).map_err(|why| why.to_string())?;
-    picture.to_png().map_err(|why| format!("no picture: {why}"))
 }

@@ -9,7 +9,7 @@ use winit::window::Window;
 
 use crate::file_dialog::MACHINE_EXTENSION;
 use crate::jobs::Threads;
-use crate::{AppState, FileDialog, FilePurpose, PlotFile, SessionCommand, ViewChange};
+use crate::{AppState, FileDialog, FilePurpose, SessionCommand, ViewChange};
 use stillbase_exchange::form;
 use stillbase_query::{Job, Poll};
 
@@ -85,9 +85,7 @@ fn endings(purpose: &FilePurpose) -> Vec<&'static str> {
         FilePurpose::Open => vec!["toml", "urdf", "xml", "csv", "rrd"],
         FilePurpose::Save => vec!["toml"],
         FilePurpose::Record => vec!["rrd"],
-        FilePurpose::Plot(_, PlotFile::Csv) => vec!["csv"],
-        FilePurpose::Plot(_, PlotFile::Svg) => vec!["svg"],
-        FilePurpose::Plot(_, PlotFile::Png) => vec!["png"],
+        FilePurpose::Plot(_, file) => vec![file.ending()],
         FilePurpose::Export(wanted) => wanted.naming().1,
         FilePurpose::Machine => {
             let mut endings = [&[MACHINE_EXTENSION], form::endings().as_slice()].concat();

@@ -1,12 +1,13 @@
 //! A plot as plain graphic items (lines, text and dots, coordinates in points). The window paints them, and picture
 //! files are written from them.
 
-use super::choice::Plot;
+use super::choice::{Plot, PlotCurve};
 use super::colour;
 use super::drawn::{PlotLine, PlotLines};
 use super::legend::{self, RunName};
 use super::limit_names;
 use crate::numbers::{at_step, round_ticks, ticks};
+use crate::print::glyphs;
 use crate::scene::Rgba;
 use crate::scene::palette::{Palette, faded};
 use crate::scene::thin::simplify_line;
@@ -361,10 +362,17 @@ impl Figure {
         let height = size[1] + named;
         let axes = Axes::within([12.0, 40.0 + named, width - 16.0, height - 12.0], drawn);
         let words = |text: String, bold, colour| FigureText { text, size: 13.0, bold, colour };
-        let head = vec![words(plot.heading(), true, p.ink), words(format!("  {}", plot.unit()), false, p.dim)];
-        let mut items = vec![FigureItem::Text { at: [16.0, 12.0], anchor: [0.0, 0.0], words: head }];
+        let mut head = vec![words(plot.heading(), true, p.ink), words(format!("  {}", plot.unit()), false, p.dim)];
         let curves = plot.curves.iter().enumerate().filter(|(_, curve)| curve.on);
-        let names = curves.map(|(i, c)| words(format!("  {}", c.signal.symbol), false, pen(plot, i, look).0)).collect();
+        let name = |(i, curve): (usize, &PlotCurve<'_>)| {
+            words(format!("  {}", curve.signal.symbol), false, pen(plot, i, look).0)
+        };
+        let mut names: Vec<FigureText> = curves.map(name).collect();
+        // In a narrow plot the type is smaller, so that title and symbols do not meet.
+        let wide = head.iter().chain(&names).map(|own| glyphs::width(&own.text, own.size, own.bold)).sum::<f32>();
+        let by = ((width - 32.0) / wide.max(1.0)).min(1.0);
+        head.iter_mut().chain(&mut names).for_each(|own| own.size *= by);
+        let mut items = vec![FigureItem::Text { at: [16.0, 12.0], anchor: [0.0, 0.0], words: head }];
         items.push(FigureItem::Text { at: [width - 16.0, 12.0], anchor: [1.0, 0.0], words: names });
         items.extend(legend::items(runs, [16.0, 34.0], width - 32.0, p));
         items.extend(body(plot, drawn, &axes, look));
