@@ -43,6 +43,7 @@
 mod blueprint;
 mod dashes;
 mod design;
+mod encoder;
 mod entity;
 mod events;
 mod eye;

@@ -9,14 +9,14 @@ use std::io::Write;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
 
+use crate::rerun::StoreId;
+use crate::rerun::{ArrowMsg, Chunk, ChunkBatch, ChunkError, ChunkId, LogMsg, RowId, TimeColumn};
 use crate::rerun::{AsComponents, EntityPath, SerializedComponentColumn, StoreKind};
 use crate::rerun::{BlueprintActivationCommand, SetStoreInfo, StoreInfo, StoreSource};
-use crate::rerun::{Chunk, ChunkError, ChunkId, LogMsg, RowId, TimeColumn};
-use crate::rerun::{CrateVersion, StoreId};
-use crate::rerun::{EncodeError, Encoder, EncodingOptions};
 use crate::rerun::{TimeInt, TimePoint, Timeline};
 use thiserror::Error;
 
+use super::encoder::RecordingEncoder;
 use super::viewer::{Viewer, ViewerError};
 use stillbase_files::NewFile;
 pub use stillbase_files::recorded::{APPLICATION, TIME_TIMELINE};
@@ -48,15 +48,6 @@ pub enum Sink {
     File(NewFile),
     /// To a viewer.
     Viewer(Viewer),
-}
-
-impl From<EncodeError> for StoreError {
-    fn from(error: EncodeError) -> Self {
-        match error {
-            EncodeError::Write(error) => Self::Write(error),
-            other => Self::Data(other.to_string()),
-        }
-    }
 }
 
 impl From<ChunkError> for StoreError {
@@ -152,7 +143,8 @@ pub struct Store {
 
 /// Messages to the writer thread; without a final `Close` it leaves no file.
 enum Message {
-    Row(Box<LogMsg>),
+    Other(Box<LogMsg>),
+    Chunk(StoreId, Box<ChunkBatch>),
     Close,
 }
 
@@ -185,13 +177,13 @@ impl Store {
         for store_id in [store.recording.clone(), store.layout.clone()] {
             let info = StoreInfo::new(store_id, source.clone());
             let row_id = store.id().as_tuid();
-            store.send(LogMsg::SetStoreInfo(SetStoreInfo { row_id, info }))?;
+            store.send(Message::Other(Box::new(LogMsg::SetStoreInfo(SetStoreInfo { row_id, info }))))?;
         }
         Ok(store)
     }
 
-    fn send(&mut self, message: LogMsg) -> Result<(), StoreError> {
-        match self.to.send(Message::Row(Box::new(message))) {
+    fn send(&mut self, message: Message) -> Result<(), StoreError> {
+        match self.to.send(message) {
             Ok(()) => Ok(()),
             Err(_) => Err(self.why()),
         }
@@ -211,8 +203,8 @@ impl Store {
     }
 
     fn append(&mut self, to: StoreId, chunk: &Chunk) -> Result<(), StoreError> {
-        let message = chunk.to_arrow_msg()?;
-        self.send(LogMsg::ArrowMsg(to, message))
+        let batch = chunk.to_chunk_batch()?;
+        self.send(Message::Chunk(to, Box::new(batch)))
     }
 
     fn row(
@@ -284,7 +276,7 @@ impl Store {
     pub fn activate_layout(&mut self) -> Result<(), StoreError> {
         let command =
             BlueprintActivationCommand { blueprint_id: self.layout.clone(), make_active: true, make_default: true };
-        self.send(command.into())
+        self.send(Message::Other(Box::new(command.into())))
     }
 
     /// Aborts the recording; no file is left.
@@ -309,21 +301,16 @@ impl Store {
 
 /// Encodes and writes messages until `Close`.
 fn write(to: NewFile, messages: &Receiver<Message>) -> Result<NewFile, StoreError> {
-    let mut encoder = Encoder::new_eager(CrateVersion::LOCAL, EncodingOptions::PROTOBUF_COMPRESSED, to)?;
-    let written = loop {
+    let mut encoder = RecordingEncoder::new(to)?;
+    loop {
         match messages.recv() {
-            Ok(Message::Row(message)) => {
-                if let Err(error) = encoder.append(&message) {
-                    break Err(error.into());
-                }
-            }
-            Ok(Message::Close) => break encoder.finish().map_err(StoreError::from),
-            Err(_) => break Err(StoreError::Data("given up".into())),
+            Ok(Message::Other(message)) => encoder.message(&message)?,
+            Ok(Message::Chunk(store, chunk)) => encoder.chunk(&store, &chunk)?,
+            Ok(Message::Close) => break,
+            Err(_) => return Err(StoreError::Data("given up".into())),
         }
-    };
-    // Takes the file out, so that the encoder does not try to finish after an error.
-    let mut to = encoder.into_inner()?;
-    written?;
+    }
+    let mut to = encoder.finish()?;
     to.flush()?;
     Ok(to)
 }
@@ -333,7 +320,12 @@ fn stream(to: &Viewer, messages: &Receiver<Message>) -> Result<(), StoreError> {
     let stream = to.connect()?;
     loop {
         match messages.recv() {
-            Ok(Message::Row(message)) => stream.send(*message)?,
+            Ok(Message::Other(message)) => stream.send(*message)?,
+            Ok(Message::Chunk(store, chunk)) => {
+                let chunk_id = chunk.chunk_id().as_tuid();
+                let message = ArrowMsg { chunk_id, batch: (*chunk).into(), on_release: None };
+                stream.send(LogMsg::ArrowMsg(store, message))?;
+            }
             Ok(Message::Close) => return Ok(stream.finish()?),
             Err(_) => return Err(StoreError::Data("given up".into())),
         }

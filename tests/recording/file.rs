@@ -1,6 +1,8 @@
 //! The file: the same each time, whole or not there at all, and refused with a reason.
 
 use super::*;
+use arrow::array::UInt64Array;
+use re_log_encoding::{Decodable as _, Encoder, MessageHeader, MessageKind, RawRrdManifest};
 
 /// Chunks without their identifiers.
 fn data(file: &std::path::Path) -> Vec<(String, Vec<String>)> {
@@ -33,6 +35,47 @@ fn recording_again_gives_the_same_recording() {
     record_in(&folder, "c.rrd", &[short("case-1"), other]).expect("two cases");
     let ids = |name: &str| Contents::of(&folder.path(name)).stores.into_keys().collect::<Vec<_>>();
     assert_ne!(ids("a.rrd"), ids("c.rrd"), "another recording has another name");
+}
+
+/// The table of contents at the end: what the encoder of the SDK writes for the same chunks, and each where it says.
+#[test]
+fn the_table_of_contents_is_that_of_the_sdk() {
+    let folder = Folder::new("contents");
+    record_in(&folder, "two.rrd", &[short("case-1"), short("spacecraft")]).expect("two cases");
+    let bytes = std::fs::read(folder.path("two.rrd")).expect("the recording");
+    let own = RawRrdManifest::from_rrd_bytes(&bytes).expect("a table of contents");
+    let messages =
+        DecoderApp::decode_lazy(std::io::Cursor::new(bytes.clone())).map(|message| Ok(message.expect("one")));
+    let again = Encoder::encode(messages).expect("the same messages");
+    let of_sdk = RawRrdManifest::from_rrd_bytes(&again).expect("a table of contents");
+    assert_eq!((own.len(), of_sdk.len()), (2, 2), "recording and layout");
+    let mut chunks = 0;
+    for own in own {
+        own.sanity_check_heavy().expect("what Rerun wants of it");
+        let of_sdk = of_sdk.iter().find(|of| of.store_id == own.store_id).expect("the same stores");
+        assert_eq!(own.sorbet_schema_sha256, of_sdk.sorbet_schema_sha256);
+        assert_eq!(own.data.schema(), of_sdk.data.schema());
+        for (i, field) in own.data.schema().fields().iter().enumerate() {
+            // Equal data need not be packed equally.
+            if !field.name().starts_with("chunk_byte") {
+                assert_eq!(own.data.column(i), of_sdk.data.column(i), "{}", field.name());
+            }
+        }
+        let numbers = |name: &str| {
+            let column = own.data.column_by_name(name).expect("a column");
+            column.as_any().downcast_ref::<UInt64Array>().expect("numbers").values().to_vec()
+        };
+        let places = numbers(RawRrdManifest::FIELD_CHUNK_BYTE_OFFSET);
+        for (place, size) in places.into_iter().zip(numbers(RawRrdManifest::FIELD_CHUNK_BYTE_SIZE)) {
+            let place = place as usize;
+            let header = &bytes[place - MessageHeader::ENCODED_SIZE_BYTES..place];
+            let header = MessageHeader::from_rrd_bytes(header).expect("a header");
+            assert_eq!((header.kind, header.len), (MessageKind::ArrowMsg, size));
+            chunks += 1;
+        }
+    }
+    let contents = Contents::of(&folder.path("two.rrd"));
+    assert_eq!(chunks, contents.stores.values().map(Vec::len).sum::<usize>(), "all chunks");
 }
 
 #[test]
