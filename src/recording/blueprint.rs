@@ -365,25 +365,24 @@ impl Layout<'_> {
             let shown: Vec<bool> = topic.signals.iter().map(|signal| chart.contains(signal)).collect();
             if shown.contains(&false) {
                 let style = SeriesLines::update_fields().with_visible_series(shown);
-                self.draw_as(&plot, &topic.path(&case.root), 0, &style)?;
+                self.draw_as(&plot, &topic.path(&case.root), &style)?;
             }
             let shown: Vec<bool> = topic.limits.iter().flat_map(|limit| [is_shown(topic, limit); 2]).collect();
             if shown.contains(&true) && shown.contains(&false) {
                 let style = SeriesLines::update_fields().with_visible_series(shown);
-                self.draw_as(&plot, &topic.limits_path(&case.root), 0, &style)?;
+                self.draw_as(&plot, &topic.limits_path(&case.root), &style)?;
             }
         }
         Ok(plot)
     }
 
-    /// Sets the style of the series of an entity in a plot.
-    fn draw_as(&mut self, plot: &Part, path: &EntityPath, i: usize, style: &SeriesLines) -> Result<(), StoreError> {
+    /// Sets the style of the series of an entity in a plot. Which of its components are drawn as series the viewer
+    /// chooses, as in plots without such a style.
+    fn draw_as(&mut self, plot: &Part, path: &EntityPath, style: &SeriesLines) -> Result<(), StoreError> {
         let base = view::ViewContents::blueprint_base_visualizer_path_for_entity(plot.id, path);
-        let id = VisualizerInstructionId::new_deterministic(path, i);
+        let id = VisualizerInstructionId::new_deterministic(path, 0);
         let instruction = under(&base, &id.0.to_string());
-        self.store
-            .layout(&instruction, &CombinedArchetypes(&[&view::VisualizerInstruction::new("SeriesLines"), style]))?;
-        self.store.layout(&base, &view::ActiveVisualizers::new([id]))
+        self.store.layout(&instruction, &CombinedArchetypes(&[&view::VisualizerInstruction::new("SeriesLines"), style]))
     }
 
     fn time_series(
@@ -417,7 +416,7 @@ impl Layout<'_> {
                 .with_names(topic.signals.iter().map(|signal| format!("{} · {}", case.name, series_name(signal))))
                 .with_colors([colour(self.palette.run(i))])
                 .with_widths([1.8]);
-            self.draw_as(&plot, &topic.path(&case.root), i, &style)?;
+            self.draw_as(&plot, &topic.path(&case.root), &style)?;
         }
         Ok(plot)
     }

@@ -108,7 +108,10 @@ impl Preview {
             }
         }
         let last = run.frame();
-        let reach = LinkageModel::of(&run.scenario().machine).reach();
+        let reach = match &linkage {
+            Some((of, known)) if *of == run.scenario().machine => known.reach(),
+            _ => LinkageModel::of(&run.scenario().machine).reach(),
+        };
         let views = Views::over(&run, b, run.queries());
         let eye = |kind: ViewKind, axes| views.shows(kind).then(|| Eye::of(&views.camera(kind), axes));
         let (joints, tower) = (eye(ViewKind::Joints, views.joint_axes()), eye(ViewKind::Tower, [0, 1, 2]));

@@ -47,6 +47,16 @@ pub enum ViewerError {
         /// How long it was waited.
         waited: Duration,
     },
+    /// The viewer that was started does not answer.
+    #[error(
+        "`{PROGRAM}` was started, and does not answer within {} s: want a screen on which it can open a window, or \
+         -o FILE.rrd",
+        waited.as_secs()
+    )]
+    Unopened {
+        /// How long it was waited.
+        waited: Duration,
+    },
     /// The viewer was closed before it had everything.
     #[error("{url}: the viewer was closed before it had the whole recording")]
     Closed {
@@ -60,6 +70,8 @@ pub enum ViewerError {
 pub struct Viewer {
     uri: ProxyUri,
     patience: Duration,
+    /// Whether this program has started it.
+    is_started: bool,
 }
 
 impl Viewer {
@@ -70,7 +82,7 @@ impl Viewer {
     pub fn at(url: &str) -> Result<Self, ViewerError> {
         let wrong = |why: String| ViewerError::Address { url: url.into(), why };
         let uri = url.parse().map_err(|why: crate::rerun::UriError| wrong(why.to_string()))?;
-        Ok(Self { uri, patience: PATIENCE })
+        Ok(Self { uri, patience: PATIENCE, is_started: false })
     }
 
     /// Starts the viewer; one that runs already is taken instead.
@@ -83,7 +95,7 @@ impl Viewer {
         // It outlives this program, and what it says of itself is no message of this one.
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
         match command.spawn() {
-            Ok(_) => Ok(Self { patience: START_PATIENCE, ..Self::at(VIEWER_URL)? }),
+            Ok(_) => Ok(Self { patience: START_PATIENCE, is_started: true, ..Self::at(VIEWER_URL)? }),
             Err(why) if why.kind() == ErrorKind::NotFound => Err(ViewerError::Missing),
             Err(why) => Err(ViewerError::Start(why)),
         }
@@ -98,7 +110,10 @@ impl Viewer {
     pub(super) fn connect(&self) -> Result<ViewerStream, ViewerError> {
         let options = crate::rerun::StreamOptions { connect_timeout_on_flush: self.patience, ..Default::default() };
         let client = Client::new(self.uri.clone(), options);
-        let silent = |_| ViewerError::Silent { url: self.url(), waited: self.patience };
+        let silent = |_| match self.is_started {
+            true => ViewerError::Unopened { waited: self.patience },
+            false => ViewerError::Silent { url: self.url(), waited: self.patience },
+        };
         client.flush_blocking(2 * self.patience).map_err(silent)?;
         Ok(ViewerStream { client, url: self.url() })
     }

@@ -176,7 +176,7 @@ fn every_state_of_a_session_is_a_row() {
 }
 
 /// The numbers of a tensor of one row.
-fn tensor_values(values: &dyn Array) -> Vec<f64> {
+pub fn tensor_values(values: &dyn Array) -> Vec<f64> {
     use re_sdk_types::Loggable as _;
     let tensors = re_sdk_types::components::TensorData::from_arrow(values).expect("a tensor");
     let buffer = &tensors.first().expect("one").0.buffer;

@@ -1,6 +1,9 @@
 //! The layout that the viewer opens with, with pictures and without.
 
+use super::design::tensor_values;
 use super::*;
+use stillbase::picture::charts::charts;
+use stillbase::picture::scene::palette::{Theme, palette};
 
 #[test]
 fn the_layout_comes_along_and_is_activated() {
@@ -159,24 +162,91 @@ fn range(contents: &Contents, path: &str) -> [f64; 2] {
     [numbers[0], numbers[1]]
 }
 
-/// Cases that are compared have colours of their own, and the curves of one drive stay what they are.
-#[test]
-fn compared_cases_have_colours_of_their_own() {
-    let folder = Folder::new("colours");
-    let names = ["case-1", "case-2", "case-3", "spacecraft", "wheel"];
-    record_in(&folder, "five.rrd", &names.map(short)).expect("five cases");
-    let contents = Contents::of(&folder.path("five.rrd"));
+/// Colours of the series of each case in the plots that compare them.
+fn compared_colours(folder: &Folder, names: &[&'static str]) -> BTreeMap<&'static str, BTreeSet<u32>> {
+    let file = format!("{}.rrd", names.len());
+    record_in(folder, &file, &names.iter().map(|name| short(name)).collect::<Vec<_>>()).expect("cases");
+    let contents = Contents::of(&folder.path(&file));
     let layouts = contents.stores.iter().filter(|(id, _)| id.kind() == StoreKind::Blueprint);
-    let mut colours: BTreeMap<String, BTreeSet<u32>> = BTreeMap::new();
+    let mut colours: BTreeMap<&'static str, BTreeSet<u32>> = BTreeMap::new();
     for chunk in layouts.flat_map(|(_, chunks)| chunks) {
         let path = chunk.entity_path().to_string();
         let Some(column) = chunk.components().get_array("SeriesLines:colors".into()) else { continue };
-        let flat = column.values().as_any().downcast_ref::<arrow::array::UInt32Array>().expect("colours");
+        let flat = column.values().as_any().downcast_ref::<UInt32Array>().expect("colours");
         let case = names.iter().find(|name| path.contains(&format!("/{name}/"))).expect("a case");
-        colours.entry((*case).to_owned()).or_default().extend(flat.values());
+        colours.entry(case).or_default().extend(flat.values());
     }
-    assert_eq!(colours.len(), names.len());
-    assert!(colours.values().all(|of| of.len() == 1), "one each, in every plot: {colours:?}");
-    let all: BTreeSet<&u32> = colours.values().flatten().collect();
-    assert_eq!(all.len(), names.len(), "{colours:?}");
+    colours
+}
+
+/// Cases that are compared have the colours that the window gives to runs beside each other.
+#[test]
+fn compared_cases_have_colours_of_their_own() {
+    let folder = Folder::new("colours");
+    let palette = palette(Theme::Dark);
+    let names = ["case-1", "case-2", "case-3", "spacecraft", "wheel"];
+    for count in 2..=names.len() {
+        let colours = compared_colours(&folder, &names[..count]);
+        for (i, name) in names[..count].iter().enumerate() {
+            let want = BTreeSet::from([packed(palette.run(i))]);
+            assert_eq!(colours[name], want, "{name}, one of {count}: one colour in every plot");
+        }
+        let all: BTreeSet<&u32> = colours.values().flatten().collect();
+        assert_eq!(all.len(), count, "{colours:?}");
+    }
+}
+
+/// Values below this are rounding in every scenario, in SI units.
+const ROUNDING: f64 = 1e-9;
+
+/// Rounding is a straight line in its plot, and fills no plot of bars.
+#[test]
+fn rounding_does_not_fill_a_plot() {
+    let folder = Folder::new("rounding");
+    let (mut flat, mut still, mut bar_plots) = (0, 0, 0);
+    for scenario in Scenario::builtins() {
+        let name = &scenario.name;
+        let file = folder.path(&format!("{name}.rrd"));
+        record(std::slice::from_ref(scenario), &file, &Options::default(), &mut quietly).expect("a case");
+        let contents = Contents::of(&file);
+        let titles = layout_texts(&contents, "ViewBlueprint:display_name");
+        let classes = layout_texts(&contents, "ViewBlueprint:class_identifier");
+        let known = signals(&scenario.machine);
+        let mut plots = charts(scenario, false);
+        plots.retain(|chart| known.iter().any(|signal| chart.contains(signal)));
+        let views: Vec<&String> =
+            classes.iter().filter(|(_, class)| class[0] == "TimeSeries").map(|(view, _)| view).collect();
+        assert_eq!(views.len(), plots.len(), "{name}");
+        for chart in plots {
+            let title = |view: &&&String| {
+                let rest = titles[**view][0].strip_prefix(chart.title);
+                rest.is_some_and(|rest| rest.is_empty() || rest.starts_with("  "))
+            };
+            let view = views.iter().find(title).unwrap_or_else(|| panic!("{name}: {}", chart.title));
+            let [low, high] = range(&contents, &format!("{view}/ScalarAxis"));
+            for signal in known.iter().filter(|signal| chart.contains(signal)) {
+                let (_, _, values) = contents.signal(name, signal);
+                let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+                assert!(low <= least && most <= high, "{name}, {}: {least} to {most}", signal.path);
+                if most - least < ROUNDING {
+                    let share = (most - least) / (high - low);
+                    assert!(share < 1e-3, "{name}, {}: rounding fills {share} of {low} to {high}", signal.path);
+                    flat += 1;
+                    still += usize::from(most != least);
+                }
+            }
+        }
+        // Bars of all drives share a plot, which is as high as the highest of them.
+        for plot in ["force", "coupling"] {
+            let under = EntityPath::from(format!("/{name}/design/bars/{plot}"));
+            let of_plot = contents.recording().iter().filter(|chunk| chunk.entity_path().starts_with(&under));
+            let columns = of_plot.filter_map(|chunk| chunk.components().get_array("BarChart:values".into()));
+            let highest = columns.flat_map(|bars| tensor_values(bars.values())).map(f64::abs).fold(0.0, f64::max);
+            assert!(highest == 0.0 || highest > ROUNDING, "{name}, {plot}: rounding fills {highest}");
+            bar_plots += usize::from(highest > 0.0);
+        }
+    }
+    assert!(flat > 50 && still > 10, "{flat} signals stand still, {still} but for rounding");
+    assert!(bar_plots > 10, "only {bar_plots} plots of bars");
 }

@@ -25,9 +25,8 @@ use stillbase_picture::scene::linkage::LinkageModel;
 use stillbase_picture::scene::options::ViewOptions;
 use stillbase_picture::scene::palette::{Theme, palette};
 use stillbase_session::scenario::Scenario;
-use stillbase_session::{DesignVersion, Refusal, Run, designs};
+use stillbase_session::{Refusal, Run, designs};
 use stillbase_simulation::frame::Frame;
-use stillbase_study::workshop::cut_of;
 
 pub use front::FRONT_VIEW;
 pub use words::comparison_table;
@@ -65,7 +64,7 @@ impl RecordedDesign {
         let states: Vec<DesignState> = states.collect();
         let has_weights = states.iter().any(|state| !state.of.machine.spec().counterweights.is_empty());
         Ok(Self {
-            eye: above(states.iter().map(|state| &state.of), &start.q.units()),
+            eye: above(states.iter().map(|state| &state.linkage), &start.q.units()),
             fronts: has_weights.then(|| RecordedFronts::of(states.iter().map(|state| &state.of))).flatten(),
             leads: several || has_weights,
             states,
@@ -106,8 +105,8 @@ impl RecordedDesign {
         let options = ViewOptions { show_hints: false, ..ViewOptions::default() };
         for state in &self.states {
             let machine = &state.of.machine;
-            let linkage = linkage_of(&state.of);
-            let mut scene = DesignDrawing::of(machine).scene((&linkage, &Grid::of(&linkage)), &self.start, &options);
+            let linkage = &state.linkage;
+            let mut scene = DesignDrawing::of(machine).scene((linkage, &Grid::of(linkage)), &self.start, &options);
             if state.at.edit.is_none() {
                 // There is only one state, so its solids are constant.
                 scene.solids.iter_mut().for_each(|solid| solid.changes = ItemChanges::Nothing);
@@ -137,18 +136,13 @@ impl RecordedDesign {
     }
 }
 
-/// Returns the body of the machine of a version, with the dimensions of its design.
-fn linkage_of(version: &DesignVersion) -> LinkageModel {
-    LinkageModel::cut(&version.machine, &cut_of(&version.brief, &version.machine))
-}
-
 /// Returns an eye from which the machines of all versions are completely visible.
-fn above<'a>(versions: impl Iterator<Item = &'a DesignVersion>, e: &UnitVectors) -> Eye {
+fn above<'a>(linkages: impl Iterator<Item = &'a LinkageModel>, e: &UnitVectors) -> Eye {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     let wider = |[low, high]: [f64; 2], x: f64, r: f64| [low.min(x - r), high.max(x + r)];
     let mut seen = [wider(none, 0.0, 0.0); 2];
-    for version in versions {
-        for bar in linkage_of(version).flat(e) {
+    for linkage in linkages {
+        for bar in linkage.flat(e) {
             let covers = bar.covers.iter().flat_map(|cover| cover.ends.map(|end| (end, cover.radius)));
             for (p, r) in bar.ends.map(|end| (end, bar.radius)).into_iter().chain(covers) {
                 seen = [wider(seen[0], p.re, r), wider(seen[1], p.im, r)];

@@ -3,9 +3,11 @@
 use crate::store::Instant;
 use stillbase_mechanics::balance::Breakdown;
 use stillbase_mechanics::machine::Machine;
+use stillbase_picture::scene::linkage::LinkageModel;
 use stillbase_planning::Motion;
 use stillbase_session::DesignVersion;
 use stillbase_study::measures::Measures;
+use stillbase_study::workshop::cut_of;
 
 /// A state of a design.
 #[derive(Debug)]
@@ -14,6 +16,8 @@ pub struct DesignState {
     pub at: Instant,
     /// The machine, and the change that led to it.
     pub of: DesignVersion,
+    /// Body of the machine, with the dimensions of its design.
+    pub linkage: LinkageModel,
     /// Contributions of the machine's parts to (7) and (8).
     pub breakdown: Breakdown,
     /// Cost of balance relative to a reference machine, with words that say which machine it is.
@@ -23,7 +27,8 @@ pub struct DesignState {
 impl DesignState {
     /// Returns the state of a design; `first` is the machine at the start, `motion` the motion of the task.
     pub fn of(at: Instant, of: DesignVersion, first: &Machine, motion: &Motion) -> Self {
-        Self { at, breakdown: Breakdown::of(&of.machine), measures: measured(&of, first, motion), of }
+        let linkage = LinkageModel::cut(&of.machine, &cut_of(&of.brief, &of.machine));
+        Self { at, linkage, breakdown: Breakdown::of(&of.machine), measures: measured(&of, first, motion), of }
     }
 }
 

@@ -50,6 +50,7 @@ fn verdict(equation: &Equation) -> String {
     let unit = if worst.unit.is_empty() { String::new() } else { format!(" {}", worst.unit) };
     let name = if worst.name.is_empty() { String::new() } else { format!(" in {}", worst.name) };
     match equation.holds() {
+        Some(true) if off == 0.0 => "holds: both sides are equal".into(),
         Some(true) => format!("holds: both sides differ by {off:.0e}{unit} at most"),
         _ if equation.is_choice() => "the centres of mass of this machine lie elsewhere, which is no fault".into(),
         _ => format!("does not hold: off by {}{unit}{name}", fixed_or_scientific(off, DECIMALS)),
