@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap_mangen::Man;
+use stillbase_files::new_folder::make_folder;
 use stillbase_files::{check_new, write_new};
 use stillbase_settings::number::counted;
 
@@ -50,6 +51,7 @@ impl ManArguments {
         let files: Vec<_> = pages.iter().map(|(name, _)| folder.join(format!("{name}.1"))).collect();
         // All are checked first, so that none is written if one cannot be.
         files.iter().try_for_each(|file| check_new(file, self.force))?;
+        make_folder(folder)?;
         for (file, (_, command)) in files.iter().zip(pages) {
             write_new(file, &page(command)?, self.force)?;
         }

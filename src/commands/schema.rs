@@ -48,7 +48,7 @@ fn schemas() -> Vec<(String, Value)> {
     let all = all.filter(|(_, answers)| !answers.is_empty());
     all.map(|(command, answers)| {
         let mut answers: Vec<Value> = answers.into_iter().map(Schema::to_value).collect();
-        answers.iter_mut().for_each(|answer| describe(answer, &command));
+        answers.iter_mut().for_each(|answer| describe(answer, &mut vec![command.clone()]));
         let mut schema = match answers.len() {
             1 => answers.remove(0),
             _ => json!({ "anyOf": answers }),
@@ -66,16 +66,20 @@ fn schemas() -> Vec<(String, Value)> {
 }
 
 /// Describes the properties of a schema from the dictionary of results, and takes out what JSON never holds here: no
-/// answer has a null. `holder` is the property that the schema is of, or the command.
-fn describe(schema: &mut Value, holder: &str) {
+/// answer has a null. `path` leads to what the schema is of: the command, then properties.
+fn describe(schema: &mut Value, path: &mut Vec<String>) {
     let Some(object) = schema.as_object_mut() else { return };
     object.remove("format");
     object.remove("title");
     without_null(object);
     if let Some(properties) = object.get_mut("properties").and_then(Value::as_object_mut) {
         for (name, property) in properties {
-            describe(property, name);
-            let Some(row) = find(holder, name) else { continue };
+            path.push(name.clone());
+            describe(property, path);
+            let words: Vec<&str> = path.iter().map(String::as_str).collect();
+            let row = find(&words);
+            path.pop();
+            let Some(row) = row else { continue };
             if let Some(property) = property.as_object_mut() {
                 property.insert("description".into(), row.in_words().into());
                 if !row.unit.is_empty() {
@@ -88,11 +92,11 @@ fn describe(schema: &mut Value, holder: &str) {
         }
     }
     for part in ["items", "additionalProperties"] {
-        object.get_mut(part).into_iter().for_each(|part| describe(part, holder));
+        object.get_mut(part).into_iter().for_each(|part| describe(part, path));
     }
     for parts in ["anyOf", "oneOf", "allOf", "prefixItems"] {
         let parts = object.get_mut(parts).and_then(Value::as_array_mut);
-        parts.into_iter().flatten().for_each(|part| describe(part, holder));
+        parts.into_iter().flatten().for_each(|part| describe(part, path));
     }
 }
 

@@ -87,11 +87,14 @@ pub const RESULTS: &[(&str, &[ResultRow])] = &[
     ("Columns of tables, properties of recordings", columns::ROWS),
 ];
 
-/// Returns a result by its name and by what holds it: a property, or the command at the top.
-pub fn find(holder: &str, name: &str) -> Option<&'static ResultRow> {
+/// Returns a result by its path: the command, the properties that hold it, and its name. Of several rows the one counts
+/// that agrees with the longest end of the path.
+pub fn find(path: &[&str]) -> Option<&'static ResultRow> {
     let all = || RESULTS.iter().flat_map(|(_, rows)| rows.iter());
-    let own = |row: &&ResultRow| row.name.split_once('.').is_some_and(|both| both == (holder, name));
-    all().find(own).or_else(|| all().find(|row| row.name == name))
+    (0..path.len()).find_map(|start| {
+        let name = path[start..].join(".");
+        all().find(|row| row.name == name)
+    })
 }
 
 /// Returns what a column of a table of a command holds, by its head: the name, then the unit if there is one. Properties

@@ -32,7 +32,7 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("signals.first", "", "Where the difference first exceeds the tolerance."),
     row("first", "of unit", "Value of the first."),
     row("second", "of unit", "Value of the second."),
-    row("difference", "of unit", "Second less first."),
+    row("difference", "of unit", "Absolute difference of both."),
     row("ulps", "1", "Number of floating-point numbers from one to the other."),
     // Settings.
     row("keys", "", "The settings."),
