@@ -440,6 +440,19 @@ fn letters_that_the_font_lacks_are_boxes() {
     assert!(!said.contains("lacks"), "{said}");
 }
 
+/// The axis of a small magnitude begins at zero: in the drawing, its curve is in the lower part of the axes.
+#[test]
+fn small_magnitudes_stand_on_zero() {
+    let folder = Folder::new("magnitudes");
+    draw(&folder, &["figures", "space-arm", "--what", "pin", "-o", "pin.svg"]);
+    let most = peak(&read(&folder, "pin.csv"), "F worst");
+    assert!((0.05..0.5).contains(&most), "{most} N: below half of the least range of 1 N");
+    let drawing = read(&folder, "pin.svg");
+    let page = roxmltree::Document::parse(&drawing).expect("an SVG");
+    let labels: Vec<&str> = page.descendants().filter_map(|node| node.attribute("aria-label")).collect();
+    assert!(labels.contains(&"0.0") && !labels.iter().any(|label| label.starts_with('−')), "{labels:?}");
+}
+
 /// A scenario without a title is called by its name.
 #[test]
 fn a_title_does_not_end_in_a_colon() {

@@ -189,7 +189,10 @@ impl PrintPlot {
             }
             let lacking = if i == 1 { (0.5 * (self.least_range - (high - low))).max(0.0) } else { 0.0 };
             let room = (margin * (high - low + 2.0 * lacking)).max(1e-9 * (1.0 + high.abs()));
-            [low - lacking - room, high + lacking + room]
+            // Small magnitudes stand on zero; other small ranges lie in the middle of the axis.
+            let is_magnitude = (0.0..lacking).contains(&low) && high > 0.0;
+            let [below, above] = if is_magnitude { [0.0, 2.0 * lacking] } else { [lacking; 2] };
+            [low - below - room, high + above + room]
         };
         // Over time, the curves fill the axes from left to right.
         [range(0, if self.is_equal || !self.bands.is_empty() { MARGIN } else { 0.0 }), range(1, MARGIN)]
@@ -237,7 +240,8 @@ fn clearest_place([x, y]: [f32; 2], words: &str, axes: &Axes, (lines, dots): (&[
         let to_lines = lines.iter().flat_map(|points| points.windows(2)).map(|ends| distance(sides, ends[0], ends[1]));
         let to_dots = dots.iter().filter(|dot| **dot != [x, y]).map(|dot| distance(sides, *dot, *dot) - DOT);
         let nearest = to_lines.chain(to_dots).fold(CLEAR, f32::min);
-        if is_inside { nearest } else { nearest - CLEAR }
+        // Rather close to a line than over the frame.
+        if is_inside { nearest } else { nearest - 2.0 * CLEAR }
     };
     let sides = [[1.0, -1.0], [1.0, 1.0], [-1.0, -1.0], [-1.0, 1.0], [1.0, 0.0], [-1.0, 0.0], [0.0, -1.0], [0.0, 1.0]];
     let best = sides.into_iter().rev().max_by(|a, b| room(*a).total_cmp(&room(*b))).unwrap_or([1.0, -1.0]);
