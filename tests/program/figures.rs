@@ -453,6 +453,26 @@ fn small_magnitudes_stand_on_zero() {
     assert!(labels.contains(&"0.0") && !labels.iter().any(|label| label.starts_with('−')), "{labels:?}");
 }
 
+/// No outline passes the edges of a narrow page.
+#[test]
+fn nothing_is_cut_off_in_a_narrow_figure() {
+    let folder = Folder::new("narrow");
+    draw(&folder, &["figures", "case-1", "--what", "torque,force,snapshots,workspace", "-o", "a.svg", "--width", "40"]);
+    draw(&folder, &["figures", "--paper", "all", "--width", "40"]);
+    for name in FIGURES.into_iter().chain(["a"]) {
+        let drawing = read(&folder, &format!("{name}.svg"));
+        let page = roxmltree::Document::parse(&drawing).expect("an SVG");
+        let view = page.root_element().attribute("viewBox").expect("a view");
+        let view: Vec<f64> = view.split(' ').map(|x| x.parse().expect("a number")).collect();
+        for outline in outlines_of_svg(&drawing).iter().filter(|outline| !outline.is_clipped) {
+            let across = range(outline.places.iter().step_by(2).copied());
+            let down = range(outline.places.iter().skip(1).step_by(2).copied());
+            let is_inside = across[0] > -0.5 && across[1] < view[2] + 0.5 && down[0] > -0.5 && down[1] < view[3] + 0.5;
+            assert!(is_inside, "{name}: {across:?} {down:?} on {view:?}");
+        }
+    }
+}
+
 /// A scenario without a title is called by its name.
 #[test]
 fn a_title_does_not_end_in_a_colon() {

@@ -98,9 +98,10 @@ impl PrintPlot {
         let (x, y, inner) = if self.is_equal { equal_scales(x, y, inner) } else { (x, y, inner) };
         let sides = [LEFT, top, LEFT + inner[0], top + inner[1]];
         let axes = Axes { sides, x, y };
-        let mut items = vec![text([LEFT - 26.0, top - LINE - 1.0], [0.0, 0.0], &self.axes[1], p.ink, false)];
+        let mut items =
+            vec![fitted(width, text([LEFT - 26.0, top - LINE - 1.0], [0.0, 0.0], &self.axes[1], p.ink, false))];
         if !self.head.is_empty() {
-            items.push(text([LEFT - 26.0, 2.0], [0.0, 0.0], &self.head, p.ink, true));
+            items.push(fitted(width, text([LEFT - 26.0, 2.0], [0.0, 0.0], &self.head, p.ink, true)));
         }
         for (row, from, curve) in &legend {
             let at = [LEFT - 26.0 + from, 4.0 + heads + LINE * (*row as f32 + 0.5)];
@@ -240,8 +241,7 @@ fn clearest_place([x, y]: [f32; 2], words: &str, axes: &Axes, (lines, dots): (&[
         let to_lines = lines.iter().flat_map(|points| points.windows(2)).map(|ends| distance(sides, ends[0], ends[1]));
         let to_dots = dots.iter().filter(|dot| **dot != [x, y]).map(|dot| distance(sides, *dot, *dot) - DOT);
         let nearest = to_lines.chain(to_dots).fold(CLEAR, f32::min);
-        // Rather close to a line than over the frame.
-        if is_inside { nearest } else { nearest - 2.0 * CLEAR }
+        if is_inside { nearest } else { nearest - CLEAR }
     };
     let sides = [[1.0, -1.0], [1.0, 1.0], [-1.0, -1.0], [-1.0, 1.0], [1.0, 0.0], [-1.0, 0.0], [0.0, -1.0], [0.0, 1.0]];
     let best = sides.into_iter().rev().max_by(|a, b| room(*a).total_cmp(&room(*b))).unwrap_or([1.0, -1.0]);
@@ -268,6 +268,16 @@ fn equal_scales(x: [f64; 2], y: [f64; 2], [width, height]: [f32; 2]) -> ([f64; 2
     let middle = 0.5 * (x[0] + x[1]);
     let half = 0.5 * f64::from(width) / scale;
     ([middle - half, middle + half], y, [width, height])
+}
+
+/// Returns text with smaller letters, if it would pass the right side of a page of this width.
+fn fitted(width: f32, mut item: FigureItem) -> FigureItem {
+    if let FigureItem::Text { at, words, .. } = &mut item {
+        let own = words.iter().map(|own| glyphs::width(&own.text, own.size, own.bold)).sum::<f32>();
+        let by = ((width - at[0] - 2.0) / own.max(1.0)).min(1.0);
+        words.iter_mut().for_each(|own| own.size *= by);
+    }
+    item
 }
 
 fn text(at: [f32; 2], anchor: [f32; 2], words: &str, colour: Rgba, bold: bool) -> FigureItem {
