@@ -440,6 +440,39 @@ fn letters_that_the_font_lacks_are_boxes() {
     assert!(!said.contains("lacks"), "{said}");
 }
 
+/// The axis of a small magnitude begins at zero: in the drawing, its curve is in the lower part of the axes.
+#[test]
+fn small_magnitudes_stand_on_zero() {
+    let folder = Folder::new("magnitudes");
+    draw(&folder, &["figures", "space-arm", "--what", "pin", "-o", "pin.svg"]);
+    let most = peak(&read(&folder, "pin.csv"), "F worst");
+    assert!((0.05..0.5).contains(&most), "{most} N: below half of the least range of 1 N");
+    let drawing = read(&folder, "pin.svg");
+    let page = roxmltree::Document::parse(&drawing).expect("an SVG");
+    let labels: Vec<&str> = page.descendants().filter_map(|node| node.attribute("aria-label")).collect();
+    assert!(labels.contains(&"0.0") && !labels.iter().any(|label| label.starts_with('−')), "{labels:?}");
+}
+
+/// No outline passes the edges of a narrow page.
+#[test]
+fn nothing_is_cut_off_in_a_narrow_figure() {
+    let folder = Folder::new("narrow");
+    draw(&folder, &["figures", "case-1", "--what", "torque,force,snapshots,workspace", "-o", "a.svg", "--width", "40"]);
+    draw(&folder, &["figures", "--paper", "all", "--width", "40"]);
+    for name in FIGURES.into_iter().chain(["a"]) {
+        let drawing = read(&folder, &format!("{name}.svg"));
+        let page = roxmltree::Document::parse(&drawing).expect("an SVG");
+        let view = page.root_element().attribute("viewBox").expect("a view");
+        let view: Vec<f64> = view.split(' ').map(|x| x.parse().expect("a number")).collect();
+        for outline in outlines_of_svg(&drawing).iter().filter(|outline| !outline.is_clipped) {
+            let across = range(outline.places.iter().step_by(2).copied());
+            let down = range(outline.places.iter().skip(1).step_by(2).copied());
+            let is_inside = across[0] > -0.5 && across[1] < view[2] + 0.5 && down[0] > -0.5 && down[1] < view[3] + 0.5;
+            assert!(is_inside, "{name}: {across:?} {down:?} on {view:?}");
+        }
+    }
+}
+
 /// A scenario without a title is called by its name.
 #[test]
 fn a_title_does_not_end_in_a_colon() {

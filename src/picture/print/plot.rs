@@ -98,9 +98,10 @@ impl PrintPlot {
         let (x, y, inner) = if self.is_equal { equal_scales(x, y, inner) } else { (x, y, inner) };
         let sides = [LEFT, top, LEFT + inner[0], top + inner[1]];
         let axes = Axes { sides, x, y };
-        let mut items = vec![text([LEFT - 26.0, top - LINE - 1.0], [0.0, 0.0], &self.axes[1], p.ink, false)];
+        let mut items =
+            vec![fitted(width, text([LEFT - 26.0, top - LINE - 1.0], [0.0, 0.0], &self.axes[1], p.ink, false))];
         if !self.head.is_empty() {
-            items.push(text([LEFT - 26.0, 2.0], [0.0, 0.0], &self.head, p.ink, true));
+            items.push(fitted(width, text([LEFT - 26.0, 2.0], [0.0, 0.0], &self.head, p.ink, true)));
         }
         for (row, from, curve) in &legend {
             let at = [LEFT - 26.0 + from, 4.0 + heads + LINE * (*row as f32 + 0.5)];
@@ -189,7 +190,10 @@ impl PrintPlot {
             }
             let lacking = if i == 1 { (0.5 * (self.least_range - (high - low))).max(0.0) } else { 0.0 };
             let room = (margin * (high - low + 2.0 * lacking)).max(1e-9 * (1.0 + high.abs()));
-            [low - lacking - room, high + lacking + room]
+            // Small magnitudes stand on zero; other small ranges lie in the middle of the axis.
+            let is_magnitude = (0.0..lacking).contains(&low) && high > 0.0;
+            let [below, above] = if is_magnitude { [0.0, 2.0 * lacking] } else { [lacking; 2] };
+            [low - below - room, high + above + room]
         };
         // Over time, the curves fill the axes from left to right.
         [range(0, if self.is_equal || !self.bands.is_empty() { MARGIN } else { 0.0 }), range(1, MARGIN)]
@@ -264,6 +268,16 @@ fn equal_scales(x: [f64; 2], y: [f64; 2], [width, height]: [f32; 2]) -> ([f64; 2
     let middle = 0.5 * (x[0] + x[1]);
     let half = 0.5 * f64::from(width) / scale;
     ([middle - half, middle + half], y, [width, height])
+}
+
+/// Returns text with smaller letters, if it would pass the right side of a page of this width.
+fn fitted(width: f32, mut item: FigureItem) -> FigureItem {
+    if let FigureItem::Text { at, words, .. } = &mut item {
+        let own = words.iter().map(|own| glyphs::width(&own.text, own.size, own.bold)).sum::<f32>();
+        let by = ((width - at[0] - 2.0) / own.max(1.0)).min(1.0);
+        words.iter_mut().for_each(|own| own.size *= by);
+    }
+    item
 }
 
 fn text(at: [f32; 2], anchor: [f32; 2], words: &str, colour: Rgba, bold: bool) -> FigureItem {
