@@ -241,6 +241,8 @@ impl Place {
     }
 }
 
+/// Size of a signal below which it is rounding, in SI units.
+const ROUNDING: f64 = 1e-9;
 /// Maximum number of signals in a printed table.
 const MAX_ROWS: usize = 20;
 
@@ -270,8 +272,9 @@ impl Case {
         if rows.is_empty() {
             return format!("{}\n", self.sentence);
         }
-        // Those beyond their tolerance first, then by the share of what the signal is at most.
-        let share = |row: &Row| row.largest.difference.map_or(f64::INFINITY, |x| x / row.size.max(f64::MIN_POSITIVE));
+        // Those beyond their tolerance first, then by the share of what the signal is at most; one that is never more than
+        // rounding comes last.
+        let share = |row: &Row| row.largest.difference.map_or(f64::INFINITY, |x| x / row.size.max(ROUNDING));
         rows.sort_by(|a, b| a.within.cmp(&b.within).then(share(b).total_cmp(&share(a))));
         let head = ["signal", "unit", "largest difference", "at s", "tolerance", "exceeded from s"];
         let mut table = TextTable::new(head).with_words(1);

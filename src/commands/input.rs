@@ -373,9 +373,13 @@ pub fn pose_space(machine: &Machine) -> Result<PoseSpace, Failure> {
 }
 
 /// Returns the command line with a space before negative numbers and points, such as `-0.5,0.25`, so that they are not
-/// parsed as options. No option begins with a digit.
+/// parsed as options. No option begins with a digit. A `--quiet` before the command stands after it, where it is parsed.
 pub fn words(words: impl Iterator<Item = OsString>) -> impl Iterator<Item = OsString> {
-    words.map(|word| match word.to_str().map(str::as_bytes) {
+    let mut words: Vec<OsString> = words.collect();
+    if words.len() > 2 && words[1] == "--quiet" {
+        words.swap(1, 2);
+    }
+    words.into_iter().map(|word| match word.to_str().map(str::as_bytes) {
         Some([b'-', b'0'..=b'9' | b'.', .., last]) if !last.is_ascii_alphabetic() => padded(word),
         Some([b'-', b'0'..=b'9']) => padded(word),
         _ => word,

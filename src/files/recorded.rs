@@ -1,7 +1,6 @@
 //! Reads recordings of the Rerun viewer's format: the session and the signals of each case.
 
-use std::fs::File;
-use std::io::{self, BufReader, Read as _, Seek as _, SeekFrom};
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use re_chunk::Chunk;
@@ -77,11 +76,12 @@ pub fn cases(file: &Path) -> Result<Vec<RecordedCase>, ReadError> {
 }
 
 /// Returns whether a file ends as a finished recording does: with a footer, after which nothing follows.
-fn is_finished(file: &mut File) -> io::Result<bool> {
+fn is_finished(file: &mut (impl Read + Seek)) -> io::Result<bool> {
     let mut end = [0; StreamFooter::ENCODED_SIZE_BYTES];
-    let start = file.metadata()?.len().checked_sub(end.len() as u64);
-    let Some(start) = start else { return Ok(false) };
-    file.seek(SeekFrom::Start(start))?;
+    if file.seek(SeekFrom::End(0))? < end.len() as u64 {
+        return Ok(false);
+    }
+    file.seek(SeekFrom::End(-(end.len() as i64)))?;
     file.read_exact(&mut end)?;
     file.rewind()?;
     Ok(StreamFooter::from_rrd_bytes(&end).is_ok())

@@ -40,7 +40,7 @@ struct RowRate {
 }
 
 impl RowRate {
-    const MOVING: Self = Self { longest_s: 1.0 / 30.0, rows: 100.0 };
+    const MOVING: Self = Self { longest_s: 0.04, rows: 100.0 };
     const SIGNALS: Self = Self { longest_s: 0.01, rows: 500.0 };
 
     /// Returns the number of steps from one row to the next, in a run of a number of steps of a length, s.

@@ -302,3 +302,54 @@ fn a_misspelt_command_is_answered_with_the_nearest_even_with_arguments() {
         fails(args, 2, &["chek", "stillbase check"]);
     }
 }
+
+/// With --json every refusal is one object on standard output, with the reason that standard error gives.
+#[test]
+fn every_refusal_is_an_object() {
+    let folder = Folder::new("refusals");
+    let wrong = word(folder.path("x.jpg"));
+    for (args, status) in [
+        (&["replay", "none.rrd"][..], 2),
+        (&["diff", "none.rrd", "case-1"], 2),
+        (&["diff", "case-3", "case-3", "--tolerance", "foo=1"], 2),
+        (&["compare", "case-3", "--set", "task.b=0.2"], 1),
+        (&["headless", "case-1", "-o", &wrong], 2),
+        (&["simulate", "case-9"], 2),
+        (&["check", "nine-link-table-1", "--strict"], 1),
+    ] {
+        let out = stillbase(&[args, &["--json"]].concat());
+        assert_eq!(out.status.code(), Some(status), "{args:?}");
+        let values: Vec<Value> = serde_json::Deserializer::from_slice(&out.stdout)
+            .into_iter()
+            .map(|value| value.unwrap_or_else(|why| panic!("{args:?}: {why}")))
+            .collect();
+        let [value] = &values[..] else { panic!("{args:?}: {} objects", values.len()) };
+        // A judgement follows the answer itself.
+        if !args.contains(&"--strict") {
+            let reason = value["reason"].as_str().unwrap_or_else(|| panic!("{args:?}: {value}"));
+            assert!(text(&out.stderr).contains(reason.split(':').next().unwrap_or_default()), "{args:?}: {reason}");
+        }
+    }
+}
+
+/// A word that a command begins with names it, however long the rest is.
+#[test]
+fn the_beginning_of_a_command_names_it() {
+    for (given, meant) in [("complet", "completions"), ("tol", "tolerance"), ("chek", "check"), ("simulat", "simulate")]
+    {
+        let out = stillbase(&[given, "nine-link"]);
+        assert_eq!(out.status.code(), Some(2), "{given}");
+        let all = text(&out.stderr);
+        assert!(all.contains(meant), "{given}: {all}");
+    }
+}
+
+#[test]
+fn quiet_stands_before_or_after_the_command() {
+    for args in
+        [&["--quiet", "check", "nine-link"][..], &["check", "--quiet", "nine-link"], &["check", "nine-link", "--quiet"]]
+    {
+        let out = stillbase(args);
+        assert!(out.status.success() && out.stderr.is_empty() && !out.stdout.is_empty(), "{args:?}");
+    }
+}

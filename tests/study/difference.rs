@@ -83,9 +83,39 @@ fn no_number_equals_no_number_alone() {
     assert!(between(&of(f64::INFINITY), &of(f64::INFINITY)).is_equal());
     let loose = Tolerances { all: 1e300, relative: 1.0, named: Vec::new() };
     for (a, b) in [(f64::NAN, 1.0), (1.0, f64::NAN), (f64::INFINITY, f64::NEG_INFINITY)] {
-        let difference = TableDifference::between(&of(a), &of(b), &Tolerances { relative: 0.0, ..loose.clone() });
+        let difference = TableDifference::between(&of(a), &of(b), &loose);
         assert!(!difference.is_within(), "{a} and {b}");
     }
+}
+
+/// Runs of steps that do not divide their duration end up to a step apart; where nothing is permitted, that differs.
+#[test]
+fn ends_may_be_a_row_apart_where_a_tolerance_is_given() {
+    let run = |step: f64, end: f64| {
+        let time: Vec<f64> = (0..).map(|i| step * f64::from(i)).take_while(|t| *t < end + 0.999 * step).collect();
+        let (line, on): (Vec<f64>, Vec<f64>) = time.iter().map(|t| (2.0 * t, f64::from(*t >= 0.5))).unzip();
+        table(&time, &[("x", "m", &line), ("payload/held", "1", &on)])
+    };
+    let loose = Tolerances { all: 1e-9, ..Tolerances::default() };
+    let (fine, coarse) = (run(0.001, 1.0), run(0.0007, 1.0));
+    let difference = TableDifference::between(&fine, &coarse, &loose);
+    assert!(difference.is_within() && !difference.is_equal(), "{}", difference.sentence(""));
+    assert!(difference.interpolated > 500 && difference.ends[0] != difference.ends[1]);
+    assert!(!between(&fine, &coarse).is_within());
+    assert!(!TableDifference::between(&fine, &run(0.0007, 0.99), &loose).is_within(), "ten rows are missing");
+    // A switch that is late by more than a row differs.
+    let late = |at: f64| {
+        let mut run = run(0.0007, 1.0);
+        for (t, on) in run.time.iter().zip(&mut run.columns[1].values) {
+            *on = f64::from(*t >= at);
+        }
+        TableDifference::between(&fine, &run, &loose)
+    };
+    assert!(late(0.5005).is_within() && !late(0.503).is_within());
+    // Rows that one table lacks are told.
+    let half = table(&[0.0, 0.2], &[("x", "m", &[0.0, 0.4])]);
+    let whole = table(&[0.0, 0.1, 0.2], &[("x", "m", &[0.0, 0.2, 0.4])]);
+    assert_eq!(between(&half, &whole).sentence(""), "equal: 1 signal at 2 instants, of 2 and 3 rows");
 }
 
 proptest! {

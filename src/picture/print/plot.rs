@@ -59,6 +59,8 @@ pub struct PrintPlot {
     pub is_equal: bool,
     /// Smallest range of the vertical axis, so that rounding does not look like a signal.
     pub least_range: f64,
+    /// Values that the vertical axis covers too, such as those of figures that stand beside this one.
+    pub covers: Vec<f64>,
 }
 
 /// Sizes, points.
@@ -183,8 +185,10 @@ impl PrintPlot {
         let curves = || self.curves.iter().flat_map(|curve| &curve.points);
         let all = || curves().chain(dots()).filter(|p| p.iter().all(|x| x.is_finite()));
         let range = |i: usize, margin: f64| {
+            let covers = self.covers.iter().filter(|x| i == 1 && x.is_finite());
+            let values = all().map(|p| p[i]).chain(covers.copied());
             let [low, high] =
-                all().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p[i]), high.max(p[i])]);
+                values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
             if low > high {
                 return [-1.0, 1.0];
             }

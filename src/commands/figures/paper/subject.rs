@@ -3,6 +3,7 @@
 use stillbase_app::{AppState, SessionCommand};
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
+use stillbase_picture::print::PrintPlot;
 use stillbase_picture::print::paper::{
     PrintPart, PrintedFigure, TableColumn, parameters, snapshots_plot, torque_plot, which_b, workspaces,
 };
@@ -28,6 +29,9 @@ const MACHINES: [&str; 2] = ["nine-link", "nine-link-table-1"];
 const POINTS: [[f64; 2]; 2] = [[0.50, 0.50], [0.55, 0.90]];
 /// The paper's pose constants, rad.
 const POSE_CONSTANTS: [f64; 2] = [2.4, 5.0];
+
+/// The paper's cases.
+const CASES: [&str; 3] = ["case-1", "case-2", "case-3"];
 
 /// Heights of the axes as fractions of the width of the figure.
 const PLOT_HEIGHT: f32 = 0.52;
@@ -94,9 +98,9 @@ impl<'a> Subject<'a> {
             PaperFigure::All | PaperFigure::Table1 => self.table(&made, width),
             PaperFigure::Fig3 => self.poses(&made, width),
             PaperFigure::Fig4 => self.workspaces(&made, width),
-            PaperFigure::Fig5a => self.motion("case-1", "(a) path planned in Cartesian space", &made, width),
-            PaperFigure::Fig5b => self.motion("case-2", "(b) path planned in joint space", &made, width),
-            PaperFigure::Fig5c => self.motion("case-3", "(c) reactionless path", &made, width),
+            PaperFigure::Fig5a => self.motion(CASES[0], "(a) path planned in Cartesian space", &made, width),
+            PaperFigure::Fig5b => self.motion(CASES[1], "(b) path planned in joint space", &made, width),
+            PaperFigure::Fig5c => self.motion(CASES[2], "(c) reactionless path", &made, width),
         }
     }
 
@@ -156,19 +160,29 @@ impl<'a> Subject<'a> {
         ))
     }
 
-    /// Returns a part of Fig. 5: snapshots of a case above its torques.
-    fn motion(&self, case: &str, what: &str, made: &str, width: f32) -> Result<PrintedFigure, Failure> {
+    /// Simulates a case to its end and returns it at its start, with its torques.
+    fn run(&self, case: &str) -> Result<(AppState, PrintPlot), Failure> {
         let scenario = self.scenario(case)?;
         let refused = |why| Failure::refused(&scenario, why);
         let mut app_state = AppState::new(scenario.clone(), Theme::Light).map_err(refused)?;
         app_state.run_to_end();
         app_state.carry_out(SessionCommand::Seek(0.0));
+        let torques = torque_plot(self.theme, &signals(&scenario.machine), app_state.session().frames());
+        Ok((app_state, torques))
+    }
+
+    /// Returns a part of Fig. 5: snapshots of a case above its torques.
+    fn motion(&self, case: &str, what: &str, made: &str, width: f32) -> Result<PrintedFigure, Failure> {
+        let (app_state, mut torques) = self.run(case)?;
         let session = app_state.session();
         let (frames, linkage) = (session.frames(), app_state.views().stage().linkage());
         let mut snapshots = snapshots_plot(self.theme, session.run(), linkage, frames);
         snapshots.head = what.into();
-        let torques = torque_plot(self.theme, &signals(&scenario.machine), frames);
-        let title = format!("Fig. 5 {what}, {}", scenario.machine.name());
+        // The three cases have one axis, so that they can be compared; one that cannot run is left out.
+        let others = CASES.iter().filter(|other| **other != case).filter_map(|other| self.run(other).ok());
+        let curves = others.flat_map(|(_, plot)| plot.curves);
+        torques.covers = curves.flat_map(|curve| curve.points).map(|[_, torque]| torque).collect();
+        let title = format!("Fig. 5 {what}, {}", session.scenario().machine.name());
         let [plot, drawing] = [PLOT_HEIGHT, DRAWING_HEIGHT].map(|share| share * width);
         let parts = vec![PrintPart::Plot(snapshots, drawing), PrintPart::Plot(torques, plot)];
         Ok(PrintedFigure::of(&title, made, width, parts))

@@ -82,6 +82,7 @@ pub fn which_b(theme: Theme, points: &[(String, Vector)], curves: &PoseCurves) -
         bands: curves.common.clone(),
         is_equal: false,
         least_range: 0.0,
+        covers: Vec::new(),
     }
 }
 
@@ -121,5 +122,6 @@ pub fn workspaces(theme: Theme, all: &[(f64, WorkspaceReport)]) -> PrintPlot {
         bands: Vec::new(),
         is_equal: true,
         least_range: 0.0,
+        covers: Vec::new(),
     }
 }

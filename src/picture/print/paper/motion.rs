@@ -65,6 +65,7 @@ fn over_time(
         bands: Vec::new(),
         is_equal: false,
         least_range: least,
+        covers: Vec::new(),
     }
 }
 
@@ -118,5 +119,6 @@ pub fn snapshots_plot(theme: Theme, run: &Run, linkage: &LinkageModel, frames: &
         bands: Vec::new(),
         is_equal: true,
         least_range: 0.0,
+        covers: Vec::new(),
     }
 }
