@@ -4,8 +4,11 @@
 pub mod axis;
 pub mod choice;
 pub mod drawn;
+#[cfg(feature = "ui")]
 pub mod figure;
+#[cfg(feature = "ui")]
 pub mod legend;
+#[cfg(feature = "ui")]
 mod limit_names;
 pub mod range;
 pub mod search;

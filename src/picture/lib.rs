@@ -26,6 +26,7 @@ pub mod paint;
 pub mod print;
 #[cfg(feature = "render")]
 pub mod render;
+#[cfg(feature = "ui")]
 #[doc(hidden)]
 pub mod report;
 pub mod scene;

@@ -9,7 +9,9 @@ use super::store::{Instant, RowTimes, Store};
 use stillbase_picture::render::offscreen::{NoAdapter, NoPicture, Picture, legible_scale};
 #[cfg(all(feature = "render", not(feature = "ui")))]
 use stillbase_picture::render::{View, offscreen::Gpu};
-use stillbase_picture::scene::{Scene, camera::Camera, options::ViewOptions, stage::Stage};
+#[cfg(feature = "render")]
+use stillbase_picture::scene::{Scene, camera::Camera};
+use stillbase_picture::scene::{options::ViewOptions, stage::Stage};
 use stillbase_simulation::frame::Frame;
 
 /// Size of buffered pictures above which they are written, bytes.

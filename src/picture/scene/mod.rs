@@ -42,6 +42,7 @@ pub mod pick;
 #[doc(hidden)]
 pub mod pointer;
 pub mod reaction;
+#[cfg(feature = "ui")]
 pub(crate) mod segment;
 #[doc(hidden)]
 pub mod sketching;

@@ -102,7 +102,10 @@ pub fn find(path: &[&str]) -> Option<&'static ResultRow> {
 pub fn column(command: &str, head: &str) -> Option<&'static ResultRow> {
     let is_it = |name: &str, row: &ResultRow| {
         let name_of = |head| is_named(name, head);
-        name_of(head) || (head.strip_suffix(row.unit).and_then(|rest| rest.strip_suffix(' ')).is_some_and(name_of))
+        // A `*` does not stand for a name and the unit after it.
+        let is_alone = !(name.contains('*') && head.contains(' '));
+        (is_alone && name_of(head))
+            || (head.strip_suffix(row.unit).and_then(|rest| rest.strip_suffix(' ')).is_some_and(name_of))
     };
     let all = || RESULTS.iter().flat_map(|(_, rows)| rows.iter());
     let own = |row: &&ResultRow| row.name.split_once('.').is_some_and(|(of, name)| of == command && is_it(name, row));
