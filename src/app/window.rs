@@ -40,7 +40,7 @@ pub fn run(scenario: Scenario, file: Option<PathBuf>, theme: Option<Theme>) -> R
         .watching(file.clone())
         .with_preferences(&liked)
         .offering_recovery(keeper::find_left_session());
-    // What the file says of where it was left, and whether a recording can be had again, is told by opening it.
+    // Opening the file tells where it was left, and whether a recording equals its run.
     let left = file.filter(|file| {
         is_recording(&file.to_string_lossy())
             || ResumePoint::of(&stillbase_files::text::read(file).unwrap_or_default()).is_some()
