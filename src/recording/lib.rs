@@ -343,7 +343,7 @@ fn write(
             Ok(recordings)
         }
         Err(stop) => {
-            store.abandon();
+            drop(store);
             Err(match stop {
                 CaseError::Refused { scenario, refusal } => stopped_or(scenario, refusal),
                 CaseError::Pictures(why) => RecordError::Pictures(why),

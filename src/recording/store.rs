@@ -1,23 +1,21 @@
 //! A [`Store`]: rows and columns of a recording and of its layout, encoded one chunk at a time.
 //!
-//! A separate thread encodes and writes chunks in order, or sends them to a viewer, while the next chunk is made. It
-//! returns its error, so that the caller learns of a full disk; the stream of the SDK only prints it to standard error.
-//! Identifiers of chunks
-//! count up from a number derived from the digest, so that equal data give equal chunks.
+//! Identifiers of chunks count up from a number derived from the digest, so that equal data give equal chunks.
+//!
+//! A file ends with an empty end mark and has no table of contents: the table would take a quarter of the file and of
+//! the processor time, and the viewer reads files of this size from start to end. `rerun rrd optimize` adds one.
 
 use std::io::Write;
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-use std::thread::{self, JoinHandle};
 
 use crate::rerun::{AsComponents, EntityPath, SerializedComponentColumn, StoreKind};
 use crate::rerun::{BlueprintActivationCommand, SetStoreInfo, StoreInfo, StoreSource};
 use crate::rerun::{Chunk, ChunkError, ChunkId, LogMsg, RowId, TimeColumn};
 use crate::rerun::{CrateVersion, StoreId};
-use crate::rerun::{EncodeError, Encoder, EncodingOptions};
+use crate::rerun::{Encodable, EncodeError, Encoder, EncodingOptions, MessageHeader, MessageKind};
 use crate::rerun::{TimeInt, TimePoint, Timeline};
 use thiserror::Error;
 
-use super::viewer::{Viewer, ViewerError};
+use super::viewer::{Viewer, ViewerError, ViewerStream};
 use stillbase_files::NewFile;
 pub use stillbase_files::recorded::{APPLICATION, TIME_TIMELINE};
 
@@ -141,23 +139,18 @@ impl RowTimes {
 
 /// The rows of a recording and of its layout.
 pub struct Store {
-    to: SyncSender<Message>,
-    /// Thread that writes; `None` once its result has been taken.
-    writer: Option<JoinHandle<Result<Option<NewFile>, StoreError>>>,
+    to: Open,
     recording: StoreId,
     layout: StoreId,
     /// Identifier given out last; the next one is larger by [`CHUNK_ID_STEP`].
     next: u128,
 }
 
-/// Messages to the writer thread; without a final `Close` it leaves no file.
-enum Message {
-    Row(Box<LogMsg>),
-    Close,
+/// A sink that has been opened.
+enum Open {
+    File(Box<Encoder<NewFile>>),
+    Viewer(ViewerStream),
 }
-
-/// Maximum number of messages that wait for the writer.
-const QUEUE_LENGTH: usize = 64;
 
 /// Distance between the identifiers of chunks; identifiers of the rows of a chunk count up from that of the chunk.
 const CHUNK_ID_STEP: u128 = 1 << 64;
@@ -165,16 +158,17 @@ const CHUNK_ID_STEP: u128 = 1 << 64;
 impl Store {
     /// Begins a recording and its layout; `digest` identifies the recording.
     pub fn open(to: Sink, digest: u128) -> Result<Self, StoreError> {
-        let (sender, receiver) = sync_channel(QUEUE_LENGTH);
-        let take = move || match to {
-            Sink::File(file) => write(file, &receiver).map(Some),
-            Sink::Viewer(viewer) => stream(&viewer, &receiver).map(|()| None),
+        let to = match to {
+            Sink::File(file) => {
+                let mut encoder = Encoder::new_eager(CrateVersion::LOCAL, EncodingOptions::PROTOBUF_COMPRESSED, file)?;
+                encoder.do_not_emit_footer();
+                Open::File(Box::new(encoder))
+            }
+            Sink::Viewer(viewer) => Open::Viewer(viewer.connect()?),
         };
-        let writer = thread::Builder::new().name("recording".into()).spawn(take)?;
         let id = format!("{digest:032x}");
         let mut store = Self {
-            to: sender,
-            writer: Some(writer),
+            to,
             recording: StoreId::new(StoreKind::Recording, APPLICATION, id.as_str()),
             layout: StoreId::new(StoreKind::Blueprint, APPLICATION, format!("{id}-layout")),
             // The upper half counts chunks, from a number that depends on the digest, so that recordings have different
@@ -191,17 +185,9 @@ impl Store {
     }
 
     fn send(&mut self, message: LogMsg) -> Result<(), StoreError> {
-        match self.to.send(Message::Row(Box::new(message))) {
-            Ok(()) => Ok(()),
-            Err(_) => Err(self.why()),
-        }
-    }
-
-    /// Returns the error that stopped the writer.
-    fn why(&mut self) -> StoreError {
-        match self.writer.take().map(JoinHandle::join) {
-            Some(Ok(Err(error))) => error,
-            _ => StoreError::Data("the writer has stopped".into()),
+        match &mut self.to {
+            Open::File(encoder) => encoder.append(&message).map(drop).map_err(StoreError::from),
+            Open::Viewer(stream) => stream.send(message).map_err(StoreError::from),
         }
     }
 
@@ -287,55 +273,19 @@ impl Store {
         self.send(command.into())
     }
 
-    /// Aborts the recording; no file is left.
-    pub fn abandon(mut self) {
-        drop(self.to);
-        // The writer removes the file when it ends; its error is known already.
-        let _ = self.writer.take().map(JoinHandle::join);
-    }
-
-    /// Finishes the file with its table of contents, or waits until the viewer has everything. Returns the file, if
-    /// there is one.
-    pub fn close(mut self) -> Result<Option<NewFile>, StoreError> {
-        if self.to.send(Message::Close).is_err() {
-            return Err(self.why());
-        }
-        match self.writer.take().map(JoinHandle::join) {
-            Some(Ok(written)) => written,
-            _ => Err(StoreError::Data("the writer has stopped".into())),
-        }
-    }
-}
-
-/// Encodes and writes messages until `Close`.
-fn write(to: NewFile, messages: &Receiver<Message>) -> Result<NewFile, StoreError> {
-    let mut encoder = Encoder::new_eager(CrateVersion::LOCAL, EncodingOptions::PROTOBUF_COMPRESSED, to)?;
-    let written = loop {
-        match messages.recv() {
-            Ok(Message::Row(message)) => {
-                if let Err(error) = encoder.append(&message) {
-                    break Err(error.into());
-                }
+    /// Finishes the file, or waits until the viewer has everything. Returns the file, if there is one; a store that is
+    /// dropped instead leaves none.
+    pub fn close(self) -> Result<Option<NewFile>, StoreError> {
+        match self.to {
+            Open::File(encoder) => {
+                let mut file = encoder.into_inner()?;
+                let mut mark = Vec::new();
+                MessageHeader { kind: MessageKind::End, len: 0 }.to_rrd_bytes(&mut mark).map_err(EncodeError::from)?;
+                file.write_all(&mark)?;
+                file.flush()?;
+                Ok(Some(file))
             }
-            Ok(Message::Close) => break encoder.finish().map_err(StoreError::from),
-            Err(_) => break Err(StoreError::Data("given up".into())),
-        }
-    };
-    // Takes the file out, so that the encoder does not try to finish after an error.
-    let mut to = encoder.into_inner()?;
-    written?;
-    to.flush()?;
-    Ok(to)
-}
-
-/// Sends messages to a viewer until `Close`.
-fn stream(to: &Viewer, messages: &Receiver<Message>) -> Result<(), StoreError> {
-    let stream = to.connect()?;
-    loop {
-        match messages.recv() {
-            Ok(Message::Row(message)) => stream.send(*message)?,
-            Ok(Message::Close) => return Ok(stream.finish()?),
-            Err(_) => return Err(StoreError::Data("given up".into())),
+            Open::Viewer(stream) => Ok(stream.finish()?).map(|()| None),
         }
     }
 }
