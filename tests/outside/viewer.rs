@@ -1,13 +1,15 @@
-//! A recording that is streamed is what is written to a file: Rerun's own server takes it, and keeps what it took.
+//! What Rerun's own program does with recordings: its server takes one that is streamed, and keeps what it took; its
+//! optimiser adds a table of contents.
 
 use std::collections::BTreeMap;
 use std::net::TcpListener;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use re_log_encoding::DecoderApp;
 use re_log_types::LogMsg;
+use stillbase::files::recorded::cases;
 use stillbase::recording::{Options, Viewer, record, stream};
 use stillbase::session::scenario::Scenario;
 
@@ -15,7 +17,7 @@ use super::folder::Folder;
 use super::python::python;
 use crate::Test;
 
-pub const TESTS: &[Test] = tests![what_is_streamed_is_what_is_written];
+pub const TESTS: &[Test] = tests![what_is_streamed_is_what_is_written, what_is_optimized_is_replayed];
 
 /// How many rows each entity has.
 fn rows(file: &Path) -> BTreeMap<String, usize> {
@@ -32,15 +34,36 @@ fn rows(file: &Path) -> BTreeMap<String, usize> {
     rows
 }
 
+/// Returns Rerun's program, which the package brings; by itself, so that it ends when it is told to.
+fn program() -> PathBuf {
+    let asked = python().args(["-c", "import rerun_cli; print(rerun_cli.__path__[0])"]).output().expect("it was there");
+    Path::new(String::from_utf8(asked.stdout).expect("UTF-8").trim_end()).join("rerun")
+}
+
+/// An optimised recording has a table of contents that Rerun finds right, and the session and signals it had before.
+fn what_is_optimized_is_replayed() {
+    let folder = Folder::new("optimized");
+    let (written, optimized) = (folder.path("written.rrd"), folder.path("optimized.rrd"));
+    let scenario = [Scenario::builtin("case-3").expect("built in")];
+    record(&scenario, &written, &Options::default(), &mut |_| true).expect("a file");
+    let rerun = |args: &[&str]| Command::new(program()).args(["rrd"]).args(args).output().expect("it was there");
+    let path = |file: &Path| file.to_str().expect("UTF-8").to_owned();
+    let done = rerun(&["optimize", &path(&written), "-o", &path(&optimized)]);
+    assert!(done.status.success(), "{done:?}");
+    let checked = rerun(&["verify", &path(&optimized)]);
+    assert!(checked.status.success(), "{checked:?}");
+    let [before, after] = [&written, &optimized].map(|file| cases(file).expect("a whole recording"));
+    assert_eq!(before[0].table, after[0].table);
+    assert_eq!(before[0].session, after[0].session);
+    assert!(before.len() == 1 && after.len() == 1 && before[0].table.columns.len() > 50);
+}
+
 fn what_is_streamed_is_what_is_written() {
     let folder = Folder::new("viewer");
     let port = TcpListener::bind("127.0.0.1:0").and_then(|free| free.local_addr()).expect("a port").port();
     let scenario = [Scenario::builtin("case-3").expect("built in")];
     let (written, taken) = (folder.path("written.rrd"), folder.path("taken.rrd"));
-    // The package brings the program; by itself, so that it ends when it is told to.
-    let asked = python().args(["-c", "import rerun_cli; print(rerun_cli.__path__[0])"]).output().expect("it was there");
-    let program = Path::new(String::from_utf8(asked.stdout).expect("UTF-8").trim_end()).join("rerun");
-    let mut server = Command::new(program)
+    let mut server = Command::new(program())
         .args(["--bind", "127.0.0.1", "--port", &port.to_string(), "--save"])
         .arg(&taken)
         .stdin(Stdio::null())

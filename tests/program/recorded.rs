@@ -246,3 +246,25 @@ fn what_is_no_recording_and_no_table_is_refused() {
     fails(&["diff", "case-3", "case-3", "--tolerance", "torqe=1"], 2, &["torqe", "torque"]);
     fails(&["diff", "case-3", "case-3", "--tolerance", "torque=-1"], 2, &["torque=-1"]);
 }
+
+/// A recording of another version may differ by rounding, and by no more.
+#[test]
+fn a_recording_of_another_version_replays_within_its_tolerance() {
+    let folder = Folder::new("recorded");
+    let file = folder.path("run.rrd");
+    prints(&["headless", "case-3", "-o", &word(file.clone()), "--set", "task.time=0.3"]);
+    let case = stillbase::files::recorded::cases(&file).expect("a recording").remove(0);
+    let scenario = case.scenario().expect("its session");
+    let replayed = |version: &str, factor: f64| {
+        let mut case = case.clone();
+        case.version = version.into();
+        case.table.columns.iter_mut().flat_map(|column| &mut column.values).for_each(|x| *x *= factor);
+        let difference = case.simulated_again(&scenario, &case.tolerances()).expect("it runs");
+        (difference.is_equal(), difference.is_within())
+    };
+    assert_eq!(replayed(env!("CARGO_PKG_VERSION"), 1.0), (true, true));
+    assert_eq!(replayed("0.1.0", 1.0), (true, true));
+    assert_eq!(replayed("0.1.0", 1.0 + 1e-10), (false, true));
+    assert_eq!(replayed("0.1.0", 1.0 + 1e-8), (false, false));
+    assert_eq!(replayed(env!("CARGO_PKG_VERSION"), 1.0 + 1e-10), (false, false));
+}
