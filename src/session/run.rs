@@ -108,7 +108,7 @@ impl Run {
             Ok(plan) => (plan, None),
             Err(why) => (Plan::rest(scenario, known.ok()), Some(WaitReason::of(scenario, known.ok(), why))),
         };
-        let guide = Guide::Motion { motion: plan.motion.clone(), start: 0.0 };
+        let guide = plan.guide(&scenario.machine);
         let simulation = Simulation::new(&scenario.setup(), guide)?;
         let (scenario, plan) = (Arc::new(scenario.clone()), Arc::new(plan));
         Ok(Self { scenario, space, plan, waiting, simulation, queries: queries.clone() })
@@ -324,7 +324,7 @@ impl Run {
     /// Returns whether any of 65 poses on the rest of the planned motion keeps the present joint limits but exceeds
     /// the new ones.
     fn leaves_limits(&self, changed: &Scenario) -> bool {
-        let Guide::Motion { motion, start } = self.simulation.guide() else { return false };
+        let Guide::Motion { motion, start, .. } = self.simulation.guide() else { return false };
         let done = motion.profile.at(self.simulation.time() - start).s;
         (0..=64).map(|i| done + (1.0 - done) * f64::from(i) / 64.0).any(|s| {
             let q = motion.path.at(s).q;

@@ -429,6 +429,7 @@ fn million() -> stillbase::study::samples::SignalSamples {
 
 /// What a frame takes to draw a plot of three signals of a million samples each, 1000 pixels wide, while its range moves:
 /// lines, bounds, statistics and all that is painted.
+#[cfg(feature = "ui")]
 #[divan::bench]
 fn plot_of_three_million_samples(bencher: Bencher) {
     use stillbase::picture::charts::choice::PlotChoice;

@@ -4,6 +4,7 @@ mod boundary;
 pub mod change_points;
 mod common;
 mod curve;
+mod floating;
 mod given;
 mod least_reaction;
 mod null_space;

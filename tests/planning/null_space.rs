@@ -8,9 +8,9 @@ use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::planning::off_plane::b_integral::BIntegral;
 use stillbase::planning::off_plane::drift::{DriftError, circle, drift, drift_in, zero_momentum_path};
+use stillbase::planning::off_plane::momentum::MomentumModel;
 use stillbase::planning::off_plane::null_space::{
-    NullSpace, integrability_violation, is_integrable, momentum_coefficients, momentum_row_rate, motion, projected,
-    rates,
+    NullSpace, integrability_violation, is_integrable, motion, projected, rates,
 };
 
 /// A pose in the middle of the joint limits.
@@ -18,6 +18,11 @@ const Q: [f64; 3] = [1.6875182179, 3.7146223682, 2.1801769897];
 
 fn nine_link() -> &'static Machine {
     builtin("nine-link").expect("built in")
+}
+
+/// The momentum of an arm on a base that stands still.
+fn still(arm: &Inertia) -> MomentumModel {
+    MomentumModel::from(arm)
 }
 
 /// The nine-link machine with two bars out of balance.
@@ -57,7 +62,7 @@ proptest! {
         drives in 2usize..=8, q in prop::collection::vec(-7.0..7.0f64, 8), off in -0.1..0.1f64,
     ) {
         let (model, q) = (serial(drives, off), angles(&q[..drives]));
-        let space = NullSpace::of(&model, &q);
+        let space = NullSpace::of(&still(&model), &q);
         prop_assert_eq!(space.basis().len(), drives - 1);
         for (i, x) in space.basis().iter().enumerate() {
             prop_assert!(angular_momentum(&model, &q.units(), x).abs() < 1e-13);
@@ -75,12 +80,12 @@ proptest! {
         let model = serial(drives, 0.03);
         let (q, qd) = (angles(&q[..drives]), PerDrive::from_slice(&qd[..drives]).expect("few"));
         let (h, _) = mass_matrix(&model, &q.units(), &qd);
-        let d = |s: f64| momentum_coefficients(&model, &DriveAngles(q.0.plus(s, &qd)).units());
+        let d = |s: f64| still(&model).coefficients(&DriveAngles(q.0.plus(s, &qd)).units());
         for k in 0..drives {
             let sum: f64 = (0..drives).map(|l| h.get(l, k)).sum();
             prop_assert!((sum - d(0.0)[k]).abs() < 1e-13);
             let slope = (d(1e-5)[k] - d(-1e-5)[k]) / 2e-5;
-            prop_assert!((slope - momentum_row_rate(&model, &q.units(), &qd)[k]).abs() < 1e-7);
+            prop_assert!((slope - still(&model).coefficient_rates(&q.units(), &qd)[k]).abs() < 1e-7);
         }
     }
 
@@ -91,14 +96,14 @@ proptest! {
             let d = |k: usize, h: f64, i: usize| {
                 let mut q = q;
                 q[k] += h;
-                momentum_coefficients(&model, &angles(&q).units())[i]
+                still(&model).coefficients(&angles(&q).units())[i]
             };
             let slope = |k: usize, i: usize| (d(k, 1e-5, i) - d(k, -1e-5, i)) / 2e-5;
             let curl: f64 = [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
                 .map(|(i, j, k)| d(0, 0.0, i) * (slope(j, k) - slope(k, j)))
                 .iter()
                 .sum();
-            let got = integrability_violation(&model, &q.into());
+            let got = integrability_violation(&still(&model), &q.into());
             prop_assert!((got - curl.abs()).abs() < 1e-8 * (1.0 + got), "{got} and {curl}");
         }
     }
@@ -112,7 +117,7 @@ proptest! {
         let sum = (h(0) * c(1, 2) - c(1, 0) * c(0, 2)) * turn(1, 2)
             + (h(1) * c(2, 0) - c(2, 1) * c(1, 0)) * turn(2, 0)
             + (h(2) * c(0, 1) - c(0, 2) * c(2, 1)) * turn(0, 1);
-        prop_assert!((integrability_violation(&model, &q.into()) - 2.0 * sum.im.abs()).abs() < 1e-12);
+        prop_assert!((integrability_violation(&still(&model), &q.into()) - 2.0 * sum.im.abs()).abs() < 1e-12);
     }
 
     /// Rates of three drives against the solution of the equations they are to solve.
@@ -120,7 +125,7 @@ proptest! {
     fn rates_follow_the_tip(a in [0.4..2.7f64, 0.4..2.7], v in [-1.0..1.0f64, -1.0..1.0], momentum in -1.0..1.0f64) {
         let model = unbalanced(0.1, 0.6);
         let q = angles(&[0.4, 0.4 + a[0], 0.4 + a[0] + a[1] - std::f64::consts::PI]);
-        let Some(qd) = rates(&model, &q, Vector::new(v[0], v[1]), momentum) else { return Ok(()) };
+        let Some(qd) = rates(&still(&model), &q, Vector::new(v[0], v[1]), momentum) else { return Ok(()) };
         let e = q.units();
         prop_assert!((velocity(nine_link().end_effector(), &e, &qd) - Vector::new(v[0], v[1])).norm() < 1e-10);
         prop_assert!((angular_momentum(&model, &e, &qd) - momentum).abs() < 1e-10);
@@ -132,7 +137,7 @@ proptest! {
         let model = serial(2, off);
         let integral = BIntegral::of(&model).expect("two drives");
         let slope = |q: [f64; 2]| {
-            let d = momentum_coefficients(&model, &angles(&q).units());
+            let d = still(&model).coefficients(&angles(&q).units());
             [-d[1] / (d[0] + d[1]), d[0] / (d[0] + d[1])]
         };
         let n = 2000;
@@ -166,7 +171,7 @@ fn pose_integral_is_its_quadrature() {
             let n = 4000;
             let share = |i: i32| {
                 let d =
-                    momentum_coefficients(&model, &angles(&[0.0, delta * (f64::from(i) + 0.5) / f64::from(n)]).units());
+                    still(&model).coefficients(&angles(&[0.0, delta * (f64::from(i) + 0.5) / f64::from(n)]).units());
                 d[1] / (d[0] + d[1])
             };
             let want = 0.3 + delta * (0..n).map(share).sum::<f64>() / f64::from(n);
@@ -191,18 +196,18 @@ fn pose_integral_is_its_quadrature() {
 #[test]
 fn only_invariant_machines_have_a_pose_constant() {
     let poses = || (0..40).map(|i| [0.37, 1.91, 4.23].map(|x| (x * f64::from(i)) % 6.0));
-    let most = |model: &Inertia| poses().map(|q| integrability_violation(model, &q.into())).fold(0.0, f64::max);
+    let most = |model: &Inertia| poses().map(|q| integrability_violation(&still(model), &q.into())).fold(0.0, f64::max);
     let exact = Inertia::of(nine_link());
     assert!(is_integrable(&exact) && most(&exact) < 1e-14);
     assert!(is_integrable(&serial(2, 0.1)));
-    assert_eq!(integrability_violation(&serial(2, 0.1), &[1.0, 2.5].into()), 0.0);
+    assert_eq!(integrability_violation(&still(&serial(2, 0.1)), &[1.0, 2.5].into()), 0.0);
     for model in [unbalanced(0.05, 0.25), unbalanced(-0.011, 0.9), serial(3, 0.0), serial(3, 0.05)] {
         assert!(!is_integrable(&model));
         assert!(most(&model) > 1e-3 * model.invariance_residual(), "{}", most(&model));
     }
     // Four drives: every three of them count.
     let four = serial(4, 0.0);
-    assert!(!is_integrable(&four) && integrability_violation(&four, &[0.1, 1.4, 2.9, 4.0].into()) > 1e-3);
+    assert!(!is_integrable(&four) && integrability_violation(&still(&four), &[0.1, 1.4, 2.9, 4.0].into()) > 1e-3);
 }
 
 /// A point mass on a chain without mass: its angular momentum is m r² θ̇, so that its bearing θ is a pose constant.
@@ -225,15 +230,15 @@ fn a_point_mass_has_its_bearing() {
     let machine = parse(&text, "chain").expect("valid");
     let model = Inertia::of(&machine);
     assert!(is_integrable(&model) && !model.is_invariant());
-    assert!(integrability_violation(&model, &[0.3, 1.9, 3.1].into()) < 1e-12);
+    assert!(integrability_violation(&still(&model), &[0.3, 1.9, 3.1].into()) < 1e-12);
     let mut q = angles(&[0.3, 1.2, 1.9]);
     let bearing = |q: &DriveAngles| end_effector(machine.end_effector(), &q.units()).arg();
     let from = bearing(&q);
-    let mut last = NullSpace::of(&model, &q).basis()[0];
+    let mut last = NullSpace::of(&still(&model), &q).basis()[0];
     for _ in 0..1000 {
         // The basis may turn round from pose to pose.
         let mut way = |q: &DriveAngles| {
-            let way = NullSpace::of(&model, q).basis()[0];
+            let way = NullSpace::of(&still(&model), q).basis()[0];
             last = way.scaled(way.dot(&last).signum());
             last
         };
@@ -252,7 +257,7 @@ fn round(radius: f64) -> impl Fn(f64) -> stillbase::planning::curves::CurvePoint
 
 #[test]
 fn an_invariant_machine_comes_back() {
-    let drift = drift(&Inertia::of(nine_link()), Q.into(), round(0.08), 10).expect("regular");
+    let drift = drift(&still(&Inertia::of(nine_link())), Q.into(), round(0.08), 10).expect("regular");
     assert_eq!(drift.ends.len(), 11);
     for end in &drift.ends {
         assert!(end.0.minus(&PerDrive::from(Q)).max_abs() < 1e-9, "{end:?}");
@@ -263,7 +268,7 @@ fn an_invariant_machine_comes_back() {
 #[test]
 fn another_machine_drifts() {
     let model = unbalanced(0.1, 0.6);
-    let drift = drift(&model, Q.into(), round(0.08), 10).expect("regular");
+    let drift = drift(&still(&model), Q.into(), round(0.08), 10).expect("regular");
     let steps: Vec<f64> = drift.ends.windows(2).map(|w| w[1].0.minus(&w[0].0).max_abs()).collect();
     assert!(steps.iter().all(|step| *step > 1e-3), "{steps:?}");
     assert!(drift.total().max_abs() > 5.0 * steps[0], "{steps:?}: it adds up");
@@ -272,7 +277,7 @@ fn another_machine_drifts() {
     assert!(drift.ends.iter().all(|q| (end_effector(tip, &q.units()) - at).norm() < 1e-12));
 
     // Halving the step leaves a sixteenth of the error or less: on a closed path much of it cancels.
-    let end = |spaces| drift_in(&model, Q.into(), round(0.08), 2, spaces).expect("regular").total();
+    let end = |spaces| drift_in(&still(&model), Q.into(), round(0.08), 2, spaces).expect("regular").total();
     let exact = end(256);
     let errors = [8, 16, 32].map(|spaces| end(spaces).minus(&exact).max_abs());
     for pair in errors.windows(2) {
@@ -286,17 +291,17 @@ fn another_machine_drifts() {
 #[test]
 fn drift_goes_with_the_area() {
     let model = unbalanced(0.1, 0.6);
-    let left = |radius: f64| drift(&model, Q.into(), round(radius), 1).expect("regular").total().max_abs();
+    let left = |radius: f64| drift(&still(&model), Q.into(), round(radius), 1).expect("regular").total().max_abs();
     let (large, small) = (left(4e-3), left(2e-3));
     assert!((large / small - 4.0).abs() < 0.1, "{large:e} {small:e}");
     // The other way round it comes back to where it was.
-    let there = drift(&model, Q.into(), round(0.05), 1).expect("regular").ends[1];
+    let there = drift(&still(&model), Q.into(), round(0.05), 1).expect("regular").ends[1];
     let curve = round(0.05);
     let back = move |s: f64| {
         let at = curve(1.0 - s);
         stillbase::planning::curves::CurvePoint { first: -at.first, ..at }
     };
-    let home = drift(&model, there, back, 1).expect("regular").ends[1];
+    let home = drift(&still(&model), there, back, 1).expect("regular").ends[1];
     assert!(home.0.minus(&PerDrive::from(Q)).max_abs() < 1e-10);
 }
 
@@ -304,7 +309,7 @@ fn drift_goes_with_the_area() {
 #[test]
 fn a_cycle_is_a_path_of_zero_moment() {
     let model = unbalanced(0.1, 0.6);
-    let table = zero_momentum_path(&model, Q.into(), round(0.08)).expect("regular");
+    let table = zero_momentum_path(&still(&model), Q.into(), round(0.08)).expect("regular");
     let curve = round(0.08);
     for i in 0..=1000 {
         let s = f64::from(i) / 1000.0;
@@ -329,7 +334,7 @@ fn motions_along_the_null_space_transmit_nothing() {
     for drives in [2, 3, 5] {
         let (model, start) = (serial(drives, 0.04), angles(&[0.1, 1.4, 2.9, 4.0, 0.7][..drives]));
         let w = PerDrive::from_slice(&[1.1, -0.7, 1.9, 0.4, -1.3][..drives]).expect("few");
-        let table = motion(&model, start, &w).expect("of this machine");
+        let table = motion(&still(&model), start, &w).expect("of this machine");
         assert!(table.at(1.0).q.0.minus(&start.0).max_abs() > 0.5, "it goes somewhere");
         for node in table.nodes() {
             let e = node.q.units();
@@ -337,47 +342,50 @@ fn motions_along_the_null_space_transmit_nothing() {
             let wrench = base_wrench(&model, &e, &node.first, &node.second, &ExternalLoads::default());
             assert!(wrench.total().moment.abs() < 1e-12, "{:e}", wrench.total().moment);
             // What was taken away is at right angles to every other direction of the null space.
-            let gone = w.minus(&projected(&model, &node.q, &w));
-            assert!(NullSpace::of(&model, &node.q).basis().iter().all(|x| x.dot(&gone).abs() < 1e-13));
+            let gone = w.minus(&projected(&still(&model), &node.q, &w));
+            assert!(NullSpace::of(&still(&model), &node.q).basis().iter().all(|x| x.dot(&gone).abs() < 1e-13));
         }
         for i in 1..50 {
             let (s, h) = (f64::from(i) / 50.0, 1e-4);
             let [back, on, ahead] = [s - h, s, s + h].map(|s| table.at(s));
             let rate = ahead.q.0.minus(&back.q.0).scaled(0.5 / h);
             assert!(rate.minus(&on.first).max_abs() < 1e-5, "{drives} drives, s = {s}");
-            assert!(projected(&model, &on.q, &w).minus(&on.first).max_abs() < 1e-8, "{drives} drives, s = {s}");
+            assert!(projected(&still(&model), &on.q, &w).minus(&on.first).max_abs() < 1e-8, "{drives} drives, s = {s}");
         }
         if let Some(integral) = BIntegral::of(&model) {
             let b = table.nodes().iter().map(|node| integral.b([node.q[0], node.q[1]]));
             assert!(b.clone().all(|b| (b - integral.b([start[0], start[1]])).abs() < 1e-10));
         }
     }
-    let straight = motion(&Inertia::of(nine_link()), Q.into(), &[0.3, -0.4, 1.0].into()).expect("of this machine");
+    let straight =
+        motion(&still(&Inertia::of(nine_link())), Q.into(), &[0.3, -0.4, 1.0].into()).expect("of this machine");
     let way = straight.at(1.0).q.0.minus(&PerDrive::from(Q));
     assert!(straight.at(0.3).q.0.minus(&PerDrive::from(Q).plus(0.3, &way)).max_abs() < 1e-12);
-    assert_eq!(motion(&serial(2, 0.0), Q.into(), &[0.0; 3].into()), None);
+    assert_eq!(motion(&still(&serial(2, 0.0)), Q.into(), &[0.0; 3].into()), None);
 }
 
 #[test]
 fn what_cannot_be_followed_is_refused() {
     let model = unbalanced(0.1, 0.6);
-    assert_eq!(drift(&serial(2, 0.0), [0.0; 2].into(), round(0.1), 1), Err(DriftError::Drives { drives: 2 }));
+    assert_eq!(drift(&still(&serial(2, 0.0)), [0.0; 2].into(), round(0.1), 1), Err(DriftError::Drives { drives: 2 }));
     let away = circle(Vector::new(0.5, 0.5), Vector::new(0.7, 0.5));
-    assert!(matches!(drift(&model, Q.into(), away, 1), Err(DriftError::Start { miss }) if miss > 0.1));
+    assert!(matches!(drift(&still(&model), Q.into(), away, 1), Err(DriftError::Start { miss }) if miss > 0.1));
     let half = |s: f64| round(0.08)(0.5 * s);
-    assert!(matches!(drift(&model, Q.into(), half, 1), Err(DriftError::Open { gap }) if (gap - 0.16).abs() < 1e-9));
+    assert!(
+        matches!(drift(&still(&model), Q.into(), half, 1), Err(DriftError::Open { gap }) if (gap - 0.16).abs() < 1e-9)
+    );
     // A circle that leaves the arm's reach.
-    let error = drift(&model, Q.into(), round(1.0), 1).expect_err("too large").to_string();
+    let error = drift(&still(&model), Q.into(), round(1.0), 1).expect_err("too large").to_string();
     assert!(error.contains("no rates of zero momentum follow it") && error.contains("in cycle 1"), "{error}");
     // Of more drives than three, the basis still spans all that D leaves, and the rates are the least of those.
     let (four, q) = (serial(4, 0.02), angles(&[0.1, 1.4, 2.9, 4.0]));
-    let own = rates(&four, &q, Vector::new(0.3, -0.1), 0.0).expect("four drives can");
+    let own = rates(&still(&four), &q, Vector::new(0.3, -0.1), 0.0).expect("four drives can");
     let (e, lengths) = (q.units(), [0.1, 0.2, 0.3, 0.4]);
     let moved: Vector = (0..4).map(|k| Vector::new(0.0, lengths[k] * own[k]) * e[k]).sum();
     assert!((moved - Vector::new(0.3, -0.1)).norm() < 1e-12);
-    assert!(momentum_coefficients(&four, &q.units()).dot(&own).abs() < 1e-12);
-    assert_eq!(rates(&serial(2, 0.0), &angles(&[0.1, 1.4]), Vector::default(), 0.0), None);
-    let space = NullSpace::of(&four, &q);
+    assert!(still(&four).coefficients(&q.units()).dot(&own).abs() < 1e-12);
+    assert_eq!(rates(&still(&serial(2, 0.0)), &angles(&[0.1, 1.4]), Vector::default(), 0.0), None);
+    let space = NullSpace::of(&still(&four), &q);
     let columns: Vec<DVector<f64>> = space.basis().iter().map(|x| DVector::from_row_slice(x)).collect();
     assert_eq!(DMatrix::from_columns(&columns).rank(1e-9), 3);
 }

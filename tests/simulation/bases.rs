@@ -21,7 +21,11 @@ fn free() -> Base {
 
 fn line(from: [f64; 3], to: [f64; 3], time: f64) -> Guide {
     let path = Path::JointLine { from: from.into(), to: to.into() };
-    Guide::Motion { motion: Motion::new(path, TimeLaw::Quintic, time).into(), start: 0.0 }
+    Guide::Motion {
+        motion: Motion::new(path, TimeLaw::Quintic, time).into(),
+        start: 0.0,
+        base_shift: Default::default(),
+    }
 }
 
 fn begun(model: &Machine, plant: &PlantDifferences, base: &Base, control: &Control, guide: Guide) -> Simulation {
@@ -182,7 +186,11 @@ fn momentum_is_kept_for_an_hour() {
     let control = Control { law: stillbase::simulation::control::ControlLaw::Pd, ..zero };
     // Turning at the start: a guide that is in full motion when it begins.
     let path = Path::JointLine { from: [1.6, 3.5, 2.0].into(), to: [2.1, 4.4, 3.2].into() };
-    let guide = Guide::Motion { motion: Motion::new(path, TimeLaw::Quintic, 2.0).into(), start: -1.0 };
+    let guide = Guide::Motion {
+        motion: Motion::new(path, TimeLaw::Quintic, 2.0).into(),
+        start: -1.0,
+        base_shift: Default::default(),
+    };
     let (plant, step) = (PlantDifferences::default(), 0.01);
     let setup = Setup { model: &model, plant: &plant, base: &base, control: &control, step };
     let mut simulation = Simulation::new(&setup, guide).expect("valid");

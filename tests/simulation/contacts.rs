@@ -292,7 +292,9 @@ fn against_the_twin(case: u64) -> (f64, usize) {
     let plant = PlantDifferences { friction, ..PlantDifferences::default() };
     let control: stillbase::simulation::control::Control = toml::from_str("kp = 0.0\nkd = 0.0").expect("valid");
     let setup = Setup { model: &machine, plant: &plant, base: &base, control: &control, step: STEP };
-    let mut simulation = Simulation::new(&setup, Guide::Motion { motion: motion.into(), start: 0.0 }).expect("valid");
+    let mut simulation =
+        Simulation::new(&setup, Guide::Motion { motion: motion.into(), start: 0.0, base_shift: Default::default() })
+            .expect("valid");
     let mut off: f64 = 0.0;
     for (q, v) in &exact {
         simulation.advance();

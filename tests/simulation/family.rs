@@ -24,7 +24,11 @@ fn way(noise: &mut Noise, n: usize, far: f64) -> [DriveAngles; 2] {
 fn run(model: &Machine, plant: &PlantDifferences, base: &Base, control: &Control, ways: [DriveAngles; 2]) -> Frame {
     const STEPS: u32 = 200;
     let path = Path::JointLine { from: ways[0], to: ways[1] };
-    let guide = Guide::Motion { motion: Motion::new(path, TimeLaw::Quintic, 0.2).into(), start: 0.0 };
+    let guide = Guide::Motion {
+        motion: Motion::new(path, TimeLaw::Quintic, 0.2).into(),
+        start: 0.0,
+        base_shift: Default::default(),
+    };
     let mut simulation = Simulation::new(&Setup { model, plant, base, control, step: 0.001 }, guide).expect("valid");
     for _ in 0..STEPS {
         simulation.advance();

@@ -9,11 +9,9 @@ use crate::curves::PathPoint;
 use crate::curves::curve::{Curve, CurvePoint};
 use crate::curves::path::by_pieces;
 use crate::curves::table::PathTable;
-use crate::off_plane::null_space::{
-    determines, has_no_angular_momentum, jacobian_with_momentum, least, momentum_row_rate, rates, solve,
-};
-use stillbase_mechanics::kinematics::{acceleration, end_effector};
-use stillbase_mechanics::machine::Inertia;
+use crate::off_plane::momentum::MomentumModel;
+use crate::off_plane::null_space::{determines, jacobian_with_momentum, least, rates, solve};
+use stillbase_mechanics::kinematics::acceleration;
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use stillbase_settings::number::counted;
 
@@ -79,7 +77,7 @@ const MAX_STEP_ERROR: f64 = 1e-4;
 /// If the start has a wrong number of angles or is off the curve, if a machine with angular momentum has fewer than
 /// three drives, or if [J; D] loses rank.
 pub fn zero_momentum_path(
-    model: &Inertia,
+    model: &MomentumModel,
     start: DriveAngles,
     curve: impl Fn(f64) -> CurvePoint,
 ) -> Result<PathTable, DriftError> {
@@ -92,7 +90,7 @@ pub fn zero_momentum_path(
 /// # Errors
 /// As [`zero_momentum_path`].
 pub fn zero_momentum_curve(
-    model: &Inertia,
+    model: &MomentumModel,
     start: DriveAngles,
     curve: &Curve,
     cycle: usize,
@@ -108,18 +106,18 @@ pub fn zero_momentum_curve(
 
 /// Follows a curve once and returns the nodes.
 fn follow_once(
-    model: &Inertia,
+    model: &MomentumModel,
     start: DriveAngles,
     curve: &impl Fn(f64) -> CurvePoint,
     spaces: usize,
     cycle: usize,
 ) -> Result<Vec<PathPoint>, DriftError> {
     let drives = model.drives();
-    if start.len() != drives || (drives < 3 && !has_no_angular_momentum(model)) {
+    if start.len() != drives || (drives < 3 && !model.is_zero()) {
         return Err(DriftError::Drives { drives });
     }
-    let reach = model.end_effector.iter().map(|c| c.abs()).sum::<f64>();
-    let miss = (curve(0.0).p - end_effector(&model.end_effector, &start.units())).norm();
+    let reach = model.reach();
+    let miss = (curve(0.0).p - model.place(&start)).norm();
     if miss.is_nan() || miss > 1e-8 * reach {
         return Err(DriftError::Start { miss });
     }
@@ -144,7 +142,7 @@ fn follow_once(
         q = DriveAngles(q.0.plus(h / 6.0, &k1).plus(h / 3.0, &k2).plus(h / 3.0, &k3).plus(h / 6.0, &k4));
         let goal = curve((i + 1) as f64 * h).p;
         for j in 0..MAX_CORRECTIONS {
-            let gap = goal - end_effector(&model.end_effector, &q.units());
+            let gap = goal - model.place(&q);
             if j == 0 && (gap.is_nan() || gap.norm() > MAX_STEP_ERROR * reach) {
                 return Err(singular(s));
             }
@@ -158,7 +156,7 @@ fn follow_once(
 }
 
 /// Returns q, q′ and q″ with D q′ = 0 and D q″ + D′ q′ = 0.
-fn node(model: &Inertia, q: &DriveAngles, point: &CurvePoint) -> Option<PathPoint> {
+fn node(model: &MomentumModel, q: &DriveAngles, point: &CurvePoint) -> Option<PathPoint> {
     if !determines(model) {
         let (first, second) = least(model, q, point.first, point.second, 0.0)?;
         return Some(PathPoint { q: *q, first, second });
@@ -166,8 +164,8 @@ fn node(model: &Inertia, q: &DriveAngles, point: &CurvePoint) -> Option<PathPoin
     let e = q.units();
     let (lines, scale) = jacobian_with_momentum(model, &e)?;
     let first = solve(&lines, point.first, 0.0)?;
-    let bent = acceleration(&model.end_effector, &e, &first, &PerDrive::zeros(3));
-    let turned = momentum_row_rate(model, &e, &first).dot(&first);
+    let bent = acceleration(model.tip(), &model.tip_units(&e), &first, &PerDrive::zeros(3));
+    let turned = model.coefficient_rates(&e, &first).dot(&first);
     let second = solve(&lines, point.second - bent, -turned / scale)?;
     Some(PathPoint { q: *q, first, second })
 }
@@ -194,7 +192,7 @@ impl Drift {
 /// # Errors
 /// As [`zero_momentum_path`], or if the curve is not closed.
 pub fn drift(
-    model: &Inertia,
+    model: &MomentumModel,
     start: DriveAngles,
     curve: impl Fn(f64) -> CurvePoint,
     cycles: usize,
@@ -208,13 +206,13 @@ pub fn drift(
 /// # Errors
 /// As [`drift`].
 pub fn drift_in(
-    model: &Inertia,
+    model: &MomentumModel,
     start: DriveAngles,
     curve: impl Fn(f64) -> CurvePoint,
     cycles: usize,
     spaces: usize,
 ) -> Result<Drift, DriftError> {
-    let reach = model.end_effector.iter().map(|c| c.abs()).sum::<f64>();
+    let reach = model.reach();
     let gap = (curve(1.0).p - curve(0.0).p).norm();
     if gap.is_nan() || gap > 1e-10 * reach {
         return Err(DriftError::Open { gap });

@@ -10,6 +10,8 @@ pub mod drift;
 pub mod inverse;
 pub mod least_reaction;
 #[doc(hidden)]
+pub mod momentum;
+#[doc(hidden)]
 pub mod null_space;
 pub mod price;
 

@@ -20,34 +20,12 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::momentum::MomentumModel;
 use crate::curves::PathPoint;
 use crate::curves::table::PathTable;
-use stillbase_mechanics::dynamics::mass_matrix;
 use stillbase_mechanics::kinematics::{column, minimum_norm, minimum_norm_with};
 use stillbase_mechanics::machine::{BALANCE_TOLERANCE, Inertia};
 use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, UnitVectors, Vector};
-
-/// Returns D_k at a pose, kg m², (A3).
-#[inline]
-pub fn momentum_coefficients(model: &Inertia, e: &UnitVectors) -> PerDrive {
-    let n = model.drives();
-    let (h, _) = mass_matrix(model, e, &PerDrive::zeros(n));
-    PerDrive::from_fn(n, |k| h.momentum_coefficient(k))
-}
-
-/// Returns Ḋ_k at a pose for rates q̇, kg m²/s.
-#[inline]
-pub fn momentum_row_rate(model: &Inertia, e: &UnitVectors, qd: &PerDrive) -> PerDrive {
-    let n = model.drives();
-    // Re Z_kl changes at −Im Z_kl (q̇_l − q̇_k).
-    PerDrive::from_fn(n, |k| (0..n).map(|l| -coupling(model, e, k, l).im * (qd[l] - qd[k])).sum())
-}
-
-/// Returns Z_kl, kg m².
-#[inline]
-fn coupling(model: &Inertia, e: &UnitVectors, k: usize, l: usize) -> Vector {
-    model.coupling(k, l) * (e[k].conj() * e[l])
-}
 
 /// The rates that transmit no moment at a pose: an orthonormal basis of D · q̇ = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,9 +36,9 @@ pub struct NullSpace {
 
 impl NullSpace {
     /// Returns the null space at a pose q, rad.
-    pub fn of(model: &Inertia, q: &DriveAngles) -> Self {
+    pub fn of(model: &MomentumModel, q: &DriveAngles) -> Self {
         let n = model.drives();
-        let d = momentum_coefficients(model, &q.units());
+        let d = model.coefficients(&q.units());
         let norm = d.dot(&d).sqrt();
         // The Householder reflection that maps D to the first axis maps the other axes to a basis of D's complement.
         let mut v = d;
@@ -82,8 +60,8 @@ impl NullSpace {
 }
 
 /// Returns the rates of zero momentum nearest to the wanted rates w: w − D (D · w)/(D · D).
-pub fn projected(model: &Inertia, q: &DriveAngles, w: &PerDrive) -> PerDrive {
-    let d = momentum_coefficients(model, &q.units());
+pub fn projected(model: &MomentumModel, q: &DriveAngles, w: &PerDrive) -> PerDrive {
+    let d = model.coefficients(&q.units());
     w.plus(-share(&d, w), &d)
 }
 
@@ -102,7 +80,7 @@ const STEPS_PER_INTERVAL: usize = 4;
 /// Runge–Kutta method. The derivative q′ is the wanted direction w, rad, projected onto the rates of zero momentum. On
 /// an invariant machine the motion is a straight line. Returns `None` unless pose and direction are finite and have
 /// one entry for each drive.
-pub fn motion(model: &Inertia, start: DriveAngles, w: &PerDrive) -> Option<PathTable> {
+pub fn motion(model: &MomentumModel, start: DriveAngles, w: &PerDrive) -> Option<PathTable> {
     let n = model.drives();
     if start.len() != n || w.len() != n || !start.iter().chain(w.iter()).all(|x| x.is_finite()) {
         return None;
@@ -125,12 +103,12 @@ pub fn motion(model: &Inertia, start: DriveAngles, w: &PerDrive) -> Option<PathT
 }
 
 /// Returns q, q′ = w − σ D and q″ = −σ′ D − σ D′, with σ = (D · w)/(D · D).
-fn node(model: &Inertia, q: DriveAngles, w: &PerDrive) -> PathPoint {
+fn node(model: &MomentumModel, q: DriveAngles, w: &PerDrive) -> PathPoint {
     let e = q.units();
-    let d = momentum_coefficients(model, &e);
+    let d = model.coefficients(&e);
     let sigma = share(&d, w);
     let first = w.plus(-sigma, &d);
-    let rate = momentum_row_rate(model, &e, &first);
+    let rate = model.coefficient_rates(&e, &first);
     let square = d.dot(&d);
     let sigma_rate = if square > 0.0 { (rate.dot(w) - 2.0 * sigma * d.dot(&rate)) / square } else { 0.0 };
     PathPoint { q, first, second: d.scaled(-sigma_rate).plus(-sigma, &rate) }
@@ -139,8 +117,8 @@ fn node(model: &Inertia, q: DriveAngles, w: &PerDrive) -> PathPoint {
 /// Returns the rates that give the end effector the velocity v, m/s, at angular momentum h, kg m²/s, about B: [J; D] q̇
 /// = [v; h]. With more than three drives, or if no motion has angular momentum, these are the rates of minimum norm.
 /// Returns `None` for fewer than three drives with angular momentum, or if the matrix has lost rank.
-pub fn rates(model: &Inertia, q: &DriveAngles, v: Vector, h: f64) -> Option<PerDrive> {
-    if model.drives() > 3 || has_no_angular_momentum(model) {
+pub fn rates(model: &MomentumModel, q: &DriveAngles, v: Vector, h: f64) -> Option<PerDrive> {
+    if model.drives() > 3 || model.is_zero() {
         return least(model, q, v, Vector::default(), h).map(|(rates, _)| rates);
     }
     let (lines, scale) = jacobian_with_momentum(model, &q.units())?;
@@ -160,10 +138,10 @@ pub enum MomentumFreedom {
 
 impl MomentumFreedom {
     /// Classifies a machine.
-    pub fn of(model: &Inertia) -> Self {
+    pub fn of(model: &MomentumModel) -> Self {
         match model.drives() {
             1 => Self::None,
-            2 if !has_no_angular_momentum(model) => Self::OneCurve,
+            2 if !model.is_zero() => Self::OneCurve,
             _ => Self::AnyCurve,
         }
     }
@@ -171,39 +149,38 @@ impl MomentumFreedom {
 
 /// Returns whether the velocity of the end effector and the momentum determine the rates of the drives. This holds for
 /// three drives with angular momentum.
-pub(super) fn determines(model: &Inertia) -> bool {
-    model.drives() == 3 && !has_no_angular_momentum(model)
-}
-
-/// Returns whether no motion of the machine has angular momentum.
-pub fn has_no_angular_momentum(model: &Inertia) -> bool {
-    let (n, whole) = (model.drives(), model.diagonals().iter().sum::<f64>());
-    let max_momentum = model.momenta().max_abs();
-    max_momentum <= BALANCE_TOLERANCE * whole
-        && Inertia::pairs(n).all(|(k, l)| model.coupling(k, l).norm() <= BALANCE_TOLERANCE * whole)
+pub(super) fn determines(model: &MomentumModel) -> bool {
+    model.drives() == 3 && !model.is_zero()
 }
 
 /// Returns the rates of minimum norm that give the end effector the velocity v, m/s, at angular momentum h, kg m²/s.
 /// Also returns their exact derivative for v̇ = `vd`, m/s², and constant h.
-pub(super) fn least(model: &Inertia, q: &DriveAngles, v: Vector, vd: Vector, h: f64) -> Option<(PerDrive, PerDrive)> {
+pub(super) fn least(
+    model: &MomentumModel,
+    q: &DriveAngles,
+    v: Vector,
+    vd: Vector,
+    h: f64,
+) -> Option<(PerDrive, PerDrive)> {
     let e = q.units();
-    if has_no_angular_momentum(model) {
-        return minimum_norm(&model.end_effector, &e, model.drives(), v, vd);
+    if model.is_zero() {
+        return minimum_norm(model.tip(), &model.tip_units(&e), model.drives(), v, vd);
     }
-    let d = momentum_coefficients(model, &e);
-    minimum_norm_with(&model.end_effector, &d, h, |qd| momentum_row_rate(model, &e, qd), &e, v, vd)
+    let d = model.coefficients(&e);
+    let tip = model.tip_units(&e);
+    minimum_norm_with(model.tip(), &d, h, |qd| model.coefficient_rates(&e, qd), &tip, v, vd)
 }
 
 /// Returns [J; D/scale] of three drives, and the scale, kg m, that makes the norm of D/scale equal to the arm length.
 /// Returns `None` for other numbers of drives, or if the matrix has lost rank.
-pub(super) fn jacobian_with_momentum(model: &Inertia, e: &UnitVectors) -> Option<(Matrix3<f64>, f64)> {
+pub(super) fn jacobian_with_momentum(model: &MomentumModel, e: &UnitVectors) -> Option<(Matrix3<f64>, f64)> {
     if model.drives() != 3 {
         return None;
     }
-    let d = momentum_coefficients(model, e);
-    let reach = model.end_effector.iter().map(|c| c.abs()).sum::<f64>();
+    let d = model.coefficients(e);
+    let (reach, tip) = (model.reach(), model.tip_units(e));
     let scale = d.dot(&d).sqrt() / reach;
-    let j = [0, 1, 2].map(|k| column(&model.end_effector, e, k));
+    let j = [0, 1, 2].map(|k| column(model.tip(), &tip, k));
     let m =
         Matrix3::new(j[0].re, j[1].re, j[2].re, j[0].im, j[1].im, j[2].im, d[0] / scale, d[1] / scale, d[2] / scale);
     (m.determinant().abs() > 1e-9 * reach.powi(3)).then_some((m, scale))
@@ -218,10 +195,10 @@ pub(super) fn solve(lines: &Matrix3<f64>, v: Vector, h: f64) -> Option<PerDrive>
 /// Returns the violation of integrability of D q̇ = 0 at a pose, (kg m²)²: the largest component of D ∧ dD. The
 /// component of three drives j, k, l is 2 |D_j Im Z_kl + D_k Im Z_lj + D_l Im Z_jk|.
 /// The violation is 0 for one or two drives, and if D is constant.
-pub fn integrability_violation(model: &Inertia, q: &DriveAngles) -> f64 {
+pub fn integrability_violation(model: &MomentumModel, q: &DriveAngles) -> f64 {
     let (n, e) = (model.drives(), q.units());
-    let d = momentum_coefficients(model, &e);
-    let z = |k: usize, l: usize| coupling(model, &e, k, l).im;
+    let d = model.coefficients(&e);
+    let z = |k: usize, l: usize| model.coupling(&e, k, l).im;
     let mut largest = 0.0_f64;
     for j in 0..n {
         for k in j + 1..n {

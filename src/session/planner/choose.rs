@@ -20,6 +20,9 @@ use crate::scenario::{Scenario, Task, TaskKind};
 /// # Errors
 /// If the task is infeasible: the error names the point, part of the path or setting, and a feasible alternative.
 pub fn plan(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
+    if let Some(task) = scenario.task.at_its_start(&scenario.machine) {
+        return plan(&Scenario { task, ..scenario.clone() }, space);
+    }
     let task = &scenario.task;
     let given = task.samples.is_some();
     let leaves_plane = !given && matches!(task.kind, TaskKind::MinimumNorm | TaskKind::LeastReaction);

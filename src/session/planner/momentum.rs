@@ -2,6 +2,7 @@
 //! any curve of the end effector.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use super::along::{curves, in_rounds};
 use super::plan::{Plan, PlannerSpace, dynamics_of};
@@ -12,9 +13,11 @@ use stillbase_mechanics::planar::{DriveAngles, Vector};
 use stillbase_planning::curves::Path;
 use stillbase_planning::off_plane::b_integral::BIntegral;
 use stillbase_planning::off_plane::drift::zero_momentum_curve;
+use stillbase_planning::off_plane::momentum::{MomentumModel, TipFrame};
 use stillbase_planning::off_plane::null_space::MomentumFreedom;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_settings::number::fixed;
+use stillbase_simulation::plant::BaseKind;
 
 /// Tolerance for a point to lie on the curve of two drives, as a fraction of the reach. Coordinates printed with nine
 /// decimals are within it.
@@ -25,8 +28,8 @@ const CURVE_INTERVALS: usize = 720;
 /// Plans a motion at zero angular momentum.
 pub(super) fn zero_momentum(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
     let task = &scenario.task;
-    let (model, _) = dynamics_of(scenario);
-    match MomentumFreedom::of(&model) {
+    let (arm, _) = dynamics_of(scenario);
+    match MomentumFreedom::of(&MomentumModel::from(&arm)) {
         MomentumFreedom::None => Err(Refusal::Task(
             "one drive has momentum as soon as it turns: want minimum-norm, and a machine of more drives".into(),
         )),
@@ -36,7 +39,7 @@ pub(super) fn zero_momentum(scenario: &Scenario, space: PlannerSpace<'_>) -> Res
                     "at zero momentum two drives keep the end effector on a curve: want the shape joint-line".into(),
                 ));
             }
-            let integral = BIntegral::of(&model).ok_or_else(|| {
+            let integral = BIntegral::of(&arm).ok_or_else(|| {
                 Refusal::NoWay(
                     "turning as a whole, this machine has no angular momentum in some poses: want slower or lighter \
                      counter-rotating rotors"
@@ -49,12 +52,22 @@ pub(super) fn zero_momentum(scenario: &Scenario, space: PlannerSpace<'_>) -> Res
     }
 }
 
+/// Returns the angular momentum of the machine of a scenario as its base keeps its orientation, for motions from a pose,
+/// with its end effector in a frame. A base that is not free stands still.
+fn momentum_model(scenario: &Scenario, start: &DriveAngles, frame: TipFrame) -> MomentumModel {
+    let (arm, _) = dynamics_of(scenario);
+    match scenario.base.kind {
+        BaseKind::Free => MomentumModel::floating(&arm, &scenario.base.body(), frame, start),
+        BaseKind::Fixed | BaseKind::Compliant => MomentumModel::from(&arm),
+    }
+}
+
 /// Follows the curves of the end effector at zero angular momentum from a pose of A.
 fn followed(scenario: &Scenario, start: DriveAngles) -> Result<Plan, Refusal> {
     let task = &scenario.task;
-    let (model, _) = dynamics_of(scenario);
+    let model = momentum_model(scenario, &start, task.frame.unwrap_or(TipFrame::Space));
     let curves = curves(task, &task.points())?;
-    in_rounds(scenario, start, &|mut q, cycle| {
+    let plan = in_rounds(scenario, start, &|mut q, cycle| {
         let mut parts = Vec::new();
         for curve in &curves {
             let table = zero_momentum_curve(&model, q, curve, cycle)?;
@@ -62,7 +75,10 @@ fn followed(scenario: &Scenario, start: DriveAngles) -> Result<Plan, Refusal> {
             parts.push((Path::Table(table), curve.length()));
         }
         Ok((parts, q))
-    })
+    })?;
+    let beside_base =
+        (scenario.base.kind == BaseKind::Free).then(|| Arc::new(momentum_model(scenario, &start, TipFrame::Space)));
+    Ok(Plan { beside_base, ..plan })
 }
 
 /// Moves two drives from point to point along a curve q₁ + ∫ D₂/(D₁ + D₂) dδ = const, δ = q₂ − q₁.

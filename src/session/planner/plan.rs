@@ -5,15 +5,18 @@ use std::sync::Arc;
 use crate::Refusal;
 use crate::scenario::Scenario;
 use stillbase_mechanics::dynamics::ExternalLoads;
-use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::kinematics::end_effector;
+use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase_planning::curves::Path;
 use stillbase_planning::off_plane::Price;
 use stillbase_planning::off_plane::least_reaction::Verdicts;
+use stillbase_planning::off_plane::momentum::MomentumModel;
 use stillbase_planning::pose_space::{NoPoseSpace, PoseSpace};
 use stillbase_planning::timing::limits::DriveLimit;
 use stillbase_planning::timing::{DriveLimits, TimeLaw};
 use stillbase_planning::{Forecast, Motion};
+use stillbase_simulation::Guide;
 
 /// The pose space of a machine, or the reason why its b cannot be held.
 pub(super) type PlannerSpace<'a> = Result<&'a PoseSpace, &'a NoPoseSpace>;
@@ -43,6 +46,9 @@ pub struct Plan {
     /// For motions of zero momentum: drive angles at the start and after each cycle, rad. For closed paths of four
     /// drives and more that do not close in joint space: drive angles at the start and at the end.
     pub cycles: Vec<DriveAngles>,
+    /// The arm beside its free base, which places it in space, if the plan accounts for how the base shifts; otherwise
+    /// it takes the base to stand still.
+    pub beside_base: Option<Arc<MomentumModel>>,
     /// Duration with blended corners, s, if stops at the corners are faster; the motion then stops.
     pub blended: Option<f64>,
 }
@@ -74,6 +80,21 @@ impl Plan {
     pub fn drift(&self) -> impl Iterator<Item = f64> {
         let first = self.cycles.first();
         self.cycles.iter().skip(1).filter_map(move |q| Some(q.0.minus(&first?.0).max_abs()))
+    }
+
+    /// Returns where the plan has the end effector of its machine at a pose, m, in space.
+    pub fn place(&self, machine: &Machine, q: &DriveAngles) -> Vector {
+        match &self.beside_base {
+            Some(model) => model.place(q),
+            None => end_effector(machine.end_effector(), &q.units()),
+        }
+    }
+
+    /// Returns the plan as the guide of a simulation.
+    pub fn guide(&self, machine: &Machine) -> Guide {
+        let end = self.motion.path.at(1.0).q;
+        let base_shift = self.place(machine, &end) - end_effector(machine.end_effector(), &end.units());
+        Guide::Motion { motion: self.motion.clone(), start: 0.0, base_shift }
     }
 
     /// Returns a plan at rest for a run that waits. The pose is one of A, at the b of the task or otherwise at the
@@ -110,6 +131,7 @@ impl Plan {
             price: None,
             verdicts: None,
             cycles: Vec::new(),
+            beside_base: None,
             blended: None,
         }
     }

@@ -15,7 +15,21 @@ use stillbase_settings::number::{ShortNumber, fixed, nine_digits};
 
 /// Returns a pose of each point at the b of the task.
 pub(super) fn poses_at_b(task: &Task, space: &PoseSpace, points: &[Vector]) -> Result<Vec<PoseAngles>, Refusal> {
-    posed::poses_of_points(space, points, task.b).map_err(|(i, unreachable)| refusal(task, i, unreachable))
+    let Some(start) = stated(task, space.drives(), 0) else {
+        return posed::poses_of_points(space, points, task.b).map_err(|(i, unreachable)| refusal(task, i, unreachable));
+    };
+    let mut poses = vec![PoseAngles::of(space, start)];
+    for i in 1..points.len() {
+        let near = poses[i - 1].a;
+        poses.push(PoseAngles::of(space, posed(task, space, points, i, &near)?));
+    }
+    Ok(poses)
+}
+
+/// Returns the pose of point `i` that the task states: its start, for A on a machine of `drives` drives.
+fn stated(task: &Task, drives: usize, i: usize) -> Option<DriveAngles> {
+    let start = task.start.filter(|start| i == 0 && start.values().len() == drives)?;
+    Some(DriveAngles(start.of(drives)))
 }
 
 /// Returns a pose of the first point. If the workspace at fixed b is an area, the pose is at the b of the task. On
@@ -23,6 +37,9 @@ pub(super) fn poses_at_b(task: &Task, space: &PoseSpace, points: &[Vector]) -> R
 /// the pose is at the nearest b that reaches the point.
 pub(super) fn start(scenario: &Scenario, space: PlannerSpace<'_>, points: &[Vector]) -> Result<DriveAngles, Refusal> {
     let task = &scenario.task;
+    if let Some(start) = task.start_pose(&scenario.machine) {
+        return Ok(start);
+    }
     match space {
         Ok(space) if space.reaches_area() => {
             let all = match space.planes() {
@@ -52,6 +69,9 @@ pub(super) fn posed(
     i: usize,
     near: &[f64],
 ) -> Result<DriveAngles, Refusal> {
+    if let Some(start) = stated(task, space.drives(), i) {
+        return Ok(start);
+    }
     let none = || refusal(task, i, unreachable_reason(space, points, i, task.b));
     space.poses(points[i], task.b, near).first().copied().ok_or_else(none)
 }
@@ -114,6 +134,9 @@ pub(super) fn no_b_refusal(task: &Task, i: usize, p: Vector, reason: NoReach) ->
 /// Returns a pose of a point at the b nearest to that of the task. Used for machines without a b to hold, or with a
 /// single b for each point.
 pub(super) fn reached(task: &Task, space: &PoseSpace, i: usize, p: Vector) -> Result<DriveAngles, Refusal> {
+    if let Some(start) = stated(task, space.drives(), i) {
+        return Ok(start);
+    }
     space.reach(p).map_err(|reason| no_b_refusal(task, i, p, reason))?;
     let none = || Refusal::Task(format!("no pose was found for {}: want another point", task.name_of(i)));
     space.pose_at_nearest_b(p, task.b).ok_or_else(none)

@@ -7,7 +7,7 @@
 use crate::interactive::Session;
 use crate::verdict::inertia_of;
 use stillbase_mechanics::planar::{Pose2, Vector, unit};
-use stillbase_planning::off_plane::price::{FloatingBase, Price};
+use stillbase_planning::off_plane::price::Price;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::reactionless::Decimal;
 use stillbase_simulation::plant::PlantDifferences;
@@ -70,8 +70,7 @@ impl FloatingBody {
     fn of(session: &Session) -> Option<Self> {
         let (scenario, frame, model) = (session.scenario(), session.frame(), inertia_of(session.run()));
         let base = &scenario.base;
-        let floating =
-            FloatingBase { mass: base.mass, inertia: base.inertia, com: Vector::new(base.com[0], base.com[1]) };
+        let floating = base.body();
         let rate = Price::of(&model, 1.0).and_then(|price| price.base_turn(&model, &floating)).ok()?;
         let mass = base.mass + model.mass();
         let drift =

@@ -11,7 +11,7 @@ use super::kept::{Bookmark, StatedBranch, branches, check_bookmarks};
 use super::machine_file::MachineFile;
 use super::note::{StatedNote, notes};
 use super::own::ScenarioSettings;
-use super::task::Task;
+use super::task::{IncompleteTask, Task};
 use super::tolerance::Tolerance;
 use super::words::ScenarioWords;
 use crate::{TimedEdit, check_edits};
@@ -237,8 +237,11 @@ impl Reading<'_> {
         let stem = Path::new(label).file_stem().map_or_else(|| label.into(), |s| s.to_string_lossy());
         let stem = plain(&stem).into_owned();
         let states = |key: &str| stated.get("task").is_some_and(|task| task.get(key).is_some());
-        let task = file.task.completed(states, &machine).map_err(|key| {
-            self.syntax(Problem { path: KeyPath::new(&[&"task"]), wrong: Wrong::Missing(key.into()) })
+        let task = file.task.completed(states, &machine).map_err(|why| match why {
+            IncompleteTask::Missing(key) => {
+                self.syntax(Problem { path: KeyPath::new(&[&"task"]), wrong: Wrong::Missing(key.into()) })
+            }
+            off @ IncompleteTask::OffStart { .. } => self.wrong(KeyPath::new(&[&"task", &"start"]), off.to_string()),
         })?;
         let sketch = match file.sketch {
             Some(sketch) => {

@@ -302,7 +302,7 @@ impl Scenario {
         // A valid step size bounds some numbers more narrowly than their ranges do.
         let mut list = vec![STEP_RANGE.check("step", self.step)];
         if STEP_RANGE.contains(self.step) {
-            list.extend(self.task.range_checks(self.step));
+            list.extend(self.task.range_checks(self.step, self.machine.drives()));
             list.extend(self.control.range_checks(n, self.step));
         }
         list.extend(key::checks(key_of, &stated));

@@ -1,5 +1,6 @@
 //! A [`Task`]: points to visit, curves between them, how the redundancy is resolved, and the timing.
 
+use thiserror::Error;
 use toml::Table;
 
 use super::bounds::MAX_TIME;
@@ -8,14 +9,16 @@ use stillbase_mechanics::kinematics::end_effector;
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 use stillbase_planning::curves::Samples;
+use stillbase_planning::off_plane::momentum::TipFrame;
 use stillbase_planning::posture::Posture;
 use stillbase_planning::timing::TimeLaw;
 use stillbase_settings::change::{self, DEFAULT_WORD};
 use stillbase_settings::key::Key;
 use stillbase_settings::keyed::keyed;
-use stillbase_settings::number::{ShortNumber, counted};
+use stillbase_settings::number::{ShortNumber, counted, nine_digits};
 use stillbase_settings::range::{Range, RangeCheck};
 use stillbase_settings::word::Choice;
+use stillbase_simulation::plant::DriveValues;
 
 /// Some keys of a task, as a file states them.
 pub type TaskChange = Table;
@@ -36,6 +39,7 @@ pub const MOTION_TIME_RANGE: Range = Range::new(1e-5, MAX_TIME, "s");
 const ANGLE: Range = Range::either_way(1e3, "rad");
 
 const SAMPLED: &str = "no samples, which say where to go";
+const UNSAMPLED_ANGLES: &str = "no samples of drive angles, which begin at a pose of their own";
 const CURVED: &str = "points, and the kind reactionless, minimum-norm, least-reaction or zero-momentum";
 const FREE: &str =
     "four drives or more, and the kind reactionless in the shape line, arc, spline or freehand, or samples of x and y";
@@ -59,12 +63,18 @@ keyed! {
         samples: Option<Samples> = Key::NONE, instead: "points and a law say where to be when";
         /// Angle by which samples of drive angles are turned as a whole.
         turn: f64 = "0", range: ANGLE, when: "samples of drive angles" => |task| task.columns().is_some_and(|n| n != 2);
-        /// The point A; by default where samples begin.
+        /// Pose of A: the absolute angle of each drive. The point A and b are then those of this pose.
+        start: Option<DriveValues> = Key::NONE, range: ANGLE, instead: "a pose of A at the b of the task",
+            when: UNSAMPLED_ANGLES => |task| task.columns().is_none_or(|n| n == 2);
+        /// The point A; by default where samples begin, or the end effector at the pose `start`.
         from: [f64; 2] = Key::REQUIRED, range: POINT_RANGE, when: SAMPLED => |task| task.samples.is_none(), saved: always;
         /// Points between A and B, in order, at most 2000.
         via: Vec<[f64; 2]> = "[]", range: POINT_RANGE;
         /// The point B; by default where samples end.
         to: [f64; 2] = Key::REQUIRED, range: POINT_RANGE, when: SAMPLED => |task| task.samples.is_none(), saved: always;
+        /// Where the points after A are meant: seen from the base pin, or in space.
+        frame: Option<TipFrame> = Key::NONE, instead: "space if the base is free, otherwise base",
+            when: "the kind zero-momentum" => |task| task.kind == TaskKind::ZeroMomentum;
         /// Whether the path returns from B to A.
         closed: bool = "false";
         /// Whether the motion rests at corners or rounds them off.
@@ -76,8 +86,8 @@ keyed! {
         keep_off_change_points: bool = "false";
         /// Pose constant b at A: which reactionless plane.
         b: f64 = Key::REQUIRED, range: POSE_CONSTANT_RANGE,
-            when: "no samples of drive angles, which have their own b: task.turn turns them"
-                => |task| task.columns().is_none_or(|n| n == 2),
+            when: "no samples of drive angles, which have their own b: task.turn turns them; and no start"
+                => |task| task.columns().is_none_or(|n| n == 2) && task.start.is_none(),
             saved: always;
         /// Pose constant b at B.
         b_to: Option<f64> = Key::NONE, range: POSE_CONSTANT_RANGE,
@@ -127,50 +137,107 @@ fn ends_of(kind: TaskKind, samples: &Samples, turn: f64, machine: &Machine) -> O
         return Some(Ends { places: [0, last].map(|i| [samples.point(i).re, samples.point(i).im]), b: None });
     }
     let pose = |i: usize| DriveAngles(PerDrive::from_fn(samples.columns(), |k| samples.values(i)[k] + turn));
-    let place = |q: &DriveAngles| {
-        let p = end_effector(machine.end_effector(), &q.units());
-        [p.re, p.im]
-    };
     (samples.columns() == machine.drives()).then(|| {
-        let [first, last] = [pose(0), pose(last)];
-        Ends { places: [place(&first), place(&last)], b: Some(Inertia::of(machine).lambda().dot(&first)) }
+        let [(from, b), (to, _)] = [pose(0), pose(last)].map(|q| place_and_b(machine, &q));
+        Ends { places: [from, to], b: Some(b) }
     })
 }
 
+/// Why a task cannot be completed.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum IncompleteTask {
+    /// A key is missing.
+    #[error("missing field `{0}`")]
+    Missing(&'static str),
+    /// The point A or b is not that of the start.
+    #[error(
+        "its start has the end effector at {}, {} m and b = {} rad: want no from and no b beside start",
+        nine_digits(from[0]), nine_digits(from[1]), nine_digits(*b)
+    )]
+    OffStart {
+        /// Where the start has the end effector, m.
+        from: [f64; 2],
+        /// b of the start, rad.
+        b: f64,
+    },
+}
+
+/// Tolerance for A and b beside a start: of A as a fraction of the reach, of b in rad. Printed with nine decimals, they
+/// are within it.
+const START_TOLERANCE: f64 = 1e-6;
+
+/// Returns where a pose has the end effector, m, and its b, rad.
+fn place_and_b(machine: &Machine, q: &DriveAngles) -> ([f64; 2], f64) {
+    let p = end_effector(machine.end_effector(), &q.units());
+    ([p.re, p.im], Inertia::of(machine).lambda().dot(q))
+}
+
 impl Task {
+    /// Returns the pose of A that the task states; `None` if it states none, or one of another number of drives.
+    pub fn start_pose(&self, machine: &Machine) -> Option<DriveAngles> {
+        let n = machine.drives();
+        let start = self.start.filter(|start| start.values().len() == n)?;
+        Some(DriveAngles(start.of(n)))
+    }
+
+    /// Returns the task with A and b of its start, if it has one: they may be those of a machine that has changed.
+    pub fn at_its_start(&self, machine: &Machine) -> Option<Self> {
+        let (from, b) = place_and_b(machine, &self.start_pose(machine)?);
+        ((from, b) != (self.from, self.b)).then(|| Self { from, b, ..self.clone() })
+    }
+
     /// Returns a task given by samples. Samples of the end effector are followed at `b`, rad; samples of drive angles
     /// determine b.
     ///
     /// # Errors
-    /// The name of the missing key: `b`, or `from` if the samples do not fit the machine.
-    pub fn sampled(kind: TaskKind, samples: Samples, b: Option<f64>, machine: &Machine) -> Result<Self, &'static str> {
+    /// If a key is missing: `b`, or `from` if the samples do not fit the machine.
+    pub fn sampled(
+        kind: TaskKind,
+        samples: Samples,
+        b: Option<f64>,
+        machine: &Machine,
+    ) -> Result<Self, IncompleteTask> {
         let stated = |key: &str| key == "kind" || (key == "b" && b.is_some());
         let task = Self { kind, samples: Some(samples), b: b.unwrap_or_default(), ..Self::default() };
         task.completed(stated, machine)
     }
 
-    /// Returns the task with missing keys filled in from its samples. `stated` returns whether a key is given.
+    /// Returns the task with missing keys filled in from its samples or its start. `stated` returns whether a key is
+    /// given.
     ///
     /// # Errors
-    /// If a key is missing, its name.
-    pub(super) fn completed(self, stated: impl Fn(&str) -> bool, machine: &Machine) -> Result<Self, &'static str> {
+    /// If a key is missing, or contradicts the start.
+    pub(super) fn completed(self, stated: impl Fn(&str) -> bool, machine: &Machine) -> Result<Self, IncompleteTask> {
         if !stated("kind") {
-            return Err("kind");
+            return Err(IncompleteTask::Missing("kind"));
         }
         let ends = self.samples.as_ref().and_then(|samples| ends_of(self.kind, samples, self.turn, machine));
-        let place = |key: &'static str, own: [f64; 2], end: usize| match ends {
+        let start = self.start_pose(machine).filter(|_| ends.is_none_or(|ends| ends.b.is_none()));
+        let place = |key: &'static str, own: [f64; 2], end: Option<[f64; 2]>| match end {
             _ if stated(key) => Ok(own),
-            Some(ends) => Ok(ends.places[end]),
-            None => Err(key),
+            Some(end) => Ok(end),
+            None => Err(IncompleteTask::Missing(key)),
         };
-        let (from, to) = (place("from", self.from, 0)?, place("to", self.to, 1)?);
-        let b = match ends.and_then(|ends| ends.b) {
+        let at_start = start.map(|q| place_and_b(machine, &q));
+        let from = match at_start {
+            Some((tip, _)) => Some(tip),
+            None => ends.map(|ends| ends.places[0]),
+        };
+        let (from, to) = (place("from", self.from, from)?, place("to", self.to, ends.map(|ends| ends.places[1]))?);
+        let b = match ends.and_then(|ends| ends.b).or(at_start.map(|(_, b)| b)) {
             _ if stated("b") => self.b,
             Some(b) => b,
             // Without redundancy a point determines b.
             None if !machine.is_redundant() => 0.0,
-            None => return Err("b"),
+            None => return Err(IncompleteTask::Missing("b")),
         };
+        if let Some((tip, own)) = at_start {
+            let reach = machine.end_effector().iter().map(|c| c.abs()).sum::<f64>();
+            let miss = (tip[0] - from[0]).hypot(tip[1] - from[1]);
+            if miss > START_TOLERANCE * reach || (b - own).abs() > START_TOLERANCE {
+                return Err(IncompleteTask::OffStart { from: tip, b: own });
+            }
+        }
         let time = self.samples.as_ref().map(Samples::duration).filter(|_| !stated("time")).unwrap_or(self.time);
         Ok(Self { from, to, b, time, ..self })
     }
@@ -187,13 +254,18 @@ impl Task {
         Some(task)
     }
 
-    /// Checks the time against the step size, s, and the number of points against its maximum.
-    pub(super) fn range_checks(&self, step: f64) -> Vec<RangeCheck> {
+    /// Checks the time against the step size, s, the number of points against its maximum, and the start against the
+    /// number of drives.
+    pub(super) fn range_checks(&self, step: f64, drives: usize) -> Vec<RangeCheck> {
         let (count, enough) = (self.via.len(), self.via.len() <= MAX_POINTS);
         let want = || format!("one step or more, {} to {} s", ShortNumber(step), ShortNumber(MOTION_TIME_RANGE.high()));
         let time = RangeCheck::depending("task.time", self.time, self.time >= step, want);
         let many = || RangeCheck::count("task.via", count, "point", format!("at most {MAX_POINTS} between A and B"));
-        std::iter::once(time).chain((!enough).then(many)).collect()
+        let pose = self.start.filter(|start| start.values().len() != drives).map(|start| {
+            let want = format!("{drives}, one angle for each drive");
+            RangeCheck::count("task.start", start.values().len(), "number", want)
+        });
+        std::iter::once(time).chain((!enough).then(many)).chain(pose).collect()
     }
 
     /// Returns all keys, as a change that turns any other task into this one.
@@ -263,8 +335,14 @@ impl Task {
         let stated = change::merged_keys(plain, change)?;
         let mut task: Self = change::read(&stated)?;
         task.samples = kept.or(task.samples);
-        let completed = task.completed(|key| stated.contains_key(key), machine);
-        completed.map_err(|key| format!("missing field `{key}`"))
+        // Another start brings its own A and b, and another A or b has no start but one that is stated with it.
+        let (begins, moves) = (change.contains_key("start"), change.contains_key("from") || change.contains_key("b"));
+        if moves && !begins {
+            task.start = None;
+        }
+        let follows = |key: &str| begins && matches!(key, "from" | "b") && !change.contains_key(key);
+        let is_stated = |key: &str| stated.contains_key(key) && !follows(key);
+        task.completed(is_stated, machine).map_err(|why| why.to_string())
     }
 
     /// Returns the present values of the keys of a change, with which [`with_change`](Self::with_change) undoes it.

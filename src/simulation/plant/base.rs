@@ -1,6 +1,8 @@
 //! [`Base`]: settings of the base of the machine.
 
 use super::Wheel;
+use stillbase_mechanics::planar::Vector;
+use stillbase_planning::off_plane::price::FloatingBase;
 use stillbase_settings::keyed::keyed;
 use stillbase_settings::range::Range;
 use stillbase_settings::word::words;
@@ -45,6 +47,11 @@ impl Base {
     /// Returns whether the base floats and turns whenever b changes: it is free, and has no wheel.
     pub fn floats(&self) -> bool {
         self.kind == BaseKind::Free && self.wheel.is_none()
+    }
+
+    /// Returns its mass, inertia and centre of mass.
+    pub fn body(&self) -> FloatingBase {
+        FloatingBase { mass: self.mass, inertia: self.inertia, com: Vector::new(self.com[0], self.com[1]) }
     }
 
     /// Returns whether the base can move.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::control::Control;
 use crate::plant::{Base, PlantDifferences};
 use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::planar::Vector;
 use stillbase_planning::following::Follower;
 use stillbase_planning::{Motion, Reference};
 
@@ -18,6 +19,8 @@ pub enum Guide {
         motion: Arc<Motion>,
         /// Time at which it began, s.
         start: f64,
+        /// How far a free base shifts by its end, as planned, m.
+        base_shift: Vector,
     },
     /// A follower of the pointer and of the slider b.
     Follow(Follower),
@@ -27,7 +30,7 @@ impl Guide {
     /// Returns the reference at a time, s.
     pub(super) fn at(&self, time: f64) -> Reference {
         match self {
-            Self::Motion { motion, start } => motion.at(time - start),
+            Self::Motion { motion, start, .. } => motion.at(time - start),
             Self::Follow(follower) => follower.reference(0.0),
         }
     }

@@ -272,7 +272,7 @@ impl Simulation {
     /// Returns whether the guide has come to its end, even if the machine still moves.
     pub fn has_arrived(&self) -> bool {
         match &self.guide {
-            Guide::Motion { motion, start } => self.time() >= start + motion.duration() - 0.5 * self.dt,
+            Guide::Motion { motion, start, .. } => self.time() >= start + motion.duration() - 0.5 * self.dt,
             Guide::Follow(follower) => follower.is_at_rest(),
         }
     }
@@ -393,8 +393,8 @@ impl Simulation {
         let relative = PerDrive::from_fn(n, |k| self.relative(k));
         let target_rides = self.floats && matches!(self.guide, Guide::Follow(_));
         let (phase, target, b_reference) = match &self.guide {
-            Guide::Motion { motion, .. } => {
-                let end = end_effector(&arm.end_effector, &motion.path.at(1.0).q.units());
+            Guide::Motion { motion, base_shift, .. } => {
+                let end = base_shift + end_effector(&arm.end_effector, &motion.path.at(1.0).q.units());
                 let phase = if self.has_arrived() { Phase::Rest } else { Phase::Motion };
                 (phase, Target { at: end, reach: Reach::Inside }, self.lambda.dot(&self.reference.q))
             }

@@ -46,7 +46,7 @@ impl Simulation {
         let (mut expected, mut level) = (Peaks::zero(n), 0.0_f64);
         self.step_control.kinks.clear();
         self.step_control.until = 0.0;
-        if let Guide::Motion { motion, start } = &self.guide {
+        if let Guide::Motion { motion, start, .. } = &self.guide {
             self.step_control.kinks = motion.kinks();
             self.step_control.until = start + 0.25 * motion.duration();
             let (arm, around) = (self.body().arm(), self.body().around());
@@ -92,7 +92,7 @@ impl Simulation {
     #[inline]
     pub(super) fn aim(&self, at: f64, segment: &Segment) -> Reference {
         match &self.guide {
-            Guide::Motion { motion, start } => {
+            Guide::Motion { motion, start, .. } => {
                 // The end of the step equals the beginning of the next one exactly.
                 let time = if at >= self.dt { (self.step + 1) as f64 * self.dt } else { self.time() + at };
                 one_sided_reference(motion, time - start, segment.window, self.step_control.level)
@@ -104,7 +104,7 @@ impl Simulation {
     /// Returns the reference at the present instant; at a kink, the one after it.
     pub(super) fn aim_now(&self) -> Reference {
         match &self.guide {
-            Guide::Motion { motion, start } => {
+            Guide::Motion { motion, start, .. } => {
                 let t = self.time() - start;
                 let after = self.kink_at(t).map_or(f64::NEG_INFINITY, |kink| kink + KINK_OFFSET * self.dt);
                 one_sided_reference(motion, t, [after, f64::INFINITY], self.step_control.level)

@@ -4,7 +4,7 @@ use super::ensemble::SampleOutcome;
 use stillbase_mechanics::machine::Machine;
 use stillbase_session::{Refusal, Run};
 use stillbase_simulation::plant::{Load, PlantDifferences};
-use stillbase_simulation::{Guide, Setup, Simulation};
+use stillbase_simulation::{Setup, Simulation};
 
 /// Simulates a planned motion, control included, with another machine as the plant.
 ///
@@ -12,7 +12,7 @@ use stillbase_simulation::{Guide, Setup, Simulation};
 /// If the plant cannot hold its payload, the state diverges, or an audit fails: a study has no values of such runs.
 pub fn simulate(planned: &Run, plant: &Machine) -> Result<SampleOutcome, Refusal> {
     let scenario = planned.scenario();
-    let guide = Guide::Motion { motion: planned.plan().motion.clone(), start: 0.0 };
+    let guide = planned.plan().guide(&scenario.machine);
     // A payload held from the start is part of the varied machine; a payload taken up later is not.
     let load = scenario.plant.payload;
     let payload = if load.is_held(0.0, 0.5 * scenario.step) { Load::default() } else { load };

@@ -4,7 +4,6 @@ use crate::scene::course::{stations, waypoints};
 use crate::scene::options::{Handle, RefusedCurve, ViewOptions};
 use crate::scene::palette::{Palette, faded};
 use crate::scene::{Anchor, Label, Marker, Polyline, Scene, Strips, point};
-use stillbase_mechanics::machine::place_of;
 use stillbase_mechanics::planar::{UnitVectors, Vector};
 use stillbase_session::{Run, WaitReason};
 
@@ -27,8 +26,8 @@ pub struct PlannedPath {
 impl PlannedPath {
     /// Returns the planned motion of a run, if it has a plan; it is drawn at height `z`, m.
     pub fn of(run: &Run, z: f64) -> Option<Self> {
-        let (tip, motion) = (*run.scenario().machine.end_effector(), run.motion()?);
-        let place = |s: f64| place_of(&tip, &motion.path.at(s).q.units());
+        let (machine, motion) = (&run.scenario().machine, run.motion()?);
+        let place = |s: f64| run.plan().place(machine, &motion.path.at(s).q);
         // A waiting run has points, but no path.
         let points: Vec<Vector> = match run.waiting() {
             Some(_) => Vec::new(),

@@ -1,0 +1,147 @@
+//! The angular momentum of an arm as its base keeps its orientation: about the base pin of a fixed base, about the
+//! common centre of mass of a free one.
+//!
+//! # Symbols
+//! | letter | meaning | shape, unit |
+//! |---|---|---|
+//! | e_k | e^{i q_k} of the absolute drive angle q_k | complex |
+//! | D_k | coefficient of q̇_k in the angular momentum, D q̇ | kg m² |
+//! | C_kl, g_k, c_k | couplings, first moments, coefficients of the end effector of [`Inertia`] | kg m², kg m, m |
+//! | m_b, ρ, M | mass of the base, its centre of mass seen from B, mass of base and arm | kg, m, kg |
+//! | C_0k | coupling of drive k with the base, which keeps its orientation | complex, kg m² |
+//!
+//! # Source
+//! A free base at zero linear momentum moves against the first moments: ṙ_B = −Σ i g_k e_k q̇_k / M. About the common
+//! centre of mass, which is at (Σ g_k e_k + m_b ρ)/M seen from B, the angular momentum is that about B less
+//! Re[conj(Σ_l g_l e_l + m_b ρ) Σ_k g_k e_k q̇_k]/M. This is the momentum of an arm with C_kl − conj(g_k) g_l/M in
+//! place of C_kl, and with C_0k = −conj(m_b ρ) g_k/M. In space the end effector has coefficients c_k − g_k/M.
+
+use stillbase_mechanics::dynamics::mass_matrix;
+use stillbase_mechanics::kinematics::end_effector;
+use stillbase_mechanics::machine::{BALANCE_TOLERANCE, Chain, Inertia};
+use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, UnitVectors, Vector};
+
+use super::price::FloatingBase;
+use stillbase_settings::word::words;
+
+words! {
+    /// Where coordinates of the end effector are meant.
+    pub enum TipFrame {
+        Base = "base", "Seen from the base", "From the base pin, which a free base shifts";
+        Space = "space", "In space", "From where the base pin starts";
+    }
+}
+
+/// The angular momentum of an arm whose base does not turn, h = D(q) q̇, and the position of its end effector.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MomentumModel {
+    /// The arm, with couplings as they are beside the base.
+    arm: Inertia,
+    /// C_0k, kg m².
+    base: [Vector; MAX_DRIVES],
+    /// Sizes of the coefficients of the end effector, m.
+    tip: Chain,
+    /// Their directions.
+    directions: [Vector; MAX_DRIVES],
+    /// Where the coordinates of the end effector have their origin, m.
+    origin: Vector,
+}
+
+impl From<&Inertia> for MomentumModel {
+    /// Returns the angular momentum about the base pin of a fixed base.
+    fn from(arm: &Inertia) -> Self {
+        let (base, directions) = ([Vector::default(); MAX_DRIVES], [Vector::new(1.0, 0.0); MAX_DRIVES]);
+        Self { arm: arm.clone(), base, tip: arm.end_effector, directions, origin: Vector::default() }
+    }
+}
+
+impl MomentumModel {
+    /// Returns the angular momentum about the common centre of mass of an arm and a free base at zero linear momentum,
+    /// for motions that start at the pose `start`.
+    pub fn floating(arm: &Inertia, base: &FloatingBase, frame: TipFrame, start: &DriveAngles) -> Self {
+        let whole = base.mass + arm.mass;
+        let mut own = Self::from(arm);
+        for k in 0..arm.drives {
+            for l in 0..arm.drives {
+                own.arm.c[k][l] -= arm.g[k].conj() * arm.g[l] / whole;
+            }
+            own.base[k] = -(base.mass * base.com).conj() * arm.g[k] / whole;
+            if frame == TipFrame::Space {
+                let coefficient = arm.end_effector[k] - arm.g[k] / whole;
+                own.tip[k] = coefficient.norm();
+                if own.tip[k] > 0.0 {
+                    own.directions[k] = coefficient / own.tip[k];
+                }
+            }
+        }
+        own.origin = end_effector(&arm.end_effector, &start.units()) - own.place(start);
+        own
+    }
+
+    /// Returns the number of drives.
+    pub fn drives(&self) -> usize {
+        self.arm.drives
+    }
+
+    /// Returns the sizes of the coefficients of the end-effector position, m, to be used with [`Self::tip_units`].
+    pub fn tip(&self) -> &Chain {
+        &self.tip
+    }
+
+    /// Returns the unit vectors of the coefficients of the end effector at a pose.
+    pub fn tip_units(&self, e: &UnitVectors) -> UnitVectors {
+        std::array::from_fn(|k| self.directions[k] * e[k])
+    }
+
+    /// Returns the place of the end effector at a pose, m: seen from the base pin, or in space.
+    pub fn place(&self, q: &DriveAngles) -> Vector {
+        self.origin + end_effector(&self.tip, &self.tip_units(&q.units()))
+    }
+
+    /// Returns the largest distance of the end effector from the origin of its coordinates, m.
+    pub fn reach(&self) -> f64 {
+        self.tip.iter().map(|c| c.abs()).sum()
+    }
+
+    /// Returns the arm if momentum depends on the differences of drive angles alone, as it does unless a free base
+    /// couples with it.
+    pub fn of_differences(&self) -> Option<&Inertia> {
+        let n = self.drives();
+        let bound = BALANCE_TOLERANCE * self.arm.diagonals().iter().sum::<f64>();
+        self.base[..n].iter().all(|c| c.norm() <= bound).then_some(&self.arm)
+    }
+
+    /// Returns D_k at a pose, kg m², (A3).
+    #[inline]
+    pub fn coefficients(&self, e: &UnitVectors) -> PerDrive {
+        let n = self.drives();
+        let (h, _) = mass_matrix(&self.arm, e, &PerDrive::zeros(n));
+        PerDrive::from_fn(n, |k| h.momentum_coefficient(k) + (self.base[k] * e[k]).re)
+    }
+
+    /// Returns Ḋ_k at a pose for rates q̇, kg m²/s.
+    #[inline]
+    pub fn coefficient_rates(&self, e: &UnitVectors, qd: &PerDrive) -> PerDrive {
+        let n = self.drives();
+        // Re Z_kl changes at −Im Z_kl (q̇_l − q̇_k), and Re (C_0k e_k) at −Im (C_0k e_k) q̇_k.
+        PerDrive::from_fn(n, |k| {
+            let arm: f64 = (0..n).map(|l| -self.coupling(e, k, l).im * (qd[l] - qd[k])).sum();
+            arm - (self.base[k] * e[k]).im * qd[k]
+        })
+    }
+
+    /// Returns Z_kl = C_kl e^{i (q_l − q_k)}, kg m².
+    #[inline]
+    pub fn coupling(&self, e: &UnitVectors, k: usize, l: usize) -> Vector {
+        self.arm.coupling(k, l) * (e[k].conj() * e[l])
+    }
+
+    /// Returns whether no motion of the arm has angular momentum.
+    pub fn is_zero(&self) -> bool {
+        let (n, arm) = (self.drives(), &self.arm);
+        let bound = BALANCE_TOLERANCE * arm.diagonals().iter().sum::<f64>();
+        arm.momenta().max_abs() <= bound
+            && Inertia::pairs(n).all(|(k, l)| arm.coupling(k, l).norm() <= bound)
+            && self.base[..n].iter().all(|c| c.norm() <= bound)
+    }
+}
