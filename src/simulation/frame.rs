@@ -63,10 +63,12 @@ pub struct Frame {
     pub com: Vector,
     /// Position of the end effector, m.
     pub end_effector: Vector,
-    /// Target of the end effector. That of a plan is in the axes of the base at the start.
+    /// Target of the end effector. That of a plan is in the axes of the base at the start, which stand still.
     pub target: Target,
     /// Whether the target moves with the base: a hand leads the machine, and its base [floats](Self::floats).
     pub target_rides: bool,
+    /// Whether the plan accounts for the motion of the base, so that its places are those in space.
+    pub base_is_planned: bool,
     /// Whether the payload that the model lacks is held.
     pub loaded: bool,
     /// Kinetic energy, J.

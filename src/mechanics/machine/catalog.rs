@@ -17,6 +17,7 @@ static BUILTINS: LazyLock<Vec<Machine>> = LazyLock::new(|| {
         ("counter-rotating", include_str!("../../../assets/machines/counter-rotating.toml")),
         ("scara", include_str!("../../../assets/machines/scara.toml")),
         ("space-arm", include_str!("../../../assets/machines/space-arm.toml")),
+        ("spot", include_str!("../../../assets/machines/spot.toml")),
         ("nine-link-bare", include_str!("../../../assets/machines/nine-link-bare.toml")),
     ]
     .into_iter()

@@ -37,12 +37,13 @@ pub fn stations(motion: &Motion) -> impl Iterator<Item = f64> {
     (0..=n).map(move |i| i as f64 / n as f64)
 }
 
-/// Returns the position of the target's handle, m: the target itself if out of reach, otherwise the end effector. If the
-/// target does not move with the base, the end effector is shown where it would be on a base at rest.
+/// Returns the position of the target's handle, m: the target itself if out of reach, otherwise the end effector. If
+/// neither the target moves with the base nor the plan accounts for it, the end effector is shown where it would be on a
+/// base at rest.
 pub fn target_handle(frame: &Frame) -> Vector {
     match frame.target.reach {
         Reach::Outside { .. } => frame.target.at,
-        Reach::Inside | Reach::Carried if frame.target_rides => frame.end_effector,
+        Reach::Inside | Reach::Carried if frame.target_rides || frame.base_is_planned => frame.end_effector,
         Reach::Inside | Reach::Carried => frame.in_base(frame.end_effector),
     }
 }

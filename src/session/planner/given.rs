@@ -3,6 +3,7 @@
 //! is resolved.
 
 use super::held::along_curves;
+use super::momentum::sampled_at_zero_momentum;
 use super::plan::{Plan, PlannerSpace, PlanningEffort, dynamics_of, keeps_rules};
 use super::poses::start;
 use crate::refusal::Refusal;
@@ -41,6 +42,7 @@ pub(super) fn given(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan
     }
     let columns = samples.columns();
     let unsound = || Refusal::Task("the samples give no spline: want times further apart".into());
+    let mut beside_base = None;
     let table = match (task.kind, columns) {
         (TaskKind::Given, n) if n == drives => samples.path(task.turn).ok_or_else(unsound)?,
         (TaskKind::Given | TaskKind::Reactionless, 2) => {
@@ -59,12 +61,21 @@ pub(super) fn given(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan
             let ends = [samples.point(0), samples.point(samples.count() - 1)];
             minimum_norm_curve(scenario.machine.end_effector(), start(scenario, space, &ends)?, &curve)?
         }
+        (TaskKind::ZeroMomentum, 2) => {
+            let curve = samples.curve().ok_or_else(unsound)?;
+            let begins = start(scenario, space, &[samples.point(0)])?;
+            let (table, beside) = sampled_at_zero_momentum(scenario, begins, &curve)?;
+            beside_base = beside;
+            table
+        }
         (TaskKind::Given, _) => {
             return refuse(format!(
                 "samples of {columns} values beside the time: want {drives} drive angles, or 2, x and y"
             ));
         }
-        (_, 2) => return refuse("samples of x and y want the kind given, reactionless or minimum-norm".into()),
+        (_, 2) => {
+            return refuse("samples of x and y want the kind given, reactionless, minimum-norm or zero-momentum".into());
+        }
         _ => return refuse("samples of drive angles want the kind given".into()),
     };
     let motion = Motion { path: Path::Table(table), profile: Profile::running(task.time) };
@@ -72,7 +83,7 @@ pub(super) fn given(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan
     let (model, around) = dynamics_of(scenario);
     let instants = (INSTANTS_PER_SAMPLE * samples.count()).clamp(MIN_INSTANTS, MAX_INSTANTS);
     let forecast = Forecast::at(&motion, &model, &around, &DriveLimits::of(&scenario.machine), instants);
-    Ok(Plan::foreseen(motion, forecast))
+    Ok(Plan { beside_base, ..Plan::foreseen(motion, forecast) })
 }
 
 /// Follows a sampled curve of the end effector with b held, or with least rates if no drive puts a moment on

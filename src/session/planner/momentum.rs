@@ -10,7 +10,7 @@ use super::poses::{no_b_refusal, reached, start};
 use crate::refusal::Refusal;
 use crate::scenario::{PathShape, Scenario, Task};
 use stillbase_mechanics::planar::{DriveAngles, Vector};
-use stillbase_planning::curves::Path;
+use stillbase_planning::curves::{Curve, Path, PathTable};
 use stillbase_planning::off_plane::b_integral::BIntegral;
 use stillbase_planning::off_plane::drift::zero_momentum_curve;
 use stillbase_planning::off_plane::momentum::{MomentumModel, TipFrame};
@@ -62,10 +62,27 @@ fn momentum_model(scenario: &Scenario, start: &DriveAngles, frame: TipFrame) -> 
     }
 }
 
+/// Returns the arm beside its free base, with its end effector in space, for motions from a pose.
+fn beside_base(scenario: &Scenario, start: &DriveAngles) -> Option<Arc<MomentumModel>> {
+    let is_free = scenario.base.kind == BaseKind::Free;
+    is_free.then(|| Arc::new(momentum_model(scenario, start, TipFrame::Space)))
+}
+
+/// Follows a sampled curve of the end effector at zero angular momentum from a pose. Returns the path, and the arm beside
+/// a free base.
+pub(super) fn sampled_at_zero_momentum(
+    scenario: &Scenario,
+    start: DriveAngles,
+    curve: &Curve,
+) -> Result<(PathTable, Option<Arc<MomentumModel>>), Refusal> {
+    let model = momentum_model(scenario, &start, scenario.task.frame());
+    Ok((zero_momentum_curve(&model, start, curve, 1)?, beside_base(scenario, &start)))
+}
+
 /// Follows the curves of the end effector at zero angular momentum from a pose of A.
 fn followed(scenario: &Scenario, start: DriveAngles) -> Result<Plan, Refusal> {
     let task = &scenario.task;
-    let model = momentum_model(scenario, &start, task.frame.unwrap_or(TipFrame::Space));
+    let model = momentum_model(scenario, &start, task.frame());
     let curves = curves(task, &task.points())?;
     let plan = in_rounds(scenario, start, &|mut q, cycle| {
         let mut parts = Vec::new();
@@ -76,8 +93,7 @@ fn followed(scenario: &Scenario, start: DriveAngles) -> Result<Plan, Refusal> {
         }
         Ok((parts, q))
     })?;
-    let beside_base =
-        (scenario.base.kind == BaseKind::Free).then(|| Arc::new(momentum_model(scenario, &start, TipFrame::Space)));
+    let beside_base = beside_base(scenario, &start);
     Ok(Plan { beside_base, ..plan })
 }
 

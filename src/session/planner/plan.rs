@@ -93,7 +93,8 @@ impl Plan {
     /// Returns the plan as the guide of a simulation.
     pub fn guide(&self, machine: &Machine) -> Guide {
         let end = self.motion.path.at(1.0).q;
-        let base_shift = self.place(machine, &end) - end_effector(machine.end_effector(), &end.units());
+        let seen = end_effector(machine.end_effector(), &end.units());
+        let base_shift = self.beside_base.as_ref().map(|model| model.place(&end) - seen);
         Guide::Motion { motion: self.motion.clone(), start: 0.0, base_shift }
     }
 

@@ -8,8 +8,8 @@ use super::definition::Scenario;
 const CASE_COUNT: usize = 3;
 
 /// The built-in scenarios: the paper's three cases, other kinds of tasks, plants and bases that are not ideal.
-/// Every built-in machine except `nine-link` and `nine-link-table-1` has one scenario, which bears its name.
-const BUILTIN: [(&str, &str); 20] = [
+/// Every built-in machine except `nine-link` and `nine-link-table-1` has a scenario that bears its name.
+const BUILTIN: [(&str, &str); 22] = [
     ("case-1", include_str!("../../../assets/scenarios/case-1.toml")),
     ("case-2", include_str!("../../../assets/scenarios/case-2.toml")),
     ("case-3", include_str!("../../../assets/scenarios/case-3.toml")),
@@ -29,6 +29,8 @@ const BUILTIN: [(&str, &str); 20] = [
     ("counter-rotating", include_str!("../../../assets/scenarios/counter-rotating.toml")),
     ("scara", include_str!("../../../assets/scenarios/scara.toml")),
     ("space-arm", include_str!("../../../assets/scenarios/space-arm.toml")),
+    ("spot", include_str!("../../../assets/scenarios/spot.toml")),
+    ("spot-swing", include_str!("../../../assets/scenarios/spot-swing.toml")),
     ("nine-link-bare", include_str!("../../../assets/scenarios/nine-link-bare.toml")),
 ];
 

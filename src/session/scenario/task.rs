@@ -280,6 +280,11 @@ impl Task {
         self.samples.as_ref().map(Samples::columns)
     }
 
+    /// Returns the frame of the points after A.
+    pub fn frame(&self) -> TipFrame {
+        self.frame.unwrap_or(TipFrame::Space)
+    }
+
     fn is_curved(&self) -> bool {
         use TaskKind::{LeastReaction, MinimumNorm, Reactionless, ZeroMomentum};
         self.samples.is_none() && matches!(self.kind, Reactionless | MinimumNorm | LeastReaction | ZeroMomentum)

@@ -19,8 +19,9 @@ pub enum Guide {
         motion: Arc<Motion>,
         /// Time at which it began, s.
         start: f64,
-        /// How far a free base shifts by its end, as planned, m.
-        base_shift: Vector,
+        /// How far the base has shifted at its end, m, if the plan accounts for that; otherwise it takes the base to
+        /// stand still.
+        base_shift: Option<Vector>,
     },
     /// A follower of the pointer and of the slider b.
     Follow(Follower),

@@ -392,9 +392,11 @@ impl Simulation {
         let q = self.state.drives(n);
         let relative = PerDrive::from_fn(n, |k| self.relative(k));
         let target_rides = self.floats && matches!(self.guide, Guide::Follow(_));
+        let base_is_planned = matches!(self.guide, Guide::Motion { base_shift: Some(_), .. });
         let (phase, target, b_reference) = match &self.guide {
             Guide::Motion { motion, base_shift, .. } => {
-                let end = base_shift + end_effector(&arm.end_effector, &motion.path.at(1.0).q.units());
+                let shift = base_shift.unwrap_or_default();
+                let end = shift + end_effector(&arm.end_effector, &motion.path.at(1.0).q.units());
                 let phase = if self.has_arrived() { Phase::Rest } else { Phase::Motion };
                 (phase, Target { at: end, reach: Reach::Inside }, self.lambda.dot(&self.reference.q))
             }
@@ -434,6 +436,7 @@ impl Simulation {
             end_effector: x.base.at + end_effector(&arm.end_effector, &x.e),
             target,
             target_rides,
+            base_is_planned,
             loaded: self.loaded,
             kinetic: x.kinetic,
             dexterity: self.map.map_or_else(Default::default, |map| map.dexterity_at(&x.e)),
