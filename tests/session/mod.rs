@@ -1,5 +1,6 @@
 //! Tests of `src/session`: scenarios, edits, undo, replay and the verdict.
 
+mod afloat;
 mod any_drives;
 mod around;
 mod bounds;

@@ -74,7 +74,9 @@ pub(super) fn given(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan
             ));
         }
         (_, 2) => {
-            return refuse("samples of x and y want the kind given, reactionless, minimum-norm or zero-momentum".into());
+            return refuse(
+                "samples of x and y want the kind given, reactionless, minimum-norm or zero-momentum".into(),
+            );
         }
         _ => return refuse("samples of drive angles want the kind given".into()),
     };

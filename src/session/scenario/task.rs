@@ -149,6 +149,14 @@ pub enum IncompleteTask {
     /// A key is missing.
     #[error("missing field `{0}`")]
     Missing(&'static str),
+    /// The start has not one angle for each drive.
+    #[error("its start has {got} angles: want {want}, one angle for each drive")]
+    Angles {
+        /// Number of angles.
+        got: usize,
+        /// Number of drives.
+        want: usize,
+    },
     /// The point A or b is not that of the start.
     #[error(
         "its start has the end effector at {}, {} m and b = {} rad: want no from and no b beside start",
@@ -213,6 +221,10 @@ impl Task {
         }
         let ends = self.samples.as_ref().and_then(|samples| ends_of(self.kind, samples, self.turn, machine));
         let start = self.start_pose(machine).filter(|_| ends.is_none_or(|ends| ends.b.is_none()));
+        let (got, want) = (self.start.map(|start| start.values().len()), machine.drives());
+        if let Some(got) = got.filter(|got| *got != want) {
+            return Err(IncompleteTask::Angles { got, want });
+        }
         let place = |key: &'static str, own: [f64; 2], end: Option<[f64; 2]>| match end {
             _ if stated(key) => Ok(own),
             Some(end) => Ok(end),

@@ -1,0 +1,150 @@
+//! Arms on free bases led at zero momentum: their bases keep their orientation, and the end effector arrives.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use stillbase::mechanics::planar::Vector;
+use stillbase::session::scenario::Scenario;
+use stillbase::session::verdict::Verdict;
+use stillbase::session::{Run, replay};
+use stillbase::simulation::frame::Frame;
+use toml::Table;
+
+/// The arm on an air bearing with another task.
+fn spot(task: &str) -> Scenario {
+    let base = "[base]\nkind = 'free'\nmass = 11.211\ninertia = 0.20215\n\
+                com = [-0.0680112181717378, -0.24212956077851439]\n";
+    Scenario::parse(&format!("machine = 'spot'\n[task]\n{task}\n{base}"), "spot", None).expect("valid")
+}
+
+/// The last frame, and the largest angle of the base on the way, rad.
+fn run(scenario: &Scenario) -> (Frame, f64) {
+    let mut turned = 0.0_f64;
+    let run = replay(scenario, |_, frame| turned = turned.max(frame.base.angle.abs())).expect("it runs");
+    (run.frame(), turned)
+}
+
+fn away(frame: &Frame, x: f64, y: f64) -> f64 {
+    (frame.end_effector - Vector::new(x, y)).norm()
+}
+
+/// Lines as seen from the base pin end at the angles of an independent integration, lines in space where they should.
+#[test]
+fn the_base_of_a_real_arm_keeps_its_orientation() {
+    let line = "kind = 'zero-momentum'\nshape = 'line'\ntime = 10.0";
+    let seen = [
+        (
+            "[1.9, 2.6, 3.4]",
+            [-0.2937174408133392, 0.4728225832686124],
+            [2.6958044856371743, 1.3816740424231353, 2.633332376333862],
+        ),
+        (
+            "[1.2, 0.4, -0.6]",
+            [0.34281154131289504, 0.4531187311062876],
+            [0.478718085768398, 1.6176929806971474, 0.09974239107843176],
+        ),
+    ];
+    for (start, [x, y], end) in seen {
+        let (frame, turned) = run(&spot(&format!("{line}\nframe = 'base'\nstart = {start}\nto = [{x}, {y}]")));
+        let off = (0..3).map(|k| (frame.relative(k) - end[k]).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-6 && turned < 1e-9, "{off:e} rad off, turned by {turned:e} rad");
+        assert!((frame.in_base(frame.end_effector) - Vector::new(x, y)).norm() < 1e-8);
+        let (frame, turned) = run(&spot(&format!("{line}\nstart = {start}\nto = [{x}, {y}]")));
+        assert!(away(&frame, x, y) < 1e-8 && turned < 1e-9, "{:e} m, {turned:e} rad", away(&frame, x, y));
+        assert!((frame.target.at - frame.end_effector).norm() < 1e-8 && frame.base.at.norm() > 1e-3);
+    }
+}
+
+/// Every shape of path, and samples, in space and seen from the base.
+#[test]
+fn every_shape_of_path_leaves_the_base_as_it_is_oriented() {
+    let shapes = [
+        "shape = 'arc'\nvia = [[-0.40, 0.50]]\nto = [-0.30, 0.45]",
+        "shape = 'spline'\nvia = [[-0.40, 0.48], [-0.35, 0.44]]\nto = [-0.30, 0.47]",
+        "shape = 'freehand'\nvia = [[-0.42, 0.43], [-0.40, 0.435], [-0.38, 0.45], [-0.36, 0.45]]\nto = [-0.35, 0.46]",
+        "shape = 'line'\nvia = [[-0.40, 0.50]]\nto = [-0.30, 0.45]\ncorners = 'blend'\nblend = 0.02",
+    ];
+    for (shape, frame) in shapes.iter().flat_map(|shape| [(shape, "space"), (shape, "base")]) {
+        let scenario =
+            spot(&format!("kind = 'zero-momentum'\nframe = '{frame}'\nstart = [1.9, 2.6, 3.4]\ntime = 8.0\n{shape}"));
+        let (end, turned) = run(&scenario);
+        let to = scenario.task.to;
+        let at = if frame == "space" { end.end_effector } else { end.in_base(end.end_effector) };
+        assert!(turned < 1e-9 && (at - Vector::new(to[0], to[1])).norm() < 1e-7, "{shape}, {frame}: {turned:e} rad");
+        assert!(Verdict::of(&scenario, &end).target_distance < 1e-7, "{shape}, {frame}");
+    }
+    let rows: Vec<String> = (0..=10)
+        .map(|i| f64::from(i) / 10.0)
+        .map(|u: f64| {
+            let s = u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
+            format!("[{}, {}, {}]", 6.0 * u, -0.4437174408133392 + 0.12 * s, 0.4228225832686124 + 0.04 * s)
+        })
+        .collect();
+    let sampled = spot(&format!("kind = 'zero-momentum'\nstart = [1.9, 2.6, 3.4]\nsamples = [{}]", rows.join(", ")));
+    let (end, turned) = run(&sampled);
+    assert!(turned < 1e-9 && away(&end, -0.3237174408133392, 0.4628225832686124) < 1e-7, "{turned:e} rad");
+}
+
+/// What the arm does to its base when it is moved by its joints, from momentum computed outside; joint angles count from
+/// the y axis of the base.
+#[test]
+fn joint_motions_turn_the_base_as_momentum_says() {
+    let swung = |from: [f64; 3], to: [f64; 3]| {
+        let rows: Vec<String> = (0..=16)
+            .map(|i| f64::from(i) / 16.0)
+            .map(|u: f64| {
+                let s = u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
+                let joint = |k: usize| (from[k] + s * (to[k] - from[k])).to_radians();
+                let first = FRAC_PI_2 + joint(0);
+                format!("[{}, {}, {}, {}]", 8.0 * u, first, first + joint(1), first + joint(1) + joint(2))
+            })
+            .collect();
+        let (end, _) = run(&spot(&format!("kind = 'given'\nsamples = [{}]", rows.join(", "))));
+        end.base.angle * 180.0 / PI
+    };
+    for (from, to, turn) in [
+        ([0.0; 3], [90.0, 0.0, 0.0], -34.921),
+        ([-90.0, 0.0, 0.0], [90.0, 0.0, 0.0], -70.930),
+        ([90.0, -90.0, -90.0], [0.0, 90.0, 90.0], 6.526),
+    ] {
+        let got = swung(from, to);
+        assert!((got - turn).abs() < 1e-3, "{got} for {turn} degrees");
+    }
+    let (end, _) = run(&Scenario::builtin("spot-swing").expect("built in"));
+    assert!((end.base.angle * 180.0 / PI + 34.921).abs() < 1e-3);
+}
+
+/// A start brings A and b; what contradicts it is refused; another A has no start.
+#[test]
+fn a_task_may_state_its_pose_of_a() {
+    let scenario = spot("kind = 'zero-momentum'\nstart = [1.9, 2.6, 3.4]\nto = [-0.2937, 0.4728]");
+    assert!((scenario.task.from[0] + 0.4437174408133392).abs() < 1e-12);
+    let again = Scenario::parse(&scenario.to_toml(), "again", None).expect("what is written is read");
+    assert_eq!((&again.task.start, again.task.from), (&scenario.task.start, scenario.task.from));
+    let change = |text: &str| text.parse::<Table>().expect("TOML");
+    let moved = scenario.task.with_change(&change("from = [-0.44, 0.42]"), &scenario.machine).expect("a task");
+    assert_eq!((moved.start, moved.from), (None, [-0.44, 0.42]));
+    let begun = moved.with_change(&change("start = [1.9, 2.6, 3.4]"), &scenario.machine).expect("a task");
+    assert_eq!(begun.from, scenario.task.from);
+    for (task, words) in [
+        ("start = [1.9, 2.6, 3.4]\nfrom = [0.1, 0.2]\nto = [0.3, 0.3]", "want no from and no b beside start"),
+        ("start = [1.9, 2.6]\nto = [0.3, 0.3]", "want 3, one angle for each drive"),
+        ("to = [0.3, 0.3]", "missing"),
+    ] {
+        let text = format!("machine = 'spot'\n[task]\nkind = 'zero-momentum'\n{task}\n");
+        let why = Scenario::parse(&text, "wrong", None).expect_err("wrong").to_string();
+        assert!(why.contains(words), "{why}");
+    }
+    // The other kinds begin there, too.
+    let nine = |kind: &str| {
+        let text = format!(
+            "machine = 'nine-link'\n[task]\nkind = '{kind}'\nstart = [1.6875182179, 3.7146223682, 2.1801769897]\nto = [0.35, 0.60]\n"
+        );
+        Scenario::parse(&text, "nine", None).expect("valid")
+    };
+    for kind in ["reactionless", "minimum-norm", "least-reaction", "zero-momentum", "same-tip", "change-b"] {
+        let scenario = nine(kind);
+        let run = Run::new(&scenario).unwrap_or_else(|why| panic!("{kind}: {why}"));
+        let start = scenario.task.start_pose(&scenario.machine).expect("stated");
+        assert!(run.frame().q.0.minus(&start.0).max_abs() < 1e-9, "{kind}: {:?}", run.frame().q);
+    }
+}
