@@ -210,18 +210,18 @@ fn a_film_that_is_stopped_leaves_nothing() {
     app_state.run_to_end();
     let order = film_order(&app_state);
     for name in ["a.gif", "a.png", "frames"] {
-        let mut pictures = 0;
+        let (mut pictures, file) = (0, folder.path(name));
         let goes_on = &mut |_: f64| {
             pictures += 1;
             pictures < 3
         };
-        let stopped = write_film(&mut app_state, &order, &folder.path(name), false, goes_on);
+        let stopped = write_film(&mut app_state, &order, (&file, FilmForm::of(&file).expect("a film")), false, goes_on);
         assert!(stopped.is_err_and(|why| why.to_string().contains("no file is left")), "{name}");
         assert_eq!(pictures, 3, "{name}: it stops at once");
     }
     assert!(folder.names().is_empty());
     let order = FilmOrder { slow: 1000.0, fps: 50.0, ..order };
-    let long = write_film(&mut app_state, &order, &folder.path("a.gif"), false, &mut |_| true);
+    let long = write_film(&mut app_state, &order, (&folder.path("a.gif"), FilmForm::Gif), false, &mut |_| true);
     assert!(long.is_err_and(|why| why.to_string().contains("want at most 5000")));
 }
 
@@ -230,7 +230,8 @@ fn a_folder_of_pictures_replaces_only_its_like() {
     let mut app_state = app_state("case-1");
     app_state.run_to_end();
     let (order, frames) = (film_order(&app_state), folder.path("frames"));
-    let mut film = |order: &FilmOrder, force| write_film(&mut app_state, order, &frames, force, &mut |_| true);
+    let mut film =
+        |order: &FilmOrder, force| write_film(&mut app_state, order, (&frames, FilmForm::Frames), force, &mut |_| true);
     assert_eq!(film(&order, false).expect("a film").pictures, 11);
     assert!(film(&order, false).is_err_and(|why| why.to_string().contains("exists")));
     let short = FilmOrder { times: [0.0, 0.2], ..order };
@@ -249,7 +250,7 @@ fn without_its_encoder_an_mp4_says_what_to_install() {
     app_state.run_to_end();
     let order = film_order(&app_state);
     let file = folder.path("film.mp4");
-    match write_film(&mut app_state, &order, &file, false, &mut |_| true) {
+    match write_film(&mut app_state, &order, (&file, FilmForm::Mp4), false, &mut |_| true) {
         Err(why) => {
             assert!(!stillbase::files::video::has_encoder(), "{why}");
             assert!(why.to_string().contains("apt-get install ffmpeg"), "{why}");

@@ -81,7 +81,7 @@ const EDGES: &[(&str, &[&str])] = &[
             "build.rs",
             "files/draft.rs",
             "files/shards/rows.rs",
-            "files/table/parquet_signals.rs",
+            "files/table/parquet_table.rs",
             "files/shards/checksum.rs",
             "files/new_file.rs",
             "files/new_folder.rs",
