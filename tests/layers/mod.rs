@@ -48,7 +48,18 @@ const EDGES: &[(&str, &[&str])] = &[
             "recording/viewer.rs",
         ],
     ),
-    ("std::env", &["build.rs", "main.rs", "app/window.rs", "app/window/error.rs", "app/window/chooser/portal.rs"]),
+    (
+        "std::env",
+        &[
+            "build.rs",
+            "main.rs",
+            "app/window.rs",
+            "app/window/error.rs",
+            "app/window/chooser/portal.rs",
+            // The folder of temporary files.
+            "files/new_file.rs",
+        ],
+    ),
     (
         "std::thread",
         &[

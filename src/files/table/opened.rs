@@ -71,7 +71,7 @@ impl Table {
     /// # Errors
     /// If it cannot be read, or is no Parquet.
     pub fn open(file: &Path) -> Result<Self, NoTable> {
-        Self::open_with(file, |file| read(file))
+        Self::open_with(file, read)
     }
 
     /// Opens a file as [`open`](Self::open) does; `text` reads CSV.
