@@ -38,6 +38,7 @@ pub const TESTS: &[Test] = tests![
     a_choice_without_rows_is_refused,
     a_report_of_the_window_shows_its_plots,
     an_encoder_gets_every_picture,
+    pixels_go_to_standard_output_whole,
     a_report_is_in_the_units_and_names_of_the_window,
     a_transparent_picture_is_legible_on_any_colour,
 ];
@@ -306,6 +307,40 @@ fn an_encoder_gets_every_picture() {
     assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
     assert_eq!(fs::read(folder.path("film.mp4")).expect("a file").len(), 11 * 32 * 20 * 4);
     assert_eq!(folder.names(), ["ffmpeg", "film.mp4"]);
+}
+
+/// Also a film that another program encodes; no other file is left.
+fn pixels_go_to_standard_output_whole() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let (folder, temporary) = (Folder::new("results"), Folder::new("results"));
+    let encoder = folder
+        .file("ffmpeg", "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\ncat > \"${last#file:}\"\n");
+    fs::set_permissions(&encoder, fs::Permissions::from_mode(0o755)).expect("it may run");
+    let path = format!("{}:{}", folder.0.display(), std::env::var("PATH").expect("a path"));
+    let render = |args: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_stillbase"));
+        command.args(["render", "case-1", "--size", "64x40"]).args(args);
+        command.stdin(std::process::Stdio::null()).env("PATH", &path).env("TMPDIR", &temporary.0);
+        let out = command.current_dir(&folder.0).output().expect("the program starts");
+        assert!(out.status.success(), "{args:?}: {}", String::from_utf8_lossy(&out.stderr));
+        out.stdout
+    };
+    let film = ["--film", "0,0.2", "--fps", "10"];
+    for (more, file, format) in [
+        (&[][..], "still.png", None),
+        (&[], "still.webp", Some("webp")),
+        (&film, "film.gif", None),
+        (&film, "film.png", Some("png")),
+        (&film, "film.mp4", Some("mp4")),
+    ] {
+        render(&[more, &["-o", file]].concat());
+        let written = fs::read(folder.path(file)).expect("a file");
+        let format: Vec<&str> = format.into_iter().flat_map(|format| ["--format", format]).collect();
+        let printed = render(&[more, &["-o", "-"], &format].concat());
+        assert!(!written.is_empty() && printed == written, "{file}: {} of {} bytes", printed.len(), written.len());
+    }
+    assert!(temporary.names().is_empty(), "{:?}", temporary.names());
+    assert_eq!(folder.names().len(), 6, "{:?}", folder.names());
 }
 
 fn values_are_those_of_the_plots_or_all() {

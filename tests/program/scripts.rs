@@ -205,8 +205,8 @@ fn a_file_goes_to_standard_output_whole() {
         ("report case-3", "report.html", ""),
         ("render case-1 --at 0.5", "view.svg", "svg"),
         ("render case-1 --at 0.5", "view.pdf", "pdf"),
-        ("figures case-1 --what torque,linkage", "run.svg", ""),
-        ("figures case-1 --what torque,linkage", "run.pdf", "PDF"),
+        ("figures case-1 --what torque,linkage --force", "drawn.svg", ""),
+        ("figures case-1 --what torque,linkage --force", "drawn.pdf", "PDF"),
         ("figures --paper fig-3", "fig-3.svg", ""),
         ("figures --paper table-1", "table-1.pdf", ".pdf"),
         ("tolerance case-3 --samples 50", "study.csv", ""),
@@ -237,9 +237,9 @@ fn a_file_goes_to_standard_output_whole() {
         if let Ok(text) = String::from_utf8(written.clone()) {
             written = text.replace(&format!("-o {file}"), "-o -").into_bytes();
         }
-        if file == "run.pdf" {
+        if file == "drawn.pdf" {
             // There it is packed.
-            assert!(out.stdout.starts_with(b"%PDF-1.7") && out.stdout.ends_with(b"%%EOF\n"), "{standard:?}");
+            assert!(out.stdout.starts_with(b"%PDF-1.7") && out.stdout.ends_with(b"%%EOF"), "{standard:?}");
         } else {
             assert!(out.stdout == written, "{standard:?}: {} bytes, {} in the file", out.stdout.len(), written.len());
         }
