@@ -82,7 +82,7 @@ impl FilePurpose {
             Self::Machine => ["Take the machine along", "Save", "machine.urdf"],
             Self::Plot(_, PlotFile::Values(form)) => {
                 let example = if *form == RowForm::Csv { "plot.csv" } else { "plot.parquet" };
-                ["Save the values of the time shown", "Save", example]
+                ["Save the values shown", "Save", example]
             }
             Self::Plot(_, PlotFile::Picture(form)) => {
                 let example = match form {

@@ -14,7 +14,9 @@ use super::exit::print_message;
 use super::failure::Failure;
 use super::file_form::FileForm;
 use super::input::{DEFAULT_SCENARIO, Settings, distinct_name, scenario};
-use super::output::{Format, TextTable, say_written};
+#[cfg(feature = "record")]
+use super::output::say_written;
+use super::output::{Format, TextTable};
 use super::rows::{RowTarget, Rows};
 use super::strict::{Strict, run_faults};
 use stillbase_settings::number::{fixed, nine_digits};

@@ -47,7 +47,7 @@ pub struct ExportModelArguments {
     pose: Vec<f64>,
     #[command(flatten)]
     dimensions: Dimensions,
-    #[arg(short, long, value_name = "FILE", help = format!("Write it to this file; its ending chooses what is written: {}", form::endings().join(", ")))]
+    #[arg(short, long, value_name = "FILE", help = format!("Write it to this file; its ending chooses what is written: {}; `-` is standard output", form::endings().join(", ")))]
     output: PathBuf,
     /// Replace the file if it exists
     #[arg(long)]

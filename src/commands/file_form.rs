@@ -13,7 +13,7 @@ use super::output::{Format, check_output, take_standard_output};
 /// Format of what goes to standard output.
 #[derive(Args, Default)]
 pub struct FileForm {
-    /// Format of what goes to standard output, by the ending that a file of it has; a file's own name chooses otherwise
+    /// Format of standard output (-o -), by the ending that such a file has; default: the first that -o names
     #[arg(long = "format", value_name = "ENDING")]
     ending: Option<String>,
 }

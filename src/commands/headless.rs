@@ -35,7 +35,7 @@ pub struct HeadlessArguments {
     /// cases
     #[arg(value_name = "SCENARIO")]
     scenarios: Vec<String>,
-    /// The recording to write
+    /// The recording to write; `-` is standard output
     #[arg(short, long, value_name = "FILE.rrd", required_unless_present_any = ["connect", "spawn"])]
     output: Option<PathBuf>,
     /// Stream to a viewer that runs, instead of writing a file; default: the one on this computer

@@ -177,6 +177,12 @@ pub fn write_file(file: &Path, content: &[u8], force: bool) -> Result<(), Failur
     Ok(())
 }
 
+/// Returns what a file is called in an answer.
+#[cfg(feature = "ui")]
+pub fn file_words(file: &Path) -> String {
+    if is_standard(file) { "standard output".into() } else { file.display().to_string() }
+}
+
 /// Says that a file is written, unless it is standard output.
 pub fn say_written(file: &Path) {
     if !is_standard(file) {

@@ -17,7 +17,7 @@ use super::failure::Failure;
 use super::file_form::FileForm;
 use super::input::{DEFAULT_SCENARIO, Settings, no_use, scenario};
 use super::open::ThemeName;
-use super::output::Format;
+use super::output::{Format, file_words};
 use super::progress::bar;
 use super::size::size;
 
@@ -33,6 +33,7 @@ Examples:
   stillbase render case-3 -o case-3.png --at 0.62
   stillbase render case-3 -o slide.png --view space --theme light --transparent
   stillbase render case-3 -o case-3.svg --theme light --plots
+  stillbase render case-3 -o - --format svg > case-3.svg
   stillbase render case-1 -o shake.gif --film --view window
   stillbase render case-1 -o pictures --film 0,0.5 --size 1920x1080
   stillbase render spacecraft -o turning.png --film 0,1 --view space --fps 30 --slow 2")]
@@ -40,7 +41,8 @@ pub struct RenderArguments {
     /// A built-in scenario or machine, or a TOML file of either
     #[arg(default_value = DEFAULT_SCENARIO)]
     scenario: String,
-    /// The picture (.png, .webp, .svg, .pdf) or film (.gif, .png, .webp, .mp4, or a folder) to write
+    /// The picture (.png, .webp, .svg, .pdf) or film (.gif, .png, .webp, .mp4, or a folder) to write; `-` is standard
+    /// output
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Instant of a still picture, s; default: the end of the run
@@ -214,8 +216,9 @@ impl RenderArguments {
 
     fn print(&self, FilmDone { pictures, times }: FilmDone) -> Result<(), Failure> {
         let answer = Answer { file: self.output.display().to_string(), pictures, times };
+        let file = file_words(&self.output);
         self.format.print(&answer, |answer| {
-            let Answer { file, pictures, times: [from, to] } = answer;
+            let Answer { pictures, times: [from, to], .. } = answer;
             let when = if from == to {
                 format!("at {} s", fixed(*from, 3))
             } else {

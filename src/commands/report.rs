@@ -15,7 +15,7 @@ use stillbase_settings::text::shell_word;
 use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::Format;
+use super::output::{Format, file_words};
 use super::simulate::require_audit;
 use super::strict::{Strict, bad_statements};
 
@@ -80,7 +80,7 @@ impl ReportArguments {
         let answer = Answer { file: self.output.display().to_string(), pictures, plots, statements };
         self.format.print(&answer, |answer| {
             let (pictures, plots) = (counted(answer.pictures, "picture"), counted(answer.plots, "plot"));
-            format!("{}: {pictures}, {plots}; {}\n", answer.file, answer.statements.line())
+            format!("{}: {pictures}, {plots}; {}\n", file_words(&self.output), answer.statements.line())
         })?;
         let Statements { machine, plan, run } = &answer.statements;
         require_audit(&name, fault)?;

@@ -87,8 +87,8 @@ pub struct ToleranceArguments {
         conflicts_with_all = ["scenario", "samples", "seed", "spreads", "instants", "shard", "simulate", "pairs"]
     )]
     merge: Vec<PathBuf>,
-    /// Write every machine to this file
-    #[arg(short, long, value_name = "FILE.parquet|FILE.csv|-")]
+    /// Write every machine to this file, .csv or .parquet; `-` is standard output
+    #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Replace the file if it exists
     #[arg(long)]
