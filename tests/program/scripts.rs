@@ -262,6 +262,7 @@ fn a_file_goes_to_standard_output_whole() {
         (&["figures", "-o", "-"], "one figure, as --paper fig-3 -o -"),
         (&["figures", "case-1", "--what", "torque", "-o", "-", "--numbers", "csv"], "--numbers has no use here"),
         (&["figures", "case-1", "--what", "torque", "-o", "-", "--format", "png"], "want svg or pdf"),
+        (&["man", "-o", "-"], "`stillbase man` without -o"),
         (&["import", "plate.csv", "-o", "-"], "import writes two"),
         (&["trim", "plate.csv", "nine-link", "-o", "-", "--identified", "-"], "both want standard output"),
         (&["render", "case-3", "-o", "-", "--film", "--format", "svg"], "want gif or png or webp or mp4"),
