@@ -163,3 +163,33 @@ fn a_way_out_has_the_name_of_who_shows_it() {
     let worded = why.worded(|_| "a tick at Gaps").to_string();
     assert!(worded.ends_with("want it filled, or a tick at Gaps to have it bridged by the spline"), "{worded}");
 }
+
+/// Parquet is the same table: words name motions, numbers may be words, and other columns count for nothing.
+#[cfg(feature = "cli")]
+#[test]
+fn columns_of_parquet_are_those_of_csv() {
+    use stillbase::files::row_file::{RowFile, RowForm};
+    let folder = crate::folder::Folder::new("table");
+    let machine = builtin("two-drive").expect("built in");
+    let (texts, numbers) = (["motion", "fx (mN)"], ["t", "q1", "q2", "fy", "nz"].map(String::from));
+    for form in RowForm::ALL {
+        let file = folder.path(&format!("plate.{}", form.ending()));
+        let mut rows = RowFile::with_texts((&file, form), false, "instant", (&texts, &numbers)).expect("begun");
+        for i in 0..40 {
+            let t = f64::from(i) / 39.0;
+            let (motion, force) = (if i < 15 { "slow" } else { "fast" }, (100.0 * t).to_string());
+            let numbers = [t, 0.5 * t, 1.0 - t, 0.2, 0.3].map(Some);
+            rows.named_row(&[motion, &force], &numbers).expect("a row");
+        }
+        rows.finish().expect("written");
+    }
+    let [csv, parquet] = ["plate.csv", "plate.parquet"].map(|name| {
+        let table = Table::open(&folder.path(name)).expect(name);
+        motions(&table, machine).expect(name)
+    });
+    assert_eq!(parquet, csv);
+    assert_eq!(parquet.iter().map(|motion| motion.t.len()).collect::<Vec<_>>(), [15, 25]);
+    assert!((parquet[1].force[24].re - 0.1).abs() < 1e-15);
+    let table = Table::open(&folder.path("plate.parquet")).expect("a table");
+    assert_eq!(samples(&table, machine, None, false).expect("the angles are there").samples.count(), 40);
+}
