@@ -202,7 +202,7 @@
 //! ```text
 //! assets/*.toml ─→ Machine ─→ Inertia (g, C, J) ─┐
 //! slider · drag · key · script ─→ Edit ─→ Session ┴─→ Motion ─→ Simulation ─→ Frame
-//! Frame ─→ signals ─→ plots │ Rerun scalars │ CSV
+//! Frame ─→ signals ─→ plots │ Rerun scalars │ CSV, Parquet
 //! signals ─→ charts ─→ plots │ layout and series of a recording
 //! Frame + Machine ─→ Stage ─→ Scene ─→ render ─→ window │ picture      Scene ─→ Rerun entities
 //! pointer ─→ camera ray ─→ Handle ─→ Edit

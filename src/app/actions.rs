@@ -4,7 +4,7 @@
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::command::CameraMove;
-use super::export::{Export, PictureForm};
+use super::export::{Export, PictureForm, RowForm};
 use super::sketching::fields;
 use super::theme::other;
 use super::{
@@ -386,8 +386,8 @@ pub const ACTIONS: &[Action] = actions![
     Save, "Save" = "store file keep toml session", [on(CTRL, Key::S)], "top bar, File", |_, _| Some(Command::Session(SessionCommand::Save));
     Save, "Save as" = "store file export toml keep copy name session", [on(CTRL_SHIFT, Key::S)], "top bar, File", |s, _| dialog(s, FilePurpose::Save);
     Quit, "Quit; asks first if changes are in no file" = "exit close leave", [on(CTRL, Key::Q)], "window frame", |_, _| Some(Command::Window(WindowCommand::Quit));
-    Export, "Values of the first plot as CSV" = "export table data numbers spreadsheet excel signals save", [],
-        "menu of a plot", |s, v| plot_file(s, v, PlotFile::Csv);
+    Export, "Values of the first plot as CSV or Parquet" = "export table data numbers spreadsheet excel signals save", [],
+        "menu of a plot", |s, v| plot_file(s, v, PlotFile::Values(RowForm::Csv));
     Export, "Picture of the first plot as PNG" = "image export screenshot figure save", [], "menu of a plot",
         |s, v| plot_file(s, v, PlotFile::Picture(PictureForm::Png));
     Export, "Drawing of the first plot as SVG" = "picture image vector export figure save", [], "menu of a plot",
@@ -454,7 +454,7 @@ pub const GESTURES: [(&str, &str); 25] = [
     ("drag the numbers of a plot", "along its values; there Ctrl wheel, or Alt wheel on the plot: closer"),
     ("Shift drag on a plot", "plots show this time"),
     ("drag a plot's heading", "another place; out of the panel: a window of its own"),
-    ("right button on a plot", "its menu: curves, statistics, CSV, SVG, PNG"),
+    ("right button on a plot", "its menu: curves, statistics, CSV, Parquet, SVG, PNG"),
     ("Shift click a plot", "a second cursor: plots show differences; Esc takes it away"),
     ("Esc", "close what is open, cancel a drag"),
 ];

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::given::assess::TableText;
 use super::{FileReport, RefusedEdit, ResumePoint};
 use stillbase_files::FoundScenario;
+use stillbase_files::table::{Table, is_table};
 use stillbase_session::scenario::Scenario;
 use stillbase_session::{Edit, ProgressCallback, Refusal, Session};
 use stillbase_settings::text::shorten_message;
@@ -102,7 +102,7 @@ pub(super) enum SessionSource {
 pub(super) enum Opened {
     Session(Box<OpenedSession>),
     /// A table of numbers to be assessed for the session on display.
-    Table(PathBuf, TableText),
+    Table(PathBuf, Table),
 }
 
 /// An opened session.
@@ -143,11 +143,10 @@ impl SessionSource {
             })
         };
         if let Self::File(path) = &self
-            && path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
+            && is_table(path)
         {
-            let text = stillbase_files::text::read(path);
-            let text = text.map_err(|why| NotOpened::unread(&why))?;
-            return Ok(Opened::Table(path.clone(), TableText { name: path.display().to_string(), text }));
+            let table = Table::open(path).map_err(|why| NotOpened::unread(&why))?;
+            return Ok(Opened::Table(path.clone(), table));
         }
         let (FoundScenario { scenario, note, left_out, recorded }, left_off, path) = match self {
             Self::Scenario(scenario) => {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::export::{Export, PictureForm};
+use super::export::{Export, PictureForm, RowForm};
 use stillbase_exchange::form;
 use stillbase_session::Session;
 
@@ -36,15 +36,16 @@ pub enum FilePurpose {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlotFile {
     /// The samples within the time range on display.
-    Csv,
+    Values(RowForm),
     /// A picture.
     Picture(PictureForm),
 }
 
 impl PlotFile {
     /// All of them.
-    pub const ALL: [Self; 5] = [
-        Self::Csv,
+    pub const ALL: [Self; 6] = [
+        Self::Values(RowForm::Csv),
+        Self::Values(RowForm::Parquet),
         Self::Picture(PictureForm::Svg),
         Self::Picture(PictureForm::Pdf),
         Self::Picture(PictureForm::Png),
@@ -54,17 +55,19 @@ impl PlotFile {
     /// Returns its name.
     pub fn words(self) -> &'static str {
         match self {
-            Self::Csv => "CSV",
+            Self::Values(form) => form.words(),
             Self::Picture(form) => form.words()[0],
         }
     }
 
-    /// Returns the file name extension.
-    pub fn ending(self) -> &'static str {
-        match self {
-            Self::Csv => "csv",
-            Self::Picture(form) => form.ending(),
-        }
+    /// Returns the file name extensions, the suggested one first. Values and pictures are not exchanged.
+    pub fn endings(self) -> Vec<&'static str> {
+        let (mut endings, own) = match self {
+            Self::Values(form) => (RowForm::ALL.map(RowForm::ending).to_vec(), form.ending()),
+            Self::Picture(form) => (PictureForm::ALL.map(PictureForm::ending).to_vec(), form.ending()),
+        };
+        endings.sort_by_key(|ending| *ending != own);
+        endings
     }
 }
 
@@ -72,12 +75,15 @@ impl FilePurpose {
     /// Returns the title of the dialog, the text of its button, and an example of a file name.
     pub(super) fn words(&self) -> [&'static str; 3] {
         match self {
-            Self::Open => ["Open a file", "Open", ".toml .urdf .xml .csv"],
+            Self::Open => ["Open a file", "Open", ".toml .urdf .xml .csv .parquet"],
             Self::Save => ["Save the session", "Save", "session.toml"],
             Self::Record => ["Record for the Rerun viewer", "Record", "run.rrd"],
             Self::Export(wanted) => [wanted.title(), "Save", wanted.example()],
             Self::Machine => ["Take the machine along", "Save", "machine.urdf"],
-            Self::Plot(_, PlotFile::Csv) => ["Save the values of the time shown", "Save", "plot.csv"],
+            Self::Plot(_, PlotFile::Values(form)) => {
+                let example = if *form == RowForm::Csv { "plot.csv" } else { "plot.parquet" };
+                ["Save the values shown", "Save", example]
+            }
             Self::Plot(_, PlotFile::Picture(form)) => {
                 let example = match form {
                     PictureForm::Png => "plot.png",
@@ -92,8 +98,12 @@ impl FilePurpose {
 
     /// Says how the name may end, if there is a choice that the dialog does not list otherwise.
     pub(super) fn endings(&self) -> Option<String> {
-        let Self::Export(wanted) = self else { return None };
-        Some(match &wanted.naming().1[..] {
+        let endings = match self {
+            Self::Export(wanted) => wanted.naming().1,
+            Self::Plot(_, file) => file.endings(),
+            _ => return None,
+        };
+        Some(match &endings[..] {
             [] => "a folder".into(),
             endings => format!("the name ends in .{}", endings.join(" or .")),
         })
@@ -104,7 +114,7 @@ impl FilePurpose {
 pub(super) const MACHINE_EXTENSION: &str = "toml";
 
 /// Formats of a machine's file: the ending, and what it is.
-pub(super) const MACHINE_FORMATS: [(&str, &str); 8] = [
+pub(super) const MACHINE_FORMATS: [(&str, &str); 9] = [
     (MACHINE_EXTENSION, "TOML"),
     ("urdf", "URDF"),
     ("xml", "MJCF"),
@@ -112,6 +122,7 @@ pub(super) const MACHINE_FORMATS: [(&str, &str); 8] = [
     ("dxf", "drawing, DXF"),
     ("stl", "solids, STL"),
     ("csv", "parts, CSV"),
+    ("parquet", "parts, Parquet"),
     ("md", "parts, Markdown"),
 ];
 
@@ -158,7 +169,7 @@ impl FileDialog {
                 free(&format!("{own}{addition}"), endings.first().copied().unwrap_or_default())
             }
             FilePurpose::Plot(plot, file) => {
-                free(&format!("{own} {}", plot.to_lowercase()), &file.words().to_lowercase())
+                free(&format!("{own} {}", plot.to_lowercase()), file.endings().first().copied().unwrap_or_default())
             }
         };
         Self { purpose, path: name }

@@ -12,9 +12,12 @@ use stillbase_study::comparison::{
 
 use super::exit::print_message;
 use super::failure::Failure;
+use super::file_form::FileForm;
 use super::input::{DEFAULT_SCENARIO, Settings, distinct_name, scenario};
+#[cfg(feature = "record")]
+use super::output::say_written;
 use super::output::{Format, TextTable};
-use super::rows::Rows;
+use super::rows::{RowTarget, Rows};
 use super::strict::{Strict, run_faults};
 use stillbase_settings::number::{fixed, nine_digits};
 
@@ -46,6 +49,8 @@ pub struct CompareArguments {
     #[command(flatten)]
     strict: Strict,
     #[command(flatten)]
+    form: FileForm,
+    #[command(flatten)]
     format: Format,
 }
 
@@ -57,10 +62,8 @@ pub struct Answer {
 impl CompareArguments {
     /// Runs all scenarios and prints a row for each.
     pub fn run(&self) -> Result<(), Failure> {
-        let ending = match &self.output {
-            Some(file) => self.format.check_output(file, self.force, &["csv", "parquet", "rrd"])?,
-            None => "",
-        };
+        let output = self.output.as_deref();
+        let ending = self.form.check_wanted(&self.format, output, self.force, &["csv", "parquet", "rrd"])?;
         let scenarios = self.scenarios()?;
         let mut runs = ComparisonTable::default();
         scenarios.iter().for_each(|(way, scenario)| runs.run(*way, scenario));
@@ -77,8 +80,8 @@ impl CompareArguments {
             return Err(Failure::NoAnswer(format!("none of these can be done: {why}")));
         }
         match &self.output {
-            Some(file) if ending == "rrd" => self.record(&good, file)?,
-            Some(file) => self.rows(runs.rows(), file)?,
+            Some(file) if ending == Some("rrd") => self.record(&good, file)?,
+            Some(_) => rows(runs.rows(), &RowTarget::with_ending(output, self.force, ending.unwrap_or_default()))?,
             None => {}
         }
         let fault = faults().next().map(|(name, why)| Failure::untrusted(name, why));
@@ -113,7 +116,7 @@ impl CompareArguments {
     fn record(&self, scenarios: &[Scenario], file: &std::path::Path) -> Result<(), Failure> {
         let options = stillbase_recording::Options { force: self.force, ..super::headless::unpictured() };
         super::headless::record_with_bar(scenarios, &super::headless::Target::File(file.into()), &options)?;
-        print_message(format!("wrote {}", file.display()));
+        say_written(file);
         Ok(())
     }
 
@@ -122,32 +125,31 @@ impl CompareArguments {
         Err(Failure::wrong_input("this build cannot record: want a name that ends in .csv or .parquet")
             .with_context(file.display()))
     }
+}
 
-    /// Writes the runs, one in each row, as CSV or Parquet.
-    fn rows(&self, runs: &[ComparisonRow], file: &std::path::Path) -> Result<(), Failure> {
-        let heads = SUMMARY_COLUMNS.iter().map(|c| format!("{} {}", c.key, c.unit));
-        let machines =
-            DESIGN_COLUMNS.iter().map(|c| if c.unit == "1" { c.key.into() } else { format!("{} {}", c.key, c.unit) });
-        // Older names stay at the end, until version 0.3.
-        let known = |name: &str| SUMMARY_COLUMNS.iter().find(|column| column.key == name);
-        let old: Vec<_> = OLD_NAMES.iter().filter_map(|(name, old)| Some((known(name)?, *old))).collect();
-        let old_heads = old.iter().map(|(column, old)| format!("{old} {}", column.unit));
-        let heads: Vec<String> = heads.chain(machines).chain(old_heads).collect();
-        let mut rows =
-            Rows::begin_with(Some(file), self.force, ("run", &["scenario", "reactionless", "refused"]), &heads)?;
-        for row in runs {
-            let values = SUMMARY_COLUMNS.iter().map(|c| (c.value)(row.outcome.as_ref().ok()?));
-            let machine = DESIGN_COLUMNS.iter().map(|c| (c.value)(row.design.as_ref()?));
-            let old = old.iter().map(|(column, _)| (column.value)(row.outcome.as_ref().ok()?));
-            let values = values.chain(machine).chain(old).map(|value| value.map(nine));
-            let (verdict, why) = match &row.outcome {
-                Ok(summary) => (summary.verdict.answer(), ""),
-                Err(why) => (String::new(), why.as_str()),
-            };
-            rows.named_row(&[&row.name, &verdict, why], values)?;
-        }
-        rows.finish()
+/// Writes the runs, one in each row, as CSV or Parquet.
+fn rows(runs: &[ComparisonRow], to: &RowTarget) -> Result<(), Failure> {
+    let heads = SUMMARY_COLUMNS.iter().map(|c| format!("{} {}", c.key, c.unit));
+    let machines =
+        DESIGN_COLUMNS.iter().map(|c| if c.unit == "1" { c.key.into() } else { format!("{} {}", c.key, c.unit) });
+    // Older names stay at the end, until version 0.3.
+    let known = |name: &str| SUMMARY_COLUMNS.iter().find(|column| column.key == name);
+    let old: Vec<_> = OLD_NAMES.iter().filter_map(|(name, old)| Some((known(name)?, *old))).collect();
+    let old_heads = old.iter().map(|(column, old)| format!("{old} {}", column.unit));
+    let heads: Vec<String> = heads.chain(machines).chain(old_heads).collect();
+    let mut rows = Rows::begin_with(to, ("run", &["scenario", "reactionless", "refused"]), &heads)?;
+    for row in runs {
+        let values = SUMMARY_COLUMNS.iter().map(|c| (c.value)(row.outcome.as_ref().ok()?));
+        let machine = DESIGN_COLUMNS.iter().map(|c| (c.value)(row.design.as_ref()?));
+        let old = old.iter().map(|(column, _)| (column.value)(row.outcome.as_ref().ok()?));
+        let values = values.chain(machine).chain(old).map(|value| value.map(nine));
+        let (verdict, why) = match &row.outcome {
+            Ok(summary) => (summary.verdict.answer(), ""),
+            Err(why) => (String::new(), why.as_str()),
+        };
+        rows.named_row(&[&row.name, &verdict, why], values)?;
     }
+    rows.finish()
 }
 
 /// Rounds a number to nine digits.

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use schemars::JsonSchema;
 use serde::Serialize;
-use stillbase_files::row_file::ROW_ENDINGS;
 use stillbase_mechanics::dynamics::{ExternalLoads, inverse};
 use stillbase_mechanics::machine::Inertia;
 use stillbase_mechanics::planar::Vector;
@@ -14,9 +13,10 @@ use stillbase_session::{Run, replay_if, with_start_edits};
 
 use super::exit::print_message;
 use super::failure::Failure;
+use super::file_form::FileForm;
 use super::input::{Settings, scenario};
 use super::output::{Format, check_size};
-use super::rows;
+use super::rows::{self, RowTarget};
 use super::simulate::require_audit;
 use super::strict::{Strict, run_faults};
 use stillbase_session::verdict::Verdict;
@@ -57,6 +57,8 @@ pub struct ExportArguments {
     #[command(flatten)]
     strict: Strict,
     #[command(flatten)]
+    form: FileForm,
+    #[command(flatten)]
     format: Format,
 }
 
@@ -96,9 +98,12 @@ pub struct Answer {
 impl ExportArguments {
     /// Writes the motion as CSV or Parquet.
     pub fn run(&self) -> Result<(), Failure> {
-        if let Some(file) = &self.output {
-            self.format.check_output(file, self.force, &ROW_ENDINGS)?;
-        }
+        let (format, form, file) = (&self.format, &self.form, self.output.as_deref());
+        // Without a file, JSON takes the place of rows.
+        let to = match file.is_none() && format.json {
+            true => RowTarget::wanted(format, form, file, self.force)?,
+            false => Some(RowTarget::of(format, form, file, self.force)?),
+        };
         let scenario = scenario(&self.scenario, &self.settings)?;
         let name = scenario.name.clone();
         // The first edits may draw another machine.
@@ -146,8 +151,8 @@ impl ExportArguments {
         let what = if self.what == What::Reference { "reference" } else { "simulated" };
         let answer =
             Answer { scenario: name, what, rate: self.rate, duration, last_interval, columns, rows, audit_failed };
-        if self.output.is_some() || !self.format.json {
-            let mut rows = rows::Rows::begin(self.output.as_deref(), self.force, &answer.columns)?;
+        if let Some(to) = to {
+            let mut rows = rows::Rows::begin(&to, &answer.columns)?;
             answer.rows.iter().try_for_each(|row| rows.row(row.iter().copied()))?;
             rows.finish()?;
         }

@@ -7,21 +7,23 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_exchange::cut::Cut;
 use stillbase_exchange::drawing::Sheet;
-use stillbase_exchange::form::{self, Form, ModelContent};
+use stillbase_exchange::form::{self, Form, FormContent, ModelContent};
 use stillbase_exchange::mjcf::{hinges, usual_pose};
 use stillbase_exchange::stl;
 use stillbase_exchange::urdf::joint;
+use stillbase_files::row_file::{RowForm, table_bytes};
 use stillbase_mechanics::machine::Machine;
 use stillbase_settings::number::{counted, fixed};
 
 use super::dimensions::Dimensions;
 use super::exit::print_message;
 use super::failure::Failure;
+use super::file_form::FileForm;
 use super::input::MachineArgument;
-use super::output::{Format, TextTable, write_text};
+use super::output::{Format, TextTable, write_file};
 
 /// Export a machine: a model for MuJoCo (.xml) or for ROS and Pinocchio (.urdf), drawings for cutting (.svg, .dxf),
-/// solids (.stl), or a parts list (.csv, .md)
+/// solids (.stl), or a parts list (.csv, .parquet, .md)
 ///
 /// MJCF: sensors at the base read the force and moment that hold the machine; the reaction has the opposite sign. The
 /// pose is the keyframe "start". URDF: the joints drive_… are the motors, and all other joints follow them; the element
@@ -45,11 +47,13 @@ pub struct ExportModelArguments {
     pose: Vec<f64>,
     #[command(flatten)]
     dimensions: Dimensions,
-    #[arg(short, long, value_name = "FILE", help = format!("Write it to this file; its ending chooses what is written: {}", form::endings().join(", ")))]
+    #[arg(short, long, value_name = "FILE", help = format!("Write it to this file; its ending chooses what is written: {}; `-` is standard output", form::endings().join(", ")))]
     output: PathBuf,
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
+    #[command(flatten)]
+    form: FileForm,
     #[command(flatten)]
     format: Format,
 }
@@ -102,17 +106,20 @@ impl ExportModelArguments {
     /// Writes the file.
     pub fn run(&self) -> Result<(), Failure> {
         let machine = self.machine.load()?;
-        let form = Form::of(self.format.check_output(&self.output, self.force, &form::endings())?)
-            .map_err(Failure::wrong_input)?;
+        let ending = self.form.check(&self.format, Some(&self.output), self.force, &form::endings())?;
+        let form = Form::of(ending).map_err(Failure::wrong_input)?;
         self.check_options(form)?;
         if let Some(bad) = self.pose.iter().find(|q| !q.is_finite()) {
             return Err(Failure::wrong_input(format!("--pose {bad}: want finite angles in rad")));
         }
         let pose = if self.pose.is_empty() { usual_pose(&machine) } else { self.pose.clone() };
         let cut = self.dimensions.cut(&machine);
-        let text = form.written(&machine, &pose, &cut).map_err(Failure::wrong_input)?;
+        let content = match (form.written(&machine, &pose, &cut), RowForm::of_ending(ending)) {
+            (Ok(FormContent::Table(table)), Some(rows)) => table_bytes(&table, rows, &self.output)?,
+            (content, _) => content.map_err(Failure::wrong_input)?.text().into_bytes(),
+        };
         let of = described(&machine, form, pose, &cut)?;
-        write_text(&self.output, &text, self.force)?;
+        write_file(&self.output, &content, self.force)?;
         let left_out = form.left_out(&machine);
         for what in &left_out {
             print_message(format!("note: {}: left out: {what}", self.output.display()));

@@ -177,7 +177,10 @@ impl From<TableError> for Failure {
 
 impl From<RowError> for Failure {
     fn from(e: RowError) -> Self {
-        Self::wrong_input(e)
+        match e {
+            RowError::Write(e) => e.into(),
+            e => Self::wrong_input(e),
+        }
     }
 }
 
@@ -186,6 +189,7 @@ impl From<ExportError> for Failure {
     fn from(e: ExportError) -> Self {
         match e {
             ExportError::Adapter(_) | ExportError::Picture(_) | ExportError::Stopped => Self::no_answer(e),
+            ExportError::Write(e) | ExportError::Video(VideoError::Write(e)) => e.into(),
             ExportError::Video(VideoError::NoEncoder | VideoError::Encoder { .. }) => Self::no_answer(e),
             _ => Self::wrong_input(e),
         }
@@ -194,7 +198,10 @@ impl From<ExportError> for Failure {
 
 impl From<WriteError> for Failure {
     fn from(e: WriteError) -> Self {
-        Self::wrong_input(e)
+        match e {
+            WriteError::Standard(e) => Self::standard_output(&e),
+            e => Self::wrong_input(e),
+        }
     }
 }
 

@@ -15,7 +15,7 @@ use stillbase_settings::text::plain;
 use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{Settings, scenario};
-use super::output::{Format, TextTable, check_output};
+use super::output::{Format, TextTable, say_written};
 use super::progress::bar;
 use super::simulate::require_audit;
 use super::size::size;
@@ -35,7 +35,7 @@ pub struct HeadlessArguments {
     /// cases
     #[arg(value_name = "SCENARIO")]
     scenarios: Vec<String>,
-    /// The recording to write
+    /// The recording to write; `-` is standard output
     #[arg(short, long, value_name = "FILE.rrd", required_unless_present_any = ["connect", "spawn"])]
     output: Option<PathBuf>,
     /// Stream to a viewer that runs, instead of writing a file; default: the one on this computer
@@ -154,7 +154,7 @@ impl HeadlessArguments {
         let recordings = record_with_bar(&scenarios, &to, &options)?;
         let mut answer = Answer { recordings: recordings.into_iter().map(Row::from).collect() };
         match &to {
-            Target::File(file) => print_message(format!("wrote {}", file.display())),
+            Target::File(file) => say_written(file),
             Target::Viewer(viewer) => {
                 print_message(format!("sent to the viewer at {}", viewer.url()));
                 answer.recordings.iter_mut().for_each(|row| row.viewer = Some(viewer.url()));
@@ -173,7 +173,7 @@ impl HeadlessArguments {
     fn target(&self) -> Result<Target, Failure> {
         let viewer = match (&self.output, &self.connect) {
             (Some(file), _) => {
-                check_output(file, self.force, &["rrd"])?;
+                self.format.check_output(file, self.force, &["rrd"])?;
                 return Ok(Target::File(file.clone()));
             }
             (None, Some(url)) => Viewer::at(url),
@@ -242,6 +242,7 @@ fn failed(error: RecordError, scenarios: &[Scenario]) -> Failure {
             Some(scenario) => Failure::refused(scenario, refusal),
             None => Failure::from(refusal).with_context(scenario),
         },
+        RecordError::Write(e) => e.into(),
         other => Failure::wrong_input(other),
     }
 }

@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_files::table::{SampleTable, samples};
-use stillbase_files::{finish_all, write_temporary};
+use stillbase_files::{finish_all, is_standard, write_temporary};
 use stillbase_planning::curves::Coordinates;
 use stillbase_query::{Shared, answer_now};
 use stillbase_session::scenario::{MachineFile, Scenario};
@@ -17,16 +17,16 @@ use stillbase_study::import::{GivenMotion, ImportQuery, ImportedMotion, MotionIm
 
 use super::exit::print_message;
 use super::failure::Failure;
-use super::input::{self, DEFAULT_SCENARIO, Settings, above_zero, pose_constant, read};
+use super::input::{self, DEFAULT_SCENARIO, Settings, above_zero, pose_constant};
 use super::output::{Format, check_output};
 use super::remedy::option;
 use super::strict::Strict;
 use table::table;
 
-/// Read your own motion from CSV, report its reactions on the base, and propose the nearest reactionless motion
+/// Read your own motion from CSV or Parquet, report its reactions on the base, and propose the nearest reactionless motion
 ///
-/// The file has a header: t,q1,q2,q3 for absolute drive angles, or t,x,y for the end effector, in any order. Headings
-/// may name units: "t (ms)", "q1 (deg)", "x (mm)"; default: s, rad, m. Other columns are ignored. A quintic spline
+/// Its columns are called t,q1,q2,q3 for absolute drive angles, or t,x,y for the end effector, in any order. Names
+/// may have units: "t (ms)", "q1 (deg)", "x (mm)"; default: s, rad, m. Other columns are ignored. A quintic spline
 /// interpolates the samples. The proposal keeps the timing, and b is constant. It keeps the path of the end effector if
 /// some plane reaches all of it. Otherwise it keeps the relative angles and turns the arm as a whole. A simulation
 /// checks the proposal before it is called reactionless.
@@ -38,8 +38,8 @@ Examples:
   stillbase headless quiet.toml quiet-given.toml -o both.rrd
   stillbase export quiet.toml --rate 500 -o quiet.csv")]
 pub struct ImportArguments {
-    /// A CSV file with a header
-    #[arg(value_name = "FILE.csv")]
+    /// A table with named columns, .csv or .parquet; `-` is CSV from standard input
+    #[arg(value_name = "FILE")]
     file: PathBuf,
     /// A built-in machine or a TOML file
     #[arg(long, value_name = "MACHINE", default_value = "nine-link")]
@@ -112,6 +112,11 @@ impl ImportArguments {
     /// Reads the samples, prints the base reactions of their motion, and writes the proposal if requested.
     pub fn run(&self) -> Result<(), Failure> {
         let files = self.output.as_deref().map(|file| [file.to_owned(), given_path(file)]);
+        if self.output.as_deref().is_some_and(is_standard) {
+            let why = "-o - is for one file, and import writes two, the proposal and the given motion: want -o FILE.toml; \
+                       then `stillbase export FILE.toml -o -` writes one of them as rows";
+            return Err(Failure::wrong_input(why));
+        }
         for file in files.iter().flatten() {
             check_output(file, self.force, &["toml"])?;
         }
@@ -123,7 +128,7 @@ impl ImportArguments {
             Columns::Tip => Coordinates::EndEffector,
         });
         let SampleTable { coordinates, samples, names, unwrapped } =
-            samples(&read(&self.file, &["csv"])?, &name, &machine, wanted, self.gaps)?;
+            samples(&input::table(&self.file)?, &machine, wanted, self.gaps)?;
         for (column, turns) in names.iter().zip(&unwrapped).filter(|(_, turns)| **turns > 0) {
             print_message(format!("note: {column} was wrapped: a whole turn taken out at {turns} places"));
         }

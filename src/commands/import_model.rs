@@ -16,7 +16,7 @@ use stillbase_simulation::plant::{Base, BaseKind};
 use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{Settings, read};
-use super::output::{Format, TextTable, write_text, yes};
+use super::output::{Format, TextTable, write_file, yes};
 
 /// Read a machine from a model of another program: planar URDF or MJCF whose links each follow one drive
 ///
@@ -108,10 +108,10 @@ impl ImportModelArguments {
             print_message(format!("note: {name}: {note}"));
         }
         if let Some(file) = &self.output {
-            write_text(file, &to_toml(&machine), self.force)?;
+            write_file(file, to_toml(&machine).as_bytes(), self.force)?;
         }
         if let (Some(file), Some(scenario)) = (&self.scenario, &scenario) {
-            write_text(file, &scenario.to_toml(), self.force)?;
+            write_file(file, scenario.to_toml().as_bytes(), self.force)?;
         }
         let inertia = Inertia::of(&machine);
         let answer = Answer {

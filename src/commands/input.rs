@@ -2,11 +2,13 @@
 
 use std::ffi::OsString;
 use std::fmt;
+use std::io;
 use std::path::Path;
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use stillbase_files::FoundMachine;
+use stillbase_files::table::{NoTable, TABLE_ENDINGS, Table};
 use stillbase_files::text::STANDARD_INPUT;
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
@@ -460,10 +462,24 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
 /// # Errors
 /// If it cannot be read; the error names the nearest file if there is no such file.
 pub fn read(file: &Path, endings: &[&str]) -> Result<String, Failure> {
-    stillbase_files::text::read(file).map_err(|e| {
-        let misnamed = Misnamed::file(file, &e, endings);
-        let nearest = misnamed.as_ref().map_or_else(String::new, Misnamed::nearest_file);
-        let why = format!("{e}: want a plain file that can be read, of at most {MAX_TEXT_BYTES} bytes{nearest}");
-        Failure::wrong_input(why).with_context(file.display()).with_misnamed(misnamed)
+    stillbase_files::text::read(file).map_err(|e| unread(file, &e, endings))
+}
+
+/// Returns the failure to read a file, whose name ends in one of `endings`.
+fn unread(file: &Path, error: &io::Error, endings: &[&str]) -> Failure {
+    let misnamed = Misnamed::file(file, error, endings);
+    let nearest = misnamed.as_ref().map_or_else(String::new, Misnamed::nearest_file);
+    let why = format!("{error}: want a plain file that can be read, of at most {MAX_TEXT_BYTES} bytes{nearest}");
+    Failure::wrong_input(why).with_context(file.display()).with_misnamed(misnamed)
+}
+
+/// Reads a table, CSV or Parquet by its ending, or CSV from standard input.
+///
+/// # Errors
+/// As [`read`], or if it is no Parquet.
+pub fn table(file: &Path) -> Result<Table, Failure> {
+    Table::open(file).map_err(|why| match why {
+        NoTable::Unread { source, .. } => unread(file, &source, TABLE_ENDINGS),
+        NoTable::Wrong(why) => why.into(),
     })
 }

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use stillbase_files::row_file::ROW_ENDINGS;
 use stillbase_mechanics::joint_forces::Pin;
 use stillbase_session::replay_if;
 use stillbase_simulation::frame::Frame;
@@ -11,9 +10,10 @@ use stillbase_study::joint_extremes::{JointExtremes, JointReport};
 
 use super::exit::print_message;
 use super::failure::Failure;
+use super::file_form::FileForm;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, check_size};
-use super::rows::Rows;
+use super::rows::{RowTarget, Rows};
 use super::simulate::require_audit;
 use super::strict::{Strict, run_faults};
 use stillbase_session::verdict::Verdict;
@@ -42,6 +42,8 @@ pub struct JointsArguments {
     #[command(flatten)]
     strict: Strict,
     #[command(flatten)]
+    form: FileForm,
+    #[command(flatten)]
     format: Format,
 }
 
@@ -57,18 +59,16 @@ impl JointsArguments {
             let all = pins.len() + extremes.left_out();
             print_message(format!("a run keeps the first {} of {all} pins; the others are left out", pins.len()));
         }
-        if let Some(file) = &self.output {
-            self.format.check_output(file, self.force, &ROW_ENDINGS)?;
-        }
+        let to = RowTarget::wanted(&self.format, &self.form, self.output.as_deref(), self.force)?;
         let (mut csv, mut written) = (None, Ok(()));
-        let columns = if self.output.is_some() { 2 * pins.len() + 5 } else { 0 };
+        let columns = if to.is_some() { 2 * pins.len() + 5 } else { 0 };
         let run = replay_if(
             &scenario,
             |last| check_size(last + 1, columns, false),
             |_, frame| {
                 extremes.include(frame);
-                if self.output.is_some() && written.is_ok() {
-                    written = self.csv(&mut csv, &pins).and_then(|csv| csv.row(row(frame, pins.len())));
+                if let Some(to) = to.as_ref().filter(|_| written.is_ok()) {
+                    written = rows_of(&mut csv, to, &pins).and_then(|csv| csv.row(row(frame, pins.len())));
                 }
             },
         )
@@ -82,18 +82,19 @@ impl JointsArguments {
         require_audit(&answer.scenario, answer.audit_failed)?;
         self.strict.require(run_faults(&answer.scenario, &Verdict::of(run.scenario(), &run.frame())))
     }
+}
 
-    fn csv<'a>(&self, begun: &'a mut Option<Rows>, pins: &[Pin]) -> Result<&'a mut Rows, Failure> {
-        match begun {
-            Some(csv) => Ok(csv),
-            None => {
-                let axes = |pin: &Pin| ["x", "y"].map(|axis| format!("{} {axis} N", pin.name));
-                let head = ["time s".to_string()].into_iter().chain(pins.iter().flat_map(axes));
-                // Older names stay beside newer ones until version 0.3.
-                let tilt = ["tilt/x N m", "tilt/y N m", "tilt x N m", "tilt y N m"];
-                let head: Vec<String> = head.chain(tilt.map(String::from)).collect();
-                Ok(begun.insert(Rows::begin(self.output.as_deref(), self.force, &head)?))
-            }
+/// Returns the rows; the first call opens the file and writes its head.
+fn rows_of<'a>(begun: &'a mut Option<Rows>, to: &RowTarget, pins: &[Pin]) -> Result<&'a mut Rows, Failure> {
+    match begun {
+        Some(csv) => Ok(csv),
+        None => {
+            let axes = |pin: &Pin| ["x", "y"].map(|axis| format!("{} {axis} N", pin.name));
+            let head = ["time s".to_string()].into_iter().chain(pins.iter().flat_map(axes));
+            // Older names stay beside newer ones until version 0.3.
+            let tilt = ["tilt/x N m", "tilt/y N m", "tilt x N m", "tilt y N m"];
+            let head: Vec<String> = head.chain(tilt.map(String::from)).collect();
+            Ok(begun.insert(Rows::begin(to, &head)?))
         }
     }
 }

@@ -19,6 +19,7 @@ mod export_model;
 pub mod failure;
 #[cfg(feature = "ui")]
 mod figures;
+mod file_form;
 #[cfg(feature = "record")]
 mod headless;
 mod holds;

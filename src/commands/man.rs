@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap_mangen::Man;
 use stillbase_files::new_folder::make_folder;
-use stillbase_files::{check_new, write_new};
+use stillbase_files::{check_new, is_standard, write_new};
 use stillbase_settings::number::counted;
 
 use super::exit::print_message;
@@ -41,6 +41,11 @@ impl ManArguments {
             let mut out = io::stdout().lock();
             return out.write_all(&text).and_then(|()| out.flush()).map_err(|e| Failure::standard_output(&e));
         };
+        if is_standard(folder) {
+            let why = "-o - is for one page, and these are several: want a folder, or `stillbase man` without -o, which \
+                       prints the page of the program";
+            return Err(Failure::wrong_input(why));
+        }
         let commands = program.get_subcommands().filter(|command| command.get_name() != "help").cloned();
         let named = |command: clap::Command| {
             let name = format!("stillbase-{}", command.get_name());

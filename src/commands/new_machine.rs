@@ -4,11 +4,12 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use stillbase_files::is_standard;
 use stillbase_mechanics::machine::Machine;
 use stillbase_session::scenario::{DesignBrief, MachineFile};
 
 use super::failure::Failure;
-use super::output::{Format, is_standard, write_text};
+use super::output::{Format, write_file};
 
 /// Where the new machine is written.
 #[derive(Args)]
@@ -35,7 +36,7 @@ impl NewMachine {
     /// Writes a machine with its brief, if a file is asked for.
     pub fn save(&self, machine: &Machine, design: &DesignBrief, summary: String) -> Result<(), Failure> {
         let Some(file) = &self.output else { return Ok(()) };
-        write_text(file, &named_after(file, machine, design, summary)?, self.force)
+        write_file(file, named_after(file, machine, design, summary)?.as_bytes(), self.force)
     }
 }
 

@@ -8,12 +8,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::Serialize;
 use serde_json::ser::Formatter;
-use stillbase_files::{check_new, write_new};
+use stillbase_files::{check_new, is_standard, write_new};
 use stillbase_session::Refusal;
 use stillbase_settings::text::plain;
 
 use super::exit::{is_quiet, print_message};
 use super::failure::Failure;
+use super::file_form::FileForm;
 
 /// Whether a file takes standard output.
 static IS_TAKEN: AtomicBool = AtomicBool::new(false);
@@ -41,16 +42,7 @@ impl Format {
     /// # Errors
     /// As [`check_output`], and if JSON is to go there, too.
     pub fn check_output(&self, file: &Path, force: bool, endings: &[&'static str]) -> Result<&'static str, Failure> {
-        match endings {
-            [_, ..] if is_standard(file) && self.json => {
-                Err(Failure::wrong_input("--json and -o - both want standard output: want one of them"))
-            }
-            [first, ..] if is_standard(file) => {
-                IS_TAKEN.store(true, Ordering::Relaxed);
-                Ok(first)
-            }
-            _ => check_output(file, force, endings),
-        }
+        FileForm::default().check(self, Some(file), force, endings)
     }
 
     /// Prints an answer as JSON, or as the text that `human` returns for it.
@@ -170,26 +162,32 @@ pub fn check_output(file: &Path, force: bool, endings: &[&'static str]) -> Resul
     })
 }
 
-/// Name of standard output as an output file.
-const STANDARD: &str = "-";
-
-/// Whether an output is standard output.
-pub fn is_standard(file: &Path) -> bool {
-    file.as_os_str() == STANDARD
+/// Sends what the command has to say besides a file on standard output to standard error.
+pub fn take_standard_output() {
+    IS_TAKEN.store(true, Ordering::Relaxed);
 }
 
-/// Writes a text to a new file, and says so, or to standard output.
+/// Writes the content of a new file, and says so, or writes it to standard output.
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn write_text(file: &Path, text: &str, force: bool) -> Result<(), Failure> {
-    if is_standard(file) {
-        let mut out = io::stdout().lock();
-        return out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|e| Failure::standard_output(&e));
-    }
-    write_new(file, text.as_bytes(), force)?;
-    print_message(format!("wrote {}", file.display()));
+pub fn write_file(file: &Path, content: &[u8], force: bool) -> Result<(), Failure> {
+    write_new(file, content, force)?;
+    say_written(file);
     Ok(())
+}
+
+/// Returns what a file is called in an answer.
+#[cfg(feature = "ui")]
+pub fn file_words(file: &Path) -> String {
+    if is_standard(file) { "standard output".into() } else { file.display().to_string() }
+}
+
+/// Says that a file is written, unless it is standard output.
+pub fn say_written(file: &Path) {
+    if !is_standard(file) {
+        print_message(format!("wrote {}", file.display()));
+    }
 }
 
 /// Maximum size of an output, bytes; a request for a larger one is probably a mistake.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use stillbase_files::{FoundMachine, text};
+use stillbase_files::{FoundMachine, is_standard, text};
 use stillbase_mechanics::planar::Vector;
 use stillbase_planning::common::starting_b;
 use stillbase_planning::off_plane::least_reaction::FixedB;
@@ -23,7 +23,7 @@ use super::input::{
     DEFAULT_SCENARIO, Settings, above_zero, change_task, choice, no_use, overlay_settings, overlay_unchecked, point,
     pose_constant, pose_space, refuse_ineffective, report_idle, report_left_out, report_tolerance,
 };
-use super::output::{Format, TextTable, is_standard, write_text};
+use super::output::{Format, TextTable, write_file};
 use super::strict::{Strict, bad_statements};
 use stillbase_settings::number::{counted, fixed, significant};
 use stillbase_settings::word::Choice;
@@ -145,7 +145,7 @@ impl PlanArguments {
                 let stem = file.file_stem().filter(|_| !is_standard(file));
                 scenario.name = stem.map_or_else(|| DEFAULT_NAME.into(), |s| s.to_string_lossy().into());
             }
-            write_text(file, &scenario.to_toml(), self.force)?;
+            write_file(file, scenario.to_toml().as_bytes(), self.force)?;
         }
         self.strict.require(bad_statements([("machine", &machine), ("plan", &plan)]).chain(over))
     }

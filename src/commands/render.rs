@@ -5,17 +5,19 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use schemars::JsonSchema;
 use serde::Serialize;
-use stillbase_app::export::{FilmDone, FilmOrder, PictureForm, check_film, write_film, write_picture};
+use stillbase_app::export::{FilmDone, FilmForm, FilmOrder, PictureForm, check_film, write_film, write_picture};
 use stillbase_app::{AppState, PictureOrder, SessionCommand, Shot};
+use stillbase_files::is_standard;
 use stillbase_picture::scene::palette::Theme;
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_settings::number::{counted, fixed};
 
 use super::exit::print_message;
 use super::failure::Failure;
-use super::input::{DEFAULT_SCENARIO, Settings, scenario};
+use super::file_form::FileForm;
+use super::input::{DEFAULT_SCENARIO, Settings, no_use, scenario};
 use super::open::ThemeName;
-use super::output::{Format, check_output};
+use super::output::{Format, file_words};
 use super::progress::bar;
 use super::size::size;
 
@@ -31,6 +33,7 @@ Examples:
   stillbase render case-3 -o case-3.png --at 0.62
   stillbase render case-3 -o slide.png --view space --theme light --transparent
   stillbase render case-3 -o case-3.svg --theme light --plots
+  stillbase render case-3 -o - --format svg > case-3.svg
   stillbase render case-1 -o shake.gif --film --view window
   stillbase render case-1 -o pictures --film 0,0.5 --size 1920x1080
   stillbase render spacecraft -o turning.png --film 0,1 --view space --fps 30 --slow 2")]
@@ -38,7 +41,8 @@ pub struct RenderArguments {
     /// A built-in scenario or machine, or a TOML file of either
     #[arg(default_value = DEFAULT_SCENARIO)]
     scenario: String,
-    /// The picture (.png, .webp, .svg, .pdf) or film (.gif, .png, .webp, .mp4, or a folder) to write
+    /// The picture (.png, .webp, .svg, .pdf) or film (.gif, .png, .webp, .mp4, or a folder) to write; `-` is standard
+    /// output
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Instant of a still picture, s; default: the end of the run
@@ -74,6 +78,8 @@ pub struct RenderArguments {
     #[command(flatten)]
     settings: Settings,
     #[command(flatten)]
+    form: FileForm,
+    #[command(flatten)]
     format: Format,
 }
 
@@ -88,6 +94,12 @@ pub struct Answer {
 /// Time interval of a film, s; `None` for the whole run.
 #[derive(Clone, Copy, Debug)]
 struct FilmRange(Option<[f64; 2]>);
+
+/// What is written.
+enum Wanted {
+    Picture(PictureForm),
+    Film(FilmForm, FilmRange),
+}
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -143,9 +155,10 @@ impl RenderArguments {
         let shot = Shot::from(self.view);
         let Self { transparent, plots, .. } = *self;
         let picture = PictureOrder { transparent, plots, ..PictureOrder::new(shot, self.theme.into(), self.size) };
-        match self.film {
-            Some(_) => drop(check_film(&self.output, &picture, self.force)?),
-            None => drop(check_output(&self.output, self.force, &PictureForm::ALL.map(PictureForm::ending))?),
+        let file = &self.output;
+        let wanted = self.wanted()?;
+        if let Wanted::Film(form, _) = wanted {
+            check_film((file, form), &picture, self.force)?;
         }
         if self.transparent && shot == Shot::Window {
             let why = "the window has no background to leave out: want a view, such as --view flat";
@@ -159,12 +172,15 @@ impl RenderArguments {
         let mut app_state =
             AppState::new(scenario.clone(), Theme::Dark).map_err(|why| Failure::refused(&scenario, why))?;
         let end = app_state.run_to_end();
-        let Some(FilmRange(range)) = self.film else {
-            let at = within(self.at.unwrap_or(end), end, "--at")?;
-            app_state.carry_out(SessionCommand::Seek(at));
-            let note = write_picture(&mut app_state, &picture, &self.output, self.force, &mut |_| true)?;
-            note.into_iter().for_each(|note| print_message(format!("note: {note}")));
-            return self.print(FilmDone { pictures: 1, times: [at; 2] });
+        let (film_form, range) = match wanted {
+            Wanted::Film(form, FilmRange(range)) => (form, range),
+            Wanted::Picture(form) => {
+                let at = within(self.at.unwrap_or(end), end, "--at")?;
+                app_state.carry_out(SessionCommand::Seek(at));
+                let note = write_picture(&mut app_state, &picture, (file, form), self.force, &mut |_| true)?;
+                note.into_iter().for_each(|note| print_message(format!("note: {note}")));
+                return self.print(FilmDone { pictures: 1, times: [at; 2] });
+            }
         };
         let [from, to] = range.unwrap_or([0.0, end]);
         let times = [within(from, end, "--film")?, within(to, end, "--film")?];
@@ -175,15 +191,34 @@ impl RenderArguments {
             bar.set_position((done * bar.length().unwrap_or(0) as f64).round() as u64);
             true
         };
-        let done = write_film(&mut app_state, &order, &self.output, self.force, goes_on);
+        let done = write_film(&mut app_state, &order, (file, film_form), self.force, goes_on);
         bar.finish_and_clear();
         self.print(done?)
     }
 
+    /// Returns what is to be written, by the ending of the file or, on standard output, by `--format`.
+    fn wanted(&self) -> Result<Wanted, Failure> {
+        let check = |endings: &[&'static str]| self.form.check(&self.format, Some(&self.output), self.force, endings);
+        match self.film {
+            None => {
+                let ending = check(&PictureForm::ALL.map(PictureForm::ending))?;
+                Ok(Wanted::Picture(PictureForm::of_ending(ending).unwrap_or(PictureForm::Png)))
+            }
+            Some(range) if is_standard(&self.output) => {
+                let endings = FilmForm::ALL.map(FilmForm::ending);
+                let files: Vec<&str> = endings.into_iter().filter(|ending| !ending.is_empty()).collect();
+                Ok(Wanted::Film(FilmForm::of_ending(check(&files)?).unwrap_or(FilmForm::Gif), range))
+            }
+            Some(_) if self.form.is_given() => Err(no_use("--format", "-o -: the ending of a file's name chooses")),
+            Some(range) => Ok(Wanted::Film(FilmForm::of(&self.output)?, range)),
+        }
+    }
+
     fn print(&self, FilmDone { pictures, times }: FilmDone) -> Result<(), Failure> {
         let answer = Answer { file: self.output.display().to_string(), pictures, times };
+        let file = file_words(&self.output);
         self.format.print(&answer, |answer| {
-            let Answer { file, pictures, times: [from, to] } = answer;
+            let Answer { pictures, times: [from, to], .. } = answer;
             let when = if from == to {
                 format!("at {} s", fixed(*from, 3))
             } else {

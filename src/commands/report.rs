@@ -15,7 +15,7 @@ use stillbase_settings::text::shell_word;
 use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
-use super::output::{Format, check_output};
+use super::output::{Format, file_words};
 use super::simulate::require_audit;
 use super::strict::{Strict, bad_statements};
 
@@ -32,7 +32,7 @@ pub struct ReportArguments {
     /// A built-in scenario or machine, or a TOML file of either
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenario: String,
-    /// The page to write
+    /// The page to write; `-` is standard output
     #[arg(short, long, value_name = "FILE.html")]
     output: PathBuf,
     /// Add a table that compares the same task done in other ways, each of which is simulated
@@ -63,7 +63,7 @@ pub struct Answer {
 impl ReportArguments {
     /// Simulates the scenario and writes the report.
     pub fn run(&self) -> Result<(), Failure> {
-        check_output(&self.output, self.force, &["html", "htm"])?;
+        self.format.check_output(&self.output, self.force, &["html", "htm"])?;
         let scenario = scenario(&self.scenario, &self.settings)?;
         let name = scenario.name.clone();
         let mut app_state =
@@ -80,7 +80,7 @@ impl ReportArguments {
         let answer = Answer { file: self.output.display().to_string(), pictures, plots, statements };
         self.format.print(&answer, |answer| {
             let (pictures, plots) = (counted(answer.pictures, "picture"), counted(answer.plots, "plot"));
-            format!("{}: {pictures}, {plots}; {}\n", answer.file, answer.statements.line())
+            format!("{}: {pictures}, {plots}; {}\n", file_words(&self.output), answer.statements.line())
         })?;
         let Statements { machine, plan, run } = &answer.statements;
         require_audit(&name, fault)?;

@@ -1,34 +1,61 @@
-//! Rows of numbers, as CSV on standard output, or in a new file as CSV or Parquet.
+//! Rows of numbers as CSV or Parquet, on standard output or in a new file.
 
-use std::io::{self, StdoutLock};
 use std::path::{Path, PathBuf};
 
-use stillbase_files::row_file::RowFile;
-use stillbase_settings::text::{plain, sheet_cell};
+use stillbase_files::row_file::{ROW_ENDINGS, RowFile, RowForm};
 
-use super::exit::print_message;
 use super::failure::Failure;
-use super::output::is_standard;
+use super::file_form::FileForm;
+use super::output::{Format, say_written};
+
+/// Where rows go.
+#[derive(Clone)]
+pub struct RowTarget {
+    file: PathBuf,
+    form: RowForm,
+    force: bool,
+}
+
+impl RowTarget {
+    /// Returns where rows go: to a file, CSV or Parquet by its ending, or else to standard output, CSV by default.
+    ///
+    /// # Errors
+    /// As [`FileForm::check`].
+    pub fn of(format: &Format, form: &FileForm, file: Option<&Path>, force: bool) -> Result<Self, Failure> {
+        let ending = form.check(format, file, force, &ROW_ENDINGS)?;
+        Ok(Self::with_ending(file, force, ending))
+    }
+
+    /// Returns where rows go, if a file is asked for.
+    ///
+    /// # Errors
+    /// As [`FileForm::check_wanted`].
+    pub fn wanted(format: &Format, form: &FileForm, file: Option<&Path>, force: bool) -> Result<Option<Self>, Failure> {
+        let ending = form.check_wanted(format, file, force, &ROW_ENDINGS)?;
+        Ok(ending.map(|ending| Self::with_ending(file, force, ending)))
+    }
+
+    /// Returns the same for an ending that is checked already.
+    pub fn with_ending(file: Option<&Path>, force: bool, ending: &str) -> Self {
+        let form = RowForm::of_ending(ending).unwrap_or(RowForm::Csv);
+        Self { file: file.unwrap_or(Path::new("-")).into(), form, force }
+    }
+}
 
 /// Rows that are being written.
 pub struct Rows {
-    sink: Sink,
+    out: RowFile,
+    file: PathBuf,
     row: Vec<Option<f64>>,
 }
 
-enum Sink {
-    File(RowFile, PathBuf),
-    Standard(Box<csv::Writer<StdoutLock<'static>>>),
-}
-
 impl Rows {
-    /// Begins a file with the names of its columns, CSV or Parquet by its ending; without a file, writes CSV to standard
-    /// output.
+    /// Begins with the names of the columns.
     ///
     /// # Errors
     /// If the file or standard output cannot be written.
-    pub fn begin(file: Option<&Path>, force: bool, head: &[String]) -> Result<Self, Failure> {
-        Self::begin_with(file, force, ("instant", &[]), head)
+    pub fn begin(to: &RowTarget, head: &[String]) -> Result<Self, Failure> {
+        Self::begin_with(to, ("instant", &[]), head)
     }
 
     /// Begins as [`begin`](Self::begin) does; `of` says what a row is, and `texts` names columns of text, which come
@@ -36,22 +63,10 @@ impl Rows {
     ///
     /// # Errors
     /// As [`begin`](Self::begin).
-    pub fn begin_with(
-        file: Option<&Path>,
-        force: bool,
-        (of, texts): (&str, &[&str]),
-        head: &[String],
-    ) -> Result<Self, Failure> {
-        let sink = match file.filter(|file| !is_standard(file)) {
-            Some(file) => Sink::File(RowFile::with_texts(file, force, of, (texts, head))?, file.into()),
-            None => {
-                let mut writer = csv::Writer::from_writer(io::stdout().lock());
-                let names = texts.iter().copied().chain(head.iter().map(String::as_str));
-                writer.write_record(names.map(|name| plain(name).into_owned())).map_err(failure)?;
-                Sink::Standard(Box::new(writer))
-            }
-        };
-        Ok(Self { sink, row: Vec::new() })
+    pub fn begin_with(to: &RowTarget, (of, texts): (&str, &[&str]), head: &[String]) -> Result<Self, Failure> {
+        let RowTarget { file, form, force } = to;
+        let out = RowFile::with_texts((file, *form), *force, of, (texts, head))?;
+        Ok(Self { out, file: file.clone(), row: Vec::new() })
     }
 
     /// Writes a row. Zero has no sign, and `None` gives an empty cell.
@@ -72,14 +87,8 @@ impl Rows {
         values: impl IntoIterator<Item = T>,
     ) -> Result<(), Failure> {
         self.row.clear();
-        self.row.extend(values.into_iter().map(|x| x.into().map(|x| x + 0.0)));
-        match &mut self.sink {
-            Sink::File(file, _) => Ok(file.named_row(texts, &self.row)?),
-            Sink::Standard(writer) => {
-                let texts: Vec<_> = texts.iter().map(|text| sheet_cell(text)).collect();
-                writer.serialize((texts, &self.row)).map_err(failure)
-            }
-        }
+        self.row.extend(values.into_iter().map(Into::into));
+        Ok(self.out.named_row(texts, &self.row)?)
     }
 
     /// Completes the file and prints its name.
@@ -87,21 +96,8 @@ impl Rows {
     /// # Errors
     /// If the file or standard output cannot be written.
     pub fn finish(self) -> Result<(), Failure> {
-        match self.sink {
-            Sink::File(file, name) => {
-                file.finish()?;
-                print_message(format!("wrote {}", name.display()));
-                Ok(())
-            }
-            Sink::Standard(mut writer) => writer.flush().map_err(|e| Failure::standard_output(&e)),
-        }
-    }
-}
-
-/// Returns the failure to write standard output.
-fn failure(error: csv::Error) -> Failure {
-    match error.into_kind() {
-        csv::ErrorKind::Io(error) => Failure::standard_output(&error),
-        other => Failure::WrongInput(format!("CSV: {other:?}")),
+        self.out.finish()?;
+        say_written(&self.file);
+        Ok(())
     }
 }

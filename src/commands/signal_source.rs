@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use stillbase_files::table::{SIGNAL_ENDINGS, has_signal_head, signals_of};
+use stillbase_files::table::{has_signal_head, is_table, signals_of};
 use stillbase_files::text::STANDARD_INPUT;
 use stillbase_session::signal_table;
 use stillbase_simulation::signal_table::SignalTable;
@@ -32,7 +32,7 @@ impl SignalSource {
         let of_table = |table: Result<SignalTable, _>| Ok(vec![(None, table?)]);
         let cases = match recorded(name) {
             Some(cases) => cases,
-            None if is_table(name) => of_table(stillbase_files::table::signals(Path::new(name))),
+            None if is_table(Path::new(name)) => of_table(stillbase_files::table::signals(Path::new(name))),
             None if name == STANDARD_INPUT => {
                 let text = stillbase_files::text::read(Path::new(name)).ok().filter(|text| has_signal_head(text))?;
                 of_table(signals_of(&text, "standard input"))
@@ -67,12 +67,6 @@ impl SignalSource {
             }
         }
     }
-}
-
-/// Returns whether a name is that of a table.
-fn is_table(name: &str) -> bool {
-    let ending = Path::new(name).extension().unwrap_or_default();
-    SIGNAL_ENDINGS.iter().any(|own| ending.eq_ignore_ascii_case(own))
 }
 
 #[cfg(feature = "record")]

@@ -8,7 +8,6 @@ use std::path::PathBuf;
 use clap::Args;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Serialize, Serializer};
-use stillbase_files::row_file::ROW_ENDINGS;
 use stillbase_mechanics::machine::Machine;
 use stillbase_session::verdict::{Statements, Verdict};
 use stillbase_session::{Run, replay_if, with_start_edits};
@@ -17,9 +16,10 @@ use stillbase_simulation::signals::{Signal, row_heads, signals};
 
 use super::exit::print_message;
 use super::failure::Failure;
+use super::file_form::FileForm;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, check_size};
-use super::rows::Rows;
+use super::rows::{RowTarget, Rows};
 use super::signal_choice::SignalChoice;
 use super::strict::{Strict, run_faults};
 use stillbase_settings::number::{counted, fixed};
@@ -52,6 +52,8 @@ pub struct SimulateArguments {
     settings: Settings,
     #[command(flatten)]
     strict: Strict,
+    #[command(flatten)]
+    form: FileForm,
     #[command(flatten)]
     format: Format,
 }
@@ -190,9 +192,10 @@ impl SimulateArguments {
         // The first edits may draw another machine.
         let (start, _) = with_start_edits(&scenario).map_err(|e| Failure::refused(&scenario, e))?;
         let table = self.table(&start.machine)?;
-        if let Some(file) = &self.output {
-            self.format.check_output(file, self.force, &ROW_ENDINGS)?;
-        }
+        let to = match self.writes_csv() {
+            true => Some(RowTarget::of(&self.format, &self.form, self.output.as_deref(), self.force)?),
+            false => None,
+        };
         let mut rows = 0_u64;
         // The CSV is begun at the first step, so that a run that cannot start prints nothing.
         let mut csv = None;
@@ -206,9 +209,9 @@ impl SimulateArguments {
                 return;
             }
             rows += 1;
-            if self.writes_csv() && written.is_ok() {
+            if let Some(to) = to.as_ref().filter(|_| written.is_ok()) {
                 let values = [frame.time].into_iter().chain(table.iter().map(|s| s.value(frame)));
-                written = self.rows(&mut csv, &table).and_then(|csv| csv.row(values));
+                written = rows_of(&mut csv, to, &table).and_then(|csv| csv.row(values));
             }
             if self.format.json {
                 time.push(frame.time);
@@ -225,7 +228,7 @@ impl SimulateArguments {
         }
         let verdict = Outcome::of(&run);
         let faults = run_faults(&scenario.name, &Verdict::of(run.scenario(), &run.frame()));
-        if !self.format.json && !self.writes_csv() {
+        if !self.format.json && to.is_none() {
             self.format.print(&verdict, |outcome| summary(outcome, &scenario.name, &table))?;
             require_audit(&scenario.name, verdict.audit_failed)?;
             return self.strict.require(faults);
@@ -264,7 +267,7 @@ impl SimulateArguments {
 
     /// Whether rows are written: to a file, or without --json to standard output if it is not a terminal.
     fn writes_csv(&self) -> bool {
-        self.output.is_some() || !(self.format.json || std::io::stdout().is_terminal())
+        self.output.is_some() || self.form.is_given() || !(self.format.json || std::io::stdout().is_terminal())
     }
 
     /// Returns the signals to print.
@@ -274,13 +277,13 @@ impl SimulateArguments {
         all.retain(|signal| self.choice.has_signal(&signal.path));
         Ok(all)
     }
+}
 
-    /// Returns the rows; the first call opens the file and writes its head.
-    fn rows<'a>(&self, begun: &'a mut Option<Rows>, table: &[Signal]) -> Result<&'a mut Rows, Failure> {
-        match begun {
-            Some(rows) => Ok(rows),
-            None => Ok(begun.insert(Rows::begin(self.output.as_deref(), self.force, &row_heads(table))?)),
-        }
+/// Returns the rows; the first call opens the file and writes its head.
+fn rows_of<'a>(begun: &'a mut Option<Rows>, to: &RowTarget, table: &[Signal]) -> Result<&'a mut Rows, Failure> {
+    match begun {
+        Some(rows) => Ok(rows),
+        None => Ok(begun.insert(Rows::begin(to, &row_heads(table))?)),
     }
 }
 

@@ -1,20 +1,20 @@
 //! `stillbase spectrum`
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
-use stillbase_files::row_file::ROW_ENDINGS;
 use stillbase_session::scenario::Scenario;
 use stillbase_study::base_spectrum::{BaseSpectrum, NoBaseSpectrum};
 use stillbase_study::spectrum::{JitterLimit, WindowFunction};
 
 use super::exit::print_message;
 use super::failure::Failure;
+use super::file_form::FileForm;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, yes};
-use super::rows::Rows;
+use super::rows::{RowTarget, Rows};
 use super::simulate::require_audit;
 use super::strict::Strict;
 use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
@@ -61,6 +61,8 @@ pub struct SpectrumArguments {
     #[command(flatten)]
     strict: Strict,
     #[command(flatten)]
+    form: FileForm,
+    #[command(flatten)]
     format: Format,
 }
 
@@ -87,16 +89,14 @@ impl SpectrumArguments {
     /// Prints the spectra and their comparison with the limits.
     pub fn run(&self) -> Result<(), Failure> {
         let scenario = scenario(&self.scenario, &self.settings)?;
-        if let Some(file) = &self.output {
-            self.format.check_output(file, self.force, &ROW_ENDINGS)?;
-        }
+        let to = RowTarget::wanted(&self.format, &self.form, self.output.as_deref(), self.force)?;
         if scenario.base.wheel.is_some() {
             print_message(format!("note: {}: n_B is the moment minus that of the reaction wheel", scenario.name));
         }
         let failed = |why| failed(why, &scenario);
         let mut of = BaseSpectrum::of(&scenario, self.window).map_err(failed)?;
-        if let Some(file) = &self.output {
-            write(file, self.force, &of)?;
+        if let Some(to) = &to {
+            write(to, &of)?;
         }
         of.judge(self.limit_force.as_ref(), self.limit_moment.as_ref()).map_err(failed)?;
         let file = self.output.as_ref().map(|file| file.display().to_string());
@@ -162,7 +162,7 @@ fn text(answer: &BaseSpectrum) -> String {
     if any { format!("{head}\n\n{table}{why}\n{verdicts}") } else { format!("{head}\n\n{table}{why}") }
 }
 
-fn write(file: &Path, force: bool, of: &BaseSpectrum) -> Result<(), Failure> {
+fn write(to: &RowTarget, of: &BaseSpectrum) -> Result<(), Failure> {
     let names = ["force_x", "force_y", "moment"];
     let named = of.spectra.named();
     let heads = names
@@ -172,7 +172,7 @@ fn write(file: &Path, force: bool, of: &BaseSpectrum) -> Result<(), Failure> {
     // Older names stay beside newer ones until version 0.3.
     let older = named.iter().flat_map(|(name, unit, _)| [format!("{name} {unit}/√Hz"), format!("{name} RMS {unit}")]);
     let head: Vec<String> = ["frequency Hz".to_owned()].into_iter().chain(heads).chain(older).collect();
-    let mut rows = Rows::begin(Some(file), force, &head)?;
+    let mut rows = Rows::begin(to, &head)?;
     for (m, frequency) in of.frequency().iter().enumerate() {
         let columns = named.map(|(_, _, s)| [s.density[m], s.cumulative_rms[m]]);
         let columns = columns.into_iter().flatten();

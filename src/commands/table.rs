@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use stillbase_files::row_file::ROW_ENDINGS;
 
 use super::failure::Failure;
+use super::file_form::FileForm;
 use super::output::Format;
-use super::rows::Rows;
+use super::rows::{RowTarget, Rows};
 use super::signal_choice::SignalChoice;
 use super::signal_source::SignalSource;
 
@@ -31,14 +31,15 @@ pub struct TableArguments {
     force: bool,
     #[command(flatten)]
     choice: SignalChoice,
+    #[command(flatten)]
+    form: FileForm,
 }
 
 impl TableArguments {
     /// Writes a row for each step.
     pub fn run(&self) -> Result<(), Failure> {
-        if let Some(file) = &self.output {
-            Format { json: false }.check_output(file, self.force, &ROW_ENDINGS)?;
-        }
+        let format = Format { json: false };
+        let to = RowTarget::of(&format, &self.form, self.output.as_deref(), self.force)?;
         let source = SignalSource::of_file(&self.file).unwrap_or_else(|| {
             let why = "want a recording or a table, FILE.rrd, FILE.csv or FILE.parquet; `stillbase simulate` has the \
                        signals of a scenario";
@@ -48,7 +49,7 @@ impl TableArguments {
         let mut table = source.only_case()?.clone();
         self.choice.check(table.columns.iter().map(|column| column.path.as_str()))?;
         self.choice.apply(&mut table).map_err(|why| why.with_context(&self.file))?;
-        let mut rows = Rows::begin(self.output.as_deref(), self.force, &table.heads())?;
+        let mut rows = Rows::begin(&to, &table.heads())?;
         for row in 0..table.time.len() {
             rows.row(table.row(row))?;
         }

@@ -8,6 +8,7 @@ use super::parts::PartsList;
 use super::stl::{SolidsError, stl};
 use super::urdf::urdf;
 use stillbase_mechanics::machine::Machine;
+use stillbase_settings::cell_table::CellTable;
 
 /// An export format.
 #[derive(Clone, Copy, Debug)]
@@ -16,7 +17,7 @@ pub struct Form {
     pub ending: &'static str,
     /// The part of a machine that it shows.
     pub shows: ModelContent,
-    write: fn(&Machine, &[f64], &Cut) -> Result<String, ExchangeError>,
+    write: fn(&Machine, &[f64], &Cut) -> Result<FormContent, ExchangeError>,
     /// Returns what a file leaves out of a machine.
     leaves_out: fn(&Machine) -> Vec<String>,
 }
@@ -36,58 +37,84 @@ pub enum ModelContent {
     Parts,
 }
 
+/// Content of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FormContent {
+    /// A text.
+    Text(String),
+    /// A table, which the ending of the file's name makes CSV or another format of tables.
+    Table(CellTable),
+}
+
+impl FormContent {
+    /// Returns the content as text: a table as CSV.
+    pub fn text(self) -> String {
+        match self {
+            Self::Text(text) => text,
+            Self::Table(table) => table.csv(),
+        }
+    }
+}
+
+impl From<String> for FormContent {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}
+
 /// All export formats.
-pub const FORMS: [Form; 7] = [
+pub const FORMS: [Form; 8] = [
     // For MuJoCo.
     Form {
         ending: "xml",
         shows: ModelContent::Pose,
-        write: |machine, pose, cut| Ok(mjcf(machine, pose, cut)?),
+        write: |machine, pose, cut| Ok(mjcf(machine, pose, cut)?.into()),
         leaves_out: left_out::of_mjcf,
     },
     // For ROS, Pinocchio and others.
     Form {
         ending: "urdf",
         shows: ModelContent::Joints,
-        write: |machine, _, cut| Ok(urdf(machine, cut)),
+        write: |machine, _, cut| Ok(urdf(machine, cut).into()),
         leaves_out: left_out::of_urdf,
     },
     // For viewing.
     Form {
         ending: "svg",
         shows: ModelContent::Links,
-        write: |machine, _, cut| Ok(svg(&Sheet::of(machine, cut)?)),
+        write: |machine, _, cut| Ok(svg(&Sheet::of(machine, cut)?).into()),
         leaves_out: left_out::of_drawing,
     },
     // For cutting.
     Form {
         ending: "dxf",
         shows: ModelContent::Links,
-        write: |machine, _, cut| Ok(dxf(&Sheet::of(machine, cut)?)),
+        write: |machine, _, cut| Ok(dxf(&Sheet::of(machine, cut)?).into()),
         leaves_out: left_out::of_drawing,
     },
     // For a printer or a program for solids.
     Form {
         ending: "stl",
         shows: ModelContent::Solids,
-        write: |machine, pose, cut| Ok(stl(machine, pose, cut)?),
+        write: |machine, pose, cut| Ok(stl(machine, pose, cut)?.into()),
         leaves_out: left_out::of_solids,
     },
     // For a spreadsheet.
-    Form {
-        ending: "csv",
-        shows: ModelContent::Parts,
-        write: |machine, _, cut| Ok(PartsList::of(machine, cut)?.csv()),
-        leaves_out: |_| Vec::new(),
-    },
+    Form { ending: "csv", shows: ModelContent::Parts, write: parts_table, leaves_out: |_| Vec::new() },
+    // For a program.
+    Form { ending: "parquet", shows: ModelContent::Parts, write: parts_table, leaves_out: |_| Vec::new() },
     // For reading.
     Form {
         ending: "md",
         shows: ModelContent::Parts,
-        write: |machine, _, cut| Ok(PartsList::of(machine, cut)?.markdown()),
+        write: |machine, _, cut| Ok(PartsList::of(machine, cut)?.markdown().into()),
         leaves_out: |_| Vec::new(),
     },
 ];
+
+fn parts_table(machine: &Machine, _: &[f64], cut: &Cut) -> Result<FormContent, ExchangeError> {
+    Ok(FormContent::Table(PartsList::of(machine, cut)?.cells()))
+}
 
 /// The default ending.
 pub const DEFAULT_EXTENSION: &str = "urdf";
@@ -142,11 +169,11 @@ impl Form {
         (self.leaves_out)(machine)
     }
 
-    /// Returns the text of the file; `pose`, rad, is the initial pose of formats that show one.
+    /// Returns the content of the file; `pose`, rad, is the initial pose of formats that show one.
     ///
     /// # Errors
     /// If the machine cannot be exported in this format.
-    pub fn written(&self, machine: &Machine, pose: &[f64], cut: &Cut) -> Result<String, ExchangeError> {
+    pub fn written(&self, machine: &Machine, pose: &[f64], cut: &Cut) -> Result<FormContent, ExchangeError> {
         cut.check_ranges()?;
         (self.write)(machine, pose, cut)
     }

@@ -1,12 +1,12 @@
-//! [`PartsList`]: the parts list of a machine, as CSV for a spreadsheet or as Markdown to read.
+//! [`PartsList`]: the parts list of a machine, as one table for a spreadsheet or as Markdown to read.
 
 mod pins;
 
 use super::cut::{Cut, CutError};
 use pins::{pin_axles, pins, spacers};
 use stillbase_mechanics::machine::{Counterweight, Drive, Link, Machine, PartBody, PartSource, PlaneBody, Shape};
+use stillbase_settings::cell_table::{Cell, CellTable};
 use stillbase_settings::number::{fixed, shortest};
-use stillbase_settings::text::sheet_cell;
 
 /// Parts list of a machine, by kinds of parts.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,27 +66,25 @@ impl PartsList {
         Ok(Self { machine: machine.name().into(), tables })
     }
 
-    /// Returns the list as CSV (RFC 4180): one table with all columns of all kinds of parts, numbers with all digits.
-    pub fn csv(&self) -> String {
+    /// Returns the list as one table with all columns of all kinds of parts.
+    pub fn cells(&self) -> CellTable {
         let mut head: Vec<&str> = Vec::new();
         for name in self.tables.iter().flat_map(|table| &table.head) {
             if !head.contains(name) {
                 head.push(name);
             }
         }
-        let line = |cells: Vec<String>| cells.iter().map(|cell| field(cell)).collect::<Vec<_>>().join(",") + "\r\n";
-        let names = std::iter::once("part").chain(head.iter().copied()).map(String::from).collect();
-        let mut text = line(names);
+        let mut rows = Vec::new();
         for table in &self.tables {
-            for row in &table.rows {
-                let of = |name: &&str| {
-                    let cell = table.head.iter().position(|own| own == name).and_then(|i| row.get(i));
-                    cell.map_or(String::new(), PartCell::csv_text)
-                };
-                text += &line(std::iter::once(table.kind.to_owned()).chain(head.iter().map(of)).collect());
-            }
+            let places: Vec<Option<usize>> =
+                head.iter().map(|name| table.head.iter().position(|own| own == name)).collect();
+            rows.extend(table.rows.iter().map(|row| {
+                let of = |place: &Option<usize>| place.and_then(|i| row.get(i)).map_or(Cell::Empty, PartCell::exact);
+                [Cell::words(table.kind)].into_iter().chain(places.iter().map(of)).collect()
+            }));
         }
-        text
+        let head = ["part"].into_iter().chain(head).map(String::from).collect();
+        CellTable { row: "part", about: Vec::new(), head, rows }
     }
 
     /// Returns the list as Markdown: a table for each kind, with aligned columns.
@@ -133,13 +131,13 @@ impl PartCell {
         value.map_or(Self::None, |value| Self::Number(value, decimals))
     }
 
-    /// Returns the cell for CSV: numbers with all digits, and text that a spreadsheet does not take for a formula.
-    fn csv_text(&self) -> String {
+    /// Returns the cell of a table: numbers with all digits.
+    fn exact(&self) -> Cell {
         match self {
-            Self::Words(text) => sheet_cell(text).into_owned(),
+            Self::Words(text) => Cell::words(text),
             // Without the noise of the last digits, as a person would write it.
-            Self::Number(value, _) => shortest(*value, NOISE).to_string(),
-            Self::None => String::new(),
+            Self::Number(value, _) => Cell::Number(shortest(*value, NOISE)),
+            Self::None => Cell::Empty,
         }
     }
 
@@ -150,14 +148,6 @@ impl PartCell {
             Self::Number(value, decimals) => fixed(*value, *decimals),
             Self::None => "–".into(),
         }
-    }
-}
-
-/// Returns a field of CSV, quoted if it contains a comma, a quote or a line end.
-fn field(text: &str) -> String {
-    match text.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", text.replace('"', "\"\"")),
-        false => text.to_owned(),
     }
 }
 

@@ -44,7 +44,7 @@ pub use draft::{WriteBlock, abandon};
 pub use find::{FoundMachine, FoundScenario, found_machine, machine, model, scenario};
 pub use new_file::{NewFile, WriteError, write_new};
 #[doc(hidden)]
-pub use new_file::{check_new, finish_all, free_name, is_same_place, write_temporary};
+pub use new_file::{check_new, finish_all, free_name, is_same_place, is_standard, write_temporary};
 
 /// Returns the absolute path of an existing file.
 #[doc(hidden)]

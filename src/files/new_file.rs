@@ -1,4 +1,5 @@
-//! [`NewFile`]: a file that appears whole or not at all, and replaces another only if forced.
+//! [`NewFile`]: a file that appears whole or not at all, and replaces another only if forced. What goes to standard
+//! output is held in a temporary file, and appears there whole or not at all, too.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};
@@ -53,6 +54,9 @@ pub enum WriteError {
         /// Reason given by the operating system.
         source: io::Error,
     },
+    /// Standard output cannot be written.
+    #[error("standard output: {0}: want a place that can be written")]
+    Standard(#[source] io::Error),
     /// The file is complete, but its folder could not be synced to the disk.
     #[error("{} is written whole, but its folder was not synced ({source}): a power cut may undo it", file.display())]
     Unsynced {
@@ -63,12 +67,23 @@ pub enum WriteError {
     },
 }
 
+/// Name of standard output as a file.
+const STANDARD_OUTPUT: &str = "-";
+
+/// Returns whether the name of a file is that of standard output.
+pub fn is_standard(file: &Path) -> bool {
+    file.as_os_str() == STANDARD_OUTPUT
+}
+
 /// Checks that a file may be written: its folder exists, and the name is not that of a folder or device. The file must
-/// not exist, unless `force` is set.
+/// not exist, unless `force` is set. Standard output may be written.
 ///
 /// # Errors
 /// If one of these does not hold.
 pub fn check_new(file: &Path, force: bool) -> Result<(), WriteError> {
+    if is_standard(file) {
+        return Ok(());
+    }
     match fs::metadata(file) {
         Ok(there) if there.is_dir() => return Err(WriteError::IsFolder(file.into())),
         Ok(there) if !there.is_file() => return Err(WriteError::NotPlain(file.into())),
@@ -126,19 +141,28 @@ impl Before {
 }
 
 impl NewFile {
-    /// Begins a new file.
+    /// Begins a new file; `-` is standard output.
     ///
     /// # Errors
     /// As [`check_new`], or if its folder cannot be written.
     pub fn create(file: &Path, force: bool) -> Result<Self, WriteError> {
         check_new(file, force)?;
-        // A link is followed, so that the link itself stays.
-        let target = fs::canonicalize(file).unwrap_or_else(|_| file.into());
+        let target = match is_standard(file) {
+            true => std::env::temp_dir().join("standard-output"),
+            // A link is followed, so that the link itself stays.
+            false => fs::canonicalize(file).unwrap_or_else(|_| file.into()),
+        };
         let failed = |source| WriteError::Failed { file: file.into(), source };
-        let before = Before::of(&target);
+        let before = if is_standard(file) { None } else { Before::of(&target) };
         let (draft, out) = TemporaryFile::create(target).map_err(failed)?;
         if let Some(before) = &before {
             before.lend_access(&out).map_err(failed)?;
+        }
+        #[cfg(unix)]
+        if is_standard(file) {
+            use std::os::unix::fs::PermissionsExt;
+            // Others can look into the folder of temporary files.
+            out.set_permissions(fs::Permissions::from_mode(0o600)).map_err(failed)?;
         }
         let has_other_names = before.is_some_and(|before| before.has_other_names);
         Ok(Self { requested: file.into(), force, has_other_names, out: BufWriter::new(FallibleFile(out)), draft })
@@ -198,6 +222,18 @@ impl NewFile {
             .and_then(|()| super::fault::fail_if_due(WriteStep::Fallible))
             .and_then(|()| self.out.get_ref().0.sync_all());
         synced.map_err(|source| self.failed(source))
+    }
+
+    /// Copies the content to standard output.
+    fn print(&self) -> Result<(), WriteError> {
+        let copied = || {
+            // Another program may have written it.
+            let mut content = File::open(&self.draft.part)?;
+            let mut out = io::stdout().lock();
+            io::copy(&mut content, &mut out)?;
+            out.flush()
+        };
+        copied().map_err(WriteError::Standard)
     }
 
     /// Gives the file its final name. With `keep`, the file that it replaces is kept under a temporary name.
@@ -308,7 +344,7 @@ impl Taken {
 }
 
 /// Gives files that belong together their final names: all, or none. Names are taken in order, so when the last new
-/// file is in place, all are.
+/// file is in place, all are. Standard output is written last.
 ///
 /// # Errors
 /// If not everything could be written or synced, or another file has taken a name meanwhile.
@@ -319,7 +355,8 @@ pub fn finish_all<const N: usize>(mut files: [NewFile; N]) -> Result<(), WriteEr
     let mut taken = Vec::with_capacity(N);
     // While this lock is held, no other temporary file takes its final name, and no signal handler ends the program.
     let parts = making();
-    for file in &files {
+    let has_name = |file: &&NewFile| !is_standard(&file.requested);
+    for file in files.iter().filter(has_name) {
         match file.take_name(N > 1) {
             Ok(name) => taken.push((name, file.force)),
             Err(error) => {
@@ -333,11 +370,11 @@ pub fn finish_all<const N: usize>(mut files: [NewFile; N]) -> Result<(), WriteEr
         let _ = fs::remove_file(before);
     }
     drop(parts);
-    for file in &files {
+    for file in files.iter().filter(has_name) {
         let synced = super::fault::fail_if_due(WriteStep::Fallible).and_then(|()| sync(folder_of(&file.draft.file)));
         synced.map_err(|source| WriteError::Unsynced { file: file.requested.clone(), source })?;
     }
-    Ok(())
+    files.iter().filter(|file| !has_name(file)).try_for_each(NewFile::print)
 }
 
 /// Syncs the names in a folder to the disk.

@@ -1,4 +1,4 @@
-//! [`ParquetRows`]: rows of numbers as a Parquet file, one column for each name.
+//! [`ParquetRows`]: rows of cells as a Parquet file, one column for each name.
 
 use std::io::Write;
 use std::sync::Arc;
@@ -18,22 +18,46 @@ pub const GROUP_ROWS: usize = 65_536;
 pub struct ParquetHead<'a> {
     /// Name of the schema: what a row is.
     pub row: &'a str,
-    /// Name of a first column of whole numbers, if there is one.
-    pub count: Option<&'a str>,
-    /// Names of columns of text, before those of numbers.
-    pub texts: &'a [&'a str],
-    /// Names of the other columns, with units.
-    pub columns: &'a [String],
+    /// Kind and name, with the unit, of each column.
+    pub columns: Vec<(ColumnKind, &'a str)>,
     /// Key and value of a note in the file's metadata, if there is one.
     pub note: Option<[&'a str; 2]>,
+}
+
+/// What the cells of a column are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ColumnKind {
+    /// Whole numbers.
+    #[cfg_attr(not(feature = "cli"), expect(dead_code, reason = "only studies of tolerances count"))]
+    Count,
+    /// Texts.
+    Text,
+    /// Numbers.
+    Number,
+}
+
+/// A cell of a row, of the kind of its column.
+pub enum ParquetCell<'a> {
+    /// A whole number.
+    #[cfg_attr(not(feature = "cli"), expect(dead_code, reason = "only studies of tolerances count"))]
+    Count(i64),
+    /// A text.
+    Text(&'a str),
+    /// A number.
+    Number(f64),
+}
+
+/// The cells of a column that wait for their row group.
+enum Waiting {
+    Counts(Vec<i64>),
+    Texts(Vec<ByteArray>),
+    Numbers(Vec<f64>),
 }
 
 /// A Parquet file that is being written, one row group at a time.
 pub struct ParquetRows<W: Write + Send> {
     writer: SerializedFileWriter<W>,
-    counts: Option<Vec<i64>>,
-    texts: Vec<Vec<ByteArray>>,
-    columns: Vec<Vec<f64>>,
+    columns: Vec<Waiting>,
     /// Number of rows that wait for their group.
     waiting: usize,
 }
@@ -44,17 +68,16 @@ impl<W: Write + Send> ParquetRows<W> {
     /// # Errors
     /// If the head cannot be written.
     pub fn begin(to: W, head: &ParquetHead<'_>) -> Result<Self, ParquetError> {
-        let column = |name: &str, physical| {
-            Type::primitive_type_builder(name, physical).with_repetition(Repetition::REQUIRED).build().map(Arc::new)
+        let column = |(kind, name): &(ColumnKind, &str)| {
+            let (physical, logical) = match kind {
+                ColumnKind::Count => (Physical::INT64, None),
+                ColumnKind::Text => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
+                ColumnKind::Number => (Physical::DOUBLE, None),
+            };
+            let of = Type::primitive_type_builder(name, physical).with_repetition(Repetition::REQUIRED);
+            of.with_logical_type(logical).build().map(Arc::new)
         };
-        let count = head.count.map(|name| column(name, Physical::INT64));
-        let others = head.columns.iter().map(|name| column(name, Physical::DOUBLE));
-        let text = |name: &&str| {
-            let of = Type::primitive_type_builder(name, Physical::BYTE_ARRAY).with_repetition(Repetition::REQUIRED);
-            of.with_logical_type(Some(LogicalType::String)).build().map(Arc::new)
-        };
-        let texts = head.texts.iter().map(text);
-        let fields = count.into_iter().chain(texts).chain(others).collect::<Result<Vec<_>, _>>()?;
+        let fields = head.columns.iter().map(column).collect::<Result<Vec<_>, _>>()?;
         let schema = Type::group_type_builder(head.row).with_fields(fields).build()?;
         // Numbers that hardly repeat do not compress with a dictionary.
         let properties = WriterProperties::builder()
@@ -63,60 +86,50 @@ impl<W: Write + Send> ParquetRows<W> {
             .set_key_value_metadata(head.note.map(|[key, value]| vec![KeyValue::new(key.into(), value.to_owned())]))
             .build();
         let writer = SerializedFileWriter::new(to, Arc::new(schema), Arc::new(properties))?;
-        let counts = head.count.map(|_| Vec::new());
-        let texts = vec![Vec::new(); head.texts.len()];
-        Ok(Self { writer, counts, texts, columns: vec![Vec::new(); head.columns.len()], waiting: 0 })
+        let columns = head.columns.iter().map(|(kind, _)| match kind {
+            ColumnKind::Count => Waiting::Counts(Vec::new()),
+            ColumnKind::Text => Waiting::Texts(Vec::new()),
+            ColumnKind::Number => Waiting::Numbers(Vec::new()),
+        });
+        Ok(Self { writer, columns: columns.collect(), waiting: 0 })
     }
 
-    /// Adds a row; `count` is ignored if there is no column for it.
+    /// Adds a row, with a cell for each column.
     ///
     /// # Errors
-    /// If a row group cannot be written.
-    pub fn row(&mut self, count: i64, values: impl IntoIterator<Item = f64>) -> Result<(), ParquetError> {
-        self.named_row(count, &[], values)
-    }
-
-    /// Adds a row as [`row`](Self::row) does, with a cell for each column of text.
-    ///
-    /// # Errors
-    /// If a row group cannot be written.
-    pub fn named_row(
-        &mut self,
-        count: i64,
-        texts: &[&str],
-        values: impl IntoIterator<Item = f64>,
-    ) -> Result<(), ParquetError> {
-        self.texts.iter_mut().zip(texts).for_each(|(column, text)| column.push(ByteArray::from(*text)));
-        if let Some(counts) = &mut self.counts {
-            counts.push(count);
+    /// If a cell is not of the kind of its column, or a row group cannot be written.
+    pub fn row<'c>(&mut self, cells: impl IntoIterator<Item = ParquetCell<'c>>) -> Result<(), ParquetError> {
+        for (column, cell) in self.columns.iter_mut().zip(cells) {
+            match (column, cell) {
+                (Waiting::Counts(all), ParquetCell::Count(count)) => all.push(count),
+                (Waiting::Texts(all), ParquetCell::Text(text)) => all.push(ByteArray::from(text)),
+                (Waiting::Numbers(all), ParquetCell::Number(number)) => all.push(number),
+                _ => return Err(ParquetError::General("a cell of another kind than its column".into())),
+            }
         }
-        self.columns.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
         self.waiting += 1;
         if self.waiting < GROUP_ROWS { Ok(()) } else { self.write_group() }
     }
 
     fn write_group(&mut self) -> Result<(), ParquetError> {
         let mut group = self.writer.next_row_group()?;
-        if let Some(counts) = &mut self.counts
-            && let Some(mut column) = group.next_column()?
-        {
-            column.typed::<Int64Type>().write_batch(counts, None, None)?;
+        for waiting in &mut self.columns {
+            let Some(mut column) = group.next_column()? else { break };
+            match waiting {
+                Waiting::Counts(all) => {
+                    column.typed::<Int64Type>().write_batch(all, None, None)?;
+                    all.clear();
+                }
+                Waiting::Texts(all) => {
+                    column.typed::<ByteArrayType>().write_batch(all, None, None)?;
+                    all.clear();
+                }
+                Waiting::Numbers(all) => {
+                    column.typed::<DoubleType>().write_batch(all, None, None)?;
+                    all.clear();
+                }
+            }
             column.close()?;
-            counts.clear();
-        }
-        for texts in &mut self.texts {
-            if let Some(mut column) = group.next_column()? {
-                column.typed::<ByteArrayType>().write_batch(texts, None, None)?;
-                column.close()?;
-            }
-            texts.clear();
-        }
-        for values in &mut self.columns {
-            if let Some(mut column) = group.next_column()? {
-                column.typed::<DoubleType>().write_batch(values, None, None)?;
-                column.close()?;
-            }
-            values.clear();
         }
         self.waiting = 0;
         group.close().map(|_| ())

@@ -1,16 +1,62 @@
-//! [`RowFile`]: rows of numbers in a new file, CSV or Parquet by its ending.
+//! [`RowFile`]: rows of numbers and words in a new file or on standard output, as CSV or Parquet.
 
-use std::io;
+use std::io::{self, Stdout, Write};
 use std::path::{Path, PathBuf};
 
 use parquet::errors::ParquetError;
 
-use super::parquet_rows::{ParquetHead, ParquetRows};
+use super::new_file::is_standard;
+use super::parquet_rows::{ColumnKind, ParquetCell, ParquetHead, ParquetRows};
 use super::{NewFile, WriteError};
-use stillbase_settings::text::sheet_cell;
+use stillbase_settings::cell_table::{Cell, CellTable};
+use stillbase_settings::text::{plain, sheet_cell};
 
-/// File name extensions of rows of numbers.
-pub const ROW_ENDINGS: [&str; 2] = ["csv", "parquet"];
+/// Format of rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RowForm {
+    /// Text, for a spreadsheet.
+    Csv,
+    /// Columns of numbers, for a program.
+    Parquet,
+}
+
+/// File name extensions of rows.
+pub const ROW_ENDINGS: [&str; 2] = [RowForm::Csv.ending(), RowForm::Parquet.ending()];
+
+impl RowForm {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Csv, Self::Parquet];
+
+    /// Returns the file name extension.
+    pub const fn ending(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Parquet => "parquet",
+        }
+    }
+
+    /// Returns the name.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Csv => "CSV",
+            Self::Parquet => "Parquet",
+        }
+    }
+
+    /// Returns the format of an extension, in upper or lower case; `None` if no rows have it.
+    pub fn of_ending(ending: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|form| form.ending().eq_ignore_ascii_case(ending))
+    }
+
+    /// Returns the format of a file by its extension.
+    ///
+    /// # Errors
+    /// If no rows have it.
+    pub fn of(file: &Path) -> Result<Self, RowError> {
+        let own = file.extension().and_then(|ending| ending.to_str());
+        own.and_then(Self::of_ending).ok_or_else(|| RowError::Ending(file.into()))
+    }
+}
 
 /// Why rows were not written.
 #[derive(Debug, thiserror::Error)]
@@ -31,15 +77,40 @@ pub enum RowError {
     },
 }
 
-/// A file of rows that is being written. It takes its name when it is finished; dropped before, it leaves nothing.
+/// Rows that are being written. A file takes its name when it is finished; dropped before, it leaves nothing. On standard
+/// output, rows appear as they come.
 pub struct RowFile {
     file: PathBuf,
     out: Out,
 }
 
+/// Where rows go.
+enum Sink {
+    File(NewFile),
+    Standard(Stdout),
+    Memory(Vec<u8>),
+}
+
+impl Write for Sink {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::File(file) => file.write(bytes),
+            Self::Standard(out) => out.write(bytes),
+            Self::Memory(out) => out.write(bytes),
+        }
+    }
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Self::File(file) => file.flush(),
+            Self::Standard(out) => out.flush(),
+            Self::Memory(out) => out.flush(),
+        }
+    }
+}
+
 enum Out {
-    Csv(Box<csv::Writer<NewFile>>),
-    Parquet(Box<ParquetRows<NewFile>>),
+    Csv(Box<csv::Writer<Sink>>),
+    Parquet(Box<ParquetRows<Sink>>),
 }
 
 impl RowFile {
@@ -48,34 +119,60 @@ impl RowFile {
     /// # Errors
     /// If its ending is neither `.csv` nor `.parquet`, or if it cannot be created.
     pub fn create(file: &Path, force: bool, of: &str, columns: &[String]) -> Result<Self, RowError> {
-        Self::with_texts(file, force, of, (&[], columns))
+        Self::with_texts((file, RowForm::of(file)?), force, of, (&[], columns))
     }
 
-    /// Begins a file as [`create`](Self::create) does, with columns of text before those of numbers.
+    /// Begins a file of a format as [`create`](Self::create) does, or standard output (`-`), with columns of text before
+    /// those of numbers.
     ///
     /// # Errors
-    /// As [`create`](Self::create).
+    /// If it cannot be created.
     pub fn with_texts(
-        file: &Path,
+        (file, form): (&Path, RowForm),
         force: bool,
         of: &str,
         (texts, columns): (&[&str], &[String]),
     ) -> Result<Self, RowError> {
-        let own = file.extension().unwrap_or_default();
-        let kind = ROW_ENDINGS.iter().position(|ending| own.eq_ignore_ascii_case(ending));
-        let out = match kind {
-            Some(0) => {
-                let mut writer = csv::Writer::from_writer(NewFile::create(file, force)?);
+        let sink = match is_standard(file) {
+            true => Sink::Standard(io::stdout()),
+            false => Sink::File(NewFile::create(file, force)?),
+        };
+        Self::begin(sink, (file, form), of, (texts, columns))
+    }
+
+    /// Begins rows as CSV in memory, which [`into_text`](Self::into_text) returns.
+    ///
+    /// # Errors
+    /// If the names of the columns cannot be written.
+    pub fn in_memory(columns: &[String]) -> Result<Self, RowError> {
+        Self::begin(Sink::Memory(Vec::new()), (Path::new("values.csv"), RowForm::Csv), "instant", (&[], columns))
+    }
+
+    fn begin(
+        sink: Sink,
+        (file, form): (&Path, RowForm),
+        of: &str,
+        (texts, columns): (&[&str], &[String]),
+    ) -> Result<Self, RowError> {
+        let is_shown = matches!(sink, Sink::Standard(_));
+        let out = match form {
+            RowForm::Csv => {
+                let mut writer = csv::Writer::from_writer(sink);
                 let head = texts.iter().copied().chain(columns.iter().map(String::as_str));
-                writer.write_record(head).map_err(|e| csv_error(file, e))?;
+                // Standard output may be a terminal.
+                let done = match is_shown {
+                    true => writer.write_record(head.map(|name| plain(name).into_owned())),
+                    false => writer.write_record(head),
+                };
+                done.map_err(|e| csv_error(file, e))?;
                 Out::Csv(Box::new(writer))
             }
-            Some(_) => {
-                let head = ParquetHead { row: of, count: None, texts, columns, note: None };
-                let begun = ParquetRows::begin(NewFile::create(file, force)?, &head);
-                Out::Parquet(Box::new(begun.map_err(|e| parquet_error(file, e))?))
+            RowForm::Parquet => {
+                let texts = texts.iter().map(|name| (ColumnKind::Text, *name));
+                let numbers = columns.iter().map(|name| (ColumnKind::Number, name.as_str()));
+                let head = ParquetHead { row: of, columns: texts.chain(numbers).collect(), note: None };
+                Out::Parquet(Box::new(ParquetRows::begin(sink, &head).map_err(|e| parquet_error(file, e))?))
             }
-            None => return Err(RowError::Ending(file.into())),
         };
         Ok(Self { file: file.into(), out })
     }
@@ -101,8 +198,9 @@ impl RowFile {
                 done.map_err(|e| csv_error(&self.file, e))
             }
             Out::Parquet(rows) => {
-                let done = rows.named_row(0, texts, values.iter().map(|x| x.unwrap_or(f64::NAN) + 0.0));
-                done.map_err(|e| parquet_error(&self.file, e))
+                let texts = texts.iter().map(|text| ParquetCell::Text(text));
+                let numbers = values.iter().map(|x| ParquetCell::Number(x.unwrap_or(f64::NAN) + 0.0));
+                rows.row(texts.chain(numbers)).map_err(|e| parquet_error(&self.file, e))
             }
         }
     }
@@ -112,17 +210,82 @@ impl RowFile {
     /// # Errors
     /// If not everything could be written.
     pub fn finish(self) -> Result<(), RowError> {
+        let file = self.file.clone();
+        match self.end()? {
+            Sink::File(whole) => Ok(whole.finish()?),
+            Sink::Standard(mut out) => out.flush().map_err(|e| failed(&file, e)),
+            Sink::Memory(_) => Ok(()),
+        }
+    }
+
+    /// Returns the rows that were written in memory.
+    ///
+    /// # Errors
+    /// If not everything could be written.
+    pub fn into_text(self) -> Result<String, RowError> {
+        match self.end()? {
+            Sink::Memory(bytes) => Ok(String::from_utf8_lossy(&bytes).into_owned()),
+            Sink::File(_) | Sink::Standard(_) => Ok(String::new()),
+        }
+    }
+
+    /// Writes what is left, and gives back what it was written to.
+    fn end(self) -> Result<Sink, RowError> {
         let Self { file, out } = self;
-        let whole = match out {
-            Out::Csv(writer) => writer.into_inner().map_err(|e| failed(&file, e.into_error()))?,
-            Out::Parquet(rows) => rows.finish().map_err(|e| parquet_error(&file, e))?,
+        match out {
+            Out::Csv(writer) => writer.into_inner().map_err(|e| failed(&file, e.into_error())),
+            Out::Parquet(rows) => rows.finish().map_err(|e| parquet_error(&file, e)),
+        }
+    }
+}
+
+/// Key of the lines about a table in the metadata of a Parquet file.
+const ABOUT_KEY: &str = "stillbase.about";
+
+/// Returns a table as the content of a file; `file` is the name used in errors.
+///
+/// # Errors
+/// If the format cannot hold the table.
+pub fn table_bytes(table: &CellTable, form: RowForm, file: &Path) -> Result<Vec<u8>, RowError> {
+    match form {
+        RowForm::Csv => Ok(table.csv().into_bytes()),
+        RowForm::Parquet => parquet_bytes(table).map_err(|e| parquet_error(file, e)),
+    }
+}
+
+fn parquet_bytes(table: &CellTable) -> Result<Vec<u8>, ParquetError> {
+    let kind = |column| if table.has_words(column) { ColumnKind::Text } else { ColumnKind::Number };
+    let kinds: Vec<ColumnKind> = (0..table.head.len()).map(kind).collect();
+    let about = table.about.join("\n");
+    let note = Some([ABOUT_KEY, &*about]).filter(|_| !table.about.is_empty());
+    let columns = kinds.iter().copied().zip(table.head.iter().map(String::as_str)).collect();
+    let mut rows = ParquetRows::begin(Vec::new(), &ParquetHead { row: table.row, columns, note })?;
+    for row in &table.rows {
+        // A column of words may hold numbers, too.
+        let texts: Vec<String> = row.iter().map(text_of).collect();
+        let cell = |(i, cell): (usize, &Cell)| match (kinds.get(i), cell) {
+            (Some(ColumnKind::Number), Cell::Number(x)) => ParquetCell::Number(x + 0.0),
+            (Some(ColumnKind::Number), _) => ParquetCell::Number(f64::NAN),
+            _ => ParquetCell::Text(&texts[i]),
         };
-        Ok(whole.finish()?)
+        rows.row(row.iter().enumerate().map(cell))?;
+    }
+    rows.finish()
+}
+
+fn text_of(cell: &Cell) -> String {
+    match cell {
+        Cell::Words(text) => text.clone(),
+        Cell::Number(x) => (x + 0.0).to_string(),
+        Cell::Empty => String::new(),
     }
 }
 
 fn failed(file: &Path, source: io::Error) -> RowError {
-    WriteError::Failed { file: file.into(), source }.into()
+    match is_standard(file) {
+        true => WriteError::Standard(source).into(),
+        false => WriteError::Failed { file: file.into(), source }.into(),
+    }
 }
 
 fn csv_error(file: &Path, error: csv::Error) -> RowError {

@@ -3,6 +3,7 @@
 //!
 //! Others reach this crate as `stillbase::settings`; `stillbase` alone follows semantic versioning.
 
+pub mod cell_table;
 #[doc(hidden)]
 pub mod change;
 pub mod fault;

@@ -1,12 +1,11 @@
-//! [`SignalSamples`]: signals of a run over time, for drawing at any scale, statistics and CSV.
+//! [`SignalSamples`]: signals of a run over time, for drawing at any scale, and statistics.
 
-use std::fmt::Write as _;
 use std::ops::Range;
 
 use super::series::{Series, Statistics};
 use stillbase_query::IncrementalQuery;
 use stillbase_simulation::frame::Frame;
-use stillbase_simulation::signals::{Signal, row_heads};
+use stillbase_simulation::signals::Signal;
 
 /// Samples of some signals of one run. A signal that was added later has fewer samples until it catches up.
 #[derive(Clone, Debug, Default)]
@@ -152,21 +151,6 @@ impl SignalSamples {
     /// Returns the statistics of a signal in a time interval.
     pub fn statistics(&self, path: &str, shown: [f64; 2]) -> Option<Statistics> {
         self.series(path)?.statistics(self.within(shown))
-    }
-
-    /// Returns every sample of a time interval as CSV, in SI units, with the header that `simulate` writes.
-    pub fn csv(&self, shown: [f64; 2]) -> String {
-        // Paths and units contain neither commas nor quotes.
-        let mut text = row_heads(&self.signals).join(",") + "\n";
-        let taken = self.count();
-        for i in self.within(shown).take_while(|i| *i < taken) {
-            let _ = write!(text, "{}", self.times[i] + 0.0);
-            for (_, series) in &self.series {
-                let _ = write!(text, ",{}", series.values()[i] + 0.0);
-            }
-            text.push('\n');
-        }
-        text
     }
 }
 

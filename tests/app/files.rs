@@ -244,18 +244,19 @@ fn a_machine_goes_elsewhere_from_the_design_view() {
             Some("txt") => refused(&h, "want one that ends in .xml, .urdf", true),
             _ => done(&h, "saved"),
         }
-        fs::read_to_string(path).unwrap_or_default()
+        fs::read(path).map_or_else(|_| String::new(), |bytes| String::from_utf8_lossy(&bytes).into_owned())
     };
     assert!(take("arm.urdf").contains("<robot name=\"nine-link-geared\">"));
     assert!(take("arm.xml").contains("<mujoco model=\"nine-link-geared\">"));
     assert!(take("arm.svg").contains("<svg "));
     assert!(take("arm.dxf").contains("AC1009"));
-    assert!(take("arm.csv").contains("\r\nmotor,"));
+    assert!(take("arm.csv").contains("\nmotor,"));
+    assert!(take("arm.parquet").starts_with("PAR1"));
     assert!(take("arm.md").contains("# Parts of nine-link-geared"));
     assert!(take("arm.txt").is_empty());
     answer(&mut h, &folder.path("arm.svg"));
     refused(&h, "exists", true);
-    assert_eq!(folder.names().len(), 6);
+    assert_eq!(folder.names().len(), 7);
 }
 
 /// The File menu comes first; it opens, saves, exports and quits, and shows recent files with their folder.

@@ -59,7 +59,7 @@ fn every_command_is_found_by_a_few_letters() {
         ("table 1", "Machine: nine-link-table-1"),
         ("import", "Open: a session, scenario, machine, model or table"),
         ("urdf", "Take the machine elsewhere: MJCF, URDF, DXF…"),
-        ("csv", "Values of the first plot as CSV"),
+        ("csv", "Values of the first plot as CSV or Parquet"),
         ("picture", "Picture of the first plot as PNG"),
         ("gravity", "Setting: gravity"),
         ("recent", "Recent: mine.toml"),
@@ -95,9 +95,9 @@ fn what_a_newcomer_types_is_among_the_first_three() {
     let mut wrong = Vec::new();
     for (typed, expected) in [
         ("import", "Open: a session, scenario, machine, model or table"),
-        ("csv", "Values of the first plot as CSV"),
-        ("export", "Values of the first plot as CSV"),
-        ("excel", "Values of the first plot as CSV"),
+        ("csv", "Values of the first plot as CSV or Parquet"),
+        ("export", "Values of the first plot as CSV or Parquet"),
+        ("excel", "Values of the first plot as CSV or Parquet"),
         ("picture", "Picture of the first plot as PNG"),
         ("screenshot", "Picture of the first plot as PNG"),
         ("gravity", "Setting: gravity"),

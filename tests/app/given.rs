@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use egui::Key;
 use egui_kittest::kittest::Queryable as _;
 use stillbase::app::{SessionCommand, TableAction, TableOptions, WindowCommand};
+use stillbase::files::row_file::RowFile;
 use stillbase::mechanics::machine::Inertia;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::replay;
@@ -55,6 +56,14 @@ fn table(scenario: &Scenario, measures: bool, every: u64) -> String {
     text
 }
 
+/// The same angles as columns.
+fn replayed(scenario: &Scenario) -> (Vec<String>, Vec<Vec<Option<f64>>>) {
+    let text = table(scenario, false, 1);
+    let mut lines = text.lines();
+    let head = lines.next().expect("a head").split(',').map(str::to_owned).collect();
+    (head, lines.map(|line| line.split(',').map(|cell| cell.parse().ok()).collect()).collect())
+}
+
 fn open(h: &mut Window, file: impl AsRef<std::path::Path>) {
     h.state_mut().app_state_mut().carry_out(SessionCommand::OpenFile(file.as_ref().to_owned()));
     h.run_steps(4);
@@ -81,6 +90,19 @@ fn a_motion_of_ones_own_becomes_one_without_reactions() {
     }
     h.run_steps(2);
     assert_eq!(*session(&h).scenario(), before, "each is one step to undo");
+    // The same as Parquet.
+    let samples = replayed(&case);
+    let mut rows = RowFile::create(&folder.path("mine.parquet"), false, "instant", &samples.0).expect("begun");
+    samples.1.iter().for_each(|row| rows.row(row).expect("a row"));
+    rows.finish().expect("written");
+    open(&mut h, folder.path("mine.parquet"));
+    h.get_by_label("Take the proposal").click();
+    h.run_steps(3);
+    let task = session(&h).scenario().task.clone();
+    assert_eq!(task.samples.as_ref().map(|samples| samples.count()), Some(1001));
+    assert!(replay(session(&h).scenario(), |_, _| {}).expect("it runs").frame().peaks.is_reactionless());
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Undo);
+    h.run_steps(3);
     // Both beside each other.
     h.get_by_label("Compare both").click();
     h.run_steps(8);

@@ -3,8 +3,9 @@
 use egui::accesskit::Toggled;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, Pos2, TouchPhase, pos2, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use stillbase::app::export::PictureForm;
+use stillbase::app::export::{PictureForm, RowForm};
 use stillbase::app::{Command, Message, PlotFile, SessionCommand, ViewChange};
+use stillbase::files::table::signals;
 use stillbase::picture::charts::choice::PlotChange;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::scenario::Scenario;
@@ -333,17 +334,24 @@ fn a_plot_is_written_to_files() {
     let mut h = after_case("case-1", Theme::Dark, 800.0);
     h.state_mut().app_state_mut().carry_out(ViewChange::Charts(PlotChange::Range(Some([0.2, 0.3]))));
     h.run_steps(2);
+    let frames = h.state().app_state().session().frames();
+    let torques: Vec<f64> = frames.iter().skip(200).take(101).map(|frame| frame.torque[1]).collect();
     let mut write = |file: PlotFile, name: &str| {
         let path = folder.path(name);
         h.state_mut().app_state_mut().carry_out(SessionCommand::WritePlot(path.clone(), "Torque".into(), file));
         let message = h.state().app_state().view_state().status.message.clone().expect("it is said");
         (std::fs::read(&path).unwrap_or_default(), message)
     };
-    let (csv, Message { text: said, is_problem: bad }) = write(PlotFile::Csv, "plot.csv");
+    let (csv, Message { text: said, is_problem: bad }) = write(PlotFile::Values(RowForm::Csv), "plot.csv");
     let text = String::from_utf8(csv).expect("UTF-8");
     assert!(!bad && said.contains("plot.csv"), "{said}");
     assert_eq!(text.lines().count(), 102);
     assert!(text.starts_with("time s,torque/1 N m,torque/2 N m,torque/3 N m\n0.2,"), "{text}");
+    let (parquet, Message { text: said, is_problem: bad }) = write(PlotFile::Values(RowForm::Csv), "plot.parquet");
+    assert!(!bad && parquet.starts_with(b"PAR1"), "{said}: the ending decides");
+    let [csv, parquet] = ["plot.csv", "plot.parquet"].map(|name| signals(&folder.path(name)).expect("a table"));
+    assert_eq!(csv, parquet);
+    assert!(csv.columns[1].values == torques, "every sample, to the last bit");
     let (svg, _) = write(PlotFile::Picture(PictureForm::Svg), "plot.svg");
     assert!(String::from_utf8(svg).expect("UTF-8").contains("aria-label=\"Torque\""));
     let (png, Message { text: said, is_problem: bad }) = write(PlotFile::Picture(PictureForm::Png), "plot.png");
@@ -359,8 +367,10 @@ fn a_plot_is_written_to_files() {
     let smaller = image_webp::WebPDecoder::new(std::io::Cursor::new(&webp)).expect("a WebP");
     assert_eq!(smaller.dimensions(), (1440, 640));
     // What is there stays there.
-    let (same, Message { text: said, is_problem: bad }) = write(PlotFile::Csv, "plot.svg");
+    let (same, Message { text: said, is_problem: bad }) = write(PlotFile::Picture(PictureForm::Svg), "plot.svg");
     assert!(bad && said.contains("exists") && String::from_utf8(same).expect("UTF-8").starts_with("<?xml"), "{said}");
+    let (_, Message { text: said, is_problem: bad }) = write(PlotFile::Values(RowForm::Csv), "values.svg");
+    assert!(bad && said.contains("want a name that ends in .csv or .parquet"), "{said}");
     // Through the menu and the dialog.
     h.get_by_label_contains("Torque over time").click_secondary();
     h.run_steps(3);

@@ -38,6 +38,7 @@ pub const TESTS: &[Test] = tests![
     a_choice_without_rows_is_refused,
     a_report_of_the_window_shows_its_plots,
     an_encoder_gets_every_picture,
+    pixels_go_to_standard_output_whole,
     a_report_is_in_the_units_and_names_of_the_window,
     a_transparent_picture_is_legible_on_any_colour,
 ];
@@ -210,18 +211,18 @@ fn a_film_that_is_stopped_leaves_nothing() {
     app_state.run_to_end();
     let order = film_order(&app_state);
     for name in ["a.gif", "a.png", "frames"] {
-        let mut pictures = 0;
+        let (mut pictures, file) = (0, folder.path(name));
         let goes_on = &mut |_: f64| {
             pictures += 1;
             pictures < 3
         };
-        let stopped = write_film(&mut app_state, &order, &folder.path(name), false, goes_on);
+        let stopped = write_film(&mut app_state, &order, (&file, FilmForm::of(&file).expect("a film")), false, goes_on);
         assert!(stopped.is_err_and(|why| why.to_string().contains("no file is left")), "{name}");
         assert_eq!(pictures, 3, "{name}: it stops at once");
     }
     assert!(folder.names().is_empty());
     let order = FilmOrder { slow: 1000.0, fps: 50.0, ..order };
-    let long = write_film(&mut app_state, &order, &folder.path("a.gif"), false, &mut |_| true);
+    let long = write_film(&mut app_state, &order, (&folder.path("a.gif"), FilmForm::Gif), false, &mut |_| true);
     assert!(long.is_err_and(|why| why.to_string().contains("want at most 5000")));
 }
 
@@ -230,7 +231,8 @@ fn a_folder_of_pictures_replaces_only_its_like() {
     let mut app_state = app_state("case-1");
     app_state.run_to_end();
     let (order, frames) = (film_order(&app_state), folder.path("frames"));
-    let mut film = |order: &FilmOrder, force| write_film(&mut app_state, order, &frames, force, &mut |_| true);
+    let mut film =
+        |order: &FilmOrder, force| write_film(&mut app_state, order, (&frames, FilmForm::Frames), force, &mut |_| true);
     assert_eq!(film(&order, false).expect("a film").pictures, 11);
     assert!(film(&order, false).is_err_and(|why| why.to_string().contains("exists")));
     let short = FilmOrder { times: [0.0, 0.2], ..order };
@@ -249,7 +251,7 @@ fn without_its_encoder_an_mp4_says_what_to_install() {
     app_state.run_to_end();
     let order = film_order(&app_state);
     let file = folder.path("film.mp4");
-    match write_film(&mut app_state, &order, &file, false, &mut |_| true) {
+    match write_film(&mut app_state, &order, (&file, FilmForm::Mp4), false, &mut |_| true) {
         Err(why) => {
             assert!(!stillbase::files::video::has_encoder(), "{why}");
             assert!(why.to_string().contains("apt-get install ffmpeg"), "{why}");
@@ -305,6 +307,40 @@ fn an_encoder_gets_every_picture() {
     assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
     assert_eq!(fs::read(folder.path("film.mp4")).expect("a file").len(), 11 * 32 * 20 * 4);
     assert_eq!(folder.names(), ["ffmpeg", "film.mp4"]);
+}
+
+/// Also a film that another program encodes; no other file is left.
+fn pixels_go_to_standard_output_whole() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let (folder, temporary) = (Folder::new("results"), Folder::new("results"));
+    let encoder = folder
+        .file("ffmpeg", "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\ncat > \"${last#file:}\"\n");
+    fs::set_permissions(&encoder, fs::Permissions::from_mode(0o755)).expect("it may run");
+    let path = format!("{}:{}", folder.0.display(), std::env::var("PATH").expect("a path"));
+    let render = |args: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_stillbase"));
+        command.args(["render", "case-1", "--size", "64x40"]).args(args);
+        command.stdin(std::process::Stdio::null()).env("PATH", &path).env("TMPDIR", &temporary.0);
+        let out = command.current_dir(&folder.0).output().expect("the program starts");
+        assert!(out.status.success(), "{args:?}: {}", String::from_utf8_lossy(&out.stderr));
+        out.stdout
+    };
+    let film = ["--film", "0,0.2", "--fps", "10"];
+    for (more, file, format) in [
+        (&[][..], "still.png", None),
+        (&[], "still.webp", Some("webp")),
+        (&film, "film.gif", None),
+        (&film, "film.png", Some("png")),
+        (&film, "film.mp4", Some("mp4")),
+    ] {
+        render(&[more, &["-o", file]].concat());
+        let written = fs::read(folder.path(file)).expect("a file");
+        let format: Vec<&str> = format.into_iter().flat_map(|format| ["--format", format]).collect();
+        let printed = render(&[more, &["-o", "-"], &format].concat());
+        assert!(!written.is_empty() && printed == written, "{file}: {} of {} bytes", printed.len(), written.len());
+    }
+    assert!(temporary.names().is_empty(), "{:?}", temporary.names());
+    assert_eq!(folder.names().len(), 6, "{:?}", folder.names());
 }
 
 fn values_are_those_of_the_plots_or_all() {

@@ -177,7 +177,7 @@ fn what_is_not_listed_comes_back() {
         for ending in ["urdf", "xml"] {
             let form = Form::of(ending).expect("a format");
             let pose = if ending == "xml" { middle(&machine) } else { vec![0.0; machine.drives()] };
-            let text = form.written(&machine, &pose, &Cut::default()).expect("a model");
+            let text = form.written(&machine, &pose, &Cut::default()).expect("a model").text();
             let list = form.left_out(&machine);
             let lists = |words: &str| list.iter().any(|what| what.contains(words));
             let back = import(&text).unwrap_or_else(|why| panic!("{}: {why}", machine.name())).machine;

@@ -38,8 +38,8 @@ fn another_reader_finds_every_part() {
             ..Default::default()
         });
         let machine = Machine::new(spec).expect("a machine");
-        let text = parts(&machine).csv();
-        assert!(text.lines().count() > 8 && text.ends_with("\r\n"));
+        let text = parts(&machine).cells().csv();
+        assert!(text.lines().count() > 8 && text.ends_with('\n'));
         let rows = rows(&text);
         let of = |kind: &str| rows.iter().filter(|row| row["part"] == kind).collect::<Vec<_>>();
         let mass =
@@ -101,7 +101,7 @@ fn names_of_a_stranger_stay_in_their_field() {
     spec.links[1].name = name.into();
     spec.end_effector.as_mut().expect("an end").link = name.into();
     let list = parts(&Machine::new(spec).expect("a machine"));
-    assert!(list.csv().contains("\r\nlink,\"a,\"\"b\"\"\nc|d\",2,0.35,4,"), "{}", list.csv());
+    assert!(list.cells().csv().contains("\nlink,\"a,\"\"b\"\"\nc|d\",2,0.35,4,"), "{}", list.cells().csv());
     assert!(list.markdown().contains("| a,\"b\" c\\|d |"), "{}", list.markdown());
 }
 
@@ -113,11 +113,11 @@ fn names_are_no_formulas() {
         spec.links[1].name = name.into();
         spec.end_effector.as_mut().expect("an end").link = name.into();
         let list = parts(&Machine::new(spec).expect("a machine"));
-        let rows = list.csv().lines().filter(|line| line.contains(&name.replace('"', "\"\""))).count();
-        assert!(rows >= 1, "{}", list.csv());
-        for cell in list.csv().replace("\r\n", ",").split(',') {
+        let rows = list.cells().csv().lines().filter(|line| line.contains(&name.replace('"', "\"\""))).count();
+        assert!(rows >= 1, "{}", list.cells().csv());
+        for cell in list.cells().csv().replace('\n', ",").split(',') {
             let is_formula = cell.trim_start_matches(['"', ' ']).starts_with(['=', '+', '-', '@']);
-            assert!(!is_formula || cell.parse::<f64>().is_ok(), "{cell} in {}", list.csv());
+            assert!(!is_formula || cell.parse::<f64>().is_ok(), "{cell} in {}", list.cells().csv());
         }
     }
 }
@@ -186,7 +186,7 @@ fn pins_and_spacers_are_those_of_the_solids() {
     let machine = Machine::new(spec).expect("a machine");
     let cut = Cut::default();
     let all = solids(&machine, &middle(&machine), &cut).expect("solids");
-    let list = rows(&PartsList::of(&machine, &cut).expect("a list").csv());
+    let list = rows(&PartsList::of(&machine, &cut).expect("a list").cells().csv());
     let of = |kind: &str| list.iter().filter(|row| row["part"] == kind).collect::<Vec<_>>();
     let number =
         |row: &std::collections::HashMap<String, String>, name: &str| row[name].parse::<f64>().expect("a number");

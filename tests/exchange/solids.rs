@@ -190,7 +190,7 @@ fn drawings_and_lists_say_the_layer() {
         assert!(on(&text, layer) && text.contains(&format!("LAYER\n2\n{layer}\n")), "{layer}");
     }
     assert!(text.contains("layer 2, 14.0 mm high") && !on(&text, "OUTLINE"));
-    let list = |machine: &Machine| PartsList::of(machine, &cut).expect("parts").csv();
+    let list = |machine: &Machine| PartsList::of(machine, &cut).expect("parts").cells().csv();
     assert!(list(&machine).lines().next().is_some_and(|head| head.contains("layer,height m")));
     assert!(!list(flat).contains("height m") && !list(flat).contains("pin length m"));
     let row = list(&machine).lines().find(|line| line.starts_with("link,3,")).map(str::to_owned);

@@ -4,6 +4,7 @@ use std::panic;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use stillbase::files::row_file::RowForm;
 use stillbase::files::shards::{ShardError, ShardHeader, StudyId, StudyPart, Writer, merge};
 use stillbase::study::tolerance::SampleOutcome;
 
@@ -18,7 +19,7 @@ fn machine(i: u64) -> SampleOutcome {
 
 fn write(file: PathBuf, study: StudyId, samples: std::ops::Range<u64>) -> PathBuf {
     let head = ShardHeader::new(study, ["link.5.com m".to_owned()]);
-    let mut writer = Writer::create(&file, true, &head).expect("begun");
+    let mut writer = Writer::create((&file, RowForm::of(&file).expect("an ending")), true, &head).expect("begun");
     for i in samples {
         writer.machine(i, &[-0.02 + 1e-4 * i as f64], &machine(i)).expect("written");
     }
@@ -29,13 +30,14 @@ fn write(file: PathBuf, study: StudyId, samples: std::ops::Range<u64>) -> PathBu
 #[test]
 fn shards_put_together_are_the_whole() {
     let folder = Folder::new("shards");
-    for ending in ["csv", "parquet"] {
+    for form in RowForm::ALL {
+        let ending = form.ending();
         let named = |name: &str| folder.path(&format!("{name}.{ending}"));
         let whole = write(named("whole"), STUDY, 0..30);
         // A shard may hold no machine.
         let parts = [("b", 12..30), ("none", 12..12), ("a", 0..12)].map(|(name, of)| write(named(name), STUDY, of));
         let merged = named("merged");
-        let (study, outcomes) = merge(&parts, &merged, false).expect("all of it");
+        let (study, outcomes) = merge(&parts, (&merged, form), false).expect("all of it");
         assert_eq!((study, outcomes), (STUDY, (0..30).map(machine).collect()));
         let bytes = |file: &PathBuf| std::fs::read(file).expect("readable");
         assert!(bytes(&merged) == bytes(&whole), "{ending}");
@@ -61,13 +63,13 @@ fn what_is_no_whole_study_is_refused() {
         (vec![named("nowhere")], "want a plain file that can be read"),
         (vec![folder.path("a.txt")], "want a name that ends in .csv or .parquet"),
     ] {
-        let why = merge(&parts, &named("merged"), true).expect_err(want);
+        let why = merge(&parts, (&named("merged"), RowForm::Csv), true).expect_err(want);
         assert!(matches!(&why, ShardError::Wrong(said) if said.contains(want)), "{why}");
     }
     // A single digit that differs is noticed.
     let text = std::fs::read_to_string(&b).expect("readable").replacen("0.112", "0.113", 1);
     std::fs::write(&b, text).expect("written");
-    let why = merge(&[a, b], &named("merged"), true).expect_err("changed");
+    let why = merge(&[a, b], (&named("merged"), RowForm::Csv), true).expect_err("changed");
     assert!(why.to_string().contains("its checksum does not fit"), "{why}");
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use stillbase::files::table::{SampleTable, TableData, TableError, motions, samples};
+use stillbase::files::table::{SampleTable, Table, TableData, TableError, motions, samples};
 use stillbase::mechanics::machine::builtin;
 use stillbase::planning::curves::Coordinates;
 use stillbase::study::advice::Remedy;
@@ -14,7 +14,7 @@ fn table(head: &str, row: impl Fn(f64) -> String) -> String {
 }
 
 fn read(text: &str) -> Result<SampleTable, TableError> {
-    samples(text, "in.csv", builtin("nine-link").expect("built in"), None, false)
+    samples(&Table::of_csv(text, "in.csv"), builtin("nine-link").expect("built in"), None, false)
 }
 
 #[test]
@@ -79,11 +79,11 @@ fn motions_part_where_time_leaps_or_begins_anew() {
     let rows = one.split_once('\n').expect("a head").1;
     let later = table("", |t| at(t + 30.0, t));
     let text = format!("{one}{rows}{}", later.trim_start());
-    let found = motions(&text, "in.csv", machine).expect("motions");
+    let found = motions(&Table::of_csv(text, "in.csv"), machine).expect("motions");
     assert_eq!(found.iter().map(|motion| motion.t.len()).collect::<Vec<_>>(), [20, 20, 20]);
     assert!((found[2].force[0].re - 1e-4).abs() < 1e-15 && found[0].qd.is_empty());
     let moving = table("t,q1,q2,fx,fy,nz,base_x", |t| format!("{},{}", row(t), 1e-3 * t));
-    let why = motions(&moving, "in.csv", machine).expect_err("the base moves");
+    let why = motions(&Table::of_csv(moving, "in.csv"), machine).expect_err("the base moves");
     assert!(why.line == Some(3) && why.why.to_string().starts_with("column base_x: the base moves"), "{why}");
 }
 
@@ -91,7 +91,10 @@ fn motions_part_where_time_leaps_or_begins_anew() {
 #[test]
 fn what_a_table_is_of_is_told_by_its_columns() {
     let machine = builtin("nine-link").expect("built in");
-    let of = |head: &str, row: &str| TableData::of(&table(head, |t| format!("{t}{row}")), "in.csv", machine, false);
+    let of = |head: &str, row: &str| {
+        let text = table(head, |t| format!("{t}{row}"));
+        TableData::of(&Table::of_csv(text, "in.csv"), machine, false)
+    };
     for (head, row, coordinates) in [
         ("t,q1,q2,q3", ",1.7,3.7,2.2", Coordinates::Drives),
         ("\u{feff}t;q1 (rad);q2;q3", ";1.7;3.7;2.2", Coordinates::Drives),
@@ -119,7 +122,8 @@ fn what_a_table_is_of_is_told_by_its_columns() {
 #[test]
 fn a_table_that_is_neither_is_refused() {
     let machine = builtin("nine-link").expect("built in");
-    let refused = |text: &str| TableData::of(text, "in.csv", machine, false).expect_err("neither").to_string();
+    let refused =
+        |text: &str| TableData::of(&Table::of_csv(text, "in.csv"), machine, false).expect_err("neither").to_string();
     let both = "want a header t,q1,q2,q3 (rad) or t,x,y (m) of a motion, or t,q1,q2,q3,fx,fy,nz (s, rad, N, N m) of a \
                 measurement";
     for (text, what) in [
@@ -144,7 +148,7 @@ fn a_table_that_is_neither_is_refused() {
         let why = refused(&table(head, |t| format!("{t}{row}")));
         assert!(why.starts_with(what), "{why}");
     }
-    let why = TableData::open("no/such/file.csv".as_ref(), machine, false).expect_err("not there").to_string();
+    let why = Table::open("no/such/file.csv".as_ref()).expect_err("not there").to_string();
     assert!(why.starts_with("no/such/file.csv: ") && why.contains("want a plain file"), "{why}");
 }
 
@@ -158,4 +162,34 @@ fn a_way_out_has_the_name_of_who_shows_it() {
     assert!(!plain.contains("--") && plain.ends_with("to have it bridged by the spline"), "{plain}");
     let worded = why.worded(|_| "a tick at Gaps").to_string();
     assert!(worded.ends_with("want it filled, or a tick at Gaps to have it bridged by the spline"), "{worded}");
+}
+
+/// Parquet is the same table: words name motions, numbers may be words, and other columns count for nothing.
+#[cfg(feature = "cli")]
+#[test]
+fn columns_of_parquet_are_those_of_csv() {
+    use stillbase::files::row_file::{RowFile, RowForm};
+    let folder = crate::folder::Folder::new("table");
+    let machine = builtin("two-drive").expect("built in");
+    let (texts, numbers) = (["motion", "fx (mN)"], ["t", "q1", "q2", "fy", "nz"].map(String::from));
+    for form in RowForm::ALL {
+        let file = folder.path(&format!("plate.{}", form.ending()));
+        let mut rows = RowFile::with_texts((&file, form), false, "instant", (&texts, &numbers)).expect("begun");
+        for i in 0..40 {
+            let t = f64::from(i) / 39.0;
+            let (motion, force) = (if i < 15 { "slow" } else { "fast" }, (100.0 * t).to_string());
+            let numbers = [t, 0.5 * t, 1.0 - t, 0.2, 0.3].map(Some);
+            rows.named_row(&[motion, &force], &numbers).expect("a row");
+        }
+        rows.finish().expect("written");
+    }
+    let [csv, parquet] = ["plate.csv", "plate.parquet"].map(|name| {
+        let table = Table::open(&folder.path(name)).expect(name);
+        motions(&table, machine).expect(name)
+    });
+    assert_eq!(parquet, csv);
+    assert_eq!(parquet.iter().map(|motion| motion.t.len()).collect::<Vec<_>>(), [15, 25]);
+    assert!((parquet[1].force[24].re - 0.1).abs() < 1e-15);
+    let table = Table::open(&folder.path("plate.parquet")).expect("a table");
+    assert_eq!(samples(&table, machine, None, false).expect("the angles are there").samples.count(), 40);
 }

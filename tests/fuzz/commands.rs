@@ -1,8 +1,9 @@
 //! The same for what only commands read: settings, samples as CSV, states as JSON, parts of a study.
 
 use clap::Parser;
+use stillbase::files::row_file::RowForm;
 use stillbase::files::shards::{ShardHeader, StudyId, Writer, merge};
-use stillbase::files::table::{motions, samples};
+use stillbase::files::table::{Table, motions, samples};
 use stillbase::mechanics::machine::builtin;
 use stillbase::session::scenario::Scenario;
 use stillbase::study::trim::{MeasurementSet, Regressor, adopt_parameters, fit, identified_machine, next_excitation};
@@ -68,14 +69,15 @@ fn a_row_of_too_many_columns_is_refused() {
         (format!("t,q1,q2,q3\n0,a\"b,2,3{commas}"), 2),
         (quoted, 1001),
     ] {
-        let why = samples(&text, "wide.csv", machine, None, false).expect_err("too wide");
+        let table = Table::of_csv(text, "wide.csv");
+        let why = samples(&table, machine, None, false).expect_err("too wide");
         assert_eq!(why.to_string(), format!("wide.csv:{line}: more than 1000 columns: want at most 1000"));
-        assert_eq!(motions(&text, "wide.csv", machine).expect_err("too wide"), why);
+        assert_eq!(motions(&table, machine).expect_err("too wide"), why);
     }
     // As many are read.
     let head = format!("t,q1,q2,q3{}", ",u".repeat(996));
     let rows: String = (0..20).map(|i| format!("\n{i},1,2,3{}", ",\",\"".repeat(996))).collect();
-    assert!(samples(&(head + &rows), "wide.csv", machine, None, false).is_ok());
+    assert!(samples(&Table::of_csv(head + &rows, "wide.csv"), machine, None, false).is_ok());
 }
 
 /// Found by chance: keys within keys once went as deep as the stack.
@@ -100,7 +102,7 @@ fn samples_as_csv() {
     let machine = builtin("nine-link").expect("built in");
     fuzz("csv", &good, 300, |bytes, dice| {
         let text = String::from_utf8_lossy(bytes);
-        match samples(&text, "in.csv", machine, None, dice.one_in(2)) {
+        match samples(&Table::of_csv(text, "in.csv"), machine, None, dice.one_in(2)) {
             Ok(read) => match read.samples.rows().flatten().all(|x| x.is_finite()) {
                 true => Ok(()),
                 false => Err("a sample that is not finite".into()),
@@ -135,7 +137,7 @@ fn measurements_as_csv() {
     let machine = builtin("two-drive").expect("built in");
     fuzz("measured", &good, 200, |bytes, dice| {
         let text = String::from_utf8_lossy(bytes);
-        let recording = match motions(&text, "in.csv", machine) {
+        let recording = match motions(&Table::of_csv(text, "in.csv"), machine) {
             Ok(motions) => MeasurementSet { motions },
             Err(why) => return is_short(&why.to_string()),
         };
@@ -179,11 +181,12 @@ fn states() {
 fn parts() {
     let folder = std::path::Path::new(option_env!("CARGO_TARGET_TMPDIR").unwrap_or("/tmp"));
     let named = |name: &str, ending: &str| folder.join(format!("fuzz-{name}-{}.{ending}", std::process::id()));
-    for (target, ending) in [("parquet", "parquet"), ("parts", "csv")] {
+    for (target, form) in [("parquet", RowForm::Parquet), ("parts", RowForm::Csv)] {
+        let ending = form.ending();
         let (part, whole) = (named("part", ending), named("whole", ending));
         let study = StudyId { samples: 40, seed: 1, problem: 7 };
         let head = ShardHeader::new(study, ["a".to_owned()]);
-        let mut writer = Writer::create(&part, true, &head).expect("begun");
+        let mut writer = Writer::create((&part, form), true, &head).expect("begun");
         for i in 0..40 {
             let x = 0.1 + 1e-3 * i as f64;
             writer.row(i, &[x, x, 2.0 * x, 0.5 * x, x]).expect("written");
@@ -192,7 +195,7 @@ fn parts() {
         let good = std::fs::read(&part).expect("readable");
         fuzz(target, &[good], 150, |bytes, _| {
             std::fs::write(&part, bytes).expect("a place to write");
-            match merge(std::slice::from_ref(&part), &whole, true) {
+            match merge(std::slice::from_ref(&part), (&whole, form), true) {
                 Ok((study, outcomes)) if outcomes.len() as u64 == study.samples => Ok(()),
                 Ok(_) => Err("another number of machines than it says".into()),
                 Err(why) => is_short(&why.to_string()),

@@ -76,6 +76,8 @@ errors! {
     files::video::VideoError,
     #[cfg(feature = "cli")]
     files::row_file::RowError,
+    #[cfg(feature = "tables")]
+    files::table::NoTable,
     #[cfg(feature = "ui")]
     stillbase::app::export::ExportError,
     #[cfg(feature = "cli")]

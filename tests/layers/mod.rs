@@ -48,7 +48,18 @@ const EDGES: &[(&str, &[&str])] = &[
             "recording/viewer.rs",
         ],
     ),
-    ("std::env", &["build.rs", "main.rs", "app/window.rs", "app/window/error.rs", "app/window/chooser/portal.rs"]),
+    (
+        "std::env",
+        &[
+            "build.rs",
+            "main.rs",
+            "app/window.rs",
+            "app/window/error.rs",
+            "app/window/chooser/portal.rs",
+            // The folder of temporary files.
+            "files/new_file.rs",
+        ],
+    ),
     (
         "std::thread",
         &[
@@ -81,7 +92,7 @@ const EDGES: &[(&str, &[&str])] = &[
             "build.rs",
             "files/draft.rs",
             "files/shards/rows.rs",
-            "files/table/parquet_signals.rs",
+            "files/table/parquet_table.rs",
             "files/shards/checksum.rs",
             "files/new_file.rs",
             "files/new_folder.rs",

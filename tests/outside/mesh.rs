@@ -82,7 +82,7 @@ fn solids_weigh_what_links_weigh() {
     let machines: Vec<Machine> = drawn.collect();
     let form = Form::of("stl").expect("a form");
     let written = |machine: &Machine| {
-        json!(form.written(machine, &middle(machine), &Cut::default()).expect("solids")).to_string()
+        json!(form.written(machine, &middle(machine), &Cut::default()).expect("solids").text()).to_string()
     };
     let lines: Vec<String> = machines.iter().map(written).collect();
     let (mut greatest, mut drilled) = ([0.0_f64; 3], 0);

@@ -52,6 +52,15 @@ fn a_run_is_a_table() {
     runs("table.py");
 }
 
+/// Holds a Parquet file against the CSV of the same name, cell by cell.
+const SAME_CELLS: &str = "import pandas as pd\n\
+                          def same(name):\n    \
+                              b = pd.read_parquet(name + '.parquet')\n    \
+                              words = {c: '' for c in b if b[c].dtype.kind != 'f'}\n    \
+                              a = pd.read_csv(name + '.csv', comment='#', dtype=dict(b.dtypes)).fillna(words)\n    \
+                              assert len(b) > 9\n    \
+                              pd.testing.assert_frame_equal(a, b, rtol=1e-14, atol=0)\n";
+
 /// What pandas makes of a run, with gaps, its index and its own compression, is the same table.
 fn what_pandas_writes_is_read() {
     let folder = Folder::new("pandas");
@@ -83,6 +92,20 @@ fn what_pandas_writes_is_read() {
     }
     let (status, said) = program(&["diff", "run.csv", "run.parquet"]);
     assert!(status == Some(1) && said.contains("1 of ") && said.contains("torque/1"), "{said}");
+    for (line, script) in [
+        ("export-model nine-link -o parts.csv", ""),
+        ("export-model nine-link -o parts.parquet", "same('parts')"),
+        ("figures case-1 --what moment -o m.svg", ""),
+        ("figures case-1 --what moment -o m.svg --numbers parquet --force", "same('m')"),
+        ("export case-1 --rate 250 -o motion.csv", "pd.read_csv('motion.csv').to_parquet('motion.parquet')"),
+        ("import motion.parquet -o quiet.toml", ""),
+    ] {
+        let (status, said) = program(&line.split(' ').collect::<Vec<_>>());
+        assert_eq!(status, Some(0), "{line}: {said}");
+        let script = format!("{SAME_CELLS}\n{script}\n");
+        let run = python().args(["-c", &script]).current_dir(&folder.0).stdin(Stdio::null()).output().expect("there");
+        assert!(run.status.success(), "{line}: {}", String::from_utf8_lossy(&run.stderr));
+    }
     let (status, said) = program(&["table", "zstd.parquet"]);
     assert!(status == Some(2) && said.contains("without compression, or with Snappy"), "{said}");
     let (status, said) = program(&["table", "text.parquet"]);

@@ -72,7 +72,7 @@ fn question(machine: &Machine, disc: CounterweightStock) -> Value {
     let (name, cut) = (machine.name(), Cut::default());
     let exported = |ending: &str| {
         let form = Form::of(ending).expect("a form");
-        form.written(machine, &middle(machine), &cut).unwrap_or_else(|why| panic!("{name}, {ending}: {why}"))
+        form.written(machine, &middle(machine), &cut).unwrap_or_else(|why| panic!("{name}, {ending}: {why}")).text()
     };
     let links = machine.resolved_links().iter().enumerate().map(|(j, link)| {
         let root: Vec<f64> = (0..machine.drives()).map(|k| link.root[k]).collect();
@@ -194,8 +194,10 @@ fn come_back(machine: &Machine) {
     let own = Inertia::of(machine);
     for ending in ["urdf", "xml"] {
         let form = Form::of(ending).expect("a form");
-        let text =
-            form.written(machine, &middle(machine), &Cut::default()).unwrap_or_else(|why| panic!("{name}: {why}"));
+        let text = form
+            .written(machine, &middle(machine), &Cut::default())
+            .unwrap_or_else(|why| panic!("{name}: {why}"))
+            .text();
         let back = import(&text).unwrap_or_else(|why| panic!("{name}, {ending}: {why}")).machine;
         let drive = |k: usize| {
             let of = &machine.spec().drives[k].name;

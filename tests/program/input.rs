@@ -174,8 +174,8 @@ fn endings_say_what_is_written() {
         (&["design", "nine-link"], ".toml"),
         (&["plan", "case-3"], ".toml"),
         (&["import", &motion], ".toml"),
-        (&["tolerance", "case-3"], ".parquet or .csv"),
-        (&["tolerance", "--merge", "a.csv"], ".parquet or .csv"),
+        (&["tolerance", "case-3"], ".csv or .parquet"),
+        (&["tolerance", "--merge", "a.csv"], ".csv or .parquet"),
     ] {
         for name in ["q.json", "q", "q.csv.gz"] {
             let file = word(folder.path(name));

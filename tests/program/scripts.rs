@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use super::*;
+use stillbase::files::row_file::RowFile;
 
 /// What the program answers to a text on standard input.
 fn given(input: &str, args: &[&str]) -> Output {
@@ -111,7 +112,7 @@ fn bash_completes_commands_options_and_their_words() {
     let script = folder.file("stillbase.bash", prints(&["completions", "bash"]));
     let of = |words: &[&str]| completed(&script, words);
     assert_eq!(of(&["stillbase", "sim"]), ["simulate"]);
-    assert_eq!(of(&["stillbase", "export-model", "--fo"]), ["--force"]);
+    assert_eq!(of(&["stillbase", "export-model", "--fo"]), ["--force", "--format"]);
     assert_eq!(of(&["stillbase", "diff", "--tol"]), ["--tolerance"]);
     assert!(of(&["stillbase", "export", "case-1", "--what", ""]).contains(&"simulated".to_owned()));
     assert!(of(&["stillbase", ""]).contains(&"workspace".to_owned()));
@@ -193,8 +194,200 @@ fn a_dash_is_standard_input_and_output() {
         text(&wrong.stderr)
     );
     fails(&["simulate", "case-1", "--json", "-o", "-"], 2, &["both want standard output"]);
-    fails(&["headless", "case-1", "-o", "-"], 2, &[".rrd"]);
-    fails(&["tolerance", "case-1", "--samples", "10", "-o", "-"], 2, &[".parquet"]);
+}
+
+/// What goes to standard output is the file, and nothing else; the rest goes to standard error.
+#[test]
+fn a_file_goes_to_standard_output_whole() {
+    let folder = Folder::new("standard");
+    let line = |line: &str| line.split(' ').map(str::to_owned).collect::<Vec<_>>();
+    for (command, file, format) in [
+        ("report case-3", "report.html", ""),
+        ("render case-1 --at 0.5", "view.svg", "svg"),
+        ("render case-1 --at 0.5", "view.pdf", "pdf"),
+        ("figures case-1 --what torque,linkage --force", "drawn.svg", ""),
+        ("figures case-1 --what torque,linkage --force", "drawn.pdf", "PDF"),
+        ("figures --paper fig-3", "fig-3.svg", ""),
+        ("figures --paper table-1", "table-1.pdf", ".pdf"),
+        ("tolerance case-3 --samples 50", "study.csv", ""),
+        ("tolerance case-3 --samples 50", "study.parquet", "parquet"),
+        ("simulate case-3 --every 100", "run.csv", "csv"),
+        ("simulate case-3 --every 100", "run.parquet", "parquet"),
+        ("export case-3 --rate 100", "rows.parquet", "parquet"),
+        ("compare case-3 case-1", "runs.parquet", "parquet"),
+        ("spectrum case-1", "spectrum.parquet", "parquet"),
+        ("joints case-1", "pins.parquet", "parquet"),
+        ("table run.parquet", "table.csv", ""),
+        ("table run.parquet", "table.parquet", "parquet"),
+        ("export-model scara", "parts.parquet", "parquet"),
+        ("export-model scara", "arm.urdf", "urdf"),
+    ] {
+        let output = if command.contains("--paper") { "." } else { file };
+        let mut to_file = line(command);
+        to_file.extend(["-o", output].map(String::from));
+        let out = folder.run(&to_file.iter().map(String::as_str).collect::<Vec<_>>());
+        assert_eq!(out.status.code(), Some(0), "{command}: {}", text(&out.stderr));
+        let mut written = fs::read(folder.path(file)).expect("the file");
+        let mut standard = line(command);
+        standard.extend(["-o", "-"].map(String::from));
+        standard.extend((!format.is_empty()).then(|| ["--format", format].map(String::from)).into_iter().flatten());
+        let out = folder.run(&standard.iter().map(String::as_str).collect::<Vec<_>>());
+        assert_eq!(out.status.code(), Some(0), "{standard:?}: {}", text(&out.stderr));
+        // What says how it was made names the output.
+        if let Ok(text) = String::from_utf8(written.clone()) {
+            written = text.replace(&format!("-o {file}"), "-o -").into_bytes();
+        }
+        if file == "drawn.pdf" {
+            // There it is packed.
+            assert!(out.stdout.starts_with(b"%PDF-1.7") && out.stdout.ends_with(b"%%EOF"), "{standard:?}");
+        } else {
+            assert!(out.stdout == written, "{standard:?}: {} bytes, {} in the file", out.stdout.len(), written.len());
+        }
+        assert!(!text(&out.stderr).contains("wrote"), "{}", text(&out.stderr));
+    }
+    let reported = folder.run(&["report", "case-3", "-o", "-"]);
+    assert!(text(&reported.stderr).contains("5 plots"), "{}", text(&reported.stderr));
+    let merged = folder.run(&["tolerance", "--merge", "study.csv", "-o", "-"]);
+    assert_eq!(merged.stdout, fs::read(folder.path("study.csv")).expect("the file"));
+    // Measured forces make a new machine.
+    fs::write(folder.path("plate.csv"), prints(&["export", "case-1", "--what", "simulated"])).expect("written");
+    let trimmed = folder.run(&["trim", "plate.csv", "nine-link", "--identified", "-"]);
+    let checked = given(text(&trimmed.stdout), &["check", "-", "--strict"]);
+    assert_eq!(checked.status.code(), Some(0), "{}{}", text(&trimmed.stderr), text(&checked.stderr));
+    // What fails leaves standard output empty.
+    let failed = folder.run(&["report", "case-3", "-o", "-", "--set", "task.b=2.9"]);
+    assert!(failed.status.code() == Some(1) && failed.stdout.is_empty(), "{}", text(&failed.stderr));
+    for (args, want) in [
+        (&["figures", "--paper", "all", "-o", "-"][..], "one figure, as --paper fig-3 -o -"),
+        (&["figures", "-o", "-"], "one figure, as --paper fig-3 -o -"),
+        (&["figures", "case-1", "--what", "torque", "-o", "-", "--numbers", "csv"], "--numbers has no use here"),
+        (&["figures", "case-1", "--what", "torque", "-o", "-", "--format", "png"], "want svg or pdf"),
+        (&["man", "-o", "-"], "`stillbase man` without -o"),
+        (&["import", "plate.csv", "-o", "-"], "import writes two"),
+        (&["trim", "plate.csv", "nine-link", "-o", "-", "--identified", "-"], "both want standard output"),
+        (&["render", "case-3", "-o", "-", "--film", "--format", "svg"], "want gif or png or webp or mp4"),
+        (&["render", "case-3", "-o", "a.svg", "--format", "png"], "the ending of a.svg chooses"),
+        (&["report", "case-3", "-o", "-", "--json"], "both want standard output"),
+        (&["joints", "case-3", "--format", "csv"], "want -o - as well"),
+        (&["simulate", "case-3", "--format", "xlsx"], "--format xlsx: want csv or parquet"),
+    ] {
+        let out = folder.run(args);
+        assert_eq!(out.status.code(), Some(2), "{args:?}");
+        assert!(
+            text(&out.stderr).contains(want) && !text(&out.stdout).contains('<'),
+            "{args:?}: {}",
+            text(&out.stderr)
+        );
+    }
+}
+
+/// A recording goes to standard output, and comes in as a file.
+#[cfg(feature = "record")]
+#[test]
+fn a_recording_goes_to_standard_output() {
+    let folder = Folder::new("standard");
+    let out = folder.run(&["headless", "case-3", "-o", "-"]);
+    assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+    folder.file("run.rrd", &out.stdout);
+    let same = folder.run(&["replay", "run.rrd"]);
+    assert_eq!(same.status.code(), Some(0), "{}", text(&same.stderr));
+}
+
+/// Every cell of a table is the same in both formats, whatever the columns hold.
+#[test]
+fn every_cell_of_parquet_is_that_of_csv() {
+    let folder = Folder::new("cells");
+    for (csv, parquet, args) in [
+        ("parts.csv", "parts.parquet", &["export-model", "nine-link", "-o"][..]),
+        (
+            "run.csv",
+            "run.parquet",
+            &["figures", "case-1", "--what", "moment,workspace", "-o", "run.svg", "--force", "--numbers"],
+        ),
+        ("fig-4.csv", "fig-4.parquet", &["figures", "--paper", "fig-4", "--force", "--numbers"]),
+        ("table-1.csv", "table-1.parquet", &["figures", "--paper", "table-1", "--force", "--numbers"]),
+    ] {
+        for file in [csv, parquet] {
+            let last = if args.ends_with(&["--numbers"]) { file.split_once('.').expect("an ending").1 } else { file };
+            let out = folder.run(&[args, &[last]].concat());
+            assert_eq!(out.status.code(), Some(0), "{args:?}: {}", text(&out.stderr));
+        }
+        let written = fs::read_to_string(folder.path(csv)).expect("CSV");
+        let is_about = |line: &&str| line.starts_with("# ");
+        let about: Vec<&str> = written.lines().take_while(is_about).map(|line| &line[2..]).collect();
+        let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(written.as_bytes());
+        let head: Vec<String> = reader.headers().expect("a head").iter().map(str::to_owned).collect();
+        let opened = fs::File::open(folder.path(parquet)).expect("a file");
+        let columns = parquet::file::reader::SerializedFileReader::new(opened).expect("Parquet");
+        let metadata = parquet::file::reader::FileReader::metadata(&columns).file_metadata().clone();
+        let names: Vec<&str> = metadata.schema_descr().columns().iter().map(|c| c.name()).collect();
+        assert_eq!(head, names, "{csv}");
+        let note = metadata.key_value_metadata().and_then(|all| all.iter().find(|own| own.key == "stillbase.about"));
+        let note = note.and_then(|own| own.value.clone()).unwrap_or_default();
+        let numbers = if args[0] == "figures" { note.replace(" --numbers parquet", "") } else { note };
+        let about = about.join("\n").replace(" --numbers csv", "");
+        assert_eq!(numbers, about, "{csv}");
+        let rows = parquet::file::reader::FileReader::get_row_iter(&columns, None).expect("rows");
+        let (mut count, mut figures) = (0, 0);
+        for (cells, row) in reader.records().zip(rows) {
+            let (cells, row) = (cells.expect("a row"), row.expect("a row"));
+            for (cell, (name, field)) in cells.iter().zip(row.get_column_iter()) {
+                match field {
+                    parquet::record::Field::Str(text) => assert_eq!(cell, text, "{csv}: {name}"),
+                    parquet::record::Field::Double(x) if cell.is_empty() => assert!(x.is_nan(), "{csv}: {name}"),
+                    parquet::record::Field::Double(x) => {
+                        assert_eq!(cell.parse::<f64>().expect("a number").to_bits(), x.to_bits(), "{csv}: {name}");
+                        figures += 1;
+                    }
+                    other => panic!("{csv}: {name} is {other}"),
+                }
+            }
+            count += 1;
+        }
+        assert!(count > 9 && figures > 20, "{csv}: {count} rows, {figures} numbers");
+        assert_eq!(metadata.num_rows(), count, "{csv}");
+    }
+}
+
+/// A motion and a measurement give the same answer from both formats; what is wrong is told by its row.
+#[test]
+fn tables_come_in_as_parquet() {
+    let folder = Folder::new("in-parquet");
+    let answer = |args: &[&str]| {
+        let out = folder.run(args);
+        assert_eq!(out.status.code(), Some(0), "{args:?}: {}", text(&out.stderr));
+        let mut value: Value = serde_json::from_slice(&out.stdout).expect("JSON");
+        value.as_object_mut().expect("an object").remove("file");
+        value
+    };
+    for file in ["plate.csv", "plate.parquet"] {
+        let out = folder.run(&["export", "case-1", "--what", "simulated", "--rate", "250", "-o", file]);
+        assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+    }
+    let import = |file: &str| answer(&["import", file, "--json"]);
+    assert_eq!(import("plate.csv"), import("plate.parquet"));
+    let trim = |file: &str| answer(&["trim", file, "nine-link", "--json"]);
+    assert_eq!(trim("plate.csv"), trim("plate.parquet"));
+    for (args, want) in [
+        (&["import", "plate.parquet", "--machine", "four-drive"][..], "plate.parquet: no column q4 among"),
+        (&["import", "none.parquet"], "none.parquet: No such file"),
+        (&["trim", "plate.parquet"], "no machine: want one after the files"),
+        (&["import", "torn.parquet"], "torn.parquet: "),
+        (&["import", "back.parquet"], "back.parquet: row 3: column t: 0 s after 0.004 s: want times that rise"),
+    ] {
+        let bytes = fs::read(folder.path("plate.parquet")).expect("the file");
+        folder.file("torn.parquet", &bytes[..bytes.len() / 2]);
+        let mut rows =
+            RowFile::create(&folder.path("back.parquet"), true, "instant", &["t", "x", "y"].map(String::from))
+                .expect("begun");
+        for t in [0.0, 0.004, 0.0, 0.008] {
+            rows.row(&[Some(t), Some(0.5), Some(0.5)]).expect("a row");
+        }
+        rows.finish().expect("written");
+        let out = folder.run(args);
+        assert_eq!(out.status.code(), Some(2), "{args:?}");
+        assert!(text(&out.stderr).contains(want), "{args:?}: {}", text(&out.stderr));
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Lines as they are drawn, held against all samples; and samples that follow a session.
 
 use proptest::prelude::*;
-use stillbase::query::{Queries, RevisionMark, answer_sequence};
+use stillbase::query::{Queries, RevisionMark};
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Edit, Session};
 use stillbase::simulation::signals::{Signal, signals};
@@ -152,24 +152,4 @@ fn samples_follow_a_session() {
     session.seek(0.7);
     check(&session, "simulated to an instant");
     assert!(again >= 3, "made anew {again} times");
-}
-
-/// The CSV of a range holds its samples to the last bit, under the heads that `simulate` writes.
-#[test]
-fn csv_of_a_range_is_every_sample_of_it() {
-    let mut session = Session::open(Scenario::builtin("case-1").expect("built in")).expect("it starts");
-    session.seek(0.5);
-    let table = signals(&session.scenario().machine);
-    let shown = table.iter().filter(|s| s.group() == "torque" || s.path == "force/dynamic");
-    let shown: Vec<Signal> = shown.cloned().collect();
-    let text = answer_sequence::<SignalSamples>(&shown, session.frames()).csv([0.2, 0.3]);
-    let mut lines = text.lines();
-    assert_eq!(lines.next(), Some("time s,torque/1 N m,torque/2 N m,torque/3 N m,force/dynamic N"));
-    let frames = session.frames().iter().skip(200).take(101);
-    for frame in frames {
-        let row: Vec<f64> = lines.next().expect("a row").split(',').map(|x| x.parse().expect("a number")).collect();
-        let want: Vec<f64> = std::iter::once(frame.time).chain(shown.iter().map(|s| s.value(frame))).collect();
-        assert_eq!(row, want);
-    }
-    assert!(lines.next().is_none());
 }

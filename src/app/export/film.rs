@@ -55,19 +55,20 @@ impl FilmOrder {
     }
 }
 
-/// Draws a film of the session in `app_state` and writes it, in the format of the file's ending. `goes_on` gets the
-/// fraction done and says whether to continue.
+/// Draws a film of the session in `app_state` and writes it in a format; the file `-` is standard output.
+/// `goes_on` gets the fraction done and says whether to continue.
 ///
 /// # Errors
 /// If the film cannot be drawn or written, or `goes_on` stops it; no file is left then.
 pub fn write_film(
     app_state: &mut AppState,
     order: &FilmOrder,
-    file: &Path,
+    (file, form): (&Path, FilmForm),
     force: bool,
     goes_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<FilmDone, ExportError> {
-    let (form, count) = (check_film(file, &order.picture, force)?, order.count()?);
+    check_film((file, form), &order.picture, force)?;
+    let count = order.count()?;
     let mut canvas = order.picture.canvas()?;
     let mut each = |push: &mut dyn FnMut(Picture) -> Result<(), ExportError>| {
         for i in 0..count {
@@ -108,12 +109,11 @@ pub fn write_film(
     Ok(FilmDone { pictures: count, times: order.times })
 }
 
-/// Checks that a film of such pictures can be written: its ending, its place, and its encoder.
+/// Checks that a film of such pictures can be written: its place, and its encoder.
 ///
 /// # Errors
 /// If one of these does not hold.
-pub fn check_film(file: &Path, picture: &PictureOrder, force: bool) -> Result<FilmForm, ExportError> {
-    let form = FilmForm::of(file)?;
+pub fn check_film((file, form): (&Path, FilmForm), picture: &PictureOrder, force: bool) -> Result<(), ExportError> {
     if picture.transparent && !form.can_be_transparent() {
         return Err(ExportError::NoTransparency(file.into()));
     }
@@ -122,5 +122,5 @@ pub fn check_film(file: &Path, picture: &PictureOrder, force: bool) -> Result<Fi
         FilmForm::Mp4 if !has_encoder() => return Err(VideoError::NoEncoder.into()),
         _ => stillbase_files::check_new(file, force)?,
     }
-    Ok(form)
+    Ok(())
 }

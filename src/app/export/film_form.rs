@@ -50,13 +50,17 @@ impl FilmForm {
         self != Self::Mp4
     }
 
+    /// Returns the format of an extension, in upper or lower case; `None` if there is none.
+    pub fn of_ending(ending: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|form| form.ending().eq_ignore_ascii_case(ending))
+    }
+
     /// Returns the format of a file by its extension; a name without one is a folder of pictures.
     ///
     /// # Errors
     /// If no film has this extension.
     pub fn of(file: &Path) -> Result<Self, ExportError> {
         let own = file.extension().unwrap_or_default();
-        let known = Self::ALL.into_iter().find(|form| own.eq_ignore_ascii_case(form.ending()));
-        known.ok_or_else(|| ExportError::FilmEnding(file.into()))
+        own.to_str().and_then(Self::of_ending).ok_or_else(|| ExportError::FilmEnding(file.into()))
     }
 }

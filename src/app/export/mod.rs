@@ -21,7 +21,8 @@ pub use picture::write_picture;
 pub use picture_form::PictureForm;
 pub use report::{ReportDone, write_report};
 pub use size::{DisplaySize, PictureSize};
-pub use values::{RowForm, ValuesOrder, write_values};
+pub use stillbase_files::row_file::RowForm;
+pub use values::{ValuesOrder, values_text, write_values};
 pub use values_choice::{SignalChoice, TimeChoice, ValuesChoice};
 
 use super::Shot;

@@ -6,20 +6,19 @@ use super::{ExportError, PictureForm};
 use crate::AppState;
 use crate::shot::PictureOrder;
 
-/// Draws the instant that `app_state` shows and writes it in the format of the file's ending, unless `goes_on` stops it
-/// before. Returns what to say of letters that the font lacks.
+/// Draws the instant that `app_state` shows and writes it in a format, unless `goes_on` stops it before; the file
+/// `-` is standard output. Returns what to say of letters that the font lacks.
 ///
 /// # Errors
 /// If the picture cannot be drawn or written, or is stopped.
 pub fn write_picture(
     app_state: &mut AppState,
     order: &PictureOrder,
-    file: &Path,
+    (file, form): (&Path, PictureForm),
     force: bool,
     goes_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Option<String>, ExportError> {
     stillbase_files::check_new(file, force)?;
-    let form = PictureForm::of(file)?;
     let failed = |source| ExportError::Encoding { file: file.into(), source };
     let mut note = None;
     let bytes = if form.has_outlines() {

@@ -79,13 +79,17 @@ impl PictureForm {
         self.of_pixels(&picture).map_err(|why| format!("no picture: {why}"))
     }
 
+    /// Returns the format of an extension, in upper or lower case; `None` if there is none.
+    pub fn of_ending(ending: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|form| form.ending().eq_ignore_ascii_case(ending))
+    }
+
     /// Returns the format of a file by its extension.
     ///
     /// # Errors
     /// If no picture has this extension.
     pub fn of(file: &Path) -> Result<Self, ExportError> {
         let own = file.extension().unwrap_or_default();
-        let known = Self::ALL.into_iter().find(|form| own.eq_ignore_ascii_case(form.ending()));
-        known.ok_or_else(|| ExportError::PictureEnding(file.into()))
+        own.to_str().and_then(Self::of_ending).ok_or_else(|| ExportError::PictureEnding(file.into()))
     }
 }

@@ -8,36 +8,6 @@ use stillbase_query::Sequence;
 use stillbase_simulation::frame::Frame;
 use stillbase_simulation::signals::{Signal, row_heads};
 
-/// Format of rows of numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RowForm {
-    /// Text, for a spreadsheet.
-    Csv,
-    /// Columns of numbers, for a program.
-    Parquet,
-}
-
-impl RowForm {
-    /// All of them.
-    pub const ALL: [Self; 2] = [Self::Csv, Self::Parquet];
-
-    /// Returns the file name extension.
-    pub fn ending(self) -> &'static str {
-        match self {
-            Self::Csv => "csv",
-            Self::Parquet => "parquet",
-        }
-    }
-
-    /// Returns the name.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Csv => "CSV",
-            Self::Parquet => "Parquet",
-        }
-    }
-}
-
 /// Values to be written.
 #[derive(Clone, Debug)]
 pub struct ValuesOrder {
@@ -65,10 +35,31 @@ pub fn write_values(
     force: bool,
     goes_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<usize, ExportError> {
+    let mut out = RowFile::create(file, force, "instant", &row_heads(&order.signals))?;
+    let rows = write_rows(&mut out, frames, order, goes_on)?;
+    out.finish()?;
+    Ok(rows)
+}
+
+/// Returns the same rows as CSV.
+///
+/// # Errors
+/// If they cannot be written.
+pub fn values_text(frames: &Sequence<Frame>, order: &ValuesOrder) -> Result<String, ExportError> {
+    let mut out = RowFile::in_memory(&row_heads(&order.signals))?;
+    write_rows(&mut out, frames, order, &mut |_| true)?;
+    Ok(out.into_text()?)
+}
+
+fn write_rows(
+    out: &mut RowFile,
+    frames: &Sequence<Frame>,
+    order: &ValuesOrder,
+    goes_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<usize, ExportError> {
     let [from, to] = order.times;
     let start = frames.partition_point(|frame| frame.time < from - TIME_TOLERANCE_S);
     let end = frames.partition_point(|frame| frame.time <= to + TIME_TOLERANCE_S).max(start);
-    let mut out = RowFile::create(file, force, "instant", &row_heads(&order.signals))?;
     let mut row = Vec::with_capacity(order.signals.len() + 1);
     for i in start..end {
         let frame = &frames[i];
@@ -84,6 +75,5 @@ pub fn write_values(
     if !goes_on(1.0) {
         return Err(ExportError::Stopped);
     }
-    out.finish()?;
     Ok(end - start)
 }

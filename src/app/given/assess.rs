@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use stillbase_files::table::{SampleTable, TableData as Read, motions, samples};
+use stillbase_files::table::{SampleTable, Table, TableData as Read, motions, samples};
 use stillbase_mechanics::machine::Machine;
 use stillbase_planning::curves::Coordinates;
 use stillbase_query::{Portion, ProgressCallback, Query, Shared};
@@ -12,15 +12,6 @@ use stillbase_session::scenario::Scenario;
 use stillbase_study::advice::Advice;
 use stillbase_study::import::{GivenMotion, ImportQuery, ImportedMotion, MotionImportError, PreservedPath, Request};
 use stillbase_study::trim::{MeasuredMotion, MeasurementSet, TrimMethod, TrimOutcome, TrimQuery, TrimRequest};
-
-/// The text of a table, and its name.
-#[derive(Debug, PartialEq)]
-pub struct TableText {
-    /// Its file name.
-    pub name: String,
-    /// Its text.
-    pub text: String,
-}
 
 /// Type of content of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,7 +49,7 @@ pub struct OpenedTable {
     /// Its file.
     pub file: PathBuf,
     /// Its content.
-    pub table: Shared<TableText>,
+    pub table: Shared<Table>,
     /// Its options.
     pub options: TableOptions,
     /// The measured machine: the machine on display when the table, or later a session, was opened.
@@ -105,7 +96,7 @@ impl OpenedTable {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableRequest {
     /// The table.
-    pub table: Shared<TableText>,
+    pub table: Shared<Table>,
     /// A scenario with the session's machine, plant, base, control, step and design.
     pub scenario: Shared<Scenario>,
     /// The measured machine.
@@ -183,13 +174,13 @@ impl Query for AssessmentQuery {
 impl TableRequest {
     fn read(&self) -> Result<Work, Advice> {
         let Self { table, scenario, options, measured } = self;
-        let (TableText { name, text }, machine) = (&*table.0, &scenario.0.machine);
-        let of = |coordinates| samples(text, name, machine, Some(coordinates), options.gaps).map(Read::Motion);
+        let (table, machine) = (&*table.0, &scenario.0.machine);
+        let of = |coordinates| samples(table, machine, Some(coordinates), options.gaps).map(Read::Motion);
         let read = match options.content {
-            None => Read::of(text, name, machine, options.gaps),
+            None => Read::of(table, machine, options.gaps),
             Some(TableContent::Drives) => of(Coordinates::Drives),
             Some(TableContent::Tip) => of(Coordinates::EndEffector),
-            Some(TableContent::Measurement) => motions(text, name, &measured.0).map(Read::Measurement),
+            Some(TableContent::Measurement) => motions(table, &measured.0).map(Read::Measurement),
         };
         match read? {
             Read::Motion(table) => self.import(table),

@@ -5,14 +5,13 @@ use egui::{Align2, Button, Popup, Rect, Response, ScrollArea, Sense, Ui, WidgetI
 
 use super::prepared::extent;
 use super::shown::DisplayContext;
-use super::written::columns;
+use super::written::values;
 use super::{place, search};
+use crate::export::values_text;
 use crate::theme::{bold, colour};
 use crate::{Command, FileDialog, FilePurpose, PlotFile, ViewChange};
 use stillbase_picture::charts::choice::{Plot, PlotChange};
-use stillbase_query::answer_sequence;
 use stillbase_settings::text::capitalised;
-use stillbase_study::samples::SignalSamples;
 
 /// Height of the margins of the menu, points.
 const MENU_MARGINS_PT: f32 = 16.0;
@@ -69,7 +68,6 @@ fn entries(ui: &mut Ui, shown: &DisplayContext<'_>, plot: &Plot<'_>, rect: Rect,
 fn all_entries(ui: &mut Ui, shown: &DisplayContext<'_>, plot: &Plot<'_>, rect: Rect, commands: &mut Vec<Command>) {
     let chosen = &shown.view_state.charts;
     let extent = extent(shown.session);
-    let range = extent.shown(chosen.range);
     ui.set_min_width(210.0);
     // First in a window of its own, which may be too low for the whole menu.
     if plot.window.is_some() {
@@ -80,8 +78,9 @@ fn all_entries(ui: &mut Ui, shown: &DisplayContext<'_>, plot: &Plot<'_>, rect: R
         ui.separator();
     }
     if ui.button("Copy the values shown").clicked() {
-        let samples: SignalSamples = answer_sequence(&columns(plot), shown.session.frames());
-        ui.ctx().copy_text(samples.csv(range));
+        let text = values_text(shown.session.frames(), &values(shown.session, shown.view_state, plot));
+        // Nothing fails in memory.
+        ui.ctx().copy_text(text.unwrap_or_default());
         ui.close();
     }
     for file in PlotFile::ALL {

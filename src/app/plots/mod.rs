@@ -33,7 +33,7 @@ pub use search::is_looking;
 pub use shown::DisplayContext;
 pub use small::{base_plot, marks, small_axes, spaced};
 pub use window::{MIN_PLOT_WINDOW_PT, PlotWindow, alone};
-pub use written::{figures, written};
+pub use written::{figure, figures, no_plot, values};
 
 /// Default width of the panel: a fraction of the window width, within bounds, points.
 const WIDTH_FRACTION: f32 = 0.233;

@@ -5,8 +5,8 @@ use std::path::Path;
 use super::AppState;
 use super::writing::{AfterWriting, absolute};
 use crate::export::{
-    self, Export, FilmChoice, FilmOrder, Look, TimeChoice, ValuesChoice, write_film, write_picture, write_report,
-    write_values,
+    Export, FilmChoice, FilmForm, FilmOrder, Look, PictureForm, TimeChoice, ValuesChoice, check_film, write_film,
+    write_picture, write_report, write_values,
 };
 use crate::shot::PictureOrder;
 use crate::{Activity, SessionCommand, plots};
@@ -28,7 +28,9 @@ impl AppState {
         if let Export::Film(choice) = wanted {
             // The path is checked first, so that a wrong one is refused before the film is drawn.
             let replaces = self.saving.replaces.as_deref() == Some(path);
-            export::check_film(path, &self.order(&choice.look), replaces).map_err(|e| e.to_string())?;
+            let checked =
+                FilmForm::of(path).and_then(|form| check_film((path, form), &self.order(&choice.look), replaces));
+            checked.map_err(|e| e.to_string())?;
         }
         self.write(path, Activity::Exporting, BUSY, AfterWriting::Nothing, |app_state| {
             Ok(match wanted {
@@ -50,7 +52,9 @@ impl AppState {
         let (copy, order) = (self.copy(), self.order(look));
         Box::new(move |ticket, path, force| {
             let goes_on = &mut |done| ticket.goes_on(done);
-            let note = write_picture(&mut copy.open(), &order, path, force, goes_on).map_err(|e| e.to_string())?;
+            let form = PictureForm::of(path).map_err(|e| e.to_string())?;
+            let note = write_picture(&mut copy.open(), &order, (path, form), force, goes_on);
+            let note = note.map_err(|e| e.to_string())?;
             let [width, height] = order.size_px;
             let note = note.map_or_else(String::new, |note| format!("; {note}"));
             Ok(format!("saved {}, {width} × {height} pixels{note}", absolute(path)))
@@ -68,7 +72,8 @@ impl AppState {
             let goes_on = &mut |done| ticket.goes_on(done);
             // The pictures take most of the time.
             copy.run_to_end(&mut |_| goes_on(0.0));
-            let done = write_film(&mut copy.open(), &order, path, force, goes_on).map_err(|e| e.to_string())?;
+            let form = FilmForm::of(path).map_err(|e| e.to_string())?;
+            let done = write_film(&mut copy.open(), &order, (path, form), force, goes_on).map_err(|e| e.to_string())?;
             Ok(format!("saved {}, {}", absolute(path), counted(done.pictures, "picture")))
         }))
     }

@@ -6,8 +6,9 @@ use std::sync::Arc;
 use super::AppState;
 use super::background::fault;
 use crate::change::SessionChange;
-use crate::given::assess::{AssessmentQuery, OpenedTable, TableAction, TableAssessment, TableOptions, TableText};
+use crate::given::assess::{AssessmentQuery, OpenedTable, TableAction, TableAssessment, TableOptions};
 use crate::{Activity, BottomPanel};
+use stillbase_files::table::Table;
 use stillbase_query::{QueryResult, QueryStatus, Shared};
 use stillbase_session::Edit;
 use stillbase_study::advice::Advice;
@@ -15,7 +16,7 @@ use stillbase_study::trim::adopting_edit;
 
 impl AppState {
     /// Opens a table and shows its assessment for the session on display.
-    pub(super) fn take_up(&mut self, file: PathBuf, table: TableText) {
+    pub(super) fn take_up(&mut self, file: PathBuf, table: Table) {
         self.saving.uses(&file);
         let measured = Shared(Arc::new(self.session.scenario().machine.clone()));
         self.opened_table =

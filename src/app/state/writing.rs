@@ -4,9 +4,12 @@ use std::path::{Path, PathBuf};
 
 use super::AppState;
 use super::background::fault;
+use crate::export::{PictureForm, write_values};
 use crate::file_dialog::MACHINE_EXTENSION;
 use crate::{Activity, FileReport, PlotFile, ResumePoint, plots, studio};
-use stillbase_exchange::form::Form;
+use stillbase_exchange::form::{Form, FormContent};
+use stillbase_files::is_standard;
+use stillbase_files::row_file::{RowForm, table_bytes};
 use stillbase_query::Ticket;
 use stillbase_session::scenario::{MachineFile, Scenario, UnfinishedDrawing};
 
@@ -49,6 +52,8 @@ impl AppState {
     where
         W: FnOnce(&Ticket, &Path, bool) -> Result<String, String> + Send + 'static,
     {
+        // In the window `-` is a file as any other: nobody reads its standard output.
+        let path = &if is_standard(path) { Path::new(".").join(path) } else { path.to_owned() };
         let replaces = self.may_replace(path)?;
         if self.background.runs(activity) {
             return Err(busy.into());
@@ -108,13 +113,35 @@ impl AppState {
         })
     }
 
-    /// Writes a plot to a file.
+    /// Writes a plot to a file, of which the ending decides between values or between pictures.
     pub(super) fn write_plot(&mut self, path: &Path, plot: &str, file: PlotFile) -> Result<(), String> {
+        if matches!(file, PlotFile::Values(_)) {
+            RowForm::of(path).map_err(|why| why.to_string())?;
+            return self.write_plot_values(path, plot);
+        }
+        let form = PictureForm::of(path).map_err(|why| why.to_string())?;
         self.write_content(path, FILE_BEING_SAVED, AfterWriting::Nothing, |app_state| {
             let Self { session, view_state, comparison, .. } = app_state;
             let (queries, signals, comparison) = (app_state.queries(), &app_state.signals(), comparison.as_ref());
             let what = plots::DisplayContext { session, queries, signals, comparison, view_state };
-            plots::written(&what, plot, file)
+            let figure = plots::figure(&what, plot)?;
+            Ok(Box::new(move || form.of_figure(figure)))
+        })
+    }
+
+    /// Writes the values of a plot within the time range on display.
+    fn write_plot_values(&mut self, path: &Path, plot: &str) -> Result<(), String> {
+        self.write(path, Activity::Saving, FILE_BEING_SAVED, AfterWriting::Nothing, |app_state| {
+            let Self { session, view_state, .. } = app_state;
+            let all = app_state.signals();
+            let plots = view_state.plots(session.scenario(), &all);
+            let plot = plots.iter().find(|own| own.name == plot).ok_or_else(|| plots::no_plot(plot))?;
+            let (order, frames) = (plots::values(session, view_state, plot), session.frames().clone());
+            Ok(move |ticket: &Ticket, path: &Path, force: bool| {
+                let goes_on = &mut |done| ticket.goes_on(done);
+                write_values(&frames, &order, path, force, goes_on).map_err(|e| e.to_string())?;
+                Ok(format!("saved {}", absolute(path)))
+            })
         })
     }
 
@@ -138,8 +165,12 @@ impl AppState {
             let scenario = app_state.session.scenario();
             let pose = &app_state.session.frame().q.0[..scenario.machine.drives()];
             let cut = studio::cut(&app_state.session);
-            let text = form.written(&scenario.machine, pose, &cut).map_err(|e| e.to_string())?;
-            Ok(Box::new(move || Ok(text.into_bytes())))
+            let content = form.written(&scenario.machine, pose, &cut).map_err(|e| e.to_string())?;
+            let (path, rows) = (path.to_owned(), RowForm::of_ending(form.ending));
+            Ok(Box::new(move || match (content, rows) {
+                (FormContent::Table(table), Some(rows)) => table_bytes(&table, rows, &path).map_err(|e| e.to_string()),
+                (content, _) => Ok(content.text().into_bytes()),
+            }))
         })
     }
 

@@ -11,6 +11,7 @@ use crate::file_dialog::MACHINE_EXTENSION;
 use crate::jobs::Threads;
 use crate::{AppState, FileDialog, FilePurpose, SessionCommand, ViewChange};
 use stillbase_exchange::form;
+use stillbase_files::table::TABLE_ENDINGS;
 use stillbase_query::{Job, Poll};
 
 /// Shows file dialogs of the system in the background.
@@ -82,10 +83,10 @@ impl Chooser {
 /// Returns the file extensions for a purpose, the usual one first.
 fn endings(purpose: &FilePurpose) -> Vec<&'static str> {
     match purpose {
-        FilePurpose::Open => vec!["toml", "urdf", "xml", "csv", "rrd"],
+        FilePurpose::Open => [&["toml", "urdf", "xml"], TABLE_ENDINGS, &["rrd"]].concat(),
         FilePurpose::Save => vec!["toml"],
         FilePurpose::Record => vec!["rrd"],
-        FilePurpose::Plot(_, file) => vec![file.ending()],
+        FilePurpose::Plot(_, file) => file.endings(),
         FilePurpose::Export(wanted) => wanted.naming().1,
         FilePurpose::Machine => {
             let mut endings = [&[MACHINE_EXTENSION], form::endings().as_slice()].concat();

@@ -12,7 +12,7 @@ use stillbase_picture::print::Page;
 use stillbase_picture::scene::palette::Theme;
 use stillbase_settings::number::counted;
 
-use super::{FiguresArguments, write};
+use super::{FiguresArguments, print, write};
 use crate::exit::print_message;
 use crate::failure::Failure;
 use option::check_options;
@@ -52,22 +52,32 @@ impl PaperFigure {
     }
 
     /// Returns the files of the figure.
-    fn files(self, folder: &Path) -> [PathBuf; 3] {
-        ["svg", "pdf", "csv"].map(|ending| folder.join(format!("{}.{ending}", self.word())))
+    fn files(self, folder: &Path, numbers: &str) -> [PathBuf; 3] {
+        ["svg", "pdf", numbers].map(|ending| folder.join(format!("{}.{ending}", self.word())))
     }
 }
 
-/// Draws figures of the paper into a folder.
-pub fn draw(wanted: &FiguresArguments, figure: PaperFigure, folder: &Path) -> Result<(), Failure> {
+/// Draws figures of the paper into a folder, or one to standard output in the format of the ending `standard`.
+pub fn draw(
+    wanted: &FiguresArguments,
+    figure: PaperFigure,
+    folder: &Path,
+    standard: Option<&str>,
+) -> Result<(), Failure> {
     if !(wanted.point.is_empty() || wanted.point.len() == 2) {
         let count = counted(wanted.point.len(), "point");
         return Err(Failure::wrong_input(format!("{count}: want A and B, each with --point X,Y")));
     }
     let all: &[PaperFigure] = if figure == PaperFigure::All { &PaperFigure::EACH } else { &[figure] };
     check_options(wanted, all)?;
+    if let Some(ending) = standard {
+        let drawn = Subject::of(wanted, Theme::Light)?.figure(figure).map_err(|why| why.with_context(figure.word()))?;
+        return print(&drawn, ending);
+    }
+    let files = |figure: &PaperFigure| figure.files(folder, wanted.numbers_ending());
     // All files are checked first, so that none is written if one cannot be.
     if folder.is_dir() {
-        let mut files = all.iter().flat_map(|figure| figure.files(folder));
+        let mut files = all.iter().flat_map(files);
         files.try_for_each(|file| check_new(&file, wanted.force))?;
     } else {
         check_new_folder(folder, false)?;
@@ -80,7 +90,7 @@ pub fn draw(wanted: &FiguresArguments, figure: PaperFigure, folder: &Path) -> Re
         match subject.figure(*figure) {
             Ok(drawn) => {
                 make_folder(folder)?;
-                write(&drawn, &figure.files(folder), wanted.force)?;
+                write(&drawn, &files(figure), wanted.force)?;
             }
             Err(why) => refused.push((word, why)),
         }

@@ -17,7 +17,7 @@ use stillbase_settings::text::shell_word;
 use stillbase_simulation::signals::{group_of, signals};
 use stillbase_study::workspace::WorkspaceReport;
 
-use super::{FiguresArguments, write};
+use super::{FIGURE_ENDINGS, FiguresArguments, print, write};
 use crate::failure::Failure;
 use crate::input::{no_use, pose_space, scenario};
 use crate::output::check_output;
@@ -62,11 +62,13 @@ impl RunFigure {
 }
 
 /// Draws parts of a run into one file, with the numbers in another beside it.
-pub fn draw(wanted: &FiguresArguments, file: &Path) -> Result<(), Failure> {
-    check_output(file, wanted.force, &["svg", "pdf"])?;
+pub fn draw(wanted: &FiguresArguments, file: &Path, standard: Option<&str>) -> Result<(), Failure> {
+    if standard.is_none() {
+        check_output(file, wanted.force, &FIGURE_ENDINGS)?;
+    }
     let mut files = vec![file.to_owned()];
     let has_numbers = wanted.what.iter().any(|part| *part != RunFigure::Linkage);
-    files.extend(has_numbers.then(|| file.with_extension("csv")));
+    files.extend((has_numbers && standard.is_none()).then(|| file.with_extension(wanted.numbers_ending())));
     files.iter().try_for_each(|file| check_new(file, wanted.force))?;
     if wanted.at.is_some() && !wanted.what.contains(&RunFigure::Linkage) {
         return Err(no_use("--at", "--what linkage: the other parts show the whole run"));
@@ -98,7 +100,10 @@ pub fn draw(wanted: &FiguresArguments, file: &Path) -> Result<(), Failure> {
         title => format!("{}: {title}", scenario.name),
     };
     let figure = PrintedFigure::of(&title, &made, width, parts);
-    write(&figure, &files, wanted.force)
+    match standard {
+        Some(ending) => print(&figure, ending),
+        None => write(&figure, &files, wanted.force),
+    }
 }
 
 /// Returns the command that writes the file.
@@ -107,11 +112,7 @@ fn made(wanted: &FiguresArguments, name: &str, file: &Path) -> String {
     let at = wanted.at.map_or_else(String::new, |at| format!(" --at {at}"));
     let file = file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let (name, file, what) = (shell_word(name), shell_word(&file), what.join(","));
-    format!(
-        "stillbase figures {name} --what {what}{at} -o {file}{}{}",
-        wanted.typed_width(),
-        wanted.settings.as_typed()
-    )
+    format!("stillbase figures {name} --what {what}{at} -o {file}{}{}", wanted.typed_form(), wanted.settings.as_typed())
 }
 
 /// Returns a part with curves.

@@ -4,10 +4,11 @@ mod parallel;
 mod report;
 
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use stillbase_files::row_file::{ROW_ENDINGS, RowForm};
 use stillbase_files::shards::{ShardError, ShardHeader, StudyId, Writer, merge};
 use stillbase_session::scenario::{MAX_SAMPLES, Scenario, Spread, Tolerance as Section};
 use stillbase_session::{Run, with_start_edits};
@@ -18,8 +19,9 @@ use stillbase_study::tolerance::{
 pub use self::report::{MergedParts, ToleranceAnswer};
 use crate::exit::{is_quiet, print_message};
 use crate::failure::Failure;
+use crate::file_form::FileForm;
 use crate::input::{DEFAULT_SCENARIO, Settings, overlay_for_study};
-use crate::output::{Format, check_output};
+use crate::output::{Format, say_written};
 use crate::strict::Strict;
 use stillbase_settings::number::counted;
 
@@ -85,8 +87,8 @@ pub struct ToleranceArguments {
         conflicts_with_all = ["scenario", "samples", "seed", "spreads", "instants", "shard", "simulate", "pairs"]
     )]
     merge: Vec<PathBuf>,
-    /// Write every machine to this file
-    #[arg(short, long, value_name = "FILE.parquet|FILE.csv")]
+    /// Write every machine to this file, .csv or .parquet; `-` is standard output
+    #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Replace the file if it exists
     #[arg(long)]
@@ -95,6 +97,8 @@ pub struct ToleranceArguments {
     settings: Settings,
     #[command(flatten)]
     strict: Strict,
+    #[command(flatten)]
+    form: FileForm,
     #[command(flatten)]
     format: Format,
 }
@@ -122,6 +126,10 @@ fn shard(text: &str) -> Result<(u64, u64), String> {
     ok.ok_or_else(|| "want i/n with i from 1 to n, such as 2/8".into())
 }
 
+fn row_form(ending: &str) -> RowForm {
+    RowForm::of_ending(ending).unwrap_or(RowForm::Csv)
+}
+
 impl From<ToleranceError> for Failure {
     fn from(e: ToleranceError) -> Self {
         Self::wrong_input(e)
@@ -130,7 +138,10 @@ impl From<ToleranceError> for Failure {
 
 impl From<ShardError> for Failure {
     fn from(e: ShardError) -> Self {
-        Self::wrong_input(e)
+        match e {
+            ShardError::Write(e) => e.into(),
+            e => Self::wrong_input(e),
+        }
     }
 }
 
@@ -155,8 +166,8 @@ impl ToleranceArguments {
 
     fn merge_parts(&self) -> Result<(), Failure> {
         let Some(whole) = &self.output else { return Err(Failure::wrong_input("--merge: want -o FILE")) };
-        check_output(whole, self.force, &["parquet", "csv"])?;
-        let (study, outcomes) = merge(&self.merge, whole, self.force)?;
+        let ending = self.form.check(&self.format, Some(whole), self.force, &ROW_ENDINGS)?;
+        let (study, outcomes) = merge(&self.merge, (whole, row_form(ending)), self.force)?;
         let Some(distributions) = Distributions::of(&outcomes) else {
             return Err(Failure::no_answer("the parts hold no machine"));
         };
@@ -167,7 +178,7 @@ impl ToleranceArguments {
             distributions,
             yields: Yields::of(&outcomes, self.limit_moment, self.limit_force),
         };
-        print_message(format!("wrote {}", answer.file));
+        say_written(whole);
         self.format.print(&answer, MergedParts::text)?;
         self.strict.require(past_limits(&answer.yields))
     }
@@ -220,16 +231,15 @@ impl ToleranceArguments {
             let why = format!("--shard {i}/{n} of {samples} samples holds no machine: want fewer shards");
             return Err(Failure::wrong_input(why));
         }
-        if let Some(file) = &self.output {
-            check_output(file, self.force, &["parquet", "csv"])?;
-        }
+        let ending = self.form.check_wanted(&self.format, self.output.as_deref(), self.force, &ROW_ENDINGS)?;
+        let to = self.output.as_deref().zip(ending.map(row_form));
         let run = Run::new(&scenario).map_err(|e| Failure::refused(&scenario, e))?;
         let plant = scenario.plant_machine()?;
         let seed = section.seed.unwrap_or(1);
         let motion = &run.plan().motion;
         let ensemble = Ensemble::new(&plant, motion, self.instants as usize, &section.spreads, seed)?;
         let study = StudyId::of(&scenario, &section, [samples, seed], self.instants, self.simulate);
-        let (outcomes, tracking) = self.evaluate(&ensemble, &run, &study, range.clone())?;
+        let (outcomes, tracking) = self.evaluate(&ensemble, &run, (&study, to), range.clone())?;
         let part = EnsemblePart {
             run: &run,
             ensemble: &ensemble,
@@ -242,9 +252,7 @@ impl ToleranceArguments {
         let report = PartReport::of(&part, &section).map_err(|e| Failure::refused(&scenario, e))?;
         let report = report.ok_or_else(|| Failure::no_answer("no machine was drawn"))?;
         let answer = ToleranceAnswer { report, file: self.output.as_ref().map(|file| file.display().to_string()) };
-        if let Some(file) = &answer.file {
-            print_message(format!("wrote {file}"));
-        }
+        self.output.iter().for_each(|file| say_written(file));
         self.format.print(&answer, |answer| report::text(&answer.report))?;
         self.strict.require(past_limits(&answer.report.yields))
     }
@@ -255,14 +263,14 @@ impl ToleranceArguments {
         &self,
         ensemble: &Ensemble,
         run: &Run,
-        study: &StudyId,
+        (study, to): (&StudyId, Option<(&Path, RowForm)>),
         range: Range<u64>,
     ) -> Result<(Vec<SampleOutcome>, Vec<SampleOutcome>), Failure> {
         let parameters = ensemble.parameters();
-        let mut writer = match &self.output {
-            Some(file) => {
+        let mut writer = match to {
+            Some(to) => {
                 let names = parameters.iter().map(|p| format!("{} {}", p.key, p.unit));
-                Some(Writer::create(file, self.force, &ShardHeader::new(*study, names))?)
+                Some(Writer::create(to, self.force, &ShardHeader::new(*study, names))?)
             }
             None => None,
         };

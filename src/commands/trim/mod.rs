@@ -5,8 +5,8 @@ mod answer;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use stillbase_files::table::motions;
-use stillbase_files::{finish_all, write_temporary};
+use stillbase_files::table::{is_table, motions};
+use stillbase_files::{finish_all, is_standard, write_temporary};
 use stillbase_mechanics::balance::RebalanceRequest;
 use stillbase_mechanics::counterweights::{CounterweightSpec, CounterweightStock, Objective};
 use stillbase_mechanics::machine::Machine;
@@ -22,15 +22,15 @@ use stillbase_study::trim::{
 use super::exit::print_message;
 use super::failure::Failure;
 use super::holds::{apply_bounds, bound};
-use super::input::{self, Settings, read};
+use super::input::{self, Settings};
 use super::new_machine::named_after;
-use super::output::{Format, check_output};
+use super::output::{Format, say_written};
 use super::sites::{range, sites};
 use super::strict::Strict;
 
 /// Identify the unbalance of a built machine from measured base forces, and find the smallest change that corrects it
 ///
-/// Each file is CSV with a header: t, the absolute drive angles q1, q2 …, and fx, fy, nz. The last three are force on
+/// Each file is CSV or Parquet with the columns t, the absolute drive angles q1, q2 …, and fx, fy, nz. The last three are force on
 /// the base and moment about B, as a sensor under the machine reads them. Units are s, rad, N, N m, or given as
 /// "q1 (deg)", "nz (mN m)". Rates qd1 … and accelerations qdd1 … are used if both exist. A column `motion`, a jump in
 /// time or a restart of time separates motions, which each have their own sensor offsets. Files that `simulate` and
@@ -51,8 +51,8 @@ Examples:
   stillbase trim measured.csv nine-link --range 1=-0.3,0.1 --range 2=-0.2,0.1 --range 3=-0.2,0.1 \\
     --range 8=-0.3,0.3 --range 9=-0.3,0.3 --json")]
 pub struct TrimArguments {
-    /// CSV files of measured motions, and last a built-in machine (`stillbase machines` lists them) or a TOML file
-    #[arg(value_name = "MEASURED.csv... MACHINE", required = true, num_args = 1..)]
+    /// Tables of measured motions, .csv or .parquet, and last a built-in machine (`stillbase machines` lists them) or a TOML file
+    #[arg(value_name = "MEASURED... MACHINE", required = true, num_args = 1..)]
     words: Vec<String>,
     #[command(flatten)]
     settings: Settings,
@@ -99,12 +99,16 @@ pub struct TrimArguments {
 impl TrimArguments {
     /// Reads the measurements, prints the identified components, and writes the machines.
     pub fn run(&self) -> Result<(), Failure> {
-        for file in self.output.iter().chain(&self.identified) {
-            check_output(file, self.force, &["toml"])?;
+        if self.output.as_deref().is_some_and(is_standard) && self.identified.as_deref().is_some_and(is_standard) {
+            return Err(Failure::wrong_input(
+                "-o and --identified both want standard output: want a file for one of them",
+            ));
         }
-        let is_table = |word: &String| Path::new(word).extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
+        for file in self.output.iter().chain(&self.identified) {
+            self.format.check_output(file, self.force, &["toml"])?;
+        }
         let (name, files) = match self.words.as_slice() {
-            all if all.last().is_some_and(is_table) => {
+            all if all.last().is_some_and(|word| is_table(Path::new(word))) => {
                 return Err(Failure::wrong_input(
                     "no machine: want one after the files, as in trim measured.csv nine-link",
                 ));
@@ -124,7 +128,7 @@ impl TrimArguments {
         let method = self.method(&machine)?;
         let mut recording = MeasurementSet::default();
         for file in files {
-            recording.motions.extend(motions(&read(Path::new(file), &["csv"])?, file, &machine)?);
+            recording.motions.extend(motions(&input::table(Path::new(file))?, &machine)?);
         }
         let request = TrimRequest {
             machine: Shared(machine.clone().into()),
@@ -175,7 +179,7 @@ impl TrimArguments {
             [one] => finish_all([written(one)?])?,
             _ => {}
         }
-        files.iter().for_each(|(file, _)| print_message(format!("wrote {}", file.display())));
+        files.iter().for_each(|(file, _)| say_written(file));
         judged
     }
 

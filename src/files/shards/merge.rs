@@ -5,13 +5,18 @@ use std::path::{Path, PathBuf};
 
 use super::error::ShardError;
 use super::rows::{ShardHeader, StudyId, StudyPart, Writer, outcome_of};
+use crate::row_file::RowForm;
 use stillbase_study::tolerance::SampleOutcome;
 
-/// Merges shards, given in any order, into one file, and returns the study and the outcomes of its machines.
+/// Merges shards, given in any order, into one file of a format, or standard output, and returns the study and the outcomes of its machines.
 ///
 /// # Errors
 /// If a shard is unreadable or of another study, samples are duplicate or missing, or `whole` cannot be written.
-pub fn merge(parts: &[PathBuf], whole: &Path, force: bool) -> Result<(StudyId, Vec<SampleOutcome>), ShardError> {
+pub fn merge(
+    parts: &[PathBuf],
+    whole: (&Path, RowForm),
+    force: bool,
+) -> Result<(StudyId, Vec<SampleOutcome>), ShardError> {
     let mut opened = Vec::with_capacity(parts.len());
     for file in parts {
         let part = StudyPart::open(file)?;

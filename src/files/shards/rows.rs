@@ -19,7 +19,8 @@ use super::checksum::{self, CHECKSUM_BLANK, CHECKSUM_PREFIX, CheckedFile, Checks
 use super::error::{ShardError, shard_error};
 use super::hash::fnv_1a;
 use crate::parquet_guard::guarded;
-use crate::parquet_rows::{GROUP_ROWS, ParquetHead, ParquetRows};
+use crate::parquet_rows::{ColumnKind, GROUP_ROWS, ParquetCell, ParquetHead, ParquetRows};
+use crate::row_file::RowForm;
 use crate::{NewFile, WriteError};
 use stillbase_session::scenario::{Scenario, Tolerance};
 use stillbase_study::tolerance::SampleOutcome;
@@ -107,26 +108,13 @@ pub const OUTCOME_COUNT: usize = 4;
 /// Names of the last columns, which hold the outcome of each machine.
 pub const OUTCOME_COLUMNS: [&str; OUTCOME_COUNT] = ["peak moment N m", "peak force N", "rms moment N m", "rms force N"];
 
-/// The file formats.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
-    Csv,
-    Parquet,
+/// Returns whether the first or the last bytes of a file identify the study and contain the checksum.
+fn checksum_place(form: RowForm) -> ChecksumPlace {
+    if form == RowForm::Csv { ChecksumPlace::Head } else { ChecksumPlace::Tail }
 }
 
-impl Kind {
-    /// Returns whether the first or the last bytes of its files identify the study and contain the checksum.
-    fn end(self) -> ChecksumPlace {
-        if self == Self::Csv { ChecksumPlace::Head } else { ChecksumPlace::Tail }
-    }
-}
-
-fn kind_of(file: &Path) -> Result<Kind, ShardError> {
-    match file.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
-        Some("csv") => Ok(Kind::Csv),
-        Some("parquet") => Ok(Kind::Parquet),
-        _ => Err(shard_error(file, "want a name that ends in .csv or .parquet")),
-    }
+fn form_of(file: &Path) -> Result<RowForm, ShardError> {
+    RowForm::of(file).map_err(|why| ShardError::Wrong(why.to_string()))
 }
 
 /// Maximum number of columns of a file: far more than any machine has parameters.
@@ -156,21 +144,20 @@ pub struct Groups {
 }
 
 impl Writer {
-    /// Creates a file with its header.
+    /// Creates a file of a format, or standard output (`-`), with its header.
     ///
     /// # Errors
     /// If it cannot be created.
-    pub fn create(file: &Path, force: bool, head: &ShardHeader) -> Result<Self, ShardError> {
-        let kind = kind_of(file)?;
+    pub fn create((file, form): (&Path, RowForm), force: bool, head: &ShardHeader) -> Result<Self, ShardError> {
         let out = CheckedFile::new(NewFile::create(file, force)?);
-        match kind {
-            Kind::Csv => {
+        match form {
+            RowForm::Csv => {
                 let mut writer = csv::Writer::from_writer(out);
                 let names = [head.study.to_string()].into_iter().chain(head.columns.iter().cloned());
                 writer.write_record(names).map_err(|e| csv_failure(file, e))?;
                 Ok(Self::Csv(Box::new(writer)))
             }
-            Kind::Parquet => Ok(Self::Parquet(Box::new(Groups::create(out, head)?))),
+            RowForm::Parquet => Ok(Self::Parquet(Box::new(Groups::create(out, head)?))),
         }
     }
 
@@ -230,14 +217,18 @@ impl Groups {
         let file = out.path().to_owned();
         let study = head.study.to_string();
         let note = Some([STUDY_KEY, &study]);
-        let named = ParquetHead { row: "machine", count: Some("sample"), texts: &[], columns: &head.columns, note };
+        let numbers = head.columns.iter().map(|name| (ColumnKind::Number, name.as_str()));
+        let columns = [(ColumnKind::Count, "sample")].into_iter().chain(numbers).collect();
+        let named = ParquetHead { row: "machine", columns, note };
         let rows = ParquetRows::begin(out, &named).map_err(parquet_failure(&file))?;
         Ok(Self { rows, file })
     }
 
     fn row(&mut self, sample: u64, values: &[f64]) -> Result<(), ShardError> {
         let sample = i64::try_from(sample).unwrap_or(i64::MAX);
-        self.rows.row(sample, values.iter().copied()).map_err(parquet_failure(&self.file))
+        let numbers = values.iter().map(|x| ParquetCell::Number(*x));
+        let done = self.rows.row([ParquetCell::Count(sample)].into_iter().chain(numbers));
+        done.map_err(parquet_failure(&self.file))
     }
 
     fn finish(self) -> Result<(), ShardError> {
@@ -268,9 +259,9 @@ impl StudyPart {
     /// # Errors
     /// If the file cannot be read, this program did not write it, or it has changed since.
     pub fn open(file: &Path) -> Result<Self, ShardError> {
-        let (kind, mut opened) = plain_file(file)?;
+        let (form, mut opened) = plain_file(file)?;
         let unreadable = |e| shard_error(file, e);
-        match checksum::verify(&mut opened, kind.end()).map_err(unreadable)? {
+        match checksum::verify(&mut opened, checksum_place(form)).map_err(unreadable)? {
             Some(true) => Self::load(file),
             Some(false) => {
                 let why = "its checksum does not fit its bytes, so it was changed or damaged: want it written again";
@@ -295,9 +286,9 @@ impl StudyPart {
 
     /// Reads the header.
     fn load(file: &Path) -> Result<Self, ShardError> {
-        let (kind, opened) = plain_file(file)?;
-        let (study, columns, reader) = match kind {
-            Kind::Csv => {
+        let (form, opened) = plain_file(file)?;
+        let (study, columns, reader) = match form {
+            RowForm::Csv => {
                 let mut reader = BufReader::new(opened);
                 let line = line(&mut reader).filter(|line| !line.is_empty()).ok_or_else(|| foreign(file))?;
                 let mut head = csv::ReaderBuilder::new().has_headers(false).from_reader(&line[..]);
@@ -305,7 +296,7 @@ impl StudyPart {
                 let study = names.get(0).and_then(StudyId::parse);
                 (study, names.iter().skip(1).map(str::to_owned).collect::<Vec<_>>(), Reader::Csv(reader))
             }
-            Kind::Parquet => {
+            RowForm::Parquet => {
                 let reader = parquet_reader(file, opened)?;
                 let about = reader.metadata().file_metadata();
                 let entries = about.key_value_metadata().map_or(&[][..], Vec::as_slice);
@@ -395,13 +386,13 @@ fn foreign(file: &Path) -> ShardError {
 }
 
 /// Opens a plain file.
-fn plain_file(file: &Path) -> Result<(Kind, File), ShardError> {
-    let kind = kind_of(file)?;
+fn plain_file(file: &Path) -> Result<(RowForm, File), ShardError> {
+    let form = form_of(file)?;
     let unreadable = |e| shard_error(file, format!("{e}: want a plain file that can be read"));
     // Opening a pipe would block until its other end is opened.
     let there = std::fs::metadata(file).and_then(|there| crate::text::check(&there, u64::MAX));
     there.map_err(unreadable)?;
-    Ok((kind, File::open(file).map_err(unreadable)?))
+    Ok((form, File::open(file).map_err(unreadable)?))
 }
 
 /// Returns the next line with its line ending, empty after the last line; `None` if it cannot be read or is too long.

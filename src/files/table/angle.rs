@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::reader::RowPlace;
 use stillbase_settings::number::ShortNumber;
 
 /// Largest magnitude of an angle without unit, rad: a larger one is probably in degrees and is rejected.
@@ -30,13 +31,13 @@ impl AngleBreak {
     fn jump(name: &str, row: usize, step: f64, unit: &str) -> Self {
         let turns = if unit == "rad" { ", which no whole turn explains" } else { "" };
         let rest = format!("{turns}: want a continuous motion, sampled more often if it is that fast");
-        Self { row, what: format!("column {name}: a jump of {step:.3} {unit} from line "), jump: Some(rest) }
+        Self { row, what: format!("column {name}: a jump of {step:.3} {unit} from "), jump: Some(rest) }
     }
 
-    /// Returns the reason in words; `lines` holds the line of each row.
-    pub fn why(&self, lines: &[u64]) -> String {
+    /// Returns the reason in words; `places` holds the place of each row.
+    pub fn why(&self, places: &[RowPlace]) -> String {
         match &self.jump {
-            Some(rest) => format!("{}{}{rest}", self.what, lines[self.row - 1]),
+            Some(rest) => format!("{}{}{rest}", self.what, places[self.row - 1]),
             None => self.what.clone(),
         }
     }

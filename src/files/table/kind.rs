@@ -1,15 +1,11 @@
 //! [`TableData`]: a motion or a measurement, distinguished by its columns.
 
-use std::path::Path;
-
 use super::column::angles;
 use super::error::TableError;
 use super::measured::{has_base_reaction, motions_or};
-use super::reader::TableReader;
+use super::opened::Table;
 use super::samples::{SampleTable, samples_or};
-use crate::text::read;
 use stillbase_mechanics::machine::Machine;
-use stillbase_settings::text::MAX_TEXT_BYTES;
 use stillbase_study::trim::MeasuredMotion;
 
 /// Content of a table.
@@ -22,31 +18,17 @@ pub enum TableData {
 }
 
 impl TableData {
-    /// Reads a file that is either a motion or a measurement of a machine: see [`TableData::of`].
-    ///
-    /// # Errors
-    /// If it cannot be read, or is neither a motion nor a measurement.
-    pub fn open(file: &Path, machine: &Machine, gaps: bool) -> Result<Self, TableError> {
-        let name = file.display().to_string();
-        let text = read(file).map_err(|e| {
-            let want = format!("want a plain file that can be read, of at most {MAX_TEXT_BYTES} bytes");
-            TableError::of_file(&name, format!("{e}: {want}"))
-        })?;
-        Self::of(&text, &name, machine, gaps)
-    }
-
-    /// Reads text that is a motion or a measurement. If it has a column of a force or a moment on the base, it is a
+    /// Reads a table that is a motion or a measurement. If it has a column of a force or a moment on the base, it is a
     /// measurement, which [`motions`](super::motions) reads. Otherwise it is a motion, which
-    /// [`samples`](super::samples()) reads. `file` is the name used in errors; `gaps` allows gaps in the time of a
-    /// motion.
+    /// [`samples`](super::samples()) reads. `gaps` allows gaps in the time of a motion.
     ///
     /// # Errors
-    /// If the text is neither; the error has its place and the expected columns of both kinds.
-    pub fn of(text: &str, file: &str, machine: &Machine, gaps: bool) -> Result<Self, TableError> {
+    /// If the table is neither; the error has its place and the expected columns of both kinds.
+    pub fn of(table: &Table, machine: &Machine, gaps: bool) -> Result<Self, TableError> {
         let want = head_wanted(machine);
-        match has_base_reaction(TableReader::new(text, file, &want)?.head()) {
-            true => motions_or(text, file, machine, &want).map(Self::Measurement),
-            false => samples_or(text, file, machine, None, gaps, &want).map(Self::Motion),
+        match has_base_reaction(table.reader(&want)?.head()) {
+            true => motions_or(table, machine, &want).map(Self::Measurement),
+            false => samples_or(table, machine, None, gaps, &want).map(Self::Motion),
         }
     }
 }

@@ -3,7 +3,8 @@
 use super::angle::{GAP_FACTOR, continuous_angle};
 use super::column::{ANGLE, DEGREE, TIME, TableColumn, UnitNames, angles, named, no_column, unit_in_brackets};
 use super::error::TableError;
-use super::reader::TableReader;
+use super::opened::Table;
+use super::reader::RowPlace;
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::{PerDrive, Vector};
 use stillbase_settings::number::{ShortNumber, counted};
@@ -57,51 +58,46 @@ struct Columns {
     motion: Option<usize>,
 }
 
-/// Reads motions from CSV with a header: `t,q1,q2 …,fx,fy,nz`, in any order, optionally with units. Columns of rates
+/// Reads motions from a table with a header: `t,q1,q2 …,fx,fy,nz`, in any order, optionally with units. Columns of rates
 /// `qd1 …` and accelerations `qdd1 …` are read if present. A new motion begins where the column `motion` changes, after
-/// a gap in time, and where time restarts. `file` is the name used in errors.
+/// a gap in time, and where time restarts.
 ///
 /// # Errors
-/// If the text is not such a table; the error has its place and the expected content.
-pub fn motions(text: &str, file: &str, machine: &Machine) -> Result<Vec<MeasuredMotion>, TableError> {
-    motions_or(text, file, machine, &head_wanted(machine))
+/// If the table is no such one; the error has its place and the expected content.
+pub fn motions(table: &Table, machine: &Machine) -> Result<Vec<MeasuredMotion>, TableError> {
+    motions_or(table, machine, &head_wanted(machine))
 }
 
 /// As [`motions`]; errors describe the expected header by `want`.
 ///
 /// # Errors
 /// As [`motions`].
-pub(super) fn motions_or(
-    text: &str,
-    file: &str,
-    machine: &Machine,
-    want: &str,
-) -> Result<Vec<MeasuredMotion>, TableError> {
-    let mut reader = TableReader::new(text, file, want)?;
+pub(super) fn motions_or(table: &Table, machine: &Machine, want: &str) -> Result<Vec<MeasuredMotion>, TableError> {
+    let (file, mut reader) = (&*table.name, table.reader(want)?);
     let columns = Columns::of(reader.head(), machine, want).map_err(|why| reader.head_error(why))?;
     let all = columns.all();
     let (mut read, mut last, mut count) = (Split::default(), None::<String>, 0);
     while let Some(row) = reader.row()? {
         let numbers = row.numbers(all.iter().copied())?;
-        let name = columns.motion.and_then(|place| row.cell(place)).unwrap_or_default().to_owned();
+        let name = columns.motion.and_then(|place| row.cell(place)).unwrap_or_default().into_owned();
         let fresh = last.is_some_and(|last| last != name);
         last = Some(name);
         count += 1;
         if count > MAX_ROWS {
             return Err(row.error(format!("more than {MAX_ROWS} rows: want fewer, such as every second one")));
         }
-        let taken = read.take(numbers, row.line, fresh);
+        let taken = read.take(numbers, row.place, fresh);
         taken.map_err(|why| row.error(format!("column {}: {why}", columns.time.name)))?;
     }
     let mut parts = read.parts();
-    if let Some((column, line)) = columns.moving(&parts) {
+    if let Some((column, place)) = columns.moving(&parts) {
         let why = format!("column {column}: the base moves: want a measurement on a base that stands still");
-        return Err(TableError::at(file, line, why));
+        return Err(place.error(file, why));
     }
-    for Part { rows, lines } in &mut parts {
+    for Part { rows, places } in &mut parts {
         for (k, column) in columns.q.iter().enumerate() {
             let turns = continuous_angle(rows, 1 + k, &column.name, column.has_unit);
-            turns.map_err(|broken| TableError::at(file, lines[broken.row], broken.why(lines)))?;
+            turns.map_err(|broken| places[broken.row].error(file, broken.why(places)))?;
         }
     }
     if parts.is_empty() {
@@ -120,11 +116,11 @@ fn head_wanted(machine: &Machine) -> String {
     format!("a header t,{},fx,fy,nz (s, rad, N, N m)", angles(machine))
 }
 
-/// Rows of one motion, with their lines in the file.
+/// Rows of one motion, with their places in the file.
 #[derive(Default)]
 struct Part {
     rows: Vec<Vec<f64>>,
-    lines: Vec<u64>,
+    places: Vec<RowPlace>,
 }
 
 /// Splits rows into motions while they are read.
@@ -139,7 +135,7 @@ impl Split {
     ///
     /// # Errors
     /// If the time does not increase within a motion.
-    fn take(&mut self, row: Vec<f64>, line: u64, fresh: bool) -> Result<(), String> {
+    fn take(&mut self, row: Vec<f64>, place: RowPlace, fresh: bool) -> Result<(), String> {
         let now = self.named.last().filter(|_| !fresh);
         let (first, last) = (now.and_then(|part| part.rows.first()), now.and_then(|part| part.rows.last()));
         let again = first.zip(last).is_some_and(|(first, last)| row[0] <= first[0] && row[0] < last[0]);
@@ -152,7 +148,7 @@ impl Split {
         }
         if let Some(part) = self.named.last_mut() {
             part.rows.push(row);
-            part.lines.push(line);
+            part.places.push(place);
         }
         Ok(())
     }
@@ -165,12 +161,12 @@ impl Split {
             steps.sort_by(f64::total_cmp);
             let median = steps.get(steps.len() / 2).copied().unwrap_or(f64::INFINITY);
             let mut own = Part::default();
-            for (row, line) in part.rows.into_iter().zip(part.lines) {
+            for (row, place) in part.rows.into_iter().zip(part.places) {
                 if own.rows.last().is_some_and(|last| row[0] - last[0] > GAP_FACTOR * median) {
                     parts.push(std::mem::take(&mut own));
                 }
                 own.rows.push(row);
-                own.lines.push(line);
+                own.places.push(place);
             }
             parts.push(own);
         }
@@ -232,15 +228,15 @@ impl Columns {
         [&self.time].into_iter().chain(angles).chain(&self.force).chain([&self.moment]).chain(&self.base).collect()
     }
 
-    /// Returns the name of a column in which the base moves, and the line of the first row that differs from the
+    /// Returns the name of a column in which the base moves, and the place of the first row that differs from the
     /// initial row.
-    fn moving(&self, parts: &[Part]) -> Option<(String, u64)> {
+    fn moving(&self, parts: &[Part]) -> Option<(String, RowPlace)> {
         let from = self.all().len() - self.base.len();
-        let rows = || parts.iter().flat_map(|part| part.rows.iter().zip(&part.lines));
+        let rows = || parts.iter().flat_map(|part| part.rows.iter().zip(&part.places));
         let (first, _) = rows().next()?;
         self.base.iter().enumerate().find_map(|(i, column)| {
-            let (_, line) = rows().find(|(row, _)| (row[from + i] - first[from + i]).abs() > MAX_BASE_MOTION)?;
-            Some((column.name.clone(), *line))
+            let (_, place) = rows().find(|(row, _)| (row[from + i] - first[from + i]).abs() > MAX_BASE_MOTION)?;
+            Some((column.name.clone(), *place))
         })
     }
 

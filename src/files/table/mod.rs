@@ -1,5 +1,5 @@
-//! Reads tables of other programs: motions from CSV, signals also from Parquet. Columns are found by name and unit, and
-//! errors name file, line and column.
+//! Reads tables of other programs, CSV or Parquet: a [`Table`]. Columns are found by name and unit, and errors name file,
+//! line or row, and column.
 //!
 //! | content | reader |
 //! |---|---|
@@ -10,12 +10,14 @@
 
 mod angle;
 mod column;
+mod columns;
 mod error;
 mod heads;
 mod kind;
 mod measured;
+mod opened;
 #[cfg(feature = "rows")]
-mod parquet_signals;
+mod parquet_table;
 mod reader;
 mod samples;
 mod signals;
@@ -23,5 +25,6 @@ mod signals;
 pub use error::TableError;
 pub use kind::TableData;
 pub use measured::{MAX_ROWS, motions};
+pub use opened::{NoTable, TABLE_ENDINGS, Table, is_table};
 pub use samples::{SampleTable, samples};
-pub use signals::{SIGNAL_ENDINGS, has_signal_head, signals, signals_of};
+pub use signals::{has_signal_head, signals, signals_of};

@@ -1,8 +1,13 @@
 //! [`TableReader`]: reads a header, and rows of numbers with their lines.
 
+use std::borrow::Cow;
+use std::fmt::{self, Display};
+
 use super::column::TableColumn;
+use super::columns::{ColumnTable, ColumnValues};
 use super::error::TableError;
 use stillbase_settings::range::quote_clipped;
+use stillbase_study::advice::Advice;
 
 /// Largest magnitude of a number, in SI units.
 const MAX_NUMBER: f64 = 1e11;
@@ -14,14 +19,61 @@ pub(super) struct TableReader<'a> {
     /// Name used in errors.
     file: &'a str,
     head: csv::StringRecord,
-    records: csv::StringRecordsIntoIter<&'a [u8]>,
+    rows: Rows<'a>,
 }
 
-/// A row, and its line, counted from 1.
+/// Rows that are left.
+enum Rows<'a> {
+    Csv(csv::StringRecordsIntoIter<&'a [u8]>),
+    /// Those of columns from an index on.
+    Columns(&'a ColumnTable, usize),
+}
+
+/// A row of a table.
 pub(super) struct TableRow<'a> {
     file: &'a str,
-    pub line: u64,
-    cells: csv::StringRecord,
+    pub place: RowPlace,
+    cells: Cells<'a>,
+}
+
+/// Place of a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum RowPlace {
+    /// The line of a text, counted from 1.
+    Line(u64),
+    /// The row below the head, counted from 1.
+    Row(u64),
+}
+
+impl RowPlace {
+    /// Makes an error of this place.
+    pub fn error(self, file: &str, why: impl Display) -> TableError {
+        self.advise(file, why.to_string().into())
+    }
+
+    /// Makes an error of this place that names remedies.
+    pub fn advise(self, file: &str, why: Advice) -> TableError {
+        let (line, why) = match self {
+            Self::Line(line) => (Some(line), why),
+            Self::Row(_) => (None, why.after(format!("{self}: "))),
+        };
+        TableError { file: file.to_owned(), line, why }
+    }
+}
+
+impl Display for RowPlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Row(row) => write!(f, "row {row}"),
+        }
+    }
+}
+
+enum Cells<'a> {
+    Csv(csv::StringRecord),
+    /// Those of a row of columns, by its index.
+    Columns(&'a ColumnTable, usize),
 }
 
 impl<'a> TableReader<'a> {
@@ -46,15 +98,28 @@ impl<'a> TableReader<'a> {
             .delimiter(delimiter)
             .from_reader(text.as_bytes())
             .into_records();
-        let mut reader = Self { file, head: csv::StringRecord::new(), records };
-        let Some(head) = reader.row()? else {
+        let mut reader = Self { file, head: csv::StringRecord::new(), rows: Rows::Csv(records) };
+        let Some(head) = reader.next_record()? else {
             return Err(TableError::at(file, 1, format!("nothing here: want {want}")));
         };
-        if head.cells.iter().all(|cell| cell.parse::<f64>().is_ok()) {
-            return Err(head.error(format!("no header: want {want}")));
+        if head.iter().all(|cell| cell.parse::<f64>().is_ok()) {
+            return Err(TableError::at(file, line_of(&head), format!("no header: want {want}")));
         }
-        reader.head = head.cells;
+        reader.head = head;
         Ok(reader)
+    }
+
+    /// Reads the rows of columns.
+    ///
+    /// # Errors
+    /// If it has no columns.
+    pub fn of_columns(columns: &'a ColumnTable, file: &'a str, want: &str) -> Result<Self, TableError> {
+        if columns.heads.is_empty() {
+            return Err(TableError::of_file(file, format!("no columns: want {want}")));
+        }
+        // Spaces around a name do not count, as in CSV.
+        let head = columns.heads.iter().map(|name| name.trim()).collect();
+        Ok(Self { file, head, rows: Rows::Columns(columns, 0) })
     }
 
     /// Returns the cells of the header.
@@ -63,8 +128,11 @@ impl<'a> TableReader<'a> {
     }
 
     /// Makes an error of the header.
-    pub fn head_error(&self, why: impl std::fmt::Display) -> TableError {
-        TableError::at(self.file, line_of(&self.head), why)
+    pub fn head_error(&self, why: impl Display) -> TableError {
+        match &self.rows {
+            Rows::Csv(_) => TableError::at(self.file, line_of(&self.head), why),
+            Rows::Columns(..) => TableError::of_file(self.file, why),
+        }
     }
 
     /// Returns the next row; `None` after the last.
@@ -72,16 +140,41 @@ impl<'a> TableReader<'a> {
     /// # Errors
     /// If the text is not CSV.
     pub fn row(&mut self) -> Result<Option<TableRow<'a>>, TableError> {
-        let Some(cells) = self.records.next() else { return Ok(None) };
-        let cells = cells.map_err(|e| TableError::of_file(self.file, format!("{e}: want a CSV file")))?;
-        Ok(Some(TableRow { file: self.file, line: line_of(&cells), cells }))
+        if let Rows::Columns(columns, next) = &mut self.rows {
+            let row = *next;
+            *next += 1;
+            let (place, cells) = (RowPlace::Row(*next as u64), Cells::Columns(columns, row));
+            return Ok((row < columns.rows).then_some(TableRow { file: self.file, place, cells }));
+        }
+        let record = self.next_record()?;
+        Ok(record.map(|cells| {
+            let place = RowPlace::Line(line_of(&cells));
+            TableRow { file: self.file, place, cells: Cells::Csv(cells) }
+        }))
+    }
+
+    /// Returns the next record of CSV.
+    fn next_record(&mut self) -> Result<Option<csv::StringRecord>, TableError> {
+        let Rows::Csv(records) = &mut self.rows else { return Ok(None) };
+        let read = records.next().transpose();
+        read.map_err(|e| TableError::of_file(self.file, format!("{e}: want a CSV file")))
     }
 }
 
 impl TableRow<'_> {
     /// Returns the text in a column; `None` if the row is too short.
-    pub fn cell(&self, place: usize) -> Option<&str> {
-        self.cells.get(place)
+    pub fn cell(&self, place: usize) -> Option<Cow<'_, str>> {
+        match &self.cells {
+            Cells::Csv(cells) => cells.get(place).map(Cow::Borrowed),
+            Cells::Columns(columns, row) => match columns.columns.get(place)? {
+                ColumnValues::Numbers(values) => {
+                    let value = values.get(*row)?;
+                    Some(if value.is_nan() { Cow::Borrowed("") } else { value.to_string().into() })
+                }
+                ColumnValues::Texts(values) => values.get(*row).map(|text| Cow::Borrowed(text.trim())),
+                ColumnValues::Other(_) => None,
+            },
+        }
     }
 
     /// Returns the numbers of columns, in SI units.
@@ -94,18 +187,32 @@ impl TableRow<'_> {
 
     fn number(&self, column: &TableColumn) -> Result<f64, TableError> {
         let name = &column.name;
+        if let Cells::Columns(columns, row) = &self.cells {
+            match columns.columns.get(column.place) {
+                // A number that is there needs no way through text.
+                Some(ColumnValues::Numbers(values)) => {
+                    if let Some(x) = values.get(*row).map(|x| x * column.scale).filter(|x| x.abs() <= MAX_NUMBER) {
+                        return Ok(x);
+                    }
+                }
+                Some(ColumnValues::Other(what)) => {
+                    return Err(TableError::of_file(self.file, format!("column {name}: {what}: want numbers")));
+                }
+                _ => {}
+            }
+        }
         let Some(cell) = self.cell(column.place).filter(|cell| !cell.is_empty()) else {
             return Err(self.error(format!("column {name}: nothing there: want a number")));
         };
         cell.parse().ok().map(|x: f64| x * column.scale).filter(|x| x.abs() <= MAX_NUMBER).ok_or_else(|| {
-            let cell = quote_clipped(cell);
+            let cell = quote_clipped(&cell);
             self.error(format!("column {name}: {cell:?}: want a finite number, such as 0.25, of at most 1e11"))
         })
     }
 
     /// Makes an error of this row.
-    pub fn error(&self, why: impl std::fmt::Display) -> TableError {
-        TableError::at(self.file, self.line, why)
+    pub fn error(&self, why: impl Display) -> TableError {
+        self.place.error(self.file, why)
     }
 }
 

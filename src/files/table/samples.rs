@@ -3,7 +3,8 @@
 use super::angle::{GAP_FACTOR, continuous_angle, continuous_length};
 use super::column::{ANGLE, TIME, TableColumn, UnitNames, angles, named, no_column, unit_in_brackets};
 use super::error::TableError;
-use super::reader::TableReader;
+use super::opened::Table;
+use super::reader::RowPlace;
 use stillbase_mechanics::machine::Machine;
 use stillbase_planning::curves::given::MAX_SAMPLES;
 use stillbase_planning::curves::spline::MIN_SPLINE_SAMPLES;
@@ -26,20 +27,19 @@ pub struct SampleTable {
     pub unwrapped: Vec<usize>,
 }
 
-/// Reads samples from CSV with a header: `t,q1,q2 …` or `t,x,y`, in any order, optionally with units, as `q1 (deg)`.
-/// Other columns are ignored. `file` is the name used in errors. If the table has both, `wanted` selects the
-/// coordinates, by default the drives. `gaps` allows gaps in time.
+/// Reads samples from a table with a header: `t,q1,q2 …` or `t,x,y`, in any order, optionally with units, as `q1 (deg)`.
+/// Other columns are ignored. If the table has both, `wanted` selects the coordinates, by default the drives. `gaps`
+/// allows gaps in time.
 ///
 /// # Errors
-/// If the text is not such a table; the error has its place and the expected content.
+/// If the table is no such one; the error has its place and the expected content.
 pub fn samples(
-    text: &str,
-    file: &str,
+    table: &Table,
     machine: &Machine,
     wanted: Option<Coordinates>,
     gaps: bool,
 ) -> Result<SampleTable, TableError> {
-    samples_or(text, file, machine, wanted, gaps, &head_wanted(machine))
+    samples_or(table, machine, wanted, gaps, &head_wanted(machine))
 }
 
 /// As [`samples`]; errors describe the expected header by `want`.
@@ -47,17 +47,16 @@ pub fn samples(
 /// # Errors
 /// As [`samples`].
 pub(super) fn samples_or(
-    text: &str,
-    file: &str,
+    table: &Table,
     machine: &Machine,
     wanted: Option<Coordinates>,
     gaps: bool,
     want: &str,
 ) -> Result<SampleTable, TableError> {
-    let mut reader = TableReader::new(text, file, want)?;
+    let (file, mut reader) = (&*table.name, table.reader(want)?);
     let columns = Columns::of(reader.head(), machine, wanted, want).map_err(|why| reader.head_error(why))?;
     let time = &columns.all[0].name;
-    let (mut rows, mut lines): (Vec<Vec<f64>>, Vec<u64>) = (Vec::new(), Vec::new());
+    let (mut rows, mut places): (Vec<Vec<f64>>, Vec<RowPlace>) = (Vec::new(), Vec::new());
     while let Some(read) = reader.row()? {
         let row = read.numbers(&columns.all)?;
         if let Some(before) = rows.last().map(|row| row[0]).filter(|before| row[0] <= *before) {
@@ -65,7 +64,7 @@ pub(super) fn samples_or(
             return Err(read.error(format!("column {time}: {now} s after {before} s: want times that rise")));
         }
         rows.push(row);
-        lines.push(read.line);
+        places.push(read.place);
         if rows.len() > MAX_SAMPLES {
             return Err(read.error(format!("more than {MAX_SAMPLES} rows: want fewer, such as every second one")));
         }
@@ -76,11 +75,11 @@ pub(super) fn samples_or(
     }
     if let Some((i, step, usual)) = gap(&rows).filter(|_| !gaps) {
         let what = format!(
-            "column {time}: {step:.6} s after line {}, where {usual:.6} s is usual: a gap; want it filled, or ",
-            lines[i - 1]
+            "column {time}: {step:.6} s after {}, where {usual:.6} s is usual: a gap; want it filled, or ",
+            places[i - 1]
         );
         let why = Advice::from(what).name(Remedy::Gaps).then(" to have it bridged by the spline");
-        return Err(TableError { why, ..TableError::at(file, lines[i], "") });
+        return Err(places[i].advise(file, why));
     }
     let mut unwrapped = vec![0; columns.all.len() - 1];
     for (k, TableColumn { name, has_unit, .. }) in columns.all.iter().enumerate().skip(1) {
@@ -88,7 +87,7 @@ pub(super) fn samples_or(
             Coordinates::Drives => continuous_angle(&mut rows, k, name, *has_unit),
             Coordinates::EndEffector => continuous_length(&rows, k, name).map(|()| 0),
         };
-        unwrapped[k - 1] = turns.map_err(|broken| TableError::at(file, lines[broken.row], broken.why(&lines)))?;
+        unwrapped[k - 1] = turns.map_err(|broken| places[broken.row].error(file, broken.why(&places)))?;
     }
     let names = columns.all[1..].iter().map(|c| c.name.clone()).collect();
     let samples = Samples::new(&rows).map_err(|why| TableError::of_file(file, why))?;

@@ -4,8 +4,7 @@ use std::path::Path;
 
 use super::error::TableError;
 use super::heads::{SignalHeads, WANT, wrong_time};
-#[cfg(feature = "rows")]
-use super::parquet_signals::parquet_signals;
+use super::opened::{NoTable, Table, TableContent};
 use super::reader::TableReader;
 use crate::text::read_at_most;
 use stillbase_settings::range::quote_clipped;
@@ -14,27 +13,23 @@ use stillbase_simulation::signal_table::SignalTable;
 /// Largest table that is read, bytes.
 pub(super) const MAX_BYTES: u64 = 1 << 30;
 
-/// File name extensions of tables of signals.
-#[cfg(feature = "rows")]
-pub const SIGNAL_ENDINGS: &[&str] = &crate::row_file::ROW_ENDINGS;
-/// File name extensions of tables of signals.
-#[cfg(not(feature = "rows"))]
-pub const SIGNAL_ENDINGS: &[&str] = &["csv"];
-
 /// Reads signals over time from a CSV or Parquet file. A column with the name `t` or `time` is the time, each other one a
 /// signal. The unit follows the name after a space, or in brackets. An empty cell is no number.
 ///
 /// # Errors
 /// If the file cannot be read or is no such table, or if its time does not increase.
 pub fn signals(file: &Path) -> Result<SignalTable, TableError> {
-    #[cfg(feature = "rows")]
-    if file.extension().is_some_and(|own| own.eq_ignore_ascii_case("parquet")) {
-        return parquet_signals(file);
+    let opened = Table::open_with(file, |file| read_at_most(file, MAX_BYTES)).map_err(|why| match why {
+        NoTable::Wrong(why) => why,
+        NoTable::Unread { file, source } => {
+            TableError::of_file(&file.display().to_string(), format!("{source}: want a plain file that can be read"))
+        }
+    });
+    let Table { name, content } = opened?;
+    match content {
+        TableContent::Csv(text) => signals_of(&text, &name),
+        TableContent::Columns(columns) => columns.signals(&name),
     }
-    let name = file.display().to_string();
-    let text = read_at_most(file, MAX_BYTES)
-        .map_err(|e| TableError::of_file(&name, format!("{e}: want a plain file that can be read")))?;
-    signals_of(&text, &name)
 }
 
 /// Returns whether a text is CSV with a head of signals over time, rather than something else.
@@ -52,9 +47,9 @@ pub fn signals_of(text: &str, file: &str) -> Result<SignalTable, TableError> {
     let (mut time, mut values) = (Vec::new(), vec![Vec::new(); heads.signals().count()]);
     while let Some(row) = reader.row()? {
         let number = |place: usize, name: &str| match row.cell(place) {
-            Some("") => Ok(f64::NAN),
+            Some(cell) if cell.is_empty() => Ok(f64::NAN),
             Some(cell) => cell.parse::<f64>().map_err(|_| {
-                row.error(format!("column {name}: {:?}: want a number, such as 0.25", quote_clipped(cell)))
+                row.error(format!("column {name}: {:?}: want a number, such as 0.25", quote_clipped(&cell)))
             }),
             None => Err(row.error(format!("column {name}: nothing there: want a number"))),
         };

@@ -11,7 +11,7 @@ mod scene;
 mod shape;
 mod svg;
 
-pub use numbers::{NumberTable, curves_table};
+pub use numbers::curves_table;
 pub use page::{PIXEL_MM, POINTS_PER_MM, Page};
 pub use pdf::pdf;
 pub use plot::{PrintCurve, PrintPlot, PrintWords, pen};

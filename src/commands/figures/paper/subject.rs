@@ -88,8 +88,8 @@ impl<'a> Subject<'a> {
         let time = time.filter(|_| uses(PaperOption::Time));
         let time = time.map_or_else(String::new, |time| format!(" --time {time}"));
         let settings = settings_of(self.wanted, figure).as_typed();
-        let (word, width) = (figure.word(), self.wanted.typed_width());
-        format!("stillbase figures --paper {word}{machine}{points}{b}{time}{width}{settings}")
+        let (word, form) = (figure.word(), self.wanted.typed_form());
+        format!("stillbase figures --paper {word}{machine}{points}{b}{time}{form}{settings}")
     }
 
     pub fn figure(&self, figure: PaperFigure) -> Result<PrintedFigure, Failure> {

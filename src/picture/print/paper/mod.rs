@@ -6,13 +6,14 @@ mod table;
 pub use motion::{chart_plot, snapshots_plot, torque_plot};
 pub use table::{TableColumn, parameters};
 
-use super::numbers::{NumberTable, curves_table};
+use super::numbers::curves_table;
 use super::page::Page;
 use super::plot::{PrintCurve, PrintPlot, PrintWords, pen};
 use crate::charts::figure::Figure;
 use crate::numbers::round_number;
 use crate::scene::palette::{Theme, faded, mix, palette};
 use stillbase_mechanics::planar::Vector;
+use stillbase_settings::cell_table::CellTable;
 use stillbase_study::pose_curves::PoseCurves;
 use stillbase_study::workspace::WorkspaceReport;
 
@@ -22,7 +23,7 @@ pub struct PrintedFigure {
     /// The figure.
     pub page: Page,
     /// Its numbers.
-    pub numbers: NumberTable,
+    pub numbers: CellTable,
 }
 
 /// A part of a page.

@@ -3,10 +3,10 @@
 use super::PrintedFigure;
 use crate::charts::figure::{Axes, Figure, FigureItem, FigureText};
 use crate::print::glyphs;
-use crate::print::numbers::NumberTable;
 use crate::print::page::Page;
 use crate::scene::palette::{Theme, palette};
 use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_settings::cell_table::{Cell, CellTable};
 use stillbase_settings::number::fixed;
 use stillbase_study::balance_constants::BalanceConstants;
 
@@ -81,14 +81,15 @@ pub fn parameters(
     }
     let figure = drawn(theme, &rows, width);
     let page = Page::stacked(title.into(), format!("Made by: {made}"), [figure]);
-    let number = |x: &f64| (x + 0.0).to_string();
-    let mut table = NumberTable { about: vec![page.title.clone(), page.made.clone()], head, rows: Vec::new() };
-    table.rows.extend(links.iter().map(|(name, x)| [name.clone()].into_iter().chain(x.iter().map(number)).collect()));
-    table.rows.extend(residuals.iter().map(|(name, unit, x)| {
-        let blank = [format!("{name} {unit}"), String::new(), String::new(), String::new()];
-        blank.into_iter().chain(x.iter().map(number)).collect()
-    }));
-    Ok(PrintedFigure { page, numbers: table })
+    let row = |name: String, blanks: usize, numbers: &[f64]| -> Vec<Cell> {
+        let blanks = std::iter::repeat_n(Cell::Empty, blanks);
+        [Cell::Words(name)].into_iter().chain(blanks).chain(numbers.iter().map(|x| Cell::Number(*x))).collect()
+    };
+    let links = links.into_iter().map(|(name, numbers)| row(name, 0, &numbers));
+    let residuals = residuals.into_iter().map(|(name, unit, left)| row(format!("{name} {unit}"), 3, &left));
+    let about = vec![page.title.clone(), page.made.clone()];
+    let numbers = CellTable { row: "link", about, head, rows: links.chain(residuals).collect() };
+    Ok(PrintedFigure { page, numbers })
 }
 
 /// Returns what each equation of (7) and (8) leaves, with its unit, for each machine.

@@ -1,80 +1,72 @@
-//! Signals over time from a Parquet file.
+//! Reads the columns of a Parquet file.
 
 use std::fs::File;
-use std::path::Path;
 
 use parquet::basic::{ConvertedType, LogicalType, Type as Physical};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
-use parquet::data_type::DataType;
+use parquet::data_type::{ByteArray, DataType};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::ParquetMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
+use super::columns::{ColumnTable, ColumnValues};
 use super::error::TableError;
-use super::heads::{SignalHeads, wrong_time};
 use super::reader::MAX_COLUMNS;
 use super::signals::MAX_BYTES;
 use crate::parquet_guard::guarded;
 use crate::parquet_rows::GROUP_ROWS;
 use stillbase_settings::range::quote_clipped;
-use stillbase_simulation::signal_table::SignalTable;
 
 /// Maximum number of values of a table. A file states how many it has, and packs equal ones into few bytes.
 const MAX_VALUES: u64 = MAX_BYTES / 8;
 
-/// What pandas calls an index without a name, which holds no signal.
+/// Maximum length of all texts of a table together, bytes, for the same reason.
+const MAX_TEXT: usize = 1 << 26;
+
+/// Maximum number of texts of a column; no kind of table needs more.
+const MAX_TEXTS: usize = 1 << 20;
+
+/// What pandas calls an index without a name, which is no column of the table.
 const NAMELESS_INDEX: &str = "__index_level_";
 
-/// Reads signals over time from a Parquet file with a column for each; a null is no number.
+/// Reads the columns of a Parquet file; `name` is used in errors.
 ///
 /// # Errors
-/// If the file cannot be read or is no such table, or if its time does not increase.
-pub(super) fn parquet_signals(file: &Path) -> Result<SignalTable, TableError> {
-    let damaged = || TableError::of_file(&file.display().to_string(), "damaged: want a whole Parquet file");
-    guarded(|| read_signals(file), damaged)
+/// If it cannot be read, or is larger than what is read.
+pub(super) fn parquet_columns(file: File, name: &str) -> Result<ColumnTable, TableError> {
+    guarded(|| read(file, name), || TableError::of_file(name, "damaged: want a whole Parquet file"))
 }
 
-fn read_signals(file: &Path) -> Result<SignalTable, TableError> {
-    let name = file.display().to_string();
-    let refused = |why: String| TableError::of_file(&name, why);
-    let opened =
-        crate::text::open(file, MAX_BYTES).map_err(|e| refused(format!("{e}: want a plain file that can be read")))?;
+fn read(opened: File, name: &str) -> Result<ColumnTable, TableError> {
+    let refused = |why: String| TableError::of_file(name, why);
     let reader = SerializedFileReader::new(opened).map_err(|e| refused(unreadable(&e)))?;
-    let metadata = reader.metadata();
-    let all = metadata.file_metadata().schema_descr().columns();
-    let heads_of: Vec<(usize, &ColumnDescriptor)> =
-        (0..).zip(all.iter().map(AsRef::as_ref)).filter(|(_, c)| !c.name().starts_with(NAMELESS_INDEX)).collect();
-    if heads_of.len() > MAX_COLUMNS {
-        return Err(refused(format!("{} columns: want at most {MAX_COLUMNS}", heads_of.len())));
+    let all = reader.metadata().file_metadata().schema_descr().columns();
+    let read: Vec<(usize, &ColumnDescriptor)> = (0..)
+        .zip(all.iter().map(AsRef::as_ref))
+        .filter(|(_, column)| !column.name().starts_with(NAMELESS_INDEX))
+        .collect();
+    if read.len() > MAX_COLUMNS {
+        return Err(refused(format!("{} columns: want at most {MAX_COLUMNS}", read.len())));
     }
-    let heads = SignalHeads::of(heads_of.iter().map(|(_, column)| column.name())).map_err(refused)?;
-    let rows = rows(metadata, heads_of.len()).map_err(refused)?;
-    if rows == 0 {
-        return Err(refused("no row: want at least one".into()));
-    }
-    let values = |place: usize| {
-        let (index, column) = heads_of[place];
+    let rows = rows(reader.metadata(), read.len()).map_err(refused)?;
+    let mut room = MAX_TEXT;
+    let column = |(index, column): &(usize, &ColumnDescriptor)| {
         let called = || format!("column {}", quote_clipped(column.name()));
-        if let Some(what) = no_number(column) {
-            return Err(refused(format!("{}: {what}: want numbers", called())));
-        }
-        let values =
-            column_values(&reader, index, rows).map_err(|e| refused(format!("{}: {}", called(), unreadable(&e))))?;
-        match values.len() == rows {
+        let values = values_of(column, &reader, *index, rows, &mut room);
+        let values = values.map_err(|e| refused(format!("{}: {}", called(), unreadable(&e))))?;
+        let count = match &values {
+            ColumnValues::Numbers(values) => values.len(),
+            ColumnValues::Texts(values) => values.len(),
+            ColumnValues::Other(_) => rows,
+        };
+        match count == rows {
             true => Ok(values),
-            false => Err(refused(format!("{}: {} of {rows} rows: want a whole file", called(), values.len()))),
+            false => Err(refused(format!("{}: {count} of {rows} rows: want a whole file", called()))),
         }
     };
-    let time = values(heads.time)?;
-    let before = [None].into_iter().chain(time.iter().copied().map(Some));
-    if let Some((row, why)) =
-        (1..).zip(time.iter().zip(before)).find_map(|(row, (time, before))| Some((row, wrong_time(*time, before)?)))
-    {
-        return Err(refused(format!("row {row}: {why}")));
-    }
-    let columns = heads.signals().map(|(place, _)| values(place)).collect::<Result<_, _>>()?;
-    Ok(heads.table(time, columns))
+    let columns = read.iter().map(column).collect::<Result<_, _>>()?;
+    Ok(ColumnTable { heads: read.iter().map(|(_, column)| column.name().to_owned()).collect(), rows, columns })
 }
 
 /// Returns the number of rows.
@@ -84,12 +76,31 @@ fn rows(metadata: &ParquetMetaData, columns: usize) -> Result<usize, String> {
         .iter()
         .map(|group| group.num_rows())
         .try_fold(0_u64, |all, own| all.checked_add(u64::try_from(own).ok()?));
-    let most = MAX_VALUES / columns as u64;
+    let most = MAX_VALUES / columns.max(1) as u64;
     match rows.filter(|rows| *rows <= most) {
         Some(rows) => Ok(rows as usize),
         None => Err(format!("more than {most} rows of {columns} columns: want fewer")),
     }
 }
+
+/// Reads a column; `room` is the number of bytes of text that may still be read.
+fn values_of(
+    column: &ColumnDescriptor,
+    reader: &SerializedFileReader<File>,
+    index: usize,
+    rows: usize,
+    room: &mut usize,
+) -> Result<ColumnValues, ParquetError> {
+    match no_number(column) {
+        None => numbers_of(reader, index, rows).map(ColumnValues::Numbers),
+        Some(TEXT) if rows > MAX_TEXTS => Ok(ColumnValues::Other("more texts than are read")),
+        Some(TEXT) => texts_of(reader, index, rows, room).map(ColumnValues::Texts),
+        Some(what) => Ok(ColumnValues::Other(what)),
+    }
+}
+
+/// What a column of texts holds.
+const TEXT: &str = "text";
 
 /// Returns what a column holds that cannot be read as numbers; `None` if it holds numbers.
 fn no_number(column: &ColumnDescriptor) -> Option<&'static str> {
@@ -110,7 +121,7 @@ fn no_number(column: &ColumnDescriptor) -> Option<&'static str> {
         ) => Some("dates or times of day"),
         (_, Some(LogicalType::Decimal { .. }), _) | (_, _, ConvertedType::DECIMAL) => Some("decimal fractions"),
         (Physical::BYTE_ARRAY, Some(LogicalType::String), _) | (Physical::BYTE_ARRAY, _, ConvertedType::UTF8) => {
-            Some("text")
+            Some(TEXT)
         }
         (Physical::BYTE_ARRAY | Physical::FIXED_LEN_BYTE_ARRAY, ..) => Some("bytes"),
         (Physical::BOOLEAN | Physical::INT32 | Physical::INT64 | Physical::FLOAT | Physical::DOUBLE, ..) => None,
@@ -118,7 +129,7 @@ fn no_number(column: &ColumnDescriptor) -> Option<&'static str> {
 }
 
 /// Returns the values of a column, NaN for nulls.
-fn column_values(reader: &SerializedFileReader<File>, index: usize, rows: usize) -> Result<Vec<f64>, ParquetError> {
+fn numbers_of(reader: &SerializedFileReader<File>, index: usize, rows: usize) -> Result<Vec<f64>, ParquetError> {
     let mut all = Vec::with_capacity(rows);
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group)?;
@@ -144,11 +155,55 @@ fn column_values(reader: &SerializedFileReader<File>, index: usize, rows: usize)
     Ok(all)
 }
 
+/// Returns the texts of a column, empty for nulls.
+fn texts_of(
+    reader: &SerializedFileReader<File>,
+    index: usize,
+    rows: usize,
+    room: &mut usize,
+) -> Result<Vec<String>, ParquetError> {
+    let mut all: Vec<ByteArray> = Vec::with_capacity(rows);
+    for group in 0..reader.num_row_groups() {
+        match reader.get_row_group(group)?.get_column_reader(index)? {
+            ColumnReader::ByteArrayColumnReader(column) => append(column, &mut all, |bytes| bytes)?,
+            _ => return Err(ParquetError::General("no text".into())),
+        }
+        if all.len() > rows {
+            return Err(ParquetError::General("more values than rows".into()));
+        }
+    }
+    let mut text = |bytes: ByteArray| {
+        let fits = room.checked_sub(bytes.len());
+        *room = fits.ok_or_else(|| ParquetError::General(format!("more than {MAX_TEXT} bytes of text")))?;
+        Ok(String::from_utf8_lossy(bytes.data()).into_owned())
+    };
+    // A null has no bytes.
+    all.into_iter().map(|bytes| if bytes.is_empty() { Ok(String::new()) } else { text(bytes) }).collect()
+}
+
+/// Value of a null.
+trait Null {
+    /// Returns it.
+    fn null() -> Self;
+}
+
+impl Null for f64 {
+    fn null() -> Self {
+        Self::NAN
+    }
+}
+
+impl Null for ByteArray {
+    fn null() -> Self {
+        Self::from(Vec::new())
+    }
+}
+
 /// Appends the values of a column of one group of rows.
-fn append<T: DataType>(
+fn append<T: DataType, V: Null>(
     mut column: ColumnReaderImpl<T>,
-    all: &mut Vec<f64>,
-    number: impl Fn(T::T) -> f64,
+    all: &mut Vec<V>,
+    value: impl Fn(T::T) -> V,
 ) -> Result<(), ParquetError> {
     let (mut levels, mut values) = (Vec::new(), Vec::new());
     loop {
@@ -158,13 +213,14 @@ fn append<T: DataType>(
         if records == 0 {
             return Ok(());
         }
-        let mut read = values.drain(..).map(&number);
+        let mut read = values.drain(..).map(&value);
         match levels.is_empty() {
             true => all.extend(read),
             // A level of 0 marks a null, which has no value.
-            false => all.extend(
-                levels.iter().map(|level| if *level == 0 { f64::NAN } else { read.next().unwrap_or(f64::NAN) }),
-            ),
+            false => all.extend(levels.iter().map(|level| match level {
+                0 => V::null(),
+                _ => read.next().unwrap_or_else(V::null),
+            })),
         }
     }
 }
