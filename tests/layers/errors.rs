@@ -97,7 +97,7 @@ errors! {
 }
 
 /// Errors that never leave their crate or the workspace: no path of `stillbase` names them.
-const INNER: &[&str] = &["NoOptimum", "StoreError", "WrongNumber"];
+const INNER: &[&str] = &["IncompleteTask", "NoOptimum", "StoreError", "WrongNumber"];
 
 /// An error as the sources declare it.
 struct Declared {

@@ -69,7 +69,6 @@ const EDGES: &[(&str, &[&str])] = &[
             "commands/interrupt.rs",
             "commands/tolerance/parallel.rs",
             "files/video.rs",
-            "recording/store.rs",
         ],
     ),
     ("std::net", &[]),

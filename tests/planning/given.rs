@@ -277,7 +277,7 @@ fn samples_that_do_not_fit_the_task_are_refused_with_the_way_out() {
         (with(&drives, &|t| t.kind = TaskKind::MinimumNorm), "want the kind given"),
         (with(&drives, &|t| t.closed = true), "open path"),
         (with(&drives, &|t| t.law = stillbase::planning::timing::TimeLaw::Fastest), "law quintic"),
-        (with(&tip, &|t| t.kind = TaskKind::ChangeB), "given, reactionless or minimum-norm"),
+        (with(&tip, &|t| t.kind = TaskKind::ChangeB), "given, reactionless, minimum-norm or zero-momentum"),
         (with(&tip, &|t| t.b = 5.0), "would do"),
         (with(&drives, &|t| t.samples = Some(samples(&uneven(20), |t| vec![t; 4]))), "want 3 drive angles"),
         // Past a joint limit.

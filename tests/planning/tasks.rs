@@ -369,7 +369,11 @@ fn the_scenarios_that_come_along_do_what_they_say() {
         let done = end.peaks.moment < 1e-5 * end.peaks.torque_sum;
         let still = [&["case-3", "circle", "drift"][..], &family].concat();
         assert_eq!(done, still.contains(&name), "{name}: {}", end.peaks.moment);
-        assert_eq!(end.totals.base_angle > 1e-6, ["spacecraft", "bench-top", "space-arm"].contains(&name), "{name}");
+        assert_eq!(
+            end.totals.base_angle > 1e-6,
+            ["spacecraft", "bench-top", "space-arm", "spot-swing"].contains(&name),
+            "{name}"
+        );
         assert_eq!(end.totals.saturated.is_some(), name == "wheel");
     }
     let words = Run::new(&task("kind = 'change-b'\nvia = [[0.5, 0.6]]")).expect_err("no points between").to_string();

@@ -144,7 +144,7 @@ fn a_task_may_state_its_pose_of_a() {
     for kind in ["reactionless", "minimum-norm", "least-reaction", "zero-momentum", "same-tip", "change-b"] {
         let scenario = nine(kind);
         let run = Run::new(&scenario).unwrap_or_else(|why| panic!("{kind}: {why}"));
-        let start = scenario.task.start_pose(&scenario.machine).expect("stated");
+        let start = scenario.task.start_pose(3).expect("stated");
         assert!(run.frame().q.0.minus(&start.0).max_abs() < 1e-9, "{kind}: {:?}", run.frame().q);
     }
 }

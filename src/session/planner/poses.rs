@@ -28,8 +28,7 @@ pub(super) fn poses_at_b(task: &Task, space: &PoseSpace, points: &[Vector]) -> R
 
 /// Returns the pose of point `i` that the task states: its start, for A on a machine of `drives` drives.
 fn stated(task: &Task, drives: usize, i: usize) -> Option<DriveAngles> {
-    let start = task.start.filter(|start| i == 0 && start.values().len() == drives)?;
-    Some(DriveAngles(start.of(drives)))
+    task.start_pose(drives).filter(|_| i == 0)
 }
 
 /// Returns a pose of the first point. If the workspace at fixed b is an area, the pose is at the b of the task. On
@@ -37,7 +36,7 @@ fn stated(task: &Task, drives: usize, i: usize) -> Option<DriveAngles> {
 /// the pose is at the nearest b that reaches the point.
 pub(super) fn start(scenario: &Scenario, space: PlannerSpace<'_>, points: &[Vector]) -> Result<DriveAngles, Refusal> {
     let task = &scenario.task;
-    if let Some(start) = task.start_pose(&scenario.machine) {
+    if let Some(start) = task.start_pose(scenario.machine.drives()) {
         return Ok(start);
     }
     match space {

@@ -181,16 +181,15 @@ fn place_and_b(machine: &Machine, q: &DriveAngles) -> ([f64; 2], f64) {
 }
 
 impl Task {
-    /// Returns the pose of A that the task states; `None` if it states none, or one of another number of drives.
-    pub fn start_pose(&self, machine: &Machine) -> Option<DriveAngles> {
-        let n = machine.drives();
-        let start = self.start.filter(|start| start.values().len() == n)?;
-        Some(DriveAngles(start.of(n)))
+    /// Returns the pose of A that the task states for a machine of a number of drives; `None` if it states none.
+    pub fn start_pose(&self, drives: usize) -> Option<DriveAngles> {
+        let start = self.start.filter(|start| start.fits(drives))?;
+        Some(DriveAngles(start.of(drives)))
     }
 
     /// Returns the task with A and b of its start, if it has one: they may be those of a machine that has changed.
     pub fn at_its_start(&self, machine: &Machine) -> Option<Self> {
-        let (from, b) = place_and_b(machine, &self.start_pose(machine)?);
+        let (from, b) = place_and_b(machine, &self.start_pose(machine.drives())?);
         ((from, b) != (self.from, self.b)).then(|| Self { from, b, ..self.clone() })
     }
 
@@ -220,10 +219,10 @@ impl Task {
             return Err(IncompleteTask::Missing("kind"));
         }
         let ends = self.samples.as_ref().and_then(|samples| ends_of(self.kind, samples, self.turn, machine));
-        let start = self.start_pose(machine).filter(|_| ends.is_none_or(|ends| ends.b.is_none()));
-        let (got, want) = (self.start.map(|start| start.values().len()), machine.drives());
-        if let Some(got) = got.filter(|got| *got != want) {
-            return Err(IncompleteTask::Angles { got, want });
+        let start = self.start_pose(machine.drives()).filter(|_| ends.is_none_or(|ends| ends.b.is_none()));
+        let drives = machine.drives();
+        if let Some(wrong) = self.start.filter(|start| !start.fits(drives)) {
+            return Err(IncompleteTask::Angles { got: wrong.values().len(), want: drives });
         }
         let place = |key: &'static str, own: [f64; 2], end: Option<[f64; 2]>| match end {
             _ if stated(key) => Ok(own),
@@ -273,10 +272,7 @@ impl Task {
         let want = || format!("one step or more, {} to {} s", ShortNumber(step), ShortNumber(MOTION_TIME_RANGE.high()));
         let time = RangeCheck::depending("task.time", self.time, self.time >= step, want);
         let many = || RangeCheck::count("task.via", count, "point", format!("at most {MAX_POINTS} between A and B"));
-        let pose = self.start.filter(|start| start.values().len() != drives).map(|start| {
-            let want = format!("{drives}, one angle for each drive");
-            RangeCheck::count("task.start", start.values().len(), "number", want)
-        });
+        let pose = self.start.and_then(|start| start.misfit(drives, "task.start"));
         std::iter::once(time).chain((!enough).then(many)).chain(pose).collect()
     }
 
@@ -353,7 +349,8 @@ impl Task {
         let mut task: Self = change::read(&stated)?;
         task.samples = kept.or(task.samples);
         // Another start brings its own A and b, and another A or b has no start but one that is stated with it.
-        let (begins, moves) = (change.contains_key("start"), change.contains_key("from") || change.contains_key("b"));
+        let begins = change.contains_key("start") && task.start.is_some();
+        let moves = change.contains_key("from") || change.contains_key("b");
         if moves && !begins {
             task.start = None;
         }

@@ -50,11 +50,16 @@ impl DriveValues {
         }
     }
 
+    /// Returns whether this is one number for all drives, or a list of `n`.
+    pub fn fits(&self, n: usize) -> bool {
+        matches!(self, Self::All(_)) || self.values().len() == n
+    }
+
     /// Returns a failed check of the setting `key` if this is a list whose length is not `n`.
-    pub(crate) fn misfit(&self, n: usize, key: &'static str) -> Option<RangeCheck> {
+    pub fn misfit(&self, n: usize, key: &'static str) -> Option<RangeCheck> {
         let count = self.values().len();
-        let fits = matches!(self, Self::All(_)) || count == n;
-        (!fits).then(|| RangeCheck::count(key, count, "number", format!("one for all drives, or {n}, one for each")))
+        (!self.fits(n))
+            .then(|| RangeCheck::count(key, count, "number", format!("one for all drives, or {n}, one for each")))
     }
 
     /// Returns a copy for `n` drives with the value of drive `k` changed; equal values become one number.
