@@ -4,7 +4,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use re_chunk::Chunk;
-use re_log_encoding::{Decodable as _, DecoderApp, MessageHeader, MessageKind, StreamFooter};
+use re_log_encoding::{Decodable as _, DecoderApp, StreamFooter};
 use re_log_types::{EntityPath, EntityPathPart, LogMsg, StoreKind};
 use thiserror::Error;
 
@@ -75,24 +75,16 @@ pub fn cases(file: &Path) -> Result<Vec<RecordedCase>, ReadError> {
     }
 }
 
-/// Returns whether a file ends as a finished recording does: with an empty end mark, or with a table of contents that
-/// a tool of Rerun's has added.
+/// Returns whether a file ends as a finished recording does: with a footer, after which nothing follows.
 fn is_finished(file: &mut (impl Read + Seek)) -> io::Result<bool> {
-    let mut ends_with = |bytes: usize, is_end: fn(&[u8]) -> bool| -> io::Result<bool> {
-        let mut end = vec![0; bytes];
-        if file.seek(SeekFrom::End(0))? < bytes as u64 {
-            return Ok(false);
-        }
-        file.seek(SeekFrom::End(-(bytes as i64)))?;
-        file.read_exact(&mut end)?;
-        Ok(is_end(&end))
-    };
-    let is_mark =
-        |end: &[u8]| MessageHeader::from_rrd_bytes(end).is_ok_and(|m| m.kind == MessageKind::End && m.len == 0);
-    let is_finished = ends_with(MessageHeader::ENCODED_SIZE_BYTES, is_mark)?
-        || ends_with(StreamFooter::ENCODED_SIZE_BYTES, |end| StreamFooter::from_rrd_bytes(end).is_ok())?;
+    let mut end = [0; StreamFooter::ENCODED_SIZE_BYTES];
+    if file.seek(SeekFrom::End(0))? < end.len() as u64 {
+        return Ok(false);
+    }
+    file.seek(SeekFrom::End(-(end.len() as i64)))?;
+    file.read_exact(&mut end)?;
     file.rewind()?;
-    Ok(is_finished)
+    Ok(StreamFooter::from_rrd_bytes(&end).is_ok())
 }
 
 /// A name of a case on the command line, such as `cases.rrd` or `cases.rrd:case-2`.

@@ -7,7 +7,7 @@ pub use re_build_info::CrateVersion;
 pub use re_chunk::{Chunk, ChunkError, ChunkId, RowId, TimeColumn};
 pub use re_grpc_client::Client;
 pub use re_grpc_client::write::{ClientConnectionState as StreamState, Options as StreamOptions};
-pub use re_log_encoding::{Encodable, EncodeError, Encoder, EncodingOptions, MessageHeader, MessageKind};
+pub use re_log_encoding::{EncodeError, Encoder, EncodingOptions};
 pub use re_log_types::{
     BlueprintActivationCommand, EntityPath, EntityPathPart, LogMsg, SetStoreInfo, StoreId, StoreInfo, StoreKind,
     StoreSource, TimeInt, TimePoint, Timeline,

@@ -1,9 +1,6 @@
 //! A [`Store`]: rows and columns of a recording and of its layout, encoded one chunk at a time.
 //!
 //! Identifiers of chunks count up from a number derived from the digest, so that equal data give equal chunks.
-//!
-//! A file ends with an empty end mark and has no table of contents: the table would take a quarter of the file and of
-//! the processor time, and the viewer reads files of this size from start to end. `rerun rrd optimize` adds one.
 
 use std::io::Write;
 
@@ -11,7 +8,7 @@ use crate::rerun::{AsComponents, EntityPath, SerializedComponentColumn, StoreKin
 use crate::rerun::{BlueprintActivationCommand, SetStoreInfo, StoreInfo, StoreSource};
 use crate::rerun::{Chunk, ChunkError, ChunkId, LogMsg, RowId, TimeColumn};
 use crate::rerun::{CrateVersion, StoreId};
-use crate::rerun::{Encodable, EncodeError, Encoder, EncodingOptions, MessageHeader, MessageKind};
+use crate::rerun::{EncodeError, Encoder, EncodingOptions};
 use crate::rerun::{TimeInt, TimePoint, Timeline};
 use thiserror::Error;
 
@@ -160,8 +157,7 @@ impl Store {
     pub fn open(to: Sink, digest: u128) -> Result<Self, StoreError> {
         let to = match to {
             Sink::File(file) => {
-                let mut encoder = Encoder::new_eager(CrateVersion::LOCAL, EncodingOptions::PROTOBUF_COMPRESSED, file)?;
-                encoder.do_not_emit_footer();
+                let encoder = Encoder::new_eager(CrateVersion::LOCAL, EncodingOptions::PROTOBUF_COMPRESSED, file)?;
                 Open::File(Box::new(encoder))
             }
             Sink::Viewer(viewer) => Open::Viewer(viewer.connect()?),
@@ -273,15 +269,13 @@ impl Store {
         self.send(command.into())
     }
 
-    /// Finishes the file, or waits until the viewer has everything. Returns the file, if there is one; a store that is
+    /// Finishes the file with its table of contents, or waits until the viewer has everything. Returns the file, if there is one; a store that is
     /// dropped instead leaves none.
     pub fn close(self) -> Result<Option<NewFile>, StoreError> {
         match self.to {
-            Open::File(encoder) => {
+            Open::File(mut encoder) => {
+                encoder.finish()?;
                 let mut file = encoder.into_inner()?;
-                let mut mark = Vec::new();
-                MessageHeader { kind: MessageKind::End, len: 0 }.to_rrd_bytes(&mut mark).map_err(EncodeError::from)?;
-                file.write_all(&mark)?;
                 file.flush()?;
                 Ok(Some(file))
             }
