@@ -16,6 +16,7 @@ pub mod search;
 use self::axis::AxisKind;
 use super::scene::Rgba;
 use super::scene::palette::{Palette, mix};
+use stillbase_mechanics::machine::Inertia;
 use stillbase_planning::pose_space::constant_inertia;
 use stillbase_session::scenario::Scenario;
 use stillbase_simulation::frame::Peaks;
@@ -151,7 +152,22 @@ pub fn charts(scenario: &Scenario, wheels_differ: bool) -> Vec<Chart> {
     // There is no pose constant b if no drive exerts a moment on the base, or if λ depends strongly on the pose.
     list.extend(Some(POSE).filter(|_| constant_inertia(&scenario.machine).is_ok()));
     list.extend([EACH_PIN, TILT, TRANSMISSION, CHANGE_POINT]);
+    let size = load_scale(scenario);
+    for chart in list.iter_mut().filter(|chart| chart.unit.starts_with('N')) {
+        chart.min_range *= size;
+    }
     list
+}
+
+/// Smallest factor on the least range of forces and moments; rounding errors are far below it.
+const MIN_LOAD_SCALE: f64 = 1e-6;
+
+/// Returns a factor on the least range of forces and moments, at most 1: what accelerates the machine of a scenario by
+/// 1 rad within its time, in N m, so that light machines and slow motions show what they do.
+fn load_scale(scenario: &Scenario) -> f64 {
+    let inertia: f64 = Inertia::of(&scenario.machine).diagonals().iter().sum();
+    let load = inertia / (scenario.task.time * scenario.task.time);
+    if load.is_finite() { load.clamp(MIN_LOAD_SCALE, 1.0) } else { 1.0 }
 }
 
 impl Chart {

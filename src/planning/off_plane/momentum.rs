@@ -103,14 +103,6 @@ impl MomentumModel {
         self.tip.iter().map(|c| c.abs()).sum()
     }
 
-    /// Returns the arm if momentum depends on the differences of drive angles alone, as it does unless a free base
-    /// couples with it.
-    pub fn of_differences(&self) -> Option<&Inertia> {
-        let n = self.drives();
-        let bound = BALANCE_TOLERANCE * self.arm.diagonals().iter().sum::<f64>();
-        self.base[..n].iter().all(|c| c.norm() <= bound).then_some(&self.arm)
-    }
-
     /// Returns D_k at a pose, kg m², (A3).
     #[inline]
     pub fn coefficients(&self, e: &UnitVectors) -> PerDrive {

@@ -39,6 +39,13 @@ pub(super) fn zero_momentum(scenario: &Scenario, space: PlannerSpace<'_>) -> Res
                     "at zero momentum two drives keep the end effector on a curve: want the shape joint-line".into(),
                 ));
             }
+            if scenario.base.kind == BaseKind::Free && !arm.is_force_balanced() {
+                return Err(Refusal::Task(
+                    "two drives that shift a free base have no rates to choose from: want a fixed base, a balanced \
+                     machine, or three drives"
+                        .into(),
+                ));
+            }
             let integral = BIntegral::of(&arm).ok_or_else(|| {
                 Refusal::NoWay(
                     "turning as a whole, this machine has no angular momentum in some poses: want slower or lighter \
