@@ -12,12 +12,14 @@ use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::options::Handle;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_planning::off_plane::least_reaction::FixedB;
+use stillbase_planning::off_plane::momentum::TipFrame;
 use stillbase_planning::posture::Posture;
 use stillbase_planning::timing::TimeLaw;
 use stillbase_session::scenario::{Corners, PathShape, ReactionObjective, Task, TaskChange, TaskKind, Value};
 use stillbase_session::{Edit, Session};
 use stillbase_settings::number::counted;
 use stillbase_settings::word::{Choice, ChoiceWords};
+use stillbase_simulation::plant::BaseKind;
 
 /// Maximum number of points that are listed.
 const MAX_LISTED_POINTS: usize = 8;
@@ -336,6 +338,11 @@ fn kind_settings(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, comma
             }
         }
         TaskKind::ZeroMomentum => {
+            if session.scenario().base.kind == BaseKind::Free {
+                let width = ui.available_width() - 10.0;
+                let row = ChoiceRow { label: "Where points are meant", key: "frame", width };
+                choose(ui, session, row, TipFrame::ALL, task.frame(), commands);
+            }
             let mut cycles = f64::from(task.cycles);
             let row = NumberRow::of("cycles", "task.cycles").with(0, 0.05);
             let response = row.show(ui, p, &mut cycles);
@@ -364,6 +371,8 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
         _ if waits => "the run waits, nothing is planned",
         (true, _) => "led by hand; the plan was",
         (false, true) => "planned",
+        // The path knows how the free base shifts; its loads are those on a fixed one.
+        (false, false) if session.run().plan().beside_base.is_some() => "planned with its base; loads on a fixed one",
         (false, false) => "planned, for the model on a fixed base",
     };
     let [time, torque, moment] = [forecast.time, torque, forecast.moment].map(|x| signed(x, 3));

@@ -300,7 +300,9 @@ impl AppState {
     /// Returns the factor by which the drawn motion of the base is enlarged, so that it can be seen. It depends on the
     /// largest base motion of the run, as far as the run is computed.
     pub fn base_exaggeration(&self) -> f64 {
-        if !self.view_state.exaggerates_base || !self.session.scenario().base.moves() {
+        // A plan that accounts for the base puts the end effector where it is to be; enlarged, it would seem to miss.
+        let is_planned = self.session.frame().base_is_planned;
+        if !self.view_state.exaggerates_base || !self.session.scenario().base.moves() || is_planned {
             return 1.0;
         }
         let newest = self.session.frames().last().map_or_else(Totals::default, |frame| frame.totals);

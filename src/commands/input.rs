@@ -16,7 +16,7 @@ use stillbase_mechanics::sketch::{Missing, resolve};
 use stillbase_planning::pose_constant::PoseConstant;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_session::scenario::{
-    DesignBrief, MachineFile, POINT_RANGE, POSE_CONSTANT_RANGE, Scenario, TaskChange, key_of,
+    DesignBrief, MachineFile, POINT_RANGE, POSE_CONSTANT_RANGE, Scenario, Task, TaskChange, key_of,
 };
 use stillbase_session::{
     ReachablePoints, Run, proposals_for_machine, proposals_for_settings, proposals_for_values, with_start_edits,
@@ -326,6 +326,9 @@ pub fn overlay_settings(scenario: Scenario, settings: &Settings) -> Result<Scena
     let changed =
         scenario.with_settings(&wanted).map_err(|why| refused(Failure::wrong_input(why).with_context("--set")))?;
     changed.check("--set").map_err(|why| refused(why.into()))?;
+    if !settings.sets("task.start") {
+        report_start(&scenario.task, &changed.task);
+    }
     Ok(changed)
 }
 
@@ -355,10 +358,19 @@ pub fn no_use(what: &str, want: &str) -> Failure {
 pub fn change_task(scenario: &mut Scenario, change: &TaskChange) -> Result<(), Failure> {
     if !change.is_empty() {
         let task = scenario.task.with_change(change, &scenario.machine);
-        scenario.task = task.map_err(|why| Failure::wrong_input(format!("task: {why}")))?;
+        let task = task.map_err(|why| Failure::wrong_input(format!("task: {why}")))?;
+        report_start(&scenario.task, &task);
+        scenario.task = task;
         scenario.check("task")?;
     }
     Ok(())
+}
+
+/// Prints a note if a change of a task has dropped its start.
+fn report_start(before: &Task, after: &Task) {
+    if before.start.is_some() && after.start.is_none() {
+        print_message("note: another A or b has another pose, so task.start is left out");
+    }
 }
 
 /// Returns the pose space of a machine. Prints a note if b is only nearly constant.

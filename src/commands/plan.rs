@@ -275,7 +275,8 @@ impl PlanArguments {
         if self.kind.is_none() || Scenario::builtin(&scenario.name).is_none() {
             report_idle(&scenario);
         }
-        if self.b.is_none() && !self.settings.sets("task.b") && !self.points.is_empty() {
+        let is_stated = self.b.is_some() || self.settings.sets("task.b") || scenario.task.start.is_some();
+        if !is_stated && !self.points.is_empty() {
             let machine = &scenario.machine;
             let space = PoseSpace::of(machine).or_else(|_| PoseSpace::nominal(machine)).ok();
             scenario.task.b = space.and_then(|space| starting_b(&space, &points)).unwrap_or(0.0);

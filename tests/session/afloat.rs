@@ -128,7 +128,7 @@ fn a_task_may_state_its_pose_of_a() {
     for (task, words) in [
         ("start = [1.9, 2.6, 3.4]\nfrom = [0.1, 0.2]\nto = [0.3, 0.3]", "want no from and no b beside start"),
         ("start = [1.9, 2.6]\nto = [0.3, 0.3]", "want 3, one angle for each drive"),
-        ("to = [0.3, 0.3]", "missing"),
+        ("to = [0.3, 0.3]", "point A (task.from) is missing"),
     ] {
         let text = format!("machine = 'spot'\n[task]\nkind = 'zero-momentum'\n{task}\n");
         let why = Scenario::parse(&text, "wrong", None).expect_err("wrong").to_string();

@@ -324,6 +324,7 @@ impl Stage {
             points.into_iter().map(|p| (p, self.linkage.floor()))
         };
         let waypoints = self.plan.iter().flat_map(|plan| plan.waypoints.iter().map(|(_, _, p)| (*p, z)));
+        let plate = self.base.corners(&self.linkage).into_iter().map(|p| (on_base(p), 0.0));
         let target = [(DrawnFrame::from(frame).target, z), (base.at, 0.0)];
         let points = |(p, z): (Vector, f64)| [p.re, p.im, z];
         ViewContent {
@@ -332,6 +333,7 @@ impl Stage {
                 .chain(workspace(frame.b_reference))
                 .chain(waypoints)
                 .chain(target)
+                .chain(plate)
                 .map(points)
                 .collect(),
             then: self.compared.into_iter().flat_map(workspace).map(points).collect(),

@@ -11,7 +11,7 @@ use crate::curves::path::by_pieces;
 use crate::curves::table::PathTable;
 use crate::off_plane::momentum::MomentumModel;
 use crate::off_plane::null_space::{determines, jacobian_with_momentum, least, rates, solve};
-use stillbase_mechanics::kinematics::acceleration;
+use stillbase_mechanics::kinematics::{acceleration, column};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use stillbase_settings::number::counted;
 
@@ -37,13 +37,64 @@ pub enum DriftError {
         gap: f64,
     },
     /// [J; D] is singular.
-    #[error("at s = {s:.3} of the curve, in cycle {cycle}, no rates of zero momentum follow it")]
+    #[error(
+        "{:.1} % along the path, at ({:.3}, {:.3}) m{}, no rates of zero momentum follow it: {why}; want another path or \
+         another pose of A",
+        100.0 * s, at[0], at[1], in_cycle(*cycle)
+    )]
     Singular {
         /// s of the curve, 0 to 1.
         s: f64,
+        /// Where the curve is there, m.
+        at: [f64; 2],
         /// Number of the cycle, counted from 1.
         cycle: usize,
+        /// What is singular.
+        why: Singularity,
     },
+}
+
+/// Returns the words for a cycle; none for the first.
+fn in_cycle(cycle: usize) -> String {
+    if cycle > 1 { format!(" in cycle {cycle}") } else { String::new() }
+}
+
+/// What keeps the end effector from moving on at zero momentum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Singularity {
+    /// The Jacobian alone: the arm is outstretched or folded.
+    Kinematic,
+    /// The Jacobian with the momentum: the end effector moves that way only with momentum.
+    Dynamic,
+}
+
+impl std::fmt::Display for Singularity {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Kinematic => "the arm is outstretched or folded there",
+            Self::Dynamic => "a dynamic singularity, where the end effector moves that way only with momentum",
+        })
+    }
+}
+
+/// A pose is kinematically singular if the ratio of the singular values of J is below this.
+const STRETCHED: f64 = 0.05;
+
+impl Singularity {
+    /// Tells which matrix is singular near a pose.
+    fn near(model: &MomentumModel, q: &DriveAngles) -> Self {
+        let tip = model.tip_units(&q.units());
+        let [xx, xy, yy] = (0..model.drives()).fold([0.0; 3], |[xx, xy, yy], k| {
+            let j = column(model.tip(), &tip, k);
+            [xx + j.re * j.re, xy + j.re * j.im, yy + j.im * j.im]
+        });
+        let (middle, spread) = (0.5 * (xx + yy), (0.5 * (xx - yy)).hypot(xy));
+        if ((middle - spread).max(0.0) / (middle + spread)).sqrt() < STRETCHED {
+            Self::Kinematic
+        } else {
+            Self::Dynamic
+        }
+    }
 }
 
 /// Returns a full circle over s from 0 to 1, counter-clockwise from a point of it, m.
@@ -81,8 +132,8 @@ pub fn zero_momentum_path(
     start: DriveAngles,
     curve: impl Fn(f64) -> CurvePoint,
 ) -> Result<PathTable, DriftError> {
-    PathTable::even(follow_once(model, start, &curve, NODE_INTERVALS, 1)?)
-        .ok_or(DriftError::Singular { s: 0.0, cycle: 1 })
+    let whole = |nodes| PathTable::even(nodes).ok_or_else(|| stop(model, &start, &curve, 0.0, 1));
+    whole(follow_once(model, start, &curve, NODE_INTERVALS, 1)?)
 }
 
 /// Follows a curve at zero angular momentum piece by piece, each piece with its own intervals. Errors report `cycle`.
@@ -97,11 +148,25 @@ pub fn zero_momentum_curve(
 ) -> Result<PathTable, DriftError> {
     let piece = |q: DriveAngles, [from, to]: [f64; 2], at: &dyn Fn(f64) -> CurvePoint, spaces: usize| {
         follow_once(model, q, &at, spaces, cycle).map_err(|error| match error {
-            DriftError::Singular { s, cycle } => DriftError::Singular { s: from + s * (to - from), cycle },
+            DriftError::Singular { s, at, cycle, why } => {
+                DriftError::Singular { s: from + s * (to - from), at, cycle, why }
+            }
             other => other,
         })
     };
-    by_pieces(curve, start, NODE_INTERVALS, piece)?.ok_or(DriftError::Singular { s: 0.0, cycle })
+    by_pieces(curve, start, NODE_INTERVALS, piece)?.ok_or_else(|| stop(model, &start, &|s| curve.at(s), 0.0, cycle))
+}
+
+/// Returns the error of a curve that cannot be followed on from `s`, near a pose.
+fn stop(
+    model: &MomentumModel,
+    near: &DriveAngles,
+    curve: &impl Fn(f64) -> CurvePoint,
+    s: f64,
+    cycle: usize,
+) -> DriftError {
+    let p = curve(s).p;
+    DriftError::Singular { s, at: [p.re, p.im], cycle, why: Singularity::near(model, near) }
 }
 
 /// Follows a curve once and returns the nodes.
@@ -121,16 +186,17 @@ fn follow_once(
     if miss.is_nan() || miss > 1e-8 * reach {
         return Err(DriftError::Start { miss });
     }
-    let singular = |s: f64| DriftError::Singular { s, cycle };
-    let slope = |q: &DriveAngles, s: f64| rates(model, q, curve(s).first, 0.0).ok_or(singular(s));
+    let singular = |q: &DriveAngles, s: f64| stop(model, q, curve, s, cycle);
+    let slope = |q: &DriveAngles, s: f64| rates(model, q, curve(s).first, 0.0).ok_or_else(|| singular(q, s));
     let steps = spaces * STEPS_PER_INTERVAL;
     let h = 1.0 / steps as f64;
-    let mut q = start;
+    let (mut q, mut last) = (start, start);
     let mut nodes = Vec::with_capacity(spaces + 1);
     for i in 0..=steps {
         let s = i as f64 * h;
         if i % STEPS_PER_INTERVAL == 0 {
-            nodes.push(node(model, &q, &curve(s)).ok_or(singular(s))?);
+            nodes.push(node(model, &q, &curve(s)).ok_or_else(|| singular(&q, s))?);
+            last = q;
         }
         if i == steps {
             break;
@@ -144,12 +210,12 @@ fn follow_once(
         for j in 0..MAX_CORRECTIONS {
             let gap = goal - model.place(&q);
             if j == 0 && (gap.is_nan() || gap.norm() > MAX_STEP_ERROR * reach) {
-                return Err(singular(s));
+                return Err(singular(&last, s));
             }
             if gap.norm() <= CURVE_TOLERANCE * reach {
                 break;
             }
-            q.0 = q.0.plus(1.0, &rates(model, &q, gap, 0.0).ok_or(singular(s))?);
+            q.0 = q.0.plus(1.0, &rates(model, &q, gap, 0.0).ok_or_else(|| singular(&last, s))?);
         }
     }
     Ok(nodes)
@@ -221,7 +287,7 @@ pub fn drift_in(
     let end = |nodes: &[PathPoint]| nodes.last().map_or(start, |node| node.q);
     let first = follow_once(model, start, &curve, spaces, 1)?;
     let mut ends = vec![start, end(&first)];
-    let first = PathTable::even(first).ok_or(DriftError::Singular { s: 0.0, cycle: 1 })?;
+    let first = PathTable::even(first).ok_or_else(|| stop(model, &start, &curve, 0.0, 1))?;
     for cycle in 2..=cycles {
         ends.push(end(&follow_once(model, ends[cycle - 1], &curve, spaces, cycle)?));
     }

@@ -10,6 +10,7 @@ use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 use stillbase_planning::curves::Samples;
 use stillbase_planning::off_plane::momentum::TipFrame;
+use stillbase_planning::pose_constant::PoseConstant;
 use stillbase_planning::posture::Posture;
 use stillbase_planning::timing::TimeLaw;
 use stillbase_settings::change::{self, DEFAULT_WORD};
@@ -238,8 +239,8 @@ impl Task {
         let b = match ends.and_then(|ends| ends.b).or(at_start.map(|(_, b)| b)) {
             _ if stated("b") => self.b,
             Some(b) => b,
-            // Without redundancy a point determines b.
-            None if !machine.is_redundant() => 0.0,
+            // Without redundancy a point determines b; other machines may have none.
+            None if !machine.is_redundant() || matches!(PoseConstant::of(machine), PoseConstant::None(_)) => 0.0,
             None => return Err(IncompleteTask::Missing("b")),
         };
         if let Some((tip, own)) = at_start {

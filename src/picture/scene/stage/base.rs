@@ -61,6 +61,13 @@ impl BaseStage {
         self.base.moves()
     }
 
+    /// Returns the corners of the plate of a base that can move, in its frame, m; none of one that is fixed.
+    pub fn corners(&self, linkage: &LinkageModel) -> Vec<Vector> {
+        let [x, y] = PLATE_HALF_SIZE.map(|part| part * linkage.reach());
+        let corners = [[x, y], [-x, y], [-x, -y], [x, -y]].map(|[x, y]| Vector::new(x, y));
+        if self.moves() { corners.to_vec() } else { Vec::new() }
+    }
+
     /// Whether the base has a reaction wheel.
     pub fn has_wheel(&self) -> bool {
         self.base.wheel.is_some()
