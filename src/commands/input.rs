@@ -359,7 +359,6 @@ pub fn change_task(scenario: &mut Scenario, change: &TaskChange) -> Result<(), F
     if !change.is_empty() {
         let task = scenario.task.with_change(change, &scenario.machine);
         let task = task.map_err(|why| Failure::wrong_input(format!("task: {why}")))?;
-        report_start(&scenario.task, &task);
         scenario.task = task;
         scenario.check("task")?;
     }

@@ -113,20 +113,22 @@ fn joint_motions_turn_the_base_as_momentum_says() {
     assert!((end.base.angle * 180.0 / PI + 34.921).abs() < 1e-3);
 }
 
-/// A start brings A and b; what contradicts it is refused; another A has no start.
+/// A start brings A and b, whatever else is stated; another A has no start.
 #[test]
 fn a_task_may_state_its_pose_of_a() {
     let scenario = spot("kind = 'zero-momentum'\nstart = [1.9, 2.6, 3.4]\nto = [-0.2937, 0.4728]");
     assert!((scenario.task.from[0] + 0.4437174408133392).abs() < 1e-12);
     let again = Scenario::parse(&scenario.to_toml(), "again", None).expect("what is written is read");
     assert_eq!((&again.task.start, again.task.from), (&scenario.task.start, scenario.task.from));
+    let both =
+        spot("kind = 'zero-momentum'\nstart = [1.9, 2.6, 3.4]\nfrom = [0.1, 0.2]\nb = 1.0\nto = [-0.2937, 0.4728]");
+    assert_eq!(both.task, scenario.task);
     let change = |text: &str| text.parse::<Table>().expect("TOML");
     let moved = scenario.task.with_change(&change("from = [-0.44, 0.42]"), &scenario.machine).expect("a task");
     assert_eq!((moved.start, moved.from), (None, [-0.44, 0.42]));
     let begun = moved.with_change(&change("start = [1.9, 2.6, 3.4]"), &scenario.machine).expect("a task");
     assert_eq!(begun.from, scenario.task.from);
     for (task, words) in [
-        ("start = [1.9, 2.6, 3.4]\nfrom = [0.1, 0.2]\nto = [0.3, 0.3]", "want no from and no b beside start"),
         ("start = [1.9, 2.6]\nto = [0.3, 0.3]", "want 3, one angle for each drive"),
         ("to = [0.3, 0.3]", "point A (task.from) is missing"),
     ] {
@@ -146,5 +148,20 @@ fn a_task_may_state_its_pose_of_a() {
         let run = Run::new(&scenario).unwrap_or_else(|why| panic!("{kind}: {why}"));
         let start = scenario.task.start_pose(3).expect("stated");
         assert!(run.frame().q.0.minus(&start.0).max_abs() < 1e-9, "{kind}: {:?}", run.frame().q);
+    }
+}
+
+/// What takes the start away is undone with it, and the other way round.
+#[test]
+fn a_start_is_undone_with_its_point() {
+    let scenario = spot("kind = 'zero-momentum'\nstart = [1.9, 2.6, 3.4]\nto = [-0.2937, 0.4728]");
+    for text in
+        ["[task]\nfrom = [-0.44, 0.42]", "[task]\nb = 2.0", "[task]\nstart = [1.8, 2.6, 3.4]", "[task]\ntime = 5.0"]
+    {
+        let change = text.parse::<Table>().expect("TOML");
+        let changed = scenario.with_settings(&change).expect("settings");
+        assert_ne!(changed.task, scenario.task);
+        let back = scenario.present_values(&change).expect("known");
+        assert_eq!(changed.with_settings(&back).expect("as it was").task, scenario.task, "{text}");
     }
 }

@@ -241,9 +241,7 @@ impl Reading<'_> {
             IncompleteTask::Missing(key) => {
                 self.syntax(Problem { path: KeyPath::new(&[&"task"]), wrong: Wrong::Missing(key.into()) })
             }
-            off @ (IncompleteTask::OffStart { .. } | IncompleteTask::Angles { .. }) => {
-                self.wrong(KeyPath::new(&[&"task", &"start"]), off.to_string())
-            }
+            off @ IncompleteTask::Angles { .. } => self.wrong(KeyPath::new(&[&"task", &"start"]), off.to_string()),
         })?;
         let sketch = match file.sketch {
             Some(sketch) => {

@@ -78,6 +78,9 @@ impl Scenario {
             let machine = self.machine.with_settings(&of_machine)?;
             self.sketch = self.sketch.as_ref().map(|sketch| sketch.following_machine(&self.machine, &machine));
             self.machine = machine;
+            if let Some(task) = self.task.at_its_start(&self.machine) {
+                self.task = task;
+            }
         }
         for (part, value) in &own {
             let wrong = |why: String| {
@@ -163,6 +166,9 @@ impl Scenario {
         }
         if let Some(Value::Table(tolerance)) = own.get_mut("tolerance") {
             *tolerance = Tolerance::flat(tolerance);
+        }
+        if let Some(Value::Table(task)) = own.get_mut("task") {
+            self.task.name_linked_keys(task);
         }
         let mut stated = self.stated();
         // Samples may be long, so they are added only if they change.

@@ -16,7 +16,7 @@ use stillbase_planning::timing::TimeLaw;
 use stillbase_settings::change::{self, DEFAULT_WORD};
 use stillbase_settings::key::Key;
 use stillbase_settings::keyed::keyed;
-use stillbase_settings::number::{ShortNumber, counted, nine_digits};
+use stillbase_settings::number::{ShortNumber, counted};
 use stillbase_settings::range::{Range, RangeCheck};
 use stillbase_settings::word::Choice;
 use stillbase_simulation::plant::DriveValues;
@@ -64,7 +64,7 @@ keyed! {
         samples: Option<Samples> = Key::NONE, instead: "points and a law say where to be when";
         /// Angle by which samples of drive angles are turned as a whole.
         turn: f64 = "0", range: ANGLE, when: "samples of drive angles" => |task| task.columns().is_some_and(|n| n != 2);
-        /// Pose of A: the absolute angle of each drive. The point A and b are then those of this pose.
+        /// Pose of A: the absolute angle of each drive. The point A and b are then those of this pose, whatever else is stated.
         start: Option<DriveValues> = Key::NONE, range: ANGLE, instead: "a pose of A at the b of the task",
             when: UNSAMPLED_ANGLES => |task| task.columns().is_none_or(|n| n == 2);
         /// The point A; by default where samples begin, or the end effector at the pose `start`.
@@ -158,22 +158,7 @@ pub enum IncompleteTask {
         /// Number of drives.
         want: usize,
     },
-    /// The point A or b is not that of the start.
-    #[error(
-        "its start has the end effector at {}, {} m and b = {} rad: want no from and no b beside start",
-        nine_digits(from[0]), nine_digits(from[1]), nine_digits(*b)
-    )]
-    OffStart {
-        /// Where the start has the end effector, m.
-        from: [f64; 2],
-        /// b of the start, rad.
-        b: f64,
-    },
 }
-
-/// Tolerance for A and b beside a start: of A as a fraction of the reach, of b in rad. Printed with nine decimals, they
-/// are within it.
-const START_TOLERANCE: f64 = 1e-6;
 
 /// Returns where a pose has the end effector, m, and its b, rad.
 fn place_and_b(machine: &Machine, q: &DriveAngles) -> ([f64; 2], f64) {
@@ -210,11 +195,11 @@ impl Task {
         task.completed(stated, machine)
     }
 
-    /// Returns the task with missing keys filled in from its samples or its start. `stated` returns whether a key is
-    /// given.
+    /// Returns the task with missing keys filled in from its samples, and with A and b of its start. `stated` returns
+    /// whether a key is given.
     ///
     /// # Errors
-    /// If a key is missing, or contradicts the start.
+    /// If a key is missing, or the start has another number of angles.
     pub(super) fn completed(self, stated: impl Fn(&str) -> bool, machine: &Machine) -> Result<Self, IncompleteTask> {
         if !stated("kind") {
             return Err(IncompleteTask::Missing("kind"));
@@ -231,25 +216,19 @@ impl Task {
             None => Err(IncompleteTask::Missing(key)),
         };
         let at_start = start.map(|q| place_and_b(machine, &q));
+        let to = place("to", self.to, ends.map(|ends| ends.places[1]))?;
         let from = match at_start {
-            Some((tip, _)) => Some(tip),
-            None => ends.map(|ends| ends.places[0]),
+            Some((tip, _)) => tip,
+            None => place("from", self.from, ends.map(|ends| ends.places[0]))?,
         };
-        let (from, to) = (place("from", self.from, from)?, place("to", self.to, ends.map(|ends| ends.places[1]))?);
-        let b = match ends.and_then(|ends| ends.b).or(at_start.map(|(_, b)| b)) {
+        let b = match ends.and_then(|ends| ends.b) {
+            _ if let Some((_, b)) = at_start => b,
             _ if stated("b") => self.b,
             Some(b) => b,
             // Without redundancy a point determines b; other machines may have none.
             None if !machine.is_redundant() || matches!(PoseConstant::of(machine), PoseConstant::None(_)) => 0.0,
             None => return Err(IncompleteTask::Missing("b")),
         };
-        if let Some((tip, own)) = at_start {
-            let reach = machine.end_effector().iter().map(|c| c.abs()).sum::<f64>();
-            let miss = (tip[0] - from[0]).hypot(tip[1] - from[1]);
-            if miss > START_TOLERANCE * reach || (b - own).abs() > START_TOLERANCE {
-                return Err(IncompleteTask::OffStart { from: tip, b: own });
-            }
-        }
         let time = self.samples.as_ref().map(Samples::duration).filter(|_| !stated("time")).unwrap_or(self.time);
         Ok(Self { from, to, b, time, ..self })
     }
@@ -355,13 +334,23 @@ impl Task {
         if moves && !begins {
             task.start = None;
         }
-        let follows = |key: &str| begins && matches!(key, "from" | "b") && !change.contains_key(key);
-        let is_stated = |key: &str| stated.contains_key(key) && !follows(key);
-        task.completed(is_stated, machine).map_err(|why| why.to_string())
+        task.completed(|key| stated.contains_key(key), machine).map_err(|why| why.to_string())
+    }
+
+    /// Names in a change all of start, A and b if it sets one of them and there is a start, or comes to be one.
+    pub(super) fn name_linked_keys(&self, change: &mut TaskChange) {
+        let is_linked = ["from", "b"].iter().any(|key| change.contains_key(*key)) && self.start.is_some();
+        if is_linked || change.contains_key("start") {
+            for key in ["start", "from", "b"] {
+                change.entry(key).or_insert_with(|| DEFAULT_WORD.into());
+            }
+        }
     }
 
     /// Returns the present values of the keys of a change, with which [`with_change`](Self::with_change) undoes it.
     pub fn present_values(&self, change: &TaskChange) -> TaskChange {
-        change::present_values(self, change)
+        let mut all = change.clone();
+        self.name_linked_keys(&mut all);
+        change::present_values(self, &all)
     }
 }
