@@ -14,6 +14,7 @@ use stillbase_settings::text::plain;
 
 use super::exit::print_message;
 use super::failure::Failure;
+use super::file_form::FileForm;
 use super::input::{Settings, scenario};
 use super::output::{Format, TextTable, say_written};
 use super::progress::bar;
@@ -69,6 +70,8 @@ pub struct HeadlessArguments {
     settings: Settings,
     #[command(flatten)]
     strict: Strict,
+    #[command(flatten)]
+    form: FileForm,
     #[command(flatten)]
     format: Format,
 }
@@ -173,7 +176,7 @@ impl HeadlessArguments {
     fn target(&self) -> Result<Target, Failure> {
         let viewer = match (&self.output, &self.connect) {
             (Some(file), _) => {
-                self.format.check_output(file, self.force, &["rrd"])?;
+                self.form.check(&self.format, Some(file), self.force, &["rrd"])?;
                 return Ok(Target::File(file.clone()));
             }
             (None, Some(url)) => Viewer::at(url),

@@ -14,6 +14,7 @@ use stillbase_settings::text::shell_word;
 
 use super::exit::print_message;
 use super::failure::Failure;
+use super::file_form::FileForm;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, file_words};
 use super::simulate::require_audit;
@@ -46,6 +47,8 @@ pub struct ReportArguments {
     #[command(flatten)]
     strict: Strict,
     #[command(flatten)]
+    form: FileForm,
+    #[command(flatten)]
     format: Format,
 }
 
@@ -63,7 +66,7 @@ pub struct Answer {
 impl ReportArguments {
     /// Simulates the scenario and writes the report.
     pub fn run(&self) -> Result<(), Failure> {
-        self.format.check_output(&self.output, self.force, &["html", "htm"])?;
+        self.form.check(&self.format, Some(&self.output), self.force, &["html", "htm"])?;
         let scenario = scenario(&self.scenario, &self.settings)?;
         let name = scenario.name.clone();
         let mut app_state =

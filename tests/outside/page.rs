@@ -72,7 +72,8 @@ fn what_pandas_writes_is_read() {
                   table.to_csv('gaps.csv')\n\
                   table.reset_index().iloc[::2].query('`time s` > 0.05').to_parquet('part.parquet')\n\
                   table.to_parquet('zstd.parquet', compression='zstd')\n\
-                  table.assign(word='a').to_parquet('text.parquet')\n";
+                  table.assign(word='a').to_parquet('text.parquet')\n\
+                  pd.DataFrame({'t': pd.to_timedelta(range(9), unit='s'), 'x': 0.5, 'y': 0.6}).to_parquet('times.parquet')\n";
     let program = |args: &[&str]| {
         let run =
             std::process::Command::new(env!("CARGO_BIN_EXE_stillbase")).args(args).current_dir(&folder.0).output();
@@ -110,6 +111,8 @@ fn what_pandas_writes_is_read() {
     assert!(status == Some(2) && said.contains("without compression, or with Snappy"), "{said}");
     let (status, said) = program(&["table", "text.parquet"]);
     assert!(status == Some(2) && said.contains("column word: text: want numbers"), "{said}");
+    let (status, said) = program(&["import", "times.parquet", "-o", "times.toml"]);
+    assert!(status == Some(2) && said.contains("durations"), "{said}");
 }
 
 fn a_recording_is_a_table() {

@@ -270,6 +270,7 @@ fn a_file_goes_to_standard_output_whole() {
         (&["report", "case-3", "-o", "-", "--json"], "both want standard output"),
         (&["joints", "case-3", "--format", "csv"], "want -o - as well"),
         (&["simulate", "case-3", "--format", "xlsx"], "--format xlsx: want csv or parquet"),
+        (&["report", "case-3", "-o", "-", "--format", "md"], "--format md: want html or htm"),
     ] {
         let out = folder.run(args);
         assert_eq!(out.status.code(), Some(2), "{args:?}");

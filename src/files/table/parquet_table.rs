@@ -9,6 +9,7 @@ use parquet::errors::ParquetError;
 use parquet::file::metadata::ParquetMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
+use serde::Deserialize;
 
 use super::columns::{ColumnTable, ColumnValues};
 use super::error::TableError;
@@ -50,9 +51,13 @@ fn read(opened: File, name: &str) -> Result<ColumnTable, TableError> {
         return Err(refused(format!("{} columns: want at most {MAX_COLUMNS}", read.len())));
     }
     let rows = rows(reader.metadata(), read.len()).map_err(refused)?;
+    let durations = durations(reader.metadata());
     let mut room = MAX_TEXT;
     let column = |(index, column): &(usize, &ColumnDescriptor)| {
         let called = || format!("column {}", quote_clipped(column.name()));
+        if durations.iter().any(|name| name == column.name()) {
+            return Ok(ColumnValues::Other("durations, whose unit only pandas knows"));
+        }
         let values = values_of(column, &reader, *index, rows, &mut room);
         let values = values.map_err(|e| refused(format!("{}: {}", called(), unreadable(&e))))?;
         let count = match &values {
@@ -67,6 +72,28 @@ fn read(opened: File, name: &str) -> Result<ColumnTable, TableError> {
     };
     let columns = read.iter().map(column).collect::<Result<_, _>>()?;
     Ok(ColumnTable { heads: read.iter().map(|(_, column)| column.name().to_owned()).collect(), rows, columns })
+}
+
+/// Returns the names of the columns that pandas calls durations; Parquet itself has no such type.
+fn durations(metadata: &ParquetMetaData) -> Vec<String> {
+    let stated = metadata.file_metadata().key_value_metadata().into_iter().flatten();
+    let pandas = stated.filter(|entry| entry.key == "pandas").filter_map(|entry| entry.value.as_deref());
+    let columns = pandas.filter_map(|text| serde_json::from_str::<Pandas>(text).ok()).flat_map(|pandas| pandas.columns);
+    let durations = columns.filter(|column| column.numpy_type.starts_with("timedelta"));
+    durations.map(|column| column.field_name).collect()
+}
+
+/// What pandas states of a table in its file.
+#[derive(Deserialize)]
+struct Pandas {
+    columns: Vec<PandasColumn>,
+}
+
+/// What pandas states of a column.
+#[derive(Deserialize)]
+struct PandasColumn {
+    field_name: String,
+    numpy_type: String,
 }
 
 /// Returns the number of rows.
@@ -229,7 +256,7 @@ fn append<T: DataType, V: Null>(
 fn unreadable(error: &ParquetError) -> String {
     match error {
         ParquetError::NYI(why) | ParquetError::General(why) if why.contains("compress") || why.contains("feature") => {
-            format!("{why}: want Parquet without compression, or with Snappy")
+            "compressed by a method that is not read here: want Parquet without compression, or with Snappy".into()
         }
         error => format!("{error}: want a whole Parquet file"),
     }
