@@ -78,7 +78,7 @@ pub fn chosen(session: &Session, key: &str, word: &str) -> Edit {
     if key == "kind" {
         // Keys that the new kind may lack return to their defaults.
         change.extend(["b_to", "moment_limit"].map(|key| (key.into(), "default".into())));
-        let takes = ["given", "reactionless", "minimum-norm"].contains(&word);
+        let takes = ["given", "reactionless", "minimum-norm", "zero-momentum"].contains(&word);
         if session.scenario().task.samples.as_ref().is_some_and(|s| s.columns() != 2 || !takes) {
             change.extend(["samples", "turn"].map(|key| (key.into(), "default".into())));
         }

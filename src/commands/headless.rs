@@ -15,7 +15,7 @@ use stillbase_settings::text::plain;
 use super::exit::print_message;
 use super::failure::Failure;
 use super::file_form::FileForm;
-use super::input::{Settings, scenario};
+use super::input::{Settings, no_use, scenario};
 use super::output::{Format, TextTable, say_written};
 use super::progress::bar;
 use super::simulate::require_audit;
@@ -179,6 +179,7 @@ impl HeadlessArguments {
                 self.form.check(&self.format, Some(file), self.force, &["rrd"])?;
                 return Ok(Target::File(file.clone()));
             }
+            (None, _) if self.form.is_given() => return Err(no_use("--format", "-o - as well")),
             (None, Some(url)) => Viewer::at(url),
             (None, None) => Viewer::started(),
         };

@@ -162,8 +162,8 @@ pub fn charts(scenario: &Scenario, wheels_differ: bool) -> Vec<Chart> {
 /// Smallest factor on the least range of forces and moments; rounding errors are far below it.
 const MIN_LOAD_SCALE: f64 = 1e-6;
 
-/// Returns a factor on the least range of forces and moments, at most 1: what accelerates the machine of a scenario by
-/// 1 rad within its time, in N m, so that light machines and slow motions show what they do.
+/// Returns a factor on the least range of forces and moments, at most 1: the inertia of all drives in kg m² over the
+/// square of the task's time in s. So light machines and slow motions show what they do.
 fn load_scale(scenario: &Scenario) -> f64 {
     let inertia: f64 = Inertia::of(&scenario.machine).diagonals().iter().sum();
     let load = inertia / (scenario.task.time * scenario.task.time);

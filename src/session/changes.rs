@@ -55,7 +55,7 @@ pub(super) fn task_at_b(scenario: &Scenario, space: Option<&PoseSpace>, b: f64) 
     if let Some(task) = scenario.task.posed(&scenario.machine, b) {
         return task;
     }
-    let mut task = Task { b, ..scenario.task.clone() };
+    let mut task = Task { b, start: None, ..scenario.task.clone() };
     let places = space.map(|space| carried_points(space, &task.points(), [scenario.task.b, b]));
     if let Some([from, via @ .., to]) = places.as_deref() {
         let place = |p: &stillbase_mechanics::planar::Vector| [p.re, p.im];

@@ -189,7 +189,7 @@ impl Run {
 
     /// Returns the place of the end effector after a fraction of the planned time, m.
     pub fn end_effector_on_path(&self, share: f64) -> Vector {
-        self.end_effector_at(&self.plan.motion.at(share * self.planned_time()).q)
+        self.plan.place(&self.scenario.machine, &self.plan.motion.at(share * self.planned_time()).q)
     }
 
     /// Returns the planned motion, while the machine follows it.

@@ -129,7 +129,7 @@ fn a_task_may_state_its_pose_of_a() {
     let begun = moved.with_change(&change("start = [1.9, 2.6, 3.4]"), &scenario.machine).expect("a task");
     assert_eq!(begun.from, scenario.task.from);
     for (task, words) in [
-        ("start = [1.9, 2.6]\nto = [0.3, 0.3]", "want 3, one angle for each drive"),
+        ("start = [1.9, 2.6]\nto = [0.3, 0.3]", "want 3, one for each drive"),
         ("to = [0.3, 0.3]", "point A (task.from) is missing"),
     ] {
         let text = format!("machine = 'spot'\n[task]\nkind = 'zero-momentum'\n{task}\n");

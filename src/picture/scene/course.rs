@@ -2,6 +2,7 @@
 
 use stillbase_mechanics::planar::Vector;
 use stillbase_planning::Motion;
+use stillbase_planning::off_plane::momentum::TipFrame;
 use stillbase_session::Run;
 use stillbase_session::scenario::PathShape;
 use stillbase_simulation::frame::{Frame, Reach};
@@ -22,7 +23,13 @@ pub fn waypoints(run: &Run) -> Vec<(usize, String, Vector)> {
         // The samples may have been turned since the task was written, so both ends are taken from the motion.
         return [(0, 0.0), (1, 1.0)].map(|(i, share)| (i, task.name_of(i), run.end_effector_on_path(share))).to_vec();
     }
-    let named = |(i, p)| (i, task.name_of(i), p);
+    // Points that are meant as seen from a free base lie in space where the base has shifted; B does so at the end.
+    let end = task.points().len() - 1;
+    let is_carried = run.plan().beside_base.is_some() && task.frame() == TipFrame::Base && !task.closed;
+    let named = |(i, p)| match i == end && is_carried {
+        true => (i, task.name_of(i), run.end_effector_on_path(1.0)),
+        false => (i, task.name_of(i), p),
+    };
     let all: Vec<_> = task.points().into_iter().enumerate().map(named).collect();
     if all.len() <= MAX_NAMED && task.shape() != PathShape::Freehand {
         all

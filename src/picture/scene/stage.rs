@@ -333,10 +333,9 @@ impl Stage {
                 .chain(workspace(frame.b_reference))
                 .chain(waypoints)
                 .chain(target)
-                .chain(plate)
                 .map(points)
                 .collect(),
-            then: self.compared.into_iter().flat_map(workspace).map(points).collect(),
+            then: self.compared.into_iter().flat_map(workspace).chain(plate).map(points).collect(),
         }
     }
 

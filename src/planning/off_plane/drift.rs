@@ -38,7 +38,7 @@ pub enum DriftError {
     },
     /// [J; D] is singular.
     #[error(
-        "{:.1} % along the path, at ({:.3}, {:.3}) m{}, no rates of zero momentum follow it: {why}; want another path or \
+        "{:.1} % along its curve, at ({:.3}, {:.3}) m{}, no rates of zero momentum follow it: {why}; want another path or \
          another pose of A",
         100.0 * s, at[0], at[1], in_cycle(*cycle)
     )]

@@ -9,11 +9,16 @@ use super::momentum::zero_momentum;
 use super::plan::{Plan, PlannerSpace};
 use super::proposals::tried_refusal;
 use super::rates::{minimum_norm, same_tip};
+use stillbase_mechanics::planar::DriveAngles;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::timing::TimeLaw;
 
 use crate::refusal::{Refusal, check_time};
 use crate::scenario::{Scenario, Task, TaskKind};
+use stillbase_settings::word::Choice as _;
+
+/// Largest distance of the first pose of a plan from the start that its task states, rad.
+const START_TOLERANCE_RAD: f64 = 1e-6;
 
 /// Plans the task of a scenario.
 ///
@@ -31,6 +36,13 @@ pub fn plan(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusa
         Ok(space) if leaves_plane && space.planes().is_ok() => with_nearest_b(scenario, space, refusal),
         _ => refusal,
     })?;
+    let begun = |start: DriveAngles| plan.motion.path.at(0.0).q.0.minus(&start.0).max_abs() <= START_TOLERANCE_RAD;
+    if !task.start_pose(scenario.machine.drives()).is_none_or(begun) {
+        return Err(Refusal::Task(format!(
+            "the kind {} takes a pose of A of its own here: want no start, or another kind or shape",
+            task.kind.words().file
+        )));
+    }
     let finds_time = task.law.is_fastest() || (task.kind == TaskKind::ChangeB && task.moment_limit.is_some());
     let time = plan.motion.duration();
     // A path without motion takes no time.

@@ -61,6 +61,9 @@ pub(super) fn given(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan
             let ends = [samples.point(0), samples.point(samples.count() - 1)];
             minimum_norm_curve(scenario.machine.end_effector(), start(scenario, space, &ends)?, &curve)?
         }
+        (TaskKind::ZeroMomentum, 2) if task.cycles > 1 => {
+            return refuse("samples are followed once: want cycles = 1, or no samples".into());
+        }
         (TaskKind::ZeroMomentum, 2) => {
             let curve = samples.curve().ok_or_else(unsound)?;
             let begins = start(scenario, space, &[samples.point(0)])?;

@@ -151,7 +151,7 @@ pub enum IncompleteTask {
     #[error("missing field `{0}`")]
     Missing(&'static str),
     /// The start has not one angle for each drive.
-    #[error("its start has {got} angles: want {want}, one angle for each drive")]
+    #[error("{}: want {want}, one for each drive", counted(*got, "angle"))]
     Angles {
         /// Number of angles.
         got: usize,
@@ -175,6 +175,11 @@ impl Task {
 
     /// Returns the task with A and b of its start, if it has one: they may be those of a machine that has changed.
     pub fn at_its_start(&self, machine: &Machine) -> Option<Self> {
+        // Samples of drive angles begin at a pose of their own.
+        let samples = self.samples.as_ref().and_then(|samples| ends_of(self.kind, samples, self.turn, machine));
+        if samples.is_some_and(|ends| ends.b.is_some()) {
+            return None;
+        }
         let (from, b) = place_and_b(machine, &self.start_pose(machine.drives())?);
         ((from, b) != (self.from, self.b)).then(|| Self { from, b, ..self.clone() })
     }
@@ -237,7 +242,7 @@ impl Task {
     /// other samples only b is set. Returns `None` for a task without samples.
     pub(crate) fn posed(&self, machine: &Machine, b: f64) -> Option<Self> {
         let samples = self.samples.as_ref()?;
-        let mut task = Self { b, ..self.clone() };
+        let mut task = Self { b, start: None, ..self.clone() };
         if let Some(Ends { b: Some(own), .. }) = ends_of(self.kind, samples, self.turn, machine) {
             task.turn += (b - own) / Inertia::of(machine).lambda().iter().sum::<f64>();
             [task.from, task.to] = ends_of(self.kind, samples, task.turn, machine)?.places;
@@ -330,8 +335,7 @@ impl Task {
         task.samples = kept.or(task.samples);
         // Another start brings its own A and b, and another A or b has no start but one that is stated with it.
         let begins = change.contains_key("start") && task.start.is_some();
-        let moves = change.contains_key("from") || change.contains_key("b");
-        if moves && !begins {
+        if !begins && (task.from, task.b) != (self.from, self.b) {
             task.start = None;
         }
         task.completed(|key| stated.contains_key(key), machine).map_err(|why| why.to_string())
