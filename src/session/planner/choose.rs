@@ -75,6 +75,6 @@ fn directly(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusa
 fn with_nearest_b(scenario: &Scenario, space: &PoseSpace, refusal: Refusal) -> Refusal {
     // The path does not depend on the time law.
     let law = TimeLaw::Quintic;
-    let at = |b: f64| Scenario { task: Task { b, law, ..scenario.task.clone() }, ..scenario.clone() };
+    let at = |b: f64| Scenario { task: Task { b, law, start: None, ..scenario.task.clone() }, ..scenario.clone() };
     tried_refusal(space, refusal, |b, _| directly(&at(b), Ok(space)).map(|_| ()))
 }
