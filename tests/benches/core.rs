@@ -419,6 +419,7 @@ fn tolerance_of_1024_machines_one_by_one(bencher: Bencher) {
 }
 
 /// Torques of a million steps, as the window has them.
+#[cfg(feature = "ui")]
 fn million() -> stillbase::study::samples::SignalSamples {
     let count = 1_000_000;
     let times = (0..count).map(|i| 1e-3 * f64::from(i)).collect();
