@@ -49,8 +49,8 @@ impl FileForm {
     /// or the first of those allowed. Returns the ending of the format.
     ///
     /// # Errors
-    /// As [`check_output`], if the format is not allowed or has no use, if JSON is to go to standard output, too, or if a
-    /// terminal would get what is no text.
+    /// As [`check_output`], and if the format is not allowed or has no use. Standard output is refused if JSON goes there,
+    /// too, or if it is a terminal and the format is no text.
     pub fn check(
         &self,
         format: &Format,

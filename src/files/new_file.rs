@@ -1,5 +1,5 @@
-//! [`NewFile`]: a file that appears whole or not at all, and replaces another only if forced. What goes to standard
-//! output is held in a temporary file, and appears there whole or not at all, too.
+//! [`NewFile`]: a file that appears whole or not at all, and replaces another only if forced. One that is meant for
+//! standard output is written to a temporary file first, and copied there when it is whole.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};

@@ -32,8 +32,8 @@ fn arm(bars: &[Bar]) -> Inertia {
     Inertia::of(&parse(&text, "serial").expect("valid"))
 }
 
-/// What the bodies say for rates q̇, with linear momentum 0 and a base that does not turn: angular momentum about the
-/// common centre of mass, kg m²/s, velocity of the base pin and of the end effector in space, m/s.
+/// Returns sums over the bodies for rates q̇, with linear momentum 0 and a base that does not turn: the angular momentum
+/// about the common centre of mass, kg m²/s, and the velocities of base pin and end effector in space, m/s.
 fn by_bodies(bars: &[Bar], base: &FloatingBase, q: &[f64], qd: &[f64]) -> (f64, Vector, Vector) {
     let i = Vector::new(0.0, 1.0);
     let (mut root, mut root_rate) = (Vector::default(), Vector::default());

@@ -84,8 +84,8 @@ fn every_shape_of_path_leaves_the_base_as_it_is_oriented() {
     assert!(turned < 1e-9 && away(&end, -0.3237174408133392, 0.4628225832686124) < 1e-7, "{turned:e} rad");
 }
 
-/// What the arm does to its base when it is moved by its joints, from momentum computed outside; joint angles count from
-/// the y axis of the base.
+/// The arm is moved by its joints, and turns its base by the angles that momentum computed outside gives. Joint angles
+/// count from the y axis of the base.
 #[test]
 fn joint_motions_turn_the_base_as_momentum_says() {
     let swung = |from: [f64; 3], to: [f64; 3]| {

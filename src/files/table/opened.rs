@@ -11,6 +11,8 @@ use super::reader::TableReader;
 #[cfg(feature = "rows")]
 use super::signals::MAX_BYTES;
 #[cfg(feature = "rows")]
+use crate::row_file::RowForm;
+#[cfg(feature = "rows")]
 use crate::text::open;
 use crate::text::read;
 use stillbase_settings::text::MAX_TEXT_BYTES;
@@ -82,7 +84,7 @@ impl Table {
         let name = file.display().to_string();
         let unread = |source| NoTable::Unread { file: file.into(), source };
         #[cfg(feature = "rows")]
-        if is_parquet(file) {
+        if matches!(RowForm::of(file), Ok(RowForm::Parquet)) {
             let opened = open(file, MAX_BYTES).map_err(unread)?;
             return Ok(Self { content: TableContent::Columns(parquet_columns(opened, &name)?), name });
         }
@@ -99,10 +101,4 @@ impl Table {
             TableContent::Columns(columns) => TableReader::of_columns(columns, &self.name, want),
         }
     }
-}
-
-/// Returns whether a file is Parquet by its name.
-#[cfg(feature = "rows")]
-fn is_parquet(file: &Path) -> bool {
-    file.extension().is_some_and(|own| own.eq_ignore_ascii_case("parquet"))
 }

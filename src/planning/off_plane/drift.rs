@@ -62,7 +62,7 @@ fn in_cycle(cycle: usize) -> String {
 /// What keeps the end effector from moving on at zero momentum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Singularity {
-    /// The Jacobian alone: the arm is outstretched or folded.
+    /// The Jacobian of the end effector in its frame: the arm is outstretched or folded.
     Kinematic,
     /// The Jacobian with the momentum: the end effector moves that way only with momentum.
     Dynamic,

@@ -11,10 +11,10 @@
 //! | C_0k | coupling of drive k with the base, which keeps its orientation | complex, kg m² |
 //!
 //! # Source
-//! A free base at zero linear momentum moves against the first moments: ṙ_B = −Σ i g_k e_k q̇_k / M. About the common
-//! centre of mass, which is at (Σ g_k e_k + m_b ρ)/M seen from B, the angular momentum is that about B less
-//! Re[conj(Σ_l g_l e_l + m_b ρ) Σ_k g_k e_k q̇_k]/M. This is the momentum of an arm with C_kl − conj(g_k) g_l/M in
-//! place of C_kl, and with C_0k = −conj(m_b ρ) g_k/M. In space the end effector has coefficients c_k − g_k/M.
+//! A free base at zero linear momentum moves against the first moments: ṙ_B = −Σ i g_k e_k q̇_k / M. The common centre of
+//! mass is at (Σ g_k e_k + m_b ρ)/M, seen from B. The angular momentum about it is that about B minus
+//! Re[conj(Σ_l g_l e_l + m_b ρ) Σ_k g_k e_k q̇_k]/M. So it is the momentum of an arm with C_kl − conj(g_k) g_l/M in place
+//! of C_kl, and with C_0k = −conj(m_b ρ) g_k/M. In space the end effector has the coefficients c_k − g_k/M.
 
 use stillbase_mechanics::dynamics::mass_matrix;
 use stillbase_mechanics::kinematics::end_effector;
@@ -56,8 +56,8 @@ impl From<&Inertia> for MomentumModel {
 }
 
 impl MomentumModel {
-    /// Returns the angular momentum about the common centre of mass of an arm and a free base at zero linear momentum,
-    /// for motions that start at the pose `start`.
+    /// Returns the angular momentum of an arm and a free base about their common centre of mass. Linear momentum is zero,
+    /// and motions start at the pose `start`.
     pub fn floating(arm: &Inertia, base: &FloatingBase, frame: TipFrame, start: &DriveAngles) -> Self {
         let whole = base.mass + arm.mass;
         let mut own = Self::from(arm);

@@ -7,7 +7,7 @@
 //! # Symbols
 //! | letter | meaning | shape, unit |
 //! |---|---|---|
-//! | H, D_k, J_k | n×n mass matrix; coefficients of momentum D q̇ about B, (6), (A3); spin of [`Inertia`] | kg m² |
+//! | H, D_k, J_k | n×n mass matrix; coefficients of the momentum D q̇ of [`MomentumModel`], (6), (A3); spin of [`Inertia`] | kg m² |
 //! | Z_kl | C_kl e^{i (q_l − q_k)} | complex, kg m² |
 //! | J | ∂p/∂q in absolute drive angles; p is the position of the end effector | 2×n, m |
 //! | dD | ∂D_m/∂q_k − ∂D_k/∂q_m = 2 Im Z_km | n×n, kg m² |
@@ -114,7 +114,7 @@ fn node(model: &MomentumModel, q: DriveAngles, w: &PerDrive) -> PathPoint {
     PathPoint { q, first, second: d.scaled(-sigma_rate).plus(-sigma, &rate) }
 }
 
-/// Returns the rates that give the end effector the velocity v, m/s, at angular momentum h, kg m²/s, about B: [J; D] q̇
+/// Returns the rates that give the end effector the velocity v, m/s, at angular momentum h, kg m²/s: [J; D] q̇
 /// = [v; h]. With more than three drives, or if no motion has angular momentum, these are the rates of minimum norm.
 /// Returns `None` for fewer than three drives with angular momentum, or if the matrix has lost rank.
 pub fn rates(model: &MomentumModel, q: &DriveAngles, v: Vector, h: f64) -> Option<PerDrive> {

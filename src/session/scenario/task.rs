@@ -58,8 +58,9 @@ keyed! {
         /// Shape of the path between the points.
         shape: Option<PathShape> = Key::NONE, instead: "joint-line for reactionless, line for the other kinds",
             when: CURVED => Task::is_curved;
-        // Samples contain all drive angles for `given`, or x and y for `given`, `reactionless` and `minimum-norm`. With
-        // two drives, `given` reads two values as drive angles. Samples take the place of points, shape and law.
+        // Samples contain all drive angles for `given`, or x and y for `given`, `reactionless`, `minimum-norm` and
+        // `zero-momentum`. With two drives, `given` reads two values as drive angles. Samples take the place of points,
+        // shape and law.
         /// The motion over time: rows of t, s, and all drive angles, rad, or of t, x, y, m.
         samples: Option<Samples> = Key::NONE, instead: "points and a law say where to be when";
         /// Angle by which samples of drive angles are turned as a whole.
