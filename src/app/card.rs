@@ -13,7 +13,6 @@ use stillbase_picture::scene::palette::Palette;
 use stillbase_picture::scene::views::Views;
 use stillbase_session::Session;
 use stillbase_settings::number::subscript;
-use stillbase_simulation::frame::Reach;
 use stillbase_simulation::plant::BaseKind;
 
 /// Information on an object of the scene.
@@ -48,13 +47,12 @@ impl Card {
             Handle::Base => base(session),
             Handle::Target => {
                 let at = target_handle(frame);
-                let rows = match frame.target.reach {
-                    Reach::Inside | Reach::Carried => Vec::new(),
-                    Reach::Outside { nearest, .. } => vec![format!("waits at {}", place(nearest.re, nearest.im))],
-                };
+                let waits = frame.target.reach.waits_at();
+                let rows: Vec<String> = waits.iter().map(|at| format!("waits at {}", place(at.re, at.im))).collect();
                 let hint = match session.run().pose_space() {
                     _ if session.run().waiting().is_some() => RUN_WAITS,
                     Ok(_) => "drag: the machine follows, b stays",
+                    Err(_) if session.can_be_dragged() => "drag: the machine follows at zero momentum",
                     Err(_) => "",
                 };
                 Self::new(format!("target at {}", place(at.re, at.im)), rows, hint)
@@ -82,8 +80,7 @@ impl Card {
                 Self::new(title, rows, "drag: moves its centre of mass\nclick: its rows in the panel")
             }
             Handle::Ring => {
-                let rows =
-                    vec![format!("moment on the base while it changes: {} N m", signed(frame.net_base_moment(), 3))];
+                let rows = vec![format!("moment on the base while it changes: {} N m", signed(frame.felt_moment, 3))];
                 let title = format!("pose constant, b = {} rad", signed(frame.b_reference, 3));
                 Self::new(title, rows, "drag: turns the reactionless workspace\nclick: its row in the panel")
             }
@@ -102,7 +99,7 @@ impl Card {
             Handle::Moment => {
                 let rows = vec![format!("largest so far {} N m", signed(frame.peaks.moment, 3))];
                 let name = notation.base_moment(scenario.base.wheel.is_some());
-                let title = format!("{name} = {} N m", signed(frame.net_base_moment(), 3));
+                let title = format!("{name} = {} N m", signed(frame.felt_moment, 3));
                 Self::new(title, rows, "")
             }
             Handle::Mass(i) => {
@@ -262,6 +259,6 @@ fn base(session: &Session) -> Card {
     if base.moves() {
         moved(&mut rows);
     }
-    rows.push(format!("it feels a moment of {} N m", signed(frame.net_base_moment(), 3)));
+    rows.push(format!("it feels a moment of {} N m", signed(frame.felt_moment, 3)));
     Card::new(title, rows, "click: its section in the panel")
 }

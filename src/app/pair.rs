@@ -285,7 +285,7 @@ fn moment_name(view_state: &ViewState, has_wheel: bool) -> String {
 }
 
 fn is_zero(frame: &Frame) -> bool {
-    frame.net_base_moment().abs() < ZERO_BELOW_N_M
+    frame.felt_moment.abs() < ZERO_BELOW_N_M
 }
 
 /// Draws a title with a text below it over the upper left corner of a view.
@@ -325,7 +325,7 @@ fn caption(
     if !is_short {
         row(notation::sentence(ui.ctx(), about).into_owned(), plain(12.0 * scale), p.dim, 8.0);
     }
-    let shown = signed(frame.net_base_moment() + 0.0, 2);
+    let shown = signed(frame.felt_moment + 0.0, 2);
     let largest = format!("largest {} N m", signed(peak + 0.0, 2));
     if large {
         row(format!("{shown} N m"), bold(40.0 * scale), tone, 2.0);

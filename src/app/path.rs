@@ -16,7 +16,7 @@ use stillbase_planning::off_plane::momentum::TipFrame;
 use stillbase_planning::posture::Posture;
 use stillbase_planning::timing::TimeLaw;
 use stillbase_session::scenario::{Corners, PathShape, ReactionObjective, Task, TaskChange, TaskKind, Value};
-use stillbase_session::{Edit, Session};
+use stillbase_session::{Edit, Session, base_forecast};
 use stillbase_settings::number::counted;
 use stillbase_settings::word::{Choice, ChoiceWords};
 use stillbase_simulation::plant::BaseKind;
@@ -367,12 +367,12 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
     let scenario = session.scenario();
     let ideal = scenario.plant == Default::default() && !scenario.base.moves();
     let waits = session.run().waiting().is_some();
+    let turn = base_forecast(session.run());
     let of = match (session.is_dragged(), ideal) {
         _ if waits => "the run waits, nothing is planned",
         (true, _) => "led by hand; the plan was",
         (false, true) => "planned",
-        // The path knows how the free base shifts; its loads are those on a fixed one.
-        (false, false) if session.run().plan().beside_base.is_some() => "planned with its base; loads on a fixed one",
+        (false, false) if turn.is_some() => "planned with its free base; τ on a fixed one",
         (false, false) => "planned, for the model on a fixed base",
     };
     let [time, torque, moment] = [forecast.time, torque, forecast.moment].map(|x| signed(x, 3));
@@ -381,7 +381,10 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
         false => {
             // A limit that is named in place of the first line leaves no other word that these are planned.
             let planned = if forecast.exceeded_limit.is_some() { "planned: " } else { "" };
-            format!("{planned}{time} s  ·  τ {torque}  ·  n_B {moment} N m")
+            match turn {
+                Some(base) => format!("{planned}{time} s  ·  τ {torque} N m  ·  θ {} rad", signed(base.angle_end, 4)),
+                None => format!("{planned}{time} s  ·  τ {torque}  ·  n_B {moment} N m"),
+            }
         }
     };
     let (first, ink) = match forecast.exceeded_limit {
@@ -396,7 +399,8 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
             if waits {
                 "It goes on once the limits, the points or b let it"
             } else {
-                "What the plan foresees: its duration, its largest |τ| and its largest |n_B|; the report has those of the run"
+                "What the plan foresees: its duration, its largest |τ| and its largest |n_B|, or how far a free base turns; \
+                 the report has those of the run"
             },
         ),
     ] {

@@ -118,6 +118,8 @@ fn pose_constant(
             note(ui, p, &why.to_string());
             if *why == NoPoseSpace::Free {
                 note(ui, p, "any path will do: drag A or B and the arm follows, or draw a path (P)");
+            } else if session.can_be_dragged() {
+                note(ui, p, "drag its end effector: the arm follows at zero angular momentum");
             }
             return;
         }

@@ -172,6 +172,9 @@ pub fn show(
                         };
                         (why.into(), p.ink)
                     }
+                    (None, Reach::Stopped { why, .. }) => {
+                        (format!("at zero momentum the end effector stops here: {why}"), p.ink)
+                    }
                     (None, _) if matches!(view_state.tool, Tool::Draw(_)) => {
                         ("draw with the pointer  ·  Esc stops drawing".into(), p.ink)
                     }
@@ -194,6 +197,9 @@ pub fn show(
                     }
                     (None, _) if view_state.view.shows_machine() && session.run().pose_space().is_ok() => {
                         ("drag the target, a point or the b ring  ·  Space plays  ·  F1 keys".into(), p.dim)
+                    }
+                    (None, _) if view_state.view.shows_machine() && session.can_be_dragged() => {
+                        ("drag the target or a point: the arm follows at zero momentum  ·  F1 keys".into(), p.dim)
                     }
                     (None, _) if matches!(session.run().pose_space(), Err(NoPoseSpace::Free)) => {
                         ("any path is reactionless: drag A, B, or draw one (P)  ·  F1 keys".into(), p.dim)

@@ -105,6 +105,9 @@ struct Row {
     #[serde(skip_serializing_if = "Option::is_none")]
     peak_moment_past_wheel: Option<f64>,
     reactionless: bool,
+    /// Whether a free base keeps its attitude.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    keeps_attitude: Option<bool>,
     /// Drive limit exceeded by the largest factor, and this factor, if any limit is exceeded.
     #[serde(skip_serializing_if = "Option::is_none")]
     over: Option<(String, f64)>,
@@ -136,6 +139,7 @@ impl From<Recording> for Row {
             peak_felt_moment: recording.verdict.past_wheel,
             peak_moment_past_wheel: recording.verdict.past_wheel,
             reactionless: recording.reactionless,
+            keeps_attitude: recording.verdict.attitude.map(|attitude| attitude.is_kept()),
             over: recording.verdict.exceeded_limit.map(|(limit, factor)| (limit.to_string(), factor)),
             audit_failed: recording.verdict.fault.as_ref().map(ToString::to_string),
             verdict: recording.verdict.sentence(),

@@ -81,6 +81,14 @@ struct Outcome {
     peak_tilt: f64,
     base_shift: f64,
     base_angle: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    base_angle_end: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    keeps_attitude: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    wheel_momentum: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    peak_wheel_torque: Option<f64>,
     miss: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     past_limit: Option<Past>,
@@ -140,6 +148,10 @@ impl Outcome {
             peak_tilt: verdict.tilt,
             base_shift: totals.shift,
             base_angle: totals.base_angle,
+            base_angle_end: verdict.attitude.map(|attitude| attitude.end),
+            keeps_attitude: verdict.attitude.map(|attitude| attitude.is_kept()),
+            wheel_momentum: verdict.wheel.map(|wheel| wheel.momentum),
+            peak_wheel_torque: verdict.wheel.map(|wheel| wheel.torque),
             miss: verdict.target_distance,
             answer: verdict.answer(),
             sentence: verdict.sentence(),
@@ -303,7 +315,14 @@ fn summary(outcome: &Outcome, name: &str, signals: &[Signal]) -> String {
     }
     row("peak |f_B|".into(), outcome.peak_base_force, 9, "N");
     row("the base shifts by".into(), outcome.base_shift, 9, "m");
-    row("the base turns by".into(), outcome.base_angle, 9, "rad");
+    row("the base turns by up to".into(), outcome.base_angle, 9, "rad");
+    if let Some(end) = outcome.base_angle_end {
+        row("angle of the base at the end".into(), end, 9, "rad");
+    }
+    if let (Some(momentum), Some(torque)) = (outcome.wheel_momentum, outcome.peak_wheel_torque) {
+        row("peak momentum of the wheel".into(), momentum, 9, "N m s");
+        row("peak torque of the wheel".into(), torque, 9, "N m");
+    }
     let shown = format!(
         "{} of {}: -o FILE.csv writes every row, a pipe gets them too\n",
         counted(outcome.steps, "step"),

@@ -4,7 +4,7 @@ use crate::notation::{NameOrder, Notation, NumberFormat};
 use stillbase_study::comparison::{Comparison, ComparisonEntry, DESIGN_COLUMNS, SUMMARY_COLUMNS, SummaryColumn};
 
 /// Keys of the columns that need a base that moves.
-const OF_MOVING_BASE: [&str; 2] = ["base_shift", "base_angle"];
+const OF_MOVING_BASE: [&str; 3] = ["base_shift", "base_angle", "base_angle_end"];
 
 /// A column in the user's units and names.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -21,7 +21,8 @@ use stillbase_settings::range::{RangeCheck, shortened};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "do", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Edit {
-    /// Drags the target of the end effector to a point in space, m; the machine follows with b held. On a base that
+    /// Drags the target of the end effector to a point in space, m; the machine follows with b held, or at zero momentum
+    /// if it has no b. With b held, on a base that
     /// [floats](stillbase_simulation::frame::Frame::floats), the target moves with the base from then on.
     DragTarget {
         /// m.

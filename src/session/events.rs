@@ -308,7 +308,7 @@ impl EventLog {
     /// Returns what keeps the machine from what is asked of it at the last frame.
     pub fn hindrance(&self) -> Option<Hindrance> {
         let Seen { reach, saturated, limited, .. } = self.now;
-        let is_beyond = matches!(reach, Some(Reach::Outside { .. }));
+        let is_beyond = reach.is_some_and(|reach| reach.waits_at().is_some());
         Hindrance::ALL
             .into_iter()
             .zip([is_beyond, saturated, limited != 0])
@@ -426,7 +426,13 @@ impl EventLog {
             return;
         }
         let (text, kind) = match reach {
+            Reach::Inside if matches!(before, Some(Reach::Stopped { .. })) => {
+                ("the end effector moves on".into(), EventKind::Within)
+            }
             Reach::Inside => ("the target is inside the reactionless workspace".into(), EventKind::Within),
+            Reach::Stopped { why, .. } => {
+                (format!("the end effector stops before its target: {why}"), EventKind::Beyond)
+            }
             Reach::Carried => ("the target turns with the workspace".into(), EventKind::Within),
             Reach::Outside { displayed_b, .. } => {
                 let held = if frame.floats { ", were the base held" } else { "" };

@@ -196,9 +196,9 @@ impl Session {
         self.document.script.is_dragged()
     }
 
-    /// Returns whether the user can drag the machine: it has a b to hold, and the run does not wait.
+    /// Returns whether the user can drag the end effector of the machine, and the run does not wait.
     pub fn can_be_dragged(&self) -> bool {
-        self.run.waiting().is_none() && self.run.pose_space().is_ok()
+        self.run.can_be_led()
     }
 
     /// Returns whether a file of the machine holds all that the user has changed: no edit concerns anything else, there is

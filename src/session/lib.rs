@@ -2,6 +2,7 @@
 //!
 //! Others reach this crate as `stillbase::session`; `stillbase` alone follows semantic versioning.
 
+mod base_forecast;
 mod changes;
 mod changes_made;
 mod command_line;
@@ -28,6 +29,7 @@ mod script;
 pub mod verdict;
 mod waypoints;
 
+pub use base_forecast::base_forecast;
 #[doc(hidden)]
 pub use changes_made::ChangesMade;
 pub use command_line::{row_options, session_command, simulate_command};

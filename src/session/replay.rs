@@ -99,7 +99,7 @@ pub fn base_loads(scenario: &Scenario) -> Result<([Vec<f64>; 3], Option<AuditFig
     let mut course: [Vec<f64>; 3] = Default::default();
     let run = replay(scenario, |_, frame| {
         let force = frame.wrench.dynamic.force;
-        let now = [force.re, force.im, frame.net_base_moment()];
+        let now = [force.re, force.im, frame.felt_moment];
         course.iter_mut().zip(now).for_each(|(all, x)| all.push(x));
     })?;
     Ok((course, run.frame().first_violation()))

@@ -4,15 +4,16 @@ use std::sync::Arc;
 
 use super::changes::{ScriptError, fold_start_edits};
 use super::edit::{Edit, TimedEdit};
-use super::planner::{Plan, plan};
+use super::planner::{Plan, momentum_model, plan};
 use super::refusal::Refusal;
 use crate::changes::{after_start_edit, changed, checked};
 use crate::scenario::{MAX_STEPS, Scenario, UnfinishedDrawing};
 use stillbase_mechanics::machine::{Chain, Inertia};
-use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector};
 use stillbase_planning::Motion;
 use stillbase_planning::following::follow::Bounds;
-use stillbase_planning::following::{Follower, Pull};
+use stillbase_planning::following::{Follower, MomentumFollower, Pull};
+use stillbase_planning::off_plane::momentum::TipFrame;
 use stillbase_planning::pose_constant::{CommonB, PoseSpaceQuery};
 use stillbase_planning::pose_space::{NoPoseSpace, Planes, PoseSpace};
 use stillbase_planning::posture::GuidedSpace;
@@ -20,6 +21,7 @@ use stillbase_planning::reactionless::{BSet, Decimal};
 use stillbase_query::{ByIdentity, Queries, QuickWork, Shared};
 use stillbase_settings::key::Effect;
 use stillbase_simulation::frame::Frame;
+use stillbase_simulation::plant::BaseKind;
 use stillbase_simulation::{Guide, Simulation};
 
 /// Reason why a run waits: its task does not fit its machine, or its machine is not drawn to the end.
@@ -156,6 +158,16 @@ impl Run {
         self.space.as_ref()
     }
 
+    /// Returns whether the user can lead the end effector: with b held, or at zero momentum on a machine without b.
+    pub fn can_be_led(&self) -> bool {
+        self.waiting.is_none() && (self.space.is_ok() || self.leads_without_b())
+    }
+
+    /// Returns whether a hand leads the machine at zero momentum: it has no b to hold, and three drives or more.
+    fn leads_without_b(&self) -> bool {
+        self.space.is_err() && self.scenario.machine.drives() > 2
+    }
+
     /// Returns the set of b that reach all points of the task, if there are any.
     pub fn feasible_b(&self) -> Option<BSet> {
         let space = ByIdentity(self.space.clone().ok()?);
@@ -196,7 +208,7 @@ impl Run {
     pub fn motion(&self) -> Option<&Motion> {
         match self.simulation.guide() {
             Guide::Motion { motion, .. } => Some(&**motion),
-            Guide::Follow(_) => None,
+            Guide::Follow(_) | Guide::Lead(_) => None,
         }
     }
 
@@ -204,7 +216,7 @@ impl Run {
     pub fn shared_motion(&self) -> Option<ByIdentity<Motion>> {
         match self.simulation.guide() {
             Guide::Motion { motion, .. } => Some(ByIdentity(motion.clone())),
-            Guide::Follow(_) => None,
+            Guide::Follow(_) | Guide::Lead(_) => None,
         }
     }
 
@@ -234,6 +246,14 @@ impl Run {
         }
         edit.check()?;
         match edit {
+            Edit::DragTarget { x, y } if self.leads_without_b() => {
+                let mut follower = match self.simulation.guide() {
+                    Guide::Lead(follower) => follower.clone(),
+                    _ => momentum_follower(&self.scenario, &self.simulation),
+                };
+                follower.set_target(Vector::new(*x, *y));
+                self.simulation.set_guide(Guide::Lead(follower));
+            }
             Edit::DragTarget { x, y } => {
                 let frame = self.frame();
                 let mut follower = self.follower()?;
@@ -300,6 +320,14 @@ impl Run {
         let mut simulation = self.simulation.clone();
         simulation.reconfigure(&scenario.setup())?;
         let bound = scenario.pose_acceleration != self.scenario.pose_acceleration;
+        let is_new_model = scenario.machine != self.scenario.machine || scenario.base != self.scenario.base;
+        if let Guide::Lead(old) = self.simulation.guide()
+            && is_new_model
+        {
+            let mut follower = momentum_follower(&scenario, &simulation);
+            follower.set_target(old.target().at);
+            simulation.set_guide(Guide::Lead(follower));
+        }
         if scenario.machine != self.scenario.machine || bound {
             let space = space_of(&scenario, &self.queries);
             if let Guide::Follow(old) = self.simulation.guide() {
@@ -351,7 +379,7 @@ impl Run {
     fn follower(&self) -> Result<Follower, Refusal> {
         match self.simulation.guide() {
             Guide::Follow(follower) => Ok(follower.clone()),
-            Guide::Motion { .. } => {
+            Guide::Motion { .. } | Guide::Lead(_) => {
                 let map = self.space.clone()?;
                 let bounds = bounds(&self.scenario, &map);
                 Ok(Follower::new(map, bounds, self.scenario.step, self.simulation.reference()))
@@ -368,7 +396,7 @@ impl Run {
         let frame = self.frame();
         let b_aim = || match self.simulation.guide() {
             Guide::Follow(follower) => follower.b_aim(),
-            Guide::Motion { .. } => frame.b_reference,
+            Guide::Motion { .. } | Guide::Lead(_) => frame.b_reference,
         };
         Some(match edit {
             Edit::DragTarget { .. } => Edit::DragTarget { x: frame.target.at.re, y: frame.target.at.im },
@@ -376,7 +404,7 @@ impl Run {
                 let planes = self.planes()?;
                 let [a1, a2] = match self.simulation.guide() {
                     Guide::Follow(follower) => [follower.aim()[0], follower.aim()[1]],
-                    Guide::Motion { .. } => planes.map().project(&self.simulation.reference().q).a,
+                    Guide::Motion { .. } | Guide::Lead(_) => planes.map().project(&self.simulation.reference().q).a,
                 };
                 Edit::DragAngles { a1, a2 }
             }
@@ -392,6 +420,14 @@ impl Run {
             Edit::Sketch(_) => return None,
         })
     }
+}
+
+/// Returns a follower at zero momentum that takes over from a simulation. A free base need not point where it started.
+fn momentum_follower(scenario: &Scenario, simulation: &Simulation) -> MomentumFollower {
+    let reference = simulation.reference();
+    let anchor = if scenario.base.kind == BaseKind::Free { simulation.frame().base } else { Pose2::default() };
+    let model = Arc::new(momentum_model(scenario, &reference.q, TipFrame::Space));
+    MomentumFollower::new(model, &scenario.machine, anchor, scenario.step, reference)
 }
 
 /// Refusal to drag relative angles of machines that do not have three drives.

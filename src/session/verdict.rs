@@ -5,6 +5,7 @@
 //! |---|---|
 //! | n_B, f_B | moment and force that the arm transmits to its base: they decide whether a run is reactionless |
 //! | moment past the wheel | n_B less the moment of a wheel: with f_B it decides whether the base is unloaded |
+//! | θ | angle of a free base: its peak decides whether the base keeps its attitude |
 
 mod statements;
 
@@ -17,7 +18,8 @@ use stillbase_planning::curves::Samples;
 use stillbase_planning::timing::limits::{DriveLimit, DriveLimits, LimitedQuantity};
 use stillbase_settings::number::{ShortNumber, fixed, significant};
 use stillbase_simulation::audit::AuditFigure;
-use stillbase_simulation::frame::{Frame, Peaks, Phase, Reach};
+use stillbase_simulation::frame::{Frame, Peaks, Phase};
+use stillbase_simulation::plant::BaseKind;
 
 /// Maximum final distance of the end effector from its target, m, at which the target counts as reached.
 pub const TARGET_TOLERANCE: f64 = 1e-4;
@@ -28,6 +30,9 @@ pub const LIMIT_TOLERANCE: f64 = 1e-6;
 /// A drive is past its limit above this ratio of peak to limit. Feedback adds less than 0.1 % to a motion that just
 /// keeps the limit.
 const MAX_LIMIT_RATIO: f64 = 1.0 + 1e-3;
+
+/// A free base keeps its attitude if it turns by no more than this, rad: 0.2 seconds of arc.
+const ATTITUDE_TOLERANCE: f64 = 1e-6;
 
 /// Smaller tilting moments are treated as zero, N m.
 const MIN_TILT_N_M: f64 = 1e-9;
@@ -42,6 +47,10 @@ pub struct Verdict {
     pub reactionless: bool,
     /// Whether no reaction acts on the base, after compensation by a reaction wheel if there is one.
     pub is_base_unloaded: bool,
+    /// Attitude of a free base; `None` for another base.
+    pub attitude: Option<Attitude>,
+    /// What a reaction wheel had to give; `None` without a wheel.
+    pub wheel: Option<WheelUse>,
     /// Whether the arm has moved at all.
     pub moved: bool,
     /// Largest |n_B|, N m.
@@ -66,6 +75,53 @@ pub struct Verdict {
     never_held: Option<[f64; 2]>,
     /// Whether the motion has come to rest and the target is not out of reach.
     ended: bool,
+}
+
+/// Attitude of a free base over a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Attitude {
+    /// Largest |θ|, rad.
+    pub peak: f64,
+    /// θ at the end, rad.
+    pub end: f64,
+    /// Largest |p_B|, m.
+    pub shift: f64,
+}
+
+impl Attitude {
+    /// Returns whether the base keeps its attitude.
+    pub fn is_kept(&self) -> bool {
+        self.peak <= ATTITUDE_TOLERANCE
+    }
+}
+
+/// Momentum and torque of a reaction wheel over a run, with its limits if it has any.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WheelUse {
+    /// Largest |J Ω|, N m s.
+    pub momentum: f64,
+    /// J times the limit of Ω, N m s.
+    pub momentum_limit: Option<f64>,
+    /// Largest |τ_w|, N m.
+    pub torque: f64,
+    /// Limit of τ_w, N m.
+    pub torque_limit: Option<f64>,
+    /// Time at which the wheel first could not give the torque that was wanted, s.
+    pub saturated: Option<f64>,
+}
+
+impl WheelUse {
+    /// Returns a sentence: `the wheel takes up 1.9 of 4 N m s, peak 0.3 of 0.5 N m`.
+    fn sentence(&self) -> String {
+        let of = |x: f64, limit: Option<f64>, unit: &str| match limit {
+            Some(limit) => format!("{} of {} {unit}", significant(x), significant(limit)),
+            None => format!("{} {unit}", significant(x)),
+        };
+        let (momentum, torque) =
+            (of(self.momentum, self.momentum_limit, "N m s"), of(self.torque, self.torque_limit, "N m"));
+        let full = self.saturated.map_or_else(String::new, |at| format!(", saturated from {} s", fixed(at, 3)));
+        format!("the wheel takes up {momentum}, peak {torque}{full}")
+    }
 }
 
 /// Returns the torque or speed limit that the peaks exceed by the largest factor, and that factor.
@@ -106,6 +162,18 @@ impl Verdict {
         Self {
             reactionless: peaks.is_reactionless() && frame.first_violation().is_none(),
             is_base_unloaded: peaks.is_base_unloaded(),
+            attitude: (scenario.base.kind == BaseKind::Free).then_some(Attitude {
+                peak: frame.totals.base_angle,
+                end: frame.base.angle,
+                shift: frame.totals.shift,
+            }),
+            wheel: scenario.base.wheel.map(|wheel| WheelUse {
+                momentum: wheel.inertia * frame.totals.wheel_rate,
+                momentum_limit: wheel.speed_limit.map(|limit| wheel.inertia * limit),
+                torque: frame.totals.wheel_torque,
+                torque_limit: wheel.torque_limit,
+                saturated: frame.totals.saturated,
+            }),
             moved: peaks.rate.iter().any(|rate| *rate > MIN_RATE_RAD_S),
             exceeded_limit: over(&DriveLimits::of(&scenario.machine), peaks),
             arm_moment: peaks.arm_moment,
@@ -120,22 +188,28 @@ impl Verdict {
                 scenario.plant.payload.is_some() && *from >= end - 0.5 * scenario.step && *from > 0.0
             }),
             // A target out of reach needs no remark: the window marks it at the target itself.
-            ended: frame.phase == Phase::Rest && !matches!(frame.target.reach, Reach::Outside { .. }),
+            ended: frame.phase == Phase::Rest && frame.target.reach.waits_at().is_none(),
         }
     }
 
-    /// Returns whether no audit has failed, and the arm transmits no reaction or a wheel compensates all of it.
+    /// Returns whether no audit has failed, and the arm transmits no reaction, a wheel compensates all of it, or a free
+    /// base keeps its attitude.
     pub fn spares_base(&self) -> bool {
-        self.fault.is_none() && (self.reactionless || self.is_base_unloaded)
+        let is_spared = self.attitude.map_or(self.is_base_unloaded, |attitude| attitude.is_kept());
+        self.fault.is_none() && (self.reactionless || is_spared)
     }
 
-    /// Returns `reactionless`, `not reactionless`, `reactionless past the wheel`, or `untrusted`.
+    /// Returns `reactionless`, `not reactionless`, `reactionless past the wheel`, or `untrusted`. Of a free base it tells
+    /// whether it `keeps its attitude` or `turns its base`.
     pub fn word(&self) -> &'static str {
-        match (&self.fault, self.reactionless, self.is_base_unloaded) {
+        let attitude = self.attitude.map(|attitude| attitude.is_kept());
+        match (&self.fault, self.reactionless, attitude, self.is_base_unloaded) {
             (Some(_), ..) => "untrusted",
-            (None, true, _) => "reactionless",
-            (None, false, true) => "reactionless past the wheel",
-            (None, false, false) => "not reactionless",
+            (None, true, ..) => "reactionless",
+            (None, false, Some(true), _) => "keeps its attitude",
+            (None, false, Some(false), _) => "turns its base",
+            (None, false, None, true) => "reactionless past the wheel",
+            (None, false, None, false) => "not reactionless",
         }
     }
 
@@ -146,7 +220,10 @@ impl Verdict {
             (None, true) => "yes",
             (None, false) => "no",
         };
+        let attitude = self.attitude.filter(|_| !self.reactionless && self.fault.is_none());
+        let attitude = attitude.map(|_| self.word().to_owned());
         std::iter::once(word.to_owned())
+            .chain(attitude)
             .chain(self.remarks().into_iter().map(|r| r.short))
             .collect::<Vec<_>>()
             .join(", ")
@@ -176,7 +253,8 @@ impl Verdict {
             );
             add("payload never held", long);
         }
-        if let Some(past_wheel) = self.past_wheel.filter(|_| self.is_base_unloaded && !self.reactionless) {
+        let is_held = self.attitude.is_none();
+        if let Some(past_wheel) = self.past_wheel.filter(|_| is_held && self.is_base_unloaded && !self.reactionless) {
             let all = significant(self.arm_moment);
             let long = format!(
                 "the arm transmits up to {all} N m; the moment past the wheel is {} N m",
@@ -208,13 +286,21 @@ impl Verdict {
     }
 
     /// Returns one line, such as `reactionless: peak |n_B| 1.2e-15 N m, peak |f_B| 3.1e-14 N; ends 0.0200 m from its
-    /// target`.
+    /// target`. Of a free base it tells the attitude first.
     pub fn sentence(&self) -> String {
-        let mut text = format!("{}: peak |n_B| {} N m", self.word(), significant(self.arm_moment));
+        let mut text = format!("{}: ", self.word());
+        if let Some(Attitude { peak, end, shift }) = self.attitude {
+            let [peak, end, shift] = [peak, end, shift].map(significant);
+            text += &format!("peak |θ| {peak} rad, {end} rad at the end, shifted by up to {shift} m; ");
+        }
+        text += &format!("peak |n_B| {} N m", significant(self.arm_moment));
         if let Some(past_wheel) = self.past_wheel {
             text += &format!(", past the wheel {} N m", significant(past_wheel));
         }
         text += &format!(", peak |f_B| {} N", significant(self.force));
+        if let Some(wheel) = self.wheel {
+            text += &format!("; {}", wheel.sentence());
+        }
         if let Some(figure) = &self.fault {
             text += &format!("; audit failed: {figure}");
         }

@@ -83,18 +83,27 @@ impl Control {
             list.extend(all.map(|x| RangeCheck::depending(key, x, most.contains(x), || at_step(most.rounded()))));
             list.extend(gain.misfit(n, key));
         }
-        let whole = |steps: f64| (steps - steps.round()).abs() < 1e-6 * steps.max(1.0);
-        let steps = if self.rate > 0.0 { 1.0 / (self.rate * step) } else { 1.0 };
-        let period = (1.0 - 1e-9..1e9).contains(&steps) && whole(steps);
         let (delay, encoder) = (self.delay, self.encoder);
         let counts = encoder == 0.0 || encoder >= 16.0;
         list.extend([
-            RangeCheck::depending("control.rate", self.rate, period, || rates(steps, step)),
-            RangeCheck::depending("control.delay", delay, whole(delay / step), || delays(delay, step)),
+            sampling_check("control.rate", self.rate, step),
+            RangeCheck::depending("control.delay", delay, is_whole(delay / step), || delays(delay, step)),
             RangeCheck::words("control.encoder", encoder, counts, "0, or 16 to 1e12 counts in a turn"),
         ]);
         list
     }
+}
+
+/// Returns whether a number of steps is whole.
+fn is_whole(steps: f64) -> bool {
+    (steps - steps.round()).abs() < 1e-6 * steps.max(1.0)
+}
+
+/// Checks that samples at a rate, Hz, are a whole number of steps of `step` s apart; 0 means no samples.
+pub fn sampling_check(key: &'static str, rate: f64, step: f64) -> RangeCheck {
+    let steps = if rate > 0.0 { 1.0 / (rate * step) } else { 1.0 };
+    let is_valid = (1.0 - 1e-9..1e9).contains(&steps) && is_whole(steps);
+    RangeCheck::depending(key, rate, is_valid, || rates(steps, step))
 }
 
 /// Describes the permitted sampling rates, Hz, nearest to one sample every `steps` steps of `step` s.
@@ -174,12 +183,18 @@ impl Controller {
         }
     }
 
+    /// Returns whether control computes the torque of a wheel that keeps the attitude of a free base from its model.
+    #[inline]
+    pub(crate) fn models_attitude(&self) -> bool {
+        self.law != ControlLaw::Pd && self.models[0].is_free()
+    }
+
     /// Returns the torques that hold the pose of a reading at rest according to the model, N m.
     pub fn holding(&self, reading: &Reading, loaded: bool) -> PerDrive {
         let still = PerDrive::zeros(reading.q.len());
         let rates = PerDrive::zeros(reading.rates.len());
         let at_rest = Reading { qd: still, rates: &rates, velocity: Vector::default(), ..*reading };
-        self.torque(&Reference::at_rest(reading.q), &at_rest, loaded)
+        self.torque(&Reference::at_rest(reading.q), &at_rest, loaded, |_, _| 0.0)
     }
 
     /// Returns the manipulator of the model, without the payload.
@@ -188,20 +203,30 @@ impl Controller {
         self.models[0].arm()
     }
 
-    /// Returns the motor torques, N m; `loaded` says whether the plant holds its payload.
-    pub fn torque(&self, reference: &Reference, reading: &Reading, loaded: bool) -> PerDrive {
+    /// Returns the motor torques, N m; `loaded` says whether the plant holds its payload, and `wheel` is that of
+    /// [`Self::torque_at`].
+    pub fn torque(
+        &self,
+        reference: &Reference,
+        reading: &Reading,
+        loaded: bool,
+        wheel: impl FnOnce(f64, f64) -> f64,
+    ) -> PerDrive {
         let size = reading.rates.len();
-        by_drives!(size, size > reading.q.len(), torque_of(self, reference, reading, loaded))
+        by_drives!(size, size > reading.q.len(), torque_of(self, reference, reading, loaded, wheel))
     }
 
     /// Returns the motor torques, N m, for a compile-time size `N`; `MOVES` says whether the base moves. Entries
-    /// beyond the drives are zero.
+    /// beyond the drives are zero. If control [models the attitude](Self::models_attitude), it asks `wheel` for the
+    /// torque of a wheel in the base, N m. The arguments are the moment on the whole machine without the wheel, N m, and
+    /// the machine's inertia, kg m².
     #[inline(always)]
     pub(crate) fn torque_at<const N: usize, const MOVES: bool>(
         &self,
         reference: &Reference,
         state: &ControlledState<'_, N>,
         loaded: bool,
+        wheel: impl FnOnce(f64, f64) -> f64,
     ) -> [f64; N] {
         let ControlledState { q, qd, e, rate, base, velocity } = *state;
         let n = if MOVES { N - 1 } else { N };
@@ -225,7 +250,8 @@ impl Controller {
         let mut torque = if !MOVES {
             torques(model.arm(), e, qd, &wanted, model.around())
         } else if model.moves() {
-            model.torque_for(&wanted, e, rate, base, velocity)
+            let wheel = |moment, inertia| if self.models_attitude() { wheel(moment, inertia) } else { 0.0 };
+            model.torque_for(&wanted, e, rate, base, velocity, wheel)
         } else {
             // The model assumes a fixed base, so vectors are expressed in the axes of the base.
             let turn = e[N - 1].conj();
@@ -264,6 +290,7 @@ fn torque_of<const N: usize, const MOVES: bool>(
     reference: &Reference,
     reading: &Reading,
     loaded: bool,
+    wheel: impl FnOnce(f64, f64) -> f64,
 ) -> PerDrive {
     let state = ControlledState {
         q: reading.q.0.array(),
@@ -273,5 +300,5 @@ fn torque_of<const N: usize, const MOVES: bool>(
         base: reading.base,
         velocity: reading.velocity,
     };
-    PerDrive::of_array(reading.q.len(), control.torque_at::<N, MOVES>(reference, &state, loaded))
+    PerDrive::of_array(reading.q.len(), control.torque_at::<N, MOVES>(reference, &state, loaded, wheel))
 }

@@ -52,6 +52,9 @@ pub struct Frame {
     pub base_angular_acceleration: f64,
     /// Wrench of the manipulator on its base.
     pub wrench: BaseWrench,
+    /// Moment that turns the base, N m, positive counter-clockwise: n_B less the torque of a reaction wheel. On a free base
+    /// it is about the base's own centre of mass, so that the force at the pin counts too.
+    pub felt_moment: f64,
     /// State of a reaction wheel in the base.
     pub wheel: WheelState,
     /// Linear momentum of all moving parts, including a moving base, kg m/s.
@@ -128,11 +131,6 @@ impl Frame {
         self.wrench.total().moment
     }
 
-    /// Returns n_B less the torque of a reaction wheel, N m: the net moment on the base.
-    pub fn net_base_moment(&self) -> f64 {
-        self.base_moment() - self.wheel.torque
-    }
-
     /// Converts a point to the axes of the base, m.
     pub fn in_base(&self, point: Vector) -> Vector {
         self.base.seen(point)
@@ -153,9 +151,9 @@ impl Frame {
         self.q[k] - self.base.angle
     }
 
-    /// Returns whether the net moment and force on the base are zero now, relative to the run's peaks.
+    /// Returns whether the moment and force that the base feels are zero now, relative to the run's peaks.
     pub fn is_base_unloaded(&self) -> bool {
-        self.net_base_moment().abs() <= self.peaks.no_moment().max(1e-15)
+        self.felt_moment.abs() <= self.peaks.no_moment().max(1e-15)
             && self.wrench.dynamic.force.norm() <= self.peaks.no_force().max(1e-15)
     }
 }

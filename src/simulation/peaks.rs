@@ -13,7 +13,8 @@ pub struct Peaks {
     pub force: f64,
     /// |n_B|, the moment that the arm transmits, N m.
     pub arm_moment: f64,
-    /// Net moment on the base with a reaction wheel, |n_B − τ_w|, N m; without one, |n_B|.
+    /// Moment that turns the base, N m: |n_B − τ_w|, and |n_B| without a wheel; on a free base about its own centre of
+    /// mass.
     pub moment: f64,
     /// Σ_j m_j |a_cj|, N: the force that the links would transmit without cancellation.
     pub inertial_pull: f64,
@@ -101,7 +102,7 @@ impl Peaks {
         self.force > self.no_force()
     }
 
-    /// Returns whether the net moment, including a reaction wheel, and the dynamic force on the base count as zero.
+    /// Returns whether the moment that the base feels and the dynamic force on it count as zero.
     pub fn is_base_unloaded(&self) -> bool {
         self.moment <= self.no_moment() && self.force <= self.no_force()
     }

@@ -183,7 +183,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
         ("pose/b_reference", |f| f.b_reference),
         ("moment/total", |f| f.base_moment()),
         ("moment/dynamic", |f| f.wrench.dynamic.moment),
-        ("moment/felt", |f| f.net_base_moment()),
+        ("moment/felt", |f| f.felt_moment),
         ("moment/wheel", |f| f.wheel.torque),
         ("moment/rms", |f| f.totals.moment_rms()),
         ("moment/static", |f| f.wrench.static_part.moment),

@@ -1,7 +1,6 @@
 //! [`Totals`]: time integrals and extremes of a run so far: root mean squares, impulses, energy, motion of the base.
 
 use crate::plant::Slope;
-use stillbase_mechanics::dynamics::BaseWrench;
 use stillbase_mechanics::planar::length;
 
 /// Time integrals and extremes over a run.
@@ -13,11 +12,11 @@ pub struct Totals {
     pub force_squared: f64,
     /// ∫ n_B² dt of the moment that the arm transmits, N² m² s.
     pub arm_moment_squared: f64,
-    /// ∫ n² dt of the net moment on the base, including a reaction wheel, N² m² s.
+    /// ∫ n² dt of the moment that the base feels, past a reaction wheel, N² m² s.
     pub moment_squared: f64,
     /// ∫ |f_B| dt of the dynamic part, N s.
     pub force_impulse: f64,
-    /// ∫ |n| dt of the net moment on the base, N m s.
+    /// ∫ |n| dt of the moment that the base feels, N m s.
     pub moment_impulse: f64,
     /// ∫ Σ |τ_k (q̇_k − θ̇)| dt including the wheel: the energy of motors without recuperation, J.
     pub energy: f64,
@@ -27,6 +26,8 @@ pub struct Totals {
     pub base_angle: f64,
     /// Maximum |Ω| of a reaction wheel, rad/s.
     pub wheel_rate: f64,
+    /// Maximum |τ_w| of a reaction wheel, N m.
+    pub wheel_torque: f64,
     /// ∫ Ω dt of a reaction wheel, rad.
     pub wheel_turn: f64,
     /// Time at which a reaction wheel first saturated, s; `None` if never.
@@ -45,15 +46,16 @@ struct Integrands {
 }
 
 impl Totals {
-    /// Adds one more instant by the trapezoidal rule: the base wrench, its dynamic |f_B|, N, and the time, s.
-    pub(crate) fn include(&mut self, x: &Slope, wrench: &BaseWrench, force: f64, time: f64) {
+    /// Adds one more instant by the trapezoidal rule: n_B and the moment that the base feels, N m, the dynamic |f_B|, N,
+    /// and the time, s.
+    pub(crate) fn include(&mut self, x: &Slope, [arm_moment, felt]: [f64; 2], force: f64, time: f64) {
         let turning = x.qd.get(x.torque.len()).copied().unwrap_or(0.0);
         let powers = x.torque.iter().zip(x.qd.iter()).map(|(t, qd)| (t * (qd - turning)).abs());
         let wheel = (x.spin.torque * (x.spin.rate - turning)).abs();
         let now = Integrands {
             force,
-            arm_moment: wrench.total().moment.abs(),
-            moment: (wrench.total().moment - x.spin.torque).abs(),
+            arm_moment: arm_moment.abs(),
+            moment: felt.abs(),
             power: powers.sum::<f64>() + wheel,
             wheel: x.spin.rate,
         };
@@ -68,6 +70,7 @@ impl Totals {
         self.shift = self.shift.max(length(x.base.at));
         self.base_angle = self.base_angle.max(x.base.angle.abs());
         self.wheel_rate = self.wheel_rate.max(x.spin.rate.abs());
+        self.wheel_torque = self.wheel_torque.max(x.spin.torque.abs());
         if x.spin.saturated && self.saturated.is_none() {
             self.saturated = Some(time);
         }
@@ -84,7 +87,7 @@ impl Totals {
         rms(self.arm_moment_squared, self.time)
     }
 
-    /// Returns the root mean square of the net moment on the base, including a reaction wheel, N m.
+    /// Returns the root mean square of the moment that the base feels, past a reaction wheel, N m.
     pub fn moment_rms(&self) -> f64 {
         rms(self.moment_squared, self.time)
     }

@@ -12,7 +12,7 @@ use stillbase_planning::off_plane::price::{FloatingBase, PriceError};
 use stillbase_planning::pose_constant::PointCorrection;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_session::scenario::Scenario;
-use stillbase_session::{Proposal, Refusal, Run, proposals};
+use stillbase_session::{Proposal, Refusal, Run, base_forecast, proposals};
 
 /// Summary of a task.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
@@ -60,6 +60,21 @@ pub struct PlanCost {
     pub moment_impulse: f64,
     /// Largest dynamic |f_B|, N.
     pub peak_base_force: f64,
+    /// Largest |θ| of a free base without a wheel, rad.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub base_angle: Option<f64>,
+    /// θ of a free base at the end without a wheel, rad.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub base_angle_end: Option<f64>,
+    /// Largest |p_B| of a free base without a wheel, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub base_shift: Option<f64>,
+    /// Largest momentum of a wheel that keeps the attitude of a free base, N m s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wheel_momentum: Option<f64>,
+    /// Largest |torque| of this wheel, N m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub peak_wheel_torque: Option<f64>,
     /// For the fastest motion: the limit that is active longest in the first part of the path with any active limit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limiting: Option<String>,
@@ -161,6 +176,7 @@ impl PlanCost {
             })
         };
         let closed = run.scenario().task.closed;
+        let moved = base_forecast(run);
         Ok(Self {
             duration: forecast.time,
             q_start: plan.motion.at(0.0).q.to_vec(),
@@ -171,6 +187,11 @@ impl PlanCost {
             peak_base_moment: forecast.moment,
             moment_impulse: forecast.impulse,
             peak_base_force: forecast.force,
+            base_angle: moved.map(|base| base.angle),
+            base_angle_end: moved.map(|base| base.angle_end),
+            base_shift: moved.map(|base| base.shift),
+            wheel_momentum: moved.map(|base| base.wheel_momentum),
+            peak_wheel_torque: moved.map(|base| base.wheel_torque),
             limiting: plan.pace.and_then(|pace| pace.leading).map(|limit| limit.to_string()),
             gap: plan.pace.and_then(|pace| pace.gap()),
             blended: plan.blended,

@@ -7,6 +7,7 @@ mod curve;
 mod floating;
 mod given;
 mod least_reaction;
+mod led;
 mod null_space;
 mod off_space;
 mod outline;

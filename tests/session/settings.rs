@@ -76,8 +76,9 @@ fn every_word_of_a_choice_is_in_the_table() {
 /// What a key is set to if its default is typed is what stands there if nothing is.
 #[test]
 fn every_default_is_as_it_is_said() {
-    let scenario =
-        case_3().with_settings(&"base = { wheel = {} }\nplant = { payload = { mass = 0.1 } }".parse().expect("TOML"));
+    let scenario = case_3().with_settings(
+        &"base = { wheel = { inertia = 0.02 } }\nplant = { payload = { mass = 0.1 } }".parse().expect("TOML"),
+    );
     let scenario = scenario.expect("a wheel and a payload");
     for (path, key, _) in scenario.settings() {
         let parts: Vec<&str> = path.split('.').collect();

@@ -55,7 +55,7 @@ fn a_wheel_does_not_make_an_arm_reactionless() {
     let (verdict, frames) = run(&scenario);
     let peak = |of: fn(&Frame) -> f64| frames.iter().map(|f| of(f).abs()).fold(0.0, f64::max);
     assert_eq!(verdict.arm_moment, peak(Frame::base_moment));
-    assert_eq!(verdict.past_wheel, Some(peak(Frame::net_base_moment)));
+    assert_eq!(verdict.past_wheel, Some(peak(|f: &Frame| f.felt_moment)));
     assert!((verdict.arm_moment - 1.0891).abs() < 1e-3 && verdict.past_wheel.is_some_and(|n| n < 1e-9));
     assert!(!verdict.reactionless && verdict.is_base_unloaded && verdict.spares_base());
     assert_eq!(

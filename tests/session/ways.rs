@@ -426,9 +426,13 @@ fn statements_agree() {
                 if slides && !session.can_be_dragged() {
                     continue;
                 }
-                if slides {
+                if slides && session.run().pose_space().is_ok() {
                     let b = session.b_aim() + 0.4;
                     session.apply(Edit::SlideB { b }).expect("any b");
+                    session.end_gesture();
+                } else if slides {
+                    let [x, y] = scenario.task.to;
+                    session.apply(Edit::DragTarget { x, y }).expect("any target");
                     session.end_gesture();
                 }
                 session.play();

@@ -325,7 +325,7 @@ proptest! {
         scenario.base.kind = base;
         scenario.step = step;
         scenario.duration = Some(0.5);
-        scenario.base.wheel = Some(Wheel { inertia, torque_limit: torque, speed_limit: Some(top) });
+        scenario.base.wheel = Some(Wheel { inertia, torque_limit: torque, speed_limit: Some(top), ..Wheel::default() });
         let (mut stayed, mut before) = (0_u32, 0.0);
         let run = replay(&scenario, |_, f| {
             assert!(f.wheel.rate.abs() <= top * (1.0 + 1e-13), "{} of {top} at {} s", f.wheel.rate, f.time);
@@ -355,7 +355,8 @@ fn a_light_wheel_stops_at_its_limit() {
     let ends = [1e-3, 2e-4, 5e-5].map(|step| {
         let mut scenario = Scenario::builtin("case-1").expect("built in");
         scenario.step = step;
-        scenario.base.wheel = Some(Wheel { inertia: 1e-4, torque_limit: None, speed_limit: Some(5.0) });
+        scenario.base.wheel =
+            Some(Wheel { inertia: 1e-4, torque_limit: None, speed_limit: Some(5.0), ..Wheel::default() });
         let end = replay(&scenario, |_, _| {}).expect("runs").frame();
         assert!(end.totals.wheel_rate <= 5.0 * (1.0 + 1e-14), "{}", end.totals.wheel_rate);
         // It saturates in the step in which it reaches the limit.

@@ -1,5 +1,6 @@
 //! Tests of `src/simulation`: plants, control, the step, friction, signals and audits.
 
+mod attitude;
 mod bases;
 mod contacts;
 mod convergence;

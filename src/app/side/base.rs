@@ -135,5 +135,18 @@ fn wheel(ui: &mut Ui, base: &Base, p: &Palette, commands: &mut Vec<Command>) {
                 }
             });
         }
+        if base.kind != BaseKind::Free {
+            return;
+        }
+        for (key, label, decimals, step, now, usual) in [
+            ("kp", "attitude gain", 2, 0.02, wheel.kp, normal.kp),
+            ("kd", "rate gain", 2, 0.02, wheel.kd, normal.kd),
+            ("dead_band", "dead band", 4, 0.0002, wheel.dead_band, normal.dead_band),
+            ("rate", "sampling", 1, 0.5, wheel.rate, normal.rate),
+        ] {
+            let row = NumberRow::of(label, &format!("base.wheel.{key}")).with(decimals, step);
+            NumberField::of(row, now, usual)
+                .show(ui, p, SliderScale::No, commands, |x| PanelSection::Base.set(&["wheel", key], x));
+        }
     });
 }

@@ -72,7 +72,14 @@ impl Report<'_> {
         row((&format!("{mean} force on the base"), "f rms"), totals.force_rms(), REACTION_DECIMALS, "N");
         if scenario.base.moves() {
             row(("the base shifts by", ""), totals.shift, REACTION_DECIMALS, "m");
-            row(("the base turns by", ""), totals.base_angle, REACTION_DECIMALS, "rad");
+            row(("the base turns by up to", ""), totals.base_angle, REACTION_DECIMALS, "rad");
+        }
+        if let Some(attitude) = verdict.attitude {
+            row(("angle of the base at the end", ""), attitude.end, REACTION_DECIMALS, "rad");
+        }
+        if let Some(wheel) = verdict.wheel {
+            row(("peak momentum of the wheel", ""), wheel.momentum, REACTION_DECIMALS, "N m s");
+            row(("peak torque of the wheel", "|τ_w|"), wheel.torque, REACTION_DECIMALS, "N m");
         }
         if verdict.has_target {
             row(("end effector from its target at the end", ""), verdict.target_distance, REACTION_DECIMALS, "m");

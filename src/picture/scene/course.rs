@@ -49,7 +49,7 @@ pub fn stations(motion: &Motion) -> impl Iterator<Item = f64> {
 /// base at rest.
 pub fn target_handle(frame: &Frame) -> Vector {
     match frame.target.reach {
-        Reach::Outside { .. } => frame.target.at,
+        Reach::Outside { .. } | Reach::Stopped { .. } => frame.target.at,
         Reach::Inside | Reach::Carried if frame.target_rides || frame.base_is_planned => frame.end_effector,
         Reach::Inside | Reach::Carried => frame.in_base(frame.end_effector),
     }

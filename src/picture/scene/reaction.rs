@@ -65,7 +65,7 @@ const MIN_INERTIAL_PULL_N: f64 = 1e-9;
 impl ReactionGlyph {
     /// Returns the reaction of a frame.
     pub fn of(frame: &Frame) -> Self {
-        let (force, moment) = (frame.wrench.dynamic.force, frame.net_base_moment());
+        let (force, moment) = (frame.wrench.dynamic.force, frame.felt_moment);
         Self {
             force,
             moment,

@@ -29,6 +29,7 @@ impl Target {
             Reach::Outside { nearest, feasible_b, displayed_b, other_sheet } => {
                 Reach::Outside { nearest: base.place(nearest), feasible_b, displayed_b, other_sheet }
             }
+            Reach::Stopped { nearest, why } => Reach::Stopped { nearest: base.place(nearest), why },
             reach => reach,
         };
         Self { at: base.place(self.at), reach }
@@ -289,7 +290,7 @@ impl Follower {
                     self.target.at = self.aim_point();
                 }
             },
-            Reach::Carried => self.target.at = self.aim_point(),
+            Reach::Carried | Reach::Stopped { .. } => self.target.at = self.aim_point(),
             // Starts from the aim, so that the result does not depend on the lag of the reference.
             Reach::Outside { .. } => {
                 let (aim, reach) = self.map.target_pose_nearby(self.target.at, self.b.x, &self.aim, self.target.reach);

@@ -7,10 +7,12 @@ mod deviation;
 pub mod follow;
 #[doc(hidden)]
 pub mod held;
+mod momentum_follower;
 pub mod nearest;
 mod on_plane;
 pub mod trace;
 
 pub use follow::Follower;
 pub use held::Pull;
+pub use momentum_follower::{Barrier, MomentumFollower};
 pub use trace::{Blocked, Rule, SheetEnd};

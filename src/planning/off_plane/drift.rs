@@ -10,8 +10,8 @@ use crate::curves::curve::{Curve, CurvePoint};
 use crate::curves::path::by_pieces;
 use crate::curves::table::PathTable;
 use crate::off_plane::momentum::MomentumModel;
-use crate::off_plane::null_space::{determines, jacobian_with_momentum, least, rates, solve};
-use stillbase_mechanics::kinematics::{acceleration, column};
+use crate::off_plane::null_space::{motion_of, rates};
+use stillbase_mechanics::kinematics::column;
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use stillbase_settings::number::counted;
 
@@ -82,7 +82,7 @@ const STRETCHED: f64 = 0.05;
 
 impl Singularity {
     /// Tells which matrix is singular near a pose.
-    fn near(model: &MomentumModel, q: &DriveAngles) -> Self {
+    pub(crate) fn near(model: &MomentumModel, q: &DriveAngles) -> Self {
         let tip = model.tip_units(&q.units());
         let [xx, xy, yy] = (0..model.drives()).fold([0.0; 3], |[xx, xy, yy], k| {
             let j = column(model.tip(), &tip, k);
@@ -223,16 +223,7 @@ fn follow_once(
 
 /// Returns q, q′ and q″ with D q′ = 0 and D q″ + D′ q′ = 0.
 fn node(model: &MomentumModel, q: &DriveAngles, point: &CurvePoint) -> Option<PathPoint> {
-    if !determines(model) {
-        let (first, second) = least(model, q, point.first, point.second, 0.0)?;
-        return Some(PathPoint { q: *q, first, second });
-    }
-    let e = q.units();
-    let (lines, scale) = jacobian_with_momentum(model, &e)?;
-    let first = solve(&lines, point.first, 0.0)?;
-    let bent = acceleration(model.tip(), &model.tip_units(&e), &first, &PerDrive::zeros(3));
-    let turned = model.coefficient_rates(&e, &first).dot(&first);
-    let second = solve(&lines, point.second - bent, -turned / scale)?;
+    let (first, second) = motion_of(model, q, [point.first, point.second], [0.0; 2])?;
     Some(PathPoint { q: *q, first, second })
 }
 

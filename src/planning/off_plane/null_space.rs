@@ -23,7 +23,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::momentum::MomentumModel;
 use crate::curves::PathPoint;
 use crate::curves::table::PathTable;
-use stillbase_mechanics::kinematics::{column, minimum_norm, minimum_norm_with};
+use stillbase_mechanics::kinematics::{acceleration, column, minimum_norm, minimum_norm_with};
 use stillbase_mechanics::machine::{BALANCE_TOLERANCE, Inertia};
 use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, UnitVectors, Vector};
 
@@ -125,6 +125,31 @@ pub fn rates(model: &MomentumModel, q: &DriveAngles, v: Vector, h: f64) -> Optio
     solve(&lines, v, h / scale)
 }
 
+/// Returns the rates of [`rates`] and their time derivatives, for the velocity of the end effector and its derivative, m/s
+/// and m/s², and for the angular momentum and its derivative, kg m²/s and N m.
+pub fn motion_of(
+    model: &MomentumModel,
+    q: &DriveAngles,
+    [v, vd]: [Vector; 2],
+    [h, hd]: [f64; 2],
+) -> Option<(PerDrive, PerDrive)> {
+    if !determines(model) {
+        let (first, second) = least(model, q, v, vd, h)?;
+        if hd == 0.0 {
+            return Some((first, second));
+        }
+        // The rates of minimum norm are linear in (v, h) at each pose.
+        let turning = least(model, q, Vector::default(), Vector::default(), hd)?.0;
+        return Some((first, second.plus(1.0, &turning)));
+    }
+    let e = q.units();
+    let (lines, scale) = jacobian_with_momentum(model, &e)?;
+    let first = solve(&lines, v, h / scale)?;
+    let bent = acceleration(model.tip(), &model.tip_units(&e), &first, &PerDrive::zeros(3));
+    let turned = model.coefficient_rates(&e, &first).dot(&first);
+    Some((first, solve(&lines, vd - bent, (hd - turned) / scale)?))
+}
+
 /// Curves that a machine's end effector can follow at zero angular momentum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MomentumFreedom {
@@ -149,19 +174,13 @@ impl MomentumFreedom {
 
 /// Returns whether the velocity of the end effector and the momentum determine the rates of the drives. This holds for
 /// three drives with angular momentum.
-pub(super) fn determines(model: &MomentumModel) -> bool {
+fn determines(model: &MomentumModel) -> bool {
     model.drives() == 3 && !model.is_zero()
 }
 
 /// Returns the rates of minimum norm that give the end effector the velocity v, m/s, at angular momentum h, kg m²/s.
 /// Also returns their exact derivative for v̇ = `vd`, m/s², and constant h.
-pub(super) fn least(
-    model: &MomentumModel,
-    q: &DriveAngles,
-    v: Vector,
-    vd: Vector,
-    h: f64,
-) -> Option<(PerDrive, PerDrive)> {
+fn least(model: &MomentumModel, q: &DriveAngles, v: Vector, vd: Vector, h: f64) -> Option<(PerDrive, PerDrive)> {
     let e = q.units();
     if model.is_zero() {
         return minimum_norm(model.tip(), &model.tip_units(&e), model.drives(), v, vd);
@@ -173,7 +192,7 @@ pub(super) fn least(
 
 /// Returns [J; D/scale] of three drives, and the scale, kg m, that makes the norm of D/scale equal to the arm length.
 /// Returns `None` for other numbers of drives, or if the matrix has lost rank.
-pub(super) fn jacobian_with_momentum(model: &MomentumModel, e: &UnitVectors) -> Option<(Matrix3<f64>, f64)> {
+fn jacobian_with_momentum(model: &MomentumModel, e: &UnitVectors) -> Option<(Matrix3<f64>, f64)> {
     if model.drives() != 3 {
         return None;
     }
@@ -187,7 +206,7 @@ pub(super) fn jacobian_with_momentum(model: &MomentumModel, e: &UnitVectors) -> 
 }
 
 /// Solves `lines` q̇ = [v; h] for q̇; `None` if the matrix is singular.
-pub(super) fn solve(lines: &Matrix3<f64>, v: Vector, h: f64) -> Option<PerDrive> {
+fn solve(lines: &Matrix3<f64>, v: Vector, h: f64) -> Option<PerDrive> {
     let x = lines.lu().solve(&Vector3::new(v.re, v.im, h))?;
     x.iter().all(|x| x.is_finite()).then(|| PerDrive::from([x[0], x[1], x[2]]))
 }

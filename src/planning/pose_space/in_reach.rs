@@ -1,5 +1,6 @@
 //! [`Reach`]: whether the target of a drag can be reached while b is held.
 
+use crate::following::Barrier;
 use crate::reactionless::Decimal;
 use stillbase_mechanics::planar::Vector;
 
@@ -20,7 +21,24 @@ pub enum Reach {
         /// avoided.
         other_sheet: bool,
     },
+    /// On the way to the target, rates of zero momentum end; the machine waits there.
+    Stopped {
+        /// Where it waits, m.
+        nearest: Vector,
+        /// What it waits before.
+        why: Barrier,
+    },
     /// A change of b has made the target infeasible, so the machine keeps its relative angles and turns with its
     /// workspace.
     Carried,
+}
+
+impl Reach {
+    /// Returns where the machine waits if the target cannot be reached, m.
+    pub fn waits_at(&self) -> Option<Vector> {
+        match *self {
+            Self::Outside { nearest, .. } | Self::Stopped { nearest, .. } => Some(nearest),
+            Self::Inside | Self::Carried => None,
+        }
+    }
 }

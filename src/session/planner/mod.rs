@@ -16,4 +16,5 @@ mod rates;
 
 pub use along::curves;
 pub(super) use choose::plan;
+pub(super) use momentum::momentum_model;
 pub use plan::Plan;

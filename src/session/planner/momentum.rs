@@ -61,7 +61,7 @@ pub(super) fn zero_momentum(scenario: &Scenario, space: PlannerSpace<'_>) -> Res
 
 /// Returns the angular momentum of the machine of a scenario as its base keeps its orientation, for motions from a pose,
 /// with its end effector in a frame. A base that is not free stands still.
-fn momentum_model(scenario: &Scenario, start: &DriveAngles, frame: TipFrame) -> MomentumModel {
+pub(crate) fn momentum_model(scenario: &Scenario, start: &DriveAngles, frame: TipFrame) -> MomentumModel {
     let (arm, _) = dynamics_of(scenario);
     match scenario.base.kind {
         BaseKind::Free => MomentumModel::floating(&arm, &scenario.base.body(), frame, start),

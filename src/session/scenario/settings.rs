@@ -19,6 +19,8 @@ use stillbase_settings::change::{self, DEFAULT_WORD};
 use stillbase_settings::key::{self, Effect, Key, KeyType};
 use stillbase_settings::mending::Problem;
 use stillbase_settings::range::{RangeCheck, quote_clipped};
+use stillbase_simulation::control::sampling_check;
+use stillbase_simulation::plant::BaseKind;
 
 /// Reason why settings cannot be applied to a scenario.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -266,7 +268,10 @@ impl Scenario {
             Some(("task", key @ ("posture" | "orientation"))) => self.machine.redundancy() > 1 && self.task.uses(key),
             Some(("task", key @ ("b" | "turn"))) if self.gives_two_drives() => key == "turn",
             Some(("task", key)) => self.task.uses(key),
-            Some(("base", key)) => self.base.uses(key),
+            Some(("base", key)) => match key.strip_prefix("wheel.") {
+                Some("kp" | "kd" | "dead_band" | "rate") => self.base.kind == BaseKind::Free,
+                _ => self.base.uses(key),
+            },
             Some(("control", "knows_base")) => self.base.moves(),
             Some(("plant", key)) => key.strip_prefix("payload.").is_none_or(|key| self.plant.payload.uses(key)),
             Some(("design", key)) => self.design.has_effect(key, &self.machine),
@@ -310,6 +315,7 @@ impl Scenario {
         if STEP_RANGE.contains(self.step) {
             list.extend(self.task.range_checks(self.step, self.machine.drives()));
             list.extend(self.control.range_checks(n, self.step));
+            list.extend(self.base.wheel.map(|wheel| sampling_check("base.wheel.rate", wheel.rate, self.step)));
         }
         list.extend(key::checks(key_of, &stated));
         list.extend(self.plant.range_checks(n));

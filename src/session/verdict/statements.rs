@@ -4,8 +4,9 @@
 //! | statement | good | bad | open |
 //! |---|---|---|---|
 //! | machine | every g_k and C_kl vanishes, (7) and (8), with what it carries | one does not | it is not drawn whole |
-//! | plan | b stays constant, (13) | b changes, or a drive limit is exceeded | there is no plan, or no b |
+//! | plan | b stays constant, (13), or no momentum | b changes, or a drive limit is exceeded | no plan, or no b |
 //! | run | f_B and n_B vanish, or a wheel took n_B up | they do not, or an audit failed | nothing has moved |
+//! | run, free base | it kept its attitude | it turned, or an audit failed | nothing has moved |
 //!
 //! The three agree: a machine is judged as it moves, with a payload that control does not know of; a hand that has
 //! turned b is named by the plan and by the run; and a run that transmits something names what does it.
@@ -17,13 +18,14 @@ mod moving;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::Verdict;
+use super::{Attitude, Verdict};
 use crate::Run;
-use crate::scenario::UnfinishedDrawing;
+use crate::scenario::{TaskKind, UnfinishedDrawing};
 use stillbase_mechanics::machine::Inertia;
 use stillbase_settings::number::significant;
 use stillbase_simulation::Guide;
 use stillbase_simulation::frame::Frame;
+use stillbase_simulation::plant::BaseKind;
 
 pub(crate) use moving::inertia_of;
 use moving::of_moving_machine;
@@ -104,6 +106,18 @@ impl Statement {
         if run.waiting().is_some() {
             return Self::new(StatusLight::Open, "none, the run waits", "the task does not fit the machine");
         }
+        if matches!(run.simulation().guide(), Guide::Lead(_)) {
+            let why = "a hand leads the machine at zero angular momentum";
+            return Self::new(StatusLight::Good, "led by hand, has no momentum", why);
+        }
+        if !inertia.is_invariant() && moves_without_momentum(run) {
+            let about = match run.scenario().base.kind {
+                BaseKind::Free => "the common centre of mass",
+                BaseKind::Fixed | BaseKind::Compliant => "the base pin",
+            };
+            let why = format!("the angular momentum about {about} stays zero all along the path");
+            return Self::new(StatusLight::Good, "has no momentum", why);
+        }
         if !inertia.is_invariant() {
             let why = "the angular momentum of this machine depends on its pose: it has no pose constant";
             return Self::new(StatusLight::Open, "no b to hold", why);
@@ -135,7 +149,7 @@ impl Statement {
                     Self::new(StatusLight::Good, "led by hand, holds b", why)
                 }
             },
-            Guide::Motion { .. } => {
+            Guide::Motion { .. } | Guide::Lead(_) => {
                 let forecast = &run.plan().forecast;
                 let [least, greatest] = forecast.b;
                 let change = greatest - least;
@@ -195,6 +209,9 @@ impl Statement {
         if verdict.reactionless {
             return Self::new(StatusLight::Good, "transmitted nothing", figures);
         }
+        if let Some(attitude) = verdict.attitude {
+            return Self::of_attitude(run, frame, machine, &verdict, attitude);
+        }
         if let Some(past_wheel) = verdict.past_wheel.filter(|_| verdict.is_base_unloaded) {
             let words = format!("the wheel took up {:.3} N m", verdict.arm_moment);
             let why = format!("{figures}; the moment past the wheel is {} N m", significant(past_wheel));
@@ -205,19 +222,60 @@ impl Statement {
             peaks.transmits_force().then(|| format!("|f_B| {} N", significant(verdict.force))),
         ];
         let words = format!("peak {}", parts.into_iter().flatten().collect::<Vec<_>>().join(", "));
-        let cause = match machine.outcome {
-            StatusLight::Bad if inertia_of(run).is_balanced() => {
-                "what control does not know of does this: with it the machine is not balanced"
-            }
-            StatusLight::Bad => "the machine does this: it is not balanced",
-            _ if turned_by_hand(run, frame).is_some() => "a hand does this, not the machine: it has turned b",
-            _ if changes_b(run) => "the path does this, not the machine: b changes on it",
-            _ => {
-                "neither machine nor path do this, but what the model leaves out: a payload, a push, friction, unequal \
-                 gains, or a hand that turned b"
-            }
-        };
-        Self::new(StatusLight::Bad, words, format!("{figures}; {cause}"))
+        Self::new(StatusLight::Bad, words, format!("{figures}; {}", cause(run, frame, machine)))
+    }
+
+    /// States whether a free base has kept its attitude up to a frame.
+    fn of_attitude(run: &Run, frame: &Frame, machine: &Self, verdict: &Verdict, attitude: Attitude) -> Self {
+        let Attitude { peak, end, shift } = attitude;
+        let [peak, end, shift] = [peak, end, shift].map(significant);
+        let figures = format!("peak |θ| {peak} rad, {end} rad at the end, base shifted by up to {shift} m");
+        match (attitude.is_kept(), &verdict.wheel) {
+            (true, Some(wheel)) => Self::new(
+                StatusLight::Good,
+                format!("kept its attitude, the wheel took up {} N m s", significant(wheel.momentum)),
+                format!("{figures}; {}", wheel.sentence()),
+            ),
+            (true, None) => Self::new(StatusLight::Good, "kept its attitude", figures),
+            (false, Some(wheel)) => Self::new(
+                StatusLight::Bad,
+                format!("turned its base by {peak} rad"),
+                format!("{figures}; {}", wheel.sentence()),
+            ),
+            (false, None) => Self::new(
+                StatusLight::Bad,
+                format!("turned its base by {peak} rad"),
+                format!("{figures}; {}", cause(run, frame, machine)),
+            ),
+        }
+    }
+}
+
+/// Returns what transmits a reaction, in a sentence.
+fn cause(run: &Run, frame: &Frame, machine: &Statement) -> &'static str {
+    match machine.outcome {
+        _ if moves_without_momentum(run) => {
+            "the path has no momentum, so what the model leaves out does this: a payload, a push, friction, gains"
+        }
+        StatusLight::Bad if inertia_of(run).is_balanced() => {
+            "what control does not know of does this: with it the machine is not balanced"
+        }
+        StatusLight::Bad => "the machine does this: it is not balanced",
+        _ if turned_by_hand(run, frame).is_some() => "a hand does this, not the machine: it has turned b",
+        _ if changes_b(run) => "the path does this, not the machine: b changes on it",
+        _ => {
+            "neither machine nor path do this, but what the model leaves out: a payload, a push, friction, unequal \
+             gains, or a hand that turned b"
+        }
+    }
+}
+
+/// Returns whether a run follows a motion that is planned without angular momentum.
+fn moves_without_momentum(run: &Run) -> bool {
+    match run.simulation().guide() {
+        Guide::Motion { .. } => run.scenario().task.kind == TaskKind::ZeroMomentum,
+        Guide::Lead(_) => true,
+        Guide::Follow(_) => false,
     }
 }
 
@@ -233,6 +291,7 @@ fn turned_by_hand(run: &Run, frame: &Frame) -> Option<f64> {
 /// Returns whether the motion of a run, planned or dragged, changes b.
 pub(crate) fn changes_b(run: &Run) -> bool {
     let change = match run.simulation().guide() {
+        Guide::Lead(_) => 0.0,
         Guide::Follow(follower) => (follower.b_aim() - follower.b()).abs(),
         Guide::Motion { .. } => {
             let [least, greatest] = run.plan().forecast.b;

@@ -21,7 +21,13 @@ pub const SIGNALS: &[ResultRow] = &[
     signal("pose/b_reference", "b ref", "rad", "pose constant aimed at").sign(TURN),
     signal("moment/total", "n_B", "N m", "turning moment on the base").sign(TURN),
     signal("moment/dynamic", "n_B dyn", "N m", "turning moment on the base, from motion").sign(TURN),
-    signal("moment/felt", "n felt", "N m", "turning moment that the base feels: n_B less a wheel's").sign(TURN),
+    signal(
+        "moment/felt",
+        "n felt",
+        "N m",
+        "moment that turns the base: n_B less a wheel's; of a free base, about its centre of mass",
+    )
+    .sign(TURN),
     signal("moment/wheel", "τ_w", "N m", "torque of the reaction wheel").sign(TURN),
     signal("moment/rms", "n rms", "N m", "root mean square of the moment so far"),
     signal("moment/static", "n_B stat", "N m", "turning moment on the base, from weight").sign(TURN),

@@ -202,7 +202,7 @@ impl MovingBody {
     /// Returns the position and velocity of the point that a chain describes, m and m/s, relative to the chain's
     /// origin.
     #[inline(always)]
-    fn seen(&self, chain: &[Vector; MAX_DRIVES], e: &UnitVectors, qd: &PerDrive) -> (Vector, Vector) {
+    pub(super) fn seen(&self, chain: &[Vector; MAX_DRIVES], e: &UnitVectors, qd: &PerDrive) -> (Vector, Vector) {
         (0..self.rotating.drives).fold(Default::default(), |(p, v), k| {
             let arm = chain[k] * e[k];
             (p + arm, v + I * arm * qd[k])
@@ -222,6 +222,16 @@ impl MovingBody {
             wrench.dynamic.moment += moment;
         }
         wrench
+    }
+
+    /// Returns the moment that turns the base, N m: that of the arm less the torque of a wheel, about the base pin, or about
+    /// a free base's own centre of mass. `base` is the unit vector of the base, `wrench` that about the pin.
+    #[inline]
+    pub(crate) fn felt_moment(&self, wrench: &BaseWrench, base: Vector, wheel_torque: f64) -> f64 {
+        let wrench = wrench.total();
+        let pin_moment = wrench.moment - wheel_torque;
+        let (mass, moment) = self.base;
+        if self.is_free { pin_moment - cross(moment / mass * base, wrench.force) } else { pin_moment }
     }
 
     /// Returns the potential energy of weight and springs, J.
@@ -274,8 +284,16 @@ impl MovingBody {
         self.rotating.c[n][n].re + self.rotating.spin[n] - self.arm.spin[n] + g.norm_sqr() / self.mass
     }
 
+    /// Returns whether the base is free.
+    #[inline]
+    pub(crate) fn is_free(&self) -> bool {
+        self.is_free
+    }
+
     /// Returns the torques, N m, that give the drives commanded accelerations relative to a moving base, rad/s²
-    /// (inverse dynamics). Entries beyond the drives are zero.
+    /// (inverse dynamics). Entries beyond the drives are zero. `wheel` returns the torque of a wheel on the base, N m.
+    /// Its arguments are the moment that would turn the whole machine without a wheel, N m, and the machine's inertia,
+    /// kg m².
     #[inline]
     pub(crate) fn torque_for<const N: usize>(
         &self,
@@ -284,13 +302,15 @@ impl MovingBody {
         rate: &[f64; N],
         base: Pose2,
         velocity: Vector,
+        wheel: impl FnOnce(f64, f64) -> f64,
     ) -> [f64; N] {
         let (h, v) = assemble(&self.rotating, e, rate);
         let outer = self.outer::<N, true>(e, self.support_reaction(base, velocity, rate[N - 1]));
         // Torques between drives and base cancel, so the sum of all equations gives the acceleration of the base.
         let sum = |x: &[f64; N]| x.iter().sum::<f64>();
         let all: f64 = (0..N).map(|k| (0..N).map(|l| h[l][k]).sum::<f64>()).sum();
-        let turn = (sum(&outer) - sum(&matrix_times(&h, commanded)) - sum(&v)) / all;
+        let moment = sum(&outer) - sum(&matrix_times(&h, commanded)) - sum(&v);
+        let turn = (moment - wheel(moment, all)) / all;
         let inertial = matrix_times(&h, &commanded.map(|a| a + turn));
         let mut torque = std::array::from_fn(|k| inertial[k] + v[k] - outer[k]);
         torque[N - 1] = 0.0;

@@ -1,13 +1,22 @@
-//! [`Wheel`]: a reaction wheel in the base that compensates the moment of the manipulator within its limits.
+//! [`Wheel`]: a reaction wheel in the base that compensates the moment of the manipulator within its limits, and keeps
+//! the attitude of a free base.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | τ_w | torque of the wheel's motor on the wheel; −τ_w on the base | N m |
 //! | Ω | rate of the wheel, absolute | rad/s |
+//! | θ, α | angle of a free base, and its acceleration that the attitude control wants | rad, rad/s² |
 //!
+//! # On a base that is held
 //! With motors on the base and no gears, their moment on the base is −Σ τ_k. The wheel's controller commands τ_w = −Σ
 //! τ_k. The wheel saturates where τ_w or Ω would exceed their limits; the remaining moment acts on the base.
+//!
+//! # On a free base
+//! The base turns about its own centre of mass, so forces of the arm at the pin turn it too. From its model, control
+//! computes the moment of all this for the wanted motion. The wheel takes it up and adds α = −K_p θ − K_d θ̇, less the
+//! dead band: α = 0 while |K_p θ + K_d θ̇| ≤ K_p times the dead band. Control that knows no model, or no free base,
+//! commands τ_w = −Σ τ_k − I_b α; feedback then acts on the rest.
 //!
 //! # At the maximum rate
 //! Ω never exceeds its limit Ω_top, not even within a step. In a step of h seconds, the torque is at most J (Ω_top −
@@ -30,8 +39,19 @@ keyed! {
         torque_limit: Option<f64> = Key::NONE, range: Range::new(1e-9, 1e6, "N m"), instead: "no limit";
         /// The greatest rate of the wheel, either way.
         speed_limit: Option<f64> = Key::NONE, range: Range::new(1e-9, 1e6, "rad/s"), instead: "no limit";
+        /// Gain K_p of the attitude of a free base.
+        kp: f64 = "1", range: Range::new(0.0, 1e6, "s⁻²"), when: WHEN_FREE;
+        /// Gain K_d of the rate of a free base.
+        kd: f64 = "2", range: Range::new(0.0, 1e4, "s⁻¹"), when: WHEN_FREE;
+        /// Angle of a free base up to which feedback does nothing.
+        dead_band: f64 = "0", range: Range::new(0.0, 3.0, "rad"), when: WHEN_FREE;
+        /// Rate at which the torque for a free base is computed, a whole number of steps apart; it stays constant in
+        /// between, and 0 means as often as those of the motors.
+        rate: f64 = "0", range: Range::new(0.0, 1e5, "Hz"), when: WHEN_FREE;
     }
 }
+
+const WHEN_FREE: &str = "base.kind = free: another base is held";
 
 /// State of a wheel at an instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -52,6 +72,20 @@ impl Wheel {
         let top = self.speed_limit.unwrap_or(f64::INFINITY);
         let torque_to = |end_rate: f64| self.inertia * (end_rate - rate) / step;
         [torque_to(-top).clamp(-limit, 0.0), torque_to(top).clamp(0.0, limit)]
+    }
+
+    /// Returns the angular acceleration α that feedback wants of a free base, rad/s², for its angle, rad, and rate,
+    /// rad/s.
+    #[inline]
+    pub fn attitude_feedback(&self, angle: f64, rate: f64) -> f64 {
+        let error = self.kp * angle + self.kd * rate;
+        let band = self.kp * self.dead_band;
+        error.clamp(-band, band) - error
+    }
+
+    /// Returns the number of steps of `step` s between two torques for a free base; 0 without a rate of its own.
+    pub fn period(&self, step: f64) -> u64 {
+        if self.rate > 0.0 { ((1.0 / (self.rate * step)).round() as u64).max(1) } else { 0 }
     }
 
     /// Returns the state of the wheel for a requested torque, N m, at a rate, rad/s. The torque is limited to the

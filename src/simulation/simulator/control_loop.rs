@@ -17,7 +17,7 @@
 use std::collections::VecDeque;
 
 use crate::control::{Control, ControlledState, Controller, Reading};
-use crate::plant::{Actuation, ReducedState, Wheel, WheelState};
+use crate::plant::{Actuation, Base, BaseKind, ReducedState, Wheel, WheelState};
 use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector};
 use stillbase_planning::Reference;
 
@@ -29,9 +29,21 @@ pub struct ControlLoop {
     wheel: Option<Wheel>,
     /// Minimum and maximum torque of the wheel in this step, N m.
     wheel_range: [f64; 2],
+    /// Inertia of a free base whose attitude the wheel keeps, kg m²; `None` for another base, or without a wheel.
+    attitude: Option<f64>,
+    /// Torque of a wheel with a rate of its own, N m, and the step from which on it is computed anew.
+    wheel_hold: Option<(u64, f64)>,
     /// Step, s.
     step: f64,
     sampling: Option<Sampling>,
+}
+
+/// Commanded torques of motors and wheel, N m.
+#[derive(Clone, Copy, Debug)]
+struct Torques {
+    motors: PerDrive,
+    /// Torque of a wheel that keeps the attitude of a free base, before its limits; 0 for another wheel.
+    wheel: f64,
 }
 
 /// State of sampled control.
@@ -50,20 +62,14 @@ struct Sampling {
     /// Reading before the newest one, at an earlier step.
     before: Option<(u64, DriveAngles)>,
     /// Torques that are not yet in effect, N m, each with the step at which it takes effect.
-    pending: VecDeque<(u64, PerDrive)>,
-    /// Torque in effect, N m.
-    held: Option<PerDrive>,
+    pending: VecDeque<(u64, Torques)>,
+    /// Torques in effect.
+    held: Option<Torques>,
 }
 
 impl ControlLoop {
     /// Builds the control loop for steps of `step` s; `limits` bound the motor torques, N m.
-    pub fn new(
-        controller: Controller,
-        control: &Control,
-        step: f64,
-        limits: Option<PerDrive>,
-        wheel: Option<Wheel>,
-    ) -> Self {
+    pub fn new(controller: Controller, control: &Control, step: f64, limits: Option<PerDrive>, base: &Base) -> Self {
         let sampling = control.is_sampled().then(|| {
             let (period, delay) = (control.period(step), (control.delay / step).round() as u64);
             Sampling {
@@ -77,14 +83,22 @@ impl ControlLoop {
                 held: None,
             }
         });
-        Self { controller, limits, wheel, wheel_range: [0.0; 2], step, sampling }
+        let wheel = base.wheel;
+        let attitude = (base.kind == BaseKind::Free && wheel.is_some()).then_some(base.inertia);
+        Self { controller, limits, wheel, wheel_range: [0.0; 2], attitude, wheel_hold: None, step, sampling }
     }
 
     /// Begins a step: computes the torque range of the wheel and, at a sampling instant, takes a reading and computes
     /// the torques.
     pub fn sample(&mut self, step: u64, reference: &Reference, reading: &Reading, loaded: bool, wheel_rate: f64) {
         self.wheel_range = self.wheel.map_or([0.0; 2], |wheel| wheel.torque_range(wheel_rate, self.step));
-        let Some(sampling) = &mut self.sampling else { return };
+        let Some(sampling) = &mut self.sampling else {
+            if self.is_wheel_due(step) {
+                let now = self.torques(reference, reading, loaded, None);
+                self.hold_wheel(step, now.wheel);
+            }
+            return;
+        };
         if sampling.held.is_none() || step.is_multiple_of(sampling.period) {
             let (mut e, mut rates, mut seen) = (*reading.e, *reading.rates, *reading);
             if sampling.count > 0.0 {
@@ -110,12 +124,23 @@ impl ControlLoop {
                 (0..n).for_each(|k| rates[k] = seen.qd[k] + turning);
                 (seen.e, seen.rates) = (&e, &rates);
             }
-            let torque = self.controller.torque(reference, &seen, loaded);
-            if sampling.held.is_none() {
-                sampling.held = Some(if sampling.delay > 0 { self.controller.holding(&seen, loaded) } else { torque });
+            let (delay, is_first) = (sampling.delay, sampling.held.is_none());
+            let due = self.is_wheel_due(step);
+            let torques =
+                self.torques(reference, &seen, loaded, self.wheel_hold.filter(|_| !due).map(|(_, held)| held));
+            if due {
+                self.hold_wheel(step, torques.wheel);
             }
-            sampling.pending.push_back((step + sampling.delay, torque));
+            let at_first = match (is_first, delay > 0) {
+                (false, _) => None,
+                (true, false) => Some(torques),
+                (true, true) => Some(Torques { motors: self.controller.holding(&seen, loaded), wheel: 0.0 }),
+            };
+            let Some(sampling) = &mut self.sampling else { return };
+            sampling.held = at_first.or(sampling.held);
+            sampling.pending.push_back((step + delay, torques));
         }
+        let Some(sampling) = &mut self.sampling else { return };
         while let Some((_, torque)) = sampling.pending.pop_front_if(|(due, _)| *due <= step) {
             sampling.held = Some(torque);
         }
@@ -123,11 +148,12 @@ impl ControlLoop {
 
     /// Continues another control loop at a step: takes over the readings and torques of `other`, and discards its own.
     /// If `other` is continuous, holds `torque`, the present motor torque, N m.
-    pub fn resume(&mut self, other: &Self, step: u64, torque: &PerDrive) {
+    /// The wheel holds `wheel`, N m, accordingly.
+    pub fn resume(&mut self, other: &Self, step: u64, torque: &PerDrive, wheel: f64) {
         self.controller.preload_as(&other.controller);
         self.forget();
         let Some(now) = &mut self.sampling else { return };
-        now.held = Some(*torque);
+        now.held = Some(Torques { motors: *torque, wheel });
         if let Some(before) = &other.sampling {
             (now.last, now.before, now.held) = (before.last, before.before, before.held);
             // With a shorter delay, an older torque must not take effect after a newer one.
@@ -149,6 +175,7 @@ impl ControlLoop {
 
     /// Discards readings and torques, which no longer apply once the machine has been placed elsewhere.
     pub fn forget(&mut self) {
+        self.wheel_hold = None;
         if let Some(sampling) = &mut self.sampling {
             (sampling.last, sampling.before, sampling.held) = (None, None, None);
             sampling.pending.clear();
@@ -158,6 +185,49 @@ impl ControlLoop {
     /// Returns the inertia of the wheel, kg m²; 0 without a wheel.
     pub fn rotor(&self) -> f64 {
         self.wheel.map_or(0.0, |wheel| wheel.inertia)
+    }
+
+    /// Returns whether a wheel with a rate of its own computes its torque anew at a step.
+    fn is_wheel_due(&self, step: u64) -> bool {
+        let has_rate = self.attitude.is_some() && self.wheel.is_some_and(|wheel| wheel.period(self.step) > 0);
+        has_rate && self.wheel_hold.is_none_or(|(next, _)| step >= next)
+    }
+
+    /// Holds the torque of a wheel with a rate of its own, N m, until its next sample.
+    fn hold_wheel(&mut self, step: u64, torque: f64) {
+        let period = self.wheel.map_or(1, |wheel| wheel.period(self.step));
+        self.wheel_hold = Some(((step / period + 1) * period, torque));
+    }
+
+    /// Returns the torques for a reading. The wheel keeps the torque `held`, N m, if there is one.
+    fn torques(&self, reference: &Reference, reading: &Reading, loaded: bool, held: Option<f64>) -> Torques {
+        let turning = reading.rates.get(reading.q.len()).copied().unwrap_or(0.0);
+        let mut wheel = 0.0;
+        let motors = self.controller.torque(reference, reading, loaded, |moment, inertia| {
+            wheel = held.unwrap_or_else(|| self.wanted(moment, inertia, reading.base.angle, turning));
+            self.within(wheel)
+        });
+        if let Some(own) = self.attitude.filter(|_| !self.controller.models_attitude()) {
+            let moment = -self.on_base(&motors, reference);
+            wheel = held.unwrap_or_else(|| self.wanted(moment, own, reading.base.angle, turning));
+        }
+        Torques { motors, wheel }
+    }
+
+    /// Returns the torque of the wheel, N m, that takes up a moment, N m, and gives an inertia, kg m², the acceleration
+    /// that attitude feedback wants for the angle, rad, and rate, rad/s, of the base. Returns 0 without such a wheel.
+    #[inline]
+    fn wanted(&self, moment: f64, inertia: f64, angle: f64, rate: f64) -> f64 {
+        match (self.attitude, &self.wheel) {
+            (Some(_), Some(wheel)) => moment - inertia * wheel.attitude_feedback(angle, rate),
+            _ => 0.0,
+        }
+    }
+
+    /// Returns a torque of the wheel within the limits of this step, N m.
+    #[inline]
+    fn within(&self, torque: f64) -> f64 {
+        torque.max(self.wheel_range[0]).min(self.wheel_range[1])
     }
 
     /// Returns the commands of motors and wheel at the exact state `at`, with unit vectors and rates in `motion`. `N`
@@ -171,8 +241,13 @@ impl ControlLoop {
         base: (Pose2, Vector),
         loaded: bool,
     ) -> Actuation<N> {
+        let (angle, turning) = (base.0.angle, if MOVES { motion.1[N - 1] } else { 0.0 });
+        let mut attitude = self.wheel_hold.map_or(0.0, |(_, held)| held);
         let mut torque = match &self.sampling {
-            Some(Sampling { held: Some(held), .. }) => *held.array(),
+            Some(Sampling { held: Some(held), .. }) => {
+                attitude = held.wheel;
+                *held.motors.array()
+            }
             _ => {
                 let (mut q, mut qd) = (at.q, *motion.1);
                 if MOVES {
@@ -182,7 +257,12 @@ impl ControlLoop {
                 }
                 let ((e, rate), (base, velocity)) = (motion, base);
                 let state = ControlledState { q: &q, qd: &qd, e, rate, base, velocity };
-                self.controller.torque_at::<N, MOVES>(reference, &state, loaded)
+                self.controller.torque_at::<N, MOVES>(reference, &state, loaded, |moment, inertia| {
+                    if self.wheel_hold.is_none() {
+                        attitude = self.wanted(moment, inertia, angle, turning);
+                    }
+                    self.within(attitude)
+                })
             }
         };
         if let Some(limits) = &self.limits {
@@ -190,8 +270,14 @@ impl ControlLoop {
         }
         let spin = match &self.wheel {
             Some(wheel) => {
-                let moment = self.on_base::<N, MOVES>(&torque, reference);
-                wheel.command(-moment, at.wheel, self.wheel_range)
+                let n = if MOVES { N - 1 } else { N };
+                let is_held = self.sampling.is_some() || self.wheel_hold.is_some();
+                let wanted = match self.attitude {
+                    Some(_) if is_held || self.controller.models_attitude() => attitude,
+                    Some(own) => self.wanted(-self.on_base(&torque[..n], reference), own, angle, turning),
+                    None => -self.on_base(&torque[..n], reference),
+                };
+                wheel.command(wanted, at.wheel, self.wheel_range)
             }
             None => WheelState::default(),
         };
@@ -200,10 +286,9 @@ impl ControlLoop {
 
     /// Returns the moment that the base exerts on the motors' stators, N m. Geared rotors count as if drives had the
     /// reference accelerations.
-    #[inline(always)]
-    fn on_base<const N: usize, const MOVES: bool>(&self, torque: &[f64; N], reference: &Reference) -> f64 {
-        let n = if MOVES { N - 1 } else { N };
-        let (arm, wanted) = (self.controller.arm(), reference.qdd.array::<N>());
+    fn on_base(&self, torque: &[f64], reference: &Reference) -> f64 {
+        let n = torque.len();
+        let (arm, wanted) = (self.controller.arm(), &reference.qdd);
         let mut sum = torque.iter().sum::<f64>();
         if arm.motors().in_joints() {
             sum -= (0..n).filter(|k| arm.motors().on(*k).is_some()).map(|k| torque[k]).sum::<f64>();

@@ -6,7 +6,7 @@ use crate::control::Control;
 use crate::plant::{Base, PlantDifferences};
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
-use stillbase_planning::following::Follower;
+use stillbase_planning::following::{Follower, MomentumFollower};
 use stillbase_planning::{Motion, Reference};
 
 /// Source of the reference.
@@ -25,6 +25,8 @@ pub enum Guide {
     },
     /// A follower of the pointer and of the slider b.
     Follow(Follower),
+    /// A follower of the pointer at zero angular momentum, for machines without b.
+    Lead(MomentumFollower),
 }
 
 impl Guide {
@@ -33,6 +35,7 @@ impl Guide {
         match self {
             Self::Motion { motion, start, .. } => motion.at(time - start),
             Self::Follow(follower) => follower.reference(0.0),
+            Self::Lead(follower) => follower.reference(0.0),
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::control::{Controller, Reading};
 use crate::frame::{Audit, Frame, Peaks, Phase, Reach, Target, Totals};
 use crate::plant::{Base, Friction, Load, MAX_CONTACTS, MovingBody, ReducedState, SlipDirections, Slope, State};
-use stillbase_mechanics::dynamics::{self, ExternalLoads, by_drives};
+use stillbase_mechanics::dynamics::{self, BaseWrench, ExternalLoads, by_drives};
 use stillbase_mechanics::joint_forces::{InternalLoads, PinLoads};
 use stillbase_mechanics::kinematics::{end_effector, least_transmission};
 use stillbase_mechanics::machine::{Inertia, Machine, MachineError, RelativeAngle};
@@ -112,7 +112,7 @@ impl Simulation {
             .torque_limits
             .then(|| PerDrive::from_fn(n, |k| setup.model.spec().drives[k].torque_limit.unwrap_or(f64::INFINITY)));
         let controller = Controller::new(setup.control, n, models);
-        let control_loop = ControlLoop::new(controller, setup.control, setup.step, limits, setup.base.wheel);
+        let control_loop = ControlLoop::new(controller, setup.control, setup.step, limits, setup.base);
         let loaded = usize::from(first);
         let state = bodies[loaded].state(&reference.q, &reference.qd, Pose2::default(), Vector::default(), 0.0);
         let now = bodies[loaded].slope_without_torque(&state);
@@ -210,7 +210,7 @@ impl Simulation {
         let Self { step, guide, state, peaks, totals, step_control, baseline, now, control_loop, bodies, .. } = old;
         (self.step, self.guide, self.peaks, self.totals) = (step, guide, peaks, totals);
         self.step_control.resume(&step_control);
-        self.control_loop.resume(&control_loop, step, &now.torque);
+        self.control_loop.resume(&control_loop, step, &now.torque, now.spin.torque);
         for body in self.bodies.iter_mut() {
             *body = body.clone().preloaded_as(&bodies[0]);
         }
@@ -274,6 +274,7 @@ impl Simulation {
         match &self.guide {
             Guide::Motion { motion, start, .. } => self.time() >= start + motion.duration() - 0.5 * self.dt,
             Guide::Follow(follower) => follower.is_at_rest(),
+            Guide::Lead(follower) => follower.is_at_rest(),
         }
     }
 
@@ -283,8 +284,10 @@ impl Simulation {
         let goes_on = self.take_step(&mut reached);
         (self.state, self.slip, self.stuck_torque) = (reached.state, reached.slip, reached.stuck_torque);
         self.step += 1;
-        if let Guide::Follow(follower) = &mut self.guide {
-            follower.advance();
+        match &mut self.guide {
+            Guide::Follow(follower) => follower.advance(),
+            Guide::Lead(follower) => follower.advance(),
+            Guide::Motion { .. } => {}
         }
         if goes_on && self.control_loop.is_steady() && matches!(self.guide, Guide::Motion { .. }) {
             // The end of the step has been evaluated already.
@@ -332,7 +335,7 @@ impl Simulation {
         let (qd, qdd) = (x.qd.first(self.drives), x.qdd.first(self.drives));
         let turning = x.qd.get(self.drives).copied().unwrap_or(0.0);
         let wrench = self.body().transmitted(x);
-        let total = wrench.total().moment;
+        let (total, felt) = (wrench.total().moment, self.felt_moment(&wrench));
         let loaded = usize::from(self.loaded);
         let past = |(i, a): (usize, &RelativeAngle)| {
             let angle = self.state.q[a.to] - self.state.q[a.from] + a.offset;
@@ -343,7 +346,7 @@ impl Simulation {
             torque_sum: x.torque.iter().map(|t| t.abs()).sum(),
             force: wrench.dynamic.force.norm(),
             arm_moment: total.abs(),
-            moment: (total - x.spin.torque).abs(),
+            moment: felt.abs(),
             inertial_pull: dynamics::inertial_pull(&self.link_moments[loaded], &x.e, &qd, &qdd),
             weight: length(x.wrench.static_part.force),
             rate: PerDrive::from_fn(self.drives, |k| qd[k] - turning),
@@ -352,7 +355,13 @@ impl Simulation {
         };
         let time = self.time();
         self.peaks.include(&now);
-        self.totals.include(x, &wrench, now.force, time);
+        self.totals.include(x, [total, felt], now.force, time);
+    }
+
+    /// Returns the moment that turns the base, N m, of a wrench.
+    fn felt_moment(&self, wrench: &BaseWrench) -> f64 {
+        let x = &self.now;
+        self.body().felt_moment(wrench, x.e[self.drives.min(MAX_DRIVES - 1)], x.spin.torque)
     }
 
     /// Returns gravity and outer force in axes that move with the base: the acceleration of the base is subtracted from
@@ -392,7 +401,11 @@ impl Simulation {
         let q = self.state.drives(n);
         let relative = PerDrive::from_fn(n, |k| self.relative(k));
         let target_rides = self.floats && matches!(self.guide, Guide::Follow(_));
-        let base_is_planned = matches!(self.guide, Guide::Motion { base_shift: Some(_), .. });
+        let base_is_planned = match &self.guide {
+            Guide::Motion { base_shift, .. } => base_shift.is_some(),
+            Guide::Lead(_) => self.body().is_free(),
+            Guide::Follow(_) => false,
+        };
         let (phase, target, b_reference) = match &self.guide {
             Guide::Motion { motion, base_shift, .. } => {
                 let shift = base_shift.unwrap_or_default();
@@ -405,9 +418,14 @@ impl Simulation {
                 let target = follower.target();
                 (phase, if target_rides { target.on(x.base) } else { target }, follower.b())
             }
+            Guide::Lead(follower) => {
+                let phase = if follower.is_at_rest() { Phase::Rest } else { Phase::Follow };
+                (phase, follower.target(), self.lambda.dot(&self.reference.q))
+            }
         };
         let (momentum, angular_momentum) = self.body().momentum(x);
         let b = self.lambda.dot(&relative);
+        let wrench = self.body().transmitted(x);
         Frame {
             step: self.step,
             time: self.time(),
@@ -428,7 +446,8 @@ impl Simulation {
             base_velocity: x.base_velocity,
             base_rate: x.qd.get(n).copied().unwrap_or(0.0),
             base_angular_acceleration: x.qdd.get(n).copied().unwrap_or(0.0),
-            wrench: self.body().transmitted(x),
+            wrench,
+            felt_moment: self.felt_moment(&wrench),
             wheel: x.spin,
             momentum,
             angular_momentum,

@@ -29,7 +29,9 @@ pub const SLOW_FACTOR: f64 = 4.0;
 
 /// Wheel of [`Alternative::Wheel`] if the base has none, of the size that a satellite of a few hundred kilograms
 /// carries.
-const DEFAULT_WHEEL: Wheel = Wheel { inertia: 0.02, torque_limit: Some(2.0), speed_limit: Some(300.0) };
+fn default_wheel() -> Wheel {
+    Wheel { inertia: 0.02, torque_limit: Some(2.0), speed_limit: Some(300.0), ..Wheel::default() }
+}
 
 /// Offset of the final angle of drive 1 from its initial one, rad, if the task states no final angle; as in case 2.
 const OTHER_POSE_OFFSET_RAD: f64 = -0.2375;
@@ -132,7 +134,7 @@ impl Alternative {
             other.task.first_drive_to = start_of_first_drive(scenario).map(|q| q + OTHER_POSE_OFFSET_RAD);
         }
         if self == Self::Wheel {
-            other.base.wheel.get_or_insert(DEFAULT_WHEEL);
+            other.base.wheel.get_or_insert_with(default_wheel);
         } else {
             other.base.wheel = None;
         }

@@ -31,6 +31,8 @@ pub struct Summary {
     pub base_shift: f64,
     /// Largest |θ|, rad.
     pub base_tilt: f64,
+    /// θ at the end of a free base, rad.
+    pub base_angle_end: Option<f64>,
     /// Distance of the end effector from its target at the end, m.
     pub miss: f64,
     /// Largest |τ_k| of any drive, N m.
@@ -39,6 +41,10 @@ pub struct Summary {
     pub energy: f64,
     /// Largest rate of a reaction wheel, rad/s.
     pub wheel_rate: Option<f64>,
+    /// Largest momentum of a reaction wheel, N m s.
+    pub wheel_momentum: Option<f64>,
+    /// Largest torque of a reaction wheel, N m.
+    pub peak_wheel_torque: Option<f64>,
     /// Time at which a reaction wheel first could not deliver the requested torque, s.
     pub saturated_at: Option<f64>,
     /// Whether the arm transmitted no reactions.
@@ -71,7 +77,7 @@ pub struct SummaryColumn<T = Summary> {
 }
 
 /// Columns of the table, in order.
-pub const SUMMARY_COLUMNS: [SummaryColumn; 15] = [
+pub const SUMMARY_COLUMNS: [SummaryColumn; 18] = [
     column(["duration", "time", "T", "time of the motion"], "s", 3, 14, |s| Some(s.time)),
     column(["peak_felt_moment", "peak moment", "peak n", "largest moment that the base feels"], "N m", 4, 24, |s| {
         Some(s.peak_moment)
@@ -89,6 +95,9 @@ pub const SUMMARY_COLUMNS: [SummaryColumn; 15] = [
         Some(s.base_shift)
     }),
     column(["base_angle", "base angle", "angle", "largest angle of the base"], "rad", 5, 18, |s| Some(s.base_tilt)),
+    column(["base_angle_end", "base angle, end", "angle end", "angle of a free base at the end"], "rad", 5, 17, |s| {
+        s.base_angle_end
+    }),
     column(["miss", "miss", "miss", "distance of the end effector from its target at the end"], "m", 5, 15, |s| {
         Some(s.miss)
     }),
@@ -99,6 +108,20 @@ pub const SUMMARY_COLUMNS: [SummaryColumn; 15] = [
     column(["wheel_rate", "wheel rate", "wheel", "largest rate of the reaction wheel"], "rad/s", 1, 12, |s| {
         s.wheel_rate
     }),
+    column(
+        ["wheel_momentum", "wheel momentum", "h wheel", "largest momentum of the reaction wheel"],
+        "N m s",
+        4,
+        16,
+        |s| s.wheel_momentum,
+    ),
+    column(
+        ["peak_wheel_torque", "wheel torque", "peak τ_w", "largest torque of the reaction wheel"],
+        "N m",
+        4,
+        11,
+        |s| s.peak_wheel_torque,
+    ),
     column(["saturated_at", "saturates at", "saturates", "when the wheel could give no more"], "s", 3, 7, |s| {
         s.saturated_at
     }),
@@ -150,6 +173,9 @@ impl Summary {
             moment_impulse: totals.moment_impulse,
             base_shift: totals.shift,
             base_tilt: totals.base_angle,
+            base_angle_end: verdict.attitude.map(|attitude| attitude.end),
+            wheel_momentum: verdict.wheel.map(|wheel| wheel.momentum),
+            peak_wheel_torque: verdict.wheel.map(|wheel| wheel.torque),
             miss: verdict.target_distance,
             peak_torque: peaks.torque.max_abs(),
             energy: totals.energy,

@@ -28,7 +28,7 @@ pub fn simulate(planned: &Run, plant: &Machine) -> Result<SampleOutcome, Refusal
         }
         // Trapezoidal rule: the first and the last sample have half the weight.
         let weight = if frame.step == 0 || frame.step >= last { 0.5 } else { 1.0 };
-        moment += weight * frame.net_base_moment().powi(2);
+        moment += weight * frame.felt_moment.powi(2);
         force += weight * frame.wrench.dynamic.force.norm_sqr();
         weights += weight;
         if frame.step >= last {

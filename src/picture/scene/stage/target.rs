@@ -23,7 +23,8 @@ fn place(p: Vector) -> String {
 pub fn draw(scene: &mut Scene, palette: &Palette, shown: &DrawnFrame<'_>, options: &ViewOptions, z: f64) {
     let frame = shown.frame;
     let hot = options.highlighted == Some(Handle::Target);
-    let outside = matches!(frame.target.reach, Reach::Outside { .. });
+    let waits = frame.target.reach.waits_at();
+    let outside = waits.is_some();
     let held = options.drag_position.filter(|_| outside).map(|[x, y]| Vector::new(x, y));
     let at = held.unwrap_or(shown.target);
     let (ink, dim) = (palette.ink, palette.dim);
@@ -34,15 +35,15 @@ pub fn draw(scene: &mut Scene, palette: &Palette, shown: &DrawnFrame<'_>, option
     let between = |name: &'static str, from: Vector| {
         Polyline::new(name, [vec![point(from, z), point(at, z)]], 1.4, dim).dashed(4.0, 4.0).on_top()
     };
-    let (first, anchor) = match frame.target.reach {
-        Reach::Outside { nearest, .. } => {
+    let (first, anchor) = match waits {
+        Some(nearest) => {
             let nearest = if frame.target_rides { shown.base.place(frame.in_base(nearest)) } else { nearest };
             scene.lines.push(between("target/gap", nearest));
             let disc = Marker::disc("target/nearest", point(nearest, z), 4.5, palette.background);
             scene.markers.push(disc.edged(palette.amber, 2.0));
             ([0.0, 26.0], Anchor::Centre)
         }
-        _ => {
+        None => {
             if miss(frame).is_some() {
                 scene.lines.push(between("target/miss", shown.end_effector));
             }
@@ -81,6 +82,11 @@ fn rows(frame: &Frame, options: &ViewOptions) -> Vec<(String, bool)> {
             rows.push((title.into(), true));
             rows.push((format!("nearest point {} m", place(nearest)), false));
             rows.push((would, false));
+        }
+        Reach::Stopped { nearest, why } => {
+            rows.push(("no way there at zero momentum".into(), true));
+            rows.push((format!("stops at {} m", place(nearest)), false));
+            rows.push((why.to_string(), false));
         }
         reach => {
             rows.push((format!("{} m", place(target_handle(frame))), true));
