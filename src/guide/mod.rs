@@ -21,6 +21,7 @@ pages! {
     first_run: "first_run.md",
     planning: "planning.md",
     plants: "plants.md",
+    spacecraft: "spacecraft.md",
     inside: "inside.md",
     draw: "draw.md",
     design: "design.md",

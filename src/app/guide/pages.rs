@@ -31,6 +31,7 @@ pages! {
     FirstRun: "first_run",
     Planning: "planning",
     Plants: "plants",
+    Spacecraft: "spacecraft",
     Inside: "inside",
     Draw: "draw",
     Design: "design",

@@ -41,10 +41,14 @@ const ACCELERATION_SHARE: f64 = 4.0;
 const MAX_RATE: f64 = 3.0;
 /// Largest norm of the rates times the reach, over the speed of the end effector; beyond it a pose counts as singular.
 const MAX_GAIN: f64 = 15.0;
+/// An angle is past its limit by more than this, rad.
+const LIMIT_TOLERANCE: f64 = 1e-9;
+/// The arm is lost beyond a barrier at this multiple of the allowed gain, or this much past a limit, rad.
+const LOST: (f64, f64) = (1.5, 0.01);
 /// Number of steps of the straight line to a stop, and the longest of them as a fraction of the reach.
 const STOP_STEPS: (f64, f64) = (16.0, 0.02);
 /// The end effector has arrived when its distance and speed are below this fraction of the reach, 1/s for the speed.
-const ARRIVAL_SHARE: f64 = 1e-12;
+const ARRIVAL_SHARE: f64 = 1e-10;
 /// It waits at a barrier when it can use less than this fraction of the wanted acceleration at this speed, as a fraction
 /// of the reach, 1/s.
 const WAITING: (f64, f64) = (1e-3, 1e-6);
@@ -59,7 +63,8 @@ pub struct MomentumFollower {
     anchor: Pose2,
     bound: f64,
     step: f64,
-    max_gain: f64,
+    /// What counts as a barrier: a gain above the first number, or an angle past its limit by more than the second, rad.
+    allowed: (f64, f64),
     q: DriveAngles,
     v: Vector,
     acc: Vector,
@@ -86,7 +91,7 @@ impl MomentumFollower {
             anchor,
             bound,
             step,
-            max_gain: MAX_GAIN,
+            allowed: (MAX_GAIN, LIMIT_TOLERANCE),
             q: from.q,
             v,
             acc: Vector::default(),
@@ -95,8 +100,6 @@ impl MomentumFollower {
             target: Target { at: Vector::default(), reach: Reach::Inside },
             model,
         };
-        // An arm that is led from near a barrier may at least leave it.
-        follower.max_gain = follower.gain(&from.q).map_or(MAX_GAIN, |gain| MAX_GAIN.max(1.001 * gain));
         let stop = follower.place() + 0.5 * v * v.norm() / bound;
         follower.target.at = anchor.place(stop);
         follower.steer();
@@ -175,16 +178,22 @@ impl MomentumFollower {
         Some((x.dot(&x) + y.dot(&y)).sqrt() * self.model.reach())
     }
 
-    /// Returns the barrier at a pose.
-    fn barrier(&self, q: &DriveAngles) -> Option<Barrier> {
-        let past = self.angles.iter().position(|(to, from, offset, [low, high])| {
+    /// Returns the relative angle that passes its limit by most, with by how much, rad; below 0 if all are within.
+    fn past_limit(&self, q: &DriveAngles) -> (usize, f64) {
+        let past = self.angles.iter().map(|(to, from, offset, [low, high])| {
             let a = q[*to] - q[*from] + offset;
-            a < low - 1e-9 || a > high + 1e-9
+            (low - a).max(a - high)
         });
-        if let Some(i) = past {
+        past.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, f64::NEG_INFINITY))
+    }
+
+    /// Returns the barrier at a pose, for gains up to `slack` times the allowed one and for angles up to `past` more, rad.
+    fn barrier(&self, q: &DriveAngles, (slack, past): (f64, f64)) -> Option<Barrier> {
+        let (i, by) = self.past_limit(q);
+        if by > self.allowed.1 + past {
             return Some(Barrier::Limit(i));
         }
-        let is_open = self.gain(q).is_some_and(|gain| gain <= self.max_gain);
+        let is_open = self.gain(q).is_some_and(|gain| gain <= slack * self.allowed.0);
         (!is_open).then(|| Barrier::Singular(Singularity::near(&self.model, q)))
     }
 
@@ -198,7 +207,7 @@ impl MomentumFollower {
         let way = v * (0.5 * v.norm() / self.bound + 0.5 * self.step);
         let pieces = (way.norm() / (STOP_STEPS.1 * self.model.reach())).ceil().clamp(1.0, STOP_STEPS.0);
         for i in 0..=pieces as usize {
-            if let Some(barrier) = self.barrier(&q) {
+            if let Some(barrier) = self.barrier(&q, (1.0, 0.0)) {
                 return Some(barrier);
             }
             if i as f64 == pieces || v == Vector::default() {
@@ -215,6 +224,9 @@ impl MomentumFollower {
     /// Sets the acceleration of the coming step.
     fn steer(&mut self) {
         let reach = self.model.reach();
+        // An arm that is led from a barrier, or from a little beyond one, may at least leave it.
+        let here = (self.gain(&self.q).unwrap_or(f64::INFINITY), self.past_limit(&self.q).1);
+        self.allowed = (MAX_GAIN.max(1.001 * here.0), LIMIT_TOLERANCE.max(here.1));
         let way = self.anchor.seen(self.target.at) - self.place();
         let (distance, speed) = (way.norm(), self.v.norm());
         let is_waiting = matches!(self.target.reach, Reach::Stopped { .. });
@@ -236,7 +248,7 @@ impl MomentumFollower {
         let fraction = greatest_feasible_fraction(|t| self.meets(&at(t)).is_none());
         self.acc = at(fraction);
         // While momentum is left, the arm may come to a barrier that braking alone does not avoid: it stops at once.
-        let is_lost = self.after(&self.acc, self.step).is_none_or(|next| self.barrier(&next).is_some());
+        let is_lost = self.after(&self.acc, self.step).is_none_or(|next| self.barrier(&next, LOST).is_some());
         if is_lost || (fraction < WAITING.0 && speed < WAITING.1 * reach) {
             (self.v, self.acc) = (Vector::default(), Vector::default());
             (self.h, self.hd) = (0.0, 0.0);
