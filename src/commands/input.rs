@@ -159,6 +159,15 @@ impl MachineArgument {
         Ok(MachineFile { machine: self.settings.apply(machine)?, design })
     }
 
+    /// Returns the machine with its settings changed, and its base if that floats.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn find(&self) -> Result<FoundMachine, Failure> {
+        let found = found_machine(&self.name)?;
+        Ok(FoundMachine { machine: self.settings.apply(found.machine)?, ..found })
+    }
+
     /// Returns the name or file of the machine, as given.
     pub fn name(&self) -> &str {
         &self.name
@@ -206,9 +215,15 @@ impl MachineArgument {
 /// # Errors
 /// If there is no such machine, or it is not valid.
 pub fn machine(name: &str) -> Result<MachineFile, Failure> {
-    let FoundMachine { machine, design, left_out: notes } = stillbase_files::found_machine(name)?;
-    report_left_out(name, &notes);
+    let FoundMachine { machine, design, .. } = found_machine(name)?;
     Ok(MachineFile { machine, design })
+}
+
+/// Returns a machine as [`machine`] does, with what else was found.
+fn found_machine(name: &str) -> Result<FoundMachine, Failure> {
+    let found = stillbase_files::found_machine(name)?;
+    report_left_out(name, &found.left_out);
+    Ok(found)
 }
 
 /// Prints what was left out of a file.
