@@ -5,14 +5,13 @@ use std::path::PathBuf;
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
-use stillbase_exchange::base_body::BaseBody;
 use stillbase_exchange::drawing::Sheet;
 use stillbase_exchange::form::{self, Exported, Form, FormContent, ModelContent};
 use stillbase_exchange::mjcf::{qpos, usual_pose};
 use stillbase_exchange::stl;
 use stillbase_exchange::urdf::joint;
+use stillbase_files::FoundMachine;
 use stillbase_files::row_file::{RowForm, table_bytes};
-use stillbase_files::{FoundMachine, floating_base};
 use stillbase_mechanics::machine::Machine;
 use stillbase_settings::number::{counted, fixed};
 
@@ -21,7 +20,7 @@ use super::exit::print_message;
 use super::failure::Failure;
 use super::file_form::FileForm;
 use super::import_model::OfBase;
-use super::input::{MachineArgument, Settings, scenario};
+use super::input::{MachineArgument, floating_base_of};
 use super::output::{Format, TextTable, write_file};
 
 /// Export a machine: a model for MuJoCo (.xml) or for ROS and Pinocchio (.urdf), drawings for cutting (.svg, .dxf),
@@ -119,7 +118,7 @@ impl ExportModelArguments {
     /// Writes the file.
     pub fn run(&self) -> Result<(), Failure> {
         let FoundMachine { machine, base, .. } = self.machine.find()?;
-        let base = self.base.as_deref().map_or(Ok(base), |name| floating_base_of(name).map(Some))?;
+        let base = self.base.as_deref().map_or(Ok(base), |name| floating_base_of(name).map(|(body, _)| Some(body)))?;
         let ending = self.form.check(&self.format, Some(&self.output), self.force, &form::endings())?;
         let form = Form::of(ending).map_err(Failure::wrong_input)?;
         self.check_options(form)?;
@@ -200,16 +199,6 @@ fn described(of: &Exported, form: Form) -> Result<Written, Failure> {
 /// Returns words about a base that floats.
 fn afloat(base: Option<&OfBase>) -> String {
     base.map_or_else(String::new, |base| format!(" · on a base that floats, {}", base.words()))
-}
-
-/// Returns the base of a scenario by name or file.
-fn floating_base_of(name: &str) -> Result<BaseBody, Failure> {
-    let scenario = scenario(name, &Settings::default())?;
-    floating_base(&scenario.base).ok_or_else(|| {
-        Failure::wrong_input(format!(
-            "--base {name}: its base does not float: want a scenario with [base] kind = \"free\""
-        ))
-    })
 }
 
 impl Written {

@@ -7,9 +7,10 @@ use std::path::Path;
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use stillbase_files::FoundMachine;
+use stillbase_exchange::base_body::BaseBody;
 use stillbase_files::table::{NoTable, TABLE_ENDINGS, Table};
 use stillbase_files::text::STANDARD_INPUT;
+use stillbase_files::{FoundMachine, floating_base};
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
 use stillbase_mechanics::sketch::{Missing, resolve};
@@ -224,6 +225,17 @@ fn found_machine(name: &str) -> Result<FoundMachine, Failure> {
     let found = stillbase_files::found_machine(name)?;
     report_left_out(name, &found.left_out);
     Ok(found)
+}
+
+/// Returns the base of a scenario by name or file, which floats, and the inertia of its reaction wheel, kg m².
+///
+/// # Errors
+/// If there is no such scenario, or if its base does not float.
+pub fn floating_base_of(name: &str) -> Result<(BaseBody, f64), Failure> {
+    let Scenario { base, .. } = scenario(name, &Settings::default())?;
+    let wheel = base.wheel.map_or(0.0, |wheel| wheel.inertia);
+    let why = || format!("--base {name}: its base does not float: want a scenario with [base] kind = \"free\"");
+    floating_base(&base).map(|body| (body, wheel)).ok_or_else(|| Failure::wrong_input(why()))
 }
 
 /// Prints what was left out of a file.
