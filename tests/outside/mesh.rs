@@ -83,7 +83,7 @@ fn solids_weigh_what_links_weigh() {
     let form = Form::of("stl").expect("a form");
     let written = |machine: &Machine| {
         json!(
-            form.written(&Exported { machine: machine, base: None, pose: &middle(machine), cut: &Cut::default() })
+            form.written(&Exported { machine, base: None, pose: &middle(machine), cut: &Cut::default() })
                 .expect("solids")
                 .text()
         )

@@ -72,7 +72,7 @@ fn question(machine: &Machine, disc: CounterweightStock) -> Value {
     let (name, cut) = (machine.name(), Cut::default());
     let exported = |ending: &str| {
         let form = Form::of(ending).expect("a form");
-        form.written(&Exported { machine: machine, base: None, pose: &middle(machine), cut: &cut })
+        form.written(&Exported { machine, base: None, pose: &middle(machine), cut: &cut })
             .unwrap_or_else(|why| panic!("{name}, {ending}: {why}"))
             .text()
     };
@@ -197,7 +197,7 @@ fn come_back(machine: &Machine) {
     for ending in ["urdf", "xml"] {
         let form = Form::of(ending).expect("a form");
         let text = form
-            .written(&Exported { machine: machine, base: None, pose: &middle(machine), cut: &Cut::default() })
+            .written(&Exported { machine, base: None, pose: &middle(machine), cut: &Cut::default() })
             .unwrap_or_else(|why| panic!("{name}: {why}"))
             .text();
         let back = import(&text).unwrap_or_else(|why| panic!("{name}, {ending}: {why}")).machine;
