@@ -16,6 +16,8 @@ macro_rules! tests {
     };
 }
 
+#[path = "outside/afloat.rs"]
+mod afloat;
 #[path = "exchange/arms.rs"]
 mod arms;
 #[path = "outside/drags.rs"]
@@ -74,6 +76,7 @@ fn main() -> ExitCode {
     let packages: &[(&str, &[Test])] = &[
         ("ezdxf", ezdxf::TESTS),
         ("numpy", mesh::TESTS),
+        ("mujoco", afloat::TESTS),
         ("mujoco", mujoco::TESTS),
         ("mujoco", planar::TESTS),
         ("pinocchio", pinocchio::TESTS),

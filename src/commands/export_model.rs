@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
-use stillbase_exchange::cut::Cut;
 use stillbase_exchange::drawing::Sheet;
-use stillbase_exchange::form::{self, Form, FormContent, ModelContent};
-use stillbase_exchange::mjcf::{hinges, usual_pose};
+use stillbase_exchange::form::{self, Exported, Form, FormContent, ModelContent};
+use stillbase_exchange::mjcf::{qpos, usual_pose};
 use stillbase_exchange::stl;
 use stillbase_exchange::urdf::joint;
+use stillbase_files::FoundMachine;
 use stillbase_files::row_file::{RowForm, table_bytes};
 use stillbase_mechanics::machine::Machine;
 use stillbase_settings::number::{counted, fixed};
@@ -19,7 +19,8 @@ use super::dimensions::Dimensions;
 use super::exit::print_message;
 use super::failure::Failure;
 use super::file_form::FileForm;
-use super::input::MachineArgument;
+use super::import_model::OfBase;
+use super::input::{MachineArgument, floating_base_of};
 use super::output::{Format, TextTable, write_file};
 
 /// Export a machine: a model for MuJoCo (.xml) or for ROS and Pinocchio (.urdf), drawings for cutting (.svg, .dxf),
@@ -27,7 +28,7 @@ use super::output::{Format, TextTable, write_file};
 ///
 /// MJCF: sensors at the base read the force and moment that hold the machine; the reaction has the opposite sign. The
 /// pose is the keyframe "start". URDF: the joints drive_… are the motors, and all other joints follow them; the element
-/// `<stillbase>` contains what URDF cannot express. Both: data that plane motion does not need, such as inertias
+/// `<stillbase>` contains what URDF cannot express. Both: a base that floats comes along, with its mass and joints; data that plane motion does not need, such as inertias
 /// about other axes, are made up. Solids: bars, plates, counterweights, lumps, the payload, pins and spacers at their
 /// heights, in mm; `stillbase layers` finds the heights.
 #[derive(Args)]
@@ -36,6 +37,7 @@ Examples:
   stillbase export-model nine-link -o nine-link.xml
   stillbase export-model nine-link -o nine-link.urdf
   stillbase export-model serial-3r --pose 1.2,0.1,-0.8 -o arm.xml
+  stillbase export-model spot --base spot -o satellite.xml
   stillbase export-model two-drive --bar-width 0.025 --pin-diameter 0.006 -o links.svg
   stillbase export-model scara --material 2700 -o parts.csv")]
 pub struct ExportModelArguments {
@@ -45,6 +47,10 @@ pub struct ExportModelArguments {
     /// machine's file states, or else the middle of the limits
     #[arg(long, value_name = "Q1,Q2,…", value_delimiter = ',', allow_hyphen_values = true)]
     pose: Vec<f64>,
+    /// Put a model on the base of this scenario, which floats; default: the base of MACHINE, if it is a scenario or a
+    /// model whose base floats
+    #[arg(long, value_name = "SCENARIO")]
+    base: Option<String>,
     #[command(flatten)]
     dimensions: Dimensions,
     #[arg(short, long, value_name = "FILE", help = format!("Write it to this file; its ending chooses what is written: {}; `-` is standard output", form::endings().join(", ")))]
@@ -75,12 +81,18 @@ enum Written {
     Mjcf {
         /// Angles of the drives in the keyframe, rad.
         pose: Vec<f64>,
-        /// Angles of all hinges in the keyframe, as in MuJoCo, rad.
+        /// Numbers of all joints in the keyframe, as in MuJoCo, rad: those of a base that floats, then all hinges.
         qpos: Vec<f64>,
+        /// The base, if it floats.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        base: Option<OfBase>,
     },
     Urdf {
         /// The joint of each drive's motor.
         joints: Vec<String>,
+        /// The base, if it floats.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        base: Option<OfBase>,
     },
     Drawing {
         /// Size of the sheet, m.
@@ -105,7 +117,8 @@ enum Written {
 impl ExportModelArguments {
     /// Writes the file.
     pub fn run(&self) -> Result<(), Failure> {
-        let machine = self.machine.load()?;
+        let FoundMachine { machine, base, .. } = self.machine.find()?;
+        let base = self.base.as_deref().map_or(Ok(base), |name| floating_base_of(name).map(|(body, _)| Some(body)))?;
         let ending = self.form.check(&self.format, Some(&self.output), self.force, &form::endings())?;
         let form = Form::of(ending).map_err(Failure::wrong_input)?;
         self.check_options(form)?;
@@ -114,11 +127,12 @@ impl ExportModelArguments {
         }
         let pose = if self.pose.is_empty() { usual_pose(&machine) } else { self.pose.clone() };
         let cut = self.dimensions.cut(&machine);
-        let content = match (form.written(&machine, &pose, &cut), RowForm::of_ending(ending)) {
+        let exported = Exported { machine: &machine, base: base.as_ref(), pose: &pose, cut: &cut };
+        let content = match (form.written(&exported), RowForm::of_ending(ending)) {
             (Ok(FormContent::Table(table)), Some(rows)) => table_bytes(&table, rows, &self.output)?,
             (content, _) => content.map_err(Failure::wrong_input)?.text().into_bytes(),
         };
-        let of = described(&machine, form, pose, &cut)?;
+        let of = described(&exported, form)?;
         write_file(&self.output, &content, self.force)?;
         let left_out = form.left_out(&machine);
         for what in &left_out {
@@ -132,8 +146,9 @@ impl ExportModelArguments {
     fn check_options(&self, form: Form) -> Result<(), Failure> {
         let dimensions = &self.dimensions;
         let has_layers = |shows| matches!(shows, ModelContent::Links | ModelContent::Solids | ModelContent::Parts);
-        let all: [OptionScope; 5] = [
+        let all: [OptionScope; 6] = [
             ("--pose", self.pose.is_empty(), |shows| matches!(shows, ModelContent::Pose | ModelContent::Solids)),
+            ("--base", self.base.is_none(), |shows| matches!(shows, ModelContent::Pose | ModelContent::Joints)),
             ("--bar-width", dimensions.bar_width.is_none(), has_layers),
             ("--pin-diameter", dimensions.pin_diameter.is_none(), has_layers),
             ("--plate-thickness", dimensions.plate_thickness.is_none(), has_layers),
@@ -154,14 +169,18 @@ impl ExportModelArguments {
 type OptionScope = (&'static str, bool, fn(ModelContent) -> bool);
 
 /// Describes the written file.
-fn described(machine: &Machine, form: Form, pose: Vec<f64>, cut: &Cut) -> Result<Written, Failure> {
-    let links = machine.links().len();
+fn described(of: &Exported, form: Form) -> Result<Written, Failure> {
+    let Exported { machine, base, cut, .. } = *of;
+    let (links, pose, floating) = (machine.links().len(), of.pose.to_vec(), base.map(|base| OfBase::of(base, true)));
     Ok(match form.shows {
         ModelContent::Pose => {
-            let qpos = hinges(machine, &pose).map_err(Failure::wrong_input)?;
-            Written::Mjcf { pose, qpos }
+            let qpos = qpos(machine, base, &pose).map_err(Failure::wrong_input)?;
+            Written::Mjcf { pose, qpos, base: floating }
         }
-        ModelContent::Joints => Written::Urdf { joints: (0..machine.drives()).map(|k| joint(machine, k)).collect() },
+        ModelContent::Joints => {
+            let joints = (0..machine.drives()).map(|k| joint(machine, k)).collect();
+            Written::Urdf { joints, base: floating }
+        }
         ModelContent::Links => {
             let size = Sheet::of(machine, cut).map_err(Failure::wrong_input)?.size;
             Written::Drawing { size: size.map(|mm| 1e-3 * mm), links }
@@ -177,24 +196,30 @@ fn described(machine: &Machine, form: Form, pose: Vec<f64>, cut: &Cut) -> Result
     })
 }
 
+/// Returns words about a base that floats.
+fn afloat(base: Option<&OfBase>) -> String {
+    base.map_or_else(String::new, |base| format!(" · on a base that floats, {}", base.words()))
+}
+
 impl Written {
     fn words(&self, machine: &Machine) -> String {
         let name = machine.name();
         let drives = machine.spec().drives.iter().map(|drive| drive.name.clone());
         match self {
-            Self::Mjcf { pose, qpos } => {
+            Self::Mjcf { pose, qpos, base } => {
                 let mut table = TextTable::new(["drive", "q rad at the start"]);
                 for (drive, q) in drives.zip(pose) {
                     table.row([drive, fixed(*q, 6)]);
                 }
-                format!("{name} · {} hinges\n\n{table}", qpos.len())
+                let joints = if base.is_some() { "joints" } else { "hinges" };
+                format!("{name} · {} {joints}{}\n\n{table}", qpos.len(), afloat(base.as_ref()))
             }
-            Self::Urdf { joints } => {
+            Self::Urdf { joints, base } => {
                 let mut table = TextTable::new(["drive", "joint of its motor"]);
                 for (drive, joint) in drives.zip(joints) {
                     table.row([drive, joint.clone()]);
                 }
-                format!("{name} · {}\n\n{table}", counted(joints.len(), "motor"))
+                format!("{name} · {}{}\n\n{table}", counted(joints.len(), "motor"), afloat(base.as_ref()))
             }
             Self::Drawing { size: [width, height], links } => {
                 let [width, height] = [width, height].map(|x| fixed(1e3 * x, 0));

@@ -5,13 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
-use stillbase_exchange::import::{BaseBody, ImportedMachine};
-use stillbase_files::is_same_place;
-use stillbase_mechanics::machine::{Inertia, Machine, to_toml};
+use stillbase_exchange::base_body::BaseBody;
+use stillbase_exchange::import::ImportedMachine;
+use stillbase_files::{is_same_place, scenario_afloat};
+use stillbase_mechanics::machine::{Inertia, to_toml};
 use stillbase_session::gentle_motion;
-use stillbase_session::scenario::Scenario;
 use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
-use stillbase_simulation::plant::{Base, BaseKind};
 
 use super::exit::print_message;
 use super::failure::Failure;
@@ -74,13 +73,27 @@ pub struct Answer {
 
 /// Base on which the machine stands.
 #[derive(JsonSchema, Serialize)]
-struct OfBase {
+pub struct OfBase {
     /// Mass, kg.
     mass: f64,
     /// Moment of inertia about its centre of mass, kg m².
     inertia: f64,
     /// Centre of mass relative to the axis of the drives, m.
     com: [f64; 2],
+    /// Whether the file lets it float.
+    floats: bool,
+}
+
+impl OfBase {
+    /// Describes a base.
+    pub fn of(base: &BaseBody, floats: bool) -> Self {
+        Self { mass: base.mass, inertia: base.inertia, com: [base.com.re, base.com.im], floats }
+    }
+
+    /// Returns its mass and inertia in words.
+    pub fn words(&self) -> String {
+        format!("{} kg and {} kg m²", fixed_or_scientific(self.mass, 6), fixed_or_scientific(self.inertia, 6))
+    }
 }
 
 impl ImportModelArguments {
@@ -94,16 +107,18 @@ impl ImportModelArguments {
         }
         let name = self.file.display();
         let found = stillbase_files::model(&read(&self.file, &["urdf", "xml", "mjcf"])?, &name.to_string())?;
-        let ImportedMachine { machine, pose, base, mut notes } = found;
+        let ImportedMachine { machine, pose, base, floats, mut notes } = found;
         let machine = self.settings.apply(machine)?;
         if let Some(base) = base.filter(|_| self.scenario.is_none()) {
-            let (mass, inertia) = (fixed_or_scientific(base.mass, 6), fixed_or_scientific(base.inertia, 6));
+            let base = OfBase::of(&base, floats).words();
+            let is = if floats { "floats, and is" } else { "is" };
             notes.push(format!(
-                "the base, {mass} kg and {inertia} kg m², is no part of a machine: --scenario FILE.toml writes it into \
+                "the base, {base}, {is} no part of a machine: --scenario FILE.toml writes it into \
                  [base] of a scenario"
             ));
         }
-        let scenario = self.scenario.as_ref().map(|_| scenario(&machine, base)).transpose()?;
+        let made = |_| base.map_or_else(|| gentle_motion(&machine), |base| scenario_afloat(&machine, &base));
+        let scenario = self.scenario.as_ref().map(made).transpose()?;
         for note in &notes {
             print_message(format!("note: {name}: {note}"));
         }
@@ -121,7 +136,7 @@ impl ImportModelArguments {
             links: machine.links().len(),
             mass: machine.mass(),
             pose,
-            base: base.map(|base| OfBase { mass: base.mass, inertia: base.inertia, com: [base.com.re, base.com.im] }),
+            base: base.map(|base| OfBase::of(&base, floats)),
             notes,
             force_balanced: inertia.is_force_balanced(),
             invariant: inertia.is_invariant(),
@@ -140,13 +155,4 @@ impl ImportModelArguments {
             )
         })
     }
-}
-
-/// Returns a scenario with a task for a machine; if its model file has a base, the machine floats on it.
-fn scenario(machine: &Machine, base: Option<BaseBody>) -> Result<Scenario, Failure> {
-    let scenario = gentle_motion(machine)?;
-    let Some(BaseBody { mass, inertia, com }) = base else { return Ok(scenario) };
-    let base = Base { kind: BaseKind::Free, mass, inertia, com: [com.re, com.im], ..Base::default() };
-    // Parsed again, so that values outside of the ranges of a scenario are rejected.
-    Ok(Scenario::parse(&Scenario { base, ..scenario }.to_toml(), "[base] of the file", None)?)
 }

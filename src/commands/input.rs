@@ -7,9 +7,10 @@ use std::path::Path;
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use stillbase_files::FoundMachine;
+use stillbase_exchange::base_body::BaseBody;
 use stillbase_files::table::{NoTable, TABLE_ENDINGS, Table};
 use stillbase_files::text::STANDARD_INPUT;
+use stillbase_files::{FoundMachine, floating_base};
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
 use stillbase_mechanics::sketch::{Missing, resolve};
@@ -159,6 +160,15 @@ impl MachineArgument {
         Ok(MachineFile { machine: self.settings.apply(machine)?, design })
     }
 
+    /// Returns the machine with its settings changed, and its base if that floats.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn find(&self) -> Result<FoundMachine, Failure> {
+        let found = found_machine(&self.name)?;
+        Ok(FoundMachine { machine: self.settings.apply(found.machine)?, ..found })
+    }
+
     /// Returns the name or file of the machine, as given.
     pub fn name(&self) -> &str {
         &self.name
@@ -206,9 +216,26 @@ impl MachineArgument {
 /// # Errors
 /// If there is no such machine, or it is not valid.
 pub fn machine(name: &str) -> Result<MachineFile, Failure> {
-    let FoundMachine { machine, design, left_out: notes } = stillbase_files::found_machine(name)?;
-    report_left_out(name, &notes);
+    let FoundMachine { machine, design, .. } = found_machine(name)?;
     Ok(MachineFile { machine, design })
+}
+
+/// Returns a machine as [`machine`] does, with what else was found.
+fn found_machine(name: &str) -> Result<FoundMachine, Failure> {
+    let found = stillbase_files::found_machine(name)?;
+    report_left_out(name, &found.left_out);
+    Ok(found)
+}
+
+/// Returns the base of a scenario by name or file, which floats, and the inertia of its reaction wheel, kg m².
+///
+/// # Errors
+/// If there is no such scenario, or if its base does not float.
+pub fn floating_base_of(name: &str) -> Result<(BaseBody, f64), Failure> {
+    let Scenario { base, .. } = scenario(name, &Settings::default())?;
+    let wheel = base.wheel.map_or(0.0, |wheel| wheel.inertia);
+    let why = || format!("--base {name}: its base does not float: want a scenario with [base] kind = \"free\"");
+    floating_base(&base).map(|body| (body, wheel)).ok_or_else(|| Failure::wrong_input(why()))
 }
 
 /// Prints what was left out of a file.

@@ -80,7 +80,7 @@ use stillbase_study::equations::StatedEquations;
 use stillbase_study::joint_extremes::JointReport;
 use stillbase_study::layers::LayersReport;
 use stillbase_study::plan_summary::PlanSummary;
-use stillbase_study::trim::TrimReport;
+use stillbase_study::trim::{OrbitReport, TrimReport};
 use stillbase_study::workspace::WorkspaceReport;
 
 /// Declares the subcommands from one list: the name of each, the type that reads its arguments and runs it, and the
@@ -144,7 +144,7 @@ subcommands! {
     ImportModel: import_model::ImportModelArguments => [import_model::Answer],
     Tolerance: tolerance::ToleranceArguments => [tolerance::ToleranceAnswer, tolerance::MergedParts],
     Spectrum: spectrum::SpectrumArguments => [spectrum::Answer],
-    Trim: trim::TrimArguments => [TrimReport],
+    Trim: trim::TrimArguments => [TrimReport, OrbitReport],
     #[cfg(feature = "ui")]
     Render: render::RenderArguments => [render::Answer],
     #[cfg(feature = "ui")]

@@ -196,7 +196,7 @@ impl PlanArguments {
             self.settings.refuse_tolerances()?;
         }
         let mut scenario = match as_machine {
-            Ok(FoundMachine { machine, design, left_out }) if !is_scenario => {
+            Ok(FoundMachine { machine, design, left_out, .. }) if !is_scenario => {
                 report_left_out(&self.name, &left_out);
                 if self.points.is_empty() {
                     return Err(Failure::wrong_input("a machine alone is no task: want points X,Y, or a scenario"));

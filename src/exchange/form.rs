@@ -1,5 +1,6 @@
 //! [`Form`]: an export format, chosen by the ending of a file's name. [`FORMS`] lists all of them.
 
+use super::base_body::BaseBody;
 use super::cut::{Cut, CutError};
 use super::drawing::{Sheet, dxf, svg};
 use super::left_out;
@@ -17,7 +18,7 @@ pub struct Form {
     pub ending: &'static str,
     /// The part of a machine that it shows.
     pub shows: ModelContent,
-    write: fn(&Machine, &[f64], &Cut) -> Result<FormContent, ExchangeError>,
+    write: fn(&Exported) -> Result<FormContent, ExchangeError>,
     /// Returns what a file leaves out of a machine.
     leaves_out: fn(&Machine) -> Vec<String>,
 }
@@ -35,6 +36,19 @@ pub enum ModelContent {
     Solids,
     /// Its parts list.
     Parts,
+}
+
+/// What is exported; each format takes what it shows.
+#[derive(Clone, Copy, Debug)]
+pub struct Exported<'a> {
+    /// The machine.
+    pub machine: &'a Machine,
+    /// The base, if it floats: for models.
+    pub base: Option<&'a BaseBody>,
+    /// Angles of its drives, rad: for formats that show a pose.
+    pub pose: &'a [f64],
+    /// Dimensions of what is cut, and the thickness of counterweights.
+    pub cut: &'a Cut,
 }
 
 /// Content of a file.
@@ -68,35 +82,35 @@ pub const FORMS: [Form; 8] = [
     Form {
         ending: "xml",
         shows: ModelContent::Pose,
-        write: |machine, pose, cut| Ok(mjcf(machine, pose, cut)?.into()),
+        write: |of| Ok(mjcf(of.machine, of.base, of.pose, of.cut)?.into()),
         leaves_out: left_out::of_mjcf,
     },
     // For ROS, Pinocchio and others.
     Form {
         ending: "urdf",
         shows: ModelContent::Joints,
-        write: |machine, _, cut| Ok(urdf(machine, cut).into()),
+        write: |of| Ok(urdf(of.machine, of.base, of.cut).into()),
         leaves_out: left_out::of_urdf,
     },
     // For viewing.
     Form {
         ending: "svg",
         shows: ModelContent::Links,
-        write: |machine, _, cut| Ok(svg(&Sheet::of(machine, cut)?).into()),
+        write: |of| Ok(svg(&Sheet::of(of.machine, of.cut)?).into()),
         leaves_out: left_out::of_drawing,
     },
     // For cutting.
     Form {
         ending: "dxf",
         shows: ModelContent::Links,
-        write: |machine, _, cut| Ok(dxf(&Sheet::of(machine, cut)?).into()),
+        write: |of| Ok(dxf(&Sheet::of(of.machine, of.cut)?).into()),
         leaves_out: left_out::of_drawing,
     },
     // For a printer or a program for solids.
     Form {
         ending: "stl",
         shows: ModelContent::Solids,
-        write: |machine, pose, cut| Ok(stl(machine, pose, cut)?.into()),
+        write: |of| Ok(stl(of.machine, of.pose, of.cut)?.into()),
         leaves_out: left_out::of_solids,
     },
     // For a spreadsheet.
@@ -107,13 +121,13 @@ pub const FORMS: [Form; 8] = [
     Form {
         ending: "md",
         shows: ModelContent::Parts,
-        write: |machine, _, cut| Ok(PartsList::of(machine, cut)?.markdown().into()),
+        write: |of| Ok(PartsList::of(of.machine, of.cut)?.markdown().into()),
         leaves_out: |_| Vec::new(),
     },
 ];
 
-fn parts_table(machine: &Machine, _: &[f64], cut: &Cut) -> Result<FormContent, ExchangeError> {
-    Ok(FormContent::Table(PartsList::of(machine, cut)?.cells()))
+fn parts_table(of: &Exported) -> Result<FormContent, ExchangeError> {
+    Ok(FormContent::Table(PartsList::of(of.machine, of.cut)?.cells()))
 }
 
 /// The default ending.
@@ -169,12 +183,12 @@ impl Form {
         (self.leaves_out)(machine)
     }
 
-    /// Returns the content of the file; `pose`, rad, is the initial pose of formats that show one.
+    /// Returns the content of the file.
     ///
     /// # Errors
     /// If the machine cannot be exported in this format.
-    pub fn written(&self, machine: &Machine, pose: &[f64], cut: &Cut) -> Result<FormContent, ExchangeError> {
-        cut.check_ranges()?;
-        (self.write)(machine, pose, cut)
+    pub fn written(&self, of: &Exported) -> Result<FormContent, ExchangeError> {
+        of.cut.check_ranges()?;
+        (self.write)(of)
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! Others reach this crate as `stillbase::exchange`; `stillbase` alone follows semantic versioning.
 
+pub mod base_body;
 pub mod cut;
 #[doc(hidden)]
 pub mod drawing;

@@ -13,3 +13,5 @@ pub const DRIVE_COLOURS: [&str; 8] = [
     "0 0.45 0.70 1",
     "0.6 0.6 0.6 1",
 ];
+/// Colour of a base that floats, as RGBA.
+pub const BASE_COLOUR: &str = "0.55 0.58 0.62 1";

@@ -3,6 +3,9 @@
 //! of the base on the machine; f_B and n_B have the opposite sign. The frame of a link has x along e(q_k) of its drive,
 //! so a link that runs against its drive lies along −x. Bodies and hinges have the same names as in URDF.
 //!
+//! A base that floats is a body with two slides and a hinge, at the base pin; the body `mount` on it carries the machine,
+//! so that the sensors read what acts between the two, along the axes of the base.
+//!
 //! Every rotor is a separate body. Behind a gear, it adds different amounts to the momentum (D) and to the inertia (H),
 //! whereas an armature would add to the inertia only. Inertias about axes in the plane do not affect a plane motion;
 //! their values are made up.
@@ -10,8 +13,9 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
+use super::base_body::BaseBody;
 use super::cut::{Cut, DrawnSize, DrawnWeight};
-use super::look::{DRAWN_BAR_RADIUS, DRIVE_COLOURS};
+use super::look::{BASE_COLOUR, DRAWN_BAR_RADIUS, DRIVE_COLOURS};
 use super::tree::{Tree, TreePart};
 use super::turn::PinAngleSum;
 use super::xml::quoted;
@@ -49,13 +53,21 @@ pub(super) const MIN_MASS_OR_INERTIA: f64 = 1e-12;
 /// Mass of a rotor's body, kg: the rotor's real mass belongs to the link that carries it.
 const ROTOR_MASS_KG: f64 = 1e-11;
 
-/// Returns the model of a machine as text; its keyframe `start` is the pose `q`, rad, with motors at rest. `cut` gives
-/// the thickness of counterweights, which is for the eye: mass and inertia are those of the machine.
+/// The joints of a base that floats, with their axes.
+const BASE_JOINTS: [&str; 3] = [
+    "name=\"base_x\" type=\"slide\" axis=\"1 0 0\"",
+    "name=\"base_y\" type=\"slide\" axis=\"0 1 0\"",
+    "name=\"base_turn\"",
+];
+
+/// Returns the model of a machine as text; its keyframe `start` is the pose `q`, rad, with motors at rest. The machine
+/// stands on the world, or on a base that floats if there is one. `cut` gives the thickness of counterweights, which is
+/// for the eye: mass and inertia are those of the machine.
 ///
 /// # Errors
 /// If MuJoCo cannot simulate the machine, or if the pose does not have one angle for each drive.
-pub fn mjcf(machine: &Machine, q: &[f64], cut: &Cut) -> Result<String, MjcfError> {
-    let model = Model::of(machine, q)?;
+pub fn mjcf(machine: &Machine, base: Option<&BaseBody>, q: &[f64], cut: &Cut) -> Result<String, MjcfError> {
+    let model = Model::of(machine, base, q)?;
     let massless = |link: &str, what| MjcfError::Massless { link: link.into(), what };
     for link in machine.links() {
         if link.mass < MIN_MASS_OR_INERTIA {
@@ -68,16 +80,27 @@ pub fn mjcf(machine: &Machine, q: &[f64], cut: &Cut) -> Result<String, MjcfError
     Ok(model.text(q, cut))
 }
 
-/// Returns the angles of all hinges of the model in a pose, rad, in the order of `qpos`: links and rotors, depth first.
+/// Returns the angles of all hinges of the machine in a pose, rad, in the order of `qpos`: links and rotors, depth first.
+/// The joints of a base that floats come before them.
 ///
 /// # Errors
 /// If the pose does not have one angle for each drive, or if no link follows a drive.
 pub fn hinges(machine: &Machine, q: &[f64]) -> Result<Vec<f64>, MjcfError> {
-    Ok(Model::of(machine, q)?.pose(q))
+    Ok(Model::of(machine, None, q)?.qpos(q))
+}
+
+/// Returns `qpos` of the model in a pose, m and rad: the joints of a base that floats, at 0, then all hinges.
+///
+/// # Errors
+/// As [`hinges`].
+pub fn qpos(machine: &Machine, base: Option<&BaseBody>, q: &[f64]) -> Result<Vec<f64>, MjcfError> {
+    Ok(Model::of(machine, base, q)?.qpos(q))
 }
 
 struct Model<'a> {
     machine: &'a Machine,
+    /// The base, if it floats.
+    base: Option<&'a BaseBody>,
     /// Names of bodies and hinges.
     tree: Tree<'a>,
     /// The angle of each motor.
@@ -98,7 +121,7 @@ macro_rules! line {
 }
 
 impl<'a> Model<'a> {
-    fn of(machine: &'a Machine, q: &[f64]) -> Result<Self, MjcfError> {
+    fn of(machine: &'a Machine, base: Option<&'a BaseBody>, q: &[f64]) -> Result<Self, MjcfError> {
         if q.len() != machine.drives() {
             return Err(MjcfError::Pose { given: q.len(), wanted: machine.drives() });
         }
@@ -109,6 +132,7 @@ impl<'a> Model<'a> {
         let motors = (0..machine.drives()).map(motor).collect::<Result<_, _>>()?;
         Ok(Self {
             machine,
+            base,
             tree: Tree::of(machine),
             motors,
             limited: limited(machine),
@@ -135,10 +159,14 @@ impl<'a> Model<'a> {
         line!(self, 1, "<worldbody>");
         line!(self, 2, "<light pos=\"0 0 3\" dir=\"0 0 -1\"/>");
         line!(self, 2, "<body name=\"base\">");
-        line!(self, 3, "<site name=\"base\" size=\"0.02\"/>");
-        self.rotors(3, None);
-        for j in self.children(None) {
-            self.body(3, j, cut);
+        match self.base {
+            None => self.machine(3, cut),
+            Some(base) => {
+                self.floating(3, base);
+                line!(self, 3, "<body name=\"mount\">");
+                self.machine(4, cut);
+                line!(self, 3, "</body>");
+            }
         }
         line!(self, 2, "</body>");
         line!(self, 1, "</worldbody>");
@@ -151,11 +179,35 @@ impl<'a> Model<'a> {
         line!(self, 2, "<framepos name=\"end effector\" objtype=\"site\" objname=\"end_effector\"/>");
         line!(self, 1, "</sensor>");
         line!(self, 1, "<keyframe>");
-        let pose = self.pose(q).iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
+        let pose = self.qpos(q).iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
         line!(self, 2, "<key name=\"start\" qpos=\"{pose}\"/>");
         line!(self, 1, "</keyframe>");
         line!(self, 0, "</mujoco>");
         self.out
+    }
+
+    /// Writes all that the base carries.
+    fn machine(&mut self, depth: usize, cut: &Cut) {
+        line!(self, depth, "<site name=\"base\" size=\"0.02\"/>");
+        self.rotors(depth, None);
+        for j in self.children(None) {
+            self.body(depth, j, cut);
+        }
+    }
+
+    /// Writes joints, mass and shape of a base that floats.
+    fn floating(&mut self, depth: usize, base: &BaseBody) {
+        for joint in BASE_JOINTS {
+            line!(self, depth, "<joint {joint}/>");
+        }
+        let (com, half) = (base.com, 0.5 * base.drawn_side());
+        self.inertial(depth, [com.re, com.im, 0.0], base.mass, base.inertia);
+        let (x, y, thin) = (com.re, com.im, 0.5 * DRAWN_BAR_RADIUS);
+        line!(
+            self,
+            depth,
+            "<geom type=\"box\" pos=\"{x} {y} 0\" size=\"{half} {half} {thin}\" rgba=\"{BASE_COLOUR}\"/>"
+        );
     }
 
     fn children(&self, parent: Option<usize>) -> Vec<usize> {
@@ -363,9 +415,10 @@ impl<'a> Model<'a> {
         line!(self, 1, "</actuator>");
     }
 
-    /// Returns the angles of all hinges, rad, in the order of the bodies.
-    fn pose(&self, q: &[f64]) -> Vec<f64> {
-        let mut all = Vec::new();
+    /// Returns the numbers of all joints, those of the base first and at 0, the angles of hinges in rad in the order of
+    /// the bodies.
+    fn qpos(&self, q: &[f64]) -> Vec<f64> {
+        let mut all = vec![0.0; if self.base.is_some() { BASE_JOINTS.len() } else { 0 }];
         self.pose_of(None, q, &mut all);
         all
     }

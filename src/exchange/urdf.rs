@@ -18,8 +18,9 @@
 //! motion of the base belong to a scenario. Inertias about axes in the plane do not affect a plane motion; their values
 //! are made up.
 
+use super::base_body::BaseBody;
 use super::cut::{Cut, DrawnSize, DrawnWeight};
-use super::look::{DRAWN_BAR_RADIUS, DRIVE_COLOURS};
+use super::look::{BASE_COLOUR, DRAWN_BAR_RADIUS, DRIVE_COLOURS};
 use super::tree::{Tree, TreeJoint, TreePart, Turns};
 use super::xml::{XmlWriter, quoted, remark};
 use stillbase_mechanics::machine::{Machine, Payload, RelativeAngle};
@@ -29,10 +30,10 @@ const AUXILIARY_MASS_FRACTION: f64 = 1e-13;
 /// Limit written for an unlimited torque, N m, or rate, rad/s, because URDF requires one.
 const UNLIMITED: f64 = 1e9;
 
-/// Returns the model of a machine as text. `cut` gives the thickness of counterweights, which is for the eye: mass and
+/// Returns the model of a machine as text. A base that floats hangs on a link `world` by a floating joint. `cut` gives the thickness of counterweights, which is for the eye: mass and
 /// inertia are those of the machine.
-pub fn urdf(machine: &Machine, cut: &Cut) -> String {
-    Model::of(machine, cut).text()
+pub fn urdf(machine: &Machine, base: Option<&BaseBody>, cut: &Cut) -> String {
+    Model::of(machine, base, cut).text()
 }
 
 /// Returns the name of the joint that turns by the angle of motor k.
@@ -48,6 +49,8 @@ pub(super) fn meet(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 
 struct Model<'a> {
     machine: &'a Machine,
+    /// The base, if it floats.
+    base: Option<&'a BaseBody>,
     cut: &'a Cut,
     tree: Tree<'a>,
     /// Mass, kg, and inertia, kg m², of an auxiliary link.
@@ -66,9 +69,10 @@ struct Body {
 }
 
 impl<'a> Model<'a> {
-    fn of(machine: &'a Machine, cut: &'a Cut) -> Self {
+    fn of(machine: &'a Machine, base: Option<&'a BaseBody>, cut: &'a Cut) -> Self {
         Self {
             machine,
+            base,
             cut,
             tree: Tree::of(machine),
             least: AUXILIARY_MASS_FRACTION * machine.mass(),
@@ -86,13 +90,29 @@ impl<'a> Model<'a> {
             let drive = quoted(&self.machine.spec().drives[k].name);
             self.lines.add(1, format_args!("<material name=\"drive_{drive}\"><color rgba=\"{colour}\"/></material>"));
         }
-        self.lines.add(1, format_args!("<link name=\"base\"/>"));
+        self.floating();
         let joints = self.tree.joints.clone();
         joints.iter().for_each(|joint| self.part(joint.child));
         joints.iter().for_each(|joint| self.joint(joint));
         self.extension();
         self.lines.add(0, format_args!("</robot>"));
         self.lines.into_text()
+    }
+
+    /// Writes the base, and what carries it if it floats.
+    fn floating(&mut self) {
+        let Some(base) = self.base else { return self.lines.add(1, format_args!("<link name=\"base\"/>")) };
+        let (at, side) = ([base.com.re, base.com.im], base.drawn_side());
+        self.lines.add(1, format_args!("<material name=\"base\"><color rgba=\"{BASE_COLOUR}\"/></material>"));
+        self.lines.add(1, format_args!("<link name=\"world\"/>"));
+        self.lines.add(1, format_args!("<link name=\"base\">"));
+        self.inertial(&Body { at: [at[0], at[1], 0.0], mass: base.mass, inertia: base.inertia });
+        self.visual("base", at, &format!("<box size=\"{side} {side} {DRAWN_BAR_RADIUS}\"/>"));
+        self.lines.add(1, format_args!("</link>"));
+        self.lines.add(1, format_args!("<joint name=\"base_floats\" type=\"floating\">"));
+        self.lines.add(2, format_args!("<parent link=\"world\"/>"));
+        self.lines.add(2, format_args!("<child link=\"base\"/>"));
+        self.lines.add(1, format_args!("</joint>"));
     }
 
     fn remark(&mut self, text: &str) {
@@ -250,23 +270,23 @@ impl<'a> Model<'a> {
         let ends = part.pins.iter().fold([0.0_f64, part.length], |[least, most], at| [least.min(*at), most.max(*at)]);
         let (middle, length) = (part.sign * 0.5 * (ends[0] + ends[1]), ends[1] - ends[0] + 2.0 * DRAWN_BAR_RADIUS);
         let bar = format!("<box size=\"{length} {} {}\"/>", 2.0 * DRAWN_BAR_RADIUS, 0.5 * DRAWN_BAR_RADIUS);
-        self.visual(part.drive, [middle, 0.0], &bar);
+        let material = format!("drive_{}", quoted(&machine.spec().drives[part.drive].name));
+        self.visual(&material, [middle, 0.0], &bar);
         for weight in machine.spec().counterweights.iter().filter(|weight| weight.link == link.name) {
             let DrawnWeight { at, height, size } = self.cut.drawn_weight(weight);
             let solid = match size {
                 DrawnSize::Disc(radius) => format!("<cylinder radius=\"{radius}\" length=\"{height}\"/>"),
                 DrawnSize::Box([length, width]) => format!("<box size=\"{length} {width} {height}\"/>"),
             };
-            self.visual(part.drive, at.map(|x| part.sign * x), &solid);
+            self.visual(&material, at.map(|x| part.sign * x), &solid);
         }
     }
 
-    fn visual(&mut self, drive: usize, [x, y]: [f64; 2], geometry: &str) {
-        let drive = quoted(&self.machine.spec().drives[drive].name);
+    fn visual(&mut self, material: &str, [x, y]: [f64; 2], geometry: &str) {
         self.lines.add(2, format_args!("<visual>"));
         self.lines.add(3, format_args!("<origin xyz=\"{x} {y} 0\"/>"));
         self.lines.add(3, format_args!("<geometry>{geometry}</geometry>"));
-        self.lines.add(3, format_args!("<material name=\"drive_{drive}\"/>"));
+        self.lines.add(3, format_args!("<material name=\"{material}\"/>"));
         self.lines.add(2, format_args!("</visual>"));
     }
 }

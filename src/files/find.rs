@@ -3,10 +3,12 @@
 use std::io::ErrorKind;
 use std::path::Path;
 
+use super::afloat::{floating_base, scenario_afloat};
 use super::recorded_case::RecordedCase;
 #[cfg(not(feature = "record"))]
 use super::recorded_case::is_recording;
 use super::text::{STANDARD_INPUT, read};
+use stillbase_exchange::base_body::BaseBody;
 use stillbase_exchange::import::{ImportedMachine, faults, import};
 use stillbase_mechanics::machine::{self, FileError, Machine, MachineError};
 use stillbase_mechanics::sketch::Template;
@@ -28,6 +30,8 @@ pub struct FoundMachine {
     pub machine: Machine,
     /// The brief of its design that its file holds; the defaults if it holds none.
     pub design: DesignBrief,
+    /// The base, if the file has one that floats.
+    pub base: Option<BaseBody>,
     /// What was left out of the model of another program; empty for a machine of this one.
     pub left_out: Vec<String>,
 }
@@ -57,11 +61,12 @@ fn machine_of(scenario: &Scenario, file: &str) -> Result<FoundMachine, FileError
         return Err(wrong(unfinished.to_string()));
     }
     let note = format!("it is a scenario, taken is its machine {}", start.machine.name());
-    Ok(FoundMachine { machine: start.machine, design: start.design, left_out: vec![note] })
+    let base = floating_base(&start.base);
+    Ok(FoundMachine { machine: start.machine, design: start.design, base, left_out: vec![note] })
 }
 
 fn found(name: &str, folder: Option<&Path>, takes_scenarios: bool) -> Result<FoundMachine, FileError> {
-    let own = |MachineFile { machine, design }| FoundMachine { machine, design, left_out: Vec::new() };
+    let own = |MachineFile { machine, design }| FoundMachine { machine, design, base: None, left_out: Vec::new() };
     if let Some(machine) = known_machine(name) {
         return Ok(own(machine.into()));
     }
@@ -77,8 +82,9 @@ fn found(name: &str, folder: Option<&Path>, takes_scenarios: bool) -> Result<Fou
         Ok(text) => {
             let file = label(&file.display().to_string()).to_owned();
             if is_model(&text) {
-                let ImportedMachine { machine, notes, .. } = model(&text, &file)?;
-                return Ok(FoundMachine { left_out: notes, ..own(machine.into()) });
+                let ImportedMachine { machine, base, floats, notes, .. } = model(&text, &file)?;
+                let base = base.filter(|_| floats);
+                return Ok(FoundMachine { base, left_out: notes, ..own(machine.into()) });
             }
             match content(&text) {
                 Some(FileContent::Scenario) if takes_scenarios => {
@@ -180,8 +186,12 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
     };
     let name = label(name);
     if is_model(&text) {
-        let ImportedMachine { machine, notes, .. } = model(&text, name)?;
-        return Ok(FoundScenario { left_out: notes, ..scenario_for(name, machine.into())? });
+        let ImportedMachine { machine, base, floats, notes, .. } = model(&text, name)?;
+        let found = match base.filter(|_| floats) {
+            Some(base) => with_note(name, scenario_afloat(&machine, &base)?),
+            None => scenario_for(name, machine.into())?,
+        };
+        return Ok(FoundScenario { left_out: notes, ..found });
     }
     if content(&text) == Some(FileContent::Machine) {
         return scenario_for(name, MachineFile::parse(&text, &shortened(name, 300))?);
@@ -224,17 +234,25 @@ fn recorded(name: &str) -> Option<Result<FoundScenario, ScenarioError>> {
 /// Makes a scenario for a machine, whose name or file is `name`. The scenario has the brief of the file.
 fn scenario_for(name: &str, of: MachineFile) -> Result<FoundScenario, ScenarioError> {
     let MachineFile { machine, design } = of;
-    let scenario = Scenario { design, ..gentle_motion(&machine)? };
+    Ok(with_note(name, Scenario { design, ..gentle_motion(&machine)? }))
+}
+
+/// Returns a scenario that was made for a machine, whose name or file is `name`, with a note that says so.
+fn with_note(name: &str, scenario: Scenario) -> FoundScenario {
     let task = &scenario.task;
     let made = format!(
         "{} is a machine, so a task was made for it: {} from {:.3}, {:.3} to {:.3}, {:.3} m in {} s",
         shortened(name, 300),
-        if task.kind == TaskKind::Reactionless { "reactionless" } else { "a straight line" },
+        match task.kind {
+            TaskKind::Reactionless => "reactionless",
+            TaskKind::ZeroMomentum => "a straight line without momentum",
+            _ => "a straight line",
+        },
         task.from[0],
         task.from[1],
         task.to[0],
         task.to[1],
         ShortNumber(task.time)
     );
-    Ok(FoundScenario { scenario, note: Some(made), left_out: Vec::new(), recorded: None })
+    FoundScenario { scenario, note: Some(made), left_out: Vec::new(), recorded: None }
 }

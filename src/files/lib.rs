@@ -3,6 +3,7 @@
 //!
 //! Others reach this crate as `stillbase::files`; `stillbase` alone follows semantic versioning.
 
+mod afloat;
 mod draft;
 #[doc(hidden)]
 pub mod fault;
@@ -39,6 +40,8 @@ pub mod text;
 #[doc(hidden)]
 pub mod video;
 
+#[doc(hidden)]
+pub use afloat::{floating_base, scenario_afloat};
 #[doc(hidden)]
 pub use draft::{WriteBlock, abandon};
 pub use find::{FoundMachine, FoundScenario, found_machine, machine, model, scenario};

@@ -1,17 +1,18 @@
 //! [`gentle_motion`]: makes a scenario for a machine that comes without one.
 
-use std::f64::consts::{FRAC_PI_3, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI, TAU};
 
 use toml::{Table, Value};
 
 use super::edit::Edit;
 use super::run::Run;
-use super::scenario::{Scenario, ScenarioError};
+use super::scenario::{Scenario, ScenarioError, TaskKind};
 use stillbase_mechanics::kinematics::end_effector;
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, unit};
 use stillbase_mechanics::sketch::Template;
 use stillbase_settings::change::DEFAULT_WORD;
+use stillbase_simulation::plant::Base;
 
 /// Each relative angle in the middle of the motion, as a fraction of the range between its limits. At a fraction of one
 /// half, parallelograms go flat.
@@ -22,6 +23,9 @@ const SPAN_FRACTIONS: [f64; 4] = [0.3, 0.2, 0.1, 0.04];
 const MAX_SPAN_RAD: f64 = 0.8;
 /// Direction of the end effector from the base pin in the middle of the motion, rad.
 const DIRECTION_RAD: f64 = 0.3 * PI;
+/// Directions of a line at zero momentum from the direction of the end effector, rad, in the order of the trials: inwards
+/// and across. Not every direction can be held, for there is one silent rate at each pose.
+const WAYS_RAD: [f64; 3] = [PI, FRAC_PI_2, -FRAC_PI_2];
 /// Number of intervals between the samples of a motion of the drives.
 const SWEEP_ROWS: u32 = 40;
 /// Durations of the motion, s. The first one that exceeds no limit of a drive is used.
@@ -64,6 +68,30 @@ pub fn gentle_motion(machine: &Machine) -> Result<Scenario, ScenarioError> {
         // The planner says what prevents the motion.
         Err(_) => Ok(refused.unwrap_or(swept)),
     }
+}
+
+/// Returns a scenario with a small motion of a machine on a base that floats: that of [`gentle_motion`] if it is
+/// reactionless, otherwise a straight line without angular momentum if the planner finds one.
+///
+/// # Errors
+/// As [`gentle_motion`].
+pub fn gentle_motion_afloat(machine: &Machine, base: Base) -> Result<Scenario, ScenarioError> {
+    let usual = Scenario { base, ..gentle_motion(machine)? };
+    if usual.task.kind == TaskKind::Reactionless {
+        return Ok(usual);
+    }
+    for (span, way) in SPAN_FRACTIONS.iter().flat_map(|span| WAYS_RAD.map(|way| (*span, way))) {
+        let task = task_from_start(machine, span, way);
+        for time in DURATIONS_S {
+            let scenario = Scenario { base, ..stated(machine, &format!("{task}time = {time:?}\n"))? };
+            match Run::new(&scenario).map(|run| run.plan().forecast.exceeded_limit.is_none()) {
+                Ok(true) => return Ok(scenario),
+                Ok(false) => {}
+                Err(_) => break,
+            }
+        }
+    }
+    Ok(usual)
 }
 
 /// Returns the scenario to open for another machine: its built-in one, else the present one if the machine can do its
@@ -170,6 +198,20 @@ fn task(machine: &Machine, kind: &str, span: f64, is_round: bool) -> String {
     };
     let (from, to, b) = (place(-0.5), place(0.5), round(b));
     format!("kind = \"{kind}\"\nfrom = {from:?}\nto = {to:?}\nb = {b:?}\n")
+}
+
+/// Returns a task at zero momentum as TOML, without its time: its pose at A, and a line at an angle `way`, rad, to the
+/// direction of the end effector from the base pin.
+fn task_from_start(machine: &Machine, span: f64, way: f64) -> String {
+    let round = |x: f64| (1e3 * x).round() / 1e3;
+    let tip = |q: &PerDrive| end_effector(machine.end_effector(), &DriveAngles(*q).units());
+    let bent = middle(machine);
+    let turn = DIRECTION_RAD - tip(&bent).arg();
+    let start = PerDrive::from_fn(bent.len(), |k| round(bent[k] + turn));
+    let from = tip(&start);
+    let to = from + 0.5 * span * from.norm() * unit(from.arg() + way);
+    let (start, to) = (&start[..bent.len()], [to.re, to.im].map(round));
+    format!("kind = \"zero-momentum\"\nshape = \"line\"\nstart = {start:?}\nto = {to:?}\n")
 }
 
 /// Returns all drive angles, rad, with relative angles near the middle of their limits.

@@ -40,7 +40,7 @@ pub use edit::{Edit, TimedEdit};
 pub(crate) use edit_check::check_edits;
 #[doc(hidden)]
 pub use fork::Fork;
-pub use gentle_motion::{for_machine, for_template, gentle_motion, with_own_task};
+pub use gentle_motion::{for_machine, for_template, gentle_motion, gentle_motion_afloat, with_own_task};
 pub use interactive::Session;
 #[doc(hidden)]
 pub use machines::Machines;

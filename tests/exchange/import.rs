@@ -13,7 +13,7 @@ use super::arms::{THREE, TWO};
 use crate::support::Noise;
 use crate::support::random::{a_chain, a_machine};
 
-fn machines() -> Vec<Machine> {
+pub fn machines() -> Vec<Machine> {
     let mut noise = Noise::of(11);
     let mut machines: Vec<Machine> = builtins().to_vec();
     for machine in builtins() {
@@ -59,7 +59,7 @@ fn com(machine: &Machine, j: usize, e: &UnitVectors) -> Vector {
 }
 
 /// Both have the same mass matrix, momentum and places, in poses that are `pose` of the one where the other is at `at`.
-fn same(machine: &Machine, found: &ImportedMachine, at: &[f64], noise: &mut Noise, is_urdf: bool) {
+pub fn same(machine: &Machine, found: &ImportedMachine, at: &[f64], noise: &mut Noise, is_urdf: bool) {
     let (n, other, name) = (machine.drives(), &found.machine, machine.name());
     assert_eq!(other.drives(), n, "{name}");
     for (k, at) in at.iter().enumerate().take(n) {
@@ -118,7 +118,7 @@ fn same(machine: &Machine, found: &ImportedMachine, at: &[f64], noise: &mut Nois
 fn what_goes_out_as_urdf_comes_back() {
     let mut noise = Noise::of(12);
     for machine in machines() {
-        let text = urdf(&machine, &Cut::default());
+        let text = urdf(&machine, None, &Cut::default());
         let found = import(&text).unwrap_or_else(|why| panic!("{}: {why}\n{text}", machine.name()));
         same(&machine, &found, &vec![0.0; machine.drives()], &mut noise, true);
     }
@@ -129,7 +129,7 @@ fn what_goes_out_as_mjcf_comes_back_with_its_loops() {
     let mut noise = Noise::of(13);
     for machine in machines() {
         let at = middle(&machine);
-        let text = mjcf(&machine, &at, &Cut::default()).expect("a model");
+        let text = mjcf(&machine, None, &at, &Cut::default()).expect("a model");
         let found = import(&text).unwrap_or_else(|why| panic!("{}: {why}\n{text}", machine.name()));
         same(&machine, &found, &at, &mut noise, false);
         assert_eq!(found.machine.spec().gravity, machine.spec().gravity);
@@ -146,8 +146,11 @@ fn limits_come_back() {
     for (name, text) in [("nine-link", true), ("serial-3r", true), ("serial-3r", false), ("scara", false)] {
         let machine = builtin(name).expect("built in");
         let at = if text { middle(machine) } else { vec![0.0; machine.drives()] };
-        let text =
-            if text { mjcf(machine, &at, &Cut::default()).expect("a model") } else { urdf(machine, &Cut::default()) };
+        let text = if text {
+            mjcf(machine, None, &at, &Cut::default()).expect("a model")
+        } else {
+            urdf(machine, None, &Cut::default())
+        };
         let found = import(&text).expect("a machine");
         assert_eq!(found.machine.angles().len(), machine.angles().len(), "{name}");
         for (own, other) in machine.angles().iter().zip(found.machine.angles()) {
@@ -169,7 +172,7 @@ fn limits_come_back() {
 /// What a model does not leave out by its list comes back equal, for the machines that come along and random ones.
 #[test]
 fn what_is_not_listed_comes_back() {
-    use stillbase::exchange::form::Form;
+    use stillbase::exchange::form::{Exported, Form};
     let mut noise = Noise::of(21);
     let mut all = machines();
     all.extend((0..100).map(|i| if i % 2 == 0 { a_machine(&mut noise) } else { a_chain(&mut noise, 1 + i / 2 % 8) }));
@@ -177,7 +180,10 @@ fn what_is_not_listed_comes_back() {
         for ending in ["urdf", "xml"] {
             let form = Form::of(ending).expect("a format");
             let pose = if ending == "xml" { middle(&machine) } else { vec![0.0; machine.drives()] };
-            let text = form.written(&machine, &pose, &Cut::default()).expect("a model").text();
+            let text = form
+                .written(&Exported { machine: &machine, base: None, pose: &pose, cut: &Cut::default() })
+                .expect("a model")
+                .text();
             let list = form.left_out(&machine);
             let lists = |words: &str| list.iter().any(|what| what.contains(words));
             let back = import(&text).unwrap_or_else(|why| panic!("{}: {why}", machine.name())).machine;
@@ -265,10 +271,10 @@ fn a_thousand_machines_go_out_and_come_back() {
     for i in 0..1000 {
         let machine = if i % 2 == 0 { a_machine(&mut noise) } else { a_chain(&mut noise, 1 + i / 2 % 8) };
         let at: Vec<f64> = (0..machine.drives()).map(|_| noise.between(-3.0, 3.0)).collect();
-        let found = import(&urdf(&machine, &Cut::default())).unwrap_or_else(|why| panic!("{i}: {why}"));
+        let found = import(&urdf(&machine, None, &Cut::default())).unwrap_or_else(|why| panic!("{i}: {why}"));
         same(&machine, &found, &vec![0.0; machine.drives()], &mut noise, true);
-        let found =
-            import(&mjcf(&machine, &at, &Cut::default()).expect("a model")).unwrap_or_else(|why| panic!("{i}: {why}"));
+        let found = import(&mjcf(&machine, None, &at, &Cut::default()).expect("a model"))
+            .unwrap_or_else(|why| panic!("{i}: {why}"));
         same(&machine, &found, &at, &mut noise, false);
     }
 }
@@ -312,9 +318,9 @@ fn all_limits_come_back() {
         let at: Vec<f64> = (0..n).map(|_| noise.between(-3.0, 3.0)).collect();
         for is_urdf in [true, false] {
             let text = if is_urdf {
-                urdf(&machine, &Cut::default())
+                urdf(&machine, None, &Cut::default())
             } else {
-                mjcf(&machine, &at, &Cut::default()).expect("a model")
+                mjcf(&machine, None, &at, &Cut::default()).expect("a model")
             };
             let found = import(&text).unwrap_or_else(|why| panic!("{why}\n{text}"));
             let from = if is_urdf { vec![0.0; n] } else { at.clone() };
@@ -344,7 +350,8 @@ fn all_limits_come_back() {
 fn joints_have_one_name() {
     for machine in machines() {
         let at = middle(&machine);
-        let texts = [urdf(&machine, &Cut::default()), mjcf(&machine, &at, &Cut::default()).expect("a model")];
+        let texts =
+            [urdf(&machine, None, &Cut::default()), mjcf(&machine, None, &at, &Cut::default()).expect("a model")];
         let documents = texts.each_ref().map(|text| roxmltree::Document::parse(text).expect("XML"));
         let joints = documents[0].root_element().children().filter(|node| node.has_tag_name("joint"));
         let names: Vec<&str> = joints.filter_map(|node| node.attribute("name")).collect();
@@ -437,7 +444,11 @@ fn axes_may_lie_along_any_direction() {
 fn what_is_outside_of_the_family_is_refused_by_name() {
     for (from, to, words) in [
         ("type=\"revolute\"", "type=\"prismatic\"", ["line 14: joint \"shoulder\"", "revolute, continuous or fixed"]),
-        ("type=\"revolute\"", "type=\"floating\"", ["joint \"shoulder\"", "type \"floating\""]),
+        (
+            "name=\"elbow\" type=\"revolute\"",
+            "name=\"elbow\" type=\"floating\"",
+            ["joint \"elbow\"", "type \"floating\""],
+        ),
         (
             "<axis xyz=\"0 0 1\"/>\n    <limit lower=\"-2.5\"",
             "<axis xyz=\"0 1 0\"/>\n    <limit lower=\"-2.5\"",
@@ -483,14 +494,14 @@ fn what_is_outside_of_the_family_is_refused_by_name() {
 #[test]
 fn what_mjcf_has_besides_is_refused_by_name() {
     let machine = builtin("nine-link").expect("built in");
-    let text = mjcf(machine, &middle(machine), &Cut::default()).expect("a model");
+    let text = mjcf(machine, None, &middle(machine), &Cut::default()).expect("a model");
     for (from, to, words) in [
         (
             "<joint name=\"joint_link_1\"/>",
             "<joint name=\"joint_link_1\" type=\"slide\"/>",
             ["joint \"joint_link_1\"", "want hinges"],
         ),
-        ("<joint name=\"joint_link_1\"/>", "<freejoint/>", ["<freejoint>", "on a base"]),
+        ("<joint name=\"joint_link_1\"/>", "<freejoint/>", ["<freejoint>", "floats on a body"]),
         (
             "<joint name=\"joint_link_4\"/>",
             "<joint name=\"joint_link_4\" armature=\"0.1\"/>",

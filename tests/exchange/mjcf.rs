@@ -5,7 +5,7 @@ use stillbase::exchange::mjcf::{MjcfError, hinges, middle, mjcf};
 use stillbase::mechanics::machine::{Machine, builtin, builtins, parse, to_toml};
 
 fn model(machine: &Machine) -> String {
-    mjcf(machine, &middle(machine), &Cut::default()).expect("a model")
+    mjcf(machine, None, &middle(machine), &Cut::default()).expect("a model")
 }
 
 fn count(text: &str, what: &str) -> usize {
@@ -90,10 +90,10 @@ fn names_of_a_stranger_are_quoted() {
 #[test]
 fn what_mujoco_could_not_move_is_refused() {
     let machine = builtin("nine-link").expect("built in");
-    assert_eq!(mjcf(machine, &[0.0; 2], &Cut::default()), Err(MjcfError::Pose { given: 2, wanted: 3 }));
+    assert_eq!(mjcf(machine, None, &[0.0; 2], &Cut::default()), Err(MjcfError::Pose { given: 2, wanted: 3 }));
     assert_eq!(hinges(machine, &[0.0; 4]), Err(MjcfError::Pose { given: 4, wanted: 3 }));
     let light = machine.set("link.4.inertia", "0").expect("in range");
-    let why = mjcf(&light, &[0.0; 3], &Cut::default()).expect_err("MuJoCo moves no such body");
+    let why = mjcf(&light, None, &[0.0; 3], &Cut::default()).expect_err("MuJoCo moves no such body");
     assert_eq!(why, MjcfError::Massless { link: "4".into(), what: "inertia" });
     assert!(why.to_string().contains("link \"4\" has inertia 0"), "{why}");
 }

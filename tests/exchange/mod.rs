@@ -2,6 +2,7 @@
 
 pub mod arms;
 mod drawing;
+mod floating;
 mod import;
 mod mjcf;
 pub mod ordinary;

@@ -141,8 +141,8 @@ fn a_disc_is_as_thick_in_every_export() {
         [Cut::default(), Cut { density: 2700.0, ..Cut::default() }, Cut { thickness: Some(0.05), ..Cut::default() }]
     {
         let models = [
-            (mjcf(machine, &middle(machine), &cut).expect("a model"), "geom", 2.0),
-            (urdf(machine, &cut), "cylinder", 1.0),
+            (mjcf(machine, None, &middle(machine), &cut).expect("a model"), "geom", 2.0),
+            (urdf(machine, None, &cut), "cylinder", 1.0),
         ];
         for (model, tag, heights) in models {
             let document = roxmltree::Document::parse(&model).expect("XML");

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use stillbase::exchange::cut::{Cut, bar_extent};
 use stillbase::exchange::drawing::{Sheet, dxf};
-use stillbase::exchange::form::Form;
+use stillbase::exchange::form::{Exported, Form};
 use stillbase::exchange::mjcf::middle;
 use stillbase::exchange::parts::PartsList;
 use stillbase::exchange::solids::{axles, link_solids};
@@ -122,7 +122,12 @@ fn links_of_one_height_make_no_solids() {
     assert!(why.to_string().contains("stillbase layers"), "{why}");
     let stacked = stacked(machine, cut);
     assert_eq!(solids(&stacked, &[0.0], &cut), Err(SolidsError::Pose { given: 1, wanted: 2 }));
-    assert!(Form::of("STL").expect("a form").written(&stacked, &[0.0, f64::NAN], &cut).is_err());
+    assert!(
+        Form::of("STL")
+            .expect("a form")
+            .written(&Exported { machine: &stacked, base: None, pose: &[0.0, f64::NAN], cut: &cut })
+            .is_err()
+    );
 }
 
 /// Every layer on which something lies is declared, for machines with and without parts.

@@ -79,7 +79,7 @@ fn machines() -> Vec<Machine> {
 fn joints_add_up_to_directions_and_places() {
     let mut noise = Noise::of(8);
     for machine in machines() {
-        let text = urdf(&machine, &Cut::default());
+        let text = urdf(&machine, None, &Cut::default());
         let document = Document::parse(&text).unwrap_or_else(|why| panic!("{why}\n{text}"));
         let joints = joints(&document);
         let links: Vec<&str> = document
@@ -115,7 +115,7 @@ fn joints_add_up_to_directions_and_places() {
 /// A serial arm with a motor in each joint is what everybody writes: a joint for each link, and rotors.
 #[test]
 fn a_serial_arm_needs_nothing_between_its_links() {
-    let text = urdf(builtin("scara").expect("built in"), &Cut::default());
+    let text = urdf(builtin("scara").expect("built in"), None, &Cut::default());
     assert!(!text.contains("name=\"pin_") && !text.contains("name=\"shaft_"), "{text}");
     let document = Document::parse(&text).expect("XML");
     let elbow = document
@@ -135,7 +135,7 @@ fn a_serial_arm_needs_nothing_between_its_links() {
 fn what_urdf_cannot_say_stands_beside_it() {
     let machine = builtin("nine-link").expect("built in").set("gravity", "0,-9.81").expect("in range");
     let machine = machine.set("drive.2.jerk_limit", "900").expect("in range");
-    let text = urdf(&machine, &Cut::default());
+    let text = urdf(&machine, None, &Cut::default());
     let document = Document::parse(&text).expect("XML");
     let own = element(document.root_element(), "stillbase").expect("an element of its own");
     let count = |name: &str| own.children().filter(|node| node.has_tag_name(name)).count();
@@ -176,7 +176,7 @@ fn what_is_followed_comes_before_what_follows() {
         true
     }
     for machine in machines() {
-        let text = urdf(&machine, &Cut::default());
+        let text = urdf(&machine, None, &Cut::default());
         assert!(is_ordered(&text, true) && is_ordered(&text, false), "{}\n{text}", machine.name());
     }
 }
@@ -186,7 +186,7 @@ fn names_of_a_stranger_stay_in_their_place() {
     let text = to_toml(builtin("two-drive").expect("built in")).replace("link = \"2\"", "link = 'a--\"<&>->'");
     let text = text.replace("[[link]]\nname = \"2\"", "[[link]]\nname = 'a--\"<&>->'");
     let machine = parse(&text, "strange.toml").expect("a machine");
-    let text = urdf(&machine, &Cut::default());
+    let text = urdf(&machine, None, &Cut::default());
     let document = Document::parse(&text).unwrap_or_else(|why| panic!("{why}\n{text}"));
     assert!(document.descendants().any(|node| node.attribute("name") == Some("link_a--\"<&>->")));
 }

@@ -359,7 +359,10 @@ fn models() {
     let good: Vec<Vec<u8>> = machines
         .iter()
         .flat_map(|machine| {
-            [urdf(machine, &Cut::default()), mjcf(machine, &middle(machine), &Cut::default()).expect("a model")]
+            [
+                urdf(machine, None, &Cut::default()),
+                mjcf(machine, None, &middle(machine), &Cut::default()).expect("a model"),
+            ]
         })
         .chain([TWO.to_owned(), THREE.to_owned(), ARM.to_owned()])
         .map(String::into_bytes)

@@ -115,7 +115,14 @@ fn machines_of_the_gallery_are_their_bodies() {
     for machine in builtins() {
         let machine = machine.set("gravity", "1.5,-9.81").expect("in range");
         as_bodies(machine.name(), &machine, &mut noise);
-        let front = DesignBrief::default().front(&machine, 2).expect("it can be balanced");
+        let front = match DesignBrief::default().front(&machine, 2) {
+            Ok(front) => front,
+            // The centre of mass of its last link lies off the line on which counterweights may sit.
+            Err(why) => {
+                assert_eq!(machine.name(), "ets-vii", "it can be balanced: {why:?}");
+                continue;
+            }
+        };
         for placed in front.points.iter().filter(|placed| placed.added_mass > 0.0) {
             as_bodies(&format!("{} with counterweights", machine.name()), &placed.machine, &mut noise);
             weighed += 1;

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use serde_json::{Value, json};
 use stillbase::exchange::cut::Cut;
-use stillbase::exchange::form::Form;
+use stillbase::exchange::form::{Exported, Form};
 use stillbase::exchange::mjcf::middle;
 use stillbase::exchange::solids::{LinkSolid, SolidKind, link_solids};
 use stillbase::mechanics::machine::{Counterweight, CounterweightShape, Machine, Part, Shape, place_of};
@@ -82,7 +82,12 @@ fn solids_weigh_what_links_weigh() {
     let machines: Vec<Machine> = drawn.collect();
     let form = Form::of("stl").expect("a form");
     let written = |machine: &Machine| {
-        json!(form.written(machine, &middle(machine), &Cut::default()).expect("solids").text()).to_string()
+        json!(
+            form.written(&Exported { machine, base: None, pose: &middle(machine), cut: &Cut::default() })
+                .expect("solids")
+                .text()
+        )
+        .to_string()
     };
     let lines: Vec<String> = machines.iter().map(written).collect();
     let (mut greatest, mut drilled) = ([0.0_f64; 3], 0);

@@ -66,7 +66,7 @@ fn asked(machine: &Machine, motions: &[Motion]) -> String {
             json!({ "qpos": qpos, "qvel": rates(&motion.qd), "qacc": rates(&motion.qdd) })
         })
         .collect();
-    let model = mjcf(machine, &middle(machine), &Cut::default()).expect("a model");
+    let model = mjcf(machine, None, &middle(machine), &Cut::default()).expect("a model");
     json!({ "model": model, "columns": columns, "motions": motions }).to_string()
 }
 

@@ -142,7 +142,7 @@ fn every_machine_weighs_and_pulls_the_same() {
     }
     let line = |(machine, motions): (&Machine, &Vec<Motion>)| {
         let joints: Vec<(String, f64)> = (0..machine.drives()).map(|k| (joint(machine, k), 1.0)).collect();
-        asked(machine, &urdf(machine, &Cut::default()), &joints, &vec![0.0; machine.drives()], motions)
+        asked(machine, &urdf(machine, None, &Cut::default()), &joints, &vec![0.0; machine.drives()], motions)
     };
     let lines: Vec<String> = machines.iter().zip(&motions).map(line).collect();
     let found = answers(SCRIPT, &lines);

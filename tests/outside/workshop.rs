@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use stillbase::exchange::cut::Cut;
 use stillbase::exchange::drawing::pieces_of;
-use stillbase::exchange::form::Form;
+use stillbase::exchange::form::{Exported, Form};
 use stillbase::exchange::import::import;
 use stillbase::exchange::mjcf::middle;
 use stillbase::mechanics::counterweights::{
@@ -72,7 +72,9 @@ fn question(machine: &Machine, disc: CounterweightStock) -> Value {
     let (name, cut) = (machine.name(), Cut::default());
     let exported = |ending: &str| {
         let form = Form::of(ending).expect("a form");
-        form.written(machine, &middle(machine), &cut).unwrap_or_else(|why| panic!("{name}, {ending}: {why}")).text()
+        form.written(&Exported { machine, base: None, pose: &middle(machine), cut: &cut })
+            .unwrap_or_else(|why| panic!("{name}, {ending}: {why}"))
+            .text()
     };
     let links = machine.resolved_links().iter().enumerate().map(|(j, link)| {
         let root: Vec<f64> = (0..machine.drives()).map(|k| link.root[k]).collect();
@@ -195,7 +197,7 @@ fn come_back(machine: &Machine) {
     for ending in ["urdf", "xml"] {
         let form = Form::of(ending).expect("a form");
         let text = form
-            .written(machine, &middle(machine), &Cut::default())
+            .written(&Exported { machine, base: None, pose: &middle(machine), cut: &Cut::default() })
             .unwrap_or_else(|why| panic!("{name}: {why}"))
             .text();
         let back = import(&text).unwrap_or_else(|why| panic!("{name}, {ending}: {why}")).machine;

@@ -671,7 +671,7 @@ fn a_base_from_elsewhere_goes_into_a_scenario() {
     let text = fs::read_to_string(file("arm.urdf")).expect("a file").replacen("<link name=\"base\"/>", &base, 1);
     fs::write(file("afloat.urdf"), text).expect("written");
     let answer = object(&["import-model", &file("afloat.urdf")]);
-    assert_eq!(answer["base"], json!({ "mass": 75.0, "inertia": 3.5, "com": [0.2, -0.1] }));
+    assert_eq!(answer["base"], json!({ "mass": 75.0, "inertia": 3.5, "com": [0.2, -0.1], "floats": false }));
     let notes = answer["notes"].as_array().expect("a list");
     let offered = |note: &Value| note.as_str().is_some_and(|note| note.contains("75") && note.contains("--scenario"));
     assert!(notes.iter().any(offered), "{notes:?}");

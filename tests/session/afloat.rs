@@ -113,6 +113,25 @@ fn joint_motions_turn_the_base_as_momentum_says() {
     assert!((end.base.angle * 180.0 / PI + 34.921).abs() < 1e-3);
 }
 
+/// A motion that was flown turns the base by what momentum computed outside gives, and the silent one between the same
+/// points by nothing.
+#[test]
+fn a_satellite_turns_as_it_flew() {
+    let [flown, silent] = ["ets-vii", "ets-vii-silent"].map(|name| Scenario::builtin(name).expect("built in"));
+    let (end, _) = run(&flown);
+    assert!((end.base.angle + 0.010736574209523).abs() < 1e-8 && end.time >= 22.6 - 1e-9, "{} rad", end.base.angle);
+    for (k, turned) in
+        [0.263828840, 0.263828840 + 0.320653514, 0.263828840 + 0.320653514 + 0.056824673].iter().enumerate()
+    {
+        let start = Run::new(&flown).expect("it runs").frame().relative(k);
+        assert!((end.relative(k) - start - turned).abs() < 1e-7, "angle {k}");
+    }
+    let (still, turned) = run(&silent);
+    let begin = [&flown, &silent].map(|scenario| Run::new(scenario).expect("it runs").frame().end_effector);
+    assert!((begin[0] - begin[1]).norm() < 1e-9, "{begin:?}");
+    assert!(turned < 1e-9 && (end.in_base(end.end_effector) - still.in_base(still.end_effector)).norm() < 1e-7);
+}
+
 /// A start brings A and b, whatever else is stated; another A has no start.
 #[test]
 fn a_task_may_state_its_pose_of_a() {

@@ -10,6 +10,7 @@ mod import;
 mod joint_extremes;
 mod layers;
 mod lengths;
+mod orbit;
 mod plan_summary;
 mod samples;
 mod series;

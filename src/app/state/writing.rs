@@ -7,9 +7,9 @@ use super::background::fault;
 use crate::export::{PictureForm, write_values};
 use crate::file_dialog::MACHINE_EXTENSION;
 use crate::{Activity, FileReport, PlotFile, ResumePoint, plots, studio};
-use stillbase_exchange::form::{Form, FormContent};
-use stillbase_files::is_standard;
+use stillbase_exchange::form::{Exported, Form, FormContent};
 use stillbase_files::row_file::{RowForm, table_bytes};
+use stillbase_files::{floating_base, is_standard};
 use stillbase_query::Ticket;
 use stillbase_session::scenario::{MachineFile, Scenario, UnfinishedDrawing};
 
@@ -165,7 +165,9 @@ impl AppState {
             let scenario = app_state.session.scenario();
             let pose = &app_state.session.frame().q.0[..scenario.machine.drives()];
             let cut = studio::cut(&app_state.session);
-            let content = form.written(&scenario.machine, pose, &cut).map_err(|e| e.to_string())?;
+            let base = floating_base(&scenario.base);
+            let exported = Exported { machine: &scenario.machine, base: base.as_ref(), pose, cut: &cut };
+            let content = form.written(&exported).map_err(|e| e.to_string())?;
             let (path, rows) = (path.to_owned(), RowForm::of_ending(form.ending));
             Ok(Box::new(move || match (content, rows) {
                 (FormContent::Table(table), Some(rows)) => table_bytes(&table, rows, &path).map_err(|e| e.to_string()),

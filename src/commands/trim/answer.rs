@@ -2,7 +2,7 @@
 
 use stillbase_mechanics::machine::Machine;
 use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
-use stillbase_study::trim::{ExcitationReport, ParameterChange, Suggestion, TrimReport};
+use stillbase_study::trim::{ExcitationReport, OrbitReport, ParameterChange, Suggestion, TrimReport};
 
 use super::super::output::{TextTable, yes};
 
@@ -66,6 +66,31 @@ fn change_text(report: &TrimReport) -> String {
     }
     let worth = worth.map_or_else(String::new, |worth| format!("Over these motions it lowers {worth}.\n"));
     format!("{table}Rounded to 0.1 g and 0.1 mm; the imbalance after the change is in the table above.\n{worth}\n")
+}
+
+/// Formats the report of a machine in orbit as text.
+pub fn orbit_text(report: &OrbitReport) -> String {
+    let [off, noise] = [report.rate_off, report.rate_noise].map(|rate| fixed_or_scientific(rate, 4));
+    let mut table = TextTable::new(["", "machine", "measured", "± 95 %", "off", "unit"]);
+    for number in &report.numbers {
+        let or = |x: Option<f64>, none: &str| x.map_or_else(|| none.into(), |x| fixed_or_scientific(x, 6));
+        table.row([
+            number.name.clone(),
+            fixed(number.nominal, 6),
+            or(number.measured, "not told"),
+            or(number.half_width, "–"),
+            if number.identifiable { yes(number.off).into() } else { "–".into() },
+            number.unit.into(),
+        ]);
+    }
+    let untold = report.untold_words().map(|words| format!("{words}\n")).collect::<String>();
+    format!(
+        "{} · {}, {} · rates of a base that floats\nbase rate not explained: by the machine's file {off} rad/s rms, by what \
+         was measured {noise} rad/s\n\n{table}{untold}",
+        report.machine,
+        counted(report.motions, "motion"),
+        counted(report.rows, "row"),
+    )
 }
 
 fn suggestion_text(next: &Suggestion) -> String {

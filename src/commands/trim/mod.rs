@@ -5,24 +5,25 @@ mod answer;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use stillbase_files::table::{is_table, motions};
+use stillbase_files::table::{is_table, motions, signals};
 use stillbase_files::{finish_all, is_standard, write_temporary};
 use stillbase_mechanics::balance::RebalanceRequest;
 use stillbase_mechanics::counterweights::{CounterweightSpec, CounterweightStock, Objective};
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
+use stillbase_planning::off_plane::price::FloatingBase;
 use stillbase_query::{Shared, answer_now};
 use stillbase_session::scenario::MachineFile;
 use stillbase_settings::number::counted;
 use stillbase_study::trim::{
-    MeasurementSet, NoTrim, TrimMethod, TrimQuery, TrimRequest, TrimResult as Found, corrected_as_built, free_weights,
-    identified_machine,
+    MeasurementSet, NoTrim, OrbitBase, OrbitMotion, TrimMethod, TrimQuery, TrimRequest, TrimResult as Found,
+    corrected_as_built, free_weights, identified_machine, orbit_trim,
 };
 
 use super::exit::print_message;
 use super::failure::Failure;
 use super::holds::{apply_bounds, bound};
-use super::input::{self, Settings};
+use super::input::{self, Settings, floating_base_of};
 use super::new_machine::named_after;
 use super::output::{Format, say_written};
 use super::sites::{range, sites};
@@ -42,12 +43,18 @@ use super::strict::Strict;
 /// differ from the machine's file by more than their interval are corrected, if the data show that this helps. The
 /// correction changes mass and place of the counterweights, or adds some if there are none. The last table proposes the
 /// next motion: the one that best determines the most uncertain component.
+///
+/// In orbit no force can be measured: with `--base` the files are of the machine on a base that floats, one motion each, with
+/// the columns that `simulate` writes: angle/… and rate/… of every drive, attitude/base, attitude_rate/base, and wheel/rate.
+/// Angular momentum stays constant, which tells first moments and couplings relative to the inertia of the base, with
+/// their intervals. Nothing is changed.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   stillbase trim measured.csv nine-link
   stillbase trim slow.csv fast.csv arm.toml -o trimmed.toml --identified as-built.toml
   stillbase trim measured.csv arm.toml --fix counterweight.2.at --bound counterweight.1.mass=1.9,2.1
+  stillbase trim orbit.csv spot --base spot
   stillbase trim measured.csv nine-link --range 1=-0.3,0.1 --range 2=-0.2,0.1 --range 3=-0.2,0.1 \\
     --range 8=-0.3,0.3 --range 9=-0.3,0.3 --json")]
 pub struct TrimArguments {
@@ -56,6 +63,11 @@ pub struct TrimArguments {
     words: Vec<String>,
     #[command(flatten)]
     settings: Settings,
+    /// The files are of motions in orbit, on the base of this scenario, which floats
+    #[arg(long, value_name = "SCENARIO", conflicts_with_all = [
+        "fix", "free", "bound", "range", "across", "angles_only", "as_given", "accelerations", "output", "identified",
+    ])]
+    base: Option<String>,
     /// Keep these parameters fixed: counterweight.1.mass, counterweight.2.at, 3.com
     #[arg(long, value_name = "KEY,…", value_delimiter = ',')]
     fix: Vec<String>,
@@ -119,6 +131,9 @@ impl TrimArguments {
         let MachineFile { machine, design } = input::machine(name)?;
         let machine = self.settings.apply(machine)?;
         let drives = machine.drives();
+        if let Some(base) = &self.base {
+            return self.in_orbit(&machine, base, files);
+        }
         if !(self.accelerations.is_empty() || self.accelerations.len() == drives) {
             return Err(Failure::wrong_input(format!(
                 "--accelerations has {}: want {drives}, one for each drive",
@@ -181,6 +196,21 @@ impl TrimArguments {
         }
         files.iter().for_each(|(file, _)| say_written(file));
         judged
+    }
+
+    /// Prints what motions in orbit tell about the machine.
+    fn in_orbit(&self, machine: &Machine, base: &str, files: &[String]) -> Result<(), Failure> {
+        let (body, wheel) = floating_base_of(base)?;
+        let base = OrbitBase { body: FloatingBase { mass: body.mass, inertia: body.inertia, com: body.com }, wheel };
+        let motion = |file: &String| -> Result<OrbitMotion, Failure> {
+            let table = signals(Path::new(file))?;
+            OrbitMotion::of(machine, &table).map_err(|why| Failure::wrong_input(why).with_context(file))
+        };
+        let motions = files.iter().map(motion).collect::<Result<Vec<_>, _>>()?;
+        let report = orbit_trim(machine, &base, &motions).map_err(Failure::no_answer)?;
+        self.format.print(&report, answer::orbit_text)?;
+        let off = report.numbers.iter().filter(|number| number.off);
+        self.strict.require(off.map(|number| format!("{} is off", number.name)))
     }
 
     /// Returns the permitted changes: of the present counterweights and the named parameters, or by new counterweights

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::{Isometry3, Point3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
 use super::compiler::{Compiler, MassSource};
 use super::defaults::{Class, Defaults, Element};
+use super::floating::{BodyJoints, FloatingBase, axis};
 use super::linkage::{ImportedPart, MAX_PARTS, end_rank};
 use super::read::{AttributeSource, child, each, inertia, mass, number, numbers, several, vector, word};
 use super::refusal::{ImportError, element_error, element_name};
@@ -15,6 +16,8 @@ use stillbase_settings::range::quote_clipped;
 
 /// A point: its part, `None` for the base, and its position in the axes of the base, m.
 pub type AttachmentPoint = (Option<usize>, Vector3<f64>);
+/// The bases that float and are supported, for messages.
+const FLOATING_WANTED: &str = "one base that floats in the world, with all of the arm on it";
 /// Relative tolerance within which angles, rad, are equal.
 const ANGLE_TOLERANCE: f64 = 1e-9;
 
@@ -37,12 +40,13 @@ pub struct MjcfBodies<'a> {
     pub notes: Vec<String>,
 }
 
-/// The hinges of a model, in the order in which a pose lists them.
+/// The hinges of a model, in the order in which a pose lists them, and the base that floats, if one does.
 struct Hinges<'a> {
     /// The part of each hinge, by name.
     named: BTreeMap<&'a str, usize>,
     /// The hinge of each part, if it has one.
     of: Vec<Option<Hinge<'a>>>,
+    floating: Option<FloatingBase<'a>>,
 }
 
 /// A hinge: its angle as drawn and in the pose of the file, rad, and its limits, rad.
@@ -93,15 +97,15 @@ impl<'a> MjcfBodies<'a> {
 
     fn body(&mut self, own: usize, open: &ListedBody<'a>) -> Result<(), ImportError> {
         let (body, parent) = (open.body, open.parent);
-        let own_place = self.compiler.place(&body)?;
+        let floats = self.floating().is_some_and(|base| base.body == own);
+        // A base that floats has the axes in which the machine is read.
+        let own_place = if floats { Isometry3::identity() } else { self.compiler.place(&body)? };
         let on = |frames: &dyn Fn(usize) -> Isometry3<f64>| parent.map_or(Isometry3::identity(), frames) * own_place;
         let drawn = on(&|parent| self.drawn[parent]);
         let mut frame = on(&|parent| self.parts[parent].frame);
         let mut axis_and_place = None;
         if let Some(Hinge { element, drawn, now, .. }) = &self.hinges.of[own] {
-            let axis = Unit::try_new(vector(element, "axis")?.unwrap_or(Vector3::z()), 1e-6).ok_or_else(|| {
-                element_error(element.node(), "an axis without direction", "three numbers that are not all 0")
-            })?;
+            let axis = axis(element)?;
             let at = vector(element, "pos")?.unwrap_or_default();
             let about = Translation3::from(at);
             let turn = UnitQuaternion::from_axis_angle(&axis, now - drawn);
@@ -113,8 +117,16 @@ impl<'a> MjcfBodies<'a> {
             let at = frame * Point3::from(vector(&element, "pos")?.unwrap_or_default());
             self.sites.push((site.attribute("name").unwrap_or_default(), (Some(own), at.coords)));
         }
-        let carriers = std::iter::successors(parent, |i| self.parts[*i].parent);
-        let moves = axis_and_place.is_some() || carriers.into_iter().any(|i| self.parts[i].hinge.is_some());
+        let root = parent.map_or(own, |parent| self.root(parent));
+        if axis_and_place.is_some()
+            && let Some(base) = self.floating().filter(|base| base.body != root)
+        {
+            return Err(base.wrong("it floats, and what turns stands beside it", FLOATING_WANTED));
+        }
+        let mut carriers = std::iter::successors(parent, |i| self.parts[*i].parent);
+        let moves = axis_and_place.is_some()
+            || self.floating().is_some_and(|base| base.body == root)
+            || carriers.any(|i| self.parts[i].hinge.is_some());
         let MassProperties { mass, com, inertia } =
             if moves { self.weight(open, &frame, &own_place)? } else { MassProperties::none(frame.translation.vector) };
         let name = body.attribute("name").map_or_else(|| format!("body {}", own + 1), Into::into);
@@ -206,6 +218,16 @@ impl<'a> MjcfBodies<'a> {
         self.compiler.is_limit(element, attribute)
     }
 
+    /// Returns the base, if it floats.
+    pub fn floating(&self) -> Option<&FloatingBase<'a>> {
+        self.hinges.floating.as_ref()
+    }
+
+    /// Returns the part in the world that carries a part, or is it.
+    fn root(&self, part: usize) -> usize {
+        std::iter::successors(Some(part), |i| self.parts[*i].parent).last().unwrap_or(part)
+    }
+
     /// Returns the hinge of a part.
     pub fn hinge(&self, i: usize) -> Option<&Element<'a>> {
         self.hinges.of.get(i).and_then(Option::as_ref).map(|hinge| &hinge.element)
@@ -275,7 +297,7 @@ impl<'a> MjcfBodies<'a> {
                     element_error(node, format!("no site \"{}\"", quote_clipped(name)), "the name of one in a body")
                 })
             };
-            return Ok([end("site1")?, end("site2")?]);
+            return self.afloat(node, [end("site1")?, end("site2")?]);
         }
         let body = |attribute: &'static str| -> Result<Option<usize>, ImportError> {
             let Some(name) = node.attribute(attribute).filter(|name| *name != "world") else { return Ok(None) };
@@ -290,7 +312,18 @@ impl<'a> MjcfBodies<'a> {
         let drawn = |part: Option<usize>| part.map_or(Isometry3::identity(), |i| self.drawn[i]);
         let now = |part: Option<usize>| part.map_or(Isometry3::identity(), |i| self.parts[i].frame);
         let in_b = drawn(b).inverse() * drawn(a) * anchor;
-        Ok([(a, (now(a) * anchor).coords), (b, (now(b) * in_b).coords)])
+        self.afloat(node, [(a, (now(a) * anchor).coords), (b, (now(b) * in_b).coords)])
+    }
+
+    /// Returns both points of a `<connect>`, unless they tie a base that floats to the world.
+    fn afloat(&self, node: Node<'a, 'a>, ends: [AttachmentPoint; 2]) -> Result<[AttachmentPoint; 2], ImportError> {
+        let is_aside = |part: Option<usize>| {
+            self.floating().is_some_and(|base| part.is_none_or(|part| self.root(part) != base.body))
+        };
+        match ends.iter().any(|(part, _)| is_aside(*part)) {
+            true => Err(element_error(node, "it ties to the world what floats", "points of the base or of the arm")),
+            false => Ok(ends),
+        }
     }
 }
 
@@ -330,14 +363,33 @@ impl<'a> Hinges<'a> {
         compiler: &Compiler,
         defaults: &Defaults<'a>,
     ) -> Result<Self, ImportError> {
-        let mut hinges = Self { named: BTreeMap::new(), of: Vec::with_capacity(bodies.len()) };
+        let mut hinges = Self { named: BTreeMap::new(), of: Vec::with_capacity(bodies.len()), floating: None };
         let key = each(model, "keyframe").flat_map(|node| each(node, "key")).find(|key| key.has_attribute("qpos"));
         let pose = key.map(|key| numbers(key, "qpos")).transpose()?.flatten();
         let mut count = 0;
         for (i, open) in bodies.iter().enumerate() {
-            let Some(element) = hinge(open, defaults)? else {
-                hinges.of.push(None);
-                continue;
+            let element = match BodyJoints::of(open.body, &open.class, defaults)? {
+                BodyJoints::Hinge(element) => element,
+                BodyJoints::None => {
+                    hinges.of.push(None);
+                    continue;
+                }
+                BodyJoints::Floating(joints) => {
+                    let what = match (&hinges.floating, open.parent) {
+                        (Some(_), _) => "a second body that floats",
+                        (None, Some(_)) => "a body that floats on a body",
+                        (None, None) => "",
+                    };
+                    if !what.is_empty() {
+                        return Err(element_error(joints.node(), what, FLOATING_WANTED));
+                    }
+                    let drawn = compiler.place(&open.body)?.rotation;
+                    let own = pose.as_ref().and_then(|pose| pose.get(count..count + joints.coordinates()));
+                    count += joints.coordinates();
+                    hinges.floating = Some(joints.base(i, drawn, own, compiler.unit)?);
+                    hinges.of.push(None);
+                    continue;
+                }
             };
             let drawn = number(&element, "ref")?.unwrap_or(0.0) * compiler.unit;
             let now = pose.as_ref().and_then(|pose| pose.get(count)).copied().unwrap_or(drawn);
@@ -353,7 +405,10 @@ impl<'a> Hinges<'a> {
             (Some(key), Some(pose)) if pose.len() != count => Err(element_error(
                 key,
                 format!("qpos has {} numbers", pose.len()),
-                format!("{count}, one for each hinge"),
+                match &hinges.floating {
+                    None => format!("{count}, one for each hinge"),
+                    Some(_) => format!("{count}, those of the joints of the base and one for each hinge"),
+                },
             )),
             _ => hinges.coupled(model, defaults).map(|()| hinges),
         }
@@ -402,23 +457,6 @@ impl<'a> Hinges<'a> {
             }
         }
         Ok(())
-    }
-}
-
-/// Returns the hinge of a body, if it has one.
-fn hinge<'a>(open: &ListedBody<'a>, defaults: &Defaults<'a>) -> Result<Option<Element<'a>>, ImportError> {
-    if let Some(node) = child(open.body, "freejoint") {
-        return Err(element_error(node, "a body that floats", "a machine on a base: let the base move in a scenario"));
-    }
-    let mut joints = each(open.body, "joint");
-    let Some(joint) = joints.next() else { return Ok(None) };
-    if let Some(second) = joints.next() {
-        return Err(element_error(second, "a second joint of one body", "one hinge for each"));
-    }
-    let element = defaults.element(joint, &open.class)?;
-    match element.get("type") {
-        None | Some("hinge") => Ok(Some(element)),
-        Some(kind) => Err(element_error(joint, format!("a joint of type \"{}\"", quote_clipped(kind)), "hinges")),
     }
 }
 

@@ -11,6 +11,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::linkage::{ImportedLinkage, ImportedMotor, ImportedPart, JointLimit, common_axis, owners, plane};
 use super::refusal::ImportError;
+use crate::base_body::BaseBody;
 use stillbase_mechanics::machine::{
     Angle, Attach, Closure, DerivedNumbers, Drive, Length, Link, LinkPoint, MAX_LINKS, Machine, MachineSpec,
     PlaceOnLink, Rotor,
@@ -38,21 +39,12 @@ pub struct ImportedMachine {
     pub machine: Machine,
     /// Angles of its drives in the pose of the file, rad: with all joints of URDF at 0, or in the keyframe of MJCF.
     pub pose: Vec<f64>,
-    /// Mass properties of the base, if the file has them; a scenario may use them for a moving base.
+    /// The base of the file, if it has mass and inertia; a scenario may use it for a moving base.
     pub base: Option<BaseBody>,
+    /// Whether the file lets the base float.
+    pub floats: bool,
     /// Notes on omissions and assumptions.
     pub notes: Vec<String>,
-}
-
-/// A base with all parts that are fixed to it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BaseBody {
-    /// Mass, kg.
-    pub mass: f64,
-    /// Moment of inertia about the axis through its centre of mass parallel to that of the drives, kg m².
-    pub inertia: f64,
-    /// Position of its centre of mass relative to the axis of the drives, m.
-    pub com: Vector,
 }
 
 /// Makes a machine of a linkage.
@@ -65,7 +57,11 @@ pub fn imported(linkage: &ImportedLinkage) -> Result<ImportedMachine, ImportErro
     let (spec, pose) = Builder { linkage, flat: &flat, notes: &mut notes }.spec()?;
     let base = flat.ground(linkage)?;
     let machine = Machine::new(spec).map_err(|why| ImportError::of_file(why.to_string(), "a machine of the family"))?;
-    Ok(ImportedMachine { machine, pose, base, notes })
+    let floats = linkage.ground.is_some_and(|ground| ground.floats);
+    if floats && base.is_none() {
+        return Err(ImportError::of_file("the base floats and has no mass or inertia", "both above 0"));
+    }
+    Ok(ImportedMachine { machine, pose, base, floats, notes })
 }
 
 /// A part with all parts that are fixed to it, projected onto the plane.

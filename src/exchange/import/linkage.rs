@@ -6,7 +6,7 @@ use nalgebra::{Isometry3, Matrix3, Unit, Vector3};
 use super::refusal::ImportError;
 
 /// Two directions are parallel up to this sine of the angle between them.
-const PARALLEL_UP_TO_SINE: f64 = 1e-9;
+pub const PARALLEL_UP_TO_SINE: f64 = 1e-9;
 /// Maximum number of parts: files with more are not machines of the family, and would take long to read.
 pub const MAX_PARTS: usize = 400;
 
@@ -57,7 +57,7 @@ pub struct ImportedLinkage {
     pub loops: Vec<[PartPoint; 2]>,
     /// The end effector: a part, and a position in the axes of the base in the reference pose, m.
     pub end: Option<PartPoint>,
-    /// Mass properties of the base, if the file has them.
+    /// The base without the parts that are fixed to it, if the file has one.
     pub ground: Option<Ground>,
     /// Notes on elements that were omitted.
     pub notes: Vec<String>,
@@ -125,7 +125,7 @@ pub struct JointLimit {
 /// A point of a part: index of the part, and position in the axes of the base in the reference pose, m.
 pub type PartPoint = (usize, Vector3<f64>);
 
-/// Mass properties of the base.
+/// The base on which the machine stands or floats.
 #[derive(Clone, Copy, Debug)]
 pub struct Ground {
     /// Mass, kg.
@@ -134,6 +134,8 @@ pub struct Ground {
     pub com: Vector3<f64>,
     /// Inertia about the centre of mass, kg m².
     pub inertia: Matrix3<f64>,
+    /// Whether it floats.
+    pub floats: bool,
 }
 
 impl ImportedPart {

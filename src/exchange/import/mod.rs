@@ -8,6 +8,7 @@ mod bodies;
 mod compiler;
 mod defaults;
 mod family;
+mod floating;
 mod linkage;
 mod mjcf;
 mod read;
@@ -16,7 +17,7 @@ mod scan;
 mod shapes;
 mod urdf;
 
-pub use family::{BaseBody, ImportedMachine};
+pub use family::ImportedMachine;
 pub use refusal::ImportError;
 
 use roxmltree::{Document, ParsingOptions};

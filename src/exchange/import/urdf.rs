@@ -64,7 +64,7 @@ pub fn linkage(robot: Node<'_, '_>) -> Result<ImportedLinkage, ImportError> {
         limits,
         rotors,
         end,
-        ground: ground.map(|(mass, com, inertia)| Ground { mass, com, inertia }),
+        ground: ground.map(|(mass, com, inertia)| Ground { mass, com, inertia, floats: file.floats }),
         notes,
     })
 }
@@ -213,7 +213,10 @@ struct File<'a> {
     links: BTreeMap<&'a str, Node<'a, 'a>>,
     /// Joints, each with the names of its parent link and its child link.
     joints: Vec<(Node<'a, 'a>, &'a str, &'a str)>,
+    /// The base.
     root: &'a str,
+    /// Whether the base floats.
+    floats: bool,
 }
 
 impl<'a> File<'a> {
@@ -268,7 +271,15 @@ impl<'a> File<'a> {
             let what = format!("no joint carries it, nor \"{}\"", quote_clipped(root));
             return Err(element_error(links[other], what, "one link that is the base"));
         }
-        Ok(Self { links, joints, root })
+        // A floating joint in the world carries the base; it is no joint of the arm.
+        let in_world: Vec<usize> = (0..joints.len()).filter(|i| joints[*i].1 == root).collect();
+        match in_world[..] {
+            [only] if joints[only].0.attribute("type") == Some("floating") => {
+                let (_, _, base) = joints.remove(only);
+                Ok(Self { links, joints, root: base, floats: true })
+            }
+            _ => Ok(Self { links, joints, root, floats: false }),
+        }
     }
 
     /// Collects the parts from the base on, each with its joint.
@@ -383,7 +394,7 @@ fn part(
             return Err(element_error(
                 joint,
                 format!("a joint of type \"{kind}\""),
-                "revolute, continuous or fixed joints",
+                "revolute, continuous or fixed joints; only the base may float, by the only joint of the world",
             ));
         }
     };

@@ -18,6 +18,7 @@ static BUILTINS: LazyLock<Vec<Machine>> = LazyLock::new(|| {
         ("scara", include_str!("../../../assets/machines/scara.toml")),
         ("space-arm", include_str!("../../../assets/machines/space-arm.toml")),
         ("spot", include_str!("../../../assets/machines/spot.toml")),
+        ("ets-vii", include_str!("../../../assets/machines/ets-vii.toml")),
         ("nine-link-bare", include_str!("../../../assets/machines/nine-link-bare.toml")),
     ]
     .into_iter()

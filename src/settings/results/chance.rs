@@ -118,6 +118,8 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("taken_half_width", "of unit", "Half width of the 95 % interval of the value that is used."),
     row("numbers.left", "of unit", "What is left of it after the change."),
     row("untold", "", "Groups of unknowns that the data tell only in combination."),
+    row("rate_noise", "rad/s", "Standard deviation of the base rate that is not explained."),
+    row("rate_off", "rad/s", "Root mean square of the base rate that the machine's file does not explain."),
     row("exact", "of unit", "New value before rounding."),
     row("worth", "", "Effect of the change over these motions."),
     row("worth.force", "N", "Root mean square force of imbalance before and after the change."),

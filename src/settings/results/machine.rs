@@ -78,7 +78,7 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("parts.from", "", "Name of the body."),
     // Models for other programs.
     row("pose", "rad", "Angles of the drives in the pose of the model.").sign(TURN),
-    row("qpos", "rad", "Angles of all hinges in the keyframe, as MuJoCo counts them.").sign(TURN),
+    row("qpos", "m, rad", "Places and angles of all joints in the keyframe, as MuJoCo counts them: those of a base that floats come first.").sign(TURN),
     row("joints", "", "The joint of each drive's motor."),
     row("export-model.size", "m", "Width and height of the sheet."),
     row("solids", "1", "Number of solids."),
@@ -86,6 +86,7 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("left_out", "", "What the model leaves out, in words."),
     row("base", "", "The base of the model."),
     row("base.com", "m", "Centre of mass of the base, relative to the axis of the drives.").frame(BASE),
+    row("base.floats", "", "Whether the model lets the base float."),
     // Inside the machine.
     row("pins", "", "Load of each pin."),
     row("pins.name", "", "Name of the pin."),

@@ -50,6 +50,15 @@ pub enum TrimError {
         /// Minimum number of rows.
         want: usize,
     },
+    /// A signal of a motion in orbit is missing or not a number throughout.
+    #[error(
+        "no numbers of {path}: want angle and rate of every drive, attitude/base and attitude_rate/base, as simulate \
+         writes them"
+    )]
+    Signal {
+        /// Path of the signal.
+        path: String,
+    },
     /// No drive moves.
     #[error("no drive moves in it: want motions in which each does")]
     Still,

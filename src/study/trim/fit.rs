@@ -111,7 +111,7 @@ pub(super) fn estimate(machine: &Machine, rows: &Regressor) -> Result<Estimate, 
         }
     }
     let (solved, errors) = solved.ok_or(TrimError::NotFinite)?;
-    let (confounded, identifiable) = solved.confounded(p);
+    let (confounded, identifiable) = confounded(&solved.free, p);
     let count = rows.count();
     let least = if rows.source == RegressorSource::Samples { 1 } else { MIN_LAGS };
     let parts: Vec<&[f64]> = errors.iter().map(|e| e.as_slice()).collect();
@@ -286,38 +286,38 @@ impl Solved {
         }
         Self { deviation: all, inverse, free: v.select_columns(&rest) }
     }
+}
 
-    /// Returns the groups of unknowns that are only identifiable in combination, and whether each unknown is
-    /// identifiable.
-    fn confounded(&self, p: usize) -> (Vec<Vec<usize>>, Vec<bool>) {
-        let mut rows: Vec<DVector<f64>> = self.free.column_iter().map(|c| c.clone_owned()).collect();
-        let identifiable: Vec<bool> = (0..p).map(|j| self.free.row(j).norm() < IDENTIFIABLE_BELOW).collect();
-        // Gauss–Jordan elimination, so that each unobservable direction involves few unknowns.
-        let mut at = 0;
-        for j in 0..p {
-            let Some(best) = (at..rows.len()).max_by(|a, b| rows[*a][j].abs().total_cmp(&rows[*b][j].abs())) else {
-                break;
-            };
-            if rows[best][j].abs() < 10.0 * IDENTIFIABLE_BELOW {
-                continue;
-            }
-            rows.swap(at, best);
-            let own = &rows[at] / rows[at][j];
-            for (i, row) in rows.iter_mut().enumerate() {
-                if i == at {
-                    row.copy_from(&own);
-                } else {
-                    let by = row[j];
-                    row.axpy(-by, &own, 1.0);
-                }
-            }
-            at += 1;
-        }
-        let group = |row: &DVector<f64>| {
-            let most = row.amax();
-            (0..p).filter(|j| row[*j].abs() > 10.0 * IDENTIFIABLE_BELOW * most && !identifiable[*j]).collect::<Vec<_>>()
+/// Returns the groups of unknowns that are only identifiable in combination, and whether each unknown is
+/// identifiable. `free` is an orthonormal basis of the unobservable directions.
+pub(super) fn confounded(free: &DMatrix<f64>, p: usize) -> (Vec<Vec<usize>>, Vec<bool>) {
+    let mut rows: Vec<DVector<f64>> = free.column_iter().map(|c| c.clone_owned()).collect();
+    let identifiable: Vec<bool> = (0..p).map(|j| free.row(j).norm() < IDENTIFIABLE_BELOW).collect();
+    // Gauss–Jordan elimination, so that each unobservable direction involves few unknowns.
+    let mut at = 0;
+    for j in 0..p {
+        let Some(best) = (at..rows.len()).max_by(|a, b| rows[*a][j].abs().total_cmp(&rows[*b][j].abs())) else {
+            break;
         };
-        let groups = rows.iter().map(group).filter(|group| !group.is_empty()).collect();
-        (joined(groups), identifiable)
+        if rows[best][j].abs() < 10.0 * IDENTIFIABLE_BELOW {
+            continue;
+        }
+        rows.swap(at, best);
+        let own = &rows[at] / rows[at][j];
+        for (i, row) in rows.iter_mut().enumerate() {
+            if i == at {
+                row.copy_from(&own);
+            } else {
+                let by = row[j];
+                row.axpy(-by, &own, 1.0);
+            }
+        }
+        at += 1;
     }
+    let group = |row: &DVector<f64>| {
+        let most = row.amax();
+        (0..p).filter(|j| row[*j].abs() > 10.0 * IDENTIFIABLE_BELOW * most && !identifiable[*j]).collect::<Vec<_>>()
+    };
+    let groups = rows.iter().map(group).filter(|group| !group.is_empty()).collect();
+    (joined(groups), identifiable)
 }

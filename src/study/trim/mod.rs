@@ -5,6 +5,8 @@
 //! D_k. A few measured motions and least squares therefore identify them with their uncertainty. They also yield the
 //! least change of counterweights that corrects the balance, and the motion that would add most information.
 //!
+//! In orbit there is no force to measure; [`orbit_trim`] takes the rates of the base instead.
+//!
 //! # Symbols
 //! | letter | meaning | unit |
 //! |---|---|---|
@@ -41,6 +43,7 @@ mod fit;
 mod long_run;
 mod machine_correction;
 mod next_excitation;
+mod orbit;
 mod recording;
 mod report;
 mod rows;
@@ -59,6 +62,7 @@ pub use machine_correction::{
     MachineCorrection, NoCorrection, ParameterChange, correct_machine, corrected_as_built, identified_machine,
 };
 pub use next_excitation::{Excitation, NextMeasurement, next_excitation};
+pub use orbit::{OrbitBase, OrbitMotion, OrbitNumber, OrbitReport, orbit_trim};
 pub use recording::{MeasuredMotion, MeasurementSet};
 pub use report::{ExcitationReport, Number, Suggestion, TrimImprovement, TrimReport};
 pub use rows::{Regressor, RegressorSource};

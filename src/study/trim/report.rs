@@ -131,6 +131,16 @@ pub struct ExcitationReport {
     pub candidate: Excitation,
 }
 
+/// Returns a sentence for each group of unknowns that is not identifiable.
+pub(super) fn untold_words(groups: &[Vec<String>]) -> impl Iterator<Item = String> {
+    groups.iter().map(|group| match group.as_slice() {
+        [one] => format!("The data say nothing of {one}: it is taken from the machine's file."),
+        several => {
+            format!("The data cannot tell {} apart: they are taken from the machine's file.", several.join(", "))
+        }
+    })
+}
+
 impl TrimReport {
     /// Iterates over the numbers that change.
     pub fn changed(&self) -> impl Iterator<Item = &ParameterChange> {
@@ -151,12 +161,7 @@ impl TrimReport {
 
     /// Returns a sentence for each group of unknowns that is not identifiable.
     pub fn untold_words(&self) -> impl Iterator<Item = String> {
-        self.unidentifiable.iter().map(|group| match group.as_slice() {
-            [one] => format!("The data say nothing of {one}: it is taken from the machine's file."),
-            several => {
-                format!("The data cannot tell {} apart: they are taken from the machine's file.", several.join(", "))
-            }
-        })
+        untold_words(&self.unidentifiable)
     }
 
     /// Builds the report from the fit, and from the correction and its effect, if there is one.

@@ -52,6 +52,7 @@ impl<'a> CoupledBodies<'a> {
     /// If the hinges have no common axis, or if a tendon is wrong.
     pub fn of(bodies: MjcfBodies<'a>) -> Result<Self, ImportError> {
         let (normal, signs) = common_axis(&bodies.parts)?;
+        bodies.floating().map_or(Ok(()), |base| base.check_plane(&normal))?;
         let (owners, base) = (owners(&bodies.parts), bodies.parts.len());
         let tendons = tendons(&bodies, &signs)?;
         Ok(Self {

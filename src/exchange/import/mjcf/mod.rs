@@ -9,11 +9,12 @@ mod sets;
 mod together;
 
 use coupled::CoupledBodies;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use roxmltree::Node;
 
 use super::bodies::MjcfBodies;
-use super::linkage::ImportedLinkage;
+use super::floating::FloatingBase;
+use super::linkage::{Ground, ImportedLinkage};
 use super::read::{child, numbers, vector};
 use super::refusal::ImportError;
 
@@ -35,6 +36,11 @@ impl CoupledBodies<'_> {
         let (sets, limits) = (self.sets(&motors, &rotors)?, self.limits(&motors, &rotors)?);
         let model = self.bodies.model;
         let gravity = child(model, "option").map(|node| vector(node, "gravity")).transpose()?.flatten();
+        let gravity = gravity.unwrap_or(Vector3::new(0.0, 0.0, -9.81));
+        let base = self.bodies.floating();
+        let gravity = base.map_or(gravity, |base| base.attitude.inverse() * gravity);
+        let floats = Ground { mass: 0.0, com: Vector3::zeros(), inertia: Matrix3::zeros(), floats: true };
+        let ground = base.map(|_| floats);
         let mut notes = self.notes()?;
         let end = self.bodies.end().and_then(|(part, at)| Some((self.owners[part?]?, at)));
         notes.append(&mut self.bodies.notes);
@@ -42,14 +48,14 @@ impl CoupledBodies<'_> {
         let loops = pins.filter(|ends| ends.iter().all(|(i, _)| *i != self.base)).collect();
         Ok(ImportedLinkage {
             name: model.attribute("model").unwrap_or("model").into(),
-            gravity: gravity.unwrap_or(Vector3::new(0.0, 0.0, -9.81)),
+            gravity,
             sets,
             motors: numbered,
             limits,
             rotors,
             loops,
             end,
-            ground: None,
+            ground,
             notes,
             parts: self.bodies.parts,
         })
@@ -68,7 +74,8 @@ impl CoupledBodies<'_> {
             );
         }
         for (name, what) in [("damping", "damping"), ("frictionloss", "friction"), ("stiffness", "stiffness")] {
-            let hinges = (0..self.base).filter_map(|i| self.bodies.hinge(i));
+            let of_base = self.bodies.floating().into_iter().flat_map(FloatingBase::joints);
+            let hinges = (0..self.base).filter_map(|i| self.bodies.hinge(i)).chain(of_base);
             let mut values = hinges.map(|hinge| Ok(numbers(hinge, name)?.unwrap_or_default()));
             if values.try_fold(false, |any, all: Result<Vec<f64>, ImportError>| {
                 Ok::<_, ImportError>(any || all?.iter().any(|x| *x != 0.0))

@@ -1,0 +1,25 @@
+//! Bases that float, in models of other programs and in scenarios.
+
+use stillbase_exchange::base_body::BaseBody;
+use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::planar::Vector;
+use stillbase_session::gentle_motion_afloat;
+use stillbase_session::scenario::{Scenario, ScenarioError};
+use stillbase_simulation::plant::{Base, BaseKind};
+
+/// Returns the base of a scenario as a rigid body, if it floats.
+pub fn floating_base(base: &Base) -> Option<BaseBody> {
+    let com = Vector::new(base.com[0], base.com[1]);
+    (base.kind == BaseKind::Free).then_some(BaseBody { mass: base.mass, inertia: base.inertia, com })
+}
+
+/// Returns a scenario with a task for a machine on the base of its model, which floats.
+///
+/// # Errors
+/// If no task can be stated for the machine, or if a value of the base is outside of the ranges of a scenario.
+pub fn scenario_afloat(machine: &Machine, body: &BaseBody) -> Result<Scenario, ScenarioError> {
+    let BaseBody { mass, inertia, com } = *body;
+    let base = Base { kind: BaseKind::Free, mass, inertia, com: [com.re, com.im], ..Base::default() };
+    // Parsed again, so that values outside of the ranges of a scenario are rejected.
+    Scenario::parse(&gentle_motion_afloat(machine, base)?.to_toml(), "[base] of the file", None)
+}
