@@ -82,7 +82,7 @@ const STRETCHED: f64 = 0.05;
 
 impl Singularity {
     /// Tells which matrix is singular near a pose.
-    fn near(model: &MomentumModel, q: &DriveAngles) -> Self {
+    pub(super) fn near(model: &MomentumModel, q: &DriveAngles) -> Self {
         let tip = model.tip_units(&q.units());
         let [xx, xy, yy] = (0..model.drives()).fold([0.0; 3], |[xx, xy, yy], k| {
             let j = column(model.tip(), &tip, k);

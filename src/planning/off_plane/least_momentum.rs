@@ -1,0 +1,70 @@
+//! Rates of least angular momentum that move the end effector of three drives as wanted, and how a free base turns.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | v | velocity of the end effector | m/s |
+//! | J | its Jacobian; of a free base with coordinates in space that of base and arm at zero momentum | m |
+//! | n | unit vector of the self-motion, J n = 0 | |
+//! | D | coefficients of the angular momentum D q̇ of [`MomentumModel`] | kg m² |
+//! | φ | D n/\|D\|: sine of the angle between n and the plane of silent rates | |
+//! | h | momentum of the rates of minimum norm | kg m²/s |
+//! | I, θ | inertia of base and arm that turn together; turn of a free base | kg m², rad |
+//!
+//! # Source
+//! All rates that move the end effector as wanted are J⁺v + α n, with momentum h + α φ |D|. With α = −h/(φ |D|) it is
+//! zero: the rates of [`rates`](super::null_space::rates). They grow without bound as φ → 0, a dynamic singularity. So
+//! for |φ| < ε the momentum is minimised together with α: α = −h φ/(|D| (φ² + λ²)), λ = ε (1 − φ²/ε²). The momentum
+//! that remains turns a free base by θ̇ = −(D q̇)/I. With coordinates in space the end effector moves with the base: J
+//! has the columns i c_k e_k − i P D_k/I, P being its place seen from the common centre of mass.
+
+use nalgebra::Vector3;
+
+use super::momentum::MomentumModel;
+use stillbase_mechanics::kinematics::column;
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
+
+/// ε: momentum is let in where the self-motion lies within this sine of the silent plane. Rates then stay below some
+/// 1/ε times those of minimum norm.
+pub const SINGULAR_SINE: f64 = 0.05;
+
+/// Rates of a pose of three drives and its base.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LeastRates {
+    /// q̇, rad/s.
+    pub rates: PerDrive,
+    /// θ̇, rad/s.
+    pub turn: f64,
+    /// √det(J Jᵀ), m²: 0 where the arm is outstretched or folded.
+    pub dexterity: f64,
+}
+
+/// Returns the rates of least momentum that move the end effector of three drives with velocity v, m/s, from a pose with
+/// its free base turned by `turn`, rad. Returns `None` if it cannot move that way.
+pub(super) fn least_rates(model: &MomentumModel, q: &DriveAngles, turn: f64, v: Vector) -> Option<LeastRates> {
+    let e = q.units();
+    let tip = model.tip_units(&e);
+    let d = model.coefficients(&e);
+    let base = model.turning(&e);
+    let lever = base.and_then(|base| Some((base.lever?, base.inertia)));
+    let mut j = [0, 1, 2].map(|k| column(model.tip(), &tip, k));
+    let mut v = v;
+    if let Some((lever, inertia)) = lever {
+        (0..3).for_each(|k| j[k] -= Vector::new(0.0, d[k] / inertia) * lever);
+        v *= unit(-turn);
+    }
+    let row = |part: &dyn Fn(&Vector) -> f64| Vector3::new(part(&j[0]), part(&j[1]), part(&j[2]));
+    let (x, y) = (row(&|j| j.re), row(&|j| j.im));
+    let d = Vector3::new(d[0], d[1], d[2]);
+    let normal = x.cross(&y);
+    let (square, size) = (normal.norm_squared(), d.norm());
+    let least = (v.re * y.cross(&normal) + v.im * normal.cross(&x)) / square;
+    let own = normal / square.sqrt();
+    let (momentum, sine) = (d.dot(&least), d.dot(&own) / size);
+    let damping = SINGULAR_SINE * (1.0 - (sine / SINGULAR_SINE).powi(2)).max(0.0);
+    let share = sine * sine / (sine * sine + damping * damping);
+    let rates = if sine == 0.0 { least } else { least - own * (momentum * share / (sine * size)) };
+    let turn = base.map_or(0.0, |base| -momentum * (1.0 - share) / base.inertia);
+    let rates = PerDrive::from([rates[0], rates[1], rates[2]]);
+    (rates.max_abs().is_finite() && turn.is_finite()).then_some(LeastRates { rates, turn, dexterity: square.sqrt() })
+}
