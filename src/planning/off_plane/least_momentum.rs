@@ -18,9 +18,17 @@
 //! that remains turns a free base by θ̇ = −(D q̇)/I. With coordinates in space the end effector moves with the base: J
 //! has the columns i c_k e_k − i P D_k/I, P being its place seen from the common centre of mass.
 
+use std::cell::Cell;
+
 use nalgebra::Vector3;
 
+use super::drift::{DriftError, stop};
+use super::flow::Flow;
 use super::momentum::MomentumModel;
+use crate::curves::PathPoint;
+use crate::curves::curve::{Curve, CurvePoint};
+use crate::curves::path::by_pieces;
+use crate::curves::table::PathTable;
 use stillbase_mechanics::kinematics::column;
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 
@@ -67,4 +75,69 @@ pub(super) fn least_rates(model: &MomentumModel, q: &DriveAngles, turn: f64, v: 
     let turn = base.map_or(0.0, |base| -momentum * (1.0 - share) / base.inertia);
     let rates = PerDrive::from([rates[0], rates[1], rates[2]]);
     (rates.max_abs().is_finite() && turn.is_finite()).then_some(LeastRates { rates, turn, dexterity: square.sqrt() })
+}
+
+/// Number of intervals between the nodes of a followed curve.
+const NODE_INTERVALS: usize = 2048;
+/// Step of the difference that gives second derivatives, as a fraction of a piece of a curve.
+const DIFFERENCE_STEP: f64 = 1e-5;
+
+/// Follows a curve of the end effector of three drives with least momentum, from a pose with its free base turned by
+/// `turn`, rad. Returns the path and the turn at its end.
+///
+/// # Errors
+/// If no rates lead on; the error reports `cycle`.
+pub fn least_momentum_curve(
+    model: &MomentumModel,
+    start: DriveAngles,
+    turn: f64,
+    curve: &Curve,
+    cycle: usize,
+) -> Result<(PathTable, f64), DriftError> {
+    let now = Cell::new(turn);
+    let piece = |q: DriveAngles, [from, to]: [f64; 2], at: &dyn Fn(f64) -> CurvePoint, spaces: usize| {
+        let blocked = |q: &DriveAngles, u: f64| match stop(model, q, &|s| curve.at(s), from + u * (to - from), cycle) {
+            DriftError::Singular { s, at, cycle, why } => DriftError::Singular { s, at, cycle, why: why.with_base() },
+            other => other,
+        };
+        let slope = |x: &[f64; 5]| {
+            let rates = least_rates(model, &pose(x), x[3], at(x[4]).first)?;
+            Some([rates.rates[0], rates.rates[1], rates.rates[2], rates.turn, 1.0])
+        };
+        let flow = Flow { field: slope, scale: [1.0; 5] };
+        let mut x = [q[0], q[1], q[2], now.get(), 0.0];
+        let mut nodes = Vec::with_capacity(spaces + 1);
+        for i in 0..=spaces {
+            x[4] = i as f64 / spaces as f64;
+            nodes.push(node(&slope, &x).ok_or_else(|| blocked(&pose(&x), x[4]))?);
+            if i < spaces {
+                x = flow.go(&x, 1.0 / spaces as f64).ok_or_else(|| blocked(&pose(&x), x[4]))?;
+            }
+        }
+        now.set(x[3]);
+        Ok(nodes)
+    };
+    let table = by_pieces(curve, start, NODE_INTERVALS, piece)?;
+    let table = table.ok_or_else(|| stop(model, &start, &|s| curve.at(s), 0.0, cycle))?;
+    Ok((table, now.get()))
+}
+
+/// Returns the pose in a state of drive angles, turn of the base and parameter of the curve.
+fn pose(x: &[f64; 5]) -> DriveAngles {
+    DriveAngles::from([x[0], x[1], x[2]])
+}
+
+/// Returns q, q′ and q″ at a state; q″ is a difference of q′ along the path, to one side at the ends of a piece.
+fn node(slope: &impl Fn(&[f64; 5]) -> Option<[f64; 5]>, x: &[f64; 5]) -> Option<PathPoint> {
+    let rates = |x: &[f64; 5]| slope(x).map(|f| PerDrive::from([f[0], f[1], f[2]]));
+    let along = slope(x)?;
+    let ahead = |h: f64| rates(&std::array::from_fn(|k| x[k] + h * along[k]));
+    let (h, first) = (DIFFERENCE_STEP, rates(x)?);
+    let second = if x[4] >= h && x[4] <= 1.0 - h {
+        ahead(h)?.minus(&ahead(-h)?).scaled(0.5 / h)
+    } else {
+        let h = if x[4] < h { h } else { -h };
+        ahead(h)?.scaled(4.0).minus(&ahead(2.0 * h)?).minus(&first.scaled(3.0)).scaled(0.5 / h)
+    };
+    Some(PathPoint { q: pose(x), first, second })
 }

@@ -145,6 +145,11 @@ impl MomentumModel {
         self.floating.is_some()
     }
 
+    /// Returns whether coordinates of the end effector are seen from a base that moves.
+    pub fn is_carried(&self) -> bool {
+        self.floating.is_some_and(|base| base.frame == TipFrame::Base)
+    }
+
     /// Returns how a free base turns at a pose; `None` if the base is not free.
     pub(super) fn turning(&self, e: &UnitVectors) -> Option<TurningBase> {
         let base = self.floating?;

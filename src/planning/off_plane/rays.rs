@@ -7,15 +7,16 @@
 //! maximum, and the ray ends.
 
 use nalgebra::Vector3;
+use thiserror::Error;
 
 use super::drift::Singularity;
 use super::flow::Flow;
 use super::least_momentum::least_rates;
 use super::momentum::MomentumModel;
-use super::null_space::determines;
 use stillbase_mechanics::kinematics::column;
 use stillbase_mechanics::machine::RelativeAngle;
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
+use stillbase_settings::number::counted;
 
 /// Why a ray ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,17 +55,52 @@ const LIMIT_TOLERANCE: f64 = 1e-9;
 const STRETCHED: f64 = 1e-6;
 
 /// Rays of the end effector from a pose of three drives.
-#[derive(Clone, Copy, Debug)]
-pub struct Rays<'a> {
-    model: &'a MomentumModel,
-    angles: &'a [RelativeAngle],
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rays {
+    model: MomentumModel,
+    angles: Vec<RelativeAngle>,
     start: DriveAngles,
 }
 
-impl<'a> Rays<'a> {
-    /// Returns the rays of a machine with these relative angles; `None` unless it has three drives with momentum.
-    pub fn new(model: &'a MomentumModel, angles: &'a [RelativeAngle], start: DriveAngles) -> Option<Self> {
-        (determines(model) && start.len() == 3).then_some(Self { model, angles, start })
+/// Why there are no rays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum NoRays {
+    /// The machine has another number of drives.
+    #[error("{}: three drives have one motion of least momentum along a ray; want a machine of three", counted(*.0, "drive"))]
+    Drives(usize),
+    /// No motion of the machine has angular momentum.
+    #[error(
+        "no motion of this machine has angular momentum, so it reaches all that its joints permit: want another one"
+    )]
+    Silent,
+}
+
+impl Rays {
+    /// Returns the rays of a machine with these relative angles from a pose.
+    ///
+    /// # Errors
+    /// Unless the machine has three drives, and motions with angular momentum.
+    pub fn new(model: MomentumModel, angles: &[RelativeAngle], start: DriveAngles) -> Result<Self, NoRays> {
+        match model.drives() {
+            3 if model.is_zero() => Err(NoRays::Silent),
+            3 => Ok(Self { model, angles: angles.to_vec(), start }),
+            drives => Err(NoRays::Drives(drives)),
+        }
+    }
+
+    /// Returns the arm and its base.
+    pub fn model(&self) -> &MomentumModel {
+        &self.model
+    }
+
+    /// Returns the relative angles of the machine.
+    pub fn angles(&self) -> &[RelativeAngle] {
+        &self.angles
+    }
+
+    /// Returns the pose from which they go.
+    pub fn start(&self) -> &DriveAngles {
+        &self.start
     }
 
     /// Returns where rays in direction u, of length 1, end: at each turn of the base, rad, in rising order.
@@ -89,7 +125,7 @@ impl<'a> Rays<'a> {
 
     /// Returns where silent rates lead no farther.
     fn silent(&self, u: Vector) -> RayEnd {
-        let (model, reach) = (self.model, self.model.reach());
+        let (model, reach) = (&self.model, self.model.reach());
         let field = |x: &[f64; 4]| {
             let e = pose(x).units();
             let (d, tip) = (model.coefficients(&e), model.tip_units(&e));
@@ -132,7 +168,7 @@ impl<'a> Rays<'a> {
     /// Returns where rates of least momentum have turned the base by each of given angles, or lead no farther; `None` for
     /// an angle of 0.
     fn crossing(&self, u: Vector, turns: &[f64]) -> Vec<Option<RayEnd>> {
-        let (model, reach) = (self.model, self.model.reach());
+        let (model, reach) = (&self.model, self.model.reach());
         // Rates grow without bound as the arm becomes straight; those per unit of this parameter do not.
         let slow = |x: &[f64; 5]| {
             let rates = least_rates(model, &pose(x), x[3], u)?;
@@ -150,7 +186,7 @@ impl<'a> Rays<'a> {
         let mut rest = |from: usize, end: RayEnd| ends[from..].iter_mut().for_each(|e| *e = Some(end));
         let mut next = turns.iter().take_while(|turn| **turn <= 0.0).count();
         while next < turns.len() {
-            let singular = |x: &[f64; 5]| RayStop::Singular(Singularity::near(model, &pose(x)));
+            let singular = |x: &[f64; 5]| RayStop::Singular(Singularity::near(model, &pose(x)).with_base());
             if gone >= MAX_WINDING {
                 rest(next, ray_end(&x, x[4], RayStop::Winding));
                 break;

@@ -16,4 +16,5 @@ mod rates;
 
 pub use along::curves;
 pub(super) use choose::plan;
+pub(crate) use momentum::rays_from;
 pub use plan::Plan;
