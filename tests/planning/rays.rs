@@ -6,7 +6,9 @@ use stillbase::mechanics::planar::{DriveAngles, Vector, unit};
 use stillbase::planning::off_plane::drift::Singularity;
 use stillbase::planning::off_plane::momentum::{MomentumModel, TipFrame};
 use stillbase::planning::off_plane::rays::{RayEnd, RayStop, Rays};
-use stillbase::session::scenario::Scenario;
+use stillbase::session::scenario::{Scenario, TaskChange};
+use stillbase::session::{Refusal, Run, replay};
+use stillbase::study::turn_map::{TurnMap, turn_limits};
 
 const START: [f64; 3] = [1.9, 2.6, 3.4];
 
@@ -150,4 +152,71 @@ fn joint_limits_end_rays_before_singularities_do() {
         assert!((end.distance - want).abs() < 1e-7, "{k}: {end:?}");
         assert_eq!(end.stop, stop.unwrap_or(RayStop::Singular(Singularity::Dynamic)));
     }
+}
+
+/// Returns the scenario with B elsewhere and a turn limit, degrees.
+fn bound_for(to: [f64; 2], frame: &str, turn_limit: f64) -> Scenario {
+    let scenario = Scenario::builtin("spot").expect("built in");
+    let to = vec![to[0].into(), to[1].into()];
+    let change: TaskChange = [
+        ("to".to_owned(), stillbase::session::scenario::Value::Array(to)),
+        ("frame".to_owned(), frame.into()),
+        ("turn_limit".to_owned(), turn_limit.into()),
+    ]
+    .into_iter()
+    .collect();
+    let task = scenario.task.with_change(&change, &scenario.machine).expect("valid");
+    Scenario { task, ..scenario }
+}
+
+/// The simulation conserves momentum on its own: its base turns as planned, and the end effector arrives.
+#[test]
+fn a_crossing_turns_the_simulated_base_as_planned() {
+    for (to, frame, limit) in
+        [([-0.47, 0.4228], "space", 3.0), ([-0.4, 0.15], "space", 2.0), ([-0.47, 0.4228], "base", 1.5)]
+    {
+        let scenario = bound_for(to, frame, limit);
+        let (mut most, mut end) = (0.0_f64, None);
+        let run = replay(&scenario, |_, frame| {
+            most = most.max(frame.base.angle.abs());
+            end = Some((frame.base, frame.end_effector, frame.target.at));
+        });
+        let run = run.expect("it can be planned");
+        let turn = run.plan().base_turn.as_ref().expect("the base turns");
+        let (base, tip, target) = end.expect("frames");
+        assert!((base.angle - turn.at(1.0)).abs() < 1e-9, "{} is not {}", base.angle, turn.at(1.0));
+        assert!((most - turn.peak()).abs() < 1e-7 && turn.peak() <= limit.to_radians() && turn.peak() > 0.01);
+        assert!((tip - target).norm() < 1e-9, "{tip} is not {target}");
+        let there = Vector::new(to[0], to[1]);
+        let reached = if frame == "space" { tip } else { base.seen(tip) };
+        assert!((reached - there).norm() < 1e-9, "{reached} is not {there}");
+    }
+}
+
+#[test]
+fn a_turn_that_is_too_large_is_refused_with_one_that_will_do() {
+    let Err(Refusal::Turns { turn_limit, .. }) = Run::new(&bound_for([-0.47, 0.4228], "space", 2.0)) else {
+        panic!("the base turns by 2.59 degrees");
+    };
+    assert!((turn_limit - 2.6).abs() < 1e-12, "{turn_limit}");
+    Run::new(&bound_for([-0.47, 0.4228], "space", turn_limit)).expect("it will do");
+    // Within reach of zero momentum, a limit changes nothing.
+    let near = [-0.2937, 0.4728];
+    let [with, without] = [5.0, 0.0].map(|limit| Run::new(&bound_for(near, "space", limit)).expect("within reach"));
+    assert_eq!(with.plan().motion, without.plan().motion);
+    assert!(with.plan().base_turn.is_none());
+}
+
+/// The area at zero momentum is that of 1440 rays in SciPy.
+#[test]
+fn areas_are_nested() {
+    let run = Run::new(&Scenario::builtin("spot").expect("built in")).expect("it can be planned");
+    let rays = run.rays().expect("three drives");
+    let map = TurnMap::of(&rays, turn_limits(true), &mut |_| true).expect("not stopped");
+    assert!((map.areas[0] - 0.125067).abs() < 0.002 * 0.125067, "{:?}", map.areas);
+    assert!(map.areas.is_sorted() && map.rays.len() > 180);
+    assert!(map.rays.iter().all(|ray| ray.reaches.is_sorted()));
+    assert!(map.rays.is_sorted_by(|a, b| a.direction < b.direction));
+    assert!((map.rays[0].reaches[0] - SILENT[0][0]).abs() < 1e-8);
+    assert!(TurnMap::of(&rays, turn_limits(true), &mut |_| false).is_none());
 }

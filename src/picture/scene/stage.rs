@@ -336,7 +336,11 @@ impl Stage {
         let discs = poses.iter().chain([&frame.q]).flat_map(|q| self.discs(&q.units()));
         let discs = discs.map(|p| (on_base(p), z));
         let workspace = |b: f64| {
-            let points = self.outlined().map_or_else(Vec::new, |workspace| workspace.points(b, frame));
+            let points = match &self.reached {
+                Reached::Done(Outlined::Held(workspace)) => workspace.points(b, frame),
+                Reached::Done(Outlined::Turns(areas)) => areas.points(base),
+                Reached::None | Reached::Wanted(_) => Vec::new(),
+            };
             points.into_iter().map(|p| (p, self.linkage.floor()))
         };
         let waypoints = self.plan.iter().flat_map(|plan| plan.waypoints.iter().map(|(_, _, p)| (*p, z)));

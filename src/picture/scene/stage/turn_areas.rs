@@ -16,7 +16,7 @@ const FILL_OPACITY: f32 = 0.07;
 /// Distance of the fills below their boundaries and from each other, as a fraction of the reach.
 const FILL_DEPTH: f64 = 1e-3;
 /// Boundaries closer to each other than this fraction of the reach share a label.
-const LABEL_GAP: f64 = 0.035;
+const LABEL_GAP: f64 = 0.08;
 
 /// Nested areas around the start of a task.
 #[derive(Clone, Debug)]
@@ -68,6 +68,13 @@ impl TurnAreas {
     /// Returns the triangles of each area.
     pub fn fills(&self) -> impl Iterator<Item = &Mesh> {
         self.areas.iter().map(|area| &*area.mesh)
+    }
+
+    /// Returns points of the boundary of what zero momentum reaches, with the base of a frame, m.
+    pub fn points(&self, base: Pose2) -> Vec<Vector> {
+        let base = if self.carried { base } else { Pose2::default() };
+        let all = self.areas.iter().take(1).flat_map(|area| area.boundary.iter().flatten());
+        all.map(|[x, y, _]| base.place(Vector::new(f64::from(*x), f64::from(*y)))).collect()
     }
 
     /// Draws the areas; `fills` are the indices of their meshes.
