@@ -343,6 +343,15 @@ fn kind_settings(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, comma
                 let row = ChoiceRow { label: "Where points are meant", key: "frame", width };
                 choose(ui, session, row, TipFrame::ALL, task.frame(), commands);
             }
+            if session.scenario().condition_for_effect("task.turn_limit").is_none() {
+                let mut limit = task.turn_limit;
+                let row = NumberRow::of("base may turn by", "task.turn_limit").with(2, 0.1);
+                let response = row.show(ui, p, &mut limit);
+                send(commands, &[response], || Edit::set("task.turn_limit", limit));
+                if let Some(turn) = &plan.base_turn {
+                    note(ui, p, &format!("the base turns by {:.2}°, across a singularity", turn.peak().to_degrees()));
+                }
+            }
             let mut cycles = f64::from(task.cycles);
             let row = NumberRow::of("cycles", "task.cycles").with(0, 0.05);
             let response = row.show(ui, p, &mut cycles);

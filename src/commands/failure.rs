@@ -274,6 +274,7 @@ impl From<Refusal> for Failure {
             | Refusal::Price(_)
             | Refusal::LeastReaction(_)
             | Refusal::Drift(_)
+            | Refusal::Turns { .. }
             | Refusal::NoCommonPlane { .. }
             | Refusal::Blocked(_)
             | Refusal::TooLong { .. }

@@ -65,6 +65,7 @@ mod strict;
 mod table;
 mod tolerance;
 mod trim;
+mod turn_map;
 mod workspace;
 
 pub use exit::{Line, exit_code, usage};
@@ -138,6 +139,7 @@ subcommands! {
     Pose: pose::PoseArguments => [pose::Answer],
     Plan: plan::PlanArguments => [PlanSummary],
     Workspace: workspace::WorkspaceArguments => [WorkspaceReport],
+    TurnMap: turn_map::TurnMapArguments => [turn_map::Answer],
     Import: import::ImportArguments => [import::Answer],
     Export: export::ExportArguments => [export::Answer],
     ExportModel: export_model::ExportModelArguments => [export_model::Answer],

@@ -193,7 +193,7 @@ pub fn proposals_for_machine(machine: &Machine) -> Vec<Proposal> {
 }
 
 /// Returns the next larger number of two significant digits.
-fn round_up(x: f64) -> f64 {
+pub(crate) fn round_up(x: f64) -> f64 {
     let unit = 10f64.powf(x.abs().log10().floor() - 1.0);
     let rounded = (x / unit).ceil() * unit;
     format!("{rounded:.1e}").parse().unwrap_or(rounded)

@@ -67,6 +67,15 @@ pub enum Refusal {
     /// The end effector's curve cannot be followed at zero momentum.
     #[error(transparent)]
     Drift(#[from] DriftError),
+    /// The curve can be followed if a free base may turn farther.
+    #[error("{stopped}, or task.turn_limit = {}°: with least momentum the base turns by that much", ShortNumber(*turn_limit))]
+    Turns {
+        /// Where zero momentum leads no farther.
+        #[source]
+        stopped: DriftError,
+        /// The turn limit that would do, °.
+        turn_limit: f64,
+    },
     /// The fastest motion cannot be found.
     #[error(transparent)]
     Time(#[from] TimeError),

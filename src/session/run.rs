@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::changes::{ScriptError, fold_start_edits};
 use super::edit::{Edit, TimedEdit};
-use super::planner::{Plan, momentum_model, plan};
+use super::planner::{Plan, momentum_model, plan, rays_from};
 use super::refusal::Refusal;
 use crate::changes::{after_start_edit, changed, checked};
 use crate::scenario::{MAX_STEPS, Scenario, UnfinishedDrawing};
@@ -14,6 +14,7 @@ use stillbase_planning::Motion;
 use stillbase_planning::following::follow::Bounds;
 use stillbase_planning::following::{Follower, MomentumFollower, Pull};
 use stillbase_planning::off_plane::momentum::TipFrame;
+use stillbase_planning::off_plane::rays::Rays;
 use stillbase_planning::pose_constant::{CommonB, PoseSpaceQuery};
 use stillbase_planning::pose_space::{NoPoseSpace, Planes, PoseSpace};
 use stillbase_planning::posture::GuidedSpace;
@@ -184,6 +185,23 @@ impl Run {
         &self.plan
     }
 
+    /// Returns the rays of the end effector from the start of the plan, or of a waiting run from where it stands: how far
+    /// zero momentum leads, and least momentum beyond.
+    ///
+    /// # Errors
+    /// If its machine has none.
+    pub fn rays(&self) -> Result<Rays, Refusal> {
+        rays_from(&self.scenario, self.plan.motion.path.at(0.0).q)
+    }
+
+    /// Returns the run of a scenario, which waits if its task cannot be planned.
+    ///
+    /// # Errors
+    /// If the scenario cannot be simulated.
+    pub fn or_waiting(scenario: &Scenario) -> Result<Self, Refusal> {
+        Self::patient(scenario, &Queries::default())
+    }
+
     /// Returns the duration of the planned motion, s.
     pub fn planned_time(&self) -> f64 {
         self.plan.motion.duration()
@@ -201,7 +219,7 @@ impl Run {
 
     /// Returns the place of the end effector after a fraction of the planned time, m.
     pub fn end_effector_on_path(&self, share: f64) -> Vector {
-        self.plan.place(&self.scenario.machine, &self.plan.motion.at(share * self.planned_time()).q)
+        self.plan.place(&self.scenario.machine, self.plan.motion.profile.at(share * self.planned_time()).s)
     }
 
     /// Returns the planned motion, while the machine follows it.

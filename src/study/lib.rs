@@ -33,5 +33,6 @@ pub mod series;
 pub mod spectrum;
 pub mod tolerance;
 pub mod trim;
+pub mod turn_map;
 pub mod workshop;
 pub mod workspace;

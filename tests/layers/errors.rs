@@ -45,6 +45,7 @@ errors! {
     planning::off_plane::drift::DriftError,
     planning::off_plane::least_reaction::LeastReactionError,
     planning::off_plane::price::PriceError,
+    planning::off_plane::rays::NoRays,
     planning::pose_constant::Unreachable,
     planning::pose_space::NoPoseSpace,
     planning::pose_space::NotFollowable,

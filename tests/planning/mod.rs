@@ -17,6 +17,7 @@ mod posture;
 mod posture_laws;
 mod price;
 mod proposals;
+mod rays;
 mod reach;
 mod sizes;
 mod tasks;

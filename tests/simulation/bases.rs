@@ -21,11 +21,7 @@ fn free() -> Base {
 
 fn line(from: [f64; 3], to: [f64; 3], time: f64) -> Guide {
     let path = Path::JointLine { from: from.into(), to: to.into() };
-    Guide::Motion {
-        motion: Motion::new(path, TimeLaw::Quintic, time).into(),
-        start: 0.0,
-        base_shift: Default::default(),
-    }
+    Guide::Motion { motion: Motion::new(path, TimeLaw::Quintic, time).into(), start: 0.0, base_end: Default::default() }
 }
 
 fn begun(model: &Machine, plant: &PlantDifferences, base: &Base, control: &Control, guide: Guide) -> Simulation {
@@ -189,7 +185,7 @@ fn momentum_is_kept_for_an_hour() {
     let guide = Guide::Motion {
         motion: Motion::new(path, TimeLaw::Quintic, 2.0).into(),
         start: -1.0,
-        base_shift: Default::default(),
+        base_end: Default::default(),
     };
     let (plant, step) = (PlantDifferences::default(), 0.01);
     let setup = Setup { model: &model, plant: &plant, base: &base, control: &control, step };

@@ -293,7 +293,7 @@ fn against_the_twin(case: u64) -> (f64, usize) {
     let control: stillbase::simulation::control::Control = toml::from_str("kp = 0.0\nkd = 0.0").expect("valid");
     let setup = Setup { model: &machine, plant: &plant, base: &base, control: &control, step: STEP };
     let mut simulation =
-        Simulation::new(&setup, Guide::Motion { motion: motion.into(), start: 0.0, base_shift: Default::default() })
+        Simulation::new(&setup, Guide::Motion { motion: motion.into(), start: 0.0, base_end: Default::default() })
             .expect("valid");
     let mut off: f64 = 0.0;
     for (q, v) in &exact {

@@ -69,7 +69,7 @@ fn state_after(dt: f64) -> [f64; 6] {
     let plant: PlantDifferences = toml::from_str("payload.mass = 0.4\nlink.2.com = 0.05").expect("valid");
     assert!(!stillbase::mechanics::machine::Inertia::of(&model).is_invariant());
     let motion = Motion::new(line(), TimeLaw::Quintic, 1.0);
-    let guide = Guide::Motion { motion: motion.into(), start: 0.0, base_shift: Default::default() };
+    let guide = Guide::Motion { motion: motion.into(), start: 0.0, base_end: Default::default() };
     let mut simulation = simulated(&model, &plant, dt, guide);
     for _ in 0..(0.6 / dt).round() as u64 {
         simulation.advance();
@@ -111,7 +111,7 @@ fn energy_balance_is_of_order_four() {
             &model,
             &plant,
             dt,
-            Guide::Motion { motion: motion.into(), start: 0.0, base_shift: Default::default() },
+            Guide::Motion { motion: motion.into(), start: 0.0, base_end: Default::default() },
         );
         for _ in 0..(0.6 / dt).round() as u64 {
             simulation.advance();

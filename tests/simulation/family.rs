@@ -27,7 +27,7 @@ fn run(model: &Machine, plant: &PlantDifferences, base: &Base, control: &Control
     let guide = Guide::Motion {
         motion: Motion::new(path, TimeLaw::Quintic, 0.2).into(),
         start: 0.0,
-        base_shift: Default::default(),
+        base_end: Default::default(),
     };
     let mut simulation = Simulation::new(&Setup { model, plant, base, control, step: 0.001 }, guide).expect("valid");
     for _ in 0..STEPS {

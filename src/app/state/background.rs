@@ -44,12 +44,12 @@ impl AppState {
     /// Requests the outline of the workspace in the background if it is still missing; returns whether it has just
     /// arrived.
     pub(super) fn outline(&mut self) -> bool {
-        let Some(space) = self.views.unoutlined() else {
+        let Some(subject) = self.views.unoutlined() else {
             // The outline is not needed any more.
             self.queries().give_up::<OutlineQuery>();
             return false;
         };
-        if self.queries().ask_in_background::<OutlineQuery>(&Shared(space)).known().is_none() {
+        if self.queries().ask_in_background::<OutlineQuery>(&subject).known().is_none() {
             return false;
         }
         self.refresh_views();

@@ -11,13 +11,14 @@ mod ring;
 mod snap;
 mod snapshots;
 mod target;
+mod turn_areas;
 mod turning;
 mod under;
 mod workspace;
 
 pub use base::PULL_STIFFNESS;
 use workspace::WorkspaceParts;
-pub use workspace::{OutlineQuery, Workspace};
+pub use workspace::{OutlineQuery, OutlineSubject, Outlined, Workspace};
 
 use std::sync::Arc;
 
@@ -30,16 +31,17 @@ use super::options::{Handle, ViewOptions};
 use super::palette::{Palette, palette};
 use super::pick::{DragAction, GrabPoint, LinkHold, Pick, Pivot};
 use super::pointer::Pointer;
-use super::{Measure, Scene};
+use super::{Measure, Mesh, Scene};
 use base::BaseStage;
 use limits::LimitArcs;
 use path::PlannedPath;
 use pins::Pins;
 use ring::BaseRing;
 use stillbase_mechanics::planar::{DriveAngles, UnitVectors, Vector, unit};
-use stillbase_planning::pose_space::{Planes, PoseSpace};
+use stillbase_planning::pose_space::Planes;
 use stillbase_query::{Queries, Shared};
 use stillbase_session::Run;
+use stillbase_session::scenario::TaskKind;
 use stillbase_simulation::frame::Frame;
 use stillbase_study::workshop::cut_of;
 
@@ -49,8 +51,8 @@ pub struct Stage {
     linkage: LinkageModel,
     base: BaseStage,
     reached: Reached,
-    /// Index of the mesh that fills the workspace.
-    fill: Option<usize>,
+    /// Indices of the meshes that fill the workspace.
+    fills: Vec<usize>,
     /// Pose constant b of the workspace for comparison, rad.
     compared: Option<f64>,
     /// The ring that sets b, if the machine has a b and more than one drive.
@@ -67,21 +69,31 @@ pub struct Stage {
     grid: Grid,
 }
 
-/// The workspace for constant b.
+/// What the end effector reaches.
 #[derive(Clone, Debug)]
 enum Reached {
-    /// The machine has none.
+    /// Nothing is drawn.
     None,
     /// Its outline is not yet computed.
-    Wanted(Arc<PoseSpace>),
+    Wanted(OutlineSubject),
     /// Its outline is known.
-    Done(Arc<Workspace>),
+    Done(Outlined),
 }
 
 impl Reached {
-    /// Returns the workspace at once for a machine with planes; otherwise its outline is still to be computed.
-    fn of(space: &Arc<PoseSpace>) -> Self {
-        Workspace::known(space).map_or_else(|| Self::Wanted(space.clone()), |known| Self::Done(Arc::new(known)))
+    /// Returns the workspace at once for a machine with planes; otherwise its outline is still to be computed. Without a
+    /// b, this is what zero momentum reaches, if the task asks for that.
+    fn of(run: &Run) -> Self {
+        let Ok(space) = run.pose_space() else {
+            let scenario = run.scenario();
+            let rays = (scenario.task.kind == TaskKind::ZeroMomentum).then(|| run.rays().ok()).flatten();
+            let subject = |rays| OutlineSubject::Turns(Shared(Arc::new(rays)), scenario.base.floats());
+            return rays.map_or(Self::None, |rays| Self::Wanted(subject(rays)));
+        };
+        match Workspace::known(space) {
+            Some(known) => Self::Done(Outlined::Held(Arc::new(known))),
+            None => Self::Wanted(OutlineSubject::Held(Shared(space.clone()))),
+        }
     }
 }
 
@@ -95,8 +107,8 @@ impl Stage {
 
     /// Computes the outline of the workspace, if it is not yet known.
     pub fn finish(&mut self, queries: &Queries) {
-        if let Some(space) = self.unoutlined() {
-            self.set_outline(Option::clone(&queries.ask::<OutlineQuery>(&Shared(space))));
+        if let Some(subject) = self.unoutlined() {
+            self.set_outline(Option::clone(&queries.ask::<OutlineQuery>(&subject)));
         }
     }
 
@@ -110,8 +122,8 @@ impl Stage {
         let (compared, space) = (run.scenario().compare_b, run.pose_space().ok());
         Self {
             base: BaseStage::of(run, &plant, &linkage),
-            reached: space.map_or(Reached::None, Reached::of),
-            fill: None,
+            reached: Reached::of(run),
+            fills: Vec::new(),
             compared,
             ring: space
                 .filter(|space| !space.joints().is_empty())
@@ -136,23 +148,27 @@ impl Stage {
     /// Returns the workspace for constant b, once its outline is known.
     pub fn outlined(&self) -> Option<&Workspace> {
         match &self.reached {
-            Reached::Done(workspace) => Some(workspace),
+            Reached::Done(Outlined::Held(workspace)) => Some(workspace),
             _ => None,
         }
     }
 
-    /// Returns the pose space whose outline is still to be computed.
-    pub fn unoutlined(&self) -> Option<Arc<PoseSpace>> {
+    /// Returns what is still to be outlined.
+    pub fn unoutlined(&self) -> Option<OutlineSubject> {
         match &self.reached {
-            Reached::Wanted(space) => Some(space.clone()),
+            Reached::Wanted(subject) => Some(subject.clone()),
             _ => None,
         }
     }
 
-    /// Sets the outline of the workspace; `None` if the machine has no workspace.
-    pub fn set_outline(&mut self, outline: Option<Arc<Workspace>>) {
-        let fill = outline.as_ref().and_then(|outline| outline.fill());
-        self.fill = fill.map(|mesh| self.linkage.add(mesh.clone()));
+    /// Sets the outline of what the end effector reaches; `None` if there is none.
+    pub fn set_outline(&mut self, outline: Option<Outlined>) {
+        let mut add = |mesh: &Mesh| self.linkage.add(mesh.clone());
+        self.fills = match &outline {
+            Some(Outlined::Held(workspace)) => workspace.fill().map(&mut add).into_iter().collect(),
+            Some(Outlined::Turns(areas)) => areas.fills().map(&mut add).collect(),
+            None => Vec::new(),
+        };
         self.reached = outline.map_or(Reached::None, Reached::Done);
     }
 
@@ -320,7 +336,11 @@ impl Stage {
         let discs = poses.iter().chain([&frame.q]).flat_map(|q| self.discs(&q.units()));
         let discs = discs.map(|p| (on_base(p), z));
         let workspace = |b: f64| {
-            let points = self.outlined().map_or_else(Vec::new, |workspace| workspace.points(b, frame));
+            let points = match &self.reached {
+                Reached::Done(Outlined::Held(workspace)) => workspace.points(b, frame),
+                Reached::Done(Outlined::Turns(areas)) => areas.points(base),
+                Reached::None | Reached::Wanted(_) => Vec::new(),
+            };
             points.into_iter().map(|p| (p, self.linkage.floor()))
         };
         let waypoints = self.plan.iter().flat_map(|plan| plan.waypoints.iter().map(|(_, _, p)| (*p, z)));
@@ -366,9 +386,13 @@ impl Stage {
         self.grid.draw(&mut scene, &palette);
         self.base.unmoved(&mut scene, linkage, &palette, shown, options.exaggeration.factor());
         self.base.draw(&mut scene, linkage, &palette, shown);
-        if let Some(workspace) = self.outlined() {
-            let parts = WorkspaceParts { fill: self.fill, compared_b: self.compared };
-            workspace.draw(&mut scene, linkage, &palette, shown, options, parts);
+        match &self.reached {
+            Reached::Done(Outlined::Held(workspace)) => {
+                let parts = WorkspaceParts { fill: self.fills.first().copied(), compared_b: self.compared };
+                workspace.draw(&mut scene, linkage, &palette, shown, options, parts);
+            }
+            Reached::Done(Outlined::Turns(areas)) => areas.draw(&mut scene, linkage, &palette, shown, &self.fills),
+            Reached::None | Reached::Wanted(_) => {}
         }
         if let Some(ring) = &self.ring {
             ring.draw(&mut scene, &palette, shown, options, z);

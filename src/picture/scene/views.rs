@@ -13,13 +13,12 @@ use super::options::{Handle, ViewOptions};
 use super::pick::{DragAction, Grip, PICK_RADIUS, Pick};
 use super::pointer::Pointer;
 use super::sketching::{self, SketchOptions};
-use super::stage::{OutlineQuery, PULL_STIFFNESS, Stage, Workspace};
+use super::stage::{OutlineQuery, OutlineSubject, Outlined, PULL_STIFFNESS, Stage};
 use super::tower::Tower;
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::DriveAngles;
 use stillbase_mechanics::sketch::{Resolved, Sketch};
-use stillbase_planning::pose_space::PoseSpace;
-use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork, Shared, WeakQueries};
+use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork, WeakQueries};
 use stillbase_session::Run;
 use stillbase_session::scenario::Scenario;
 use stillbase_settings::number::ShortNumber;
@@ -180,7 +179,7 @@ struct Completed;
 struct CompletedInput {
     base_views: ByIdentity<Views>,
     run: Run,
-    outline: Option<ByIdentity<Option<Arc<Workspace>>>>,
+    outline: Option<ByIdentity<Option<Outlined>>>,
     /// Indices of the drives along the axes of joint space, from 0, if there are more than three drives.
     drives: Option<[usize; 3]>,
 }
@@ -241,7 +240,7 @@ impl Views {
     #[doc(hidden)]
     pub fn completed(made: &Arc<Self>, queries: &Queries, run: &Run, drives: Option<[usize; 3]>) -> Arc<Self> {
         let wanted = made.unoutlined();
-        let outline = wanted.and_then(|space| queries.known::<OutlineQuery>(&Shared(space))).map(ByIdentity);
+        let outline = wanted.and_then(|subject| queries.known::<OutlineQuery>(&subject)).map(ByIdentity);
         queries.ask_if::<QuickWork<Completed>>(
             |known| {
                 Arc::ptr_eq(&known.base_views.0, made)
@@ -312,9 +311,9 @@ impl Views {
         }
     }
 
-    /// Returns the pose space whose outline is still to be computed.
+    /// Returns what is still to be outlined.
     #[doc(hidden)]
-    pub fn unoutlined(&self) -> Option<Arc<PoseSpace>> {
+    pub fn unoutlined(&self) -> Option<OutlineSubject> {
         self.stage.unoutlined()
     }
 

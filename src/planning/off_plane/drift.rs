@@ -38,8 +38,7 @@ pub enum DriftError {
     },
     /// [J; D] is singular.
     #[error(
-        "{:.1} % along its curve, at ({:.3}, {:.3}) m{}, no rates of zero momentum follow it: {why}; want another path or \
-         another pose of A",
+        "{:.1} % along its curve, at ({:.3}, {:.3}) m{}, {why}; want another path or another pose of A",
         100.0 * s, at[0], at[1], in_cycle(*cycle)
     )]
     Singular {
@@ -66,13 +65,19 @@ pub enum Singularity {
     Kinematic,
     /// The Jacobian with the momentum: the end effector moves that way only with momentum.
     Dynamic,
+    /// The Jacobian of the arm beside its free base: no motion of the arm moves the end effector that way in space.
+    Joint,
 }
 
 impl std::fmt::Display for Singularity {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Self::Kinematic => "the arm is outstretched or folded there",
-            Self::Dynamic => "a dynamic singularity, where the end effector moves that way only with momentum",
+            Self::Kinematic => "no rates of zero momentum follow it: the arm is outstretched or folded there",
+            Self::Dynamic => {
+                "no rates of zero momentum follow it: a dynamic singularity, where the end effector moves that way only \
+                 with momentum"
+            }
+            Self::Joint => "no rates follow it: the base gives way as the arm moves the end effector there",
         })
     }
 }
@@ -81,6 +86,11 @@ impl std::fmt::Display for Singularity {
 const STRETCHED: f64 = 0.05;
 
 impl Singularity {
+    /// Returns the singularity that stops motions with momentum, too.
+    pub(super) fn with_base(self) -> Self {
+        if self == Self::Dynamic { Self::Joint } else { self }
+    }
+
     /// Tells which matrix is singular near a pose.
     pub(crate) fn near(model: &MomentumModel, q: &DriveAngles) -> Self {
         let tip = model.tip_units(&q.units());
@@ -158,7 +168,7 @@ pub fn zero_momentum_curve(
 }
 
 /// Returns the error of a curve that cannot be followed on from `s`, near a pose.
-fn stop(
+pub(super) fn stop(
     model: &MomentumModel,
     near: &DriveAngles,
     curve: &impl Fn(f64) -> CurvePoint,

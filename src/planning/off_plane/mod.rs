@@ -4,16 +4,23 @@ pub mod b_course;
 #[doc(hidden)]
 pub mod b_integral;
 mod b_program;
+#[doc(hidden)]
+pub mod base_turn;
 pub mod corridor;
 pub mod drift;
+mod flow;
 #[doc(hidden)]
 pub mod inverse;
+#[doc(hidden)]
+pub mod least_momentum;
 pub mod least_reaction;
 #[doc(hidden)]
 pub mod momentum;
 #[doc(hidden)]
 pub mod null_space;
 pub mod price;
+#[doc(hidden)]
+pub mod rays;
 
 pub use corridor::Corridor;
 pub use least_reaction::LeastReaction;

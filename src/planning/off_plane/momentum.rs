@@ -15,11 +15,15 @@
 //! mass is at (Σ g_k e_k + m_b ρ)/M, seen from B. The angular momentum about it is that about B minus
 //! Re[conj(Σ_l g_l e_l + m_b ρ) Σ_k g_k e_k q̇_k]/M. So it is the momentum of an arm with C_kl − conj(g_k) g_l/M in place
 //! of C_kl, and with C_0k = −conj(m_b ρ) g_k/M. In space the end effector has the coefficients c_k − g_k/M.
+//!
+//! A free base that turns by θ as the drive angles q_k between drives and base change has D q̇ + I θ̇ = 0. Here I is the
+//! inertia of base and arm about their common centre of mass, turning as one body: that of the arm with its reduced
+//! couplings, I_b + |ρ|² m_b (M − m_b)/M, and 2 Σ Re(C_0k e_k).
 
 use stillbase_mechanics::dynamics::mass_matrix;
 use stillbase_mechanics::kinematics::end_effector;
 use stillbase_mechanics::machine::{BALANCE_TOLERANCE, Chain, Inertia};
-use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, UnitVectors, Vector};
+use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, UnitVectors, Vector, unit};
 
 use super::price::FloatingBase;
 use stillbase_settings::word::words;
@@ -45,13 +49,34 @@ pub struct MomentumModel {
     directions: [Vector; MAX_DRIVES],
     /// Where the coordinates of the end effector have their origin, m.
     origin: Vector,
+    /// A base that floats.
+    floating: Option<Floating>,
+}
+
+/// A base that floats beside its arm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Floating {
+    /// I_b + |ρ|² m_b (M − m_b)/M, kg m².
+    inertia: f64,
+    /// m_b ρ/M, m.
+    centre: Vector,
+    /// Where the end effector is meant.
+    frame: TipFrame,
+}
+
+/// A free base as it turns: the inertia of base and arm about their common centre of mass, kg m², and the end effector
+/// seen from there in the axes of the base, m, if coordinates are meant in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TurningBase {
+    pub inertia: f64,
+    pub lever: Option<Vector>,
 }
 
 impl From<&Inertia> for MomentumModel {
     /// Returns the angular momentum about the base pin of a fixed base.
     fn from(arm: &Inertia) -> Self {
         let (base, directions) = ([Vector::default(); MAX_DRIVES], [Vector::new(1.0, 0.0); MAX_DRIVES]);
-        Self { arm: arm.clone(), base, tip: arm.end_effector, directions, origin: Vector::default() }
+        Self { arm: arm.clone(), base, tip: arm.end_effector, directions, origin: Vector::default(), floating: None }
     }
 }
 
@@ -74,6 +99,12 @@ impl MomentumModel {
                 }
             }
         }
+        let square = base.com.norm_sqr();
+        own.floating = Some(Floating {
+            inertia: base.inertia + square * base.mass * arm.mass / whole,
+            centre: base.mass * base.com / whole,
+            frame,
+        });
         own.origin = end_effector(&arm.end_effector, &start.units()) - own.place(start);
         own
     }
@@ -96,6 +127,38 @@ impl MomentumModel {
     /// Returns the place of the end effector at a pose, m: seen from the base pin, or in space.
     pub fn place(&self, q: &DriveAngles) -> Vector {
         self.origin + end_effector(&self.tip, &self.tip_units(&q.units()))
+    }
+
+    /// Returns the place of the end effector, m, as [`Self::place`] does, with a free base that has turned by `turn`, rad.
+    pub fn place_turned(&self, q: &DriveAngles, turn: f64) -> Vector {
+        match self.floating {
+            Some(Floating { centre, frame: TipFrame::Space, .. }) => {
+                let whole = self.origin + centre;
+                whole + unit(turn) * (self.place(q) - whole)
+            }
+            _ => self.place(q),
+        }
+    }
+
+    /// Returns whether the base floats, so that momentum turns it.
+    pub fn floats(&self) -> bool {
+        self.floating.is_some()
+    }
+
+    /// Returns whether coordinates of the end effector are seen from a base that moves.
+    pub fn is_carried(&self) -> bool {
+        self.floating.is_some_and(|base| base.frame == TipFrame::Base)
+    }
+
+    /// Returns how a free base turns at a pose; `None` if the base is not free.
+    pub(super) fn turning(&self, e: &UnitVectors) -> Option<TurningBase> {
+        let base = self.floating?;
+        let n = self.drives();
+        let pairs: f64 = Inertia::pairs(n).map(|(k, l)| self.coupling(e, k, l).re).sum();
+        let beside: f64 = (0..n).map(|k| (self.base[k] * e[k]).re).sum();
+        let inertia = base.inertia + self.arm.locked() + 2.0 * (pairs + beside);
+        let seen = || end_effector(&self.tip, &self.tip_units(e)) - base.centre;
+        Some(TurningBase { inertia, lever: (base.frame == TipFrame::Space).then(seen) })
     }
 
     /// Returns the largest distance of the end effector from the origin of its coordinates, m.

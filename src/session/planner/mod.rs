@@ -16,5 +16,5 @@ mod rates;
 
 pub use along::curves;
 pub(super) use choose::plan;
-pub(super) use momentum::momentum_model;
+pub(crate) use momentum::{momentum_model, rays_from};
 pub use plan::Plan;

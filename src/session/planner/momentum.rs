@@ -1,20 +1,25 @@
 //! Motions at zero angular momentum. Two drives have one such curve through each pose; three drives and more can follow
 //! any curve of the end effector.
 
+use std::cell::Cell;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use super::along::{curves, in_rounds};
 use super::plan::{Plan, PlannerSpace, dynamics_of};
 use super::poses::{no_b_refusal, reached, start};
+use crate::proposal::round_up;
 use crate::refusal::Refusal;
 use crate::scenario::{PathShape, Scenario, Task};
 use stillbase_mechanics::planar::{DriveAngles, Vector};
 use stillbase_planning::curves::{Curve, Path, PathTable};
 use stillbase_planning::off_plane::b_integral::BIntegral;
-use stillbase_planning::off_plane::drift::zero_momentum_curve;
+use stillbase_planning::off_plane::base_turn::BaseTurn;
+use stillbase_planning::off_plane::drift::{DriftError, Singularity, zero_momentum_curve};
+use stillbase_planning::off_plane::least_momentum::least_momentum_curve;
 use stillbase_planning::off_plane::momentum::{MomentumModel, TipFrame};
 use stillbase_planning::off_plane::null_space::MomentumFreedom;
+use stillbase_planning::off_plane::rays::Rays;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_settings::number::fixed;
 use stillbase_simulation::plant::BaseKind;
@@ -91,17 +96,56 @@ fn followed(scenario: &Scenario, start: DriveAngles) -> Result<Plan, Refusal> {
     let task = &scenario.task;
     let model = momentum_model(scenario, &start, task.frame());
     let curves = curves(task, &task.points())?;
-    let plan = in_rounds(scenario, start, &|mut q, cycle| {
+    let silent = along(scenario, start, &curves, &|q, curve, cycle| zero_momentum_curve(&model, q, curve, cycle));
+    let beside_base = beside_base(scenario, &start);
+    let crosses = scenario.base.floats() && model.drives() == 3;
+    match silent {
+        Err(Refusal::Drift(stopped @ DriftError::Singular { why: Singularity::Dynamic, .. })) if crosses => {
+            let turn = Cell::new(0.0);
+            let plan = along(scenario, start, &curves, &|q, curve, cycle| {
+                let (table, turned) = least_momentum_curve(&model, q, turn.get(), curve, cycle)?;
+                turn.set(turned);
+                Ok(table)
+            });
+            // Without a limit, the obstacle is where zero momentum ends.
+            let plan = plan.map_err(|beyond| if task.turn_limit > 0.0 { beyond } else { stopped.into() })?;
+            let course = beside_base.as_ref().and_then(|model| BaseTurn::along(model, &plan.motion.path));
+            let peak = course.as_ref().map_or(0.0, BaseTurn::peak).to_degrees();
+            if peak > task.turn_limit {
+                return Err(Refusal::Turns { stopped, turn_limit: round_up(peak) });
+            }
+            Ok(Plan { beside_base, base_turn: course.map(Arc::new), ..plan })
+        }
+        plan => Ok(Plan { beside_base, ..plan? }),
+    }
+}
+
+/// Follows curves from a pose, cycle by cycle; `follow` finds the path along each, given its start pose and the number
+/// of the cycle.
+fn along(
+    scenario: &Scenario,
+    start: DriveAngles,
+    curves: &[Curve],
+    follow: &dyn Fn(DriveAngles, &Curve, usize) -> Result<PathTable, DriftError>,
+) -> Result<Plan, Refusal> {
+    in_rounds(scenario, start, &|mut q, cycle| {
         let mut parts = Vec::new();
-        for curve in &curves {
-            let table = zero_momentum_curve(&model, q, curve, cycle)?;
+        for curve in curves {
+            let table = follow(q, curve, cycle)?;
             q = table.nodes().last().map_or(q, |last| last.q);
             parts.push((Path::Table(table), curve.length()));
         }
         Ok((parts, q))
-    })?;
-    let beside_base = beside_base(scenario, &start);
-    Ok(Plan { beside_base, ..plan })
+    })
+}
+
+/// Returns the rays of the end effector of a scenario from a pose, as points after A are meant.
+///
+/// # Errors
+/// If its machine has none.
+pub(crate) fn rays_from(scenario: &Scenario, start: DriveAngles) -> Result<Rays, Refusal> {
+    let model = momentum_model(scenario, &start, scenario.task.frame());
+    Rays::new(model, scenario.machine.angles(), start).map_err(|why| Refusal::Task(why.to_string()))
 }
 
 /// Moves two drives from point to point along a curve q₁ + ∫ D₂/(D₁ + D₂) dδ = const, δ = q₂ − q₁.

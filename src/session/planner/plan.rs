@@ -7,9 +7,10 @@ use crate::scenario::Scenario;
 use stillbase_mechanics::dynamics::ExternalLoads;
 use stillbase_mechanics::kinematics::end_effector;
 use stillbase_mechanics::machine::{Inertia, Machine};
-use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector};
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector, unit};
 use stillbase_planning::curves::Path;
 use stillbase_planning::off_plane::Price;
+use stillbase_planning::off_plane::base_turn::BaseTurn;
 use stillbase_planning::off_plane::least_reaction::Verdicts;
 use stillbase_planning::off_plane::momentum::MomentumModel;
 use stillbase_planning::pose_space::{NoPoseSpace, PoseSpace};
@@ -49,6 +50,8 @@ pub struct Plan {
     /// The arm beside its free base, which places it in space, if the plan accounts for how the base shifts; otherwise
     /// it takes the base to stand still.
     pub beside_base: Option<Arc<MomentumModel>>,
+    /// How that base turns, if the plan lets it.
+    pub base_turn: Option<Arc<BaseTurn>>,
     /// Duration with blended corners, s, if stops at the corners are faster; the motion then stops.
     pub blended: Option<f64>,
 }
@@ -82,28 +85,38 @@ impl Plan {
         self.cycles.iter().skip(1).filter_map(move |q| Some(q.0.minus(&first?.0).max_abs()))
     }
 
-    /// Returns where the plan has the end effector of its machine at a pose, m, in space.
-    pub fn place(&self, machine: &Machine, q: &DriveAngles) -> Vector {
+    /// Returns where the plan has the end effector of its machine at s of its path, 0 to 1, m, in space.
+    pub fn place(&self, machine: &Machine, s: f64) -> Vector {
+        let q = self.motion.path.at(s).q;
         match &self.beside_base {
-            Some(model) => model.place(q),
+            Some(model) => model.place_turned(&q, self.turn_at(s)),
             None => end_effector(machine.end_effector(), &q.units()),
         }
     }
 
+    /// Returns by how much the plan has turned its base at s of its path, 0 to 1, rad.
+    fn turn_at(&self, s: f64) -> f64 {
+        self.base_turn.as_ref().map_or(0.0, |turn| turn.at(s))
+    }
+
     /// Returns the plan as the guide of a simulation.
     pub fn guide(&self, machine: &Machine) -> Guide {
-        let end = self.motion.path.at(1.0).q;
-        let seen = end_effector(machine.end_effector(), &end.units());
-        let base_shift = self.beside_base.as_ref().map(|model| model.place(&end) - seen);
-        Guide::Motion { motion: self.motion.clone(), start: 0.0, base_shift }
+        let seen = end_effector(machine.end_effector(), &self.motion.path.at(1.0).q.units());
+        let angle = self.turn_at(1.0);
+        let base_end =
+            self.beside_base.is_some().then(|| Pose2 { at: self.place(machine, 1.0) - unit(angle) * seen, angle });
+        Guide::Motion { motion: self.motion.clone(), start: 0.0, base_end }
     }
 
     /// Returns a plan at rest for a run that waits. The pose is one of A, at the b of the task or otherwise at the
-    /// nearest b. If no b reaches A, the joints are in the middle of their ranges; without coordinates (a, b), q = 0.
+    /// nearest b, or the one that the task states. If no b reaches A, the joints are in the middle of their ranges;
+    /// without coordinates (a, b), q = 0.
     pub fn rest(scenario: &Scenario, space: Option<&PoseSpace>) -> Self {
         let (task, machine) = (&scenario.task, &scenario.machine);
         let p = task.points()[0];
-        let q = space.and_then(|space| space.pose_at(p, task.b)).unwrap_or_else(|| match PoseSpace::nominal(machine) {
+        let stated = task.start_pose(machine.drives());
+        let at_b = || space.and_then(|space| space.pose_at(p, task.b));
+        let q = stated.or_else(at_b).unwrap_or_else(|| match PoseSpace::nominal(machine) {
             Ok(space) => space.pose_at_nearest_b(p, task.b).unwrap_or_else(|| space.lift(&space.middle(), task.b)),
             Err(_) => DriveAngles(PerDrive::zeros(machine.drives())),
         });
@@ -133,6 +146,7 @@ impl Plan {
             verdicts: None,
             cycles: Vec::new(),
             beside_base: None,
+            base_turn: None,
             blended: None,
         }
     }

@@ -44,6 +44,10 @@ pub(super) fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal
             found.push(taking(what, value.clamp(range.low(), range.high())));
         }
         Refusal::Unreachable { point, .. } => found.extend(moved_point(scenario, point)),
+        Refusal::Turns { turn_limit, .. } => {
+            let text = format!("let the base turn by {turn_limit}°");
+            found.push(Proposal::new(text, single_change("task.turn_limit", *turn_limit)));
+        }
         Refusal::Diverged { .. } | Refusal::Untrusted { .. } => {
             found.extend(FINER_STEPS.map(|factor| taking("step", round_up(scenario.step / factor))));
             found.push(Proposal::new("take the usual gains", single_change("control", DEFAULT_WORD)));

@@ -35,4 +35,11 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("pair", "1", "The two drives, counted from 1."),
     row("half_turns", "1", "q_l − q_k in multiples of π; its lower bound for a part of the workspace."),
     row("line", "m", "Points of the curve.").frame(BASE),
+    row("tip_start", "m", "End effector at the start.").frame(BASE),
+    row("turn_limits", "°", "Angles by which the base may turn."),
+    row("areas", "m²", "Area that straight rays reach within each turn limit."),
+    row("rays", "", "Straight rays of the end effector from the start."),
+    row("direction", "rad", "Direction of the ray.").sign(TURN).frame(BASE),
+    row("reaches", "m", "How far the ray leads within each turn limit."),
+    row("stops", "", "Why the ray leads no farther."),
 ];

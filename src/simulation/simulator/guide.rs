@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::control::Control;
 use crate::plant::{Base, PlantDifferences};
 use stillbase_mechanics::machine::Machine;
-use stillbase_mechanics::planar::Vector;
+use stillbase_mechanics::planar::Pose2;
 use stillbase_planning::following::{Follower, MomentumFollower};
 use stillbase_planning::{Motion, Reference};
 
@@ -19,9 +19,9 @@ pub enum Guide {
         motion: Arc<Motion>,
         /// Time at which it began, s.
         start: f64,
-        /// How far the base has shifted at its end, m, if the plan accounts for that; otherwise it takes the base to
-        /// stand still.
-        base_shift: Option<Vector>,
+        /// Where the base is at its end, if the plan accounts for how it moves; otherwise it takes the base to stand
+        /// still.
+        base_end: Option<Pose2>,
     },
     /// A follower of the pointer and of the slider b.
     Follow(Follower),

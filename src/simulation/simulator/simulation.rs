@@ -402,14 +402,14 @@ impl Simulation {
         let relative = PerDrive::from_fn(n, |k| self.relative(k));
         let target_rides = self.floats && matches!(self.guide, Guide::Follow(_));
         let base_is_planned = match &self.guide {
-            Guide::Motion { base_shift, .. } => base_shift.is_some(),
+            Guide::Motion { base_end, .. } => base_end.is_some(),
             Guide::Lead(_) => self.body().is_free(),
             Guide::Follow(_) => false,
         };
         let (phase, target, b_reference) = match &self.guide {
-            Guide::Motion { motion, base_shift, .. } => {
-                let shift = base_shift.unwrap_or_default();
-                let end = shift + end_effector(&arm.end_effector, &motion.path.at(1.0).q.units());
+            Guide::Motion { motion, base_end, .. } => {
+                let seen = end_effector(&arm.end_effector, &motion.path.at(1.0).q.units());
+                let end = base_end.map_or(seen, |base| base.place(seen));
                 let phase = if self.has_arrived() { Phase::Rest } else { Phase::Motion };
                 (phase, Target { at: end, reach: Reach::Inside }, self.lambda.dot(&self.reference.q))
             }

@@ -27,7 +27,7 @@ impl PlannedPath {
     /// Returns the planned motion of a run, if it has a plan; it is drawn at height `z`, m.
     pub fn of(run: &Run, z: f64) -> Option<Self> {
         let (machine, motion) = (&run.scenario().machine, run.motion()?);
-        let place = |s: f64| run.plan().place(machine, &motion.path.at(s).q);
+        let place = |s: f64| run.plan().place(machine, s);
         // A waiting run has points, but no path.
         let points: Vec<Vector> = match run.waiting() {
             Some(_) => Vec::new(),

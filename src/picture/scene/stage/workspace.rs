@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
 
+use super::turn_areas::TurnAreas;
 use crate::scene::exaggeration::DrawnFrame;
 use crate::scene::linkage::LinkageModel;
 use crate::scene::options::{Handle, ViewOptions};
@@ -12,6 +13,7 @@ use crate::scene::{
     dexterity, fill, point, posed,
 };
 use stillbase_mechanics::planar::{Pose2, Vector, unit};
+use stillbase_planning::off_plane::rays::Rays;
 use stillbase_planning::pose_space::{Planes, PoseSpace};
 use stillbase_planning::reactionless::{AngleLimit, BoundaryLine, PlaneMap};
 use stillbase_query::{Portion, ProgressCallback, Query, Shared};
@@ -71,17 +73,35 @@ fn title(noun: &str, is_reactionless: bool) -> String {
     format!("{}reactionless {noun}", if is_reactionless { "" } else { "nearly " })
 }
 
-/// Query for the outline of the workspace of a pose space for constant b.
+/// What is to be outlined.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OutlineSubject {
+    /// The workspace of a pose space for constant b.
+    Held(Shared<PoseSpace>),
+    /// What rays reach at zero momentum, and beyond if the base floats.
+    Turns(Shared<Rays>, bool),
+}
+
+/// An outline.
+#[derive(Clone, Debug)]
+pub enum Outlined {
+    /// The workspace for constant b.
+    Held(Arc<Workspace>),
+    /// What rays reach at zero momentum and beyond.
+    Turns(Arc<TurnAreas>),
+}
+
+/// Query for the outline of what the end effector reaches.
 #[derive(Debug)]
-pub struct OutlineQuery(Shared<PoseSpace>);
+pub struct OutlineQuery(OutlineSubject);
 
 impl Query for OutlineQuery {
-    type Input = Shared<PoseSpace>;
+    type Input = OutlineSubject;
     /// `None` if the workspace is a single point.
-    type Answer = Option<Arc<Workspace>>;
+    type Answer = Option<Outlined>;
 
-    fn begin(space: Self::Input) -> Self {
-        Self(space)
+    fn begin(subject: Self::Input) -> Self {
+        Self(subject)
     }
 
     fn go_on(&mut self, goes_on: ProgressCallback<'_>) -> Portion<Self::Answer> {
@@ -90,8 +110,15 @@ impl Query for OutlineQuery {
             stopped = !goes_on(share);
             !stopped
         };
-        let outline = Workspace::outlined(&self.0.0, &mut watched);
-        if stopped { Portion::Stopped } else { Portion::Done(outline.map(Arc::new)) }
+        let outline = match &self.0 {
+            OutlineSubject::Held(space) => {
+                Workspace::outlined(&space.0, &mut watched).map(|known| Outlined::Held(Arc::new(known)))
+            }
+            OutlineSubject::Turns(rays, floats) => {
+                TurnAreas::of(&rays.0, *floats, &mut watched).map(|known| Outlined::Turns(Arc::new(known)))
+            }
+        };
+        if stopped { Portion::Stopped } else { Portion::Done(outline) }
     }
 }
 

@@ -1,0 +1,222 @@
+//! Rays of the end effector at zero momentum, and beyond with least momentum. The distances are those of an integration
+//! in SciPy, with momenta and Jacobians as sums over the bodies of base and arm.
+
+use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse};
+use stillbase::mechanics::planar::{DriveAngles, Vector, unit};
+use stillbase::planning::off_plane::drift::Singularity;
+use stillbase::planning::off_plane::momentum::{MomentumModel, TipFrame};
+use stillbase::planning::off_plane::rays::{RayEnd, RayStop, Rays};
+use stillbase::session::scenario::{Scenario, TaskChange};
+use stillbase::session::{Refusal, Run, replay};
+use stillbase::study::turn_map::{TurnMap, turn_limits};
+
+const START: [f64; 3] = [1.9, 2.6, 3.4];
+
+/// Distances at zero momentum in steps of 30 degrees: free base, in space and seen from the base, and fixed base, m.
+const SILENT: [[f64; 12]; 3] = [
+    [
+        0.149716361,
+        0.240109685,
+        0.191855020,
+        0.061681984,
+        0.011079107,
+        0.006520974,
+        0.005663218,
+        0.006527567,
+        0.011120721,
+        0.073582476,
+        0.583496866,
+        0.180472134,
+    ],
+    [
+        0.149700129,
+        0.237336585,
+        0.192871281,
+        0.064587343,
+        0.010668407,
+        0.006189655,
+        0.005338646,
+        0.006114012,
+        0.010301597,
+        0.066968492,
+        0.598407351,
+        0.181800469,
+    ],
+    [
+        0.336866697,
+        0.230875531,
+        0.179834079,
+        0.093623557,
+        0.005208719,
+        0.002265857,
+        0.001738624,
+        0.001799144,
+        0.002573424,
+        0.008201289,
+        0.466454596,
+        0.231567695,
+    ],
+];
+
+/// Distances at which the base has turned by 0.5, 1, 2 and 5 degrees, in space, m; NaN where it never does.
+const TURNED: [[f64; 4]; 12] = [
+    [0.153193072, 0.156872481, 0.164657192, 0.190142985],
+    [0.247655256, 0.255089882, 0.269653400, 0.311045517],
+    [0.197353683, 0.202654799, 0.212624858, 0.236378144],
+    [0.074315435, 0.082281184, 0.090764705, f64::NAN],
+    [0.018595095, 0.025490571, 0.037365354, 0.057136344],
+    [0.011212532, 0.015750854, 0.024298342, 0.044261171],
+    [0.009808329, 0.013882992, 0.021784707, 0.042756574],
+    [0.011345824, 0.016118816, 0.025511194, 0.052191388],
+    [0.019275515, 0.027307542, 0.043026519, 0.087937941],
+    [0.102158248, 0.125809328, 0.165510859, 0.257822511],
+    [0.591296087, 0.599230817, 0.615642388, 0.672410773],
+    [0.187175384, 0.193984892, 0.207839100, 0.250542586],
+];
+
+fn direction(k: usize) -> Vector {
+    unit(k as f64 * std::f64::consts::PI / 6.0)
+}
+
+fn spot(frame: Option<TipFrame>) -> MomentumModel {
+    let arm = Inertia::of(builtin("spot").expect("built in"));
+    let base = Scenario::builtin("spot").expect("built in").base.body();
+    match frame {
+        Some(frame) => MomentumModel::floating(&arm, &base, frame, &DriveAngles::from(START)),
+        None => MomentumModel::from(&arm),
+    }
+}
+
+fn ends(model: &MomentumModel, machine: &Machine, k: usize, turns: &[f64]) -> Vec<RayEnd> {
+    let rays = Rays::new(model.clone(), machine.angles(), DriveAngles::from(START)).expect("three drives");
+    rays.ends(direction(k), turns)
+}
+
+#[test]
+fn silent_rays_end_at_dynamic_singularities() {
+    let machine = builtin("spot").expect("built in");
+    for (frame, distances) in [Some(TipFrame::Space), Some(TipFrame::Base), None].into_iter().zip(SILENT) {
+        let model = spot(frame);
+        for (k, want) in distances.into_iter().enumerate() {
+            let end = ends(&model, machine, k, &[0.0])[0];
+            assert!((end.distance - want).abs() < 1e-8, "{frame:?} {k}: {end:?}");
+            assert_eq!(end.stop, RayStop::Singular(Singularity::Dynamic));
+            let there = model.place(&DriveAngles::from(START)) + want * direction(k);
+            assert!((model.place(&end.pose) - there).norm() < 1e-8);
+        }
+    }
+}
+
+#[test]
+fn a_base_that_may_turn_lets_rays_go_on() {
+    let (machine, model) = (builtin("spot").expect("built in"), spot(Some(TipFrame::Space)));
+    let turns = [0.0, 0.5, 1.0, 2.0, 5.0].map(f64::to_radians);
+    for (k, wants) in TURNED.into_iter().enumerate() {
+        let ends = ends(&model, machine, k, &turns);
+        assert!((ends[0].distance - SILENT[0][k]).abs() < 1e-8);
+        for ((end, want), turn) in ends[1..].iter().zip(wants).zip(&turns[1..]) {
+            if want.is_nan() {
+                // The Jacobian of base and arm loses rank there; the integration in SciPy ends at the same place.
+                assert!((end.distance - 0.093327464).abs() < 1e-7, "{end:?}");
+                assert_eq!(end.stop, RayStop::Singular(Singularity::Joint));
+            } else {
+                assert!((end.distance - want).abs() < 1e-7, "{k}: {end:?}, want {want}");
+                assert_eq!(end.stop, RayStop::Turn);
+                let start = model.place(&DriveAngles::from(START));
+                let miss = |turn: f64| (model.place_turned(&end.pose, turn) - start - want * direction(k)).norm();
+                assert!(miss(*turn).min(miss(-turn)) < 1e-7);
+            }
+        }
+    }
+}
+
+#[test]
+fn joint_limits_end_rays_before_singularities_do() {
+    let angle = |name: &str, to: &str, from: &str, min: f64, max: f64| {
+        format!("[[angle]]\nname = \"{name}\"\nto = \"{to}\"\nfrom = \"{from}\"\nmin = {min}\nmax = {max}\n")
+    };
+    let text = include_str!("../../assets/machines/spot.toml").to_owned()
+        + &angle("a1", "elbow", "shoulder", 0.2, 1.2)
+        + &angle("a2", "wrist", "elbow", -0.5, 1.4);
+    let (machine, model) = (parse(&text, "spot").expect("valid"), spot(Some(TipFrame::Space)));
+    let limit = |angle, upper| Some(RayStop::Limit { angle, upper });
+    let wants = [
+        (0, 0.023461613, limit(1, true)),
+        (2, 0.044947564, limit(0, false)),
+        (3, SILENT[0][3], None),
+        (9, 0.073555812, limit(0, true)),
+        (11, 0.027494343, limit(1, true)),
+    ];
+    for (k, want, stop) in wants {
+        let end = ends(&model, &machine, k, &[0.0])[0];
+        assert!((end.distance - want).abs() < 1e-7, "{k}: {end:?}");
+        assert_eq!(end.stop, stop.unwrap_or(RayStop::Singular(Singularity::Dynamic)));
+    }
+}
+
+/// Returns the scenario with B elsewhere and a turn limit, degrees.
+fn bound_for(to: [f64; 2], frame: &str, turn_limit: f64) -> Scenario {
+    let scenario = Scenario::builtin("spot").expect("built in");
+    let to = vec![to[0].into(), to[1].into()];
+    let change: TaskChange = [
+        ("to".to_owned(), stillbase::session::scenario::Value::Array(to)),
+        ("frame".to_owned(), frame.into()),
+        ("turn_limit".to_owned(), turn_limit.into()),
+    ]
+    .into_iter()
+    .collect();
+    let task = scenario.task.with_change(&change, &scenario.machine).expect("valid");
+    Scenario { task, ..scenario }
+}
+
+/// The simulation conserves momentum on its own: its base turns as planned, and the end effector arrives.
+#[test]
+fn a_crossing_turns_the_simulated_base_as_planned() {
+    for (to, frame, limit) in
+        [([-0.47, 0.4228], "space", 3.0), ([-0.4, 0.15], "space", 2.0), ([-0.47, 0.4228], "base", 1.5)]
+    {
+        let scenario = bound_for(to, frame, limit);
+        let (mut most, mut end) = (0.0_f64, None);
+        let run = replay(&scenario, |_, frame| {
+            most = most.max(frame.base.angle.abs());
+            end = Some((frame.base, frame.end_effector, frame.target.at));
+        });
+        let run = run.expect("it can be planned");
+        let turn = run.plan().base_turn.as_ref().expect("the base turns");
+        let (base, tip, target) = end.expect("frames");
+        assert!((base.angle - turn.at(1.0)).abs() < 1e-9, "{} is not {}", base.angle, turn.at(1.0));
+        assert!((most - turn.peak()).abs() < 1e-7 && turn.peak() <= limit.to_radians() && turn.peak() > 0.01);
+        assert!((tip - target).norm() < 1e-9, "{tip} is not {target}");
+        let there = Vector::new(to[0], to[1]);
+        let reached = if frame == "space" { tip } else { base.seen(tip) };
+        assert!((reached - there).norm() < 1e-9, "{reached} is not {there}");
+    }
+}
+
+#[test]
+fn a_turn_that_is_too_large_is_refused_with_one_that_will_do() {
+    let Err(Refusal::Turns { turn_limit, .. }) = Run::new(&bound_for([-0.47, 0.4228], "space", 2.0)) else {
+        panic!("the base turns by 2.59 degrees");
+    };
+    assert!((turn_limit - 2.6).abs() < 1e-12, "{turn_limit}");
+    Run::new(&bound_for([-0.47, 0.4228], "space", turn_limit)).expect("it will do");
+    // Within reach of zero momentum, a limit changes nothing.
+    let near = [-0.2937, 0.4728];
+    let [with, without] = [5.0, 0.0].map(|limit| Run::new(&bound_for(near, "space", limit)).expect("within reach"));
+    assert_eq!(with.plan().motion, without.plan().motion);
+    assert!(with.plan().base_turn.is_none());
+}
+
+/// The area at zero momentum is that of 1440 rays in SciPy.
+#[test]
+fn areas_are_nested() {
+    let run = Run::new(&Scenario::builtin("spot").expect("built in")).expect("it can be planned");
+    let rays = run.rays().expect("three drives");
+    let map = TurnMap::of(&rays, turn_limits(true), &mut |_| true).expect("not stopped");
+    assert!((map.areas[0] - 0.125067).abs() < 0.002 * 0.125067, "{:?}", map.areas);
+    assert!(map.areas.is_sorted() && map.rays.len() > 180);
+    assert!(map.rays.iter().all(|ray| ray.reaches.is_sorted()));
+    assert!(map.rays.is_sorted_by(|a, b| a.direction < b.direction));
+    assert!((map.rays[0].reaches[0] - SILENT[0][0]).abs() < 1e-8);
+    assert!(TurnMap::of(&rays, turn_limits(true), &mut |_| false).is_none());
+}
