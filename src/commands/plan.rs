@@ -336,7 +336,6 @@ fn table(answer: &PlanSummary) -> String {
         row("least peak |n_B| of any motion", price.least_peak, "N m");
         price.base_turn.iter().for_each(|turn| row("the base turns by", *turn, "rad"));
     }
-    cost.base_turn.iter().for_each(|turn| row("the base turns by at most", *turn, "rad"));
     if let Some(ways) = &cost.alternatives {
         row("least reaction: peak |n_B|", ways.least.peak, "N m");
         row("                root mean square", ways.least.rms, "N m");

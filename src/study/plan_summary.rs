@@ -87,9 +87,6 @@ pub struct PlanCost {
     /// Cost of a change of b.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub price: Option<PriceOfB>,
-    /// Largest turn of a free base that the plan permits, rad.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub base_turn: Option<f64>,
     /// Comparison of three ways to perform the same motion of the end effector.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub alternatives: Option<Verdicts>,
@@ -199,7 +196,6 @@ impl PlanCost {
             gap: plan.pace.and_then(|pace| pace.gap()),
             blended: plan.blended,
             price: plan.price.map(price).transpose()?,
-            base_turn: plan.base_turn.as_ref().map(|turn| turn.peak()),
             alternatives: plan.verdicts.clone(),
             over: forecast.exceeded_limit.map(|(limit, factor)| (limit.to_string(), factor)),
             cycles: (!plan.cycles.is_empty()).then(|| plan.cycles.iter().map(|q| q.to_vec()).collect()),

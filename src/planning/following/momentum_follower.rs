@@ -19,7 +19,7 @@ use crate::off_plane::momentum::MomentumModel;
 use crate::off_plane::null_space::{motion_of, rates};
 use crate::pose_space::Reach;
 use stillbase_mechanics::kinematics::column;
-use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::machine::{Machine, RelativeAngle};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector};
 
 /// What the end effector stops before.
@@ -57,8 +57,7 @@ const WAITING: (f64, f64) = (1e-3, 1e-6);
 #[derive(Clone, Debug)]
 pub struct MomentumFollower {
     model: Arc<MomentumModel>,
-    /// Relative angles: drives to and from, offset and limits, rad.
-    angles: Arc<[(usize, usize, f64, [f64; 2])]>,
+    angles: Arc<[RelativeAngle]>,
     /// Pose of the base in whose axes the model has its coordinates.
     anchor: Pose2,
     bound: f64,
@@ -84,10 +83,9 @@ impl MomentumFollower {
         let tip = model.tip_units(&e);
         let v = (0..model.drives()).map(|k| column(model.tip(), &tip, k) * from.qd[k]).sum();
         let h = model.coefficients(&e).dot(&from.qd);
-        let angles = machine.angles().iter().map(|a| (a.to, a.from, a.offset, [*a.limits.start(), *a.limits.end()]));
         let bound = ACCELERATION_SHARE * model.reach();
         let mut follower = Self {
-            angles: angles.collect(),
+            angles: machine.angles().into(),
             anchor,
             bound,
             step,
@@ -180,9 +178,9 @@ impl MomentumFollower {
 
     /// Returns the relative angle that passes its limit by most, with by how much, rad; below 0 if all are within.
     fn past_limit(&self, q: &DriveAngles) -> (usize, f64) {
-        let past = self.angles.iter().map(|(to, from, offset, [low, high])| {
-            let a = q[*to] - q[*from] + offset;
-            (low - a).max(a - high)
+        let past = self.angles.iter().map(|angle| {
+            let a = q[angle.to] - q[angle.from] + angle.offset;
+            (angle.limits.start() - a).max(a - angle.limits.end())
         });
         past.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, f64::NEG_INFINITY))
     }

@@ -110,6 +110,11 @@ impl Statement {
             let why = "a hand leads the machine at zero angular momentum";
             return Self::new(StatusLight::Good, "led by hand, has no momentum", why);
         }
+        if let (Guide::Motion { .. }, Some(turn)) = (run.simulation().guide(), &run.plan().base_turn) {
+            let (peak, limit) = (significant(turn.peak()), significant(run.scenario().task.turn_limit.to_radians()));
+            let why = format!("where zero momentum leads no farther, the base turns, by up to {peak} of {limit} rad");
+            return Self::new(StatusLight::Good, "turns its base within its limit", why);
+        }
         if !inertia.is_invariant() && moves_without_momentum(run) {
             let about = match run.scenario().base.kind {
                 BaseKind::Free => "the common centre of mass",
@@ -227,7 +232,7 @@ impl Statement {
 
     /// States whether a free base has kept its attitude up to a frame.
     fn of_attitude(run: &Run, frame: &Frame, machine: &Self, verdict: &Verdict, attitude: Attitude) -> Self {
-        let Attitude { peak, end, shift } = attitude;
+        let Attitude { peak, end, shift, .. } = attitude;
         let [peak, end, shift] = [peak, end, shift].map(significant);
         let figures = format!("peak |θ| {peak} rad, {end} rad at the end, base shifted by up to {shift} m");
         match (attitude.is_kept(), &verdict.wheel) {
@@ -273,7 +278,7 @@ fn cause(run: &Run, frame: &Frame, machine: &Statement) -> &'static str {
 /// Returns whether a run follows a motion that is planned without angular momentum.
 fn moves_without_momentum(run: &Run) -> bool {
     match run.simulation().guide() {
-        Guide::Motion { .. } => run.scenario().task.kind == TaskKind::ZeroMomentum,
+        Guide::Motion { .. } => run.scenario().task.kind == TaskKind::ZeroMomentum && run.plan().base_turn.is_none(),
         Guide::Lead(_) => true,
         Guide::Follow(_) => false,
     }
