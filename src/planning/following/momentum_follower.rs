@@ -9,8 +9,6 @@
 
 use std::sync::Arc;
 
-use thiserror::Error;
-
 use super::braking::{LAG_TIME, approach, greatest_feasible_fraction};
 use super::follow::Target;
 use crate::Reference;
@@ -23,14 +21,21 @@ use stillbase_mechanics::machine::{Machine, RelativeAngle};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector};
 
 /// What the end effector stops before.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Barrier {
     /// The rates of zero momentum grow without bound.
-    #[error("{0}")]
     Singular(Singularity),
     /// A relative joint angle is at a limit; its index in the machine's order.
-    #[error("a joint is at its limit there")]
     Limit(usize),
+}
+
+impl std::fmt::Display for Barrier {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Singular(why) => why.fmt(f),
+            Self::Limit(_) => f.write_str("a joint is at its limit there"),
+        }
+    }
 }
 
 /// Time in which the momentum that the hand takes over ends, s.
