@@ -10,8 +10,8 @@ use stillbase_exchange::form::{self, Exported, Form, FormContent, ModelContent};
 use stillbase_exchange::mjcf::{qpos, usual_pose};
 use stillbase_exchange::stl;
 use stillbase_exchange::urdf::joint;
-use stillbase_files::FoundMachine;
 use stillbase_files::row_file::{RowForm, table_bytes};
+use stillbase_files::{FoundMachine, floating_base, left_out_of_base};
 use stillbase_mechanics::machine::Machine;
 use stillbase_settings::number::{counted, fixed};
 
@@ -118,7 +118,8 @@ impl ExportModelArguments {
     /// Writes the file.
     pub fn run(&self) -> Result<(), Failure> {
         let FoundMachine { machine, base, .. } = self.machine.find()?;
-        let base = self.base.as_deref().map_or(Ok(base), |name| floating_base_of(name).map(|(body, _)| Some(body)))?;
+        let base = self.base.as_deref().map_or(Ok(base), |name| floating_base_of(name).map(Some))?;
+        let floating = base.as_ref().and_then(floating_base);
         let ending = self.form.check(&self.format, Some(&self.output), self.force, &form::endings())?;
         let form = Form::of(ending).map_err(Failure::wrong_input)?;
         self.check_options(form)?;
@@ -127,14 +128,15 @@ impl ExportModelArguments {
         }
         let pose = if self.pose.is_empty() { usual_pose(&machine) } else { self.pose.clone() };
         let cut = self.dimensions.cut(&machine);
-        let exported = Exported { machine: &machine, base: base.as_ref(), pose: &pose, cut: &cut };
+        let exported = Exported { machine: &machine, base: floating.as_ref(), pose: &pose, cut: &cut };
         let content = match (form.written(&exported), RowForm::of_ending(ending)) {
             (Ok(FormContent::Table(table)), Some(rows)) => table_bytes(&table, rows, &self.output)?,
             (content, _) => content.map_err(Failure::wrong_input)?.text().into_bytes(),
         };
         let of = described(&exported, form)?;
         write_file(&self.output, &content, self.force)?;
-        let left_out = form.left_out(&machine);
+        let of_base = base.as_ref().filter(|_| form.is_model()).and_then(left_out_of_base);
+        let left_out: Vec<String> = form.left_out(&machine).into_iter().chain(of_base).collect();
         for what in &left_out {
             print_message(format!("note: {}: left out: {what}", self.output.display()));
         }

@@ -7,10 +7,9 @@ use std::path::Path;
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use stillbase_exchange::base_body::BaseBody;
+use stillbase_files::FoundMachine;
 use stillbase_files::table::{NoTable, TABLE_ENDINGS, Table};
 use stillbase_files::text::STANDARD_INPUT;
-use stillbase_files::{FoundMachine, floating_base};
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
 use stillbase_mechanics::sketch::{Missing, resolve};
@@ -28,6 +27,7 @@ use stillbase_settings::number::counted;
 use stillbase_settings::range::Range;
 use stillbase_settings::text::{MAX_TEXT_BYTES, shell_word};
 use stillbase_settings::word::Choice;
+use stillbase_simulation::plant::{Base, BaseKind};
 
 use super::exit::print_message;
 use super::failure::Failure;
@@ -227,15 +227,14 @@ fn found_machine(name: &str) -> Result<FoundMachine, Failure> {
     Ok(found)
 }
 
-/// Returns the base of a scenario by name or file, which floats, and the inertia of its reaction wheel, kg m².
+/// Returns the base of a scenario by name or file, which floats.
 ///
 /// # Errors
 /// If there is no such scenario, or if its base does not float.
-pub fn floating_base_of(name: &str) -> Result<(BaseBody, f64), Failure> {
+pub fn floating_base_of(name: &str) -> Result<Base, Failure> {
     let Scenario { base, .. } = scenario(name, &Settings::default())?;
-    let wheel = base.wheel.map_or(0.0, |wheel| wheel.inertia);
     let why = || format!("--base {name}: its base does not float: want a scenario with [base] kind = \"free\"");
-    floating_base(&base).map(|body| (body, wheel)).ok_or_else(|| Failure::wrong_input(why()))
+    if base.kind == BaseKind::Free { Ok(base) } else { Err(Failure::wrong_input(why())) }
 }
 
 /// Prints what was left out of a file.

@@ -178,6 +178,11 @@ impl Form {
         own.ok_or_else(|| ExchangeError::Ending { ending: ending.chars().take(40).collect() })
     }
 
+    /// Returns whether a file is a model for another program, with the base if that floats.
+    pub fn is_model(&self) -> bool {
+        matches!(self.shows, ModelContent::Pose | ModelContent::Joints)
+    }
+
     /// Returns what a file of the machine leaves out, or shows otherwise than it is weighed, in sentences.
     pub fn left_out(&self, machine: &Machine) -> Vec<String> {
         (self.leaves_out)(machine)

@@ -3,12 +3,11 @@
 use std::io::ErrorKind;
 use std::path::Path;
 
-use super::afloat::{floating_base, scenario_afloat};
+use super::afloat::{base_of, scenario_afloat};
 use super::recorded_case::RecordedCase;
 #[cfg(not(feature = "record"))]
 use super::recorded_case::is_recording;
 use super::text::{STANDARD_INPUT, read};
-use stillbase_exchange::base_body::BaseBody;
 use stillbase_exchange::import::{ImportedMachine, faults, import};
 use stillbase_mechanics::machine::{self, FileError, Machine, MachineError};
 use stillbase_mechanics::sketch::Template;
@@ -19,6 +18,7 @@ use stillbase_settings::fault::{Fault, Faults};
 use stillbase_settings::number::ShortNumber;
 use stillbase_settings::range::shortened;
 use stillbase_settings::spelling::UnknownName;
+use stillbase_simulation::plant::{Base, BaseKind};
 
 const IS_SCENARIO: &str = "this is a scenario, not a machine: want the machine that it names; simulate, headless, \
                            compare, joints, export, tolerance, spectrum and plan take a SCENARIO";
@@ -30,8 +30,8 @@ pub struct FoundMachine {
     pub machine: Machine,
     /// The brief of its design that its file holds; the defaults if it holds none.
     pub design: DesignBrief,
-    /// The base, if the file has one that floats.
-    pub base: Option<BaseBody>,
+    /// The base of the scenario or of the model, if the file has one that floats.
+    pub base: Option<Base>,
     /// What was left out of the model of another program; empty for a machine of this one.
     pub left_out: Vec<String>,
 }
@@ -61,7 +61,7 @@ fn machine_of(scenario: &Scenario, file: &str) -> Result<FoundMachine, FileError
         return Err(wrong(unfinished.to_string()));
     }
     let note = format!("it is a scenario, taken is its machine {}", start.machine.name());
-    let base = floating_base(&start.base);
+    let base = Some(start.base).filter(|base| base.kind == BaseKind::Free);
     Ok(FoundMachine { machine: start.machine, design: start.design, base, left_out: vec![note] })
 }
 
@@ -83,7 +83,7 @@ fn found(name: &str, folder: Option<&Path>, takes_scenarios: bool) -> Result<Fou
             let file = label(&file.display().to_string()).to_owned();
             if is_model(&text) {
                 let ImportedMachine { machine, base, floats, notes, .. } = model(&text, &file)?;
-                let base = base.filter(|_| floats);
+                let base = base.filter(|_| floats).map(|base| base_of(&base));
                 return Ok(FoundMachine { base, left_out: notes, ..own(machine.into()) });
             }
             match content(&text) {

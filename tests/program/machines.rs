@@ -682,6 +682,20 @@ fn a_base_from_elsewhere_goes_into_a_scenario() {
     let want = "[base]\nkind = \"free\"\nmass = 75.0\ninertia = 3.5\ncom = [0.2, -0.1]\n";
     assert!(written.contains(want), "{written}");
     prints(&["simulate", &scenario, "--every", "500"]);
+    // Out again with the base, of which a model has no wheel.
+    let wheel = format!("{written}\n[base.wheel]\ninertia = 0.02\n");
+    fs::write(file("wheel.toml"), wheel).expect("written");
+    for (model, left_out) in [(&scenario, 0), (&file("wheel.toml"), 1)] {
+        let answer = object(&["export-model", &machine, "--base", model, "-o", &file("out.urdf"), "--force"]);
+        assert_eq!(answer["base"], json!({ "mass": 75.0, "inertia": 3.5, "com": [0.2, -0.1], "floats": true }));
+        let list = answer["left_out"].as_array().map_or(0, |list| {
+            list.iter().filter(|what| what.as_str().is_some_and(|what| what.contains("reaction wheel"))).count()
+        });
+        assert_eq!(list, left_out, "{answer}");
+    }
+    assert_eq!(object(&["import-model", &file("out.urdf")])["base"]["floats"], true);
+    fails(&["export-model", &machine, "--base", "case-3", "-o", &file("no.xml")], 2, &["does not float", "free"]);
+    fails(&["export-model", &machine, "--base", &scenario, "-o", &file("no.svg")], 2, &["--base has no effect"]);
     fails(&["import-model", &file("afloat.urdf"), "--scenario", &scenario], 2, &["afloat.toml", "--force"]);
     fails(&["import-model", &file("afloat.urdf"), "-o", &file("x.toml"), "--scenario", &file("x.toml")], 2, &["two"]);
 }

@@ -9,7 +9,7 @@ use crate::file_dialog::MACHINE_EXTENSION;
 use crate::{Activity, FileReport, PlotFile, ResumePoint, plots, studio};
 use stillbase_exchange::form::{Exported, Form, FormContent};
 use stillbase_files::row_file::{RowForm, table_bytes};
-use stillbase_files::{floating_base, is_standard};
+use stillbase_files::{floating_base, is_standard, left_out_of_base};
 use stillbase_query::Ticket;
 use stillbase_session::scenario::{MachineFile, Scenario, UnfinishedDrawing};
 
@@ -159,7 +159,9 @@ impl AppState {
             });
         }
         let form = Form::of(&ending).map_err(|e| format!("{}: {e}", path.display()))?;
-        let left_out = form.left_out(&self.session.scenario().machine);
+        let Scenario { machine, base, .. } = self.session.scenario();
+        let of_base = Some(base).filter(|_| form.is_model()).and_then(left_out_of_base);
+        let left_out = form.left_out(machine).into_iter().chain(of_base).collect();
         let then = AfterWriting::List(FileReport::not_written(path, left_out));
         self.write_content(path, FILE_BEING_SAVED, then, |app_state| {
             let scenario = app_state.session.scenario();

@@ -11,7 +11,6 @@ use stillbase_mechanics::balance::RebalanceRequest;
 use stillbase_mechanics::counterweights::{CounterweightSpec, CounterweightStock, Objective};
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
-use stillbase_planning::off_plane::price::FloatingBase;
 use stillbase_query::{Shared, answer_now};
 use stillbase_session::scenario::MachineFile;
 use stillbase_settings::number::counted;
@@ -200,8 +199,8 @@ impl TrimArguments {
 
     /// Prints what motions in orbit tell about the machine.
     fn in_orbit(&self, machine: &Machine, base: &str, files: &[String]) -> Result<(), Failure> {
-        let (body, wheel) = floating_base_of(base)?;
-        let base = OrbitBase { body: FloatingBase { mass: body.mass, inertia: body.inertia, com: body.com }, wheel };
+        let base = floating_base_of(base)?;
+        let base = OrbitBase { body: base.body(), wheel: base.wheel.map_or(0.0, |wheel| wheel.inertia) };
         let motion = |file: &String| -> Result<OrbitMotion, Failure> {
             let table = signals(Path::new(file))?;
             OrbitMotion::of(machine, &table).map_err(|why| Failure::wrong_input(why).with_context(file))
