@@ -77,7 +77,7 @@ impl TurnMapArguments {
         if !turns && limits.iter().any(|limit| *limit > 0.0) {
             return Err(no_use("--turn-limit", "base.kind = free without a wheel: no other base turns"));
         }
-        let rays = run.rays().map_err(|why| Failure::refused(scenario, why))?;
+        let rays = run.rays().map_err(|why| Failure::no_answer(format!("{}: {why}", scenario.name)))?;
         let map = TurnMap::of(&rays, &limits, &mut |_| true);
         let map = map.ok_or_else(|| Failure::no_answer("there is no map"))?;
         if let Some(to) = &to {
