@@ -82,14 +82,14 @@ fn a_hand_leads_an_arm_without_b_and_its_base_does_not_turn() {
     let a = session.frame().end_effector;
     let to = a + Vector::new(0.15, 0.05);
     session.apply(&Edit::DragTarget { x: to.re, y: to.im }).expect("is led");
-    (0..3000).for_each(|_| session.advance());
+    (0..6000).for_each(|_| session.advance());
     let frame = session.frame();
     assert!((frame.end_effector - to).norm() < 1e-9 && frame.phase == Phase::Rest, "{:?}", frame.end_effector);
     assert!(frame.totals.base_angle < 1e-10 && frame.base.at.norm() > 1e-3, "{}", frame.totals.base_angle);
     assert!(frame.first_violation().is_none(), "{:?}", frame.first_violation());
     // Far out it waits, and says before what.
     session.apply(&Edit::DragTarget { x: 3.0, y: 0.0 }).expect("is led");
-    (0..4000).for_each(|_| session.advance());
+    (0..8000).for_each(|_| session.advance());
     let frame = session.frame();
     let Reach::Stopped { nearest, why } = frame.target.reach else { panic!("{:?}", frame.target) };
     assert!((frame.end_effector - nearest).norm() < 1e-6 && frame.phase == Phase::Rest);
@@ -97,7 +97,7 @@ fn a_hand_leads_an_arm_without_b_and_its_base_does_not_turn() {
     assert!(frame.totals.base_angle < 1e-9, "{}", frame.totals.base_angle);
     // It may be led back the way that it came.
     session.apply(&Edit::DragTarget { x: to.re, y: to.im }).expect("is led");
-    (0..5000).for_each(|_| session.advance());
+    (0..9000).for_each(|_| session.advance());
     assert!((session.frame().end_effector - to).norm() < 1e-9, "{:?}", session.frame().target);
 }
 

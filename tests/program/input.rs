@@ -306,7 +306,7 @@ fn a_table_of_runs_is_short_of_digits() {
     let table = fs::read_to_string(&file).expect("written");
     let mut lines = table.lines();
     let head = lines.next().expect("a head");
-    assert!(head.contains(",base_shift m,base_angle rad,miss m,"), "{head}");
+    assert!(head.contains(",base_shift m,base_angle rad,base_angle_end rad,miss m,"), "{head}");
     // Older names are last.
     assert!(head.ends_with(",base_tilt rad,peak_arm_moment N m"), "{head}");
     for cell in lines.flat_map(|line| line.split(',')).filter(|cell| cell.parse::<f64>().is_ok()) {

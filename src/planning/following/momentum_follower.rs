@@ -18,7 +18,7 @@ use crate::off_plane::null_space::{motion_of, rates};
 use crate::pose_space::Reach;
 use stillbase_mechanics::kinematics::column;
 use stillbase_mechanics::machine::{Machine, RelativeAngle};
-use stillbase_mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector};
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector, dot};
 
 /// What the end effector stops before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,9 +54,8 @@ const LOST: (f64, f64) = (1.5, 0.01);
 const STOP_STEPS: (f64, f64) = (16.0, 0.02);
 /// The end effector has arrived when its distance and speed are below this fraction of the reach, 1/s for the speed.
 const ARRIVAL_SHARE: f64 = 1e-10;
-/// It waits at a barrier when it can use less than this fraction of the wanted acceleration at this speed, as a fraction
-/// of the reach, 1/s.
-const WAITING: (f64, f64) = (1e-3, 1e-6);
+/// It stops to wait when a barrier keeps it from going faster than this fraction of the reach, 1/s.
+const WAITING_SHARE: f64 = 5e-3;
 
 /// A reference that follows a target at zero angular momentum.
 #[derive(Clone, Debug)]
@@ -232,9 +231,15 @@ impl MomentumFollower {
         self.allowed = (MAX_GAIN.max(1.001 * here.0), LIMIT_TOLERANCE.max(here.1));
         let way = self.anchor.seen(self.target.at) - self.place();
         let (distance, speed) = (way.norm(), self.v.norm());
-        let is_waiting = matches!(self.target.reach, Reach::Stopped { .. });
-        let has_arrived = distance < ARRIVAL_SHARE * reach && speed < ARRIVAL_SHARE * reach;
-        if has_arrived || is_waiting {
+        let is_still = speed < ARRIVAL_SHARE * reach;
+        let brake = self.bound.min(speed / self.step);
+        let braking = if speed > 0.0 { -self.v * (brake / speed) } else { Vector::default() };
+        if let Reach::Stopped { nearest, .. } = &mut self.target.reach {
+            *nearest = self.anchor.place(self.model.place(&self.q));
+            (self.v, self.acc) = if is_still { Default::default() } else { (self.v, braking) };
+            return;
+        }
+        if is_still && distance < ARRIVAL_SHARE * reach {
             (self.v, self.acc) = (Vector::default(), Vector::default());
             return;
         }
@@ -245,16 +250,18 @@ impl MomentumFollower {
         let want = want * (self.bound / want.norm().max(f64::MIN_POSITIVE)).min(1.0);
         self.acc = want;
         let Some(barrier) = self.meets(&want) else { return };
-        let brake = self.bound.min(speed / self.step);
-        let braking = if speed > 0.0 { -self.v * (brake / speed) } else { Vector::default() };
         let at = |t: f64| braking + (want - braking) * t;
         let fraction = greatest_feasible_fraction(|t| self.meets(&at(t)).is_none());
         self.acc = at(fraction);
         // While momentum is left, the arm may come to a barrier that braking alone does not avoid: it stops at once.
         let is_lost = self.after(&self.acc, self.step).is_none_or(|next| self.barrier(&next, LOST).is_some());
-        if is_lost || (fraction < WAITING.0 && speed < WAITING.1 * reach) {
+        if is_lost {
             (self.v, self.acc) = (Vector::default(), Vector::default());
             (self.h, self.hd) = (0.0, 0.0);
+        }
+        let is_held_back = speed < WAITING_SHARE * reach && dot(self.acc, self.v) <= 0.0;
+        if is_lost || is_held_back {
+            self.acc = if is_lost { Vector::default() } else { braking };
             self.target.reach = Reach::Stopped { nearest: self.anchor.place(self.place()), why: barrier };
         }
     }

@@ -238,7 +238,7 @@ impl MotionEvaluator {
             joint_deviation: deviation.as_ref().map_or_else(Vec::new, |d| d.joints.to_vec()),
             rms_deviation: deviation.as_ref().map_or(0.0, |d| d.rms),
             account,
-            simulated_peak_base_moment: peaks.moment,
+            simulated_peak_base_moment: peaks.arm_moment,
             simulated_peak_base_force: peaks.force,
             reactionless: peaks.is_reactionless(),
         })

@@ -3,6 +3,7 @@
 use super::ensemble::SampleOutcome;
 use stillbase_mechanics::machine::Machine;
 use stillbase_session::{Refusal, Run};
+use stillbase_simulation::frame::Frame;
 use stillbase_simulation::plant::{Load, PlantDifferences};
 use stillbase_simulation::{Setup, Simulation};
 
@@ -21,6 +22,9 @@ pub fn simulate(planned: &Run, plant: &Machine) -> Result<SampleOutcome, Refusal
     let mut simulation = Simulation::of_machine(&setup, plant.clone(), guide)?;
     let last = planned.last_step();
     let (mut weights, mut moment, mut force) = (0.0, 0.0, 0.0);
+    // Without a wheel the moment is n_B, also on a free base, which feels that about its own centre of mass.
+    let has_wheel = scenario.base.wheel.is_some();
+    let on_base = |frame: &Frame| if has_wheel { frame.felt_moment } else { frame.base_moment() };
     loop {
         let frame = simulation.frame();
         if !frame.is_finite() {
@@ -28,7 +32,7 @@ pub fn simulate(planned: &Run, plant: &Machine) -> Result<SampleOutcome, Refusal
         }
         // Trapezoidal rule: the first and the last sample have half the weight.
         let weight = if frame.step == 0 || frame.step >= last { 0.5 } else { 1.0 };
-        moment += weight * frame.felt_moment.powi(2);
+        moment += weight * on_base(&frame).powi(2);
         force += weight * frame.wrench.dynamic.force.norm_sqr();
         weights += weight;
         if frame.step >= last {
@@ -36,7 +40,7 @@ pub fn simulate(planned: &Run, plant: &Machine) -> Result<SampleOutcome, Refusal
                 return Err(Refusal::Untrusted { why: lamp.to_string() });
             }
             return Ok(SampleOutcome {
-                peak_moment: frame.peaks.moment,
+                peak_moment: if has_wheel { frame.peaks.moment } else { frame.peaks.arm_moment },
                 peak_force: frame.peaks.force,
                 rms_moment: f64::sqrt(moment / weights),
                 rms_force: f64::sqrt(force / weights),
