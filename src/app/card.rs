@@ -98,7 +98,7 @@ impl Card {
             }
             Handle::Moment => {
                 let rows = vec![format!("largest so far {} N m", signed(frame.peaks.moment, 3))];
-                let name = notation.base_moment(scenario.base.wheel.is_some());
+                let name = notation.base_moment(scenario.base.feels_more_than_n_b());
                 let title = format!("{name} = {} N m", signed(frame.felt_moment, 3));
                 Self::new(title, rows, "")
             }

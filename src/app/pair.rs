@@ -178,7 +178,7 @@ impl Other<'_> {
                 let words = self.words(beside);
                 let tone = if is_zero(frame) { p.zero } else { p.reaction };
                 let tone = if self.pair.demonstrates { p.reaction } else { tone };
-                let name = moment_name(view_state, beside.scenario().base.wheel.is_some());
+                let name = moment_name(view_state, beside.scenario().base.feels_more_than_n_b());
                 let said = caption(ui, rect, &p, (&title, words), (frame, beside.peak_moment(), &name), (tone, large));
                 let taken = [said, controls_cover(rect)];
                 draw_labels(ui, 1, &SceneViewport { rect, camera }, &scene, &taken);
@@ -264,7 +264,7 @@ pub fn own_caption(ui: &Ui, rect: Rect, session: &Session, pair: &Pair, view_sta
         (false, own) => format!("{title}: {own}"),
     };
     let tone = if pair.demonstrates || is_zero(frame) { p.zero } else { p.reaction };
-    let name = moment_name(view_state, scenario.base.wheel.is_some());
+    let name = moment_name(view_state, scenario.base.feels_more_than_n_b());
     caption(ui, rect, &p, (&title, words), (frame, peak, &name), (tone, false))
 }
 
@@ -279,9 +279,9 @@ pub fn caption_covers(rect: Rect) -> Rect {
     Rect::from_min_size(rect.min, vec2(rect.width().min(420.0), height))
 }
 
-/// Returns the names of the moment that both captions show: past a wheel if either run has one.
-fn moment_name(view_state: &ViewState, has_wheel: bool) -> String {
-    view_state.arrangement.notation.base_moment(has_wheel || view_state.charts.wheels_differ)
+/// Returns the names of the moment that both captions show.
+fn moment_name(view_state: &ViewState, feels_more: bool) -> String {
+    view_state.arrangement.notation.base_moment(feels_more || view_state.charts.wheels_differ)
 }
 
 fn is_zero(frame: &Frame) -> bool {

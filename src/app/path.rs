@@ -413,6 +413,7 @@ fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
             },
         ),
     ] {
+        let words = crate::notation::sentence(ui.ctx(), &words);
         fit::label(ui, &words, plain(11.0), colour(ink)).on_hover_text(tip);
     }
 }

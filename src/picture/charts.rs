@@ -76,8 +76,9 @@ const MOMENT: Chart = Chart {
     is_overlaid: true,
     ..EMPTY_CHART
 };
-/// The moment that the machine transmits, and the moment on the base after compensation by its reaction wheel.
-const MOMENT_PAST_WHEEL: Chart = Chart { signals: &["moment/total", "moment/felt"], ..MOMENT };
+/// The moment that the machine transmits, and the moment that turns the base past its reaction wheel, or about its own
+/// centre of mass.
+const MOMENT_OF_BOTH: Chart = Chart { signals: &["moment/total", "moment/felt"], ..MOMENT };
 /// The moment on the base alone, for runs with and without a wheel beside each other. Without one it is n_B.
 const MOMENT_FELT: Chart = Chart { signals: &["moment/felt"], ..MOMENT };
 const FORCE: Chart = Chart {
@@ -137,11 +138,11 @@ const CHANGE_POINT: Chart =
 /// Returns the charts that apply to a scenario, in order of display. `wheels_differ` says that of the runs on display
 /// some have a reaction wheel and some have none.
 pub fn charts(scenario: &Scenario, wheels_differ: bool) -> Vec<Chart> {
-    let wheel = scenario.base.wheel.is_some();
+    let feels_more = scenario.base.feels_more_than_n_b();
     let has_friction = scenario.plant.friction != Default::default();
-    let moment = match (wheels_differ, wheel) {
+    let moment = match (wheels_differ, feels_more) {
         (true, _) => MOMENT_FELT,
-        (false, true) => MOMENT_PAST_WHEEL,
+        (false, true) => MOMENT_OF_BOTH,
         (false, false) => MOMENT,
     };
     let mut list = vec![TORQUE, moment, FORCE];

@@ -166,10 +166,10 @@ impl Notation {
         }
     }
 
-    /// Returns both names of the moment on the base; with a reaction wheel it is what passes the wheel.
-    pub fn base_moment(self, has_wheel: bool) -> String {
-        let term = if has_wheel { "turning moment past the wheel" } else { "turning moment on the base" };
-        self.name(term, moment_symbol(has_wheel))
+    /// Returns both names of the moment that turns the base; `feels_more` says whether it may differ from n_B.
+    pub fn base_moment(self, feels_more: bool) -> String {
+        let term = if feels_more { "turning moment that the base feels" } else { "turning moment on the base" };
+        self.name(term, moment_symbol(feels_more))
     }
 
     /// Returns a sentence with its angles and lengths in the user's units. A unit applies to the number before it, and

@@ -247,6 +247,6 @@ impl AppState {
 
 /// Whether of the session's run and those drawn with it some have a reaction wheel and some have none.
 fn wheels_differ(session: &Session, table: Option<&Comparison>) -> bool {
-    let has_wheel = session.scenario().base.wheel.is_some();
-    table.is_some_and(|table| table.shown().any(|(_, run)| run.scenario.base.wheel.is_some() != has_wheel))
+    let feels_more = session.scenario().base.feels_more_than_n_b();
+    table.is_some_and(|table| table.shown().any(|(_, run)| run.scenario.base.feels_more_than_n_b() != feels_more))
 }

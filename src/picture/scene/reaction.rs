@@ -92,9 +92,9 @@ impl ReactionGlyph {
     }
 
     /// Returns the texts of f_B and n_B with their colours. A reaction is red; zero is green if the machine has moved
-    /// without any reaction so far. Before the first motion, and after an earlier reaction, zero is dim. `has_wheel`
-    /// says whether a reaction wheel takes up a part of n_B.
-    pub fn readings(&self, palette: &Palette, has_wheel: bool) -> [(String, Rgba); 2] {
+    /// without any reaction so far. Before the first motion, and after an earlier reaction, zero is dim. `feels_more`
+    /// says whether the moment that turns the base may differ from n_B.
+    pub fn readings(&self, palette: &Palette, feels_more: bool) -> [(String, Rgba); 2] {
         let tone = |real: bool, stays_zero: bool| match (real, stays_zero && self.has_moved) {
             (true, _) => palette.reaction,
             (false, true) => palette.zero,
@@ -103,7 +103,7 @@ impl ReactionGlyph {
         let [force, moment] = [tone(self.has_force, !self.had_force), tone(self.has_moment, !self.had_moment)];
         [
             (format!("f_B {} N", reading(self.force.norm(), self.has_force)), force),
-            (format!("{} {} N m", moment_symbol(has_wheel), reading(self.moment, self.has_moment)), moment),
+            (format!("{} {} N m", moment_symbol(feels_more), reading(self.moment, self.has_moment)), moment),
         ]
     }
 
@@ -113,9 +113,9 @@ impl ReactionGlyph {
     }
 }
 
-/// Returns the symbol of the moment on the base: with a reaction wheel it is what passes the wheel, not n_B.
-pub fn moment_symbol(has_wheel: bool) -> &'static str {
-    if has_wheel { "n felt" } else { "n_B" }
+/// Returns the symbol of the moment that turns the base; `feels_more` says whether it may differ from n_B.
+pub fn moment_symbol(feels_more: bool) -> &'static str {
+    if feels_more { "n felt" } else { "n_B" }
 }
 
 /// Formats with three decimals, or with a power of ten if a nonzero value would be rounded to zero.

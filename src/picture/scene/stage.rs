@@ -410,7 +410,7 @@ impl Stage {
             &palette,
             shown,
             options,
-            (self.base.static_force_name(options), self.base.has_wheel()),
+            (self.base.static_force_name(options), self.base.feels_more_than_n_b()),
         );
         if options.pin_forces {
             self.pins.draw(&mut scene, linkage, &palette, shown);

@@ -49,6 +49,12 @@ impl Base {
         self.kind == BaseKind::Free && self.wheel.is_none()
     }
 
+    /// Returns whether the moment that turns the base may differ from n_B: a wheel takes up a part, or the base is free and
+    /// its centre of mass is off the base pin.
+    pub fn feels_more_than_n_b(&self) -> bool {
+        self.wheel.is_some() || (self.kind == BaseKind::Free && self.com != [0.0; 2])
+    }
+
     /// Returns its mass, inertia and centre of mass.
     pub fn body(&self) -> FloatingBase {
         FloatingBase { mass: self.mass, inertia: self.inertia, com: Vector::new(self.com[0], self.com[1]) }

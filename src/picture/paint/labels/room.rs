@@ -10,6 +10,8 @@ const MIN_DISC_PX: f32 = 2.9;
 /// Minimum width, px, and maximum number of vertices of arrows: solid lines that are drawn over everything.
 const MIN_ARROW_PX: f32 = 2.0;
 const MAX_ARROW_VERTICES: usize = 72;
+/// Maximum number of layers that stand for the sides of a tall part.
+const MAX_SIDES: f32 = 16.0;
 /// Minimum distance of labels from the drawn edge of a part, points.
 const CLEARANCE_PT: f32 = 1.5;
 
@@ -43,13 +45,15 @@ impl Room {
             let radius = aside.into_iter().flatten().fold(0.0, |most, at| ends[0].distance(at).max(most));
             Some(Strip { ends, radius: radius + CLEARANCE_PT })
         };
-        // Seen from above, the upper face covers the lower one.
         let body = |body: &Body| {
-            let upper = body.ends.map(|[x, y, z]| [x, y, z + body.height]);
-            let (low, high) = (face(body.ends, body.radius), face(upper, body.radius));
-            let differ = |low: Strip, high: Strip| low.ends[0].distance(high.ends[0]) > 0.5;
-            let both = low.zip(high).is_none_or(|(low, high)| differ(low, high));
-            low.filter(|_| both).into_iter().chain(high)
+            let at = |share: f32| face(body.ends.map(|[x, y, z]| [x, y, z + share * body.height]), body.radius);
+            let (low, high) = (at(0.0), at(1.0));
+            let apart = low.zip(high).map_or(0.0, |(low, high)| low.ends[0].distance(high.ends[0]));
+            // Seen from above, the upper face covers the lower one. Of a tall part, layers between them are its sides.
+            let sides = high.map_or(0.0, |high| (apart / high.radius.max(1.0)).ceil().min(MAX_SIDES)) as usize;
+            let between = (1..sides).filter_map(move |i| at(i as f32 / sides as f32)).collect::<Vec<_>>();
+            let is_seen = apart > 0.5 || low.is_none() || high.is_none();
+            low.filter(|_| is_seen).into_iter().chain(high).chain(between)
         };
         let discs = scene.markers.iter().filter(|marker| marker.radius > MIN_DISC_PX).filter_map(|marker| {
             let at = seen(marker.at)?;

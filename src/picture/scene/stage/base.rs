@@ -68,9 +68,9 @@ impl BaseStage {
         if self.moves() { corners.to_vec() } else { Vec::new() }
     }
 
-    /// Whether the base has a reaction wheel.
-    pub fn has_wheel(&self) -> bool {
-        self.base.wheel.is_some()
+    /// Whether the moment that turns the base may differ from n_B.
+    pub fn feels_more_than_n_b(&self) -> bool {
+        self.base.feels_more_than_n_b()
     }
 
     /// Returns the name of the constant force on the base.
@@ -129,7 +129,7 @@ impl BaseStage {
             let disc = Marker::disc("base_com", at, 4.5, faded(palette.background, 0.6));
             scene.markers.push(disc.edged(palette.dim, 1.8));
         }
-        if self.has_wheel() {
+        if self.feels_more_than_n_b() {
             self.wheel(scene, linkage, palette, shown);
         }
     }

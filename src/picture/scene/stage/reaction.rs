@@ -22,7 +22,7 @@ pub fn draw(
     palette: &Palette,
     shown: &DrawnFrame<'_>,
     options: &ViewOptions,
-    (static_force_name, has_wheel): (&str, bool),
+    (static_force_name, feels_more): (&str, bool),
 ) {
     let (z, reach, frame) = (linkage.top(), linkage.reach(), shown.frame);
     let (b, felt) = (shown.base.at, ReactionGlyph::of(frame));
@@ -67,7 +67,7 @@ pub fn draw(
     .into_iter()
     .flatten()
     .collect();
-    let [force, moment] = felt.readings(palette, has_wheel).map(|(text, tone)| (text, tone, 13.0));
+    let [force, moment] = felt.readings(palette, feels_more).map(|(text, tone)| (text, tone, 13.0));
     let rows = [
         force,
         moment,
