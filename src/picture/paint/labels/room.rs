@@ -41,8 +41,12 @@ impl Room {
         let seen = |at: [f32; 3]| spot.screen(at.map(f64::from));
         let face = |[a, b]: [[f32; 3]; 2], radius: f32| {
             let ends = [seen(a)?, seen(b)?];
-            let aside = [[radius, 0.0], [0.0, radius]].map(|[x, y]| seen([a[0] + x, a[1] + y, a[2]]));
-            let radius = aside.into_iter().flatten().fold(0.0, |most, at| ends[0].distance(at).max(most));
+            // In perspective the nearer end looks larger.
+            let around = |c: [f32; 3], end: Pos2| {
+                let aside = [[radius, 0.0], [0.0, radius]].map(|[x, y]| seen([c[0] + x, c[1] + y, c[2]]));
+                aside.into_iter().flatten().fold(0.0, |most: f32, at| end.distance(at).max(most))
+            };
+            let radius = around(a, ends[0]).max(around(b, ends[1]));
             Some(Strip { ends, radius: radius + CLEARANCE_PT })
         };
         let body = |body: &Body| {
