@@ -68,7 +68,7 @@ pub enum Refusal {
     #[error(transparent)]
     Drift(#[from] DriftError),
     /// The curve can be followed if a free base may turn farther.
-    #[error("{stopped}, or task.turn_limit = {}°: with least momentum the base turns by that much", ShortNumber(*turn_limit))]
+    #[error("{stopped}, or task.turn_limit = {}, in degrees: with least momentum the base turns by that much", ShortNumber(*turn_limit))]
     Turns {
         /// Where zero momentum leads no farther.
         #[source]

@@ -203,8 +203,9 @@ impl Controller {
         self.models[0].arm()
     }
 
-    /// Returns the motor torques, N m; `loaded` says whether the plant holds its payload, and `wheel` is that of
-    /// [`Self::torque_at`].
+    /// Returns the motor torques, N m; `loaded` says whether the plant holds its payload. If control knows the model of a
+    /// free base, it asks `wheel` for the torque of a wheel in the base, N m. The arguments are the moment on the whole
+    /// machine without the wheel, N m, and the machine's inertia, kg m².
     pub fn torque(
         &self,
         reference: &Reference,
