@@ -374,12 +374,8 @@ impl Run {
         let done = motion.profile.at(self.simulation.time() - start).s;
         (0..=64).map(|i| done + (1.0 - done) * f64::from(i) / 64.0).any(|s| {
             let q = motion.path.at(s).q;
-            let keeps = |scenario: &Scenario| {
-                scenario.machine.angles().iter().all(|a| {
-                    let angle = q[a.to] - q[a.from] + a.offset;
-                    angle >= a.limits.start() - 1e-9 && angle <= a.limits.end() + 1e-9
-                })
-            };
+            let keeps =
+                |scenario: &Scenario| scenario.machine.angles().iter().all(|angle| angle.past_limit(&q) <= 1e-9);
             keeps(&self.scenario) && !keeps(changed)
         })
     }

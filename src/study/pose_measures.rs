@@ -64,7 +64,7 @@ impl PoseMeasures {
         // The eigenvalues of J Jᵀ are ½ (lengths ± |squares|).
         Self {
             q: q.to_vec(),
-            a: machine.angles().iter().map(|a| q[a.to] - q[a.from] + a.offset).collect(),
+            a: machine.angles().iter().map(|angle| angle.value(q)).collect(),
             det: None,
             manipulability: 0.5 * (lengths * lengths - squares.norm_sqr()).max(0.0).sqrt(),
             worst_torque_per_force: (0.5 * (lengths + squares.norm())).sqrt(),

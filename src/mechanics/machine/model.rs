@@ -63,6 +63,21 @@ pub struct RelativeAngle {
     pub limits: RangeInclusive<f64>,
 }
 
+impl RelativeAngle {
+    /// Returns its value at drive angles q, rad.
+    #[inline]
+    pub fn value(&self, q: &[f64]) -> f64 {
+        q[self.to] - q[self.from] + self.offset
+    }
+
+    /// Returns how far drive angles q take it past its limits, rad; below 0 within them.
+    #[inline]
+    pub fn past_limit(&self, q: &[f64]) -> f64 {
+        let value = self.value(q);
+        (self.limits.start() - value).max(value - self.limits.end())
+    }
+}
+
 /// A closure, resolved: a point of link `a` is pinned to a point of link `b`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ResolvedClosure {

@@ -14,7 +14,7 @@ use super::follow::Target;
 use crate::Reference;
 use crate::off_plane::drift::Singularity;
 use crate::off_plane::momentum::MomentumModel;
-use crate::off_plane::null_space::{motion_of, rates};
+use crate::off_plane::null_space::{motion_of, rates, runge_kutta_step};
 use crate::pose_space::Reach;
 use stillbase_mechanics::kinematics::column;
 use stillbase_mechanics::machine::{Machine, RelativeAngle};
@@ -161,16 +161,11 @@ impl MomentumFollower {
 
     /// Returns the pose after a Runge–Kutta step of dt, with velocity of the end effector and momentum over time.
     fn integrate(&self, from: &DriveAngles, dt: f64, at: impl Fn(f64) -> (Vector, f64)) -> Option<DriveAngles> {
-        let slope = |q: &PerDrive, t: f64| {
-            let (v, h) = at(t);
-            rates(&self.model, &DriveAngles(*q), v, h)
+        let slope = |q: &PerDrive, share: f64| {
+            let (v, h) = at(share * dt);
+            rates(&self.model, &DriveAngles(*q), v, h).ok_or(())
         };
-        let q = from.0;
-        let k1 = slope(&q, 0.0)?;
-        let k2 = slope(&q.plus(0.5 * dt, &k1), 0.5 * dt)?;
-        let k3 = slope(&q.plus(0.5 * dt, &k2), 0.5 * dt)?;
-        let k4 = slope(&q.plus(dt, &k3), dt)?;
-        Some(DriveAngles(q.plus(dt / 6.0, &k1).plus(dt / 3.0, &k2).plus(dt / 3.0, &k3).plus(dt / 6.0, &k4)))
+        runge_kutta_step(&from.0, dt, slope).ok().map(DriveAngles)
     }
 
     /// Returns the norm of the rates times the reach, over the speed of the end effector, in the worst direction or more.
@@ -182,10 +177,7 @@ impl MomentumFollower {
 
     /// Returns the relative angle that passes its limit by most, with by how much, rad; below 0 if all are within.
     fn past_limit(&self, q: &DriveAngles) -> (usize, f64) {
-        let past = self.angles.iter().map(|angle| {
-            let a = q[angle.to] - q[angle.from] + angle.offset;
-            (angle.limits.start() - a).max(a - angle.limits.end())
-        });
+        let past = self.angles.iter().map(|angle| angle.past_limit(q));
         past.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, f64::NEG_INFINITY))
     }
 

@@ -10,7 +10,7 @@ use crate::curves::curve::{Curve, CurvePoint};
 use crate::curves::path::by_pieces;
 use crate::curves::table::PathTable;
 use crate::off_plane::momentum::MomentumModel;
-use crate::off_plane::null_space::{motion_of, rates};
+use crate::off_plane::null_space::{motion_of, rates, runge_kutta_step};
 use stillbase_mechanics::kinematics::column;
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use stillbase_settings::number::counted;
@@ -197,7 +197,6 @@ fn follow_once(
         return Err(DriftError::Start { miss });
     }
     let singular = |q: &DriveAngles, s: f64| stop(model, q, curve, s, cycle);
-    let slope = |q: &DriveAngles, s: f64| rates(model, q, curve(s).first, 0.0).ok_or_else(|| singular(q, s));
     let steps = spaces * STEPS_PER_INTERVAL;
     let h = 1.0 / steps as f64;
     let (mut q, mut last) = (start, start);
@@ -211,11 +210,10 @@ fn follow_once(
         if i == steps {
             break;
         }
-        let k1 = slope(&q, s)?;
-        let k2 = slope(&DriveAngles(q.0.plus(h / 2.0, &k1)), s + h / 2.0)?;
-        let k3 = slope(&DriveAngles(q.0.plus(h / 2.0, &k2)), s + h / 2.0)?;
-        let k4 = slope(&DriveAngles(q.0.plus(h, &k3)), s + h)?;
-        q = DriveAngles(q.0.plus(h / 6.0, &k1).plus(h / 3.0, &k2).plus(h / 3.0, &k3).plus(h / 6.0, &k4));
+        q = DriveAngles(runge_kutta_step(&q.0, h, |q, share| {
+            let (q, s) = (DriveAngles(*q), s + share * h);
+            rates(model, &q, curve(s).first, 0.0).ok_or_else(|| singular(&q, s))
+        })?);
         let goal = curve((i + 1) as f64 * h).p;
         for j in 0..MAX_CORRECTIONS {
             let gap = goal - model.place(&q);

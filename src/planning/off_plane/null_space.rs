@@ -18,6 +18,8 @@
 //! e^{i(q_3−q_2)} + (H_22 C_31 − C_32 C_21) e^{i(q_1−q_3)} + (H_33 C_12 − C_13 C_32) e^{i(q_2−q_1)}]. It vanishes in
 //! all poses only if its coefficients do; if H is positive definite, these vanish only if every C_kl is zero.
 
+use std::convert::Infallible;
+
 use nalgebra::{Matrix3, Vector3};
 
 use super::momentum::MomentumModel;
@@ -86,20 +88,34 @@ pub fn motion(model: &MomentumModel, start: DriveAngles, w: &PerDrive) -> Option
         return None;
     }
     let h = 1.0 / (NODE_INTERVALS * STEPS_PER_INTERVAL) as f64;
-    let slope = |q: &PerDrive| projected(model, &DriveAngles(*q), w);
+    let slope = |q: &PerDrive, _| Ok::<_, Infallible>(projected(model, &DriveAngles(*q), w));
     let mut q = start.0;
     let mut nodes = Vec::with_capacity(NODE_INTERVALS + 1);
     for i in 0..=NODE_INTERVALS * STEPS_PER_INTERVAL {
         if i % STEPS_PER_INTERVAL == 0 {
             nodes.push(node(model, DriveAngles(q), w));
         }
-        let k1 = slope(&q);
-        let k2 = slope(&q.plus(h / 2.0, &k1));
-        let k3 = slope(&q.plus(h / 2.0, &k2));
-        let k4 = slope(&q.plus(h, &k3));
-        q = q.plus(h / 6.0, &k1).plus(h / 3.0, &k2).plus(h / 3.0, &k3).plus(h / 6.0, &k4);
+        let Ok(next) = runge_kutta_step(&q, h, slope);
+        q = next;
     }
     PathTable::even(nodes)
+}
+
+/// Makes a classical fourth-order Runge–Kutta step of length h from q. `slope` returns q′ at a q and at a share of the step,
+/// 0, ½ or 1.
+///
+/// # Errors
+/// The first of `slope`.
+pub(crate) fn runge_kutta_step<E>(
+    q: &PerDrive,
+    h: f64,
+    slope: impl Fn(&PerDrive, f64) -> Result<PerDrive, E>,
+) -> Result<PerDrive, E> {
+    let k1 = slope(q, 0.0)?;
+    let k2 = slope(&q.plus(h / 2.0, &k1), 0.5)?;
+    let k3 = slope(&q.plus(h / 2.0, &k2), 0.5)?;
+    let k4 = slope(&q.plus(h, &k3), 1.0)?;
+    Ok(q.plus(h / 6.0, &k1).plus(h / 3.0, &k2).plus(h / 3.0, &k3).plus(h / 6.0, &k4))
 }
 
 /// Returns q, q′ = w − σ D and q″ = −σ′ D − σ D′, with σ = (D · w)/(D · D).

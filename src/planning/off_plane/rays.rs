@@ -116,7 +116,7 @@ impl Rays {
     /// Returns how far relative angles exceed their limits at most, rad, with the limit.
     fn excess(&self, q: &PerDrive) -> (f64, RayStop) {
         let past = self.angles.iter().enumerate().flat_map(|(angle, a)| {
-            let at = q[a.to] - q[a.from] + a.offset;
+            let at = a.value(q);
             [(a.limits.start() - at, false), (at - a.limits.end(), true)]
                 .map(|(by, upper)| (by - LIMIT_TOLERANCE, RayStop::Limit { angle, upper }))
         });

@@ -175,16 +175,14 @@ pub(super) fn keeps_rules(scenario: &Scenario, motion: &Motion) -> Result<(), Re
             }
         }
         for (k, angle) in scenario.machine.angles().iter().enumerate() {
-            let a = q[angle.to] - q[angle.from] + angle.offset;
-            let past = (angle.limits.start() - a).max(a - angle.limits.end());
-            if past > 1e-6 {
+            if angle.past_limit(&q) > 1e-6 {
                 let posture =
                     if scenario.condition_for_effect("task.posture").is_none() { "another posture, " } else { "" };
                 return Err(Refusal::NoWay(format!(
                     "{:.1} % along, a{} would pass its {} limit: want another path, another b, {posture}or wider limits",
                     100.0 * s,
                     k + 1,
-                    if a > *angle.limits.end() { "upper" } else { "lower" },
+                    if angle.value(&q) > *angle.limits.end() { "upper" } else { "lower" },
                 )));
             }
         }

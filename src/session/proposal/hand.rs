@@ -170,7 +170,7 @@ impl Session {
         }
         let q = &self.frame().q;
         let past = self.scenario().machine.angles().iter().find_map(|angle| {
-            let now = q[angle.to] - q[angle.from] + angle.offset;
+            let now = angle.value(q);
             let (low, high) = (*angle.limits.start(), *angle.limits.end());
             (now < low - LIMIT_TOLERANCE || now > high + LIMIT_TOLERANCE).then_some((angle, now, [low, high]))
         });

@@ -71,10 +71,7 @@ fn within(scenario: &Scenario, angles: &[usize], [down, up]: [f64; 2]) -> Option
 /// Returns the least and the greatest relative angle of a planned motion, rad.
 fn extremes(run: &Run, angle: usize) -> [f64; 2] {
     let angle = &run.scenario().machine.angles()[angle];
-    let at = |i: usize| {
-        let q = run.plan().motion.path.at(i as f64 / INTERVALS as f64).q;
-        q[angle.to] - q[angle.from] + angle.offset
-    };
+    let at = |i: usize| angle.value(&run.plan().motion.path.at(i as f64 / INTERVALS as f64).q);
     let all = (0..=INTERVALS).map(at);
     all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
 }

@@ -225,13 +225,14 @@ impl MovingBody {
     }
 
     /// Returns the moment that turns the base, N m: that of the arm less the torque of a wheel, about the base pin, or about
-    /// a free base's own centre of mass. `base` is the unit vector of the base, `wrench` that about the pin.
+    /// a free base's own centre of mass. `wrench` is that about the pin, `e` are the unit vectors of all coordinates.
     #[inline]
-    pub(crate) fn felt_moment(&self, wrench: &BaseWrench, base: Vector, wheel_torque: f64) -> f64 {
+    pub(crate) fn felt_moment(&self, wrench: &BaseWrench, e: &[Vector], wheel_torque: f64) -> f64 {
         let wrench = wrench.total();
         let pin_moment = wrench.moment - wheel_torque;
         let (mass, moment) = self.base;
-        if self.is_free { pin_moment - cross(moment / mass * base, wrench.force) } else { pin_moment }
+        let lever = || moment / mass * e[self.arm.drives];
+        if self.is_free { pin_moment - cross(lever(), wrench.force) } else { pin_moment }
     }
 
     /// Returns the potential energy of weight and springs, J.

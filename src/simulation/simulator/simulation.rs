@@ -337,10 +337,7 @@ impl Simulation {
         let wrench = self.body().transmitted(x);
         let (total, felt) = (wrench.total().moment, self.felt_moment(&wrench));
         let loaded = usize::from(self.loaded);
-        let past = |(i, a): (usize, &RelativeAngle)| {
-            let angle = self.state.q[a.to] - self.state.q[a.from] + a.offset;
-            ((a.limits.start() - angle).max(angle - a.limits.end()), i)
-        };
+        let past = |(i, angle): (usize, &RelativeAngle)| (angle.past_limit(&self.state.q), i);
         let now = Peaks {
             torque: x.torque,
             torque_sum: x.torque.iter().map(|t| t.abs()).sum(),
@@ -361,7 +358,7 @@ impl Simulation {
     /// Returns the moment that turns the base, N m, of a wrench.
     fn felt_moment(&self, wrench: &BaseWrench) -> f64 {
         let x = &self.now;
-        self.body().felt_moment(wrench, x.e[self.drives.min(MAX_DRIVES - 1)], x.spin.torque)
+        self.body().felt_moment(wrench, &x.e, x.spin.torque)
     }
 
     /// Returns gravity and outer force in axes that move with the base: the acceleration of the base is subtracted from
@@ -437,10 +434,7 @@ impl Simulation {
             q_reference: self.reference.q,
             b,
             b_reference,
-            a: PerDrive::from_fn(self.angles.len().min(MAX_DRIVES), |i| {
-                let a = &self.angles[i];
-                q[a.to] - q[a.from] + a.offset
-            }),
+            a: PerDrive::from_fn(self.angles.len().min(MAX_DRIVES), |i| self.angles[i].value(&q)),
             base: x.base,
             floats: self.floats,
             base_velocity: x.base_velocity,

@@ -21,7 +21,7 @@ use crate::frame::Peaks;
 use crate::plant::{MAX_CONTACTS, MovingBody, ReducedState, RungeKuttaStage, SlipDirections, Slope, StateRates};
 use stillbase_mechanics::dynamics::by_drives;
 use stillbase_mechanics::kinematics::end_effector;
-use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, Vector, length};
+use stillbase_mechanics::planar::{DriveAngles, Vector, length};
 use stillbase_planning::{Motion, Reference};
 
 /// Tolerance of the difference between two solutions, as a fraction of the peaks of the displayed quantities.
@@ -239,7 +239,7 @@ impl Simulation {
 
     /// Returns the difference between two slopes at one instant.
     pub(super) fn slope_difference(&self, a: &Slope, b: &Slope) -> Mismatch {
-        let felt = |x: &Slope| self.body().felt_moment(&x.wrench, x.e[self.drives.min(MAX_DRIVES - 1)], x.spin.torque);
+        let felt = |x: &Slope| self.body().felt_moment(&x.wrench, &x.e, x.spin.torque);
         let tip = |x: &Slope| tip(self.body(), x);
         Mismatch([
             (felt(a) - felt(b)).abs(),
@@ -333,7 +333,7 @@ fn stepped_of<const N: usize, const MOVES: bool>(
 /// Returns the difference between two stages at one instant.
 #[inline(always)]
 fn between<const N: usize>(body: &MovingBody, a: &RungeKuttaStage<N>, b: &RungeKuttaStage<N>) -> Mismatch {
-    let felt = |x: &RungeKuttaStage<N>| body.felt_moment(&x.wrench, x.e[N - 1], x.spin.torque);
+    let felt = |x: &RungeKuttaStage<N>| body.felt_moment(&x.wrench, &x.e, x.spin.torque);
     let arm = &body.arm().end_effector;
     let tip = |x: &RungeKuttaStage<N>| x.base.at + (0..N).map(|k| x.e[k] * arm[k]).sum::<Vector>();
     Mismatch([

@@ -140,11 +140,7 @@ impl MotionEvaluator {
     fn past_limits(&self, motion: &Motion) -> f64 {
         let past = |i: usize| {
             let q = motion.path.at(i as f64 / self.instants as f64).q;
-            let angles = self.machine.angles().iter().map(|angle| {
-                let a = q[angle.to] - q[angle.from] + angle.offset;
-                (angle.limits.start() - a).max(a - angle.limits.end())
-            });
-            angles.fold(0.0, f64::max)
+            self.machine.angles().iter().map(|angle| angle.past_limit(&q)).fold(0.0, f64::max)
         };
         let most = (0..=self.instants).map(past).fold(0.0, f64::max);
         // Violations within rounding are treated as zero.

@@ -203,7 +203,7 @@ impl Sines {
 
     fn keeps_limits(&self, machine: &Machine) -> bool {
         machine.angles().iter().all(|angle| {
-            let middle = self.middle[angle.to] - self.middle[angle.from] + angle.offset;
+            let middle = angle.value(&self.middle);
             let together = self.rate[angle.to] == self.rate[angle.from];
             let (to, from) = (self.signed[angle.to], self.signed[angle.from]);
             let most = if together { (to - from).abs() } else { to.abs() + from.abs() };

@@ -193,7 +193,7 @@ fn limit_violation(machine: &Machine, recording: &MeasurementSet) -> f64 {
             continue;
         }
         for q in recording.motions.iter().flat_map(|motion| &motion.q) {
-            let by = q[angle.to] - q[angle.from] + angle.offset - middle;
+            let by = angle.value(q) - middle;
             let turns = std::f64::consts::TAU * (by / std::f64::consts::TAU).round();
             most = most.max((by - turns).abs() - half);
         }
