@@ -18,6 +18,7 @@ pub const TESTS: &[Test] = tests![
     dragging_the_target_moves_the_machine_on_its_plane,
     a_target_outside_says_why_and_what_b_would_do,
     machines_of_two_and_four_drives_are_dragged,
+    an_arm_without_b_is_led_at_zero_momentum,
     a_machine_that_shakes_says_why_it_has_no_b,
     where_every_path_is_reactionless_the_tip_is_dragged_with_its_point,
     escape_cancels_a_drag_and_takes_it_back,
@@ -77,6 +78,37 @@ fn machines_of_two_and_four_drives_are_dragged() {
         h.run_steps(150);
         assert!((session(&h).frame().b - 3.0).abs() < 1e-6, "{name}: {}", session(&h).frame().b);
         assert_ne!(edge(&h), before);
+    }
+}
+
+/// From the start, where the target covers A, and from the middle of a run; far out it stops and says why.
+fn an_arm_without_b_is_led_at_zero_momentum() {
+    for plays in [false, true] {
+        let mut h = window("spot", Theme::Dark);
+        h.step();
+        if plays {
+            h.get_by_label("Play").click();
+            h.run_steps(100);
+            h.get_by_label("Pause").click();
+        }
+        h.run_steps(2);
+        let (points, at) = (session(&h).scenario().task.points(), session(&h).frame().end_effector);
+        let to = at + nalgebra::Complex::new(0.04, -0.06);
+        let (from, there) = (on_screen(&h, at.re, at.im), on_screen(&h, to.re, to.im));
+        drag(&mut h, from, there);
+        h.run_steps(240);
+        assert!(session(&h).is_dragged(), "plays {plays}");
+        let f = *session(&h).frame();
+        assert!((f.end_effector - to).norm() < 2e-3, "plays {plays}: {} {to}", f.end_effector);
+        assert!(f.totals.base_angle < 1e-9 && f.base.at.norm() > 1e-4, "plays {plays}: {}", f.totals.base_angle);
+        assert_eq!(session(&h).scenario().task.points(), points, "the points stay");
+        let (from, far) = (on_screen(&h, f.end_effector.re, f.end_effector.im), on_screen(&h, -0.75, 0.5));
+        drag(&mut h, from, far);
+        h.run_steps(240);
+        let f = *session(&h).frame();
+        let Reach::Stopped { nearest, .. } = f.target.reach else { panic!("plays {plays}: {:?}", f.target) };
+        assert!((nearest - f.end_effector).norm() < 1e-6 && f.totals.base_angle < 1e-9, "plays {plays}");
+        assert!(h.query_by_label_contains("at zero momentum the end effector stops here").is_some());
     }
 }
 

@@ -130,7 +130,7 @@ impl Stage {
                 .map(|space| BaseRing::of(space, ring_radius(&linkage))),
             plan: PlannedPath::of(run, linkage.top()),
             waits: run.waiting().is_some(),
-            target_draggable: run.waiting().is_none() && space.is_some(),
+            target_draggable: run.can_be_led(),
             links_draggable: run.waiting().is_none() && space.is_some_and(|space| space.leaves_freedoms()),
             pins: Pins::of(&plant),
             limits: LimitArcs::of(model, &linkage),
