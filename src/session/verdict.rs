@@ -86,14 +86,12 @@ pub struct Attitude {
     pub end: f64,
     /// Largest |p_B|, m.
     pub shift: f64,
-    /// Largest |θ| at which the attitude counts as kept, rad: the turn limit of the task, and 1e-6 rad without one.
-    pub limit: f64,
 }
 
 impl Attitude {
     /// Returns whether the base keeps its attitude.
     pub fn is_kept(&self) -> bool {
-        self.peak <= self.limit
+        self.peak <= ATTITUDE_TOLERANCE
     }
 }
 
@@ -168,7 +166,6 @@ impl Verdict {
                 peak: frame.totals.base_angle,
                 end: frame.base.angle,
                 shift: frame.totals.shift,
-                limit: scenario.task.turn_limit.to_radians() + ATTITUDE_TOLERANCE,
             }),
             wheel: scenario.base.wheel.map(|wheel| WheelUse {
                 momentum: wheel.inertia * frame.totals.wheel_rate,
@@ -292,7 +289,7 @@ impl Verdict {
     /// target`. Of a free base it tells the attitude first.
     pub fn sentence(&self) -> String {
         let mut text = format!("{}: ", self.word());
-        if let Some(Attitude { peak, end, shift, .. }) = self.attitude {
+        if let Some(Attitude { peak, end, shift }) = self.attitude {
             let [peak, end, shift] = [peak, end, shift].map(significant);
             text += &format!("peak |θ| {peak} rad, {end} rad at the end, shifted by up to {shift} m; ");
         }

@@ -7,6 +7,7 @@ use stillbase::planning::off_plane::drift::Singularity;
 use stillbase::planning::off_plane::momentum::{MomentumModel, TipFrame};
 use stillbase::planning::off_plane::rays::{RayEnd, RayStop, Rays};
 use stillbase::session::scenario::{Scenario, TaskChange};
+use stillbase::session::verdict::{Statements, StatusLight, Verdict};
 use stillbase::session::{Refusal, Run, replay};
 use stillbase::study::turn_map::{TurnMap, turn_limits};
 
@@ -182,6 +183,14 @@ fn a_crossing_turns_the_simulated_base_as_planned() {
             end = Some((frame.base, frame.end_effector, frame.target.at));
         });
         let run = run.expect("it can be planned");
+        // A turn that the task permits is a turn nevertheless.
+        let verdict = Verdict::of(run.scenario(), &run.frame());
+        let statement = Statements::of(&run, &run.frame()).run;
+        assert!(verdict.attitude.is_some_and(|attitude| !attitude.is_kept()) && !verdict.spares_base());
+        assert!(
+            statement.outcome == StatusLight::Bad && statement.words.ends_with("within its limit"),
+            "{statement:?}"
+        );
         let turn = run.plan().base_turn.as_ref().expect("the base turns");
         let (base, tip, target) = end.expect("frames");
         assert!((base.angle - turn.at(1.0)).abs() < 1e-9, "{} is not {}", base.angle, turn.at(1.0));

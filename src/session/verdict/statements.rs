@@ -232,7 +232,9 @@ impl Statement {
 
     /// States whether a free base has kept its attitude up to a frame.
     fn of_attitude(run: &Run, frame: &Frame, machine: &Self, verdict: &Verdict, attitude: Attitude) -> Self {
-        let Attitude { peak, end, shift, .. } = attitude;
+        let Attitude { peak, end, shift } = attitude;
+        let limit = run.scenario().task.turn_limit.to_radians();
+        let within = if limit > 0.0 && peak <= limit { ", within its limit" } else { "" };
         let [peak, end, shift] = [peak, end, shift].map(significant);
         let figures = format!("peak |θ| {peak} rad, {end} rad at the end, base shifted by up to {shift} m");
         match (attitude.is_kept(), &verdict.wheel) {
@@ -244,12 +246,12 @@ impl Statement {
             (true, None) => Self::new(StatusLight::Good, "kept its attitude", figures),
             (false, Some(wheel)) => Self::new(
                 StatusLight::Bad,
-                format!("turned its base by {peak} rad"),
+                format!("turned its base by {peak} rad{within}"),
                 format!("{figures}; {}", wheel.sentence()),
             ),
             (false, None) => Self::new(
                 StatusLight::Bad,
-                format!("turned its base by {peak} rad"),
+                format!("turned its base by {peak} rad{within}"),
                 format!("{figures}; {}", cause(run, frame, machine)),
             ),
         }

@@ -23,7 +23,7 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("base_shift", "m", "Largest displacement of the base from its place at the start; of a plan, without a wheel."),
     row("base_angle", "rad", "Largest angle |θ| by which the base turns; of a plan, without a wheel."),
     row("base_angle_end", "rad", "Angle of a free base at the end; of a plan, without a wheel.").sign(TURN).frame(BASE),
-    row("keeps_attitude", "", "Whether a free base turns by no more than the turn limit of the task, and 1e-6 rad."),
+    row("keeps_attitude", "", "Whether a free base turns by no more than 1e-6 rad."),
     row("miss", "m", "Distance of the end effector from its target at the end."),
     row("energy", "J", "Energy that the motors took, with none given back."),
     row("wheel_rate", "rad/s", "Largest rate of the reaction wheel."),
