@@ -43,7 +43,7 @@ keyed! {
         kp: f64 = "1", range: Range::new(0.0, 1e6, "s⁻²"), when: WHEN_FREE;
         /// Gain K_d of the rate of a free base.
         kd: f64 = "2", range: Range::new(0.0, 1e4, "s⁻¹"), when: WHEN_FREE;
-        /// Angle of a free base up to which feedback does nothing.
+        /// Dead band: feedback acts on what θ + (K_d/K_p) θ̇ exceeds this angle by, so a base at rest within it is left alone.
         dead_band: f64 = "0", range: Range::new(0.0, 3.0, "rad"), when: WHEN_FREE;
         /// Rate at which the torque for a free base is computed, a whole number of steps apart; it stays constant in
         /// between, and 0 means as often as those of the motors.
