@@ -507,7 +507,7 @@ fn the_query_puts_all_of_it_together() {
     let trim = found.outcome.expect("a fit");
     let fit = fitted(&machine, &recording, false);
     assert_eq!(trim.adopted, adopt_parameters(&fit));
-    let told = trim.report.numbers.iter().map(|number| number.measured.expect("told"));
+    let told = trim.report.numbers.iter().map(|number| number.unknown.measured.expect("told"));
     assert!(told.eq(fit.measured.iter().map(|x| x + 0.0)) && trim.report.rows == 400);
     let mended = trim.correction.expect("a change");
     let gain = trim.report.worth.expect("what it is worth");

@@ -10,7 +10,7 @@ use crate::widgets::note;
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_settings::number::{counted, fixed_or_scientific as rounded};
-use stillbase_study::trim::{NoTrim, Number, ParameterChange, TrimOutcome, TrimReport, TrimResult};
+use stillbase_study::trim::{MeasuredUnknown, NoTrim, Number, ParameterChange, TrimOutcome, TrimReport, TrimResult};
 
 /// Width of the table of numbers, points.
 const NUMBERS_WIDTH_PT: f32 = 470.0;
@@ -85,7 +85,8 @@ fn numbers(ui: &mut Ui, p: &Palette, report: &TrimReport) {
             right(ui, dim(head));
         }
         ui.end_row();
-        for Number { name, unit, nominal, measured, half_width, off, residual, .. } in &report.numbers {
+        for Number { unknown, residual, .. } in &report.numbers {
+            let MeasuredUnknown { name, unit, nominal, measured, half_width, off, .. } = unknown;
             let tone = colour(if *off { p.reaction } else { p.ink });
             let number = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), |x| signed(x, 5));
             let text = |x: Option<f64>| RichText::new(number(x)).font(plain(12.5));

@@ -2,7 +2,7 @@
 
 use stillbase_mechanics::machine::Machine;
 use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
-use stillbase_study::trim::{ExcitationReport, OrbitReport, ParameterChange, Suggestion, TrimReport};
+use stillbase_study::trim::{ExcitationReport, MeasuredUnknown, OrbitReport, ParameterChange, Suggestion, TrimReport};
 
 use super::super::output::{TextTable, yes};
 
@@ -28,18 +28,12 @@ pub fn text(report: &TrimReport, machine: &Machine) -> String {
     let mut table =
         TextTable::new(["", "machine", "measured", "± 95 %", "off", "taken as", "±", "after the change", "unit"]);
     for number in &report.numbers {
-        let or = |x: Option<f64>, none: &str| x.map_or_else(|| none.into(), |x| fixed_or_scientific(x, 6));
-        table.row([
-            number.name.clone(),
-            fixed(number.nominal, 6),
-            or(number.measured, "not told"),
-            or(number.half_width, "–"),
-            if number.identifiable { yes(number.off).into() } else { "–".into() },
+        let taken = [
             fixed(number.taken, 6),
             if number.taken_half_width > 0.0 { fixed_or_scientific(number.taken_half_width, 6) } else { "–".into() },
             number.residual.filter(|_| number.balance).map_or_else(|| "–".into(), |x| fixed(x, 6)),
-            number.unit.into(),
-        ]);
+        ];
+        table.row(measured(&number.unknown).into_iter().chain(taken).chain([number.unknown.unit.into()]));
     }
     text.push_str(&table.to_string());
     for words in report.untold_words() {
@@ -68,20 +62,24 @@ fn change_text(report: &TrimReport) -> String {
     format!("{table}Rounded to 0.1 g and 0.1 mm; the imbalance after the change is in the table above.\n{worth}\n")
 }
 
+/// Returns the cells of an unknown up to whether it is off.
+fn measured(number: &MeasuredUnknown) -> [String; 5] {
+    let or = |x: Option<f64>, none: &str| x.map_or_else(|| none.into(), |x| fixed_or_scientific(x, 6));
+    [
+        number.name.clone(),
+        fixed(number.nominal, 6),
+        or(number.measured, "not told"),
+        or(number.half_width, "–"),
+        if number.identifiable { yes(number.off).into() } else { "–".into() },
+    ]
+}
+
 /// Formats the report of a machine in orbit as text.
 pub fn orbit_text(report: &OrbitReport) -> String {
     let [off, noise] = [report.rate_off, report.rate_noise].map(|rate| fixed_or_scientific(rate, 4));
     let mut table = TextTable::new(["", "machine", "measured", "± 95 %", "off", "unit"]);
     for number in &report.numbers {
-        let or = |x: Option<f64>, none: &str| x.map_or_else(|| none.into(), |x| fixed_or_scientific(x, 6));
-        table.row([
-            number.name.clone(),
-            fixed(number.nominal, 6),
-            or(number.measured, "not told"),
-            or(number.half_width, "–"),
-            if number.identifiable { yes(number.off).into() } else { "–".into() },
-            number.unit.into(),
-        ]);
+        table.row(measured(number).into_iter().chain([number.unit.into()]));
     }
     let untold = report.untold_words().map(|words| format!("{words}\n")).collect::<String>();
     format!(

@@ -163,9 +163,13 @@ impl TrimArguments {
         found.doubt.iter().for_each(|doubt| print_message(format!("note: {doubt}")));
         let Found { report, adopted, correction } = found.outcome.map_err(as_failure)?;
         self.format.print(&report, |report| answer::text(report, &machine))?;
-        let judged = self
-            .strict
-            .require(report.numbers.iter().filter(|number| number.off).map(|number| format!("{} is off", number.name)));
+        let judged = self.strict.require(
+            report
+                .numbers
+                .iter()
+                .filter(|number| number.unknown.off)
+                .map(|number| format!("{} is off", number.unknown.name)),
+        );
         let mended = correction.map_err(Failure::no_answer)?;
         if self.output.is_none() && self.identified.is_none() {
             return judged;

@@ -167,7 +167,7 @@ impl PlaneEquations<'_> {
         let ways: Vec<Vec<f64>> = ways.into_iter().collect::<Option<_>>().ok_or_else(missing)?;
         let joint = |(i, angle): (usize, &RelativeAngle)| Joint {
             symbol: symbol_of_name(&spec.angles()[i].name),
-            value: angle.value(&q),
+            value: angle.value(q),
             offset: angle.offset,
             ways: ways.iter().map(|way| way[i]).collect(),
         };

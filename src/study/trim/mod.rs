@@ -62,9 +62,9 @@ pub use machine_correction::{
     MachineCorrection, NoCorrection, ParameterChange, correct_machine, corrected_as_built, identified_machine,
 };
 pub use next_excitation::{Excitation, NextMeasurement, next_excitation};
-pub use orbit::{OrbitBase, OrbitMotion, OrbitNumber, OrbitReport, orbit_trim};
+pub use orbit::{OrbitBase, OrbitMotion, OrbitReport, orbit_trim};
 pub use recording::{MeasuredMotion, MeasurementSet};
-pub use report::{ExcitationReport, Number, Suggestion, TrimImprovement, TrimReport};
+pub use report::{ExcitationReport, MeasuredUnknown, Number, Suggestion, TrimImprovement, TrimReport};
 pub use rows::{Regressor, RegressorSource};
 pub use trim_method::{TrimMethod, free_weights};
 pub use trimming::{NoTrim, TrimOutcome, TrimQuery, TrimRequest, TrimResult};

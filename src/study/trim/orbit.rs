@@ -35,7 +35,7 @@ use serde::Serialize;
 use super::error::TrimError;
 use super::fit::confounded;
 use super::long_run::{bartlett_lags, long_run, t_quantile};
-use super::report::untold_words;
+use super::report::{MeasuredUnknown, untold_words};
 use super::unknowns::{ComplexPart, Unknown, Unknowns};
 use stillbase_mechanics::balance::Condition;
 use stillbase_mechanics::machine::{Inertia, Machine};
@@ -86,32 +86,10 @@ pub struct OrbitReport {
     /// Root mean square of the base rate that the machine's file does not explain, rad/s.
     pub rate_off: f64,
     /// Values of every line of (7) and (8), and of the momenta.
-    pub numbers: Vec<OrbitNumber>,
+    pub numbers: Vec<MeasuredUnknown>,
     /// Groups of unknowns that are only identifiable in combination.
     #[serde(rename = "untold")]
     pub unidentifiable: Vec<Vec<String>>,
-}
-
-/// An unknown that was identified in orbit.
-#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
-pub struct OrbitNumber {
-    /// Name of the unknown.
-    pub name: String,
-    /// Unit of the value.
-    pub unit: &'static str,
-    /// Value in the machine's file.
-    pub nominal: f64,
-    /// Whether the unknown is identifiable from the data.
-    #[serde(rename = "told")]
-    pub identifiable: bool,
-    /// Measured value.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub measured: Option<f64>,
-    /// Half width of the 95 % interval.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub half_width: Option<f64>,
-    /// Whether the value in the machine's file lies outside of the interval.
-    pub off: bool,
 }
 
 impl OrbitReport {
@@ -354,7 +332,7 @@ pub fn orbit_trim(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) 
     let number = |i: usize| {
         let (what, half) = (craft.unknowns.at(i), critical * covariance[(i, i)].max(0.0).sqrt());
         let is_told = told[i];
-        OrbitNumber {
+        MeasuredUnknown {
             name: what.name(machine),
             unit: what.unit(),
             nominal: nominal[i] + 0.0,

@@ -57,9 +57,9 @@ pub struct TrimImprovement {
     pub helps: bool,
 }
 
-/// An unknown of (7) and (8), or a momentum.
+/// An unknown as it was measured.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
-pub struct Number {
+pub struct MeasuredUnknown {
     /// Name of the unknown.
     pub name: String,
     /// Unit of the value.
@@ -75,8 +75,17 @@ pub struct Number {
     /// Half width of the 95 % interval.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub half_width: Option<f64>,
-    /// Whether the unknown differs significantly from the machine's file, given the values used for the others.
+    /// Whether the unknown differs significantly from the machine's file. Measured by forces, the values used for the others
+    /// are given; measured in orbit, the file's value lies outside of the interval.
     pub off: bool,
+}
+
+/// An unknown of (7) and (8), or a momentum.
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
+pub struct Number {
+    /// What was measured.
+    #[serde(flatten)]
+    pub unknown: MeasuredUnknown,
     /// Value used: estimated with the values from the file held fixed; for (7) and (8) that of the file unless `off`.
     pub taken: f64,
     /// Half width of the 95 % interval of that value; 0 if it is from the file.
@@ -149,7 +158,7 @@ impl TrimReport {
 
     /// Returns in words the reason that nothing changes; meaningful only if nothing changes.
     pub fn why_no_change(&self) -> String {
-        let off = self.numbers.iter().any(|number| number.balance && number.off);
+        let off = self.numbers.iter().any(|number| number.balance && number.unknown.off);
         match self.worth.filter(|_| off) {
             Some(gain) => {
                 let worth = gain.worth.words();
@@ -181,13 +190,15 @@ impl TrimReport {
             let part = |left: &Vector| if i.is_multiple_of(2) { left.re } else { left.im };
             let balance = i < unknowns.of_balance();
             Number {
-                name: what.name(machine),
-                unit: what.unit(),
-                nominal: fit.nominal[i] + 0.0,
-                identifiable,
-                measured: identifiable.then_some(fit.measured[i] + 0.0),
-                half_width: identifiable.then_some(fit.half_width(i)),
-                off: taken.differs[i],
+                unknown: MeasuredUnknown {
+                    name: what.name(machine),
+                    unit: what.unit(),
+                    nominal: fit.nominal[i] + 0.0,
+                    identifiable,
+                    measured: identifiable.then_some(fit.measured[i] + 0.0),
+                    half_width: identifiable.then_some(fit.half_width(i)),
+                    off: taken.differs[i],
+                },
                 taken: taken.values[i] + 0.0,
                 taken_half_width: taken.half_widths[i],
                 residual: mended.filter(|_| balance).and_then(|m| m.residuals.get(i / 2)).map(|left| part(left) + 0.0),
