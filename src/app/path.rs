@@ -34,14 +34,17 @@ pub fn show(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comm
     kinds.sort_by_key(|kind| matches!(kind, TaskKind::SameTip | TaskKind::Given));
     choose(ui, session, ChoiceRow { label: "Redundancy", key: "kind", width: 2.0 * half }, &kinds, task.kind, commands);
     ui.horizontal(|ui| {
-        choose(
-            ui,
-            session,
-            ChoiceRow { label: "Shape", key: "shape", width: half - 16.0 },
-            PathShape::ALL,
-            task.shape(),
-            commands,
-        );
+        // A loop that turns the base has its own shape.
+        if task.kind != TaskKind::TurnBase {
+            choose(
+                ui,
+                session,
+                ChoiceRow { label: "Shape", key: "shape", width: half - 16.0 },
+                PathShape::ALL,
+                task.shape(),
+                commands,
+            );
+        }
         choose(
             ui,
             session,
@@ -202,6 +205,9 @@ fn points(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, commands: &m
         };
         place::place_of_thing(ui, Handle::Waypoint(i), p, |ui| ui.horizontal(row));
     }
+    if all.len() < 2 {
+        return;
+    }
     let plus = RichText::new("+ point").font(plain(11.5)).color(colour(p.dim));
     let response =
         ui.add(Button::new(plus).frame(false)).on_hover_text("One more point before B; or double-click in the scene");
@@ -221,7 +227,10 @@ fn corners(ui: &mut Ui, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
         let mut closed = task.closed;
         let tip = "Return from B to A";
         if ui
-            .add_enabled(task.kind != TaskKind::SameTip, egui::Checkbox::new(&mut closed, "closed"))
+            .add_enabled(
+                !matches!(task.kind, TaskKind::SameTip | TaskKind::TurnBase),
+                egui::Checkbox::new(&mut closed, "closed"),
+            )
             .on_hover_text(tip)
             .changed()
         {
@@ -352,10 +361,7 @@ fn kind_settings(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, comma
                     note(ui, p, &format!("the base turns by {:.2}°, across a singularity", turn.peak().to_degrees()));
                 }
             }
-            let mut cycles = f64::from(task.cycles);
-            let row = NumberRow::of("cycles", "task.cycles").with(0, 0.05);
-            let response = row.show(ui, p, &mut cycles);
-            send(commands, &[response], || Edit::set("task.cycles", cycles.round() as i64));
+            cycles(ui, task, p, commands);
             if task.closed {
                 let every = (task.cycles as usize).div_ceil(10).max(1);
                 let rounds: Vec<String> = plan.drift().skip(every - 1).step_by(every).map(|d| signed(d, 3)).collect();
@@ -363,8 +369,27 @@ fn kind_settings(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, comma
                 note(ui, p, &format!("drift of the joints after {each}: {} rad", rounds.join("  ")));
             }
         }
+        TaskKind::TurnBase => {
+            let mut turn = task.base_turn;
+            let tip = "By how much the closed motion turns the base, counterclockwise";
+            let row = NumberRow { tip, ..NumberRow::of("turn the base by", "task.base_turn").with(2, 0.05) };
+            let response = row.show(ui, p, &mut turn);
+            send(commands, &[response], || Edit::set("task.base_turn", turn));
+            cycles(ui, task, p, commands);
+            if let Some(length) = plan.loop_length {
+                note(ui, p, &format!("shortest loop found: {} rad in drive angles", signed(length, 3)));
+            }
+        }
         TaskKind::Reactionless | TaskKind::MinimumNorm | TaskKind::SameTip | TaskKind::Given => {}
     }
+}
+
+/// Draws the number of times that a closed path is followed.
+fn cycles(ui: &mut Ui, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
+    let mut cycles = f64::from(task.cycles);
+    let row = NumberRow::of("cycles", "task.cycles").with(0, 0.05);
+    let response = row.show(ui, p, &mut cycles);
+    send(commands, &[response], || Edit::set("task.cycles", cycles.round() as i64));
 }
 
 /// Draws the forecast of the planned motion: always two lines, so that nothing below moves. A limit that the motion

@@ -269,6 +269,7 @@ fn target(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
 /// Returns the points of the task in words.
 fn all_points(session: &Session) -> String {
     match session.scenario().task.points().len() {
+        1 => "A".into(),
         2 => "A and B".into(),
         n => format!("all {n} points"),
     }

@@ -275,6 +275,7 @@ impl From<Refusal> for Failure {
             | Refusal::LeastReaction(_)
             | Refusal::Drift(_)
             | Refusal::Turns { .. }
+            | Refusal::Loop { .. }
             | Refusal::NoCommonPlane { .. }
             | Refusal::Blocked(_)
             | Refusal::TooLong { .. }

@@ -331,6 +331,7 @@ fn table(answer: &PlanSummary) -> String {
         value.into_iter().for_each(|value| row(name, value, 9, unit));
     }
     let mut row = |name: &str, value: f64, unit: &str| table.row([name.to_owned(), fixed(value, 6), unit.into()]);
+    cost.loop_length.into_iter().for_each(|length| row("length of a loop of the drives", length, "rad"));
     if let Some(price) = &cost.price {
         row("Δb", price.delta_b, "rad");
         row("least peak |n_B| of any motion", price.least_peak, "N m");

@@ -48,6 +48,8 @@ pub struct Optimum {
     pub x: Vec<f64>,
     /// Value of the objective at `x`.
     pub value: f64,
+    /// Multipliers of the equalities: by how much `value` falls per increase of the right side; empty without a program.
+    pub multipliers: Vec<f64>,
     /// Duality gap: upper bound on `value` minus the optimum.
     pub gap: f64,
 }
@@ -128,7 +130,8 @@ impl Program {
             match found.status {
                 SolverStatus::Solved | SolverStatus::AlmostSolved => {
                     let gap = (found.obj_val - found.obj_val_dual).abs();
-                    let optimum = Optimum { x: found.x, value: found.obj_val, gap };
+                    let multipliers = found.z[..self.equal.len()].to_vec();
+                    let optimum = Optimum { x: found.x, value: found.obj_val, multipliers, gap };
                     // An answer that is almost solved may have a gap far above the tolerance.
                     if gap <= ROUGH_GAP * (1.0 + optimum.value.abs()) {
                         return Ok(optimum);

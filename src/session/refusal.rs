@@ -10,6 +10,7 @@ use stillbase_planning::following::Blocked;
 use stillbase_planning::off_plane::drift::DriftError;
 use stillbase_planning::off_plane::least_reaction::LeastReactionError;
 use stillbase_planning::off_plane::price::PriceError;
+use stillbase_planning::off_plane::turning_loop::NoLoop;
 use stillbase_planning::pose_constant::{NoCommonB, Unreachable};
 use stillbase_planning::pose_space::{NoPoseSpace, PlaneError};
 use stillbase_planning::reactionless::Decimal;
@@ -75,6 +76,15 @@ pub enum Refusal {
         stopped: DriftError,
         /// The turn limit that would do, °.
         turn_limit: f64,
+    },
+    /// No closed motion of the arm turns the base as wanted.
+    #[error("{why}{}", cycles.map_or_else(String::new, |cycles| format!(": want task.cycles = {cycles}, or a smaller task.base_turn")))]
+    Loop {
+        /// Why not.
+        #[source]
+        why: NoLoop,
+        /// Number of loops that together do.
+        cycles: Option<u32>,
     },
     /// The fastest motion cannot be found.
     #[error(transparent)]

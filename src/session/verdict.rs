@@ -31,7 +31,8 @@ pub const LIMIT_TOLERANCE: f64 = 1e-6;
 /// keeps the limit.
 const MAX_LIMIT_RATIO: f64 = 1.0 + 1e-3;
 
-/// A free base keeps its attitude if it turns by no more than this, rad: 0.2 seconds of arc.
+/// A free base keeps its attitude if it turns by no more than this, or by no more past a wanted angle, rad: 0.2 seconds of
+/// arc.
 const ATTITUDE_TOLERANCE: f64 = 1e-6;
 
 /// Smaller tilting moments are treated as zero, N m.
@@ -86,12 +87,19 @@ pub struct Attitude {
     pub end: f64,
     /// Largest |p_B|, m.
     pub shift: f64,
+    /// θ at the end that the task wants, rad, if it is to turn the base.
+    pub wanted: Option<f64>,
 }
 
 impl Attitude {
     /// Returns whether the base keeps its attitude.
     pub fn is_kept(&self) -> bool {
         self.peak <= ATTITUDE_TOLERANCE
+    }
+
+    /// Returns whether the base is as the task wants it: turned by the wanted angle, or kept.
+    pub fn is_as_wanted(&self) -> bool {
+        self.wanted.map_or(self.is_kept(), |wanted| (self.end - wanted).abs() <= ATTITUDE_TOLERANCE)
     }
 }
 
@@ -166,6 +174,7 @@ impl Verdict {
                 peak: frame.totals.base_angle,
                 end: frame.base.angle,
                 shift: frame.totals.shift,
+                wanted: (scenario.task.kind == TaskKind::TurnBase).then_some(scenario.task.base_turn.to_radians()),
             }),
             wheel: scenario.base.wheel.map(|wheel| WheelUse {
                 momentum: wheel.inertia * frame.totals.wheel_rate,
@@ -193,21 +202,21 @@ impl Verdict {
     }
 
     /// Returns whether no audit has failed, and the arm transmits no reaction, a wheel compensates all of it, or a free
-    /// base keeps its attitude.
+    /// base keeps its attitude or turns as wanted.
     pub fn spares_base(&self) -> bool {
-        let is_spared = self.attitude.map_or(self.is_base_unloaded, |attitude| attitude.is_kept());
+        let is_spared = self.attitude.map_or(self.is_base_unloaded, |attitude| attitude.is_as_wanted());
         self.fault.is_none() && (self.reactionless || is_spared)
     }
 
     /// Returns `reactionless`, `not reactionless`, `reactionless past the wheel`, or `untrusted`. Of a free base it tells
-    /// whether it `keeps its attitude` or `turns its base`.
+    /// whether it `keeps its attitude`, `turns its base as wanted` or `turns its base`.
     pub fn word(&self) -> &'static str {
-        let attitude = self.attitude.map(|attitude| attitude.is_kept());
-        match (&self.fault, self.reactionless, attitude, self.is_base_unloaded) {
+        match (&self.fault, self.reactionless, self.attitude, self.is_base_unloaded) {
             (Some(_), ..) => "untrusted",
             (None, true, ..) => "reactionless",
-            (None, false, Some(true), _) => "keeps its attitude",
-            (None, false, Some(false), _) => "turns its base",
+            (None, false, Some(attitude), _) if attitude.is_kept() => "keeps its attitude",
+            (None, false, Some(attitude), _) if attitude.is_as_wanted() => "turns its base as wanted",
+            (None, false, Some(_), _) => "turns its base",
             (None, false, None, true) => "reactionless past the wheel",
             (None, false, None, false) => "not reactionless",
         }
@@ -289,7 +298,7 @@ impl Verdict {
     /// target`. Of a free base it tells the attitude first.
     pub fn sentence(&self) -> String {
         let mut text = format!("{}: ", self.word());
-        if let Some(Attitude { peak, end, shift }) = self.attitude {
+        if let Some(Attitude { peak, end, shift, .. }) = self.attitude {
             let [peak, end, shift] = [peak, end, shift].map(significant);
             text += &format!("peak |θ| {peak} rad, {end} rad at the end, shifted by up to {shift} m; ");
         }

@@ -93,6 +93,9 @@ pub struct PlanCost {
     /// The limit of a drive that is exceeded most, and the ratio of the peak to it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub over: Option<(String, f64)>,
+    /// Length of the loop that turns the base, in drive angles, rad.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loop_length: Option<f64>,
     /// Angles of the drives at the start and after each cycle, rad.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cycles: Option<Vec<Vec<f64>>>,
@@ -196,6 +199,7 @@ impl PlanCost {
             gap: plan.pace.and_then(|pace| pace.gap()),
             blended: plan.blended,
             price: plan.price.map(price).transpose()?,
+            loop_length: plan.loop_length,
             alternatives: plan.verdicts.clone(),
             over: forecast.exceeded_limit.map(|(limit, factor)| (limit.to_string(), factor)),
             cycles: (!plan.cycles.is_empty()).then(|| plan.cycles.iter().map(|q| q.to_vec()).collect()),

@@ -56,6 +56,9 @@ pub struct TurnRay {
     pub stops: Vec<String>,
 }
 
+/// Word for the end of a ray at a dynamic singularity.
+const DYNAMIC: &str = "dynamic singularity";
+
 impl TurnMap {
     /// Follows rays within turn limits, °, in rising order. `goes_on` is called with the completed fraction; returns
     /// `None` if it returns false.
@@ -106,6 +109,20 @@ impl TurnMap {
         Some(map)
     }
 
+    /// Returns the curves where rays meet dynamic singularities at zero momentum, m: arcs of the outline of what it reaches.
+    pub fn singular_curves(&self) -> Vec<Vec<Vector>> {
+        let outline = self.outline(0);
+        let is_singular = |ray: &TurnRay| ray.stops.first().is_some_and(|stop| stop == DYNAMIC);
+        let Some(first) = self.rays.iter().position(|ray| !is_singular(ray)) else {
+            return vec![outline.iter().chain(outline.first()).copied().collect()];
+        };
+        // From a ray that ends otherwise, once around.
+        let n = self.rays.len();
+        let around: Vec<usize> = (first..=first + n).map(|i| i % n).collect();
+        let arcs = around.split(|i| !is_singular(&self.rays[*i])).filter(|arc| arc.len() > 1);
+        arcs.map(|arc| arc.iter().map(|i| outline[*i]).collect()).collect()
+    }
+
     /// Returns the outline of what is reached within turn limit `i`, m.
     pub fn outline(&self, i: usize) -> Vec<Vector> {
         let from = Vector::new(self.tip_start[0], self.tip_start[1]);
@@ -124,7 +141,7 @@ fn area(outline: &[Vector]) -> f64 {
 fn in_words(stop: RayStop, angles: &[RelativeAngle]) -> String {
     match stop {
         RayStop::Singular(Singularity::Kinematic) => "outstretched or folded".into(),
-        RayStop::Singular(Singularity::Dynamic) => "dynamic singularity".into(),
+        RayStop::Singular(Singularity::Dynamic) => DYNAMIC.into(),
         RayStop::Singular(Singularity::Joint) => "singularity of base and arm".into(),
         RayStop::Limit { angle, upper } => {
             let name = angles.get(angle).map_or("angle", |angle| &angle.name);

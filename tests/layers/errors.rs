@@ -46,6 +46,7 @@ errors! {
     planning::off_plane::least_reaction::LeastReactionError,
     planning::off_plane::price::PriceError,
     planning::off_plane::rays::NoRays,
+    planning::off_plane::turning_loop::NoLoop,
     planning::pose_constant::Unreachable,
     planning::pose_space::NoPoseSpace,
     planning::pose_space::NotFollowable,

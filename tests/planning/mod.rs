@@ -23,4 +23,5 @@ mod sizes;
 mod tasks;
 mod timing;
 mod trace;
+mod turning_loop;
 mod windings;

@@ -372,7 +372,7 @@ fn the_scenarios_that_come_along_do_what_they_say() {
         assert_eq!(done, still.contains(&name), "{name}: {}", end.peaks.moment);
         assert_eq!(
             end.totals.base_angle > 1e-6,
-            ["spacecraft", "bench-top", "space-arm", "spot-swing", "ets-vii"].contains(&name),
+            ["spacecraft", "bench-top", "space-arm", "spot-swing", "spot-turn", "ets-vii"].contains(&name),
             "{name}"
         );
         assert_eq!(end.totals.saturated.is_some(), name == "wheel");

@@ -170,7 +170,7 @@ impl Search<'_> {
     /// Returns a solution with every inertia at its exact value.
     fn with_exact_inertia(&self, least: &Optimum) -> Optimum {
         let x = self.problem.with_exact_values(self.request, &least.x);
-        Optimum { value: self.problem.value(self.request, &x), x, gap: 0.0 }
+        Optimum { value: self.problem.value(self.request, &x), x, multipliers: Vec::new(), gap: 0.0 }
     }
 
     /// Descends from a solution, and also from the bounds of all cells if `from_bounds`. Each iteration solves the cone

@@ -14,6 +14,7 @@ pub mod inverse;
 #[doc(hidden)]
 pub mod least_momentum;
 pub mod least_reaction;
+mod loop_spline;
 #[doc(hidden)]
 pub mod momentum;
 #[doc(hidden)]
@@ -21,6 +22,8 @@ pub mod null_space;
 pub mod price;
 #[doc(hidden)]
 pub mod rays;
+#[doc(hidden)]
+pub mod turning_loop;
 
 pub use corridor::Corridor;
 pub use least_reaction::LeastReaction;

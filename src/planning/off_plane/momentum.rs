@@ -72,6 +72,22 @@ pub(super) struct TurningBase {
     pub lever: Option<Vector>,
 }
 
+/// How a free base turns with its arm at a pose: θ̇ = A q̇, with A = −D/I.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurnForm {
+    /// A.
+    pub coefficients: PerDrive,
+    /// ∂A/∂q_m for each m.
+    pub slopes: [PerDrive; MAX_DRIVES],
+}
+
+impl TurnForm {
+    /// Returns ∂A_l/∂q_m − ∂A_m/∂q_l: the turn of the base around a small loop, per area of the loop in that plane.
+    pub fn curl(&self, m: usize, l: usize) -> f64 {
+        self.slopes[m][l] - self.slopes[l][m]
+    }
+}
+
 impl From<&Inertia> for MomentumModel {
     /// Returns the angular momentum about the base pin of a fixed base.
     fn from(arm: &Inertia) -> Self {
@@ -159,6 +175,26 @@ impl MomentumModel {
         let inertia = base.inertia + self.arm.locked() + 2.0 * (pairs + beside);
         let seen = || end_effector(&self.tip, &self.tip_units(e)) - base.centre;
         Some(TurningBase { inertia, lever: (base.frame == TipFrame::Space).then(seen) })
+    }
+
+    /// Returns how a free base at zero momentum turns with its arm at a pose; `None` if the base is not free.
+    pub fn turn_form(&self, q: &DriveAngles) -> Option<TurnForm> {
+        let e = q.units();
+        let inertia = self.turning(&e)?.inertia;
+        let n = self.drives();
+        let d = self.coefficients(&e);
+        let slopes = std::array::from_fn(|m| {
+            if m >= n {
+                return PerDrive::zeros(n);
+            }
+            let alone = PerDrive::from_fn(n, |k| f64::from(k == m));
+            let d_slope = self.coefficient_rates(&e, &alone);
+            // ∂I/∂q_m = 2 Σ_l Im Z_ml − 2 Im (C_0m e_m); Z_mm is real.
+            let beside = (self.base[m] * e[m]).im;
+            let inertia_slope = 2.0 * ((0..n).map(|l| self.coupling(&e, m, l).im).sum::<f64>() - beside);
+            d_slope.scaled(-1.0 / inertia).plus(inertia_slope / (inertia * inertia), &d)
+        });
+        Some(TurnForm { coefficients: d.scaled(-1.0 / inertia), slopes })
     }
 
     /// Returns the largest distance of the end effector from the origin of its coordinates, m.

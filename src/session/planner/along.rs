@@ -2,7 +2,7 @@
 
 use super::plan::{Plan, TimingBottleneck, dynamics_of, keeps_rules};
 use crate::refusal::Refusal;
-use crate::scenario::{Corners, PathShape, Scenario, Task};
+use crate::scenario::{Corners, PathShape, Scenario, Task, TaskKind};
 use stillbase_mechanics::dynamics::ExternalLoads;
 use stillbase_mechanics::machine::Inertia;
 use stillbase_mechanics::planar::{DriveAngles, Vector};
@@ -150,7 +150,7 @@ pub(super) fn in_rounds(
     round: &dyn Fn(DriveAngles, usize) -> Result<(PathSegments, DriveAngles), Refusal>,
 ) -> Result<Plan, Refusal> {
     let task = &scenario.task;
-    if task.cycles > 1 && !task.closed {
+    if task.cycles > 1 && !(task.closed || task.kind == TaskKind::TurnBase) {
         return Err(Refusal::Task("an open path is run through once: want closed = true, or cycles = 1".into()));
     }
     let mut q = start;

@@ -9,6 +9,7 @@ use super::momentum::zero_momentum;
 use super::plan::{Plan, PlannerSpace};
 use super::proposals::tried_refusal;
 use super::rates::{minimum_norm, same_tip};
+use super::turn_base::turn_base;
 use stillbase_mechanics::planar::DriveAngles;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::timing::TimeLaw;
@@ -67,6 +68,7 @@ fn directly(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusa
         TaskKind::ChangeB => change_b(scenario, space),
         TaskKind::LeastReaction => least_reaction(scenario, space),
         TaskKind::ZeroMomentum => zero_momentum(scenario, space),
+        TaskKind::TurnBase => turn_base(scenario, space),
     }
 }
 

@@ -13,6 +13,7 @@ mod poses;
 mod posture;
 mod proposals;
 mod rates;
+mod turn_base;
 
 pub use along::curves;
 pub(super) use choose::plan;

@@ -52,6 +52,8 @@ pub struct Plan {
     pub beside_base: Option<Arc<MomentumModel>>,
     /// How that base turns, if the plan lets it.
     pub base_turn: Option<Arc<BaseTurn>>,
+    /// For a loop that turns the base: its length in drive angles, rad.
+    pub loop_length: Option<f64>,
     /// Duration with blended corners, s, if stops at the corners are faster; the motion then stops.
     pub blended: Option<f64>,
 }
@@ -147,6 +149,7 @@ impl Plan {
             cycles: Vec::new(),
             beside_base: None,
             base_turn: None,
+            loop_length: None,
             blended: None,
         }
     }

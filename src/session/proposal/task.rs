@@ -48,6 +48,13 @@ pub(super) fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal
             let text = format!("let the base turn by {turn_limit}°");
             found.push(Proposal::new(text, single_change("task.turn_limit", *turn_limit)));
         }
+        Refusal::Loop { cycles, .. } => {
+            let take = |cycles: &u32| {
+                Proposal::new(format!("take {cycles} loops"), single_change("task.cycles", i64::from(*cycles)))
+            };
+            found.extend(cycles.iter().map(take));
+            return found;
+        }
         Refusal::Diverged { .. } | Refusal::Untrusted { .. } => {
             found.extend(FINER_STEPS.map(|factor| taking("step", round_up(scenario.step / factor))));
             found.push(Proposal::new("take the usual gains", single_change("control", DEFAULT_WORD)));

@@ -9,7 +9,7 @@ const CASE_COUNT: usize = 3;
 
 /// The built-in scenarios: the paper's three cases, other kinds of tasks, plants and bases that are not ideal.
 /// Every built-in machine except `nine-link` and `nine-link-table-1` has a scenario that bears its name.
-const BUILTIN: [(&str, &str); 24] = [
+const BUILTIN: [(&str, &str); 25] = [
     ("case-1", include_str!("../../../assets/scenarios/case-1.toml")),
     ("case-2", include_str!("../../../assets/scenarios/case-2.toml")),
     ("case-3", include_str!("../../../assets/scenarios/case-3.toml")),
@@ -31,6 +31,7 @@ const BUILTIN: [(&str, &str); 24] = [
     ("space-arm", include_str!("../../../assets/scenarios/space-arm.toml")),
     ("spot", include_str!("../../../assets/scenarios/spot.toml")),
     ("spot-swing", include_str!("../../../assets/scenarios/spot-swing.toml")),
+    ("spot-turn", include_str!("../../../assets/scenarios/spot-turn.toml")),
     ("ets-vii", include_str!("../../../assets/scenarios/ets-vii.toml")),
     ("ets-vii-silent", include_str!("../../../assets/scenarios/ets-vii-silent.toml")),
     ("nine-link-bare", include_str!("../../../assets/scenarios/nine-link-bare.toml")),

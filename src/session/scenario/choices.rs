@@ -16,6 +16,8 @@ words! {
         /// A closed path may be repeated several times.
         ZeroMomentum =
             "zero-momentum", "Zero momentum", "Reactionless on any machine; on a closed path the joints may drift";
+        /// The arm returns to its pose; with nothing that holds it, the base does not.
+        TurnBase = "turn-base", "Turn the base", "A closed motion of the arm turns a base that floats";
         /// Samples of drive angles are followed unchanged, those of the end effector on the plane b = const.
         Given = "given", "As given", "By samples over time, from a file: stillbase import";
     }

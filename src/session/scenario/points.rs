@@ -1,5 +1,6 @@
 //! The points of a task: A, those between, B; and the changes that move, add, remove and reorder them.
 
+use super::choices::TaskKind;
 use super::task::{Task, TaskChange};
 use stillbase_mechanics::planar::Vector;
 
@@ -13,8 +14,14 @@ pub(crate) fn name_of_point(point: usize, count: usize) -> String {
 }
 
 impl Task {
-    /// Returns all points in order, A first and B last, m.
+    /// Returns the points that the task visits, in order, A first and B last, m. A task that turns the base visits A alone.
     pub fn points(&self) -> Vec<Vector> {
+        let mut points = self.stated_points();
+        points.truncate(if self.kind == TaskKind::TurnBase { 1 } else { points.len() });
+        points
+    }
+
+    fn stated_points(&self) -> Vec<Vector> {
         let all = std::iter::once(&self.from).chain(&self.via).chain(std::iter::once(&self.to));
         all.map(|p| Vector::new(p[0], p[1])).collect()
     }
@@ -34,9 +41,14 @@ impl Task {
         )
     }
 
-    /// Returns the points, m, unless the task follows samples.
+    /// Returns the stated points, m, unless the task follows samples.
     fn movable(&self) -> Option<Vec<Vector>> {
-        self.samples.is_none().then(|| self.points())
+        self.samples.is_none().then(|| self.stated_points())
+    }
+
+    /// Returns the stated points, m, if they may become more, fewer, or others in order.
+    fn countable(&self) -> Option<Vec<Vector>> {
+        self.movable().filter(|points| points.len() == self.points().len())
     }
 
     /// Returns the task with a point moved to `to`, m, or `None` if it follows samples or has no such point.
@@ -58,7 +70,7 @@ impl Task {
 
     /// Returns the change that adds a point, m, where it lengthens the polyline through all points least.
     pub fn adding(&self, p: Vector) -> Option<TaskChange> {
-        let mut points = self.movable()?;
+        let mut points = self.countable()?;
         let detour = |i: &usize| {
             let (a, b) = (points[*i], points[i + 1]);
             (p - a).norm() + (b - p).norm() - (b - a).norm()
@@ -70,7 +82,7 @@ impl Task {
 
     /// Returns the change that removes a point; `None` if there are only two.
     pub fn removing(&self, point: usize) -> Option<TaskChange> {
-        let mut points = self.movable()?;
+        let mut points = self.countable()?;
         if points.len() <= 2 || point >= points.len() {
             return None;
         }
@@ -80,7 +92,7 @@ impl Task {
 
     /// Returns the change that visits a point one place earlier.
     pub fn advancing(&self, point: usize) -> Option<TaskChange> {
-        let mut points = self.movable()?;
+        let mut points = self.countable()?;
         if point == 0 || point >= points.len() {
             return None;
         }

@@ -34,6 +34,8 @@ pub const MAX_POINTS: usize = 2000;
 pub const POINT_RANGE: Range = Range::either_way(1e6, "m");
 /// Range of a pose constant, more than a hundred turns either way.
 pub const POSE_CONSTANT_RANGE: Range = Range::either_way(1e3, "rad");
+/// Maximum number of times that a closed path is followed.
+pub const MAX_CYCLES: u32 = 100;
 /// Range of the duration of a motion, whether it is given or found.
 pub const MOTION_TIME_RANGE: Range = Range::new(1e-5, MAX_TIME, "s");
 
@@ -42,6 +44,7 @@ const ANGLE: Range = Range::either_way(1e3, "rad");
 const SAMPLED: &str = "no samples, which say where to go";
 const UNSAMPLED_ANGLES: &str = "no samples of drive angles, which begin at a pose of their own";
 const CURVED: &str = "points, and the kind reactionless, minimum-norm, least-reaction or zero-momentum";
+const VISITING: &str = "another kind than turn-base, which returns to A";
 const FREE: &str =
     "four drives or more, and the kind reactionless in the shape line, arc, spline or freehand, or samples of x and y";
 const FLOATING: &str =
@@ -73,7 +76,7 @@ keyed! {
         /// The point A; by default where samples begin, or the end effector at the pose `start`.
         from: [f64; 2] = Key::REQUIRED, range: POINT_RANGE, when: SAMPLED => |task| task.samples.is_none(), saved: always;
         /// Points between A and B, in order, at most 2000.
-        via: Vec<[f64; 2]> = "[]", range: POINT_RANGE;
+        via: Vec<[f64; 2]> = "[]", range: POINT_RANGE, when: VISITING => |task| task.kind != TaskKind::TurnBase;
         /// The point B; by default where samples end.
         to: [f64; 2] = Key::REQUIRED, range: POINT_RANGE, when: SAMPLED => |task| task.samples.is_none(), saved: always;
         /// Where the points after A are meant: seen from the base pin, or in space.
@@ -82,8 +85,11 @@ keyed! {
         /// Angle by which a free base may turn where zero momentum leads no farther: least momentum then leads on.
         turn_limit: f64 = "0", range: Range::new(0.0, 180.0, "°"),
             when: FLOATING => |task| task.kind == TaskKind::ZeroMomentum && task.samples.is_none();
+        /// Angle by which closed motions of the arm turn a free base, all cycles together, counterclockwise.
+        base_turn: f64 = "1", range: Range::either_way(360.0, "°"),
+            when: "the kind turn-base" => |task| task.kind == TaskKind::TurnBase;
         /// Whether the path returns from B to A.
-        closed: bool = "false";
+        closed: bool = "false", when: VISITING => |task| task.kind != TaskKind::TurnBase;
         /// Whether the motion rests at corners or rounds them off.
         corners: Corners = "stop", when: CORNERED => Task::has_corners;
         /// Distance from a corner at which its blend begins: in m, for joint lines in rad.
@@ -105,8 +111,9 @@ keyed! {
         moment_limit: Option<f64> = Key::NONE, range: Range::new(1e-9, 1e9, "N m"), instead: "no bound",
             when: "the kind change-b" => |task| task.kind == TaskKind::ChangeB;
         /// Number of times that a closed path is followed.
-        cycles: u32 = "1", range: Range::new(1.0, 100.0, ""),
-            when: "the kind zero-momentum" => |task| task.kind == TaskKind::ZeroMomentum;
+        cycles: u32 = "1", range: Range::new(1.0, MAX_CYCLES as f64, ""),
+            when: "the kind zero-momentum or turn-base"
+                => |task| matches!(task.kind, TaskKind::ZeroMomentum | TaskKind::TurnBase);
         /// Quantity to minimise: the root of the mean square of n_B, or its peak.
         least: ReactionObjective = "mean-square", when: "the kind least-reaction" => |task| task.kind == TaskKind::LeastReaction;
         /// Use of the freedoms of four drives and more while b is held: least rates, constant orientation of the last
@@ -227,11 +234,12 @@ impl Task {
             None => Err(IncompleteTask::Missing(key)),
         };
         let at_start = start.map(|q| place_and_b(machine, &q));
-        let to = place("to", self.to, ends.map(|ends| ends.places[1]))?;
         let from = match at_start {
             Some((tip, _)) => tip,
             None => place("from", self.from, ends.map(|ends| ends.places[0]))?,
         };
+        let returns = (self.kind == TaskKind::TurnBase).then_some(from);
+        let to = place("to", self.to, ends.map(|ends| ends.places[1]).or(returns))?;
         let b = match ends.and_then(|ends| ends.b) {
             _ if let Some((_, b)) = at_start => b,
             _ if stated("b") => self.b,
@@ -310,7 +318,7 @@ impl Task {
     /// Returns the shape of the path between the points.
     pub fn shape(&self) -> PathShape {
         self.shape.unwrap_or(match self.kind {
-            TaskKind::Reactionless | TaskKind::SameTip | TaskKind::ChangeB => PathShape::JointLine,
+            TaskKind::Reactionless | TaskKind::SameTip | TaskKind::ChangeB | TaskKind::TurnBase => PathShape::JointLine,
             TaskKind::MinimumNorm | TaskKind::LeastReaction | TaskKind::ZeroMomentum | TaskKind::Given => {
                 PathShape::Line
             }
@@ -324,6 +332,9 @@ impl Task {
             return format!("{kind}, {}", counted(samples.count(), "sample"));
         }
         let closed = if self.closed { ", closed" } else { "" };
+        if self.kind == TaskKind::TurnBase {
+            return format!("{kind} by {}°, {law}", ShortNumber(self.base_turn));
+        }
         format!("{kind}, {shape}{closed}, {law}, {} points", self.via.len() + 2)
     }
 

@@ -110,6 +110,13 @@ impl Statement {
             let why = "a hand leads the machine at zero angular momentum";
             return Self::new(StatusLight::Good, "led by hand, has no momentum", why);
         }
+        if let (Guide::Motion { .. }, Some(length)) = (run.simulation().guide(), run.plan().loop_length) {
+            let (task, length) = (&run.scenario().task, significant(length));
+            let way = if task.cycles == 1 { "one loop".into() } else { format!("{} loops", task.cycles) };
+            let why = format!("{way} of the drives, {length} rad long, and the arm is back; its momentum stays zero");
+            let turn = significant(task.base_turn.to_radians());
+            return Self::new(StatusLight::Good, format!("turns its base by {turn} rad"), why);
+        }
         if let (Guide::Motion { .. }, Some(turn)) = (run.simulation().guide(), &run.plan().base_turn) {
             let (peak, limit) = (significant(turn.peak()), significant(run.scenario().task.turn_limit.to_radians()));
             let why = format!("where zero momentum leads no farther, the base turns, by up to {peak} of {limit} rad");
@@ -232,11 +239,27 @@ impl Statement {
 
     /// States whether a free base has kept its attitude up to a frame.
     fn of_attitude(run: &Run, frame: &Frame, machine: &Self, verdict: &Verdict, attitude: Attitude) -> Self {
-        let Attitude { peak, end, shift } = attitude;
+        let Attitude { peak, end, shift, wanted } = attitude;
         let limit = run.scenario().task.turn_limit.to_radians();
         let within = if limit > 0.0 && peak <= limit { ", within its limit" } else { "" };
-        let [peak, end, shift] = [peak, end, shift].map(significant);
-        let figures = format!("peak |θ| {peak} rad, {end} rad at the end, base shifted by up to {shift} m");
+        let [peak, now, shift] = [peak, end, shift].map(significant);
+        let figures = format!("peak |θ| {peak} rad, {now} rad at the end, base shifted by up to {shift} m");
+        if let Some(wanted) = wanted {
+            let wanted = significant(wanted);
+            return match (attitude.is_as_wanted(), verdict.ended) {
+                (true, _) => {
+                    Self::new(StatusLight::Good, format!("turned its base by {wanted} rad, as wanted"), figures)
+                }
+                (false, false) => {
+                    Self::new(StatusLight::Open, format!("has turned its base by {now} of {wanted} rad"), figures)
+                }
+                (false, true) => Self::new(
+                    StatusLight::Bad,
+                    format!("turned its base by {now} rad, not by {wanted} rad"),
+                    format!("{figures}; {}", cause(run, frame, machine)),
+                ),
+            };
+        }
         match (attitude.is_kept(), &verdict.wheel) {
             (true, Some(wheel)) => Self::new(
                 StatusLight::Good,
@@ -280,7 +303,10 @@ fn cause(run: &Run, frame: &Frame, machine: &Statement) -> &'static str {
 /// Returns whether a run follows a motion that is planned without angular momentum.
 fn moves_without_momentum(run: &Run) -> bool {
     match run.simulation().guide() {
-        Guide::Motion { .. } => run.scenario().task.kind == TaskKind::ZeroMomentum && run.plan().base_turn.is_none(),
+        Guide::Motion { .. } => match run.scenario().task.kind {
+            TaskKind::ZeroMomentum => run.plan().base_turn.is_none(),
+            kind => kind == TaskKind::TurnBase,
+        },
         Guide::Lead(_) => true,
         Guide::Follow(_) => false,
     }

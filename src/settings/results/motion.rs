@@ -79,6 +79,7 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("least_peak", "N m", "Smallest possible peak |n_B| of any motion of this duration."),
     row("least_rms", "N m", "Root mean square of n_B in the motion with the smallest peak."),
     row("base_turn", "rad", "Angle by which a freely floating base turns.").sign(TURN),
+    row("loop_length", "rad", "Length of the closed motion that turns the base, ∮ |dq| in drive angles."),
     row("alternatives", "", "Three ways to make the same motion of the end effector, by their base moments."),
     row("fixed_b_serves", "", "Whether one constant b serves the whole motion, so that n_B is zero."),
     row("fixed_b_until", "1", "Share of the duration after which the b of the start no longer serves, 0 to 1."),

@@ -22,6 +22,10 @@ const LABEL_GAP: f64 = 0.08;
 #[derive(Clone, Debug)]
 pub struct TurnAreas {
     areas: Vec<TurnArea>,
+    /// Where dynamic singularities end zero momentum, m.
+    singular: Strips,
+    /// Place of the label of the longest such curve, m.
+    singular_label: Option<Vector>,
     /// Whether they move with the base.
     carried: bool,
 }
@@ -62,7 +66,16 @@ impl TurnAreas {
             let loops = [outline.iter().map(|p| [p.re, p.im]).collect()];
             TurnArea { boundary: [line].into(), mesh: Arc::new(fill::mesh(&loops)), label }
         };
-        Some(Self { areas: (0..=last).map(area).collect(), carried: rays.model().is_carried() })
+        let curves = map.singular_curves();
+        let length = |curve: &[Vector]| curve.windows(2).map(|ends| (ends[1] - ends[0]).norm()).sum::<f64>();
+        let longest = curves.iter().max_by(|a, b| length(a).total_cmp(&length(b)));
+        let has_room = |curve: &&Vec<Vector>| length(curve) > LABEL_GAP * rays.model().reach();
+        Some(Self {
+            singular_label: longest.filter(has_room).map(|curve| curve[curve.len() / 2]),
+            singular: curves.iter().map(|curve| curve.iter().map(|p| point(*p, 0.0)).collect::<Vec<_>>()).collect(),
+            areas: (0..=last).map(area).collect(),
+            carried: rays.model().is_carried(),
+        })
     }
 
     /// Returns the triangles of each area.
@@ -109,6 +122,20 @@ impl TurnAreas {
                 let (at, name) = (point(base.place(*at), z), format!("turns/{i}/label"));
                 scene.labels.push(Label::new(name, at, [0.0, 0.0], text, palette.ink, 11.5, Anchor::Centre));
             }
+        }
+        let line = Polyline::new("turns/singular", self.singular.clone(), 2.4, palette.reaction);
+        scene.lines.push(line.moving(pose(z)));
+        if let Some(at) = self.singular_label {
+            let (at, text) = (point(base.place(at), z), "dynamic singularity");
+            scene.labels.push(Label::new(
+                "turns/singular/label",
+                at,
+                [0.0, 0.0],
+                text,
+                palette.ink,
+                11.5,
+                Anchor::Centre,
+            ));
         }
     }
 }
