@@ -45,13 +45,21 @@ fn unit(v: vec2<f32>) -> vec2<f32> {
     return select(vec2<f32>(0.0), v / max(l, 1e-20), l > 1e-6);
 }
 
-// Unit normal of the line through joint j that bisects the angle between p-j and j-n; zero if it is undefined.
+// A place or direction rounded to a grid. An adapter may round the same place differently for the two segments that meet
+// there; on the grid both are equal, and near a joint the products below are exact.
+fn on_grid(p: vec2<f32>, per_unit: f32) -> vec2<f32> {
+    return round(p * per_unit) / per_unit;
+}
+
+const GRID = 256.0; // per px
+
+// Unit normal of the line through joint j that bisects the angle between p-j and j-n, on a grid; zero if it is undefined.
 // Both segments that meet in j call this with the same arguments, so their results are identical.
 fn border(p: vec2<f32>, j: vec2<f32>, n: vec2<f32>) -> vec2<f32> {
-    let u = unit(j - p);
-    let v = unit(n - j);
+    let u = unit(on_grid(j, GRID) - on_grid(p, GRID));
+    let v = unit(on_grid(n, GRID) - on_grid(j, GRID));
     let both = any(u != vec2<f32>(0.0)) && any(v != vec2<f32>(0.0));
-    return select(vec2<f32>(0.0), unit(u + v), both);
+    return select(vec2<f32>(0.0), on_grid(unit(u + v), 1024.0), both);
 }
 
 @vertex
@@ -77,8 +85,9 @@ fn vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) i: u32) -
     let pa = screen(a);
     let pb = screen(b);
     var cuts = vec4<f32>(0.0);
-    if !a_near && before.z >= 0.0 { cuts = vec4<f32>(border(screen(before), pa, pb), cuts.zw); }
-    if !b_near && after.z >= 0.0 { cuts = vec4<f32>(cuts.xy, border(pa, pb, screen(after))); }
+    // Where a line starts or ends, the vertices themselves are equal; their places on the screen need not be.
+    if !a_near && before.z >= 0.0 && any(s.before != s.a) { cuts = vec4<f32>(border(screen(before), pa, pb), cuts.zw); }
+    if !b_near && after.z >= 0.0 && any(s.after != s.b) { cuts = vec4<f32>(cuts.xy, border(pa, pb, screen(after))); }
 
     let half = 0.5 * s.width * frame.pixels_per_point;
     let reach = max(half, 0.5) + 1.0; // margin for the antialiased edge
@@ -104,7 +113,8 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let p = in.clip.xy;
     let a = in.ends.xy;
     let b = in.ends.zw;
-    if dot(p - a, in.cuts.xy) < 0.0 || (any(in.cuts.zw != vec2<f32>(0.0)) && dot(p - b, in.cuts.zw) >= 0.0) {
+    let beyond_a = dot(p - on_grid(a, GRID), in.cuts.xy) < 0.0;
+    if beyond_a || (any(in.cuts.zw != vec2<f32>(0.0)) && dot(p - on_grid(b, GRID), in.cuts.zw) >= 0.0) {
         discard;
     }
     let half = in.shape.x;
