@@ -148,7 +148,7 @@ fn a_task_may_state_its_pose_of_a() {
     let begun = moved.with_change(&change("start = [1.9, 2.6, 3.4]"), &scenario.machine).expect("a task");
     assert_eq!(begun.from, scenario.task.from);
     for (task, words) in [
-        ("start = [1.9, 2.6]\nto = [0.3, 0.3]", "want 3, one for each drive"),
+        ("start = [1.9, 2.6]\nto = [0.3, 0.3]", "start (task.start): 2 angles: want 3, one for each drive"),
         ("to = [0.3, 0.3]", "point A (task.from) is missing"),
     ] {
         let text = format!("machine = 'spot'\n[task]\nkind = 'zero-momentum'\n{task}\n");
@@ -168,6 +168,52 @@ fn a_task_may_state_its_pose_of_a() {
         let start = scenario.task.start_pose(3).expect("stated");
         assert!(run.frame().q.0.minus(&start.0).max_abs() < 1e-9, "{kind}: {:?}", run.frame().q);
     }
+}
+
+/// Every kind begins at a stated start, whatever the number of drives: one turn farther than its own, and, where freedoms
+/// are left, beside it. Past a limit it is told before anything else.
+#[test]
+fn every_kind_begins_at_its_start() {
+    let mut begun = 0;
+    for name in ["case-3", "serial-3r", "four-drive", "two-drive", "counter-rotating"] {
+        let own = Scenario::builtin(name).expect("built in");
+        for kind in ["reactionless", "line", "minimum-norm", "least-reaction", "zero-momentum", "same-tip", "change-b"]
+        {
+            let (kind, shape) = if kind == "line" { ("reactionless", "line") } else { (kind, "default") };
+            let with = |scenario: &Scenario, keys: &str| {
+                let change =
+                    format!("[task]\nkind = '{kind}'\nshape = '{shape}'\n{keys}").parse::<Table>().expect("TOML");
+                scenario.with_settings(&change).expect("settings")
+            };
+            let Ok(usual) = Run::new(&with(&own, "")) else { continue };
+            let (q, tip) = (usual.frame().q, usual.frame().end_effector);
+            let [x, y] = own.task.to;
+            // The perturbed starts go a part of the way, for they may come to a limit sooner.
+            let beside = [0.02, -0.03, 0.04, -0.02].map(|by| by - 0.01);
+            let near = format!("to = [{}, {}]", 0.8 * tip.re + 0.2 * x, 0.8 * tip.im + 0.2 * y);
+            let turned = (std::f64::consts::TAU, [0.0; 4], String::new());
+            let all = [Some(turned), (q.len() > 2).then_some((0.0, beside, near))];
+            for (turn, beside, to) in all.into_iter().flatten() {
+                let start: Vec<f64> = (0..q.len()).map(|k| q[k] + turn + beside[k]).collect();
+                let scenario = with(&own, &format!("start = {start:?}\n{to}"));
+                let run = Run::new(&scenario).unwrap_or_else(|why| panic!("{name}, {kind}, {shape}: {why}"));
+                let apart = run.frame().q.iter().zip(&start).fold(0.0, |most: f64, (q, s)| most.max((q - s).abs()));
+                assert!(apart < 1e-9, "{name}, {kind}, {shape}: {apart}");
+                begun += 1;
+            }
+            let far: Vec<f64> = (0..q.len()).map(|k| q[k] + 4.0 * k as f64).collect();
+            let why = Run::new(&with(&own, &format!("start = {far:?}"))).expect_err("past a limit").to_string();
+            assert!(why.starts_with("at the start a1 is ") && why.contains(" rad: want it from "), "{why}");
+        }
+    }
+    assert!(begun >= 40, "{begun}");
+    // A posture that looks for the best pose of A itself has no use for a start.
+    let change =
+        "[task]\nkind = 'reactionless'\nshape = 'line'\nposture = 'least-torque'\nstart = [0.8, 2.6, 3.6, 1.5]";
+    let own = Scenario::builtin("four-drive").expect("built in");
+    let begun = own.with_settings(&change.parse::<Table>().expect("TOML")).expect("settings");
+    let why = Run::new(&begun).expect_err("two poses of A").to_string();
+    assert!(why.contains("want no start, or the posture least-rates") || why.contains("at the start"), "{why}");
 }
 
 /// What takes the start away is undone with it, and the other way round.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::along::{curves, in_rounds};
 use super::plan::{Plan, PlannerSpace, dynamics_of};
-use super::poses::{no_b_refusal, reached, start};
+use super::poses::{no_b_refusal, reached, start, stated};
 use crate::proposal::round_up;
 use crate::refusal::Refusal;
 use crate::scenario::{PathShape, Scenario, Task};
@@ -154,7 +154,10 @@ fn along_curve(scenario: &Scenario, integral: &BIntegral) -> Result<Plan, Refusa
     let space = PoseSpace::nominal(&scenario.machine)?;
     let mut points = task.points();
     points.extend(task.closed.then(|| points[0]));
-    let starts = elbows(task, &space, 0, points[0])?;
+    let starts = match stated(task, space.drives(), 0) {
+        Some(start) => vec![start],
+        None => elbows(task, &space, 0, points[0])?,
+    };
     // Take the first pose of A from which all points are reached. If there is none, return the refusal of the pose that
     // gets farthest.
     let mut refused: Option<(usize, Refusal)> = None;
