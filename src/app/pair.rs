@@ -62,9 +62,8 @@ impl PairWith {
         match self {
             Self::Way(way) => Some(Scenario { compare_b: None, ..way.of(own) }),
             Self::Machine(name) => {
-                let machine = builtins().iter().find(|machine| machine.name() == name)?.clone();
-                let name = format!("{}-{name}", own.name);
-                Some(Scenario { name, machine, edits: Vec::new(), compare_b: None, ..own.clone() })
+                let machine = builtins().iter().find(|machine| machine.name() == name)?;
+                Some(Scenario { name: format!("{}-{name}", own.name), ..own.on_machine(machine) })
             }
             Self::Kept(_, scenario) => Some(Scenario::clone(scenario)),
         }

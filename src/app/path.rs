@@ -358,7 +358,9 @@ fn kind_settings(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, comma
                 let response = row.show(ui, p, &mut limit);
                 send(commands, &[response], || Edit::set("task.turn_limit", limit));
                 if let Some(turn) = &plan.base_turn {
-                    note(ui, p, &format!("the base turns by {:.2}°, across a singularity", turn.peak().to_degrees()));
+                    let is_crossed = session.scenario().machine.is_redundant();
+                    let why = if is_crossed { "across a singularity" } else { "as two drives go in one way" };
+                    note(ui, p, &format!("the base turns by {:.2}°, {why}", turn.peak().to_degrees()));
                 }
             }
             cycles(ui, task, p, commands);

@@ -138,7 +138,7 @@ fn with_machine(session: &Session, case: Scenario) -> Scenario {
     let machine = &session.scenario().machine;
     match machine.name() == case.machine.name() {
         true => case,
-        false => Scenario { machine: machine.clone(), compare_b: None, ..case },
+        false => case.on_machine(machine),
     }
 }
 

@@ -1,11 +1,13 @@
 //! `stillbase compare`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
+use stillbase_mechanics::machine::{Machine, is_of_machine};
 use stillbase_session::scenario::Scenario;
+use stillbase_session::{SharedTask, with_start_edits};
 use stillbase_study::comparison::{
     ComparisonRow, ComparisonTable, DESIGN_COLUMNS, OLD_NAMES, SUMMARY_COLUMNS, Summary, alternatives,
 };
@@ -13,7 +15,7 @@ use stillbase_study::comparison::{
 use super::exit::print_message;
 use super::failure::Failure;
 use super::file_form::FileForm;
-use super::input::{DEFAULT_SCENARIO, Settings, distinct_name, scenario};
+use super::input::{DEFAULT_SCENARIO, Settings, distinct_name, machine, scenario};
 #[cfg(feature = "record")]
 use super::output::say_written;
 use super::output::{Format, TextTable};
@@ -21,10 +23,13 @@ use super::rows::{RowTarget, Rows};
 use super::strict::{Strict, run_faults};
 use stillbase_settings::number::{fixed, nine_digits};
 
-/// Compare runs of one task done in several ways, or of several scenarios, by base reactions and cost
+/// Compare runs of one task done in several ways, of several scenarios, or of several machines on one task, by base
+/// reactions and cost
 ///
 /// One scenario: its task runs in up to six ways. They are as given, reactionless, straight (case 1), to another pose
 /// (case 2), straight with a reaction wheel, and slowly. Several scenarios: each runs as given.
+/// With --task: each machine does the task of that scenario, with the same points, the same time and, if possible, the
+/// same start. A machine without a pose constant for a kind that wants one moves with the kind minimum-norm.
 /// If their machines differ, a second table gives mass and balance of each, and cost and benefit relative to the first.
 #[derive(Args)]
 #[command(after_help = "\
@@ -33,11 +38,15 @@ Examples:
   stillbase compare case-3 --set base.kind=free                   and what each does to a spacecraft
   stillbase compare case-3 --set base.wheel.torque_limit=0.5      when does the wheel saturate?
   stillbase compare nine-link-bare case-3                         what balance costs, and what it brings
+  stillbase compare bare.toml balanced.toml --task case-3         before and after of a design, on one task
   stillbase compare case-1 case-3 my.toml -o table.csv")]
 pub struct CompareArguments {
-    /// One scenario to do in several ways, or several to compare
-    #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
-    scenarios: Vec<String>,
+    /// One scenario to do in several ways, or several to compare; with --task, one machine or several
+    #[arg(value_name = "SCENARIO|MACHINE", default_value = DEFAULT_SCENARIO)]
+    names: Vec<String>,
+    /// The scenario whose task the machines do
+    #[arg(long, value_name = "SCENARIO", requires = "names")]
+    task: Option<String>,
     /// Write the table, .csv or .parquet, or with .rrd the runs as a recording
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -99,17 +108,48 @@ impl CompareArguments {
     }
 
     fn scenarios(&self) -> Result<Vec<(Option<&'static str>, Scenario)>, Failure> {
-        if let [name] = &self.scenarios[..] {
+        if let Some(task) = &self.task {
+            return self.on_task(task);
+        }
+        if let [name] = &self.names[..] {
             let scenario = scenario(name, &self.settings)?;
             return Ok(alternatives(&scenario).into_iter().map(|(way, s)| (Some(way.name()), s)).collect());
         }
         let mut all: Vec<(Option<&'static str>, Scenario)> = Vec::new();
-        for name in &self.scenarios {
+        for name in &self.names {
             let mut next = scenario(name, &self.settings)?;
             next.name = distinct_name(&next.name, |name| all.iter().any(|(_, s)| s.name == name));
             all.push((None, next));
         }
         Ok(all)
+    }
+
+    /// Returns the task of a scenario on each machine, named as the machine. A single one is compared with the machine of
+    /// the scenario.
+    fn on_task(&self, task: &str) -> Result<Vec<(Option<&'static str>, Scenario)>, Failure> {
+        let [of_machine, own] = [true, false].map(|wanted| self.settings.of_keys(|key| is_of_machine(key) == wanted));
+        let scenario = scenario(task, &own)?;
+        let mut machines: Vec<(String, Machine)> = Vec::new();
+        if self.names.len() == 1 {
+            let machine = with_start_edits(&scenario)?.0.machine;
+            machines.push((machine.name().to_owned(), machine));
+        }
+        for called in &self.names {
+            let machine = of_machine.apply(machine(called)?.machine).map_err(|why| why.with_context(called))?;
+            let is_taken = |name: &str| machines.iter().any(|(known, _)| known == name);
+            // A design has the name of the machine that it is made from; the files tell them apart.
+            let stem =
+                Path::new(called).file_stem().map_or_else(|| called.clone(), |stem| stem.to_string_lossy().into());
+            let name = if is_taken(machine.name()) { stem } else { machine.name().to_owned() };
+            machines.push((distinct_name(&name, is_taken), machine));
+        }
+        let all: Vec<&Machine> = machines.iter().map(|(_, machine)| machine).collect();
+        let tasks = SharedTask::on(&scenario, &all)?;
+        let named = machines.iter().zip(tasks).map(|((name, _), SharedTask { scenario, note })| {
+            note.into_iter().for_each(|note| print_message(format!("note: {name}: {note}")));
+            (None, Scenario { name: name.clone(), ..scenario })
+        });
+        Ok(named.collect())
     }
 
     #[cfg(feature = "record")]

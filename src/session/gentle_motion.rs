@@ -7,6 +7,7 @@ use toml::{Table, Value};
 use super::edit::Edit;
 use super::run::Run;
 use super::scenario::{Scenario, ScenarioError, TaskKind};
+use super::shared_task::straightened;
 use stillbase_mechanics::kinematics::end_effector;
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, unit};
@@ -95,14 +96,17 @@ pub fn gentle_motion_afloat(machine: &Machine, base: Base) -> Result<Scenario, S
 }
 
 /// Returns the scenario to open for another machine: its built-in one, else the present one if the machine can do its
-/// task, else the first built-in one of the same machine, else one made for it.
+/// task, straight if need be, else the first built-in one of the same machine, else one made for it.
 pub fn for_machine(present: &Scenario, machine: &Machine) -> Scenario {
     if let Some(own) = Scenario::builtin(machine.name()) {
         return own;
     }
-    let alike = Scenario { machine: machine.clone(), sketch: None, ..present.without_edits() };
+    let alike = present.on_machine(machine);
     if Run::new(&alike).is_ok() {
         return alike;
+    }
+    if let Some((straight, _)) = straightened(&alike) {
+        return straight.scenario;
     }
     let known = Scenario::builtins().find(|scenario| scenario.machine == *machine).cloned();
     known.or_else(|| gentle_motion(machine).ok()).unwrap_or(alike)

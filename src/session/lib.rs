@@ -26,6 +26,7 @@ mod run;
 mod run_ahead;
 pub mod scenario;
 mod script;
+mod shared_task;
 pub mod verdict;
 mod waypoints;
 
@@ -57,3 +58,4 @@ pub use replay::{base_loads, replay, replay_if, replay_while, signal_table, with
 pub use run::{Run, WaitReason};
 #[doc(hidden)]
 pub use run_ahead::RunAhead;
+pub use shared_task::{SharedTask, straight};

@@ -69,11 +69,11 @@ pub enum Refusal {
     #[error(transparent)]
     Drift(#[from] DriftError),
     /// The curve can be followed if a free base may turn farther.
-    #[error("{stopped}, or task.turn_limit = {}, in degrees: with least momentum the base turns by that much", ShortNumber(*turn_limit))]
+    #[error("{}, or task.turn_limit = {}, in degrees: with least momentum the base turns by that much", stop_in_words(stopped.as_ref()), ShortNumber(*turn_limit))]
     Turns {
-        /// Where zero momentum leads no farther.
+        /// Where zero momentum leads no farther; `None` for two drives, which turn the base all along.
         #[source]
-        stopped: DriftError,
+        stopped: Option<DriftError>,
         /// The turn limit that would do, °.
         turn_limit: f64,
     },
@@ -237,4 +237,11 @@ impl From<SettingError> for Refusal {
             other => Self::Task(other.to_string()),
         }
     }
+}
+
+/// Says why a free base has to turn.
+fn stop_in_words(stopped: Option<&DriftError>) -> String {
+    let only =
+        || "two drives follow this path in one way, which turns the base farther: want another path or start".into();
+    stopped.map_or_else(only, ToString::to_string)
 }

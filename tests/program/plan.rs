@@ -158,6 +158,34 @@ fn compare_sets_machines_side_by_side() {
     assert!(!prints(&["compare", "case-1", "case-3"]).contains("machine of"));
 }
 
+/// Machines on one task: each in a row of its own name, refused ones too, and never a scenario without a machine.
+#[test]
+fn compare_puts_machines_on_one_task() {
+    let folder = Folder::new("cli");
+    let file = word(folder.path("after.toml"));
+    prints(&["design", "nine-link-bare", "-o", &file]);
+    let got = object(&["compare", "nine-link-bare", &file, "two-drive", "--task", "case-3"]);
+    let runs = got["runs"].as_array().expect("runs");
+    let names: Vec<&str> = runs.iter().filter_map(|run| run["scenario"].as_str()).collect();
+    assert_eq!(names, ["nine-link-bare", "after", "two-drive"]);
+    assert_eq!((&runs[0]["duration"], &runs[1]["duration"]), (&json!(1.0), &json!(1.0)));
+    assert!(runs[2]["refused"].as_str().is_some_and(|why| why.contains("the arms reach only")));
+    // One machine beside that of the scenario; files of one name are told apart by theirs.
+    let table = prints(&["compare", &file, "--task", "case-3"]);
+    assert!(table.contains("\nnine-link ") && table.contains("\nafter "), "{table}");
+    let other = word(folder.file("twin.toml", &fs::read_to_string(&file).expect("written")));
+    let table = prints(&["compare", &file, &other, "--task", "case-3"]);
+    assert!(table.contains("\nafter ") && table.contains("\ntwin "), "{table}");
+    let heavy = ["--set", "link.9.mass=0.5"];
+    let got = object(&[&["compare", "nine-link-bare", &file, "--task", "case-3"], &heavy[..]].concat());
+    let mass = |name: &str| object(&[&["check", name], &heavy[..]].concat())["mass"].as_f64();
+    let masses = [0, 1].map(|i| got["runs"][i]["design"]["mass"].as_f64());
+    assert_eq!(masses, ["nine-link-bare", &file].map(mass), "settings of machines hold for each");
+    fails(&["compare", "--task", "case-3"], 2, &["MACHINE"]);
+    fails(&["compare", "case-4", "--task", "case-3"], 2, &["case-4"]);
+    fails(&["compare", "nine-link", "--task", "case-9"], 2, &["case-9"]);
+}
+
 /// What a kind of task or base passes over is refused where it is asked for, and told where it stands in a file.
 #[test]
 fn what_a_kind_ignores_is_refused_or_told() {

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use stillbase::mechanics::planar::Vector;
 use stillbase::session::scenario::Scenario;
 use stillbase::session::verdict::Verdict;
-use stillbase::session::{Run, replay};
+use stillbase::session::{Refusal, Run, replay};
 use stillbase::simulation::frame::Frame;
 use toml::Table;
 
@@ -132,6 +132,73 @@ fn a_satellite_turns_as_it_flew() {
     assert!(turned < 1e-9 && (end.in_base(end.end_effector) - still.in_base(still.end_effector)).norm() < 1e-7);
 }
 
+/// The first two links of the arm on its free base, with a task.
+fn two_links(task: &str, base: &str) -> Scenario {
+    let link = |name: &str, drive: &str, at: &str, values: &str| {
+        format!("[[machine.link]]\nname = '{name}'\ndrive = '{drive}'\nattach = {at}\nlength = 0.3045\n{values}\n")
+    };
+    let links = [
+        link("1", "shoulder", "'base'", "mass = 0.345\ninertia = 0.003704\ncom = 0.196822"),
+        link("2", "elbow", "{ link = '1', at = 'tip' }", "mass = 0.335\ninertia = 0.003506\ncom = 0.198152"),
+    ];
+    let text = format!(
+        "[machine]\nname = 'two links'\n[[machine.drive]]\nname = 'shoulder'\n[[machine.drive]]\nname = 'elbow'\n\
+         on = 'shoulder'\n{}[machine.end_effector]\nlink = '2'\nat = 'tip'\n[task]\nkind = 'zero-momentum'\n{task}\n\
+         time = 10.0\n[base]\n{base}",
+        links.concat()
+    );
+    Scenario::parse(&text, "two links", None).expect("valid")
+}
+
+const CRAFT: &str =
+    "kind = 'free'\nmass = 11.211\ninertia = 0.20215\ncom = [-0.0680112181717378, -0.24212956077851439]";
+
+/// Two drives go along a line in one way, and the base turns by what an integration of the conserved momenta by SciPy
+/// gives, in space and as seen from the base.
+#[test]
+fn two_drives_follow_a_line_and_turn_their_base() {
+    let to = "shape = 'line'\nto = [-0.25, 0.4728]";
+    let known = [
+        ("space", 0.203_890_934_562_286_24, [1.169_963_636_666_105_5, 2.352_602_694_159_917_6]),
+        ("base", 0.102_603_448_613_451_72, [1.558_490_217_986_192, 2.555_889_973_537_470_7]),
+    ];
+    for (frame, turn, end) in known {
+        let scenario = two_links(&format!("{to}\nstart = [1.9, 2.9]\nframe = '{frame}'"), CRAFT);
+        let planned = Run::new(&scenario).expect("a plan");
+        let [at_end, most] =
+            planned.plan().base_turn.as_ref().map(|turn| [turn.at(1.0), turn.peak()]).expect("it turns");
+        assert!((at_end - turn).abs() < 1e-9 && (most - turn).abs() < 1e-9, "{frame}: {at_end}");
+        let (last, turned) = run(&scenario);
+        assert!((last.base.angle - turn).abs() < 1e-9 && (turned - turn).abs() < 1e-9, "{frame}: {}", last.base.angle);
+        // Drive angles of a run count from axes in space, those of the integration from the base.
+        let off = (0..2).map(|k| (last.q[k] - last.base.angle - end[k]).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-8, "{frame}: {off}");
+        if frame == "space" {
+            assert!(away(&last, -0.25, 0.4728) < 1e-8);
+        }
+    }
+    // From a point, the elbow of less turn: 0.153041 rad instead of 0.203891 rad.
+    let scenario = two_links(&format!("{to}\nfrom = [-0.39409843, 0.3609998]"), CRAFT);
+    let (last, _) = run(&scenario);
+    assert!((last.base.angle - 0.153_040_836).abs() < 1e-6, "{}", last.base.angle);
+    // A limit that the turn passes is refused with one that would do.
+    let bound = |limit: f64| two_links(&format!("{to}\nstart = [1.9, 2.9]\nturn_limit = {limit}"), CRAFT);
+    let Err(Refusal::Turns { stopped: None, turn_limit }) = Run::new(&bound(4.0)) else {
+        panic!("11.7° are more than 4°")
+    };
+    assert!((turn_limit - 12.0).abs() < 1e-12, "{turn_limit}");
+    Run::new(&bound(turn_limit)).expect("it will do");
+    // Where no turn lets them follow it, what does is said.
+    let line = format!("{to}\nstart = [1.9, 2.9]");
+    let wheel = format!("{CRAFT}\n[base.wheel]\ninertia = 0.02");
+    for (base, task) in [("kind = 'fixed'", &line), (&wheel, &line)] {
+        let why = Run::new(&two_links(task, base)).expect_err("no one turns").to_string();
+        assert!(why.contains("want the shape joint-line, or minimum-norm"), "{why}");
+    }
+    let curve = Run::new(&two_links(&line.replace("'line'", "'joint-line'"), CRAFT)).expect_err("no curve").to_string();
+    assert!(curve.contains("want the shape line"), "{curve}");
+}
+
 /// A start brings A and b, whatever else is stated; another A has no start.
 #[test]
 fn a_task_may_state_its_pose_of_a() {
@@ -148,7 +215,7 @@ fn a_task_may_state_its_pose_of_a() {
     let begun = moved.with_change(&change("start = [1.9, 2.6, 3.4]"), &scenario.machine).expect("a task");
     assert_eq!(begun.from, scenario.task.from);
     for (task, words) in [
-        ("start = [1.9, 2.6]\nto = [0.3, 0.3]", "want 3, one for each drive"),
+        ("start = [1.9, 2.6]\nto = [0.3, 0.3]", "start (task.start): 2 angles: want 3, one for each drive"),
         ("to = [0.3, 0.3]", "point A (task.from) is missing"),
     ] {
         let text = format!("machine = 'spot'\n[task]\nkind = 'zero-momentum'\n{task}\n");
@@ -168,6 +235,52 @@ fn a_task_may_state_its_pose_of_a() {
         let start = scenario.task.start_pose(3).expect("stated");
         assert!(run.frame().q.0.minus(&start.0).max_abs() < 1e-9, "{kind}: {:?}", run.frame().q);
     }
+}
+
+/// Every kind begins at a stated start, whatever the number of drives: one turn farther than its own, and, where freedoms
+/// are left, beside it. Past a limit it is told before anything else.
+#[test]
+fn every_kind_begins_at_its_start() {
+    let mut begun = 0;
+    for name in ["case-3", "serial-3r", "four-drive", "two-drive", "counter-rotating"] {
+        let own = Scenario::builtin(name).expect("built in");
+        for kind in ["reactionless", "line", "minimum-norm", "least-reaction", "zero-momentum", "same-tip", "change-b"]
+        {
+            let (kind, shape) = if kind == "line" { ("reactionless", "line") } else { (kind, "default") };
+            let with = |scenario: &Scenario, keys: &str| {
+                let change =
+                    format!("[task]\nkind = '{kind}'\nshape = '{shape}'\n{keys}").parse::<Table>().expect("TOML");
+                scenario.with_settings(&change).expect("settings")
+            };
+            let Ok(usual) = Run::new(&with(&own, "")) else { continue };
+            let (q, tip) = (usual.frame().q, usual.frame().end_effector);
+            let [x, y] = own.task.to;
+            // The perturbed starts go a part of the way, for they may come to a limit sooner.
+            let beside = [0.02, -0.03, 0.04, -0.02].map(|by| by - 0.01);
+            let near = format!("to = [{}, {}]", 0.8 * tip.re + 0.2 * x, 0.8 * tip.im + 0.2 * y);
+            let turned = (std::f64::consts::TAU, [0.0; 4], String::new());
+            let all = [Some(turned), (q.len() > 2).then_some((0.0, beside, near))];
+            for (turn, beside, to) in all.into_iter().flatten() {
+                let start: Vec<f64> = (0..q.len()).map(|k| q[k] + turn + beside[k]).collect();
+                let scenario = with(&own, &format!("start = {start:?}\n{to}"));
+                let run = Run::new(&scenario).unwrap_or_else(|why| panic!("{name}, {kind}, {shape}: {why}"));
+                let apart = run.frame().q.iter().zip(&start).fold(0.0, |most: f64, (q, s)| most.max((q - s).abs()));
+                assert!(apart < 1e-9, "{name}, {kind}, {shape}: {apart}");
+                begun += 1;
+            }
+            let far: Vec<f64> = (0..q.len()).map(|k| q[k] + 4.0 * k as f64).collect();
+            let why = Run::new(&with(&own, &format!("start = {far:?}"))).expect_err("past a limit").to_string();
+            assert!(why.starts_with("at the start a1 is ") && why.contains(" rad: want it from "), "{why}");
+        }
+    }
+    assert!(begun >= 40, "{begun}");
+    // A posture that looks for the best pose of A itself has no use for a start.
+    let own = Scenario::builtin("four-drive").expect("built in");
+    let q = Run::new(&own).expect("a plan").frame().q.to_vec();
+    let change = format!("[task]\nkind = 'reactionless'\nshape = 'line'\nposture = 'least-torque'\nstart = {q:?}");
+    let begun = own.with_settings(&change.parse::<Table>().expect("TOML")).expect("settings");
+    let why = Run::new(&begun).expect_err("two poses of A").to_string();
+    assert!(why.contains("want no start, or the posture least-rates"), "{why}");
 }
 
 /// What takes the start away is undone with it, and the other way round.

@@ -18,6 +18,7 @@ mod parts;
 mod proposals;
 mod replay;
 mod settings;
+mod shared_task;
 mod sitting;
 mod sketch;
 mod smooth;

@@ -1,4 +1,5 @@
-//! Rates of least angular momentum that move the end effector of three drives as wanted, and how a free base turns.
+//! Rates of least angular momentum that move the end effector of two or three drives as wanted, and how a free base
+//! turns.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -16,7 +17,8 @@
 //! zero: the rates of [`rates`](super::null_space::rates). They grow without bound as φ → 0, a dynamic singularity. So
 //! for |φ| < ε the momentum is minimised together with α: α = −h φ/(|D| (φ² + λ²)), λ = ε (1 − φ²/ε²). The momentum
 //! that remains turns a free base by θ̇ = −(D q̇)/I. With coordinates in space the end effector moves with the base: J
-//! has the columns i c_k e_k − i P D_k/I, P being its place seen from the common centre of mass.
+//! has the columns i c_k e_k − i P D_k/I, P being its place seen from the common centre of mass: the generalised Jacobian.
+//! Two drives have no self-motion, so that J⁻¹v are the only rates.
 
 use std::cell::Cell;
 
@@ -36,7 +38,7 @@ use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 /// 1/ε times those of minimum norm.
 pub const SINGULAR_SINE: f64 = 0.05;
 
-/// Rates of a pose of three drives and its base.
+/// Rates of a pose of two or three drives and its base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LeastRates {
     /// q̇, rad/s.
@@ -47,19 +49,29 @@ pub(super) struct LeastRates {
     pub dexterity: f64,
 }
 
-/// Returns the rates of least momentum that move the end effector of three drives with velocity v, m/s, from a pose with
-/// its free base turned by `turn`, rad. Returns `None` if it cannot move that way.
+/// Returns the rates of least momentum that move the end effector of two or three drives with velocity v, m/s, from a pose
+/// with its free base turned by `turn`, rad. Returns `None` if it cannot move that way.
 pub(super) fn least_rates(model: &MomentumModel, q: &DriveAngles, turn: f64, v: Vector) -> Option<LeastRates> {
     let e = q.units();
     let tip = model.tip_units(&e);
     let d = model.coefficients(&e);
     let base = model.turning(&e);
     let lever = base.and_then(|base| Some((base.lever?, base.inertia)));
-    let mut j = [0, 1, 2].map(|k| column(model.tip(), &tip, k));
+    let n = model.drives();
+    let mut j = [Vector::default(); 3];
+    (0..n.min(3)).for_each(|k| j[k] = column(model.tip(), &tip, k));
     let mut v = v;
     if let Some((lever, inertia)) = lever {
-        (0..3).for_each(|k| j[k] -= Vector::new(0.0, d[k] / inertia) * lever);
+        (0..n.min(3)).for_each(|k| j[k] -= Vector::new(0.0, d[k] / inertia) * lever);
         v *= unit(-turn);
+    }
+    if n == 2 {
+        let cross = |a: Vector, b: Vector| a.re * b.im - a.im * b.re;
+        let area = cross(j[0], j[1]);
+        let rates = PerDrive::from_fn(2, |k| if k == 0 { cross(v, j[1]) } else { cross(j[0], v) } / area);
+        let turn = base.map_or(0.0, |base| -d.dot(&rates) / base.inertia);
+        let is_finite = rates.max_abs().is_finite() && turn.is_finite();
+        return is_finite.then_some(LeastRates { rates, turn, dexterity: area.abs() });
     }
     let row = |part: &dyn Fn(&Vector) -> f64| Vector3::new(part(&j[0]), part(&j[1]), part(&j[2]));
     let (x, y) = (row(&|j| j.re), row(&|j| j.im));
@@ -82,7 +94,7 @@ const NODE_INTERVALS: usize = 2048;
 /// Step of the difference that gives second derivatives, as a fraction of a piece of a curve.
 const DIFFERENCE_STEP: f64 = 1e-5;
 
-/// Follows a curve of the end effector of three drives with least momentum, from a pose with its free base turned by
+/// Follows a curve of the end effector of two or three drives with least momentum, from a pose with its free base turned by
 /// `turn`, rad. Returns the path and the turn at its end.
 ///
 /// # Errors
@@ -100,16 +112,19 @@ pub fn least_momentum_curve(
             DriftError::Singular { s, at, cycle, why } => DriftError::Singular { s, at, cycle, why: why.with_base() },
             other => other,
         };
+        let pose = |x: &[f64; 5]| pose(x, model.drives());
         let slope = |x: &[f64; 5]| {
             let rates = least_rates(model, &pose(x), x[3], at(x[4]).first)?;
-            Some([rates.rates[0], rates.rates[1], rates.rates[2], rates.turn, 1.0])
+            let [first, second, third] = three(&rates.rates);
+            Some([first, second, third, rates.turn, 1.0])
         };
         let flow = Flow { field: slope, scale: [1.0; 5] };
-        let mut x = [q[0], q[1], q[2], now.get(), 0.0];
+        let [first, second, third] = three(&q.0);
+        let mut x = [first, second, third, now.get(), 0.0];
         let mut nodes = Vec::with_capacity(spaces + 1);
         for i in 0..=spaces {
             x[4] = i as f64 / spaces as f64;
-            nodes.push(node(&slope, &x).ok_or_else(|| blocked(&pose(&x), x[4]))?);
+            nodes.push(node(&slope, &x, model.drives()).ok_or_else(|| blocked(&pose(&x), x[4]))?);
             if i < spaces {
                 x = flow.go(&x, 1.0 / spaces as f64).ok_or_else(|| blocked(&pose(&x), x[4]))?;
             }
@@ -122,14 +137,21 @@ pub fn least_momentum_curve(
     Ok((table, now.get()))
 }
 
-/// Returns the pose in a state of drive angles, turn of the base and parameter of the curve.
-fn pose(x: &[f64; 5]) -> DriveAngles {
-    DriveAngles::from([x[0], x[1], x[2]])
+/// Returns the pose in a state of three drive angles, turn of the base and parameter of the curve; of two drives the third
+/// angle is 0.
+fn pose(x: &[f64; 5], drives: usize) -> DriveAngles {
+    DriveAngles(PerDrive::from_fn(drives, |k| x[k]))
+}
+
+/// Returns three values, of which two drives leave the third 0.
+fn three(values: &PerDrive) -> [f64; 3] {
+    let all = values.padded();
+    [all[0], all[1], all[2]]
 }
 
 /// Returns q, q′ and q″ at a state; q″ is a difference of q′ along the path, to one side at the ends of a piece.
-fn node(slope: &impl Fn(&[f64; 5]) -> Option<[f64; 5]>, x: &[f64; 5]) -> Option<PathPoint> {
-    let rates = |x: &[f64; 5]| slope(x).map(|f| PerDrive::from([f[0], f[1], f[2]]));
+fn node(slope: &impl Fn(&[f64; 5]) -> Option<[f64; 5]>, x: &[f64; 5], drives: usize) -> Option<PathPoint> {
+    let rates = |x: &[f64; 5]| slope(x).map(|f| PerDrive::from_fn(drives, |k| f[k]));
     let along = slope(x)?;
     let ahead = |h: f64| rates(&std::array::from_fn(|k| x[k] + h * along[k]));
     let (h, first) = (DIFFERENCE_STEP, rates(x)?);
@@ -139,5 +161,5 @@ fn node(slope: &impl Fn(&[f64; 5]) -> Option<[f64; 5]>, x: &[f64; 5]) -> Option<
         let h = if x[4] < h { h } else { -h };
         ahead(h)?.scaled(4.0).minus(&ahead(2.0 * h)?).minus(&first.scaled(3.0)).scaled(0.5 / h)
     };
-    Some(PathPoint { q: pose(x), first, second })
+    Some(PathPoint { q: pose(x, drives), first, second })
 }

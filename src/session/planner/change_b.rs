@@ -2,7 +2,7 @@
 
 use super::along::{slow_to_limits, timed};
 use super::plan::{Plan, PlannerSpace, dynamics_of, keeps_rules};
-use super::poses::{no_b_refusal, poses_at_b, refusal};
+use super::poses::{no_b_refusal, poses_at_b, refusal, stated};
 use crate::refusal::Refusal;
 use crate::scenario::{Scenario, Task};
 use stillbase_mechanics::planar::Vector;
@@ -76,7 +76,14 @@ fn ends(task: &Task, space: &PoseSpace) -> Result<[PoseAngles; 2], Refusal> {
     let points = task.points();
     let last = points.len() - 1;
     let (a, b) = (points[0], points[last]);
-    let nearest = |b_of: [f64; 2]| nearest_poses(space, [a, b], b_of);
+    let nearest = |b_of: [f64; 2]| match stated(task, space.drives(), 0) {
+        None => nearest_poses(space, [a, b], b_of),
+        Some(start) => {
+            let from = PoseAngles::of(space, start);
+            let to = *space.poses(b, b_of[1], &from.a).first()?;
+            Some([from, PoseAngles::of(space, to)])
+        }
+    };
     let unreached = |i: usize, b: f64| refusal(task, i, unreachable_reason(space, &points[i..=i], 0, b));
     if let Some(b_to) = task.b_to {
         poses_at_b(task, space, &points[..1])?;

@@ -19,7 +19,10 @@ use crate::scenario::{Scenario, Task, TaskKind};
 use stillbase_settings::word::Choice as _;
 
 /// Largest distance of the first pose of a plan from the start that its task states, rad.
-const START_TOLERANCE_RAD: f64 = 1e-6;
+pub(super) const START_TOLERANCE_RAD: f64 = 1e-6;
+
+/// A start may pass a limit by this much, rad, because of rounding.
+const LIMIT_TOLERANCE_RAD: f64 = 1e-6;
 
 /// Plans the task of a scenario.
 ///
@@ -30,6 +33,7 @@ pub fn plan(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusa
         return plan(&Scenario { task, ..scenario.clone() }, space);
     }
     let task = &scenario.task;
+    start_within_limits(scenario)?;
     let given = task.samples.is_some();
     let leaves_plane = !given && matches!(task.kind, TaskKind::MinimumNorm | TaskKind::LeastReaction);
     let plan = directly(scenario, space).map_err(|refusal| match space {
@@ -40,7 +44,7 @@ pub fn plan(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusa
     let begun = |start: DriveAngles| plan.motion.path.at(0.0).q.0.minus(&start.0).max_abs() <= START_TOLERANCE_RAD;
     if !task.start_pose(scenario.machine.drives()).is_none_or(begun) {
         return Err(Refusal::Task(format!(
-            "the kind {} takes a pose of A of its own here: want no start, or another kind or shape",
+            "from this start the kind {} finds no motion, but from another pose of A: want no start, or another kind or shape",
             task.kind.words().file
         )));
     }
@@ -55,6 +59,24 @@ pub fn plan(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusa
         )));
     }
     check_time(time).map(|()| plan)
+}
+
+/// Refuses a start past a limit of the machine.
+fn start_within_limits(scenario: &Scenario) -> Result<(), Refusal> {
+    let machine = &scenario.machine;
+    let start =
+        scenario.task.start_pose(machine.drives()).filter(|_| scenario.condition_for_effect("task.start").is_none());
+    let Some(start) = start else { return Ok(()) };
+    match machine.angles().iter().find(|angle| angle.past_limit(&start) > LIMIT_TOLERANCE_RAD) {
+        None => Ok(()),
+        Some(angle) => Err(Refusal::Task(format!(
+            "at the start {} is {:.4} rad: want it from {:.4} to {:.4} rad there, or no start",
+            angle.name,
+            angle.value(&start),
+            angle.limits.start(),
+            angle.limits.end()
+        ))),
+    }
 }
 
 /// Plans the task of a scenario, without the proposals of [`with_nearest_b`].

@@ -2,7 +2,7 @@
 //! For samples of the end effector the redundancy
 //! is resolved.
 
-use super::held::along_curves;
+use super::held::{along_curves, sheet_of};
 use super::momentum::sampled_at_zero_momentum;
 use super::plan::{Plan, PlannerSpace, PlanningEffort, dynamics_of, keeps_rules};
 use super::poses::start;
@@ -48,9 +48,9 @@ pub(super) fn given(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan
         (TaskKind::Given | TaskKind::Reactionless, 2) => {
             let curve = samples.curve().ok_or_else(unsound)?;
             let rule = Rule { keep_off_change_points: task.keep_off_change_points };
-            match space.ok().and_then(|space| space.planes().ok()) {
-                Some(planes) => {
-                    let mut tables = trace::follow(planes.map(), &[curve], task.b, None, rule)?;
+            match space.ok().and_then(|space| Some((space, space.planes().ok()?))) {
+                Some((space, planes)) => {
+                    let mut tables = trace::follow(planes.map(), &[curve], task.b, sheet_of(task, space), rule)?;
                     tables.pop().ok_or_else(unsound)?
                 }
                 None => sampled(scenario, space, &curve)?,

@@ -2,7 +2,7 @@
 
 use super::along::{PathSegments, along_parts, by_least_rates, curves};
 use super::plan::{Plan, PlannerSpace, PlanningEffort};
-use super::poses::{posed, poses_at_b, poses_facing, reached, refusal};
+use super::poses::{posed, poses_at_b, poses_facing, reached, refusal, stated};
 use super::posture;
 use super::proposals::proved_refusal;
 use crate::refusal::Refusal;
@@ -170,13 +170,18 @@ fn same_side(task: &Task, poses: &[PoseAngles]) -> Result<(), Refusal> {
     Ok(())
 }
 
+/// Returns the relative angles of the start that the task states, rad, if it states one.
+pub(super) fn sheet_of(task: &Task, space: &PoseSpace) -> Option<[f64; 2]> {
+    stated(task, space.drives(), 0).map(|q| PoseAngles::of(space, q).a).map(|a| [a[0], a[1]])
+}
+
 /// Follows the curves of the end effector on the plane of the task.
 fn on_plane(task: &Task, space: &PoseSpace, planes: &Planes, points: &[Vector]) -> Result<PathSegments, Refusal> {
     let curves = curves(task, points)?;
     let rule = Rule { keep_off_change_points: task.keep_off_change_points };
     // Points are checked first, because an unreachable point is the clearer reason.
     let prefer = match task.shape() {
-        PathShape::Freehand => None,
+        PathShape::Freehand => sheet_of(task, space),
         _ => poses_at_b(task, space, points)?.first().map(|pose| [pose.a[0], pose.a[1]]),
     };
     let tables = trace::follow(planes.map(), &curves, task.b, prefer, rule)?;

@@ -1,7 +1,8 @@
 //! Motions along curves of the end effector with the least reaction on the base.
 
 use super::along::{along_parts, curves, timed};
-use super::held::reactionless;
+use super::choose::START_TOLERANCE_RAD;
+use super::held::{reactionless, sheet_of};
 use super::plan::{Plan, PlannerSpace, PlanningEffort, dynamics_of, keeps_rules};
 use super::poses::poses_at_b;
 use super::rates::minimum_norm;
@@ -14,7 +15,7 @@ use stillbase_planning::off_plane::b_course::BaseReaction;
 use stillbase_planning::off_plane::least_reaction::{FixedB, MinimumNorm, ReactionNorm, Verdicts};
 use stillbase_planning::pose_constant::Unreachable;
 use stillbase_planning::pose_space::{PlaneError, Planes, PoseSpace};
-use stillbase_planning::reactionless::BSet;
+use stillbase_planning::reactionless::{BSet, PlanePoint};
 use stillbase_planning::timing::{DriveLimits, Profile, TimeLaw};
 use stillbase_planning::{Forecast, Motion};
 use stillbase_settings::number::nine_digits;
@@ -78,7 +79,12 @@ fn in_corridor(scenario: &Scenario, space: &PoseSpace, planes: &Planes, law: Tim
     };
     let (model, _) = dynamics_of(scenario);
     let mut refused = None;
-    for start in map.poses(task.points()[0], task.b).iter() {
+    let start = sheet_of(task, space);
+    // Of the poses of a stated start, the one on its sheet.
+    let is_wanted = |pose: &&PlanePoint| {
+        start.is_none_or(|a| (pose.a[0] - a[0]).abs().max((pose.a[1] - a[1]).abs()) < START_TOLERANCE_RAD)
+    };
+    for start in map.poses(task.points()[0], task.b).iter().filter(is_wanted) {
         match LeastReaction::plan(map, &model, &curve, *start, task.b_to, goal) {
             Ok(plan) => {
                 let motion = Motion { path: Path::Table(plan.path().clone()), profile: Profile::even(task.time) };
@@ -109,7 +115,9 @@ fn holding_b(scenario: &Scenario, space: &PoseSpace, lacking: &PlaneError) -> Re
         )));
     }
     let holding = |b: f64, effort| {
-        let own = Task { kind: TaskKind::Reactionless, shape: Some(task.shape()), b, b_to: None, ..task.clone() };
+        let start = task.start.filter(|_| b == task.b);
+        let own =
+            Task { kind: TaskKind::Reactionless, shape: Some(task.shape()), start, b, b_to: None, ..task.clone() };
         along_parts(&Scenario { task: own, ..scenario.clone() }, &|scenario| reactionless(scenario, Ok(space), effort))
     };
     let why = match holding(task.b, PlanningEffort::Whole) {

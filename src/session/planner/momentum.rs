@@ -1,5 +1,5 @@
 //! Motions at zero angular momentum. Two drives have one such curve through each pose; three drives and more can follow
-//! any curve of the end effector.
+//! any curve of the end effector. A free base that may turn lets two drives follow any curve, too.
 
 use std::cell::Cell;
 use std::f64::consts::TAU;
@@ -7,10 +7,11 @@ use std::sync::Arc;
 
 use super::along::{curves, in_rounds};
 use super::plan::{Plan, PlannerSpace, dynamics_of};
-use super::poses::{no_b_refusal, reached, start};
+use super::poses::{no_b_refusal, reached, start, stated};
 use crate::proposal::round_up;
 use crate::refusal::Refusal;
 use crate::scenario::{PathShape, Scenario, Task};
+use stillbase_mechanics::machine::Inertia;
 use stillbase_mechanics::planar::{DriveAngles, Vector};
 use stillbase_planning::curves::{Curve, Path, PathTable};
 use stillbase_planning::off_plane::b_integral::BIntegral;
@@ -38,30 +39,81 @@ pub(super) fn zero_momentum(scenario: &Scenario, space: PlannerSpace<'_>) -> Res
         MomentumFreedom::None => Err(Refusal::Task(
             "one drive has momentum as soon as it turns: want minimum-norm, and a machine of more drives".into(),
         )),
-        MomentumFreedom::OneCurve => {
-            if task.shape.is_some_and(|shape| shape != PathShape::JointLine) {
-                return Err(Refusal::Task(
-                    "at zero momentum two drives keep the end effector on a curve: want the shape joint-line".into(),
-                ));
-            }
-            if scenario.base.kind == BaseKind::Free && !arm.is_force_balanced() {
-                return Err(Refusal::Task(
-                    "two drives that shift a free base have no rates to choose from: want a fixed base, a balanced \
-                     machine, or three drives"
-                        .into(),
-                ));
-            }
-            let integral = BIntegral::of(&arm).ok_or_else(|| {
-                Refusal::NoWay(
-                    "turning as a whole, this machine has no angular momentum in some poses: want slower or lighter \
-                     counter-rotating rotors"
-                        .into(),
-                )
-            })?;
-            along_curve(scenario, &integral)
-        }
+        MomentumFreedom::OneCurve => two_drives(scenario, &arm),
         MomentumFreedom::AnyCurve => followed(scenario, start(scenario, space, &task.points()[..1])?),
     }
+}
+
+/// Plans a motion of two drives. Without momentum of the arm they stay on one curve; a free base that may turn lets them
+/// follow any other, in one way.
+fn two_drives(scenario: &Scenario, arm: &Inertia) -> Result<Plan, Refusal> {
+    let (task, base) = (&scenario.task, &scenario.base);
+    let silent = || {
+        let integral = BIntegral::of(arm).ok_or_else(|| {
+            Refusal::NoWay(
+                "turning as a whole, this machine has no angular momentum in some poses: want slower or lighter \
+                 counter-rotating rotors"
+                    .into(),
+            )
+        })?;
+        along_curve(scenario, &integral)
+    };
+    let is_silent = base.kind != BaseKind::Free || arm.is_force_balanced();
+    match task.shape {
+        None | Some(PathShape::JointLine) if is_silent => match silent() {
+            Err(why) if task.shape.is_none() && base.floats() => turned(scenario).map_err(|_| why),
+            plan => plan,
+        },
+        None | Some(_) if base.floats() && task.shape != Some(PathShape::JointLine) => turned(scenario),
+        Some(PathShape::JointLine) | None => Err(Refusal::Task(
+            "two drives that shift a free base have no curve without momentum: want the shape line without a wheel, \
+             which turns the base, a fixed base, a balanced machine, or three drives"
+                .into(),
+        )),
+        Some(_) => Err(Refusal::Task(
+            "at zero momentum two drives keep the end effector on a curve: want the shape joint-line, or minimum-norm, \
+             the only motion along another; a free base without a wheel would turn"
+                .into(),
+        )),
+    }
+}
+
+/// Follows the curves of the end effector of two drives on a free base, which turns: from the start of the task, or from
+/// the pose of A that turns it least.
+fn turned(scenario: &Scenario) -> Result<Plan, Refusal> {
+    let task = &scenario.task;
+    let curves = curves(task, &task.points())?;
+    let starts = match stated(task, scenario.machine.drives(), 0) {
+        Some(start) => vec![start],
+        None => elbows(task, &PoseSpace::nominal(&scenario.machine)?, 0, task.points()[0])?,
+    };
+    let plans = starts.into_iter().map(|start| turning(scenario, start, &curves));
+    let least = plans.reduce(|one, other| match (&one, &other) {
+        (Ok((_, kept)), Ok((_, next))) if next < kept => other,
+        (Err(_), Ok(_)) => other,
+        _ => one,
+    });
+    let (plan, peak) = least.unwrap_or_else(|| Err(Refusal::NoWay("A has no pose".into())))?;
+    let is_bound = task.turn_limit > 0.0;
+    if is_bound && peak > task.turn_limit {
+        return Err(Refusal::Turns { stopped: None, turn_limit: round_up(peak) });
+    }
+    Ok(plan)
+}
+
+/// Follows curves with least momentum from a pose. Returns the plan, and how far the base turns, degrees.
+fn turning(scenario: &Scenario, start: DriveAngles, curves: &[Curve]) -> Result<(Plan, f64), Refusal> {
+    let model = momentum_model(scenario, &start, scenario.task.frame());
+    let turn = Cell::new(0.0);
+    let plan = along(scenario, start, curves, &|q, curve, cycle| {
+        let (table, turned) = least_momentum_curve(&model, q, turn.get(), curve, cycle)?;
+        turn.set(turned);
+        Ok(table)
+    })?;
+    let beside_base = beside_base(scenario, &start);
+    let course = beside_base.as_ref().and_then(|model| BaseTurn::along(model, &plan.motion.path));
+    let peak = course.as_ref().map_or(0.0, BaseTurn::peak).to_degrees();
+    Ok((Plan { beside_base, base_turn: course.map(Arc::new), ..plan }, peak))
 }
 
 /// Returns the angular momentum of the machine of a scenario as its base keeps its orientation, for motions from a pose,
@@ -97,26 +149,18 @@ fn followed(scenario: &Scenario, start: DriveAngles) -> Result<Plan, Refusal> {
     let model = momentum_model(scenario, &start, task.frame());
     let curves = curves(task, &task.points())?;
     let silent = along(scenario, start, &curves, &|q, curve, cycle| zero_momentum_curve(&model, q, curve, cycle));
-    let beside_base = beside_base(scenario, &start);
     let crosses = scenario.base.floats() && model.drives() == 3;
     match silent {
         Err(Refusal::Drift(stopped @ DriftError::Singular { why: Singularity::Dynamic, .. })) if crosses => {
-            let turn = Cell::new(0.0);
-            let plan = along(scenario, start, &curves, &|q, curve, cycle| {
-                let (table, turned) = least_momentum_curve(&model, q, turn.get(), curve, cycle)?;
-                turn.set(turned);
-                Ok(table)
-            });
+            let plan = turning(scenario, start, &curves);
             // Without a limit, the obstacle is where zero momentum ends.
-            let plan = plan.map_err(|beyond| if task.turn_limit > 0.0 { beyond } else { stopped.into() })?;
-            let course = beside_base.as_ref().and_then(|model| BaseTurn::along(model, &plan.motion.path));
-            let peak = course.as_ref().map_or(0.0, BaseTurn::peak).to_degrees();
+            let (plan, peak) = plan.map_err(|beyond| if task.turn_limit > 0.0 { beyond } else { stopped.into() })?;
             if peak > task.turn_limit {
-                return Err(Refusal::Turns { stopped, turn_limit: round_up(peak) });
+                return Err(Refusal::Turns { stopped: Some(stopped), turn_limit: round_up(peak) });
             }
-            Ok(Plan { beside_base, base_turn: course.map(Arc::new), ..plan })
+            Ok(plan)
         }
-        plan => Ok(Plan { beside_base, ..plan? }),
+        plan => Ok(Plan { beside_base: beside_base(scenario, &start), ..plan? }),
     }
 }
 
@@ -154,7 +198,10 @@ fn along_curve(scenario: &Scenario, integral: &BIntegral) -> Result<Plan, Refusa
     let space = PoseSpace::nominal(&scenario.machine)?;
     let mut points = task.points();
     points.extend(task.closed.then(|| points[0]));
-    let starts = elbows(task, &space, 0, points[0])?;
+    let starts = match stated(task, space.drives(), 0) {
+        Some(start) => vec![start],
+        None => elbows(task, &space, 0, points[0])?,
+    };
     // Take the first pose of A from which all points are reached. If there is none, return the refusal of the pose that
     // gets farthest.
     let mut refused: Option<(usize, Refusal)> = None;

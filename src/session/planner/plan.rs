@@ -179,8 +179,11 @@ pub(super) fn keeps_rules(scenario: &Scenario, motion: &Motion) -> Result<(), Re
         }
         for (k, angle) in scenario.machine.angles().iter().enumerate() {
             if angle.past_limit(&q) > 1e-6 {
-                let posture =
-                    if scenario.condition_for_effect("task.posture").is_none() { "another posture, " } else { "" };
+                let posture = match scenario.condition_for_effect("task.posture") {
+                    None if scenario.task.start.is_some() => "another start, ",
+                    None => "another posture, ",
+                    Some(_) => "",
+                };
                 return Err(Refusal::NoWay(format!(
                     "{:.1} % along, a{} would pass its {} limit: want another path, another b, {posture}or wider limits",
                     100.0 * s,

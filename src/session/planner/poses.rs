@@ -27,7 +27,7 @@ pub(super) fn poses_at_b(task: &Task, space: &PoseSpace, points: &[Vector]) -> R
 }
 
 /// Returns the pose of point `i` that the task states: its start, for A on a machine of `drives` drives.
-fn stated(task: &Task, drives: usize, i: usize) -> Option<DriveAngles> {
+pub(super) fn stated(task: &Task, drives: usize, i: usize) -> Option<DriveAngles> {
     task.start_pose(drives).filter(|_| i == 0)
 }
 

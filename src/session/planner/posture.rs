@@ -1,7 +1,7 @@
 //! Paths of machines with four or more drives at constant b; the task's posture resolves the remaining redundancy.
 
 use super::plan::PlanningEffort;
-use super::poses::{hand_of, posed, poses_facing};
+use super::poses::{hand_of, posed, poses_facing, stated};
 use super::proposals::inner_values;
 use crate::refusal::Refusal;
 use crate::scenario::{Scenario, Task};
@@ -13,6 +13,7 @@ use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::posture::{Posture, PostureRequest};
 use stillbase_planning::timing::TimeLaw;
 use stillbase_settings::number::nine_digits;
+use stillbase_settings::word::Choice as _;
 
 /// Number of intervals of each curve. At a proposed b, the end effector has to reach the end points of all intervals.
 const INTERVALS_PER_CURVE: usize = 16;
@@ -34,6 +35,9 @@ pub(super) fn tables(
     effort: PlanningEffort,
 ) -> Result<Vec<PathTable>, Refusal> {
     let task = &scenario.task;
+    if stated(task, space.drives(), 0).is_some() {
+        return from_start(scenario, space, curves);
+    }
     let link = hand_of(scenario);
     let angle = task.orientation.filter(|_| scenario.condition_for_effect("task.orientation").is_none());
     if angle.is_some() {
@@ -65,7 +69,21 @@ pub(super) fn tables(
     Err(Refusal::NoWay(format!("at b = {} rad {why}: want {proposed}", nine_digits(task.b))))
 }
 
-/// Follows each curve with minimum-norm rates, from the pose nearest to the middle of all ranges.
+/// Follows each curve from the start that the task states, with minimum-norm rates.
+///
+/// # Errors
+/// If the posture of the task chooses the pose of A, or the curves cannot be followed.
+fn from_start(scenario: &Scenario, space: &PoseSpace, curves: &[Curve]) -> Result<Vec<PathTable>, Refusal> {
+    match scenario.task.posture {
+        Posture::LeastRates => locally(scenario, space, curves),
+        posture => Err(Refusal::Task(format!(
+            "the posture {} chooses the pose of A: want no start, or the posture least-rates",
+            posture.words().file
+        ))),
+    }
+}
+
+/// Follows each curve with minimum-norm rates, from the start of the task or the pose nearest to the middle of all ranges.
 fn locally(scenario: &Scenario, space: &PoseSpace, curves: &[Curve]) -> Result<Vec<PathTable>, Refusal> {
     let mut q = posed(&scenario.task, space, &scenario.task.points()[..1], 0, &space.middle())?;
     let mut tables = Vec::with_capacity(curves.len());

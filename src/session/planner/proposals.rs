@@ -22,7 +22,8 @@ pub(super) fn proved_refusal(
     try_path: &dyn Fn(&Task, PlanningEffort) -> Result<(), Refusal>,
     refusal: Refusal,
 ) -> Refusal {
-    let at = |task: &Task, b: f64| Task { b, ..task.clone() };
+    // A start has a b of its own.
+    let at = |task: &Task, b: f64| Task { b, start: None, ..task.clone() };
     // A refusal of a path on one plane may name another plane.
     let another = |why: &Refusal| match why {
         Refusal::Blocked(blocked) => blocked.nearest_b.zip(blocked.displayed_b),

@@ -106,6 +106,16 @@ impl Scenario {
         }
     }
 
+    /// Returns the scenario without edits on another machine. A start that the task states brings A and b of that machine.
+    #[must_use]
+    pub fn on_machine(&self, machine: &Machine) -> Self {
+        let mut other = Self { machine: machine.clone(), sketch: None, compare_b: None, ..self.without_edits() };
+        if let Some(task) = other.task.at_its_start(machine) {
+            other.task = task;
+        }
+        other
+    }
+
     /// Returns the input of a simulation.
     pub fn setup(&self) -> Setup<'_> {
         let Self { machine: model, plant, base, control, step, .. } = self;

@@ -18,7 +18,7 @@ use crate::{TimedEdit, check_edits};
 use stillbase_mechanics::machine::{self, FileError, KeyPath, KeyStep, Machine, MachineError, MachineSpec};
 use stillbase_mechanics::sketch::{Sketch, SketchRefusal};
 use stillbase_settings::change;
-use stillbase_settings::mending::{Problem, Wrong, faults_of};
+use stillbase_settings::mending::{Problem, Wrong, called, faults_of};
 use stillbase_settings::range::{MAX_SAID, quote_clipped, range_error, shortened};
 use stillbase_settings::stated::{MendValue, StatedFile};
 use stillbase_settings::text::{control_character, plain};
@@ -241,7 +241,12 @@ impl Reading<'_> {
             IncompleteTask::Missing(key) => {
                 self.syntax(Problem { path: KeyPath::new(&[&"task"]), wrong: Wrong::Missing(key.into()) })
             }
-            off @ IncompleteTask::Angles { .. } => self.wrong(KeyPath::new(&[&"task", &"start"]), off.to_string()),
+            // Without a start of all angles it is unknown which other keys the task lacks.
+            off @ IncompleteTask::Angles { .. } => {
+                let path = KeyPath::new(&[&"task", &"start"]);
+                let said = format!("{}: {off}", called(&path, &ScenarioWords));
+                self.syntax(Problem { path, wrong: Wrong::Last(said) })
+            }
         })?;
         let sketch = match file.sketch {
             Some(sketch) => {

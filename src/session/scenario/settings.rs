@@ -268,7 +268,7 @@ impl Scenario {
             Some(("task", key @ ("posture" | "orientation"))) => self.machine.redundancy() > 1 && self.task.uses(key),
             Some(("task", key @ ("b" | "turn"))) if self.gives_two_drives() => key == "turn",
             Some(("task", key @ "turn_limit")) => {
-                self.machine.drives() == 3 && self.base.floats() && self.task.uses(key)
+                (2..=3).contains(&self.machine.drives()) && self.base.floats() && self.task.uses(key)
             }
             Some(("task", key)) => self.task.uses(key),
             Some(("base", key)) => match key.strip_prefix("wheel.") {

@@ -48,7 +48,7 @@ const VISITING: &str = "another kind than turn-base, which returns to A";
 const FREE: &str =
     "four drives or more, and the kind reactionless in the shape line, arc, spline or freehand, or samples of x and y";
 const FLOATING: &str =
-    "the kind zero-momentum, three drives, points, and base.kind = free without a wheel: no other base turns";
+    "the kind zero-momentum, two or three drives, points, and base.kind = free without a wheel: no other base turns";
 const CORNERED: &str =
     "three points or more, or a closed path, in the shape line or joint-line: others have no corners";
 const BLENDED: &str = "corners = blend, and three points or more, or a closed path, in the shape line or joint-line: others have no corners";
@@ -82,7 +82,8 @@ keyed! {
         /// Where the points after A are meant: seen from the base pin, or in space.
         frame: Option<TipFrame> = Key::NONE, instead: "space if the base is free, otherwise base",
             when: "the kind zero-momentum" => |task| task.kind == TaskKind::ZeroMomentum;
-        /// Angle by which a free base may turn where zero momentum leads no farther: least momentum then leads on.
+        /// Angle by which a free base may turn where zero momentum leads no farther: least momentum then leads on. Two
+        /// drives, which turn it all along a line, have no limit at 0.
         turn_limit: f64 = "0", range: Range::new(0.0, 180.0, "°"),
             when: FLOATING => |task| task.kind == TaskKind::ZeroMomentum && task.samples.is_none();
         /// Angle by which closed motions of the arm turn a free base, all cycles together, counterclockwise.

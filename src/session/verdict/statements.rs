@@ -118,7 +118,15 @@ impl Statement {
             return Self::new(StatusLight::Good, format!("turns its base by {turn} rad"), why);
         }
         if let (Guide::Motion { .. }, Some(turn)) = (run.simulation().guide(), &run.plan().base_turn) {
-            let (peak, limit) = (significant(turn.peak()), significant(run.scenario().task.turn_limit.to_radians()));
+            let (peak, limit) = (significant(turn.peak()), run.scenario().task.turn_limit.to_radians());
+            if !run.scenario().machine.is_redundant() {
+                let why = format!("two drives follow the path in one way, and the base turns by up to {peak} rad");
+                return match limit > 0.0 {
+                    true => Self::new(StatusLight::Good, "turns its base within its limit", why),
+                    false => Self::new(StatusLight::Bad, "turns its base", why),
+                };
+            }
+            let limit = significant(limit);
             let why = format!("where zero momentum leads no farther, the base turns, by up to {peak} of {limit} rad");
             return Self::new(StatusLight::Good, "turns its base within its limit", why);
         }

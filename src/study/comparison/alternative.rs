@@ -4,7 +4,7 @@ use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::posed::poses_of_points;
 use stillbase_planning::timing::TimeLaw;
 use stillbase_session::scenario::{PathShape, Scenario, TaskChange, TaskKind, Value};
-use stillbase_session::with_start_edits;
+use stillbase_session::{straight, with_start_edits};
 use stillbase_simulation::plant::Wheel;
 
 /// A method of moving the end effector from A to B.
@@ -106,12 +106,10 @@ impl Alternative {
                 set("closed", word("default"));
             }
             Self::StraightLine | Self::Wheel | Self::Slowly => {
-                set("kind", word("minimum-norm"));
-                if scenario.task.shape() == PathShape::JointLine {
-                    set("shape", word("line"));
-                }
+                change = straight(&scenario.task);
             }
         }
+        let mut set = |key: &str, value: Value| change.insert(key.into(), value);
         if scenario.task.kind == TaskKind::ChangeB || scenario.task.kind == TaskKind::LeastReaction {
             set("b_to", word("default"));
         }

@@ -15,6 +15,9 @@ use stillbase_session::Run;
 use stillbase_session::scenario::Task;
 use stillbase_settings::number::counted;
 
+/// Points that are nearer than this are the same, m.
+const PLACE_TOLERANCE_M: f64 = 1e-9;
+
 /// A machine with its task and motion.
 #[derive(Clone, Debug)]
 pub struct DesignCandidate {
@@ -165,8 +168,11 @@ impl DesignCandidate {
         if self.machine.end_effector() != first.machine.end_effector() {
             return Some("the arm's length");
         }
-        let same = self.task.points() == first.task.points() && self.task.closed == first.task.closed;
-        (!same).then_some("its task")
+        let [own, other] = [self, first].map(|one| one.task.points());
+        // A point that a pose gives is rounded.
+        let is_near =
+            own.len() == other.len() && own.iter().zip(&other).all(|(p, q)| (p - q).norm() <= PLACE_TOLERANCE_M);
+        (!(is_near && self.task.closed == first.task.closed)).then_some("its task")
     }
 }
 
