@@ -51,6 +51,11 @@ const MAX_STEPS: usize = 40;
 const STEP_TOLERANCE: f64 = 1e-10;
 /// Singular values below this fraction of the largest are treated as zero.
 const RANK_TOLERANCE: f64 = 1e-9;
+/// Steps with a threshold of their own; later ones share one, so that they converge.
+const FREE_STEPS: usize = 10;
+/// A direction is determined if the standard deviation along it is below this fraction of the scales: the fit is linear
+/// in no larger region.
+const MAX_DEVIATION: f64 = 0.2;
 /// The file explains the rates if all unknowns leave less than this fraction less of them unexplained.
 const EXPLAINED: f64 = 0.5;
 /// One known value explains the rates if it leaves at most this fraction of what the file leaves, however small the noise.
@@ -341,7 +346,8 @@ pub fn orbit_trim(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) 
     let scale = |j: usize| if j < p { scales[j] } else { craft.inertia };
     let mut first_residual = None;
     let mut solved = None;
-    for _ in 0..MAX_STEPS {
+    let (start, mut fixed_threshold) = (x.clone(), None);
+    for iteration in 0..MAX_STEPS {
         let of = craft.coefficients(&x);
         let (mut slopes, mut errors) = (DMatrix::zeros(rows, all), DVector::zeros(rows));
         let mut own = vec![0.0; p];
@@ -359,8 +365,14 @@ pub fn orbit_trim(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) 
         let r = scaled.clone().qr().unpack_r();
         let svd = SVD::try_new(r, false, true, 5.0 * f64::EPSILON, 10_000).ok_or(TrimError::NotFinite)?;
         let v = svd.v_t.ok_or(TrimError::NotFinite)?.transpose();
-        // A direction that noise alone could change by the size of the machine is not determined.
-        let threshold = (RANK_TOLERANCE * svd.singular_values.max()).max(off);
+        // A direction in which noise alone could lead far from the file is not determined.
+        let threshold = match fixed_threshold {
+            Some(fixed) => fixed,
+            None => (RANK_TOLERANCE * svd.singular_values.max()).max(off / MAX_DEVIATION),
+        };
+        if iteration + 1 >= FREE_STEPS {
+            fixed_threshold = Some(threshold);
+        }
         let is_kept = |i: &usize| svd.singular_values[*i] > threshold;
         let (kept, rest): (Vec<usize>, Vec<usize>) = (0..all).partition(is_kept);
         let mut inverse = DMatrix::zeros(all, all);
@@ -368,7 +380,12 @@ pub fn orbit_trim(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) 
             let column = DVector::from_fn(all, |j, _| v[(j, i)] * scale(j));
             inverse += &column * column.transpose() / svd.singular_values[i].powi(2);
         }
-        let step = &inverse * slopes.tr_mul(&errors);
+        let mut step = &inverse * slopes.tr_mul(&errors);
+        // What is not determined goes back to where it was, whatever earlier steps have made of it.
+        for i in &rest {
+            let way: f64 = (0..all).map(|j| v[(j, *i)] * (start[j] - x[j]) / scale(j)).sum();
+            (0..all).for_each(|j| step[j] += way * v[(j, *i)] * scale(j));
+        }
         let size = (0..all).map(|j| (step[j] / scale(j)).abs()).fold(0.0, f64::max);
         if !size.is_finite() {
             return Err(TrimError::NotFinite);
