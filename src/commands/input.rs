@@ -322,8 +322,12 @@ pub fn overlay_unchecked(name: &str, settings: &Settings) -> Result<Scenario, Fa
     overlay_settings(found.scenario, settings)
 }
 
-/// Prints which keys of a scenario have no effect.
+/// Prints which keys of a scenario have no effect, and whether its wheel hardly damps the base.
 pub fn report_idle(scenario: &Scenario) {
+    let wheel = scenario.base.wheel.filter(|_| scenario.base.kind == BaseKind::Free);
+    if let Some(why) = wheel.and_then(|wheel| wheel.poor_gains()) {
+        print_message(format!("note: {}: {why}", scenario.name));
+    }
     for (path, want) in scenario.ineffective_keys() {
         print_message(format!("note: {}: {path} has no use there: want {want}", scenario.name));
     }

@@ -653,6 +653,21 @@ fn a_model_begins_as_its_scenario() {
     assert!(note.contains("planned on a base that is held"), "{note}");
 }
 
+/// A plan from a stated pose states no b, which such a machine may not have, and comes back.
+#[test]
+fn a_plan_from_a_pose_states_no_b() {
+    let folder = Folder::new("plan-pose");
+    let file = word(folder.path("own.toml"));
+    let answer = object(&["plan", "spot", "-o", &file]);
+    let written = fs::read_to_string(&file).expect("a file");
+    assert!(!written.contains("\nb = ") && !written.contains("from = ") && written.contains("start = "), "{written}");
+    assert_eq!(object(&["plan", &file])["q_end"], answer["q_end"]);
+    // On a base that floats, balance is not asked for.
+    prints(&["check", "spot-swing", "--strict"]);
+    let out = stillbase(&["check", "spot", "--strict"]);
+    assert!(out.status.code() == Some(1) && text(&out.stderr).contains("not force balanced"));
+}
+
 #[test]
 fn a_machine_comes_from_elsewhere() {
     let folder = Folder::new("from-elsewhere");
