@@ -70,6 +70,7 @@ impl PictureOrder {
     /// # Errors
     /// If the picture cannot be read back.
     pub fn draw(&self, canvas: &mut Canvas, app_state: &mut AppState) -> Result<Picture, NoPicture> {
+        app_state.await_outline();
         if self.shot == Shot::Window {
             app_state.carry_out(ViewChange::Theme(self.theme));
             return canvas.draw(|ui| app_state.ui(ui));
@@ -80,6 +81,7 @@ impl PictureOrder {
 
     /// Returns the scene of the instant that the window shows, and its camera.
     pub fn scene(&self, app_state: &mut AppState) -> (Scene, Camera) {
+        app_state.await_outline();
         let (mut scene, camera) = match self.shot {
             Shot::Window | Shot::Scene => {
                 app_state.carry_out(ViewChange::Theme(self.theme));

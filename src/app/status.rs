@@ -15,7 +15,7 @@ use super::{fit, lamp};
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::{Palette, faded};
 use stillbase_planning::pose_space::NoPoseSpace;
-use stillbase_session::verdict::Verdict;
+use stillbase_session::verdict::{StatusLight, Verdict};
 use stillbase_session::{Proposal, Session};
 use stillbase_simulation::frame::{Frame, Reach};
 
@@ -86,7 +86,13 @@ pub fn show(
         ui.horizontal_centered(|ui| {
             let f = session.frame();
             ui.spacing_mut().item_spacing.x = 14.0;
-            let statements = lamp::statements(session);
+            let mut statements = lamp::statements(session);
+            // Beside the message of a refusal, a good plan is that of the task before.
+            let is_refused = view_state.status.refused.as_ref().is_some_and(|refused| refused.refused.is_some());
+            if is_refused && statements.plan.outcome == StatusLight::Good {
+                statements.plan.outcome = StatusLight::Open;
+                statements.plan.words.insert_str(0, "as before, ");
+            }
             let unfinished = session.run().unfinished();
             for named in statements.named() {
                 match unfinished {

@@ -6,7 +6,8 @@ use serde::Serialize;
 use stillbase_exchange::cut::Cut;
 use stillbase_exchange::solids::has_heights;
 use stillbase_mechanics::machine::{Counterweight, Inertia, Machine};
-use stillbase_planning::off_plane::null_space::is_integrable;
+use stillbase_planning::off_plane::momentum::MomentumModel;
+use stillbase_planning::off_plane::null_space::{MomentumFreedom, is_integrable};
 use stillbase_planning::pose_constant::PoseConstant;
 use stillbase_session::verdict::Statement;
 use stillbase_study::balance_constants::BalanceConstants;
@@ -145,7 +146,8 @@ fn heights_lines(clashes: Option<&Result<Vec<Clash>, NoLayers>>) -> String {
 impl CheckArguments {
     /// Prints the verdict; a machine that is not balanced is no failure.
     pub fn run(&self) -> Result<(), Failure> {
-        let machine = self.machine.load().map_err(|why| self.machine.incomplete_drawing().unwrap_or(why))?;
+        let found = self.machine.find().map_err(|why| self.machine.incomplete_drawing().unwrap_or(why))?;
+        let (machine, floats) = (found.machine, found.base.is_some());
         let (inertia, constant) = (Inertia::of(&machine), PoseConstant::of(&machine));
         let (parts, clashes) = (LinkParts::all(&machine), clashes(&machine));
         let answer = Answer {
@@ -161,17 +163,27 @@ impl CheckArguments {
             counterweights: machine.spec().counterweights.clone(),
         };
         let fits = clashes.as_ref().is_none_or(|clashes| clashes.as_ref().is_ok_and(Vec::is_empty));
+        // On a base that floats zero momentum needs no balance, but drives enough to follow a path.
+        let follows = MomentumFreedom::of(&MomentumModel::from(&inertia)) == MomentumFreedom::AnyCurve;
         let found = [
-            (answer.force_balanced, "not force balanced"),
-            (answer.invariant, "not invariant"),
+            (floats || answer.force_balanced, "not force balanced"),
+            (floats || answer.invariant, "not invariant"),
+            (!floats || follows, "too few drives to follow a path without momentum"),
             (fits, "its links run into each other"),
         ];
+        let base_line = match (floats, follows) {
+            (false, _) => "",
+            (true, true) => "base             floats: paths at zero momentum keep its attitude, and need no balance\n",
+            (true, false) => {
+                "base             floats, and turns along most paths: want three drives to keep its attitude\n"
+            }
+        };
         self.format.print(&answer, |answer| {
             let (force, coupling) = (inertia.force_residual(), inertia.invariance_residual());
             format!(
                 "{} · {}\n\nmachine          {}\nmass             {} kg\nforce balanced   {}, largest |g_k| {force:.1e} kg m\n\
                  invariant        {}, largest |C_kl| {coupling:.1e} kg m²\n\
-                 pose constant    {}\n{}\n{}{}{}",
+                 pose constant    {}\n{base_line}{}\n{}{}{}",
                 machine.name(),
                 machine.spec().summary,
                 answer.machine.words,

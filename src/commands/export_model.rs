@@ -11,8 +11,10 @@ use stillbase_exchange::mjcf::{qpos, usual_pose};
 use stillbase_exchange::stl;
 use stillbase_exchange::urdf::joint;
 use stillbase_files::row_file::{RowForm, table_bytes};
-use stillbase_files::{FoundMachine, floating_base, left_out_of_base};
+use stillbase_files::{FoundMachine, floating_base, left_out_of_base, scenario_on_free_base};
 use stillbase_mechanics::machine::Machine;
+use stillbase_session::Run;
+use stillbase_session::scenario::Scenario;
 use stillbase_settings::number::{counted, fixed};
 
 use super::dimensions::Dimensions;
@@ -20,7 +22,7 @@ use super::exit::print_message;
 use super::failure::Failure;
 use super::file_form::FileForm;
 use super::import_model::OfBase;
-use super::input::{MachineArgument, floating_base_of};
+use super::input::{MachineArgument, floating_scenario};
 use super::output::{Format, TextTable, write_file};
 
 /// Export a machine: a model for MuJoCo (.xml) or for ROS and Pinocchio (.urdf), drawings for cutting (.svg, .dxf),
@@ -43,8 +45,8 @@ Examples:
 pub struct ExportModelArguments {
     #[command(flatten)]
     machine: MachineArgument,
-    /// Angles of the drives in the keyframe of .xml and in .stl, rad; default: the pose that the
-    /// machine's file states, or else the middle of the limits
+    /// Angles of the drives in the keyframe of .xml and in .stl, rad; default: the start of the scenario, of a machine
+    /// the pose that its file states, or else the middle of the limits
     #[arg(long, value_name = "Q1,Q2,…", value_delimiter = ',', allow_hyphen_values = true)]
     pose: Vec<f64>,
     /// Put a model on the base of this scenario, which floats; default: the base of MACHINE, if it is a scenario or a
@@ -117,8 +119,9 @@ enum Written {
 impl ExportModelArguments {
     /// Writes the file.
     pub fn run(&self) -> Result<(), Failure> {
-        let FoundMachine { machine, base, .. } = self.machine.find()?;
-        let base = self.base.as_deref().map_or(Ok(base), |name| floating_base_of(name).map(Some))?;
+        let FoundMachine { machine, base, scenario, .. } = self.machine.find()?;
+        let other = self.base.as_deref().map(floating_scenario).transpose()?;
+        let base = other.as_ref().map_or(base, |other| Some(other.base));
         let floating = base.as_ref().and_then(floating_base);
         let ending = self.form.check(&self.format, Some(&self.output), self.force, &form::endings())?;
         let form = Form::of(ending).map_err(Failure::wrong_input)?;
@@ -126,7 +129,21 @@ impl ExportModelArguments {
         if let Some(bad) = self.pose.iter().find(|q| !q.is_finite()) {
             return Err(Failure::wrong_input(format!("--pose {bad}: want finite angles in rad")));
         }
-        let pose = if self.pose.is_empty() { usual_pose(&machine) } else { self.pose.clone() };
+        let pose = match self.pose.is_empty() {
+            true => {
+                let of = other.or(scenario.map(|own| *own)).filter(|of| of.machine.name() == machine.name());
+                of.and_then(|of| start_of(of, &machine)).unwrap_or_else(|| usual_pose(&machine))
+            }
+            false => self.pose.clone(),
+        };
+        if let Some(afloat) = scenario_on_free_base(&machine).filter(|_| base.is_none() && form.is_model()) {
+            print_message(format!(
+                "note: the base of {} is held; --base {} gives it the one of the scenario {}, which floats",
+                machine.name(),
+                afloat.name,
+                afloat.name
+            ));
+        }
         let cut = self.dimensions.cut(&machine);
         let exported = Exported { machine: &machine, base: floating.as_ref(), pose: &pose, cut: &cut };
         let content = match (form.written(&exported), RowForm::of_ending(ending)) {
@@ -165,6 +182,13 @@ impl ExportModelArguments {
             None => Ok(()),
         }
     }
+}
+
+/// Returns the drive angles at the start of a scenario, rad, with a machine as it was changed; `None` if it has no plan.
+fn start_of(scenario: Scenario, machine: &Machine) -> Option<Vec<f64>> {
+    let scenario = Scenario { machine: machine.clone(), ..scenario };
+    let stated = scenario.task.start_pose(machine.drives()).map(|q| q.to_vec());
+    stated.or_else(|| Some(Run::new(&scenario).ok()?.plan().motion.at(0.0).q.to_vec()))
 }
 
 /// An option, whether it is left out, and for which files it has an effect.

@@ -27,7 +27,7 @@ use stillbase_settings::number::counted;
 use stillbase_settings::range::Range;
 use stillbase_settings::text::{MAX_TEXT_BYTES, shell_word};
 use stillbase_settings::word::Choice;
-use stillbase_simulation::plant::{Base, BaseKind};
+use stillbase_simulation::plant::BaseKind;
 
 use super::exit::print_message;
 use super::failure::Failure;
@@ -227,14 +227,14 @@ fn found_machine(name: &str) -> Result<FoundMachine, Failure> {
     Ok(found)
 }
 
-/// Returns the base of a scenario by name or file, which floats.
+/// Returns a scenario by name or file whose base floats.
 ///
 /// # Errors
 /// If there is no such scenario, or if its base does not float.
-pub fn floating_base_of(name: &str) -> Result<Base, Failure> {
-    let Scenario { base, .. } = scenario(name, &Settings::default())?;
+pub fn floating_scenario(name: &str) -> Result<Scenario, Failure> {
+    let found = scenario(name, &Settings::default())?;
     let why = || format!("--base {name}: its base does not float: want a scenario with [base] kind = \"free\"");
-    if base.kind == BaseKind::Free { Ok(base) } else { Err(Failure::wrong_input(why())) }
+    if found.base.kind == BaseKind::Free { Ok(found) } else { Err(Failure::wrong_input(why())) }
 }
 
 /// Prints what was left out of a file.
@@ -322,8 +322,12 @@ pub fn overlay_unchecked(name: &str, settings: &Settings) -> Result<Scenario, Fa
     overlay_settings(found.scenario, settings)
 }
 
-/// Prints which keys of a scenario have no effect.
+/// Prints which keys of a scenario have no effect, and whether its wheel hardly damps the base.
 pub fn report_idle(scenario: &Scenario) {
+    let wheel = scenario.base.wheel.filter(|_| scenario.base.kind == BaseKind::Free);
+    if let Some(why) = wheel.and_then(|wheel| wheel.poor_gains()) {
+        print_message(format!("note: {}: {why}", scenario.name));
+    }
     for (path, want) in scenario.ineffective_keys() {
         print_message(format!("note: {}: {path} has no use there: want {want}", scenario.name));
     }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use stillbase_files::{FoundMachine, is_standard, text};
+use stillbase_files::{FoundMachine, is_standard, scenario_on_free_base, text};
 use stillbase_mechanics::planar::Vector;
 use stillbase_planning::common::starting_b;
 use stillbase_planning::off_plane::least_reaction::FixedB;
@@ -196,10 +196,17 @@ impl PlanArguments {
             self.settings.refuse_tolerances()?;
         }
         let mut scenario = match as_machine {
-            Ok(FoundMachine { machine, design, left_out, .. }) if !is_scenario => {
+            Ok(FoundMachine { machine, design, left_out, base, .. }) if !is_scenario => {
                 report_left_out(&self.name, &left_out);
                 if self.points.is_empty() {
                     return Err(Failure::wrong_input("a machine alone is no task: want points X,Y, or a scenario"));
+                }
+                if base.is_some() || scenario_on_free_base(&machine).is_some() {
+                    print_message(format!(
+                        "note: {}: planned on a base that is held, though it floats elsewhere: want a scenario, as \
+                         import-model writes one, to plan with its base",
+                        self.name
+                    ));
                 }
                 let own = overlay_unchecked(DEFAULT_SCENARIO, &Settings::default())?;
                 let with = Scenario {

@@ -22,7 +22,7 @@ use super::output::{Format, TextTable, check_size};
 use super::rows::{RowTarget, Rows};
 use super::signal_choice::SignalChoice;
 use super::strict::{Strict, run_faults};
-use stillbase_settings::number::{counted, fixed};
+use stillbase_settings::number::{ShortNumber, counted, fixed};
 
 /// Run a scenario and print every signal over time, or some of them, as CSV or Parquet
 #[derive(Args)]
@@ -89,6 +89,9 @@ struct Outcome {
     wheel_momentum: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     peak_wheel_torque: Option<f64>,
+    /// Limits of momentum and torque of the wheel.
+    #[serde(skip)]
+    wheel_limits: [Option<f64>; 2],
     miss: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     past_limit: Option<Past>,
@@ -152,6 +155,7 @@ impl Outcome {
             keeps_attitude: verdict.attitude.map(|attitude| attitude.is_kept()),
             wheel_momentum: verdict.wheel.map(|wheel| wheel.momentum),
             peak_wheel_torque: verdict.wheel.map(|wheel| wheel.torque),
+            wheel_limits: verdict.wheel.map_or([None; 2], |wheel| [wheel.momentum_limit, wheel.torque_limit]),
             miss: verdict.target_distance,
             answer: verdict.answer(),
             sentence: verdict.sentence(),
@@ -305,13 +309,18 @@ fn summary(outcome: &Outcome, name: &str, signals: &[Signal]) -> String {
     let mut row = |name: String, value: f64, decimals: usize, unit: &str| {
         table.row([name, fixed(value, decimals), unit.into()]);
     };
+    // A free base feels the moment about its own centre of mass, which n_B is not.
+    let [of_pin, of_base] = match outcome.keeps_attitude {
+        Some(_) => [" about the pin", " about the centre of mass of the base"],
+        None => [""; 2],
+    };
     for (k, torque) in outcome.peak_torque.iter().enumerate() {
         row(format!("peak |τ_{}|", k + 1), *torque, 6, "N m");
     }
-    row("peak |n_B|".into(), outcome.peak_base_moment, 9, "N m");
+    row(format!("peak |n_B|{of_pin}"), outcome.peak_base_moment, 9, "N m");
     row("root mean square of n_B".into(), outcome.rms_base_moment, 9, "N m");
     if let Some(past_wheel) = outcome.peak_felt_moment {
-        row("peak moment past the wheel".into(), past_wheel, 9, "N m");
+        row(format!("peak moment past the wheel{of_base}"), past_wheel, 9, "N m");
     }
     row("peak |f_B|".into(), outcome.peak_base_force, 9, "N");
     row("the base shifts by".into(), outcome.base_shift, 9, "m");
@@ -320,8 +329,13 @@ fn summary(outcome: &Outcome, name: &str, signals: &[Signal]) -> String {
         row("angle of the base at the end".into(), end, 9, "rad");
     }
     if let (Some(momentum), Some(torque)) = (outcome.wheel_momentum, outcome.peak_wheel_torque) {
-        row("peak momentum of the wheel".into(), momentum, 9, "N m s");
-        row("peak torque of the wheel".into(), torque, 9, "N m");
+        let of = |limit: Option<f64>, unit: &str| match limit {
+            Some(limit) => format!("of {} {unit}", ShortNumber(limit)),
+            None => unit.to_owned(),
+        };
+        let [momentum_limit, torque_limit] = outcome.wheel_limits;
+        row("peak momentum of the wheel".into(), momentum, 9, &of(momentum_limit, "N m s"));
+        row("peak torque of the wheel".into(), torque, 9, &of(torque_limit, "N m"));
     }
     let shown = format!(
         "{} of {}: -o FILE.csv writes every row, a pipe gets them too\n",

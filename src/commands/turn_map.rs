@@ -91,14 +91,14 @@ fn text(answer: &Answer) -> String {
     let map = &answer.map;
     let mut table = TextTable::new(["base turns by at most °", "area m²", "nearest end m", "farthest end m"]);
     for (i, (limit, area)) in map.turn_limits.iter().zip(&map.areas).enumerate() {
-        let ends = || map.rays.iter().map(|ray| ray.reaches[i]);
+        let ends = || map.rays_of(i).map(|ray| ray.reaches[i]);
         let extremes = [ends().fold(f64::INFINITY, f64::min), ends().fold(0.0, f64::max)];
         table.row([limit.to_string(), fixed(*area, 6)].into_iter().chain(extremes.map(|x| fixed(x, 6))));
     }
     let q: Vec<String> = map.q_start.iter().map(|q| fixed(*q, 6)).collect();
     let [x, y] = map.tip_start.map(|x| fixed(x, 6));
     let mut stops: Vec<(&str, usize)> = Vec::new();
-    for ray in &map.rays {
+    for ray in map.rays_of(0) {
         let Some(first) = ray.stops.first() else { continue };
         match stops.iter_mut().find(|(stop, _)| stop == first) {
             Some((_, count)) => *count += 1,

@@ -13,6 +13,11 @@ pub fn floating_base(base: &Base) -> Option<BaseBody> {
     (base.kind == BaseKind::Free).then_some(BaseBody { mass: base.mass, inertia: base.inertia, com })
 }
 
+/// Returns the built-in scenario of a machine's name, if its base floats.
+pub fn scenario_on_free_base(machine: &Machine) -> Option<Scenario> {
+    Scenario::builtin(machine.name()).filter(|scenario| scenario.base.kind == BaseKind::Free)
+}
+
 /// Returns what a model leaves out of the base of a scenario, if it floats.
 pub fn left_out_of_base(base: &Base) -> Option<String> {
     base.wheel

@@ -32,6 +32,8 @@ pub struct FoundMachine {
     pub design: DesignBrief,
     /// The base of the scenario or of the model, if the file has one that floats.
     pub base: Option<Base>,
+    /// The scenario at its start, if the file is one.
+    pub scenario: Option<Box<Scenario>>,
     /// What was left out of the model of another program; empty for a machine of this one.
     pub left_out: Vec<String>,
 }
@@ -62,11 +64,18 @@ fn machine_of(scenario: &Scenario, file: &str) -> Result<FoundMachine, FileError
     }
     let note = format!("it is a scenario, taken is its machine {}", start.machine.name());
     let base = Some(start.base).filter(|base| base.kind == BaseKind::Free);
-    Ok(FoundMachine { machine: start.machine, design: start.design, base, left_out: vec![note] })
+    let (machine, design) = (start.machine.clone(), start.design.clone());
+    Ok(FoundMachine { machine, design, base, scenario: Some(start.into()), left_out: vec![note] })
 }
 
 fn found(name: &str, folder: Option<&Path>, takes_scenarios: bool) -> Result<FoundMachine, FileError> {
-    let own = |MachineFile { machine, design }| FoundMachine { machine, design, base: None, left_out: Vec::new() };
+    let own = |MachineFile { machine, design }| FoundMachine {
+        machine,
+        design,
+        base: None,
+        scenario: None,
+        left_out: Vec::new(),
+    };
     if let Some(machine) = known_machine(name) {
         return Ok(own(machine.into()));
     }

@@ -41,7 +41,7 @@ pub mod text;
 pub mod video;
 
 #[doc(hidden)]
-pub use afloat::{floating_base, left_out_of_base, scenario_afloat};
+pub use afloat::{floating_base, left_out_of_base, scenario_afloat, scenario_on_free_base};
 #[doc(hidden)]
 pub use draft::{WriteBlock, abandon};
 pub use find::{FoundMachine, FoundScenario, found_machine, machine, model, scenario};

@@ -13,7 +13,7 @@ use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, unit};
 use stillbase_mechanics::sketch::Template;
 use stillbase_settings::change::DEFAULT_WORD;
-use stillbase_simulation::plant::Base;
+use stillbase_simulation::plant::{Base, BaseKind};
 
 /// Each relative angle in the middle of the motion, as a fraction of the range between its limits. At a fraction of one
 /// half, parallelograms go flat.
@@ -95,6 +95,17 @@ pub fn gentle_motion_afloat(machine: &Machine, base: Base) -> Result<Scenario, S
     Ok(usual)
 }
 
+/// Returns a scenario with a small motion of the machine of another one, on its base if that floats.
+///
+/// # Errors
+/// As [`gentle_motion`].
+pub(super) fn made_for(present: &Scenario) -> Result<Scenario, ScenarioError> {
+    match present.base.kind {
+        BaseKind::Free => gentle_motion_afloat(&present.machine, present.base),
+        BaseKind::Fixed | BaseKind::Compliant => gentle_motion(&present.machine),
+    }
+}
+
 /// Returns the scenario to open for another machine: its built-in one, else the present one if the machine can do its
 /// task, straight if need be, else the first built-in one of the same machine, else one made for it.
 pub fn for_machine(present: &Scenario, machine: &Machine) -> Scenario {
@@ -139,14 +150,14 @@ pub fn for_template(present: &Scenario, template: Template) -> Scenario {
 
 /// Returns the scenario with a task made for its machine, if one can be stated.
 pub fn with_own_task(present: &Scenario) -> Option<Scenario> {
-    let made = gentle_motion(&present.machine).ok()?;
+    let made = made_for(present).ok()?;
     Some(Scenario { sketch: present.sketch.clone(), design: present.design.clone(), ..made })
 }
 
 /// Returns the edit that gives a drawn machine a task made for it in place of one that it cannot do; `None` if the task
 /// is already so, or the one that is made cannot be done either.
 pub(super) fn own_task(present: &Scenario) -> Option<Edit> {
-    let made = gentle_motion(&present.machine).ok()?.task;
+    let made = made_for(present).ok()?.task;
     Run::new(&Scenario { task: made.clone(), ..present.without_edits() }).ok()?;
     let [now, made] = [Table::try_from(&present.task).ok()?, Table::try_from(&made).ok()?];
     let dropped = now.keys().filter(|key| !made.contains_key(*key));
@@ -158,7 +169,7 @@ pub(super) fn own_task(present: &Scenario) -> Option<Edit> {
 
 /// Whether the task of a scenario is the one that is made for its machine.
 pub(super) fn has_made_task(scenario: &Scenario) -> bool {
-    gentle_motion(&scenario.machine).is_ok_and(|made| made.task == scenario.task)
+    made_for(scenario).is_ok_and(|made| made.task == scenario.task)
 }
 
 /// Returns a motion of the drives over time, as TOML. It needs no inverse kinematics and no path between points.

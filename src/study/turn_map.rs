@@ -4,6 +4,7 @@
 //! Another path to a point may lead farther, or less far: with zero momentum the pose at a point depends on the path. Of
 //! all motions along a ray the map takes the one of least momentum at every point.
 
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use schemars::JsonSchema;
@@ -29,6 +30,9 @@ const DIRECTIONS: usize = 180;
 const GAP: f64 = 0.02;
 /// Maximum number of times that the angle between two directions is halved.
 const HALVINGS: u32 = 5;
+/// Number of places between two directions that every map has, and of all places where a ray may be.
+const FINEST: usize = 1 << HALVINGS;
+const PLACES: usize = DIRECTIONS * FINEST;
 
 /// Areas that the end effector reaches along straight rays from a pose.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
@@ -43,6 +47,9 @@ pub struct TurnMap {
     pub areas: Vec<f64>,
     /// Rays counter-clockwise, from the x axis.
     pub rays: Vec<TurnRay>,
+    /// Indices of the rays that each limit needs.
+    #[serde(skip)]
+    own: Vec<Vec<usize>>,
 }
 
 /// A ray of a [`TurnMap`].
@@ -64,37 +71,42 @@ impl TurnMap {
     /// `None` if it returns false.
     pub fn of(rays: &Rays, limits: &[f64], goes_on: ProgressCallback<'_>) -> Option<Self> {
         let turns: Vec<f64> = limits.iter().map(|limit| limit.to_radians()).collect();
-        let ends = |direction: f64| rays.ends(unit(direction), &turns);
+        let direction = |place: usize| TAU * place as f64 / PLACES as f64;
         let gap = GAP * rays.model().reach();
-        let mut found: Vec<(f64, Vec<RayEnd>)> = Vec::with_capacity(2 * DIRECTIONS);
-        let mut last = (0.0, ends(0.0));
-        for i in 1..=DIRECTIONS {
-            if !goes_on(i as f64 / DIRECTIONS as f64) {
+        let mut found: BTreeMap<usize, Vec<RayEnd>> = BTreeMap::new();
+        // The rays of each limit do not depend on which others are listed.
+        let mut own: Vec<Vec<usize>> = vec![Vec::new(); limits.len()];
+        let mut reach = |limit: usize, place: usize| {
+            let place = place % PLACES;
+            found.entry(place).or_insert_with(|| rays.ends(unit(direction(place)), &turns))[limit].distance
+        };
+        for i in 0..DIRECTIONS {
+            if !goes_on((i + 1) as f64 / DIRECTIONS as f64) {
                 return None;
             }
-            let direction = TAU * i as f64 / DIRECTIONS as f64;
-            let next = (direction, if i == DIRECTIONS { found[0].1.clone() } else { ends(direction) });
-            // Directions still to come, the nearest last, each with the number of halvings before it.
-            let mut ahead = vec![(next, 0)];
-            found.push(last.clone());
-            while let Some((next, halvings)) = ahead.pop() {
-                let apart = last.1.iter().zip(&next.1).any(|(a, b)| (a.distance - b.distance).abs() > gap);
-                if apart && halvings < HALVINGS {
-                    let middle = 0.5 * (last.0 + next.0);
-                    ahead.push((next, halvings + 1));
-                    ahead.push(((middle, ends(middle)), halvings + 1));
-                    continue;
+            for (limit, own) in own.iter_mut().enumerate() {
+                // Places still to come, the nearest last.
+                let (mut last, mut ahead) = (i * FINEST, vec![(i + 1) * FINEST]);
+                own.push(last);
+                while let Some(next) = ahead.pop() {
+                    let apart = (reach(limit, last) - reach(limit, next)).abs() > gap;
+                    if apart && next - last > 1 {
+                        ahead.extend([next, usize::midpoint(last, next)]);
+                        continue;
+                    }
+                    if !ahead.is_empty() {
+                        own.push(next);
+                    }
+                    last = next;
                 }
-                if !ahead.is_empty() {
-                    found.push(next.clone());
-                }
-                last = next;
             }
         }
+        let places: Vec<usize> = found.keys().copied().collect();
+        let index = |place: &usize| places.binary_search(place).unwrap_or_default();
         let q = rays.start();
         let from = rays.model().place(q);
-        let ray = |(direction, ends): &(f64, Vec<RayEnd>)| TurnRay {
-            direction: *direction,
+        let ray = |(place, ends): (&usize, &Vec<RayEnd>)| TurnRay {
+            direction: direction(*place),
             reaches: ends.iter().map(|end| end.distance).collect(),
             stops: ends.iter().map(|end| in_words(end.stop, rays.angles())).collect(),
         };
@@ -104,6 +116,7 @@ impl TurnMap {
             turn_limits: limits.to_vec(),
             areas: Vec::new(),
             rays: found.iter().map(ray).collect(),
+            own: own.iter().map(|own| own.iter().map(index).collect()).collect(),
         };
         map.areas = (0..limits.len()).map(|i| area(&map.outline(i))).collect();
         Some(map)
@@ -126,7 +139,12 @@ impl TurnMap {
     /// Returns the outline of what is reached within turn limit `i`, m.
     pub fn outline(&self, i: usize) -> Vec<Vector> {
         let from = Vector::new(self.tip_start[0], self.tip_start[1]);
-        self.rays.iter().map(|ray| from + ray.reaches[i] * unit(ray.direction)).collect()
+        self.rays_of(i).map(|ray| from + ray.reaches[i] * unit(ray.direction)).collect()
+    }
+
+    /// Returns the rays that turn limit `i` needs: more where its ends lie far apart.
+    pub fn rays_of(&self, i: usize) -> impl Iterator<Item = &TurnRay> {
+        self.own[i].iter().map(|ray| &self.rays[*ray])
     }
 }
 

@@ -8,7 +8,7 @@ use stillbase::planning::off_plane::momentum::{MomentumModel, TipFrame};
 use stillbase::planning::off_plane::rays::{RayEnd, RayStop, Rays};
 use stillbase::session::scenario::{Scenario, TaskChange};
 use stillbase::session::verdict::{Statements, StatusLight, Verdict};
-use stillbase::session::{Refusal, Run, replay};
+use stillbase::session::{Refusal, Run, proposals, replay};
 use stillbase::study::turn_map::{TurnMap, turn_limits};
 
 const START: [f64; 3] = [1.9, 2.6, 3.4];
@@ -228,4 +228,69 @@ fn areas_are_nested() {
     assert!(map.rays.is_sorted_by(|a, b| a.direction < b.direction));
     assert!((map.rays[0].reaches[0] - SILENT[0][0]).abs() < 1e-8);
     assert!(TurnMap::of(&rays, turn_limits(true), &mut |_| false).is_none());
+}
+
+/// Each area is the same whichever others are asked for.
+#[test]
+fn areas_do_not_depend_on_the_others_listed() {
+    let rays =
+        Run::new(&Scenario::builtin("spot").expect("built in")).expect("it can be planned").rays().expect("three");
+    let map = |limits: &[f64]| TurnMap::of(&rays, limits, &mut |_| true).expect("not stopped");
+    let (all, one, two) = (map(turn_limits(true)), map(&[1.0]), map(&[0.0, 1.0]));
+    assert_eq!([all.areas[0], all.areas[2]], [two.areas[0], two.areas[1]]);
+    assert_eq!(all.areas[2], one.areas[0]);
+    assert_eq!(all.outline(2), one.outline(0));
+}
+
+/// A point beyond the outstretched arm is refused for that, not for a singularity on the way to it.
+#[test]
+fn too_far_is_too_far() {
+    let far = |frame: &str, limit: f64| Run::new(&bound_for([-3.0, 0.3], frame, limit)).expect_err("beyond reach");
+    for limit in [0.0, 5.0] {
+        let why = far("space", limit).to_string();
+        assert!(why.contains("common centre of mass") && why.contains("reaches only"), "{why}");
+        let why = far("base", limit).to_string();
+        // 0.3045 + 0.3045 + the rest of the links, from the base pin.
+        assert!(why.contains("from the base") && why.contains("reach only"), "{why}");
+    }
+    // What is said to be the reach is so: outstretched towards B the tip is there, and no farther.
+    let (spot, start) = (Scenario::builtin("spot").expect("built in"), DriveAngles::from(START));
+    let (arm, base) = (Inertia::of(&spot.machine), spot.base.body());
+    let model = MomentumModel::floating(&arm, &base, TipFrame::Space, &start);
+    let (centre, farthest) = model.range();
+    let mut most: f64 = 0.0;
+    for turn in (0..3600).map(|i| f64::from(i) * 0.1) {
+        for (a, b) in [(0.0, 0.0), (0.3, 0.1), (-0.2, 0.4)] {
+            let angle = turn.to_radians();
+            let tip = model.place(&DriveAngles::from([angle, angle + a, angle + b]));
+            most = most.max((tip - centre).norm());
+        }
+    }
+    assert!(most <= farthest + 1e-12 && most > 0.999 * farthest, "{most} of {farthest} m");
+}
+
+/// What is proposed for an arm whose base floats leaves the base as it is.
+#[test]
+fn a_task_made_for_a_free_base_keeps_its_attitude() {
+    let refused = bound_for([-3.0, 0.3], "space", 0.0);
+    let why = Run::new(&refused).expect_err("beyond reach");
+    let all = proposals(&refused, &why);
+    let made = all.iter().find(|found| found.text.contains("made for this machine")).expect("a task");
+    let changed = refused.with_settings(made.change().expect("of the task")).expect("settings");
+    let run = replay(&changed, |_, _| {}).expect("it runs");
+    assert!(Verdict::of(run.scenario(), &run.frame()).attitude.is_some_and(|attitude| attitude.is_kept()), "{made:?}");
+}
+
+#[test]
+fn gains_that_hardly_damp_are_named() {
+    let wheel = |text: &str| {
+        let start = "machine = 'spot'\n[task]\nkind = 'zero-momentum'\nstart = [1.9, 2.6, 3.4]\nto = [-0.3, 0.47]";
+        let text = format!("{start}\n[base]\nkind = 'free'\n[base.wheel]\ninertia = 0.01\n{text}");
+        Scenario::parse(&text, "wheel", None).expect("valid").base.wheel.expect("a wheel").poor_gains()
+    };
+    assert_eq!(wheel(""), None);
+    let poor = wheel("kp = 4.0\nkd = 0.4").expect("a damping ratio of 0.1");
+    assert!(poor.contains("damping ratio of 0.1 only") && poor.contains("kd of about 4 s"), "{poor}");
+    let fast = wheel("kp = 100.0\nkd = 20.0\nrate = 5").expect("beyond what sampling holds");
+    assert!(fast.contains("20 Hz and more"), "{fast}");
 }

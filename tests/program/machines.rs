@@ -627,6 +627,47 @@ fn a_model_is_written_and_not_overwritten() {
     fails(&["export-model", "nine-link", "-o", "arm.mjcf"], 2, &[".xml"]);
 }
 
+/// A model begins where its scenario does; one of a machine alone says which base is left out.
+#[test]
+fn a_model_begins_as_its_scenario() {
+    let folder = Folder::new("model-start");
+    let file = word(folder.path("craft.xml"));
+    let pose = |args: &[&str]| numbers(&object(&[args, &["-o", &file, "--force"]].concat())["pose"]);
+    let start = pose(&["export-model", "ets-vii-silent"]);
+    let stated = [0.740892645732, 1.082952357468, -0.942477796077];
+    assert_eq!(start, stated);
+    assert_eq!(pose(&["export-model", "spot", "--base", "spot"]), [1.9, 2.6, 3.4]);
+    // Another start of the same machine.
+    assert_ne!(pose(&["export-model", "spot", "--base", "spot-swing"]), [1.9, 2.6, 3.4]);
+    // A plan without a stated start begins somewhere, too: on case 3, where a plan finds it.
+    let answer = object(&["plan", "case-3"]);
+    let planned = numbers(&answer["q_start"]);
+    assert!(pose(&["export-model", "case-3"]).iter().zip(&planned).all(|(a, b)| (a - b).abs() < 1e-12));
+    let said = |args: &[&str]| text(&stillbase(args).stderr).to_owned();
+    let note = said(&["export-model", "spot", "-o", &file, "--force"]);
+    assert!(note.contains("--base spot gives it the one of the scenario spot, which floats"), "{note}");
+    assert!(!said(&["export-model", "nine-link", "-o", &file, "--force"]).contains("floats"));
+    // A model whose base floats is planned on a base that is held.
+    object(&["export-model", "spot", "--base", "spot", "-o", &file, "--force"]);
+    let note = said(&["plan", &file, "0.3,0.5", "0.35,0.5"]);
+    assert!(note.contains("planned on a base that is held"), "{note}");
+}
+
+/// A plan from a stated pose states no b, which such a machine may not have, and comes back.
+#[test]
+fn a_plan_from_a_pose_states_no_b() {
+    let folder = Folder::new("plan-pose");
+    let file = word(folder.path("own.toml"));
+    let answer = object(&["plan", "spot", "-o", &file]);
+    let written = fs::read_to_string(&file).expect("a file");
+    assert!(!written.contains("\nb = ") && !written.contains("from = ") && written.contains("start = "), "{written}");
+    assert_eq!(object(&["plan", &file])["q_end"], answer["q_end"]);
+    // On a base that floats, balance is not asked for.
+    prints(&["check", "spot-swing", "--strict"]);
+    let out = stillbase(&["check", "spot", "--strict"]);
+    assert!(out.status.code() == Some(1) && text(&out.stderr).contains("not force balanced"));
+}
+
 #[test]
 fn a_machine_comes_from_elsewhere() {
     let folder = Folder::new("from-elsewhere");

@@ -10,9 +10,11 @@ use stillbase::session::replay;
 use stillbase::session::scenario::Scenario;
 use stillbase::simulation::signal_table::SignalTable;
 use stillbase::simulation::signals::signals;
-use stillbase::study::trim::{OrbitBase, OrbitMotion, OrbitReport, TrimError, Unknowns, orbit_trim};
+use stillbase::study::trim::{MeasuredUnknown, OrbitBase, OrbitMotion, OrbitReport, TrimError, Unknowns, orbit_trim};
 
 use crate::support::Noise;
+
+type OrbitNumbers = Vec<MeasuredUnknown>;
 
 const RHO: [f64; 2] = [-0.0680112181717378, -0.24212956077851439];
 
@@ -143,4 +145,91 @@ fn what_momentum_does_not_tell_is_named() {
     let short = OrbitMotion { base_rate: motion.base_rate[..5].to_vec(), ..motion };
     let why = orbit_trim(file, &base(RHO, 0.0), &[short]).expect_err("too short");
     assert!(matches!(why, TrimError::Motion { motion: 0, .. }), "{why}");
+}
+
+/// Wrong known values leave nothing in the rates; one of them alone explains them, and then the intervals do not hold.
+#[test]
+fn a_known_value_that_is_wrong_is_named() {
+    let file = builtin("spot").expect("built in");
+    let flown = |built: &Machine| [0.0, 2.0].map(|turn| flown(built, RHO, "", turn));
+    let named = |report: &OrbitReport, key: &str| {
+        let known = report.known.iter().find(|known| known.key == key);
+        known.unwrap_or_else(|| panic!("{key} is not named: {:?}", report.known)).explains
+    };
+    let heavy = file.set("link.2.mass", "0.40").expect("valid");
+    let report = orbit_trim(file, &base(RHO, 0.0), &flown(&heavy)).expect("a fit");
+    assert!((named(&report, "link.2.mass") - 0.40).abs() < 1e-5, "{:?}", report.known);
+    assert!(report.rate_noise < 1e-8, "the fit takes it up: {}", report.rate_noise);
+    let words = report.doubts().join("\n");
+    assert!(words.contains("link.2.mass = 0.40000 kg instead of 0.33500"), "{words}");
+    // The base of the file.
+    let mut wrong = base(RHO, 0.0);
+    wrong.body.inertia = 0.21;
+    let report = orbit_trim(file, &wrong, &flown(file)).expect("a fit");
+    assert!((named(&report, "base.inertia") - 0.20215).abs() < 1e-5, "{:?}", report.known);
+    // A centre of mass is what is looked for, and no known value explains it.
+    let report = orbit_trim(file, &base(RHO, 0.0), &flown(&wrong_spot())).expect("a fit");
+    assert!(report.known.is_empty() && report.doubts().is_empty(), "{:?}", report.known);
+    assert!(orbit_trim(file, &base(RHO, 0.0), &flown(file)).expect("a fit").known.is_empty());
+}
+
+/// What is stated for 1 % is what the fit gives if the known values are so.
+#[test]
+fn known_values_count_as_stated() {
+    let (file, built) = (builtin("spot").expect("built in"), wrong_spot());
+    let motions = [flown(&built, RHO, "", 0.0)];
+    let report = |base: &OrbitBase| orbit_trim(file, base, &motions).expect("a fit").numbers;
+    let plain = report(&base(RHO, 0.0));
+    let [mut mass, mut inertia] = [base(RHO, 0.0); 2];
+    mass.body.mass *= 1.01;
+    inertia.body.inertia *= 1.01;
+    let [mass, inertia] = [report(&mass), report(&inertia)];
+    for (i, number) in plain.iter().enumerate() {
+        let shift = |of: &OrbitNumbers| of[i].measured.expect("told") - number.measured.expect("told");
+        let [bases, stated] = [shift(&mass).hypot(shift(&inertia)), number.per_percent.expect("told")];
+        // The mass of the arm, 0.8 of 12 kg, adds little.
+        assert!(stated > 0.95 * bases - 1e-9 && stated < 1.5 * bases + 1e-5, "{}: {stated}, {bases}", number.name);
+    }
+}
+
+#[test]
+fn what_the_model_does_not_explain_is_said() {
+    let file = builtin("spot").expect("built in");
+    let motion = flown(&wrong_spot(), RHO, "", 0.0);
+    let mut pushed = motion.clone();
+    // As if thrusters fired now and then.
+    for (i, rate) in pushed.base_rate.iter_mut().enumerate() {
+        *rate += 1e-3 * (i as f64 * TAU / 400.0).sin().powi(3);
+    }
+    let report = |motion: OrbitMotion| orbit_trim(file, &base(RHO, 0.0), &[motion]).expect("a fit");
+    let words = report(pushed).doubts().join("\n");
+    assert!(words.contains("varies slowly"), "{words}");
+    let (mut noisy, mut noise) = (motion, Noise::of(3));
+    noisy.base_rate.iter_mut().for_each(|rate| *rate += 1e-4 * noise.between(-1.0, 1.0));
+    assert!(report(noisy).doubts().is_empty());
+    let wheel = flown(file, RHO, "[base.wheel]\ninertia = 0.01", 0.0);
+    let why = orbit_trim(file, &base(RHO, 0.0), &[wheel]).expect_err("a wheel that the base does not have");
+    assert!(matches!(why, TrimError::NoWheel { rate } if rate > 0.1), "{why}");
+}
+
+/// One swing of the shoulder with all else straight tells nothing apart; the report says what would.
+#[test]
+fn one_swing_says_what_is_wanted() {
+    let scenario = Scenario::builtin("spot-swing").expect("built in");
+    let (all, mut step) = (signals(&scenario.machine), 0);
+    let mut table = SignalTable::of(&all);
+    replay(&scenario, |_, frame| {
+        if step % 20 == 0 {
+            table.push(&all, frame);
+        }
+        step += 1;
+    })
+    .expect("it runs");
+    let swing = OrbitMotion::of(&scenario.machine, &table).expect("signals");
+    let report = orbit_trim(&scenario.machine, &base(RHO, 0.0), &[swing]).expect("a fit");
+    let advice = report.advice.expect("not all is told");
+    assert!(advice.contains("shoulder and elbow") && advice.contains("turn apart"), "{advice}");
+    let more =
+        orbit_trim(&scenario.machine, &base(RHO, 0.0), &[flown(&scenario.machine, RHO, "", 0.0)]).expect("a fit");
+    assert_eq!(more.advice, None);
 }

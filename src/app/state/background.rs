@@ -56,6 +56,14 @@ impl AppState {
         true
     }
 
+    /// Computes the outline of the workspace now if it is still missing: for a picture, which shows it.
+    pub(crate) fn await_outline(&mut self) {
+        if let Some(subject) = self.views.unoutlined() {
+            let _ = self.queries().ask::<OutlineQuery>(&subject);
+            self.refresh_views();
+        }
+    }
+
     /// Simulates the planned motion to its end in the background, to find how far the base will move.
     pub(super) fn run_ahead(&mut self) {
         let run = self.session.run();

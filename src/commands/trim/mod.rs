@@ -22,7 +22,7 @@ use stillbase_study::trim::{
 use super::exit::print_message;
 use super::failure::Failure;
 use super::holds::{apply_bounds, bound};
-use super::input::{self, Settings, floating_base_of};
+use super::input::{self, Settings, floating_scenario};
 use super::new_machine::named_after;
 use super::output::{Format, say_written};
 use super::sites::{range, sites};
@@ -203,7 +203,7 @@ impl TrimArguments {
 
     /// Prints what motions in orbit tell about the machine.
     fn in_orbit(&self, machine: &Machine, base: &str, files: &[String]) -> Result<(), Failure> {
-        let base = floating_base_of(base)?;
+        let base = floating_scenario(base)?.base;
         let base = OrbitBase { body: base.body(), wheel: base.wheel.map_or(0.0, |wheel| wheel.inertia) };
         let motion = |file: &String| -> Result<OrbitMotion, Failure> {
             let table = signals(Path::new(file))?;

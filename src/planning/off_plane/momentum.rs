@@ -202,6 +202,17 @@ impl MomentumModel {
         self.tip.iter().map(|c| c.abs()).sum()
     }
 
+    /// Returns a point from which the end effector is never farther than a distance, m: the base pin, or the centre of mass
+    /// of arm and base, if they are seen in space and turn in any way.
+    pub fn range(&self) -> (Vector, f64) {
+        match self.floating {
+            Some(Floating { centre, frame: TipFrame::Space, .. }) => {
+                (self.origin + centre, centre.norm() + self.reach())
+            }
+            _ => (self.origin, self.reach()),
+        }
+    }
+
     /// Returns D_k at a pose, kg m², (A3).
     #[inline]
     pub fn coefficients(&self, e: &UnitVectors) -> PerDrive {

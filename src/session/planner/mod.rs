@@ -13,9 +13,18 @@ mod poses;
 mod posture;
 mod proposals;
 mod rates;
+mod too_far;
 mod turn_base;
 
 pub use along::curves;
-pub(super) use choose::plan;
 pub(crate) use momentum::{momentum_model, rays_from};
 pub use plan::Plan;
+
+use crate::refusal::Refusal;
+use crate::scenario::Scenario;
+use plan::PlannerSpace;
+
+/// Plans the motion of a task.
+pub(super) fn plan(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
+    choose::plan(scenario, space).map_err(|refusal| too_far::beyond_reach(scenario, &refusal).unwrap_or(refusal))
+}

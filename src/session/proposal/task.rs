@@ -4,7 +4,7 @@ use super::points::{ReachablePoints, in_first_period};
 use super::value::taking;
 use super::{Proposal, round_up};
 use crate::design::balancing_change;
-use crate::gentle_motion;
+use crate::gentle_motion::made_for;
 use crate::refusal::Refusal;
 use crate::scenario::{MAX_STEPS, PathShape, Scenario, Task, TaskKind};
 use stillbase_mechanics::machine::Inertia;
@@ -141,7 +141,7 @@ fn moved(task: &Task, way: &ReachablePoints) -> Option<Proposal> {
 
 /// Proposes a task made for the machine.
 pub(super) fn made_task(scenario: &Scenario) -> Option<Proposal> {
-    let own = gentle_motion(&scenario.machine).ok()?;
+    let own = made_for(scenario).ok()?;
     Some(Proposal::of_task("take a task made for this machine", own.task.whole()))
 }
 

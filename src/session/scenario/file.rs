@@ -43,6 +43,7 @@ struct File {
     #[serde(default = "usual_pose_acceleration")]
     pose_acceleration: f64,
     compare_b: Option<f64>,
+    #[serde(serialize_with = "stated_task")]
     task: Task,
     #[serde(default, skip_serializing_if = "is_default")]
     control: Control,
@@ -64,6 +65,16 @@ struct File {
     notes: Vec<StatedNote>,
     #[serde(default, rename = "branch", skip_serializing_if = "Vec::is_empty")]
     branches: Vec<StatedBranch>,
+}
+
+/// Writes a task without A and b if they follow from its start: a machine without b has none to state.
+fn stated_task<S: serde::Serializer>(task: &Task, serializer: S) -> Result<S::Ok, S::Error> {
+    if task.start.is_none() || task.samples.is_some() {
+        return task.serialize(serializer);
+    }
+    let mut stated = toml::Table::try_from(task).map_err(serde::ser::Error::custom)?;
+    stated.retain(|key, _| !["from", "b"].contains(&key));
+    stated.serialize(serializer)
 }
 
 fn usual_step() -> f64 {

@@ -26,6 +26,7 @@
 
 use stillbase_settings::key::Key;
 use stillbase_settings::keyed::keyed;
+use stillbase_settings::number::ShortNumber;
 use stillbase_settings::range::Range;
 
 keyed! {
@@ -53,6 +54,11 @@ keyed! {
 
 const WHEN_FREE: &str = "base.kind = free: another base is held";
 
+/// Least damping ratio K_d/(2 √K_p) of gains that are well chosen.
+const MIN_DAMPING: f64 = 0.3;
+/// Above this K_d times the time between two torques, they leave a rate of the opposite sign: sampled control diverges at 2.
+const MAX_SAMPLED_DAMPING: f64 = 1.0;
+
 /// State of a wheel at an instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WheelState {
@@ -62,6 +68,10 @@ pub struct WheelState {
     pub torque: f64,
     /// True if a limit makes the torque smaller than the controller wants.
     pub saturated: bool,
+}
+
+fn short(x: f64) -> ShortNumber {
+    ShortNumber((1e3 * x).round() / 1e3)
 }
 
 impl Wheel {
@@ -81,6 +91,30 @@ impl Wheel {
         let error = self.kp * angle + self.kd * rate;
         let band = self.kp * self.dead_band;
         error.clamp(-band, band) - error
+    }
+
+    /// Returns in words what is wrong with gains that let a free base swing for long, or that sampling cannot hold; `None` if
+    /// they are well chosen.
+    pub fn poor_gains(&self) -> Option<String> {
+        let damping = self.kd / (2.0 * self.kp.sqrt());
+        if self.rate > 0.0 && self.kd / self.rate > MAX_SAMPLED_DAMPING {
+            let [most, least] = [MAX_SAMPLED_DAMPING * self.rate, self.kd / MAX_SAMPLED_DAMPING].map(short);
+            return Some(format!(
+                "base.wheel.kd = {} s⁻¹ is too much for torques at {} Hz: want kd up to {most} s⁻¹, or {least} Hz and more",
+                short(self.kd),
+                short(self.rate)
+            ));
+        }
+        (self.kp > 0.0 && damping < MIN_DAMPING).then(|| {
+            format!(
+                "with base.wheel.kp = {} s⁻² and kd = {} s⁻¹ the base swings with a damping ratio of {} only: want kd of about \
+                 {} s⁻¹",
+                short(self.kp),
+                short(self.kd),
+                short(damping),
+                short(2.0 * self.kp.sqrt())
+            )
+        })
     }
 
     /// Returns the number of steps of `step` s between two torques for a free base; 0 without a rate of its own.

@@ -59,6 +59,15 @@ pub enum TrimError {
         /// Path of the signal.
         path: String,
     },
+    /// A reaction wheel turns that the base does not have.
+    #[error(
+        "a wheel turns by up to {} rad/s, but the base has none: want its inertia as base.wheel.inertia of the scenario",
+        fixed(*rate, 3)
+    )]
+    NoWheel {
+        /// Largest rate of the wheel, rad/s.
+        rate: f64,
+    },
     /// No drive moves.
     #[error("no drive moves in it: want motions in which each does")]
     Still,

@@ -40,6 +40,7 @@ mod differences;
 mod doubt;
 mod error;
 mod fit;
+mod known;
 mod long_run;
 mod machine_correction;
 mod next_excitation;
@@ -58,6 +59,7 @@ pub use correction_benefit::{CorrectionBenefit, correction_benefit};
 pub use doubt::{Cause, Doubt, MeasuredValue, doubt};
 pub use error::TrimError;
 pub use fit::{Fit, fit};
+pub use known::KnownValue;
 pub use machine_correction::{
     MachineCorrection, NoCorrection, ParameterChange, correct_machine, corrected_as_built, identified_machine,
 };

@@ -20,7 +20,7 @@
 //!
 //! # What can be found
 //! Momenta are equal up to a factor: without a wheel only ratios to D₀ can be found. Mass, inertia and centre of mass of
-//! the base are therefore taken as known, and M from the machine. First moments appear through C₀_k, so they are found
+//! the base are therefore taken as known, and M from the machine; [`KnownValue`] tells what that is worth. First moments appear through C₀_k, so they are found
 //! only if the centre of mass of the base lies off the base pin; at the pin, g_k is not told apart from C_kl and D_k.
 //!
 //! # Method
@@ -34,6 +34,7 @@ use serde::Serialize;
 
 use super::error::TrimError;
 use super::fit::confounded;
+use super::known::{Explained, KnownValue, one_percent_off};
 use super::long_run::{bartlett_lags, long_run, t_quantile};
 use super::report::{MeasuredUnknown, untold_words};
 use super::unknowns::{ComplexPart, Unknown, Unknowns};
@@ -41,6 +42,7 @@ use stillbase_mechanics::balance::Condition;
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive, Vector, unit};
 use stillbase_planning::off_plane::price::FloatingBase;
+use stillbase_settings::number::{counted, fixed_or_scientific};
 use stillbase_simulation::signal_table::SignalTable;
 
 /// Maximum number of Gauss–Newton steps.
@@ -49,6 +51,23 @@ const MAX_STEPS: usize = 40;
 const STEP_TOLERANCE: f64 = 1e-10;
 /// Singular values below this fraction of the largest are treated as zero.
 const RANK_TOLERANCE: f64 = 1e-9;
+/// Steps with a threshold of their own; later ones share one, so that they converge.
+const FREE_STEPS: usize = 10;
+/// A direction is determined if the standard deviation along it is below this fraction of the scales: the fit is linear
+/// in no larger region.
+const MAX_DEVIATION: f64 = 0.2;
+/// The file explains the rates if all unknowns leave less than this fraction less of them unexplained.
+const EXPLAINED: f64 = 0.5;
+/// One known value explains the rates if it leaves at most this fraction of what the file leaves, however small the noise.
+const NEARLY_ALL: f64 = 1e-3;
+/// Residuals whose neighbours are correlated more strongly than this vary slowly, unlike noise.
+const SLOW: f64 = 0.9;
+/// Residuals below this fraction of the base rate count for nothing.
+const NEGLIGIBLE: f64 = 1e-4;
+/// Angles that vary by less than this do not move, rad.
+const STILL_RAD: f64 = 1e-3;
+/// Motions that tell all numbers, if they differ enough.
+const ENOUGH_MOTIONS: usize = 3;
 
 /// Samples of one motion in orbit. All lists have one entry per time.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,6 +104,14 @@ pub struct OrbitReport {
     pub rate_noise: f64,
     /// Root mean square of the base rate that the machine's file does not explain, rad/s.
     pub rate_off: f64,
+    /// Whether what is not explained varies slowly, unlike noise.
+    pub residual_is_slow: bool,
+    /// Known values one of which alone explains the rates as well as all numbers together.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub known: Vec<KnownValue>,
+    /// What to measure, if not all is told.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub advice: Option<String>,
     /// Values of every line of (7) and (8), and of the momenta.
     pub numbers: Vec<MeasuredUnknown>,
     /// Groups of unknowns that are only identifiable in combination.
@@ -93,6 +120,31 @@ pub struct OrbitReport {
 }
 
 impl OrbitReport {
+    /// Returns sentences about what makes the intervals doubtful.
+    pub fn doubts(&self) -> Vec<String> {
+        let mut words = Vec::new();
+        if let [first, others @ ..] = &self.known[..] {
+            let value = |known: &KnownValue| {
+                let [file, explains] = [known.file, known.explains].map(|x| fixed_or_scientific(x, 5));
+                format!("{} = {explains} {} instead of {file}", known.key, known.unit)
+            };
+            let others = others.iter().map(|known| format!(", or {}", value(known))).collect::<String>();
+            words.push(format!(
+                "One known value alone explains these rates as well as the whole table: {}{others}. \
+                 Then the intervals do not hold: weigh the parts, and check masses and the inertia of the base first.",
+                value(first)
+            ));
+        }
+        if self.residual_is_slow {
+            words.push(
+                "What is not explained varies slowly, unlike noise: the model does not explain the rates, and the \
+                 intervals do not hold. Check masses, inertia of base and wheel, and that no thruster is on."
+                    .into(),
+            );
+        }
+        words
+    }
+
     /// Returns a sentence for each group of unknowns that is not identifiable.
     pub fn untold_words(&self) -> impl Iterator<Item = String> {
         untold_words(&self.unidentifiable)
@@ -128,7 +180,7 @@ impl OrbitMotion {
 }
 
 /// Coefficients of the momentum about the common centre of mass.
-struct Coefficients {
+pub(super) struct Coefficients {
     /// D₀ and the sum of all D′.
     base: f64,
     own: [f64; MAX_DRIVES],
@@ -138,22 +190,27 @@ struct Coefficients {
 }
 
 /// The machine on its base.
-struct Craft {
-    unknowns: Unknowns,
+pub(super) struct Craft {
+    pub unknowns: Unknowns,
     /// M, kg.
     mass: f64,
     /// m ρ, kg m.
     moment: Vector,
     /// D₀, kg m².
     inertia: f64,
-    wheel: f64,
+    pub wheel: f64,
 }
 
 impl Craft {
-    fn of(machine: &Machine, base: &OrbitBase) -> Self {
+    pub fn of(machine: &Machine, base: &OrbitBase) -> Self {
+        Self::with_mass(machine, base, machine.mass())
+    }
+
+    /// Returns the machine as if it had another mass, kg, with the same coefficients.
+    pub fn with_mass(machine: &Machine, base: &OrbitBase, arm: f64) -> Self {
         let inertia = Inertia::of(machine);
         let FloatingBase { mass: own, inertia: about, com } = base.body;
-        let mass = own + machine.mass();
+        let mass = own + arm;
         // Rotors whose stators sit on the base turn with it, too.
         let rotors = inertia.locked() - inertia.total_momentum();
         Self {
@@ -165,7 +222,7 @@ impl Craft {
         }
     }
 
-    fn coefficients(&self, x: &DVector<f64>) -> Coefficients {
+    pub fn coefficients(&self, x: &DVector<f64>) -> Coefficients {
         let zero = Vector::default();
         let mut all = Coefficients {
             base: self.inertia,
@@ -196,7 +253,7 @@ impl Craft {
 
     /// Returns the momentum without base rate, the inertia that it turns with, and the derivatives of ω by the unknowns,
     /// if `momentum` is L, kg m²/s, less that of the wheel.
-    fn row(
+    pub fn row(
         &self,
         of: &Coefficients,
         angles: &PerDrive,
@@ -265,6 +322,11 @@ pub fn orbit_trim(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) 
             return Err(TrimError::Drives { got, want: machine.drives() });
         }
     }
+    let wheel_rate =
+        motions.iter().flat_map(|motion| &motion.wheel_rate).fold(0.0_f64, |most, rate| most.max(rate.abs()));
+    if base.wheel == 0.0 && wheel_rate > 0.0 {
+        return Err(TrimError::NoWheel { rate: wheel_rate });
+    }
     if rows < 2 * all {
         return Err(TrimError::TooFew { rows, unknowns: p });
     }
@@ -284,7 +346,8 @@ pub fn orbit_trim(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) 
     let scale = |j: usize| if j < p { scales[j] } else { craft.inertia };
     let mut first_residual = None;
     let mut solved = None;
-    for _ in 0..MAX_STEPS {
+    let (start, mut fixed_threshold) = (x.clone(), None);
+    for iteration in 0..MAX_STEPS {
         let of = craft.coefficients(&x);
         let (mut slopes, mut errors) = (DMatrix::zeros(rows, all), DVector::zeros(rows));
         let mut own = vec![0.0; p];
@@ -302,8 +365,14 @@ pub fn orbit_trim(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) 
         let r = scaled.clone().qr().unpack_r();
         let svd = SVD::try_new(r, false, true, 5.0 * f64::EPSILON, 10_000).ok_or(TrimError::NotFinite)?;
         let v = svd.v_t.ok_or(TrimError::NotFinite)?.transpose();
-        // A direction that noise alone could change by the size of the machine is not determined.
-        let threshold = (RANK_TOLERANCE * svd.singular_values.max()).max(off);
+        // A direction in which noise alone could lead far from the file is not determined.
+        let threshold = match fixed_threshold {
+            Some(fixed) => fixed,
+            None => (RANK_TOLERANCE * svd.singular_values.max()).max(off / MAX_DEVIATION),
+        };
+        if iteration + 1 >= FREE_STEPS {
+            fixed_threshold = Some(threshold);
+        }
         let is_kept = |i: &usize| svd.singular_values[*i] > threshold;
         let (kept, rest): (Vec<usize>, Vec<usize>) = (0..all).partition(is_kept);
         let mut inverse = DMatrix::zeros(all, all);
@@ -311,7 +380,12 @@ pub fn orbit_trim(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) 
             let column = DVector::from_fn(all, |j, _| v[(j, i)] * scale(j));
             inverse += &column * column.transpose() / svd.singular_values[i].powi(2);
         }
-        let step = &inverse * slopes.tr_mul(&errors);
+        let mut step = &inverse * slopes.tr_mul(&errors);
+        // What is not determined goes back to where it was, whatever earlier steps have made of it.
+        for i in &rest {
+            let way: f64 = (0..all).map(|j| v[(j, *i)] * (start[j] - x[j]) / scale(j)).sum();
+            (0..all).for_each(|j| step[j] += way * v[(j, *i)] * scale(j));
+        }
         let size = (0..all).map(|j| (step[j] / scale(j)).abs()).fold(0.0, f64::max);
         if !size.is_finite() {
             return Err(TrimError::NotFinite);
@@ -329,6 +403,20 @@ pub fn orbit_trim(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) 
     let covariance = &inverse * (long_run(&scores, &counts, lags, 1) / share) * inverse.transpose();
     let critical = t_quantile(lags as f64 / rows as f64);
     let (groups, told) = confounded(&free.rows(0, p).clone_owned(), p);
+    // How far each number moves with each known value, in one Gauss–Newton step.
+    let shifts: Vec<DVector<f64>> = one_percent_off(machine, base)
+        .iter()
+        .map(|craft| {
+            let of = craft.coefficients(&x);
+            let moved = samples().map(|(i, motion, row)| {
+                let left = x[p + i] - craft.wheel * motion.wheel_rate[row];
+                let [still, turning] = craft.row(&of, &motion.angles[row], &motion.rates[row], None, &mut []);
+                motion.base_rate[row] - (left - still) / turning
+            });
+            let moved = DVector::from_iterator(rows, moved) - &errors;
+            &inverse * slopes.tr_mul(&moved)
+        })
+        .collect();
     let number = |i: usize| {
         let (what, half) = (craft.unknowns.at(i), critical * covariance[(i, i)].max(0.0).sqrt());
         let is_told = told[i];
@@ -339,17 +427,78 @@ pub fn orbit_trim(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) 
             identifiable: is_told,
             measured: is_told.then_some(x[i] + 0.0),
             half_width: is_told.then_some(half),
+            per_percent: is_told.then(|| shifts.iter().map(|shift| shift[i].powi(2)).sum::<f64>().sqrt()),
             off: is_told && (x[i] - nominal[i]).abs() > half,
         }
     };
     let name = |i: &usize| craft.unknowns.at(*i).name(machine);
+    let rate_off = first_residual.unwrap_or_default();
+    // As much as the unknowns explain of noise alone, and some more.
+    let chance = 1.0 + 3.0 * (p * lags) as f64 / rows as f64;
+    let known = match rate_noise < (1.0 - EXPLAINED) * rate_off {
+        true => {
+            Explained::of(machine, base, motions).by_one_value((rate_noise * chance.sqrt()).max(NEARLY_ALL * rate_off))
+        }
+        false => Vec::new(),
+    };
+    let base_rate = (samples().map(|(_, motion, row)| motion.base_rate[row].powi(2)).sum::<f64>() / rows as f64).sqrt();
+    let residual_is_slow = rate_noise > NEGLIGIBLE * base_rate && first_correlation(&errors, &counts) > SLOW;
     Ok(OrbitReport {
         machine: machine.name().to_owned(),
         motions: motions.len(),
         rows,
         rate_noise,
-        rate_off: first_residual.unwrap_or_default(),
+        rate_off,
+        residual_is_slow,
+        known,
+        advice: told.contains(&false).then(|| advice(machine, base, motions)),
         numbers: (0..p).map(number).collect(),
         unidentifiable: groups.iter().map(|group| group.iter().map(name).collect()).collect(),
     })
+}
+
+/// Returns the correlation of neighbouring residuals within motions.
+fn first_correlation(errors: &DVector<f64>, counts: &[usize]) -> f64 {
+    let (mut from, mut next) = (0, 0.0);
+    for count in counts {
+        let own = &errors.as_slice()[from..from + count];
+        next += own.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>();
+        from += count;
+    }
+    next / errors.norm_squared().max(f64::MIN_POSITIVE)
+}
+
+/// Returns in words what to measure, if motions do not tell all unknowns.
+fn advice(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) -> String {
+    let n = machine.drives();
+    let name = |k: usize| machine.spec().drives[k].name.as_str();
+    let varies = |of: &dyn Fn(&PerDrive) -> f64| {
+        motions.iter().any(|motion| {
+            let each = || motion.angles.iter().map(of);
+            each().fold(f64::NEG_INFINITY, f64::max) - each().fold(f64::INFINITY, f64::min) > STILL_RAD
+        })
+    };
+    let still: Vec<&str> = (0..n).filter(|k| !varies(&|q| q[*k])).map(name).collect();
+    if !still.is_empty() {
+        return format!("{} did not move: want motions in which every drive moves.", still.join(", "));
+    }
+    let pairs = (0..n).flat_map(|k| (k + 1..n).map(move |l| (k, l)));
+    let together: Vec<String> = pairs
+        .filter(|(k, l)| !varies(&|q| q[*l] - q[*k]))
+        .map(|(k, l)| format!("{} and {}", name(k), name(l)))
+        .collect();
+    if !together.is_empty() {
+        let pairs = together.join(", ");
+        return format!("Turned as one: {pairs}. Want motions in which they turn apart, one joint after the other.");
+    }
+    if motions.len() < ENOUGH_MOTIONS {
+        return format!(
+            "{} may not do: want {ENOUGH_MOTIONS} that begin in other poses and move other joints.",
+            counted(motions.len(), "motion")
+        );
+    }
+    if base.body.com.norm() < 1e-9 {
+        return "With its centre of mass at the base pin, the base tells no first moments apart.".into();
+    }
+    "Want motions that go farther and faster, in other poses.".into()
 }

@@ -75,6 +75,9 @@ pub struct MeasuredUnknown {
     /// Half width of the 95 % interval.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub half_width: Option<f64>,
+    /// Change of the value if what is taken as known is 1 % off; only in orbit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub per_percent: Option<f64>,
     /// Whether the unknown differs significantly from the machine's file. Measured by forces, the values used for the others
     /// are given; measured in orbit, the file's value lies outside of the interval.
     pub off: bool,
@@ -197,6 +200,7 @@ impl TrimReport {
                     identifiable,
                     measured: identifiable.then_some(fit.measured[i] + 0.0),
                     half_width: identifiable.then_some(fit.half_width(i)),
+                    per_percent: None,
                     off: taken.differs[i],
                 },
                 taken: taken.values[i] + 0.0,

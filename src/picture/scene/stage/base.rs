@@ -34,6 +34,8 @@ pub const PULL_STIFFNESS: f64 = 20.0;
 
 /// Motion of the base below this counts as rest, m and rad.
 const REST_THRESHOLD: f64 = 1e-12;
+/// Turn and shift below this fraction of the other, rad and m, count for nothing.
+const NEGLIGIBLE: f64 = 1e-6;
 
 impl BaseStage {
     /// Prepares base and payload of a run; `plant` is the machine with the lengths of the plant.
@@ -255,11 +257,16 @@ fn motion(frame: &Frame) -> String {
         true => signed(1e3 * x, (2 - (1e3 * peak).log10().floor() as i32).clamp(0, 9) as usize),
         false => "0".into(),
     };
-    match totals.shift > REST_THRESHOLD || totals.base_angle > REST_THRESHOLD {
-        true => {
-            format!("base {} mm, {} mrad", written(at.norm(), totals.shift), written(angle, totals.base_angle))
-        }
-        false => "base at rest".into(),
+    // What is negligible beside the other is not named: a millimetre of shift has no picoradians of turn.
+    let [turns, shifts] = [
+        totals.base_angle > REST_THRESHOLD.max(NEGLIGIBLE * totals.shift),
+        totals.shift > REST_THRESHOLD.max(NEGLIGIBLE * totals.base_angle),
+    ];
+    let shift = shifts.then(|| format!("{} mm", written(at.norm(), totals.shift)));
+    let turn = turns.then(|| format!("{} mrad", written(angle, totals.base_angle)));
+    match [shift, turn].into_iter().flatten().collect::<Vec<_>>().as_slice() {
+        [] => "base at rest".into(),
+        moves => format!("base {}", moves.join(", ")),
     }
 }
 
