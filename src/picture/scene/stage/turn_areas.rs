@@ -7,6 +7,7 @@ use crate::scene::linkage::LinkageModel;
 use crate::scene::palette::{Palette, faded};
 use crate::scene::{Anchor, ItemChanges, Label, Mesh, Polyline, Scene, Solid, Strips, fill, point, posed};
 use stillbase_mechanics::planar::{Pose2, Vector, unit};
+use stillbase_planning::off_plane::momentum::MomentumModel;
 use stillbase_planning::off_plane::rays::Rays;
 use stillbase_query::ProgressCallback;
 use stillbase_study::turn_map::{TurnMap, turn_limits};
@@ -22,6 +23,8 @@ const LABEL_GAP: f64 = 0.08;
 #[derive(Clone, Debug)]
 pub struct TurnAreas {
     areas: Vec<TurnArea>,
+    /// The arm and its base.
+    model: MomentumModel,
     /// Whether they move with the base.
     carried: bool,
 }
@@ -68,7 +71,16 @@ impl TurnAreas {
             let loops = [outline.iter().map(|p| [p.re, p.im]).collect()];
             TurnArea { boundary: [line].into(), mesh: Arc::new(fill::mesh(&loops)), label }
         };
-        Some(Self { areas: (0..=last).map(area).collect(), carried: rays.model().is_carried() })
+        Some(Self {
+            areas: (0..=last).map(area).collect(),
+            model: rays.model().clone(),
+            carried: rays.model().is_carried(),
+        })
+    }
+
+    /// Returns whether these are areas of an arm on a base, from whatever start.
+    pub fn is_of(&self, model: &MomentumModel) -> bool {
+        self.model.is_same_craft(model)
     }
 
     /// Returns the triangles of each area.
@@ -83,14 +95,14 @@ impl TurnAreas {
         all.map(|[x, y, _]| base.place(Vector::new(f64::from(*x), f64::from(*y)))).collect()
     }
 
-    /// Draws the areas; `fills` are the indices of their meshes.
+    /// Draws the areas; `fills` are the indices of their meshes, `opacity` is 1 unless others will replace them.
     pub fn draw(
         &self,
         scene: &mut Scene,
         linkage: &LinkageModel,
         palette: &Palette,
         shown: &DrawnFrame<'_>,
-        fills: &[usize],
+        (fills, opacity): (&[usize], f32),
     ) {
         let base = if self.carried { shown.base } else { Pose2::default() };
         let z = linkage.floor();
@@ -100,15 +112,15 @@ impl TurnAreas {
                 name: format!("turns/{i}").into(),
                 mesh: *mesh,
                 world_from_item: pose(z - (i + 1) as f64 * FILL_DEPTH * linkage.reach()),
-                colour: faded(palette.amber, FILL_OPACITY),
+                colour: faded(palette.amber, opacity * FILL_OPACITY),
                 changes: ItemChanges::Pose,
             });
-            let (width, opacity) = if i == 0 { (1.8, 1.0) } else { (1.0, 0.75) };
+            let (width, of_line) = if i == 0 { (1.8, 1.0) } else { (1.0, 0.75) };
             let line = Polyline::new(
                 format!("turns/{i}/boundary"),
                 area.boundary.clone(),
                 width,
-                faded(palette.amber, opacity),
+                faded(palette.amber, opacity * of_line),
             );
             scene.lines.push(line.moving(pose(z)));
             if let Some((at, text)) = &area.label {
