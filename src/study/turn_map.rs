@@ -125,14 +125,15 @@ impl TurnMap {
     /// Returns the curves where rays meet dynamic singularities at zero momentum, m: arcs of the outline of what it reaches.
     pub fn singular_curves(&self) -> Vec<Vec<Vector>> {
         let outline = self.outline(0);
-        let is_singular = |ray: &TurnRay| ray.stops.first().is_some_and(|stop| stop == DYNAMIC);
-        let Some(first) = self.rays.iter().position(|ray| !is_singular(ray)) else {
+        let is_singular: Vec<bool> =
+            self.rays_of(0).map(|ray| ray.stops.first().is_some_and(|stop| stop == DYNAMIC)).collect();
+        let Some(first) = is_singular.iter().position(|is_singular| !is_singular) else {
             return vec![outline.iter().chain(outline.first()).copied().collect()];
         };
         // From a ray that ends otherwise, once around.
-        let n = self.rays.len();
+        let n = outline.len();
         let around: Vec<usize> = (first..=first + n).map(|i| i % n).collect();
-        let arcs = around.split(|i| !is_singular(&self.rays[*i])).filter(|arc| arc.len() > 1);
+        let arcs = around.split(|i| !is_singular[*i]).filter(|arc| arc.len() > 1);
         arcs.map(|arc| arc.iter().map(|i| outline[*i]).collect()).collect()
     }
 

@@ -228,6 +228,13 @@ fn areas_are_nested() {
     assert!(map.rays.is_sorted_by(|a, b| a.direction < b.direction));
     assert!((map.rays[0].reaches[0] - SILENT[0][0]).abs() < 1e-8);
     assert!(TurnMap::of(&rays, turn_limits(true), &mut |_| false).is_none());
+    // All of its boundary is singular, but for where the arm is outstretched or folded.
+    let singular = map.singular_curves();
+    let other = map.rays_of(0).filter(|ray| ray.stops[0] != "dynamic singularity").count();
+    let points: usize = singular.iter().map(Vec::len).sum();
+    assert!(points > 150 && points <= map.rays_of(0).count() - other + 1, "{points}, {other}");
+    let outline = map.outline(0);
+    assert!(singular.iter().flatten().all(|p| outline.contains(p)));
 }
 
 /// Each area is the same whichever others are asked for.

@@ -17,6 +17,7 @@ mod under;
 mod workspace;
 
 pub use base::PULL_STIFFNESS;
+use turn_areas::TurnAreas;
 use workspace::WorkspaceParts;
 pub use workspace::{OutlineQuery, OutlineSubject, Outlined, Workspace};
 
@@ -69,13 +70,16 @@ pub struct Stage {
     grid: Grid,
 }
 
+/// Opacity of areas that are those of another start.
+const KEPT_OPACITY: f32 = 0.4;
+
 /// What the end effector reaches.
 #[derive(Clone, Debug)]
 enum Reached {
     /// Nothing is drawn.
     None,
-    /// Its outline is not yet computed.
-    Wanted(OutlineSubject),
+    /// Its outline is not yet computed; areas of another start are shown until then, dimmed.
+    Wanted(OutlineSubject, Option<Arc<TurnAreas>>),
     /// Its outline is known.
     Done(Outlined),
 }
@@ -88,11 +92,11 @@ impl Reached {
             let scenario = run.scenario();
             let rays = (scenario.task.kind == TaskKind::ZeroMomentum).then(|| run.rays().ok()).flatten();
             let subject = |rays| OutlineSubject::Turns(Shared(Arc::new(rays)), scenario.base.floats());
-            return rays.map_or(Self::None, |rays| Self::Wanted(subject(rays)));
+            return rays.map_or(Self::None, |rays| Self::Wanted(subject(rays), None));
         };
         match Workspace::known(space) {
             Some(known) => Self::Done(Outlined::Held(Arc::new(known))),
-            None => Self::Wanted(OutlineSubject::Held(Shared(space.clone()))),
+            None => Self::Wanted(OutlineSubject::Held(Shared(space.clone())), None),
         }
     }
 }
@@ -156,7 +160,7 @@ impl Stage {
     /// Returns what is still to be outlined.
     pub fn unoutlined(&self) -> Option<OutlineSubject> {
         match &self.reached {
-            Reached::Wanted(subject) => Some(subject.clone()),
+            Reached::Wanted(subject, _) => Some(subject.clone()),
             _ => None,
         }
     }
@@ -170,6 +174,17 @@ impl Stage {
             None => Vec::new(),
         };
         self.reached = outline.map_or(Reached::None, Reached::Done);
+    }
+
+    /// Shows the last areas of the same craft until those of this start are known, as while a point is dragged.
+    pub(super) fn keep_outline(&mut self, last: &Outlined) {
+        let Outlined::Turns(areas) = last else { return };
+        if let Reached::Wanted(OutlineSubject::Turns(rays, _), kept) = &mut self.reached
+            && areas.is_of(rays.0.model())
+        {
+            *kept = Some(areas.clone());
+            self.fills = areas.fills().map(|mesh| self.linkage.add(mesh.clone())).collect();
+        }
     }
 
     fn planes(&self) -> Option<&Planes> {
@@ -339,7 +354,7 @@ impl Stage {
             let points = match &self.reached {
                 Reached::Done(Outlined::Held(workspace)) => workspace.points(b, frame),
                 Reached::Done(Outlined::Turns(areas)) => areas.points(base),
-                Reached::None | Reached::Wanted(_) => Vec::new(),
+                Reached::None | Reached::Wanted(..) => Vec::new(),
             };
             points.into_iter().map(|p| (p, self.linkage.floor()))
         };
@@ -391,8 +406,13 @@ impl Stage {
                 let parts = WorkspaceParts { fill: self.fills.first().copied(), compared_b: self.compared };
                 workspace.draw(&mut scene, linkage, &palette, shown, options, parts);
             }
-            Reached::Done(Outlined::Turns(areas)) => areas.draw(&mut scene, linkage, &palette, shown, &self.fills),
-            Reached::None | Reached::Wanted(_) => {}
+            Reached::Done(Outlined::Turns(areas)) => {
+                areas.draw(&mut scene, linkage, &palette, shown, (&self.fills, 1.0))
+            }
+            Reached::Wanted(_, Some(areas)) => {
+                areas.draw(&mut scene, linkage, &palette, shown, (&self.fills, KEPT_OPACITY));
+            }
+            Reached::None | Reached::Wanted(_, None) => {}
         }
         if let Some(ring) = &self.ring {
             ring.draw(&mut scene, &palette, shown, options, z);

@@ -180,6 +180,8 @@ struct CompletedInput {
     base_views: ByIdentity<Views>,
     run: Run,
     outline: Option<ByIdentity<Option<Outlined>>>,
+    /// The last outline, until this one is known.
+    kept: Option<ByIdentity<Option<Outlined>>>,
     /// Indices of the drives along the axes of joint space, from 0, if there are more than three drives.
     drives: Option<[usize; 3]>,
 }
@@ -196,6 +198,7 @@ impl PartialEq for CompletedInput {
         self.base_views == other.base_views
             && self.is_of(&other.run)
             && self.outline == other.outline
+            && self.kept == other.kept
             && self.drives == other.drives
     }
 }
@@ -204,10 +207,12 @@ impl QuickQuery for Completed {
     type Input = CompletedInput;
     type Answer = Views;
 
-    fn answer(CompletedInput { base_views, run, outline, drives }: &CompletedInput) -> Views {
+    fn answer(CompletedInput { base_views, run, outline, kept, drives }: &CompletedInput) -> Views {
         let mut views = Views::clone(&base_views.0);
         if let Some(ByIdentity(outline)) = outline {
             views.stage.set_outline(Option::clone(outline));
+        } else if let Some(kept) = kept.as_ref().and_then(|kept| kept.0.as_ref().as_ref()) {
+            views.stage.keep_outline(kept);
         }
         views.complete(run);
         if let (Some(joints), Some(drives)) = (&mut views.joints, drives) {
@@ -240,18 +245,21 @@ impl Views {
     #[doc(hidden)]
     pub fn completed(made: &Arc<Self>, queries: &Queries, run: &Run, drives: Option<[usize; 3]>) -> Arc<Self> {
         let wanted = made.unoutlined();
-        let outline = wanted.and_then(|subject| queries.known::<OutlineQuery>(&subject)).map(ByIdentity);
+        let outline = wanted.as_ref().and_then(|subject| queries.known::<OutlineQuery>(subject)).map(ByIdentity);
+        let kept = wanted.filter(|_| outline.is_none()).and_then(|_| queries.last::<OutlineQuery>()).map(ByIdentity);
         queries.ask_if::<QuickWork<Completed>>(
             |known| {
                 Arc::ptr_eq(&known.base_views.0, made)
                     && known.is_of(run)
                     && known.outline == outline
+                    && known.kept == kept
                     && known.drives == drives
             },
             || CompletedInput {
                 base_views: ByIdentity(made.clone()),
                 run: run.clone(),
                 outline: outline.clone(),
+                kept: kept.clone(),
                 drives,
             },
         )

@@ -125,6 +125,11 @@ impl MomentumModel {
         own
     }
 
+    /// Returns whether arm and base are those of another model, which may start elsewhere.
+    pub fn is_same_craft(&self, other: &Self) -> bool {
+        self.arm == other.arm && self.floating == other.floating
+    }
+
     /// Returns the number of drives.
     pub fn drives(&self) -> usize {
         self.arm.drives

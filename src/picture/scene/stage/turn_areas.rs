@@ -7,6 +7,7 @@ use crate::scene::linkage::LinkageModel;
 use crate::scene::palette::{Palette, faded};
 use crate::scene::{Anchor, ItemChanges, Label, Mesh, Polyline, Scene, Solid, Strips, fill, point, posed};
 use stillbase_mechanics::planar::{Pose2, Vector, unit};
+use stillbase_planning::off_plane::momentum::MomentumModel;
 use stillbase_planning::off_plane::rays::Rays;
 use stillbase_query::ProgressCallback;
 use stillbase_study::turn_map::{TurnMap, turn_limits};
@@ -26,6 +27,8 @@ pub struct TurnAreas {
     singular: Strips,
     /// Place of the label of the longest such curve, m.
     singular_label: Option<Vector>,
+    /// The arm and its base.
+    model: MomentumModel,
     /// Whether they move with the base.
     carried: bool,
 }
@@ -80,8 +83,14 @@ impl TurnAreas {
             singular_label: longest.filter(has_room).map(|curve| curve[curve.len() / 2]),
             singular: curves.iter().map(|curve| curve.iter().map(|p| point(*p, 0.0)).collect::<Vec<_>>()).collect(),
             areas: (0..=last).map(area).collect(),
+            model: rays.model().clone(),
             carried: rays.model().is_carried(),
         })
+    }
+
+    /// Returns whether these are areas of an arm on a base, from whatever start.
+    pub fn is_of(&self, model: &MomentumModel) -> bool {
+        self.model.is_same_craft(model)
     }
 
     /// Returns the triangles of each area.
@@ -96,14 +105,14 @@ impl TurnAreas {
         all.map(|[x, y, _]| base.place(Vector::new(f64::from(*x), f64::from(*y)))).collect()
     }
 
-    /// Draws the areas; `fills` are the indices of their meshes.
+    /// Draws the areas; `fills` are the indices of their meshes, `opacity` is 1 unless others will replace them.
     pub fn draw(
         &self,
         scene: &mut Scene,
         linkage: &LinkageModel,
         palette: &Palette,
         shown: &DrawnFrame<'_>,
-        fills: &[usize],
+        (fills, opacity): (&[usize], f32),
     ) {
         let base = if self.carried { shown.base } else { Pose2::default() };
         let z = linkage.floor();
@@ -113,15 +122,15 @@ impl TurnAreas {
                 name: format!("turns/{i}").into(),
                 mesh: *mesh,
                 world_from_item: pose(z - (i + 1) as f64 * FILL_DEPTH * linkage.reach()),
-                colour: faded(palette.amber, FILL_OPACITY),
+                colour: faded(palette.amber, opacity * FILL_OPACITY),
                 changes: ItemChanges::Pose,
             });
-            let (width, opacity) = if i == 0 { (1.8, 1.0) } else { (1.0, 0.75) };
+            let (width, of_line) = if i == 0 { (1.8, 1.0) } else { (1.0, 0.75) };
             let line = Polyline::new(
                 format!("turns/{i}/boundary"),
                 area.boundary.clone(),
                 width,
-                faded(palette.amber, opacity),
+                faded(palette.amber, opacity * of_line),
             );
             scene.lines.push(line.moving(pose(z)));
             if let Some((at, text)) = &area.label {
@@ -129,7 +138,7 @@ impl TurnAreas {
                 scene.labels.push(Label::new(name, at, [0.0, 0.0], text, palette.ink, 11.5, Anchor::Centre));
             }
         }
-        let line = Polyline::new("turns/singular", self.singular.clone(), 2.4, palette.reaction);
+        let line = Polyline::new("turns/singular", self.singular.clone(), 2.4, faded(palette.reaction, opacity));
         scene.lines.push(line.moving(pose(z)));
         if let Some(at) = self.singular_label {
             let (at, text) = (point(base.place(at), z), "dynamic singularity");
