@@ -173,7 +173,7 @@ fn compare_puts_machines_on_one_task() {
     // One machine beside that of the scenario; files of one name are told apart by theirs.
     let table = prints(&["compare", &file, "--task", "case-3"]);
     assert!(table.contains("\nnine-link ") && table.contains("\nafter "), "{table}");
-    let other = word(folder.file("twin.toml", &fs::read_to_string(&file).expect("written")));
+    let other = word(folder.file("twin.toml", fs::read_to_string(&file).expect("written")));
     let table = prints(&["compare", &file, &other, "--task", "case-3"]);
     assert!(table.contains("\nafter ") && table.contains("\ntwin "), "{table}");
     let heavy = ["--set", "link.9.mass=0.5"];

@@ -55,7 +55,7 @@ pub enum NoLoop {
     #[error("no closed motion of this arm turns its base: how far the base turns depends on the pose alone")]
     Flat,
     /// The loops found within the limits turn the base by less.
-    #[error("no loop was found that turns the base by more than {} rad", significant(*.turn))]
+    #[error("no loop was found that turns the base by more than {}°", significant(turn.to_degrees()))]
     Short {
         /// The largest turn in the wanted sense, rad.
         turn: f64,
