@@ -56,8 +56,8 @@ const GRID = 256.0; // per px
 // Unit normal of the line through joint j that bisects the angle between p-j and j-n, on a grid; zero if it is undefined.
 // Both segments that meet in j call this with the same arguments, so their results are identical.
 fn border(p: vec2<f32>, j: vec2<f32>, n: vec2<f32>) -> vec2<f32> {
-    let u = unit(on_grid(j, GRID) - on_grid(p, GRID));
-    let v = unit(on_grid(n, GRID) - on_grid(j, GRID));
+    let u = unit(j - p);
+    let v = unit(n - j);
     let both = any(u != vec2<f32>(0.0)) && any(v != vec2<f32>(0.0));
     return select(vec2<f32>(0.0), on_grid(unit(u + v), 1024.0), both);
 }
