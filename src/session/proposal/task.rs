@@ -16,6 +16,7 @@ use stillbase_settings::change::{DEFAULT_WORD, single_change};
 use stillbase_settings::number::significant;
 use stillbase_settings::range::Requirement;
 use stillbase_settings::word::Choice;
+use stillbase_simulation::plant::BaseKind;
 
 /// Factors by which a step is made finer, in the order of the trials.
 const FINER_STEPS: [f64; 2] = [4.0, 20.0];
@@ -64,6 +65,13 @@ pub(super) fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal
             found.push(Proposal::new(format!("take a step of {step} s"), single_change("step", step)));
         }
         _ => {}
+    }
+    if task.kind == TaskKind::TurnBase && !scenario.base.floats() {
+        found.push(Proposal::new("let the base float", single_change("base.kind", BaseKind::Free.words().file)));
+        if scenario.base.wheel.is_some() {
+            found.push(Proposal::new("take the wheel off", single_change("base.wheel", DEFAULT_WORD)));
+        }
+        return found;
     }
     if !would_plan(refusal) {
         return found;
