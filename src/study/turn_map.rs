@@ -139,8 +139,13 @@ impl TurnMap {
 
     /// Returns the outline of what is reached within turn limit `i`, m.
     pub fn outline(&self, i: usize) -> Vec<Vector> {
-        let from = Vector::new(self.tip_start[0], self.tip_start[1]);
-        self.rays_of(i).map(|ray| from + ray.reaches[i] * unit(ray.direction)).collect()
+        self.rays_of(i).map(|ray| self.end(i, ray)).collect()
+    }
+
+    /// Returns where a ray ends within turn limit `i`, m.
+    pub fn end(&self, i: usize, ray: &TurnRay) -> Vector {
+        let [x, y] = self.tip_start;
+        Vector::new(x, y) + ray.reaches[i] * unit(ray.direction)
     }
 
     /// Returns the rays that turn limit `i` needs: more where its ends lie far apart.

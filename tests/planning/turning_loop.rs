@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use proptest::prelude::*;
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse};
-use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
+use stillbase::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
 use stillbase::planning::curves::Path;
 use stillbase::planning::off_plane::base_turn::BaseTurn;
 use stillbase::planning::off_plane::momentum::{MomentumModel, TipFrame};
@@ -140,6 +140,32 @@ fn loops_keep_the_limits_of_the_joints() {
     }
 }
 
+/// Returns a serial arm of bars, each with its length, m, mass, kg, and inertia, kg m².
+fn serial(bars: &[(f64, f64, f64)]) -> Machine {
+    let mut text = "name = \"serial\"\n".to_owned();
+    for (k, (length, mass, inertia)) in bars.iter().enumerate() {
+        let attach = if k == 0 { "\"base\"".into() } else { format!("{{ link = \"{k}\", at = \"tip\" }}") };
+        let k = k + 1;
+        text += &format!(
+            "[[drive]]\nname = \"{k}\"\n[[link]]\nname = \"{k}\"\ndrive = \"{k}\"\nattach = {attach}\n\
+             length = {length}\nmass = {mass}\ninertia = {inertia}\ncom = {}\n",
+            0.5 * length
+        );
+    }
+    text += &format!("[end_effector]\nlink = \"{}\"\n", bars.len());
+    parse(&text, "serial").expect("valid")
+}
+
+/// An arm of as many drives as a machine may have.
+#[test]
+fn loops_of_the_most_drives_are_found() {
+    let machine = serial(&[(0.4, 1.0, 0.02); MAX_DRIVES]);
+    let start = DriveAngles(PerDrive::from_fn(MAX_DRIVES, |k| 0.3 * k as f64));
+    let model = beside(&machine, &FloatingBase { mass: 20.0, inertia: 2.0, com: Vector::new(0.1, -0.2) }, &start);
+    let found = TurningLoop::shortest(&model, machine.angles(), &start, 0.01).expect("there is one");
+    assert!((turned(&model, &found) - 0.01).abs() < 1e-9);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
@@ -151,18 +177,7 @@ proptest! {
         (mass, inertia, x, y) in (2.0..30.0f64, 0.5..10.0f64, -0.5..0.5f64, -0.5..0.5f64),
         degrees in prop_oneof![-1.0..-0.01f64, 0.01..1.0f64],
     ) {
-        let mut text = "name = \"serial\"\n".to_owned();
-        for (k, (length, mass, inertia)) in bars.iter().enumerate() {
-            let attach = if k == 0 { "\"base\"".into() } else { format!("{{ link = \"{k}\", at = \"tip\" }}") };
-            let k = k + 1;
-            text += &format!(
-                "[[drive]]\nname = \"{k}\"\n[[link]]\nname = \"{k}\"\ndrive = \"{k}\"\nattach = {attach}\n\
-                 length = {length}\nmass = {mass}\ninertia = {inertia}\ncom = {}\n",
-                0.5 * length
-            );
-        }
-        text += &format!("[end_effector]\nlink = \"{}\"\n", bars.len());
-        let machine = parse(&text, "serial").expect("valid");
+        let machine = serial(&bars);
         let start = DriveAngles(PerDrive::from_fn(bars.len(), |k| q[k]));
         let base = FloatingBase { mass, inertia, com: Vector::new(x, y) };
         let model = beside(&machine, &base, &start);

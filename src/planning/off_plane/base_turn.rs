@@ -21,9 +21,7 @@ impl BaseTurn {
         }
         let slope = |s: f64| {
             let at = path.at(s);
-            let e = at.q.units();
-            let inertia = model.turning(&e).map_or(f64::INFINITY, |base| base.inertia);
-            -model.coefficients(&e).dot(&at.first) / inertia
+            model.turn_coefficients(&at.q.units()).map_or(0.0, |turn| turn.dot(&at.first))
         };
         let off = 0.6_f64.sqrt();
         let stations = path.sample_parameters();

@@ -32,7 +32,7 @@ use crate::curves::curve::{Curve, CurvePoint};
 use crate::curves::path::by_pieces;
 use crate::curves::table::PathTable;
 use stillbase_mechanics::kinematics::column;
-use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
+use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, cross, unit};
 
 /// ε: momentum is let in where the self-motion lies within this sine of the silent plane. Rates then stay below some
 /// 1/ε times those of minimum norm.
@@ -66,7 +66,6 @@ pub(super) fn least_rates(model: &MomentumModel, q: &DriveAngles, turn: f64, v: 
         v *= unit(-turn);
     }
     if n == 2 {
-        let cross = |a: Vector, b: Vector| a.re * b.im - a.im * b.re;
         let area = cross(j[0], j[1]);
         let rates = PerDrive::from_fn(2, |k| if k == 0 { cross(v, j[1]) } else { cross(j[0], v) } / area);
         let turn = base.map_or(0.0, |base| -d.dot(&rates) / base.inertia);

@@ -23,6 +23,11 @@ const GAUSS: [[f64; 2]; 5] = [
     [0.906_179_845_938_664, 0.236_926_885_056_189_1],
 ];
 
+/// Returns knot i.
+fn knot(i: usize) -> f64 {
+    (i.saturating_sub(DEGREE) as f64).min(PIECES as f64) / PIECES as f64
+}
+
 /// Values at a place s of the B-splines that do not vanish there, with their first and second derivatives.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Station {
@@ -36,7 +41,6 @@ pub(super) struct Station {
 impl Station {
     fn at(s: f64, weight: f64) -> Self {
         let piece = ((s * PIECES as f64) as usize).min(PIECES - 1);
-        let knot = |i: usize| (i.saturating_sub(DEGREE) as f64).min(PIECES as f64) / PIECES as f64;
         // Splines of degree p by index, from those of degree p − 1.
         let mut of_degree = vec![vec![0.0; PIECES + DEGREE + 1]; DEGREE + 1];
         of_degree[0] = (0..=PIECES + DEGREE).map(|i| f64::from(i == piece + DEGREE)).collect();
@@ -103,7 +107,6 @@ pub(super) fn gram(stations: &[Station]) -> DMatrix<f64> {
 /// Returns coefficients of the spline that interpolates a curve from its start and back, given relative to the start, rad.
 pub(super) fn interpolated(n: usize, curve: impl Fn(f64) -> PerDrive) -> Option<Vec<f64>> {
     // The Greville abscissae, where interpolation by B-splines is stable.
-    let knot = |i: usize| (i.saturating_sub(DEGREE) as f64).min(PIECES as f64) / PIECES as f64;
     let greville = |i: usize| (1..=DEGREE).map(|j| knot(i + 1 + j)).sum::<f64>() / DEGREE as f64;
     let (mut matrix, mut right) = (DMatrix::zeros(INNER, INNER), DMatrix::zeros(INNER, n));
     for row in 0..INNER {

@@ -182,12 +182,18 @@ impl MomentumModel {
         Some(TurningBase { inertia, lever: (base.frame == TipFrame::Space).then(seen) })
     }
 
+    /// Returns A of θ̇ = A q̇, by which a free base at zero momentum turns with its arm at a pose, A = −D/I; `None` if the
+    /// base is not free.
+    pub(super) fn turn_coefficients(&self, e: &UnitVectors) -> Option<PerDrive> {
+        Some(self.coefficients(e).scaled(-1.0 / self.turning(e)?.inertia))
+    }
+
     /// Returns how a free base at zero momentum turns with its arm at a pose; `None` if the base is not free.
     pub fn turn_form(&self, q: &DriveAngles) -> Option<TurnForm> {
         let e = q.units();
         let inertia = self.turning(&e)?.inertia;
         let n = self.drives();
-        let d = self.coefficients(&e);
+        let coefficients = self.turn_coefficients(&e)?;
         let slopes = std::array::from_fn(|m| {
             if m >= n {
                 return PerDrive::zeros(n);
@@ -197,9 +203,9 @@ impl MomentumModel {
             // ∂I/∂q_m = 2 Σ_l Im Z_ml − 2 Im (C_0m e_m); Z_mm is real.
             let beside = (self.base[m] * e[m]).im;
             let inertia_slope = 2.0 * ((0..n).map(|l| self.coupling(&e, m, l).im).sum::<f64>() - beside);
-            d_slope.scaled(-1.0 / inertia).plus(inertia_slope / (inertia * inertia), &d)
+            d_slope.scaled(-1.0 / inertia).plus(-inertia_slope / inertia, &coefficients)
         });
-        Some(TurnForm { coefficients: d.scaled(-1.0 / inertia), slopes })
+        Some(TurnForm { coefficients, slopes })
     }
 
     /// Returns the largest distance of the end effector from the origin of its coordinates, m.

@@ -10,8 +10,8 @@
 //!
 //! # Method
 //! A loop is a spline of degree 5 from the start and back. min E(x) subject to θ(x) = θ* and the limits of the relative
-//! angles is solved by sequential quadratic programming with exact second derivatives, a penalty for the turn that is
-//! missing, and a line search. The search starts from circles in the plane where small loops turn the base most, and in
+//! angles is solved by sequential quadratic programming. Second derivatives are differences of exact first ones. The turn
+//! that is missing costs a penalty, and a line search bounds each step. The search starts from circles in the plane where small loops turn the base most, and in
 //! the planes of two drives. The shortest loop found is returned: other minima may exist.
 //!
 //! # Source
@@ -24,11 +24,11 @@ use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
 use super::loop_spline::{INNER, Station, gram, interpolated, stations, table};
-use super::momentum::MomentumModel;
+use super::momentum::{MomentumModel, TurnForm};
 use crate::curves::table::PathTable;
 use stillbase_convex::{LinearRow, Program};
 use stillbase_mechanics::machine::{Inertia, RelativeAngle};
-use stillbase_mechanics::planar::{DriveAngles, PerDrive};
+use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive};
 use stillbase_settings::number::significant;
 
 /// A closed motion of the drives.
@@ -128,8 +128,8 @@ struct Search<'a> {
 }
 
 impl TurningLoop {
-    /// Finds the shortest loop from a pose of the drives, seen from the base, that turns the base by `wanted`, rad, other
-    /// than 0, and keeps the limits of the relative angles.
+    /// Finds the shortest loop from a pose of the drives that turns the base by `wanted`, rad, which is not 0. The pose is
+    /// seen from the base, and the loop keeps the limits of the relative angles.
     ///
     /// # Errors
     /// If there is none, or none was found.
@@ -211,10 +211,14 @@ impl<'a> Search<'a> {
     fn turn_by(&self, x: &DVector<f64>, stations: &[Station]) -> f64 {
         let at = |station: &Station| {
             let p = station.point(&self.start, x.as_slice());
-            let form = self.model.turn_form(&p.q);
-            station.weight * form.map_or(0.0, |form| form.coefficients.dot(&p.first))
+            station.weight * self.slope(&p.q, &p.first)
         };
         stations.iter().map(at).sum()
+    }
+
+    /// Returns by how much the base turns per change of the drives at a pose.
+    fn slope(&self, q: &DriveAngles, change: &PerDrive) -> f64 {
+        self.model.turn_coefficients(&q.units()).map_or(0.0, |turn| turn.dot(change))
     }
 
     /// Returns the length of a loop, rad.
@@ -236,14 +240,14 @@ impl<'a> Search<'a> {
             let (a, slopes) = (form.coefficients, form.slopes);
             let moved = |m: usize, by: f64| {
                 let alone = PerDrive::from_fn(n, |k| f64::from(k == m));
-                self.model.turn_form(&DriveAngles(p.q.0.plus(by, &alone))).map_or(form, |form| form)
+                self.model.turn_form(&DriveAngles(p.q.0.plus(by, &alone))).unwrap_or(form)
             };
-            // ∂²(A q′)/∂q_m ∂q_p at fixed q′.
-            let mut bends = [[0.0; 6]; 6];
+            // ∂²(A q′)/∂q_m ∂q_l at fixed q′.
+            let mut bends = [[0.0; MAX_DRIVES]; MAX_DRIVES];
             for (m, bends) in bends.iter_mut().enumerate().take(n) {
                 let (after, before) = (moved(m, DIFFERENCE), moved(m, -DIFFERENCE));
-                for (p_index, bend) in bends.iter_mut().enumerate().take(n) {
-                    let side = |side: &super::momentum::TurnForm| side.slopes[p_index].dot(&p.first);
+                for (l, bend) in bends.iter_mut().enumerate().take(n) {
+                    let side = |side: &TurnForm| side.slopes[l].dot(&p.first);
                     *bend = (side(&after) - side(&before)) / (2.0 * DIFFERENCE);
                 }
             }
@@ -270,7 +274,7 @@ impl<'a> Search<'a> {
     fn is_flat(&self) -> bool {
         let n = self.drives();
         let pose = |i: usize| DriveAngles(self.start.0.plus(1.0, &PerDrive::from_fn(n, |k| (i * (2 * k + 1)) as f64)));
-        let turns = |form: super::momentum::TurnForm| Inertia::pairs(n).any(|(k, l)| form.curl(k, l).abs() > MIN_CURL);
+        let turns = |form: TurnForm| Inertia::pairs(n).any(|(k, l)| form.curl(k, l).abs() > MIN_CURL);
         !(0..8).any(|i| self.model.turn_form(&pose(i)).is_some_and(turns))
     }
 
@@ -322,7 +326,7 @@ impl<'a> Search<'a> {
             let chord = |i: usize| {
                 let (from, to) = (at(i), at(i + 1));
                 let middle = DriveAngles(self.start.0.plus(0.5, &from).plus(0.5, &to));
-                self.model.turn_form(&middle).map_or(0.0, |form| form.coefficients.dot(&to.minus(&from)))
+                self.slope(&middle, &to.minus(&from))
             };
             (0..intervals).map(chord).sum::<f64>() / self.wanted
         };
@@ -442,11 +446,7 @@ impl<'a> Search<'a> {
             return x;
         }
         let mut program = Program::over(x.len());
-        for i in 0..x.len() {
-            for j in i..x.len() {
-                program.add_product(i, j, if i == j { self.gram[(i, j)] } else { 2.0 * self.gram[(i, j)] });
-            }
-        }
+        add_square(&mut program, &self.gram, 1.0);
         self.limit_steps(&mut program, &x);
         program.solve().map_or(x.clone(), |found| x + DVector::from_vec(found.x))
     }
@@ -503,17 +503,13 @@ impl<'a> Search<'a> {
         let (curvature, factor) = self.convex(x, turn, multiplier);
         // The square is that of the turn still missing, so that it does not hold steps back that bring it.
         let augmented = slope - &turn.gradient * (factor * (self.wanted - turn.value));
-        let energy = x.dot(&(&self.gram * x)).max(f64::MIN_POSITIVE);
-        let scale = 1.0 / energy;
+        let scale = 1.0 / self.energy(x).max(f64::MIN_POSITIVE);
         // The last two unknowns are the turn that is missing or too much, as fractions of the wanted one.
         let mut program = Program::over(count + 2);
         for i in 0..count {
             program.linear[i] = augmented[i] * scale;
-            for j in i..count {
-                let factor = if i == j { 0.5 } else { 1.0 };
-                program.add_product(i, j, factor * curvature[(i, j)] * scale);
-            }
         }
+        add_square(&mut program, &curvature, 0.5 * scale);
         let wanted = self.wanted.abs();
         for slack in [count, count + 1] {
             program.linear[slack] = SLACK_COST * (multiplier.abs() * wanted * scale).max(1.0);
@@ -525,7 +521,16 @@ impl<'a> Search<'a> {
         self.limit_steps(&mut program, x);
         let found = program.solve().ok()?;
         let step = DVector::from_iterator(count, found.x.into_iter().take(count));
-        let rise = slope.dot(&step) + step.dot(&(&self.gram * &step));
+        let rise = slope.dot(&step) + self.energy(&step);
         Some((step, rise, -found.multipliers.first()? / (wanted * scale)))
+    }
+}
+
+/// Adds factor · xᵀ M x to the objective of a program, with M symmetric.
+fn add_square(program: &mut Program, matrix: &DMatrix<f64>, factor: f64) {
+    for i in 0..matrix.nrows() {
+        for j in i..matrix.nrows() {
+            program.add_product(i, j, if i == j { factor } else { 2.0 * factor } * matrix[(i, j)]);
+        }
     }
 }

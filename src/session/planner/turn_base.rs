@@ -14,7 +14,7 @@ use stillbase_planning::off_plane::momentum::TipFrame;
 use stillbase_planning::off_plane::turning_loop::{NoLoop, TurningLoop};
 
 /// Number of counts of loops that are tried for a proposal.
-const MAX_TRIES: u32 = 3;
+const MAX_TRIES: usize = 3;
 
 /// Plans the shortest loop of the drives found that turns the base by the angle of the task, as often as the task says.
 pub(super) fn turn_base(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
@@ -36,7 +36,7 @@ pub(super) fn turn_base(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<
     let found = shortest(task.cycles).map_err(|why| match why {
         NoLoop::Short { turn } if turn > 0.0 => {
             let least = (task.base_turn.to_radians().abs() / turn).ceil().min(1e9) as u32;
-            let counts = (least.max(task.cycles + 1)..=MAX_CYCLES).take(MAX_TRIES as usize);
+            let counts = (least.max(task.cycles + 1)..=MAX_CYCLES).take(MAX_TRIES);
             let cycles = counts.into_iter().find(|cycles| shortest(*cycles).is_ok());
             Refusal::Loop { why, cycles }
         }

@@ -42,12 +42,6 @@ struct TurnArea {
     label: Option<(Vector, String)>,
 }
 
-/// Returns where a ray ends within turn limit `i`, m.
-fn outline_at(map: &TurnMap, i: usize, ray: usize) -> Vector {
-    let (ray, [x, y]) = (&map.rays[ray], map.tip_start);
-    Vector::new(x, y) + ray.reaches[i] * unit(ray.direction)
-}
-
 impl TurnAreas {
     /// Follows the rays of a run whose base floats, or does not. `goes_on` is called with the completed fraction; returns
     /// `None` if it returns false.
@@ -69,7 +63,7 @@ impl TurnAreas {
             let label = has_room.then(|| {
                 labelled = at;
                 let turn = map.turn_limits[i];
-                (outline_at(&map, i, widest), if turn == 0.0 { "zero momentum".into() } else { format!("{turn}°") })
+                (map.end(i, &map.rays[widest]), if turn == 0.0 { "zero momentum".into() } else { format!("{turn}°") })
             });
             let line = outline.iter().chain(outline.first()).map(|p| point(*p, 0.0)).collect::<Vec<_>>();
             let loops = [outline.iter().map(|p| [p.re, p.im]).collect()];
