@@ -399,17 +399,18 @@ fn cycles(ui: &mut Ui, task: &Task, p: &Palette, commands: &mut Vec<Command>) {
 fn costs(ui: &mut Ui, session: &Session, p: &Palette) {
     let forecast = &session.run().plan().forecast;
     let torque = forecast.torque.max_abs();
-    // The plan is computed for the model on a fixed base; the status line shows the effects of plant and base.
+    // The plan is computed for the model, and a compliant base is taken to stand still; the status line shows the effects
+    // of plant and base.
     let scenario = session.scenario();
-    let ideal = scenario.plant == Default::default() && !scenario.base.moves();
+    let (is_model, is_compliant) = (scenario.plant == Default::default(), scenario.base.kind == BaseKind::Compliant);
     let waits = session.run().waiting().is_some();
     let turn = base_forecast(session.run());
-    let of = match (session.is_dragged(), ideal) {
+    let of = match session.is_dragged() {
         _ if waits => "the run waits, nothing is planned",
-        (true, _) => "led by hand; the plan was",
-        (false, true) => "planned",
-        (false, false) if turn.is_some() => "planned with its free base; τ on a fixed one",
-        (false, false) => "planned, for the model on a fixed base",
+        true => "led by hand; the plan was",
+        false if is_compliant => "planned, for the model on a fixed base",
+        false if is_model => "planned",
+        false => "planned, for the model",
     };
     let [time, torque, moment] = [forecast.time, torque, forecast.moment].map(|x| signed(x, 3));
     let figures = match waits {

@@ -5,11 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use schemars::JsonSchema;
 use serde::Serialize;
-use stillbase_mechanics::dynamics::{ExternalLoads, inverse};
-use stillbase_mechanics::machine::Inertia;
-use stillbase_mechanics::planar::Vector;
 use stillbase_session::scenario::Scenario;
-use stillbase_session::{Run, replay_if, with_start_edits};
+use stillbase_session::{Run, arm_on_base, replay_if, with_start_edits};
 
 use super::exit::print_message;
 use super::failure::Failure;
@@ -21,6 +18,7 @@ use super::simulate::require_audit;
 use super::strict::{Strict, run_faults};
 use stillbase_session::verdict::Verdict;
 use stillbase_settings::number::{counted, fixed};
+use stillbase_simulation::plant::BaseKind;
 
 /// Write a motion as CSV or Parquet at the rate of a controller: angles, rates, accelerations, feed-forward torques
 ///
@@ -117,7 +115,7 @@ impl ExportArguments {
                         counted(later, "edit")
                     ));
                 }
-                if start.base.moves() {
+                if start.base.kind == BaseKind::Compliant {
                     print_message(
                         "note: tau_ff is of the model on a fixed base; --what simulated gives what control asks for",
                     );
@@ -165,9 +163,10 @@ impl ExportArguments {
 
     /// Returns the rows of the planned motion, and its duration, s.
     fn reference(&self, run: &Run) -> Result<(Rows, f64), Failure> {
-        let (motion, machine) = (&run.plan().motion, &run.scenario().machine);
-        let (model, whole) = (Inertia::of(machine), motion.duration());
-        let around = ExternalLoads { gravity: machine.gravity(), force: Vector::default() };
+        let (motion, body) = (&run.plan().motion, arm_on_base(run.scenario()));
+        let (model, whole) = (body.arm(), motion.duration());
+        let start = motion.at(0.0);
+        let momentum = body.momentum_at_rest(&start.q.units(), &start.qd);
         self.check_rows(whole)?;
         // The end adds a row unless a whole number of intervals reaches it.
         let spaces = (whole * self.rate * (1.0 - 1e-9)).ceil() as usize;
@@ -175,8 +174,8 @@ impl ExportArguments {
         let row = |i: usize| {
             let t = if i == spaces { whole } else { i as f64 / self.rate };
             let r = motion.at(t);
-            let e = r.q.units();
-            let torque = model.motors().motor_torques(&inverse(&model, &e, &r.qd, &r.qdd, &around));
+            let (torque, _) = body.dynamics(&r.q.units(), &r.qd, &r.qdd, momentum);
+            let torque = model.motors().motor_torques(&torque);
             let p = run.end_effector_at(&r.q);
             // Adding zero removes the sign of -0.
             let all = r.q.iter().chain(r.qd.iter()).chain(r.qdd.iter()).chain(torque.iter()).map(|x| x + 0.0);

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use stillbase_files::{FoundMachine, is_standard, scenario_on_free_base, text};
+use stillbase_mechanics::arm_on_base::FloatingBase;
 use stillbase_mechanics::planar::Vector;
 use stillbase_planning::common::starting_b;
 use stillbase_planning::off_plane::least_reaction::FixedB;
-use stillbase_planning::off_plane::price::FloatingBase;
 use stillbase_planning::pose_constant::PoseConstant;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::timing::TimeLaw;
@@ -176,13 +176,8 @@ impl PlanArguments {
         if self.base.is_some() && task.kind != TaskKind::ChangeB {
             return Err(no_use("--base", "the kind change-b: only a change of b turns the base"));
         }
-        if scenario.plant != PlantDifferences::default() || scenario.base.moves() {
-            print_message(match scenario.base.kind {
-                BaseKind::Free => {
-                    "note: torques and reactions are those on a fixed base; `simulate` has those of the plant"
-                }
-                _ => "note: a plan is of the model; what differs in the plant or the base shows in `simulate`",
-            });
+        if scenario.plant != PlantDifferences::default() || scenario.base.kind == BaseKind::Compliant {
+            print_message("note: a plan is of the model; what differs in the plant or the base shows in `simulate`");
         }
         Ok(())
     }

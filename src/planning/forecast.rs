@@ -2,12 +2,11 @@
 
 use crate::Motion;
 use crate::timing::limits::{DriveLimit, DriveLimits, LimitedQuantity};
-use stillbase_mechanics::dynamics::{ExternalLoads, inverse_with_wrench};
-use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::arm_on_base::ArmOnBase;
 use stillbase_mechanics::planar::PerDrive;
 use stillbase_query::ProgressCallback;
 
-/// Peaks and integrals over a motion, from the inverse dynamics of the model.
+/// Peaks and integrals over a motion, from the inverse dynamics of an arm on its base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forecast {
     /// Duration T, s.
@@ -52,29 +51,32 @@ const SAMPLES_PER_REPORT: usize = 1024;
 const EXCEEDED_ABOVE: f64 = 1.0 + 1e-6;
 
 impl Forecast {
-    /// Returns the forecast of a motion of a model, with a number of samples that depends on the path.
-    pub fn of(motion: &Motion, model: &Inertia, around: &ExternalLoads, limits: &DriveLimits) -> Self {
+    /// Returns the forecast of a motion of an arm on its base, with a number of samples that depends on the path. A base
+    /// that floats is at rest at the start.
+    pub fn of(motion: &Motion, arm: &ArmOnBase, limits: &DriveLimits) -> Self {
         let instants = (SAMPLES_PER_PART * motion.path.parts()).clamp(MIN_SAMPLES, MAX_SAMPLES);
-        Self::at(motion, model, around, limits, instants)
+        Self::at(motion, arm, limits, instants)
     }
 
     /// Returns the forecast from the given number of samples, at the midpoints of equal intervals of T.
-    pub fn at(motion: &Motion, model: &Inertia, around: &ExternalLoads, limits: &DriveLimits, instants: usize) -> Self {
-        Self::at_while(motion, model, around, limits, instants, &mut |_| true)
+    pub fn at(motion: &Motion, arm: &ArmOnBase, limits: &DriveLimits, instants: usize) -> Self {
+        Self::at_while(motion, arm, limits, instants, &mut |_| true)
     }
 
     /// Returns the same forecast, with progress reported to `goes_on`. If `goes_on` returns false, the computation
     /// stops and the result is to be discarded.
     pub fn at_while(
         motion: &Motion,
-        model: &Inertia,
-        around: &ExternalLoads,
+        arm: &ArmOnBase,
         limits: &DriveLimits,
         instants: usize,
         goes_on: ProgressCallback<'_>,
     ) -> Self {
-        let (time, lambda) = (motion.duration(), model.lambda());
-        let n = model.drives();
+        let (time, lambda) = (motion.duration(), arm.arm().lambda());
+        let n = arm.arm().drives();
+        let motors = arm.arm().motors();
+        let start = motion.at(0.0);
+        let momentum = arm.momentum_at_rest(&start.q.units(), &start.qd);
         let mut sum = Self {
             time,
             torque: PerDrive::zeros(n),
@@ -87,7 +89,7 @@ impl Forecast {
             exceeded_limit: None,
             b: [f64::INFINITY, f64::NEG_INFINITY],
             b_mean: 0.0,
-            b_start: lambda.dot(&motion.at(0.0).q),
+            b_start: lambda.dot(&start.q),
             b_end: lambda.dot(&motion.at(time).q),
         };
         // The samples are midpoints, but the range of b includes both ends of the motion.
@@ -99,8 +101,7 @@ impl Forecast {
                 break;
             }
             let r = motion.at((i as f64 + 0.5) * dt);
-            let (torque, wrench) = inverse_with_wrench(model, &r.q.units(), &r.qd, &r.qdd, around);
-            let motors = model.motors();
+            let (torque, wrench) = arm.dynamics(&r.q.units(), &r.qd, &r.qdd, momentum);
             let (torque, rate, acceleration) =
                 (motors.motor_torques(&torque), motors.to_motors(&r.qd), motors.to_motors(&r.qdd));
             let most = |most: &mut PerDrive, x: &PerDrive| {

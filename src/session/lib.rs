@@ -45,7 +45,7 @@ pub use gentle_motion::{for_machine, for_template, gentle_motion, gentle_motion_
 pub use interactive::Session;
 #[doc(hidden)]
 pub use machines::Machines;
-pub use planner::{Plan, curves};
+pub use planner::{Plan, arm_on_base, curves};
 #[doc(hidden)]
 pub use proposal::{
     OutsideLimits, ProposalsQuery, ReachablePoints, RefusedChange, TargetProposals, is_improvable, proposals_while,

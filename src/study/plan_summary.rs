@@ -3,12 +3,13 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use stillbase_mechanics::arm_on_base::FloatingBase;
 use stillbase_mechanics::machine::Inertia;
 use stillbase_planning::common::common_b_set;
 use stillbase_planning::following::Blocked;
 use stillbase_planning::off_plane::Price;
 use stillbase_planning::off_plane::least_reaction::Verdicts;
-use stillbase_planning::off_plane::price::{FloatingBase, PriceError};
+use stillbase_planning::off_plane::price::PriceError;
 use stillbase_planning::pose_constant::PointCorrection;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_session::scenario::Scenario;

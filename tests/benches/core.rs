@@ -7,6 +7,7 @@
 mod nine_body;
 
 use divan::{Bencher, black_box};
+use stillbase::mechanics::arm_on_base::ArmOnBase;
 use stillbase::mechanics::balance::{
     Body, BodyQuantity, Breakdown, Parameter, ParameterBounds, Preset, RebalanceRequest, rebalance,
 };
@@ -289,12 +290,17 @@ fn tip_path() -> Path {
     Path::Table(minimum_norm_path(tip, start, line).expect("regular"))
 }
 
+/// A machine on a fixed base, without gravity.
+fn fixed(machine: &Machine) -> ArmOnBase {
+    ArmOnBase::fixed(Inertia::of(machine), &ExternalLoads::default())
+}
+
 /// The fastest motion along a curve under limits on torque, on a grid of 1000 spaces.
 #[divan::bench]
 fn fastest_of_1000_points(bencher: Bencher) {
     let machine = builtin("nine-link").expect("built in");
-    let (model, limits, path) = (Inertia::of(machine), DriveLimits::of(machine), tip_path());
-    bencher.bench_local(|| fastest(black_box(&path), &model, &ExternalLoads::default(), &limits, false));
+    let (arm, limits, path) = (fixed(machine), DriveLimits::of(machine), tip_path());
+    bencher.bench_local(|| fastest(black_box(&path), &arm, &limits, false));
 }
 
 /// The same with limits on jerk, searched for and checked.
@@ -302,16 +308,16 @@ fn fastest_of_1000_points(bencher: Bencher) {
 fn fastest_smooth_of_1000_points(bencher: Bencher) {
     let machine = builtin("nine-link").expect("built in");
     let limits = DriveLimits { jerk: PerDrive::from([2000.0; 3]), ..DriveLimits::of(machine) };
-    let (model, path) = (Inertia::of(machine), tip_path());
-    bencher.bench_local(|| fastest(black_box(&path), &model, &ExternalLoads::default(), &limits, true));
+    let (arm, path) = (fixed(machine), tip_path());
+    bencher.bench_local(|| fastest(black_box(&path), &arm, &limits, true));
 }
 
 /// Looking up such a motion at an instant.
 #[divan::bench]
 fn profile_at(bencher: Bencher) {
     let machine = builtin("nine-link").expect("built in");
-    let (model, limits) = (Inertia::of(machine), DriveLimits::of(machine));
-    let found = fastest(&tip_path(), &model, &ExternalLoads::default(), &limits, false).expect("limits");
+    let (arm, limits) = (fixed(machine), DriveLimits::of(machine));
+    let found = fastest(&tip_path(), &arm, &limits, false).expect("limits");
     let (profile, mut t) = (found.profile, 0.0);
     bencher.bench_local(|| {
         t = (t + 0.377 * profile.duration()) % profile.duration();

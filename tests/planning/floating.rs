@@ -1,13 +1,13 @@
 //! The momentum of an arm on a free base that keeps its orientation, against sums over its bodies.
 
 use proptest::prelude::*;
+use stillbase::mechanics::arm_on_base::FloatingBase;
 use stillbase::mechanics::machine::{Inertia, parse};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use stillbase::planning::curves::Curve;
 use stillbase::planning::off_plane::drift::zero_momentum_curve;
 use stillbase::planning::off_plane::momentum::{MomentumModel, TipFrame};
 use stillbase::planning::off_plane::null_space::rates;
-use stillbase::planning::off_plane::price::FloatingBase;
 
 /// A link of a serial arm: length, m, mass, kg, inertia, kg m², and centre of mass along and across it, m.
 #[derive(Clone, Debug)]

@@ -1,6 +1,7 @@
 //! A motion given by samples: the spline and its orders, smoothing, the nearest reactionless motion, and a round trip.
 
 use proptest::prelude::*;
+use stillbase::mechanics::arm_on_base::ArmOnBase;
 use stillbase::mechanics::kinematics::end_effector;
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{PerDrive, Vector, unit};
@@ -392,7 +393,7 @@ proptest! {
         let of = |t: f64| vec![1.7 + amplitude * (w * t).sin(), 3.7 + 0.3 * t, 2.2 - amplitude * (w * t).cos()];
         let given = samples(&uneven(100), of);
         let mean = {
-            let f = stillbase::planning::forecast::Forecast::at(&motion(&given), &model, &Default::default(),
+            let f = stillbase::planning::forecast::Forecast::at(&motion(&given), &ArmOnBase::fixed(model.clone(), &Default::default()),
                 &stillbase::planning::timing::DriveLimits::of(machine()), 20_000);
             f.b_mean
         };
@@ -701,8 +702,7 @@ mod commands {
         let clean = motion(&swinging(150));
         let want = stillbase::planning::forecast::Forecast::at(
             &clean,
-            &Inertia::of(machine()),
-            &Default::default(),
+            &ArmOnBase::fixed(Inertia::of(machine()), &Default::default()),
             &stillbase::planning::timing::DriveLimits::of(machine()),
             4000,
         );

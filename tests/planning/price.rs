@@ -1,14 +1,13 @@
 //! The price of b: stated before a motion, found again by the dynamics of it.
 
 use proptest::prelude::*;
+use stillbase::mechanics::arm_on_base::FloatingBase;
 use stillbase::mechanics::dynamics::{ExternalLoads, base_wrench};
 use stillbase::mechanics::machine::{Inertia, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use stillbase::planning::Motion;
 use stillbase::planning::off_plane::Price;
-use stillbase::planning::off_plane::price::{
-    FloatingBase, PoseLaw, PriceError, bang_bang_in_b, joint_line, nearest_planes,
-};
+use stillbase::planning::off_plane::price::{PoseLaw, PriceError, bang_bang_in_b, joint_line, nearest_planes};
 use stillbase::planning::pose_space::{PoseSpace, plane_map};
 use stillbase::planning::posed::PoseAngles;
 use stillbase::planning::reactionless::{BSet, PlaneMap};

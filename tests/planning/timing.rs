@@ -2,6 +2,7 @@
 //! limits themselves, kept and used.
 
 use proptest::prelude::*;
+use stillbase::mechanics::arm_on_base::ArmOnBase;
 use stillbase::mechanics::dynamics::{ExternalLoads, holding_torque, inverse, mass_matrix};
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
@@ -96,19 +97,25 @@ fn of(machine: &Machine) -> (Inertia, ExternalLoads) {
     (Inertia::of(machine), ExternalLoads { gravity: machine.gravity(), force: Vector::default() })
 }
 
+/// A machine on a fixed base.
+fn fixed(machine: &Machine) -> ArmOnBase {
+    let (model, around) = of(machine);
+    ArmOnBase::fixed(model, &around)
+}
+
 fn even(n: usize) -> Vec<f64> {
     (0..=n).map(|i| i as f64 / n as f64).collect()
 }
 
 fn timed(path: &Path, machine: &Machine, limits: &DriveLimits, n: usize) -> FastestMotion {
-    let (model, around) = of(machine);
-    fastest_at(path, &model, &around, limits, false, &stations(n)).expect("a motion")
+    let arm = fixed(machine);
+    fastest_at(path, &arm, limits, false, &stations(n)).expect("a motion")
 }
 
 fn usage(path: &Path, found: &FastestMotion, machine: &Machine, limits: &DriveLimits, samples: usize) -> Usage {
-    let (model, around) = of(machine);
+    let arm = fixed(machine);
     let motion = Motion { path: path.clone(), profile: found.profile.clone() };
-    Usage::of(&motion, &model, &around, limits, samples)
+    Usage::of(&motion, &arm, limits, samples)
 }
 
 /// d/dt by central differences of fourth order.
@@ -261,31 +268,32 @@ fn line_as_table() -> Path {
 /// 2/√s̈ with s̈ = min τ_max,k / (H_kk |Δq_k|), and what other limits make of it.
 #[test]
 fn a_straight_line_is_in_closed_form() {
-    let (model, around) = of(nine_link());
+    let model = Inertia::of(nine_link());
+    let arm = fixed(nine_link());
     let step = [0, 1, 2].map(|k| (Q_B[k] - Q_A[k]).abs());
     let torque = (0..3).map(|k| [20.0, 5.0, 5.0][k] / (model.diagonal(k) * step[k])).fold(f64::INFINITY, f64::min);
     let best = 2.0 / torque.sqrt();
     let third = DriveLimit { quantity: LimitedQuantity::Torque, drive: 2 };
-    let found = fastest(&line(), &model, &around, &by_torque(), false).expect("limits");
+    let found = fastest(&line(), &arm, &by_torque(), false).expect("limits");
     assert!((found.profile.duration() - best).abs() < 1e-14, "{found:?}");
     assert_eq!((found.active_limits, found.gap), (vec![(third, 1.0)], None));
     // A speed limit cuts it: T = 1/v + v/a.
     let v = 2.0;
     let cut = limits([20.0, 5.0, 5.0], [f64::INFINITY, f64::INFINITY, v * step[2]], FREE, FREE);
-    let found = fastest(&line(), &model, &around, &cut, false).expect("limits");
+    let found = fastest(&line(), &arm, &cut, false).expect("limits");
     assert!((found.profile.duration() - (1.0 / v + v / torque)).abs() < 1e-14);
     assert_eq!(found.active_limits.len(), 2);
     // As does one on acceleration, below what the torque gives.
     let slow = limits([20.0, 5.0, 5.0], FREE, [f64::INFINITY, 3.0, f64::INFINITY], FREE);
-    let found = fastest(&line(), &model, &around, &slow, false).expect("limits");
+    let found = fastest(&line(), &arm, &slow, false).expect("limits");
     assert!((found.profile.duration() - 2.0 / (3.0 / step[1]).sqrt()).abs() < 1e-14);
     assert_eq!(found.active_limits, vec![(DriveLimit { quantity: LimitedQuantity::Acceleration, drive: 1 }, 1.0)]);
     // Parameterisation by reachability finds the same.
     for limits in [by_torque(), cut, slow] {
-        let want = fastest(&line(), &model, &around, &limits, false).expect("limits").profile.duration();
-        let got = fastest(&line_as_table(), &model, &around, &limits, false).expect("limits").profile.duration();
+        let want = fastest(&line(), &arm, &limits, false).expect("limits").profile.duration();
+        let got = fastest(&line_as_table(), &arm, &limits, false).expect("limits").profile.duration();
         assert!((got / want - 1.0).abs() < 1e-4, "{got} and {want}");
-        let coarse = fastest_at(&line_as_table(), &model, &around, &limits, false, &even(100)).expect("limits");
+        let coarse = fastest_at(&line_as_table(), &arm, &limits, false, &even(100)).expect("limits");
         assert!((coarse.profile.duration() / want - 1.0).abs() < 1e-3, "{coarse:?} and {want}");
     }
 }
@@ -391,8 +399,8 @@ fn time_converges_with_the_grid() {
         assert!(off[0] > 2.5 * off[1] && off[1] > 2.5 * off[2], "{name}: {off:?} over {d}");
         assert!(off[2] / d < 1.5e-4, "{name}: {off:?} over {d}");
         // And not only on the grid that is finest at the ends.
-        let (model, around) = of(&machine);
-        let plain = fastest_at(&path, &model, &around, &by_torque(), false, &even(1000)).expect("a motion");
+        let arm = fixed(&machine);
+        let plain = fastest_at(&path, &arm, &by_torque(), false, &even(1000)).expect("a motion");
         assert!((plain.profile.duration() / d - 1.0).abs() < 5e-3, "{name}: {} over {d}", plain.profile.duration());
     }
 }
@@ -423,7 +431,8 @@ fn some_limit_is_active_and_none_is_passed() {
 #[test]
 fn a_path_may_turn_back() {
     let machine = nine_link();
-    let (model, around) = of(machine);
+    let model = Inertia::of(machine);
+    let arm = fixed(machine);
     let r = [0.3, 0.2, 0.3];
     let path = waves(r, [std::f64::consts::PI; 3], [0.0; 3]);
     let best = (0..3).map(|k| 4.0 * (r[k] * model.diagonal(k) / by_torque().torque[k]).sqrt()).fold(0.0, f64::max);
@@ -434,29 +443,29 @@ fn a_path_may_turn_back() {
         assert!(usage.active > 0.97 && (usage.max_utilisation - 1.0) < 1e-3, "{usage:?}");
     }
     let limits = DriveLimits { jerk: [3000.0; 3].into(), ..by_torque() };
-    let smooth = fastest(&path, &model, &around, &limits, true).expect("limits");
+    let smooth = fastest(&path, &arm, &limits, true).expect("limits");
     let motion = Motion { path, profile: smooth.profile };
-    let usage = Usage::of(&motion, &model, &around, &limits, 10_000);
+    let usage = Usage::of(&motion, &arm, &limits, 10_000);
     assert!((usage.max_utilisation - 1.0) < 1e-4 && smooth.gap.expect("a bound") < 0.5, "{usage:?}");
 }
 
 /// The account itself: half and twice a limit, and what it names.
 #[test]
 fn usage_tells_violations() {
-    let (model, around) = of(nine_link());
+    let arm = fixed(nine_link());
     let limits = by_torque();
-    let best = fastest(&line(), &model, &around, &limits, false).expect("limits").profile;
+    let best = fastest(&line(), &arm, &limits, false).expect("limits").profile;
     for (factor, most, active) in [(1.0, 1.0, 1.0), (2.0, 0.25, 0.0), (0.5, 4.0, 1.0)] {
         let motion = Motion { path: line(), profile: best.stretched(factor) };
-        let usage = Usage::of(&motion, &model, &around, &limits, 1000);
+        let usage = Usage::of(&motion, &arm, &limits, 1000);
         assert!((usage.max_utilisation - most).abs() < 1e-9 && (usage.active - active).abs() < 1e-9, "{usage:?}");
         assert_eq!(usage.limit, Some(DriveLimit { quantity: LimitedQuantity::Torque, drive: 2 }));
     }
     // A quintic of the same peak takes √(5.7735/4) of the time.
     let quintic = Profile::of(TimeLaw::Quintic, best.duration() * (10.0 / 3f64.sqrt() / 4.0).sqrt());
-    let usage = Usage::of(&Motion { path: line(), profile: quintic }, &model, &around, &limits, 10_000);
+    let usage = Usage::of(&Motion { path: line(), profile: quintic }, &arm, &limits, 10_000);
     assert!((usage.max_utilisation - 1.0).abs() < 1e-6 && usage.active < 0.1, "{usage:?}");
-    let free = Usage::of(&Motion { path: line(), profile: best }, &model, &around, &DriveLimits::none(3), 100);
+    let free = Usage::of(&Motion { path: line(), profile: best }, &arm, &DriveLimits::none(3), 100);
     assert_eq!((free.active, free.max_utilisation, free.limit), (0.0, 0.0, None));
     const { assert!(ACTIVE_SHARE < 1.0 && ACTIVE_SHARE >= 0.999) }
 }
@@ -525,14 +534,14 @@ proptest! {
 /// On a straight line with limits on jerk: the S-curve, with the gap that they cost.
 #[test]
 fn a_straight_line_with_limits_on_jerk() {
-    let (model, around) = of(nine_link());
+    let arm = fixed(nine_link());
     let limits = limits([20.0, 5.0, 5.0], [2.0; 3], FREE, [900.0, 400.0, 300.0]);
-    let found = fastest(&line(), &model, &around, &limits, true).expect("limits");
-    let without = fastest(&line(), &model, &around, &limits, false).expect("limits").profile.duration();
+    let found = fastest(&line(), &arm, &limits, true).expect("limits");
+    let without = fastest(&line(), &arm, &limits, false).expect("limits").profile.duration();
     let gap = found.gap.expect("torque is limited too");
     assert!((found.profile.duration() / without - 1.0 - gap).abs() < 1e-12 && gap > 0.01, "{gap}");
     let motion = Motion { path: line(), profile: found.profile };
-    let usage = Usage::of(&motion, &model, &around, &limits, 4000);
+    let usage = Usage::of(&motion, &arm, &limits, 4000);
     assert!(usage.active > 0.999 && (usage.max_utilisation - 1.0) < 1e-9, "{usage:?}");
     assert!(found.active_limits.iter().any(|(l, _)| l.quantity == LimitedQuantity::Jerk), "{:?}", found.active_limits);
 }
@@ -542,12 +551,13 @@ fn a_straight_line_with_limits_on_jerk() {
 fn limits_on_jerk_are_kept_on_curves() {
     for (name, path, machine) in tasks() {
         let (model, around) = of(&machine);
+        let arm = fixed(&machine);
         let mut times = Vec::new();
         for jerk in [100.0, 3000.0] {
             let limits = limits([20.0, 5.0, 5.0], [3.0; 3], FREE, [jerk, jerk, 2.0 * jerk]);
             let grid = stations(120);
-            let found = fastest_at(&path, &model, &around, &limits, true, &grid).expect("a motion");
-            let bound = fastest_at(&path, &model, &around, &limits, false, &grid).expect("a motion").profile;
+            let found = fastest_at(&path, &arm, &limits, true, &grid).expect("a motion");
+            let bound = fastest_at(&path, &arm, &limits, false, &grid).expect("a motion").profile;
             let whole = found.profile.duration();
             assert!((whole / bound.duration() - 1.0 - found.gap.expect("a bound")).abs() < 1e-12);
             let motion = Motion { path: path.clone(), profile: found.profile };
@@ -575,11 +585,11 @@ fn limits_on_jerk_are_kept_on_curves() {
 /// Where the optimum is known, the way of curves comes within 0.4 % of it, whatever the jerk, and never below.
 #[test]
 fn limits_on_jerk_cost_little_more_than_they_must() {
-    let (model, around) = of(nine_link());
+    let arm = fixed(nine_link());
     for jerk in [30.0, 300.0, 1000.0, 10_000.0] {
         let limits = limits([20.0, 5.0, 5.0], FREE, FREE, [jerk; 3]);
-        let best = fastest(&line(), &model, &around, &limits, true).expect("limits").profile.duration();
-        let found = fastest_at(&line_as_table(), &model, &around, &limits, true, &stations(300)).expect("limits");
+        let best = fastest(&line(), &arm, &limits, true).expect("limits").profile.duration();
+        let found = fastest_at(&line_as_table(), &arm, &limits, true, &stations(300)).expect("limits");
         let ratio = found.profile.duration() / best;
         assert!(ratio > 1.0 - 1e-6 && ratio < 1.004, "{jerk}: {ratio}");
     }
@@ -588,23 +598,22 @@ fn limits_on_jerk_cost_little_more_than_they_must() {
 /// Jerk alone, or with speed: no bound to compare with, but a motion.
 #[test]
 fn jerk_alone_is_enough() {
-    let (model, around) = of(nine_link());
+    let arm = fixed(nine_link());
     let only = limits(FREE, FREE, FREE, [300.0; 3]);
     for path in [line(), tip_path()] {
-        let found = fastest(&path, &model, &around, &only, true).expect("jerk is limited");
+        let found = fastest(&path, &arm, &only, true).expect("jerk is limited");
         assert_eq!(found.gap, None);
         let motion = Motion { path, profile: found.profile };
-        let usage = Usage::of(&motion, &model, &around, &only, 4000);
+        let usage = Usage::of(&motion, &arm, &only, 4000);
         assert!(usage.max_utilisation > 0.99 && (usage.max_utilisation - 1.0) < 1e-5, "{usage:?}");
     }
 }
 
 #[test]
 fn what_cannot_be_timed_is_refused() {
-    let (model, around) = of(nine_link());
-    let refused = |path: &Path, limits: DriveLimits, smooth| {
-        fastest(path, &model, &around, &limits, smooth).expect_err("nothing to go by")
-    };
+    let arm = fixed(nine_link());
+    let refused =
+        |path: &Path, limits: DriveLimits, smooth| fastest(path, &arm, &limits, smooth).expect_err("nothing to go by");
     let speed = limits(FREE, [2.0; 3], FREE, FREE);
     for path in [line(), tip_path()] {
         assert!(matches!(refused(&path, DriveLimits::none(3), false), TimeError::Unlimited { .. }));
@@ -618,16 +627,17 @@ fn what_cannot_be_timed_is_refused() {
     let first = limits([20.0, f64::INFINITY, f64::INFINITY], FREE, FREE, FREE);
     assert!(matches!(refused(&still, first, false), TimeError::Unlimited { .. }));
     for bad in [vec![], vec![0.0], vec![0.0, 0.5], vec![0.1, 1.0], vec![0.0, 0.6, 0.5, 1.0], vec![0.0, f64::NAN, 1.0]] {
-        let error = fastest_at(&line(), &model, &around, &by_torque(), false, &bad).expect_err("no grid");
+        let error = fastest_at(&line(), &arm, &by_torque(), false, &bad).expect_err("no grid");
         assert_eq!(error, TimeError::Stations);
     }
     // Drive 2 of the machine out of balance cannot hold its links up.
     let machine = unbalanced();
     let (model, around) = of(&machine);
+    let arm = fixed(&machine);
     let weak = limits([20.0, 0.5, 5.0], FREE, FREE, FREE);
     for smooth in [false, true] {
         let weak = DriveLimits { jerk: [300.0; 3].into(), ..weak };
-        let error = fastest(&tip_path(), &model, &around, &weak, smooth).expect_err("too heavy");
+        let error = fastest(&tip_path(), &arm, &weak, smooth).expect_err("too heavy");
         let TimeError::Static { drive, s, torque, limit } = error.clone() else { panic!("{error}") };
         assert!((drive, limit) == (2, 0.5) && torque.abs() > 0.5, "{error}");
         let want = holding_torque(&model, &tip_path().at(s).q.units(), &around)[1];
@@ -662,13 +672,13 @@ fn a_run_is_as_fast_as_its_drives() {
 /// A path that goes nowhere takes no time.
 #[test]
 fn nowhere_takes_no_time() {
-    let (model, around) = of(nine_link());
+    let arm = fixed(nine_link());
     let nodes = [0.0, 1.0].map(|s| Path::Rest(Q_A.into()).at(s)).to_vec();
     let table = Path::Table(PathTable::even(nodes).expect("nodes"));
     for path in [Path::Rest(Q_A.into()), Path::JointLine { from: Q_A.into(), to: Q_A.into() }, table] {
         let limits = DriveLimits { jerk: [300.0; 3].into(), ..by_torque() };
         for smooth in [false, true] {
-            let found = fastest(&path, &model, &around, &limits, smooth).expect("it is there");
+            let found = fastest(&path, &arm, &limits, smooth).expect("it is there");
             assert_eq!((found.profile.duration(), found.profile.at(0.0).s), (0.0, 1.0));
             assert_eq!(Motion { path: path.clone(), profile: found.profile }.at(0.0).qd.max_abs(), 0.0);
         }
@@ -684,8 +694,8 @@ fn random_curve(
     let machine = if heavy { unbalanced() } else { nine_link().clone() };
     let limits = limits(torque, speed, acceleration, FREE);
     let path = waves(r, w, p);
-    let (model, around) = of(&machine);
-    let found = match fastest(&path, &model, &around, &limits, false) {
+    let arm = fixed(&machine);
+    let found = match fastest(&path, &arm, &limits, false) {
         Ok(found) => found,
         Err(error) => {
             prop_assert!(heavy && matches!(error, TimeError::Static { .. }), "{}", error);
@@ -695,7 +705,7 @@ fn random_curve(
     let usage = usage(&path, &found, &machine, &limits, 4000);
     prop_assert!((usage.max_utilisation - 1.0) < 1e-6, "{:?}", usage);
     // It is slowed down as a whole by what is passed at one place: no more than 0.5 % is lost to a converged grid.
-    let best = fastest_at(&path, &model, &around, &limits, false, &converged(&path, 8)).expect("a motion");
+    let best = fastest_at(&path, &arm, &limits, false, &converged(&path, 8)).expect("a motion");
     let ratio = found.profile.duration() / best.profile.duration();
     prop_assert!((0.998..1.005).contains(&ratio), "{}: {:?}", ratio, usage);
     let end = found.profile.at(found.profile.duration() * (1.0 - 1e-9));
@@ -778,13 +788,13 @@ fn anywhere(count: usize) -> impl Strategy<Value = Vec<Vector>> {
 /// What must be true of every fastest motion along lines with rounded corners, arcs and splines.
 fn judge(points: &[Vector], shape: usize, blend: f64, limits: &DriveLimits, smooth: bool) -> Result<(), TestCaseError> {
     let Some(paths) = drawn(points, shape, blend) else { return Ok(()) };
-    let (model, around) = of(nine_link());
+    let arm = fixed(nine_link());
     let without = DriveLimits { jerk: FREE.into(), ..*limits };
     let asked = if smooth { limits } else { &without };
     for path in &paths {
-        let found = fastest(path, &model, &around, limits, smooth).expect("a motion");
+        let found = fastest(path, &arm, limits, smooth).expect("a motion");
         let motion = Motion { path: path.clone(), profile: found.profile };
-        let usage = Usage::of(&motion, &model, &around, asked, 20_000);
+        let usage = Usage::of(&motion, &arm, asked, 20_000);
         prop_assert!(
             (usage.max_utilisation - 1.0) < 1e-6,
             "{:?} of {:?}, shape {}, blend {}",
@@ -797,7 +807,7 @@ fn judge(points: &[Vector], shape: usize, blend: f64, limits: &DriveLimits, smoo
         prop_assert!((end.s - 1.0).abs() < 1e-9, "{:?}", end);
         if !smooth {
             let grid = converged(path, 12);
-            let best = fastest_at(path, &model, &around, &without, false, &grid).expect("a motion").profile.duration();
+            let best = fastest_at(path, &arm, &without, false, &grid).expect("a motion").profile.duration();
             let ratio = motion.duration() / best;
             prop_assert!(
                 (0.999..1.005).contains(&ratio),

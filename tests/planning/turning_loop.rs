@@ -4,12 +4,12 @@
 use std::f64::consts::PI;
 
 use proptest::prelude::*;
+use stillbase::mechanics::arm_on_base::FloatingBase;
 use stillbase::mechanics::machine::{Inertia, Machine, builtin, parse};
 use stillbase::mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector};
 use stillbase::planning::curves::Path;
 use stillbase::planning::off_plane::base_turn::BaseTurn;
 use stillbase::planning::off_plane::momentum::{MomentumModel, TipFrame};
-use stillbase::planning::off_plane::price::FloatingBase;
 use stillbase::planning::off_plane::turning_loop::{NoLoop, TurningLoop};
 use stillbase::session::scenario::{Scenario, TaskChange, Value};
 use stillbase::session::verdict::{Statements, StatusLight, Verdict};

@@ -1,6 +1,7 @@
 //! Attitude of a free base: what turns it, what a wheel keeps of it, and what a plan foretells.
 
 use proptest::prelude::*;
+use stillbase::planning::timing::TimeLaw;
 use stillbase::session::scenario::Scenario;
 use stillbase::session::{Run, base_forecast, replay};
 use stillbase::simulation::frame::{Frame, Phase};
@@ -41,6 +42,67 @@ proptest! {
             let turning = inertia * frame.base_angular_acceleration;
             let scale = 1e-11 * (1.0 + frame.peaks.torque_sum + frame.peaks.force);
             prop_assert!((frame.felt_moment - turning).abs() < scale, "{} {turning}", frame.felt_moment);
+        }
+    }
+}
+
+/// Plans on free bases have the torques and reactions that their runs come to, with gears in joints and without.
+#[test]
+fn plans_have_the_torques_of_a_base_that_floats() {
+    for name in ["spot-swing", "spot-turn", "spacecraft", "space-arm", "nine-link-geared", "counter-rotating", "wheel"]
+    {
+        for wheel in [None, Some(Wheel { inertia: 0.01, ..Wheel::default() })] {
+            if name == "spot-turn" && wheel.is_some() {
+                continue; // a task that turns the base
+            }
+            let mut free = scenario(name);
+            free.base.kind = BaseKind::Free;
+            if free.base.com == [0.0; 2] {
+                (free.base.mass, free.base.inertia, free.base.com) = (30.0, 1.5, [0.2, -0.1]);
+            }
+            free.base.wheel = wheel;
+            free.edits.clear();
+            free.plant = Default::default();
+            let run = Run::new(&free).unwrap_or_else(|why| panic!("{name}: {why}"));
+            let forecast = run.plan().forecast.clone();
+            let end = *frames(&free).last().expect("frames");
+            let scale = forecast.torque.max_abs();
+            for (got, want) in forecast.torque.iter().zip(end.peaks.torque.iter()) {
+                assert!((got - want).abs() < 2e-4 * scale, "{name}: {got} and {want} of {scale} N m");
+            }
+            let force = forecast.force;
+            assert!((force - end.peaks.force).abs() < 2e-4 * force + 1e-9, "{name}: {force} and {} N", end.peaks.force);
+            let moment = forecast.moment;
+            assert!(
+                (moment - end.peaks.arm_moment).abs() < 2e-4 * scale,
+                "{name}: {moment} and {}",
+                end.peaks.arm_moment
+            );
+        }
+    }
+}
+
+/// A base that floats gives way: limits kept with the torques of a fixed one were passed by 12 % here.
+#[test]
+fn the_fastest_motion_on_a_free_base_keeps_its_limits() {
+    for (law, limit) in [(TimeLaw::Fastest, "0.02"), (TimeLaw::Fastest, "0.5"), (TimeLaw::FastestSmooth, "0.05")] {
+        for wheel in [None, Some(Wheel { inertia: 0.01, ..Wheel::default() })] {
+            let mut swift = scenario(if wheel.is_some() { "spot-swing" } else { "spot-turn" });
+            (swift.task.law, swift.base.wheel) = (law, wheel);
+            if wheel.is_some() {
+                // From point to point, as samples say when to be where.
+                swift.task = scenario("spot").task;
+                (swift.task.law, swift.duration) = (law, None);
+            }
+            let limits = ["shoulder", "elbow", "wrist"]
+                .iter()
+                .flat_map(|d| [(format!("drive.{d}.torque_limit"), limit), (format!("drive.{d}.jerk_limit"), "20")]);
+            let limits: Vec<_> = limits.collect();
+            swift.machine = swift.machine.set_all(limits.iter().map(|(k, v)| (k.as_str(), *v))).expect("limits");
+            let end = *frames(&swift).last().expect("frames");
+            let most = end.peaks.torque.max_abs() / limit.parse::<f64>().expect("a number");
+            assert!(most < 1.0 + 1e-3 && most > 0.5, "{law:?}: {most} of its limit of {limit} N m");
+            assert!(law == TimeLaw::FastestSmooth || most > 0.999, "{law:?}: {most} of its limit of {limit} N m");
         }
     }
 }

@@ -1,11 +1,12 @@
 //! Any machine of the family in motion: motors in joints, rotors behind gears, on every kind of base.
 
+use stillbase::mechanics::arm_on_base::FloatingBase;
 use stillbase::mechanics::balance::design;
 use stillbase::mechanics::machine::{Inertia, Machine};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::planning::Motion;
 use stillbase::planning::curves::Path;
-use stillbase::planning::off_plane::price::{FloatingBase, Price};
+use stillbase::planning::off_plane::price::Price;
 use stillbase::planning::timing::TimeLaw;
 use stillbase::simulation::control::Control;
 use stillbase::simulation::frame::Frame;

@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use stillbase::exchange::mjcf::middle;
+use stillbase::mechanics::arm_on_base::FloatingBase;
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
 use stillbase::mechanics::planar::Vector;
-use stillbase::planning::off_plane::price::FloatingBase;
 use stillbase::session::replay;
 use stillbase::session::scenario::Scenario;
 use stillbase::simulation::signal_table::SignalTable;

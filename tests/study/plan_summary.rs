@@ -1,7 +1,7 @@
 //! What a planned task costs, or what is in its way.
 
+use stillbase::mechanics::arm_on_base::FloatingBase;
 use stillbase::planning::common::starting_b;
-use stillbase::planning::off_plane::price::FloatingBase;
 use stillbase::planning::pose_space::PoseSpace;
 use stillbase::session::Run;
 use stillbase::session::scenario::Scenario;

@@ -20,12 +20,12 @@
 //! inertia of base and arm about their common centre of mass, turning as one body: that of the arm with its reduced
 //! couplings, I_b + |ρ|² m_b (M − m_b)/M, and 2 Σ Re(C_0k e_k).
 
+use stillbase_mechanics::arm_on_base::FloatingBase;
 use stillbase_mechanics::dynamics::mass_matrix;
 use stillbase_mechanics::kinematics::end_effector;
 use stillbase_mechanics::machine::{BALANCE_TOLERANCE, Chain, Inertia};
 use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, UnitVectors, Vector, unit};
 
-use super::price::FloatingBase;
 use stillbase_settings::word::words;
 
 words! {

@@ -26,8 +26,9 @@ use crate::pose_space::PoseSpace;
 use crate::posed::PoseAngles;
 use crate::reactionless::BSet;
 use crate::timing::law::TimeLaw;
+use stillbase_mechanics::arm_on_base::FloatingBase;
 use stillbase_mechanics::machine::Inertia;
-use stillbase_mechanics::planar::{DriveAngles, Vector};
+use stillbase_mechanics::planar::DriveAngles;
 use stillbase_settings::number::counted;
 
 /// Time law of b from rest to rest.
@@ -99,17 +100,6 @@ pub enum PriceError {
     /// Invalid mass, inertia or centre of mass of a base.
     #[error("a free base wants finite numbers, with mass and inertia not below 0 and one of them above")]
     Base,
-}
-
-/// A free-floating base.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FloatingBase {
-    /// m_b, kg.
-    pub mass: f64,
-    /// I_b about its own centre of mass, kg m².
-    pub inertia: f64,
-    /// ρ, its centre of mass seen from B, m.
-    pub com: Vector,
 }
 
 /// Cost of changing b by Δb, from rest to rest.

@@ -1,6 +1,6 @@
 //! The fastest motion on a path from rest to rest within the limits of the drives.
 //!
-//! On a straight joint line with constant diagonal mass matrix and no static load, every limit bounds ṡ, s̈ or s⃛, and
+//! On a straight joint line with constant mass matrix and no static load, every limit bounds ṡ, s̈ or s⃛, and
 //! the optimum has a closed form. Otherwise the motion is a time-optimal path parameterisation, and with limits on jerk
 //! a feasible motion near it.
 
@@ -14,27 +14,21 @@ use crate::timing::s_curve::s_curve;
 use crate::timing::smooth;
 use crate::timing::topp::{NoTiming, PathConstraints, REPAIR_THRESHOLD, TimingSweep, UNLIMITED};
 use crate::timing::usage::TimeShares;
-use stillbase_mechanics::dynamics::ExternalLoads;
-use stillbase_mechanics::machine::Inertia;
-use stillbase_mechanics::planar::PerDrive;
+use stillbase_mechanics::arm_on_base::ArmOnBase;
+use stillbase_mechanics::machine::BALANCE_TOLERANCE;
+use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 
 /// Initial number of intervals of the grid on a curve, unless the caller gives stations.
 pub const GRID_INTERVALS: usize = 600;
 
-/// Finds the fastest motion on a path within a machine's limits, including those on jerk if `smooth`. On a curve the
+/// Finds the fastest motion of an arm on a path within its limits, including those on jerk if `smooth`. On a curve the
 /// grid begins with [`stations`] of [`GRID_INTERVALS`] and the path's own samples of s. It is refined where limited
 /// quantities change much. Finally the motion is slowed down until it keeps the limits between stations too.
 ///
 /// # Errors
 /// If numbers of drives differ, a needed limit is missing (jerk too if `smooth`), or no motion keeps the limits.
-pub fn fastest(
-    path: &Path,
-    model: &Inertia,
-    around: &ExternalLoads,
-    limits: &DriveLimits,
-    smooth: bool,
-) -> Result<FastestMotion, TimeError> {
-    planned(path, model, around, limits, smooth, None)
+pub fn fastest(path: &Path, arm: &ArmOnBase, limits: &DriveLimits, smooth: bool) -> Result<FastestMotion, TimeError> {
+    planned(path, arm, limits, smooth, None)
 }
 
 /// Returns stations s = u² (3 − 2 u) at evenly spaced u. They are densest at the ends, where a motion from rest to rest
@@ -54,8 +48,7 @@ pub fn stations(spaces: usize) -> Vec<f64> {
 /// As [`fastest`], and if the stations do not rise from 0 to 1.
 pub fn fastest_at(
     path: &Path,
-    model: &Inertia,
-    around: &ExternalLoads,
+    arm: &ArmOnBase,
     limits: &DriveLimits,
     smooth: bool,
     stations: &[f64],
@@ -64,28 +57,27 @@ pub fn fastest_at(
     if !rising || stations.len() < 2 || stations.first() != Some(&0.0) || stations.last() != Some(&1.0) {
         return Err(TimeError::Stations);
     }
-    planned(path, model, around, limits, smooth, Some(stations))
+    planned(path, arm, limits, smooth, Some(stations))
 }
 
 fn planned(
     path: &Path,
-    model: &Inertia,
-    around: &ExternalLoads,
+    arm: &ArmOnBase,
     limits: &DriveLimits,
     smooth: bool,
     stations: Option<&[f64]>,
 ) -> Result<FastestMotion, TimeError> {
-    let drives = (path.at(0.0).q.len(), model.drives(), limits.torque.len());
+    let drives = (path.at(0.0).q.len(), arm.arm().drives(), limits.torque.len());
     let alike = LimitedQuantity::ALL.iter().all(|quantity| limits.on(*quantity).len() == drives.1);
     if drives.0 != drives.1 || !alike {
         return Err(TimeError::Drives { path: drives.0, model: drives.1, limits: drives.2 });
     }
-    let constraints = Constraints::new(model, around, limits);
+    let constraints = Constraints::new(arm, limits);
     match path {
         Path::Rest(_) => return Ok(nowhere()),
         Path::JointLine { from, to } if from == to => return Ok(nowhere()),
-        Path::JointLine { from, to } if constraints.is_constant() => {
-            return straight(&to.0.minus(&from.0), model, limits, smooth);
+        Path::JointLine { from, to } if arm.is_linear() => {
+            return straight(from, &to.0.minus(&from.0), arm, limits, smooth);
         }
         _ if smooth && !(0..drives.1).any(|k| limits.jerk[k].is_finite()) => return Err(TimeError::NoJerkLimit),
         _ => {}
@@ -107,7 +99,7 @@ fn planned(
         FastestMotion { profile, gap: None, active_limits }
     });
     if smooth {
-        return smooth::smooth(path, model, around, &constraints, &grid, bound);
+        return smooth::smooth(path, arm, &constraints, &grid, bound);
     }
     let found = bound?;
     let Some(phase_bounds) = phase_bounds else { return Ok(found) };
@@ -207,20 +199,29 @@ fn nowhere() -> FastestMotion {
     FastestMotion { profile: Profile::none(), gap: None, active_limits: Vec::new() }
 }
 
-/// Returns the least limit on a derivative of s along a straight line, and the drive limit that sets it.
-fn least(step: &PerDrive, quantity: LimitedQuantity, limit: impl Fn(usize) -> f64) -> (f64, DriveLimit) {
-    let of = |drive: usize| (limit(drive) / step[drive].abs(), DriveLimit { quantity, drive });
-    let moving = (0..step.len()).filter(|k| step[*k] != 0.0).map(of);
-    moving.fold((f64::INFINITY, DriveLimit { quantity, drive: 0 }), |a, b| if b.0 < a.0 { b } else { a })
-}
-
-/// Returns the fastest motion on a straight joint line in closed form.
-fn straight(step: &PerDrive, model: &Inertia, limits: &DriveLimits, smooth: bool) -> Result<FastestMotion, TimeError> {
-    let speed = least(step, LimitedQuantity::Speed, |k| limits.speed[k]);
-    let torque = least(step, LimitedQuantity::Torque, |k| limits.torque[k] / model.diagonal(k));
-    let wanted = least(step, LimitedQuantity::Acceleration, |k| limits.acceleration[k]);
+/// Returns the fastest motion on a straight joint line in closed form; torques are linear in the accelerations.
+fn straight(
+    from: &DriveAngles,
+    step: &PerDrive,
+    arm: &ArmOnBase,
+    limits: &DriveLimits,
+    smooth: bool,
+) -> Result<FastestMotion, TimeError> {
+    let motors = arm.arm().motors();
+    let torque = motors.motor_torques(&arm.moving_torque(&from.units(), &PerDrive::zeros(step.len()), step));
+    let step = motors.to_motors(step);
+    let least = |per: &PerDrive, quantity: LimitedQuantity| {
+        let limit = |drive: usize| (limits.on(quantity)[drive] / per[drive].abs(), DriveLimit { quantity, drive });
+        // Torques of couplings that count as zero are zero.
+        let negligible = BALANCE_TOLERANCE * per.max_abs();
+        let moving = (0..per.len()).filter(|k| per[*k].abs() > negligible).map(limit);
+        moving.fold((f64::INFINITY, DriveLimit { quantity, drive: 0 }), |a, b| if b.0 < a.0 { b } else { a })
+    };
+    let speed = least(&step, LimitedQuantity::Speed);
+    let torque = least(&torque, LimitedQuantity::Torque);
+    let wanted = least(&step, LimitedQuantity::Acceleration);
     let acceleration = if torque.0 <= wanted.0 { torque } else { wanted };
-    let jerk = least(step, LimitedQuantity::Jerk, |k| limits.jerk[k]);
+    let jerk = least(&step, LimitedQuantity::Jerk);
     let without = s_curve(speed.0, acceleration.0, f64::INFINITY);
     let spans = match (smooth, without) {
         (true, _) if jerk.0.is_infinite() => return Err(TimeError::NoJerkLimit),

@@ -5,8 +5,7 @@ use crate::timing::law::PathProgress;
 use crate::timing::limits::DriveLimits;
 use crate::timing::profile::{Profile, after};
 use crate::timing::usage::Demand;
-use stillbase_mechanics::dynamics::ExternalLoads;
-use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::arm_on_base::ArmOnBase;
 
 /// Number of intervals of a phase that is sampled finely.
 const FINE_INTERVALS: usize = 16;
@@ -152,7 +151,7 @@ impl Motion {
     ///
     /// Its profile must consist of phases, as those of the fastest motions do.
     #[must_use]
-    pub fn slowed(&self, model: &Inertia, around: &ExternalLoads, limits: &DriveLimits) -> Option<Self> {
+    pub fn slowed(&self, arm: &ArmOnBase, limits: &DriveLimits) -> Option<Self> {
         let limits = DriveLimits { jerk: DriveLimits::none(limits.jerk.len()).jerk, ..*limits };
         let count = self.profile.phases().count().max(1);
         // An even number, so that a change in the middle of a phase falls between two parts.
@@ -161,7 +160,7 @@ impl Motion {
             let time = time / parts as f64;
             (0..parts).map(move |i| (after(&from, i as f64 * time), time))
         };
-        let stretches = |at: &PathProgress| Demand::of(&self.path, model, around, &limits, at).stretches(&limits);
+        let stretches = |at: &PathProgress| Demand::of(&self.path, arm, &limits, at).stretches(&limits);
         let profile = slow_to_keep(&self.profile, greatest(self.profile.phases().flat_map(cut), stretches))?;
         Some(Self { path: self.path.clone(), profile })
     }

@@ -11,15 +11,15 @@
 //!
 //! # Source
 //! With q̇ = q′ ṡ and q̈ = q′ s̈ + q″ ṡ² in (4): τ = (H q′) s̈ + (H q″ + V(q, q′)) ṡ² − γᵀ g − Jᵀ F, since V is
-//! quadratic in the rates.
+//! quadratic in the rates. On a free base the torques are those of [`ArmOnBase`], without the last two terms.
 
 use std::fmt;
 
 use crate::curves::PathPoint;
 use crate::curves::path::Path;
 use crate::timing::law::PathProgress;
-use stillbase_mechanics::dynamics::{ExternalLoads, holding_torque, inverse, mass_matrix};
-use stillbase_mechanics::machine::{Inertia, Machine, Motors};
+use stillbase_mechanics::arm_on_base::ArmOnBase;
+use stillbase_mechanics::machine::{Machine, Motors};
 use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive};
 
 /// A limited quantity of a drive.
@@ -158,11 +158,10 @@ pub(super) fn stretches(rows: &[ConstraintRow], speeds: &[f64], at: &PathProgres
     factors
 }
 
-/// The limits of a machine in its surroundings as constraints along a path.
+/// The limits of an arm on its base as constraints along a path.
 #[derive(Clone, Debug)]
 pub struct Constraints<'a> {
-    model: &'a Inertia,
-    around: ExternalLoads,
+    arm: &'a ArmOnBase,
     limits: &'a DriveLimits,
     /// 1/limit of each q̈_k, from the limits on torque and acceleration; only if torque is H_kk q̈_k in every pose.
     constant: Option<PerDrive>,
@@ -172,11 +171,11 @@ pub struct Constraints<'a> {
 }
 
 impl<'a> Constraints<'a> {
-    /// Builds the constraints of a model; infinite limits give no row.
-    pub fn new(model: &'a Inertia, around: &ExternalLoads, limits: &'a DriveLimits) -> Self {
+    /// Builds the constraints; infinite limits give no row.
+    pub fn new(arm: &'a ArmOnBase, limits: &'a DriveLimits) -> Self {
+        let model = arm.arm();
         let n = model.drives();
-        let weightless = around.gravity.norm_sqr() == 0.0 || model.is_force_balanced();
-        let constant = model.is_invariant() && weightless && around.force.norm_sqr() == 0.0 && model.is_decoupled();
+        let constant = arm.is_decoupled();
         let by_torque = |k: usize| limits.torque[k] / model.diagonal(k);
         let limited = |quantity| move |drive: &usize| limits.on(quantity)[*drive].is_finite();
         let of = |quantity| move |drive| DriveLimit { quantity, drive };
@@ -192,7 +191,7 @@ impl<'a> Constraints<'a> {
         };
         let constant = constant.then(|| PerDrive::from_fn(n, |k| 1.0 / by_torque(k).min(limits.acceleration[k])));
         let speed_limited = (0..n).filter(limited(LimitedQuantity::Speed)).collect();
-        Self { model, around: *around, limits, constant, rows, speed_limited }
+        Self { arm, limits, constant, rows, speed_limited }
     }
 
     /// Returns the limit of each row, in the order of `at`.
@@ -212,12 +211,7 @@ impl<'a> Constraints<'a> {
 
     /// Returns the placement of the motors that have these limits.
     pub fn motors(&self) -> &Motors {
-        self.model.motors()
-    }
-
-    /// Returns whether the rows are constant along a straight joint line.
-    pub fn is_constant(&self) -> bool {
-        self.constant.is_some()
+        self.arm.arm().motors()
     }
 
     /// Writes the [`rows`](Self::rows) at a point of a path, and to `speeds` each limited speed at ṡ = 1, divided by
@@ -232,11 +226,11 @@ impl<'a> Constraints<'a> {
             }
         } else {
             let e = q.units();
-            let (h, _) = mass_matrix(self.model, &e, first);
-            let motors = self.model.motors();
-            let a = motors.motor_torques(&h.times(first));
-            let c = motors.motor_torques(&inverse(self.model, &e, first, second, &ExternalLoads::default()));
-            let g = motors.motor_torques(&holding_torque(self.model, &e, &self.around));
+            let motors = self.motors();
+            let at_rest = PerDrive::zeros(first.len());
+            let a = motors.motor_torques(&self.arm.moving_torque(&e, &at_rest, first));
+            let c = motors.motor_torques(&self.arm.moving_torque(&e, first, second));
+            let g = motors.motor_torques(&self.arm.holding_torque(&e));
             let (first, second) = (motors.to_motors(first), motors.to_motors(second));
             for (row, limit) in rows.iter_mut().zip(&self.rows) {
                 let k = limit.drive;
@@ -250,7 +244,7 @@ impl<'a> Constraints<'a> {
         if self.speed_limited.is_empty() {
             return f64::INFINITY;
         }
-        let first = self.model.motors().to_motors(first);
+        let first = self.motors().to_motors(first);
         speeds
             .iter_mut()
             .zip(&self.speed_limited)
@@ -270,7 +264,7 @@ impl<'a> Constraints<'a> {
 
     /// Returns the drive that reaches its limit on speed first as ṡ grows.
     pub(super) fn fastest_drive(&self, point: &PathPoint) -> usize {
-        let first = self.model.motors().to_motors(&point.first);
+        let first = self.motors().to_motors(&point.first);
         let part = |k: usize| first[k].abs() / self.limits.speed[k];
         (0..first.len()).max_by(|k, l| part(*k).total_cmp(&part(*l))).unwrap_or(0)
     }

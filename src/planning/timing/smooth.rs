@@ -15,8 +15,7 @@ use crate::timing::profile::{JerkPhase, Profile};
 use crate::timing::s_curve::s_curve;
 use crate::timing::topp::PathConstraints;
 use crate::timing::usage::{Demand, Usage};
-use stillbase_mechanics::dynamics::ExternalLoads;
-use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::arm_on_base::ArmOnBase;
 
 /// Number of samples from which the active limits are determined.
 const USAGE_SAMPLES: usize = 2000;
@@ -50,8 +49,7 @@ const MAX_RATE: f64 = 60.0;
 /// Finds a motion within all limits; `bound` is the fastest motion on the grid without limits on jerk.
 pub(super) fn smooth(
     path: &Path,
-    model: &Inertia,
-    around: &ExternalLoads,
+    arm: &ArmOnBase,
     constraints: &Constraints,
     grid: &PathConstraints,
     bound: Result<FastestMotion, TimeError>,
@@ -75,7 +73,7 @@ pub(super) fn smooth(
         let share = (s - grid.s[i]) / (grid.s[i + 1] - grid.s[i]);
         (from * from + share * (to * to - from * from)) / (slope * slope)
     };
-    let stretches = |at: &PathProgress| Demand::of(path, model, around, limits, at).stretches(limits);
+    let stretches = |at: &PathProgress| Demand::of(path, arm, limits, at).stretches(limits);
     let (mut nodes, mut timing, mut best) = (nodes, None, None::<Profile>);
     for _ in 0..=MAX_REFINEMENTS {
         let solved = JerkProgram::new(path, constraints, nodes, max_square).solve(fastest, timing.as_ref());
@@ -101,7 +99,7 @@ pub(super) fn smooth(
     let profile = best.or_else(|| by_law(stretches)).ok_or_else(stuck)?;
     let gap = bound.map(|b| profile.duration() / b.profile.duration() - 1.0);
     let motion = Motion { path: path.clone(), profile };
-    let active_limits = Usage::of(&motion, model, around, limits, USAGE_SAMPLES).active_limits;
+    let active_limits = Usage::of(&motion, arm, limits, USAGE_SAMPLES).active_limits;
     Ok(FastestMotion { profile: motion.profile, gap, active_limits })
 }
 

@@ -4,8 +4,7 @@ use crate::Motion;
 use crate::curves::path::Path;
 use crate::timing::law::PathProgress;
 use crate::timing::limits::{DriveLimit, DriveLimits, LimitedQuantity};
-use stillbase_mechanics::dynamics::{ExternalLoads, holding_torque, inverse};
-use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::arm_on_base::ArmOnBase;
 use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive};
 
 /// A limit is active if at least this fraction of it is used.
@@ -28,17 +27,17 @@ pub struct Usage {
 }
 
 impl Usage {
-    /// Computes the utilisation of a motion of a model in its surroundings at the midpoints of `samples` equal parts of
+    /// Computes the utilisation of a motion of an arm on its base at the midpoints of `samples` equal parts of
     /// T.
     ///
     /// Torques come from the inverse dynamics (4) along the motion, independently of its planning.
-    pub fn of(motion: &Motion, model: &Inertia, around: &ExternalLoads, limits: &DriveLimits, samples: usize) -> Self {
+    pub fn of(motion: &Motion, arm: &ArmOnBase, limits: &DriveLimits, samples: usize) -> Self {
         let mut usage =
             Self { active: 0.0, max_utilisation: 0.0, time_of_max_s: 0.0, limit: None, active_limits: Vec::new() };
         let mut shares = TimeShares::default();
         for i in 0..samples {
             let t = (i as f64 + 0.5) / samples as f64 * motion.duration();
-            let demand = Demand::of(&motion.path, model, around, limits, &motion.profile.at(t));
+            let demand = Demand::of(&motion.path, arm, limits, &motion.profile.at(t));
             let Some((part, limit)) = demand.furthest(limits) else { break };
             if part > usage.max_utilisation || usage.limit.is_none() {
                 (usage.max_utilisation, usage.time_of_max_s, usage.limit) = (part, t, Some(limit));
@@ -93,17 +92,11 @@ pub(super) struct Demand {
 
 impl Demand {
     /// Computes the demand at an instant. Jerk is evaluated only if it is limited.
-    pub(super) fn of(
-        path: &Path,
-        model: &Inertia,
-        around: &ExternalLoads,
-        limits: &DriveLimits,
-        at: &PathProgress,
-    ) -> Self {
+    pub(super) fn of(path: &Path, arm: &ArmOnBase, limits: &DriveLimits, at: &PathProgress) -> Self {
         let point = path.at(at.s);
         let reference = point.timed(at);
         let e = point.q.units();
-        let moving = inverse(model, &e, &reference.qd, &reference.qdd, &ExternalLoads::default());
+        let moving = arm.moving_torque(&e, &reference.qd, &reference.qdd);
         let jerk = match limits.jerk.iter().any(|j| j.is_finite()) {
             true => point
                 .first
@@ -112,8 +105,8 @@ impl Demand {
                 .plus(at.rate.powi(3), &path.third(at.s)),
             false => PerDrive::zeros(reference.qd.len()),
         };
-        let holding = holding_torque(model, &e, around);
-        let motors = model.motors();
+        let holding = arm.holding_torque(&e);
+        let motors = arm.arm().motors();
         let [holding, moving] = [holding, moving].map(|torque| motors.motor_torques(&torque));
         let [speed, acceleration, jerk] = [reference.qd, reference.qdd, jerk].map(|x| motors.to_motors(&x));
         Self { holding, moving, speed, acceleration, jerk }

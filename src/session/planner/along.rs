@@ -1,10 +1,9 @@
 //! Motions along curves and joint lines: the parts of a path, and their timing.
 
-use super::plan::{Plan, TimingBottleneck, dynamics_of, keeps_rules};
+use super::plan::{Plan, TimingBottleneck, arm_on_base, keeps_rules};
 use crate::refusal::Refusal;
 use crate::scenario::{Corners, PathShape, Scenario, Task, TaskKind};
-use stillbase_mechanics::dynamics::ExternalLoads;
-use stillbase_mechanics::machine::Inertia;
+use stillbase_mechanics::arm_on_base::ArmOnBase;
 use stillbase_mechanics::planar::{DriveAngles, Vector};
 use stillbase_planning::Motion;
 use stillbase_planning::curves::path::{PathChain, least_rate_curve, minimum_norm_curve};
@@ -49,13 +48,13 @@ pub(super) fn timed(
 ) -> Result<(Motion, Option<TimingBottleneck>), Refusal> {
     let task = &scenario.task;
     let total: f64 = parts.iter().map(|(_, length)| length).sum();
-    let (model, around) = dynamics_of(scenario);
+    let arm = arm_on_base(scenario);
     let limits = DriveLimits::of(&scenario.machine);
     let mut timings = Vec::with_capacity(parts.len());
     let mut pace: Option<TimingBottleneck> = None;
     for (path, length) in &parts {
         let profile = if task.law.is_fastest() {
-            let fastest = fastest(path, &model, &around, &limits, task.law == TimeLaw::FastestSmooth)?;
+            let fastest = fastest(path, &arm, &limits, task.law == TimeLaw::FastestSmooth)?;
             let profile = fastest.profile;
             let time = profile.duration();
             // A part without motion has no optimality gap: its minimum time is 0.
@@ -85,15 +84,10 @@ pub(super) fn timed(
 }
 
 /// Stretches a motion in time until it keeps the limits of the drives. Fails if it exceeds them however slow it is.
-pub(super) fn slow_to_limits(
-    motion: Motion,
-    model: &Inertia,
-    around: &ExternalLoads,
-    limits: &DriveLimits,
-) -> Result<Motion, Refusal> {
+pub(super) fn slow_to_limits(motion: Motion, arm: &ArmOnBase, limits: &DriveLimits) -> Result<Motion, Refusal> {
     const SAMPLES: usize = 2000;
-    motion.slowed(model, around, limits).ok_or_else(|| {
-        let usage = Usage::of(&motion, model, around, limits, SAMPLES);
+    motion.slowed(arm, limits).ok_or_else(|| {
+        let usage = Usage::of(&motion, arm, limits, SAMPLES);
         let limit = usage.limit.map_or("a limit".into(), |limit| format!("the {limit}"));
         Refusal::NoWay(format!("{limit} is passed however slow the motion is: want a higher one"))
     })

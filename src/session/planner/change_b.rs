@@ -1,7 +1,7 @@
 //! Motions from A at one b to B at another, along a straight line in joint space or with a bang-bang b̈.
 
 use super::along::{slow_to_limits, timed};
-use super::plan::{Plan, PlannerSpace, dynamics_of, keeps_rules};
+use super::plan::{Plan, PlannerSpace, arm_on_base, keeps_rules};
 use super::poses::{no_b_refusal, poses_at_b, refusal, stated};
 use crate::refusal::Refusal;
 use crate::scenario::{Scenario, Task};
@@ -41,8 +41,8 @@ fn goes_straight(task: &Task) -> Result<(), Refusal> {
 /// instead.
 fn changed(scenario: &Scenario, space: &PoseSpace, ends: &[PoseAngles; 2]) -> Result<Plan, Refusal> {
     let (task, line) = (&scenario.task, joint_line(ends));
-    let (model, around) = dynamics_of(scenario);
-    let price = Price::of(&model, ends[1].b - ends[0].b)?;
+    let arm = arm_on_base(scenario);
+    let price = Price::of(arm.arm(), ends[1].b - ends[0].b)?;
     // If b changes, the peak of |n_B| equals its limit at T² = `square` · (peak |s̈| for T = 1 s).
     let moves = price.delta_b().abs() > 1e-9;
     let square = task.moment_limit.filter(|_| moves).map(|limit| price.inertia() * price.delta_b().abs() / limit);
@@ -53,13 +53,13 @@ fn changed(scenario: &Scenario, space: &PoseSpace, ends: &[PoseAngles; 2]) -> Re
             let table = table.ok_or_else(|| Refusal::NoWay("A and B are too far apart".into()))?;
             let motion = Motion { path: Path::Table(table), profile: Profile::even(2.0 * square.sqrt()) };
             // The time that a small change of b takes may be too short for the joints.
-            slow_to_limits(motion, &model, &around, &limits)?
+            slow_to_limits(motion, &arm, &limits)?
         }
         (law, Some(square)) if !law.is_fastest() => Motion::new(line, law, (law.peak() * square).sqrt().max(task.time)),
         (_, square) => {
             let (motion, _) = timed(scenario, vec![(line, 1.0)])?;
             let stretch = square.map_or(0.0, |square| {
-                let peak = Forecast::of(&motion, &model, &around, &limits).moment;
+                let peak = Forecast::of(&motion, &arm, &limits).moment;
                 let sampled = peak * square / (price.inertia() * price.delta_b().abs());
                 // Along a straight line b̈ = Δb s̈, whose greatest value is known.
                 sampled.max(motion.profile.peak_acceleration() * square).sqrt()

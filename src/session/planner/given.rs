@@ -4,7 +4,7 @@
 
 use super::held::{along_curves, sheet_of};
 use super::momentum::sampled_at_zero_momentum;
-use super::plan::{Plan, PlannerSpace, PlanningEffort, dynamics_of, keeps_rules};
+use super::plan::{Plan, PlannerSpace, PlanningEffort, arm_on_base, keeps_rules};
 use super::poses::start;
 use crate::refusal::Refusal;
 use crate::scenario::{Scenario, TaskKind};
@@ -85,9 +85,8 @@ pub(super) fn given(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan
     };
     let motion = Motion { path: Path::Table(table), profile: Profile::running(task.time) };
     keeps_rules(scenario, &motion)?;
-    let (model, around) = dynamics_of(scenario);
     let instants = (INSTANTS_PER_SAMPLE * samples.count()).clamp(MIN_INSTANTS, MAX_INSTANTS);
-    let forecast = Forecast::at(&motion, &model, &around, &DriveLimits::of(&scenario.machine), instants);
+    let forecast = Forecast::at(&motion, &arm_on_base(scenario), &DriveLimits::of(&scenario.machine), instants);
     Ok(Plan { beside_base, ..Plan::foreseen(motion, forecast) })
 }
 

@@ -3,7 +3,7 @@
 use super::along::{along_parts, curves, timed};
 use super::choose::START_TOLERANCE_RAD;
 use super::held::{reactionless, sheet_of};
-use super::plan::{Plan, PlannerSpace, PlanningEffort, dynamics_of, keeps_rules};
+use super::plan::{Plan, PlannerSpace, PlanningEffort, arm_on_base, keeps_rules};
 use super::poses::poses_at_b;
 use super::rates::minimum_norm;
 use crate::refusal::Refusal;
@@ -77,7 +77,7 @@ fn in_corridor(scenario: &Scenario, space: &PoseSpace, planes: &Planes, law: Tim
         ReactionObjective::MeanSquare => ReactionNorm::Rms,
         ReactionObjective::Peak => ReactionNorm::Peak,
     };
-    let (model, _) = dynamics_of(scenario);
+    let arm = arm_on_base(scenario);
     let mut refused = None;
     let start = sheet_of(task, space);
     // Of the poses of a stated start, the one on its sheet.
@@ -85,7 +85,7 @@ fn in_corridor(scenario: &Scenario, space: &PoseSpace, planes: &Planes, law: Tim
         start.is_none_or(|a| (pose.a[0] - a[0]).abs().max((pose.a[1] - a[1]).abs()) < START_TOLERANCE_RAD)
     };
     for start in map.poses(task.points()[0], task.b).iter().filter(is_wanted) {
-        match LeastReaction::plan(map, &model, &curve, *start, task.b_to, goal) {
+        match LeastReaction::plan(map, arm.arm(), &curve, *start, task.b_to, goal) {
             Ok(plan) => {
                 let motion = Motion { path: Path::Table(plan.path().clone()), profile: Profile::even(task.time) };
                 keeps_rules(scenario, &motion)?;
@@ -157,8 +157,7 @@ fn verdicts_of_held_b(scenario: &Scenario, space: &PoseSpace) -> Result<Verdicts
     let usual = minimum_norm(scenario, Ok(space)).and_then(|parts| Ok(timed(scenario, parts)?.0));
     let minimum_norm = match usual {
         Ok(motion) => {
-            let (model, around) = dynamics_of(scenario);
-            let forecast = Forecast::of(&motion, &model, &around, &DriveLimits::of(&scenario.machine));
+            let forecast = Forecast::of(&motion, &arm_on_base(scenario), &DriveLimits::of(&scenario.machine));
             let reaction = BaseReaction { peak: forecast.moment, rms: forecast.moment_rms };
             Ok(MinimumNorm { reaction, end_b: forecast.b_end, keeps_limits: keeps_rules(scenario, &motion).is_ok() })
         }

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use super::along::{curves, in_rounds};
-use super::plan::{Plan, PlannerSpace, dynamics_of};
+use super::plan::{Plan, PlannerSpace};
 use super::poses::{no_b_refusal, reached, start, stated};
 use crate::proposal::round_up;
 use crate::refusal::Refusal;
@@ -34,7 +34,7 @@ const CURVE_INTERVALS: usize = 720;
 /// Plans a motion at zero angular momentum.
 pub(super) fn zero_momentum(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
     let task = &scenario.task;
-    let (arm, _) = dynamics_of(scenario);
+    let arm = Inertia::of(&scenario.machine);
     match MomentumFreedom::of(&MomentumModel::from(&arm)) {
         MomentumFreedom::None => Err(Refusal::Task(
             "one drive has momentum as soon as it turns: want minimum-norm, and a machine of more drives".into(),
@@ -119,7 +119,7 @@ fn turning(scenario: &Scenario, start: DriveAngles, curves: &[Curve]) -> Result<
 /// Returns the angular momentum of the machine of a scenario as its base keeps its orientation, for motions from a pose,
 /// with its end effector in a frame. A base that is not free stands still.
 pub(crate) fn momentum_model(scenario: &Scenario, start: &DriveAngles, frame: TipFrame) -> MomentumModel {
-    let (arm, _) = dynamics_of(scenario);
+    let arm = Inertia::of(&scenario.machine);
     match scenario.base.kind {
         BaseKind::Free => MomentumModel::floating(&arm, &scenario.base.body(), frame, start),
         BaseKind::Fixed | BaseKind::Compliant => MomentumModel::from(&arm),

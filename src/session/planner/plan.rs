@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::Refusal;
 use crate::scenario::Scenario;
+use stillbase_mechanics::arm_on_base::ArmOnBase;
 use stillbase_mechanics::dynamics::ExternalLoads;
 use stillbase_mechanics::kinematics::end_effector;
 use stillbase_mechanics::machine::{Inertia, Machine};
@@ -18,6 +19,7 @@ use stillbase_planning::timing::limits::DriveLimit;
 use stillbase_planning::timing::{DriveLimits, TimeLaw};
 use stillbase_planning::{Forecast, Motion};
 use stillbase_simulation::Guide;
+use stillbase_simulation::plant::BaseKind;
 
 /// The pose space of a machine, or the reason why its b cannot be held.
 pub(super) type PlannerSpace<'a> = Result<&'a PoseSpace, &'a NoPoseSpace>;
@@ -127,8 +129,7 @@ impl Plan {
     }
 
     pub(super) fn of(scenario: &Scenario, motion: Motion) -> Self {
-        let (model, around) = dynamics_of(scenario);
-        let forecast = Forecast::of(&motion, &model, &around, &DriveLimits::of(&scenario.machine));
+        let forecast = Forecast::of(&motion, &arm_on_base(scenario), &DriveLimits::of(&scenario.machine));
         let ends = [0.0, motion.duration()].map(|t| motion.at(t).q);
         let mut plan = Self::foreseen(motion, forecast);
         let is_closed = scenario.task.closed && scenario.condition_for_effect("task.posture").is_none();
@@ -196,8 +197,18 @@ pub(super) fn keeps_rules(scenario: &Scenario, motion: &Motion) -> Result<(), Re
     Ok(())
 }
 
-/// Returns the inertia and the surroundings of the machine that control assumes, without a force at the end effector.
-pub(super) fn dynamics_of(scenario: &Scenario) -> (Inertia, ExternalLoads) {
-    let around = ExternalLoads { gravity: scenario.machine.gravity(), force: Vector::default() };
-    (Inertia::of(&scenario.machine), around)
+/// Returns the machine that control assumes on its base, without a force at the end effector. A compliant base is taken
+/// to stand still.
+pub fn arm_on_base(scenario: &Scenario) -> ArmOnBase {
+    let (arm, base) = (Inertia::of(&scenario.machine), &scenario.base);
+    let free = match base.kind {
+        BaseKind::Free if base.floats() => ArmOnBase::floating(arm.clone(), &base.body()).ok(),
+        BaseKind::Free => ArmOnBase::held(arm.clone(), &base.body()).ok(),
+        BaseKind::Fixed | BaseKind::Compliant => None,
+    };
+    // A machine of too many drives for a free base is refused before a run begins.
+    free.unwrap_or_else(|| {
+        let around = ExternalLoads { gravity: scenario.machine.gravity(), force: Vector::default() };
+        ArmOnBase::fixed(arm, &around)
+    })
 }

@@ -1,8 +1,8 @@
 //! [`Base`]: settings of the base of the machine.
 
 use super::Wheel;
+use stillbase_mechanics::arm_on_base::FloatingBase;
 use stillbase_mechanics::planar::Vector;
-use stillbase_planning::off_plane::price::FloatingBase;
 use stillbase_settings::keyed::keyed;
 use stillbase_settings::range::Range;
 use stillbase_settings::word::words;

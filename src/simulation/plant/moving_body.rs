@@ -12,12 +12,12 @@
 //! | L | angular momentum about R, Σ π_k; stored in place of π_θ | kg m²/s |
 //!
 //! # Method
-//! A moving base is treated as one more drive, with g_θ = m_b ρ, C_θθ = m_b |ρ|², J_θ = I_b. Its translation drops out
-//! of the equations if everything is referred to R. The kinetic energy is then |P|²/2M_t + ½ q̇ᵀ H' q̇, with H' formed
-//! from C'. So π̇_k = ∂T/∂q_k + Q_k, and only outer forces change P and L. On a free base without outer forces both are
+//! A moving base is treated as one more drive, see [`FreeBody`]. With everything referred to R the kinetic energy is
+//! |P|²/2M_t + ½ q̇ᵀ H' q̇, with H' formed from C'. So π̇_k = ∂T/∂q_k + Q_k, and only outer forces change P and L. On a free base without outer forces both are
 //! constant to the last digit. Gravity has no lever about R.
 
 use super::{Base, BaseKind, Contacts, Friction, SlipDirections, Slope, State};
+use stillbase_mechanics::arm_on_base::FreeBody;
 use stillbase_mechanics::dynamics::{BaseWrench, ExternalLoads, assemble, matrix_times};
 use stillbase_mechanics::machine::{Inertia, Machine, MachineError};
 use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, UnitVectors, Vector, cross, dot};
@@ -89,25 +89,9 @@ impl MovingBody {
                 base,
             });
         }
-        if n >= MAX_DRIVES {
-            let want = format!("at most {} on a base that moves", MAX_DRIVES - 1);
-            return Err(MachineError::Count { what: "drives", count: n, want });
-        }
+        let FreeBody { rotating, mass, base_chain, .. } = FreeBody::of(&arm, &base.body())?;
         arm.turn_base();
-        let rho = Vector::new(base.com[0], base.com[1]);
-        let mut rotating = arm.clone();
-        rotating.drives = n + 1;
-        let mut of_base = zero;
-        of_base[n] = rho;
-        rotating.add(base.mass, base.inertia, n, &of_base);
-        let g = rotating.g;
-        let mass = rotating.mass;
-        for k in 0..=n {
-            for l in 0..=n {
-                rotating.c[k][l] -= g[k].conj() * g[l] / mass;
-            }
-        }
-        let base_chain = g.map(|g| -g / mass);
+        let (rho, g) = (base.body().com, rotating.g);
         let mut end_effector_chain = real(&arm.end_effector);
         end_effector_chain.iter_mut().zip(&base_chain).for_each(|(tip, anchor)| *tip += anchor);
         let support = match base.kind {

@@ -32,7 +32,7 @@ pub(super) fn of_drives(
     let mut candidates = Vec::new();
     let mut path_refusal = None;
     if request.keep != Some(PreservedPath::Joints) {
-        let mut add = |b: f64, why: String| match same_tip(space, &judge.model, samples, b, Rule::default()) {
+        let mut add = |b: f64, why: String| match same_tip(space, judge.arm.arm(), samples, b, Rule::default()) {
             Ok(moved) => {
                 let made = moved.and_then(task).map(|task| MotionCandidate { method: "same-tip", why, task });
                 candidates.extend(made);
@@ -41,7 +41,7 @@ pub(super) fn of_drives(
             Err(stop) => Some(stop),
         };
         let near =
-            || nearest_b(space, &judge.model, samples, Rule::default(), &mut part(goes_on, [ACCOUNT_SHARE, 1.0]));
+            || nearest_b(space, judge.arm.arm(), samples, Rule::default(), &mut part(goes_on, [ACCOUNT_SHARE, 1.0]));
         path_refusal = if let Err(NotFollowable { drives }) = space.follows_curves() {
             Some(format!("{} held to a b move the end effector along one curve of their own", counted(drives, "drive")))
         } else if let Some((b, _)) = request.b.is_none().then(near).flatten() {

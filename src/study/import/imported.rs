@@ -70,7 +70,7 @@ impl ImportedMotion {
     /// Returns the report on a given motion, without a proposal; `given` is its assessment.
     pub(super) fn of(motion: &GivenMotion, judge: &MotionEvaluator, given: Option<MotionEffects>) -> Self {
         let samples = &motion.samples;
-        let lambda = judge.model.lambda();
+        let lambda = judge.arm.arm().lambda();
         let b = (0..samples.count()).map(|i| lambda.dot(samples.values(i)));
         let is_of_drives = motion.coordinates == Coordinates::Drives;
         let mut imported = Self {

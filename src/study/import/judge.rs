@@ -5,9 +5,9 @@ use serde::Serialize;
 
 use super::given::GivenMotion;
 use crate::advice::{Advice, Remedy};
-use stillbase_mechanics::dynamics::{ExternalLoads, angular_momentum, inverse_with_wrench};
-use stillbase_mechanics::machine::{Inertia, Machine};
-use stillbase_mechanics::planar::Vector;
+use stillbase_mechanics::arm_on_base::ArmOnBase;
+use stillbase_mechanics::dynamics::angular_momentum;
+use stillbase_mechanics::machine::Machine;
 use stillbase_planning::Motion;
 use stillbase_planning::curves::Coordinates;
 use stillbase_planning::following::nearest::Deviation;
@@ -16,7 +16,7 @@ use stillbase_planning::pose_space::{NoPoseSpace, PoseSpace};
 use stillbase_planning::timing::DriveLimits;
 use stillbase_query::{ProgressCallback, part};
 use stillbase_session::scenario::{Scenario, Task, TaskKind};
-use stillbase_session::{Refusal, Run, replay_while};
+use stillbase_session::{Refusal, Run, arm_on_base, replay_while};
 
 /// Fraction of the work for simulating a proposal; the rest is its assessment.
 const SIMULATION_SHARE: f64 = 0.8;
@@ -105,8 +105,7 @@ pub(super) struct MotionEvaluator {
     /// The scenario; its task is not used.
     pub scenario: Scenario,
     pub machine: Machine,
-    pub model: Inertia,
-    pub around: ExternalLoads,
+    pub arm: ArmOnBase,
     pub space: Result<PoseSpace, NoPoseSpace>,
     pub instants: usize,
 }
@@ -116,22 +115,17 @@ impl MotionEvaluator {
     pub fn new(scenario: &Scenario, instants: usize) -> Self {
         let scenario = Scenario { compare_b: None, edits: Vec::new(), ..scenario.clone() };
         let machine = scenario.machine.clone();
-        Self {
-            model: Inertia::of(&machine),
-            around: ExternalLoads { gravity: machine.gravity(), force: Vector::default() },
-            space: PoseSpace::of(&machine),
-            instants,
-            scenario,
-            machine,
-        }
+        Self { arm: arm_on_base(&scenario), space: PoseSpace::of(&machine), instants, scenario, machine }
     }
 
     /// Returns n_B at the instants for drawing, s, N m.
     fn moment(&self, motion: &Motion) -> Vec<[f64; 2]> {
+        let start = motion.at(0.0);
+        let momentum = self.arm.momentum_at_rest(&start.q.units(), &start.qd);
         let at = |i: usize| {
             let t = motion.duration() * i as f64 / DRAWN_INTERVALS as f64;
             let r = motion.at(t);
-            let (_, wrench) = inverse_with_wrench(&self.model, &r.q.units(), &r.qd, &r.qdd, &self.around);
+            let (_, wrench) = self.arm.dynamics(&r.q.units(), &r.qd, &r.qdd, momentum);
             [t, wrench.total().moment + 0.0]
         };
         (0..=DRAWN_INTERVALS).map(at).collect()
@@ -150,9 +144,9 @@ impl MotionEvaluator {
     /// Assesses a motion.
     fn account(&self, motion: &Motion, goes_on: ProgressCallback<'_>) -> MotionEffects {
         let limits = DriveLimits::of(&self.machine);
-        let f = Forecast::at_while(motion, &self.model, &self.around, &limits, self.instants, goes_on);
+        let f = Forecast::at_while(motion, &self.arm, &limits, self.instants, goes_on);
         let ends = [0.0, motion.duration()].map(|t| motion.at(t));
-        let [start, end] = [0, 1].map(|i| angular_momentum(&self.model, &ends[i].q.units(), &ends[i].qd) + 0.0);
+        let [start, end] = [0, 1].map(|i| angular_momentum(self.arm.arm(), &ends[i].q.units(), &ends[i].qd) + 0.0);
         MotionEffects {
             peak_base_moment: f.moment,
             rms_base_moment: f.moment_rms,
@@ -199,7 +193,7 @@ impl MotionEvaluator {
         let sampled = |kind, b| Task::sampled(kind, motion.samples.clone(), Some(b), &self.machine).ok();
         let task = match motion.coordinates {
             Coordinates::Drives => {
-                let b = self.model.lambda().dot(motion.samples.values(0));
+                let b = self.arm.arm().lambda().dot(motion.samples.values(0));
                 sampled(TaskKind::Given, b).map(|task| Task { b, ..task })
             }
             Coordinates::EndEffector => sampled(TaskKind::MinimumNorm, b),
@@ -223,7 +217,7 @@ impl MotionEvaluator {
         let peaks = run.frame().peaks;
         let (motion, tip) = (&run.plan().motion, self.machine.end_effector());
         let deviation = given.map(|AssessedMotion { motion: given, .. }| {
-            Deviation::between(tip, &self.model, given, motion, self.instants)
+            Deviation::between(tip, self.arm.arm(), given, motion, self.instants)
         });
         let account = self.account(motion, &mut part(goes_on, [SIMULATION_SHARE, 1.0]));
         Ok(Proposal {
@@ -251,7 +245,7 @@ impl MotionEvaluator {
             proposal.simulated_peak_base_moment, proposal.simulated_peak_base_force
         );
         let what = Advice::from(what);
-        match self.model.is_balanced() {
+        match self.arm.arm().is_balanced() {
             false => {
                 let mends = what.then(": it is not balanced; ").name(Remedy::Design).then(" mends that, ");
                 mends.name(Remedy::Check).then(" says where")

@@ -38,10 +38,10 @@ use super::known::{Explained, KnownValue, one_percent_off};
 use super::long_run::{bartlett_lags, long_run, t_quantile};
 use super::report::{MeasuredUnknown, untold_words};
 use super::unknowns::{ComplexPart, Unknown, Unknowns};
+use stillbase_mechanics::arm_on_base::FloatingBase;
 use stillbase_mechanics::balance::Condition;
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive, Vector, unit};
-use stillbase_planning::off_plane::price::FloatingBase;
 use stillbase_settings::number::{counted, fixed_or_scientific};
 use stillbase_simulation::signal_table::SignalTable;
 
