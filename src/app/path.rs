@@ -360,7 +360,7 @@ fn kind_settings(ui: &mut Ui, session: &Session, task: &Task, p: &Palette, comma
                 if let Some(turn) = &plan.base_turn {
                     let is_crossed = session.scenario().machine.is_redundant();
                     let why = if is_crossed { "across a singularity" } else { "as two drives go in one way" };
-                    note(ui, p, &format!("the base turns by {:.2}°, {why}", turn.peak().to_degrees()));
+                    note(ui, p, &format!("the base turns by {:.2}°, {why}", turn.angle.to_degrees()));
                 }
             }
             cycles(ui, task, p, commands);

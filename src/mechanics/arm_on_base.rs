@@ -73,6 +73,26 @@ impl FreeBody {
         }
         Ok(Self { rotating, mass, base_chain: g.map(|g| -g / mass), base: *base })
     }
+
+    /// Returns what drives that move beside the base at rest have in sum.
+    pub fn beside_rest(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive) -> RestingBase {
+        by_drives!(self.rotating.drives, beside_rest_of(self, e, qd, qdd))
+    }
+}
+
+/// Sums over the drives and a free base that is at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RestingBase {
+    /// Σ_kl H_kl, the inertia about R of all as one body, kg m².
+    pub inertia: f64,
+    /// Σ_kl H_kl q̇_l, the angular momentum about R, kg m²/s.
+    pub momentum: f64,
+    /// Its time derivative, N m.
+    pub moment: f64,
+    /// B relative to R, m.
+    pub pin: Vector,
+    /// Its rate, m/s.
+    pub pin_rate: Vector,
 }
 
 /// What carries an arm.
@@ -121,6 +141,14 @@ impl ArmOnBase {
     /// Returns the arm.
     pub fn arm(&self) -> &Inertia {
         &self.arm
+    }
+
+    /// Returns the arm and its base about their common centre of mass, if the base is free.
+    pub fn free_body(&self) -> Option<&FreeBody> {
+        match &self.carrier {
+            Carrier::Fixed(_) => None,
+            Carrier::Free { body, .. } => Some(body),
+        }
     }
 
     /// Returns whether torques are constant linear functions of the accelerations.
@@ -175,7 +203,7 @@ impl ArmOnBase {
     /// other bases.
     pub fn momentum_at_rest(&self, e: &UnitVectors, qd: &PerDrive) -> f64 {
         match &self.carrier {
-            Carrier::Free { body, floats: true } => by_drives!(body.rotating.drives, momentum_of(body, e, qd)),
+            Carrier::Free { body, floats: true } => body.beside_rest(e, qd, &PerDrive::zeros(qd.len())).momentum,
             _ => 0.0,
         }
     }
@@ -223,9 +251,16 @@ fn dynamics_of<const N: usize>(
     (PerDrive::from_fn(n, |k| torque[k]), wrench)
 }
 
-/// Returns Σ_kl H_kl q̇_l, the angular momentum about R of drives that move beside a base at rest, kg m²/s.
-fn momentum_of<const N: usize>(body: &FreeBody, e: &UnitVectors, qd: &PerDrive) -> f64 {
-    let (e, [rate, _]) = beside::<N>(e, [qd; 2]);
-    let (h, _) = assemble(&body.rotating, &e, &rate);
-    matrix_times(&h, &rate).iter().sum()
+fn beside_rest_of<const N: usize>(body: &FreeBody, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive) -> RestingBase {
+    let (e, [rate, acceleration]) = beside::<N>(e, [qd, qdd]);
+    let (h, v) = assemble(&body.rotating, &e, &rate);
+    let sum = |x: &[f64; N]| x.iter().sum::<f64>();
+    let arms: [Vector; N] = std::array::from_fn(|k| body.base_chain[k] * e[k]);
+    RestingBase {
+        inertia: sum(&matrix_times(&h, &[1.0; N])),
+        momentum: sum(&matrix_times(&h, &rate)),
+        moment: sum(&matrix_times(&h, &acceleration)) + sum(&v),
+        pin: arms.iter().sum(),
+        pin_rate: arms.iter().zip(rate).map(|(arm, rate)| Vector::new(0.0, rate) * arm).sum(),
+    }
 }

@@ -193,8 +193,8 @@ fn a_crossing_turns_the_simulated_base_as_planned() {
         );
         let turn = run.plan().base_turn.as_ref().expect("the base turns");
         let (base, tip, target) = end.expect("frames");
-        assert!((base.angle - turn.at(1.0)).abs() < 1e-9, "{} is not {}", base.angle, turn.at(1.0));
-        assert!((most - turn.peak()).abs() < 1e-7 && turn.peak() <= limit.to_radians() && turn.peak() > 0.01);
+        assert!((base.angle - turn.angle_end).abs() < 1e-9, "{} is not {}", base.angle, turn.angle_end);
+        assert!((most - turn.angle).abs() < 1e-7 && turn.angle <= limit.to_radians() && turn.angle > 0.01);
         assert!((tip - target).norm() < 1e-9, "{tip} is not {target}");
         let there = Vector::new(to[0], to[1]);
         let reached = if frame == "space" { tip } else { base.seen(tip) };

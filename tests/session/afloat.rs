@@ -166,7 +166,7 @@ fn two_drives_follow_a_line_and_turn_their_base() {
         let scenario = two_links(&format!("{to}\nstart = [1.9, 2.9]\nframe = '{frame}'"), CRAFT);
         let planned = Run::new(&scenario).expect("a plan");
         let [at_end, most] =
-            planned.plan().base_turn.as_ref().map(|turn| [turn.at(1.0), turn.peak()]).expect("it turns");
+            planned.plan().base_turn.as_ref().map(|turn| [turn.angle_end, turn.angle]).expect("it turns");
         assert!((at_end - turn).abs() < 1e-9 && (most - turn).abs() < 1e-9, "{frame}: {at_end}");
         let (last, turned) = run(&scenario);
         assert!((last.base.angle - turn).abs() < 1e-9 && (turned - turn).abs() < 1e-9, "{frame}: {}", last.base.angle);

@@ -4,8 +4,7 @@ pub mod b_course;
 #[doc(hidden)]
 pub mod b_integral;
 mod b_program;
-#[doc(hidden)]
-pub mod base_turn;
+pub mod base_forecast;
 pub mod corridor;
 pub mod drift;
 mod flow;

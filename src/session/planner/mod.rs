@@ -18,6 +18,7 @@ mod turn_base;
 
 pub use along::curves;
 pub(crate) use momentum::{momentum_model, rays_from};
+pub(crate) use plan::carried;
 pub use plan::{Plan, arm_on_base};
 
 use crate::refusal::Refusal;

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use super::along::{curves, in_rounds};
-use super::plan::{Plan, PlannerSpace};
+use super::plan::{Plan, PlannerSpace, arm_on_base};
 use super::poses::{no_b_refusal, reached, start, stated};
 use crate::proposal::round_up;
 use crate::refusal::Refusal;
@@ -15,7 +15,7 @@ use stillbase_mechanics::machine::Inertia;
 use stillbase_mechanics::planar::{DriveAngles, Vector};
 use stillbase_planning::curves::{Curve, Path, PathTable};
 use stillbase_planning::off_plane::b_integral::BIntegral;
-use stillbase_planning::off_plane::base_turn::BaseTurn;
+use stillbase_planning::off_plane::base_forecast::BaseForecast;
 use stillbase_planning::off_plane::drift::{DriftError, Singularity, zero_momentum_curve};
 use stillbase_planning::off_plane::least_momentum::least_momentum_curve;
 use stillbase_planning::off_plane::momentum::{MomentumModel, TipFrame};
@@ -111,8 +111,8 @@ fn turning(scenario: &Scenario, start: DriveAngles, curves: &[Curve]) -> Result<
         Ok(table)
     })?;
     let beside_base = beside_base(scenario, &start);
-    let course = beside_base.as_ref().and_then(|model| BaseTurn::along(model, &plan.motion.path));
-    let peak = course.as_ref().map_or(0.0, BaseTurn::peak).to_degrees();
+    let course = BaseForecast::of(&arm_on_base(scenario), &plan.motion);
+    let peak = course.as_ref().map_or(0.0, |course| course.angle).to_degrees();
     Ok((Plan { beside_base, base_turn: course.map(Arc::new), ..plan }, peak))
 }
 

@@ -11,7 +11,7 @@ use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector, unit};
 use stillbase_planning::curves::Path;
 use stillbase_planning::off_plane::Price;
-use stillbase_planning::off_plane::base_turn::BaseTurn;
+use stillbase_planning::off_plane::base_forecast::BaseForecast;
 use stillbase_planning::off_plane::least_reaction::Verdicts;
 use stillbase_planning::off_plane::momentum::MomentumModel;
 use stillbase_planning::pose_space::{NoPoseSpace, PoseSpace};
@@ -19,7 +19,7 @@ use stillbase_planning::timing::limits::DriveLimit;
 use stillbase_planning::timing::{DriveLimits, TimeLaw};
 use stillbase_planning::{Forecast, Motion};
 use stillbase_simulation::Guide;
-use stillbase_simulation::plant::BaseKind;
+use stillbase_simulation::plant::{Base, BaseKind};
 
 /// The pose space of a machine, or the reason why its b cannot be held.
 pub(super) type PlannerSpace<'a> = Result<&'a PoseSpace, &'a NoPoseSpace>;
@@ -53,7 +53,7 @@ pub struct Plan {
     /// it takes the base to stand still.
     pub beside_base: Option<Arc<MomentumModel>>,
     /// How that base turns, if the plan lets it.
-    pub base_turn: Option<Arc<BaseTurn>>,
+    pub base_turn: Option<Arc<BaseForecast>>,
     /// For a loop that turns the base: its length in drive angles, rad.
     pub loop_length: Option<f64>,
     /// Duration with blended corners, s, if stops at the corners are faster; the motion then stops.
@@ -100,7 +100,7 @@ impl Plan {
 
     /// Returns by how much the plan has turned its base at s of its path, 0 to 1, rad.
     fn turn_at(&self, s: f64) -> f64 {
-        self.base_turn.as_ref().map_or(0.0, |turn| turn.at(s))
+        self.base_turn.as_ref().map_or(0.0, |turn| turn.angle_at(s))
     }
 
     /// Returns the plan as the guide of a simulation.
@@ -200,7 +200,12 @@ pub(super) fn keeps_rules(scenario: &Scenario, motion: &Motion) -> Result<(), Re
 /// Returns the machine that control assumes on its base, without a force at the end effector. A compliant base is taken
 /// to stand still.
 pub fn arm_on_base(scenario: &Scenario) -> ArmOnBase {
-    let (arm, base) = (Inertia::of(&scenario.machine), &scenario.base);
+    carried(&scenario.machine, &scenario.base)
+}
+
+/// Returns a machine on a base, as [`arm_on_base`].
+pub(crate) fn carried(machine: &Machine, base: &Base) -> ArmOnBase {
+    let arm = Inertia::of(machine);
     let free = match base.kind {
         BaseKind::Free if base.floats() => ArmOnBase::floating(arm.clone(), &base.body()).ok(),
         BaseKind::Free => ArmOnBase::held(arm.clone(), &base.body()).ok(),
@@ -208,7 +213,7 @@ pub fn arm_on_base(scenario: &Scenario) -> ArmOnBase {
     };
     // A machine of too many drives for a free base is refused before a run begins.
     free.unwrap_or_else(|| {
-        let around = ExternalLoads { gravity: scenario.machine.gravity(), force: Vector::default() };
+        let around = ExternalLoads { gravity: machine.gravity(), force: Vector::default() };
         ArmOnBase::fixed(arm, &around)
     })
 }

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use super::along::in_rounds;
 use super::momentum::momentum_model;
-use super::plan::{Plan, PlannerSpace};
+use super::plan::{Plan, PlannerSpace, arm_on_base};
 use super::poses::start;
 use crate::refusal::Refusal;
 use crate::scenario::{MAX_CYCLES, Scenario};
 use stillbase_planning::curves::Path;
-use stillbase_planning::off_plane::base_turn::BaseTurn;
+use stillbase_planning::off_plane::base_forecast::BaseForecast;
 use stillbase_planning::off_plane::momentum::TipFrame;
 use stillbase_planning::off_plane::turning_loop::{NoLoop, TurningLoop};
 
@@ -43,6 +43,6 @@ pub(super) fn turn_base(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<
         why => Refusal::Loop { why, cycles: None },
     })?;
     let plan = in_rounds(scenario, start, &|q, _| Ok((vec![(Path::Table(found.path.clone()), found.length)], q)))?;
-    let base_turn = BaseTurn::along(&model, &plan.motion.path).map(Arc::new);
+    let base_turn = BaseForecast::of(&arm_on_base(scenario), &plan.motion).map(Arc::new);
     Ok(Plan { beside_base: Some(Arc::new(model)), base_turn, loop_length: Some(found.length), ..plan })
 }

@@ -118,7 +118,7 @@ impl Statement {
             return Self::new(StatusLight::Good, format!("turns its base by {turn} rad"), why);
         }
         if let (Guide::Motion { .. }, Some(turn)) = (run.simulation().guide(), &run.plan().base_turn) {
-            let (peak, limit) = (significant(turn.peak()), run.scenario().task.turn_limit.to_radians());
+            let (peak, limit) = (significant(turn.angle), run.scenario().task.turn_limit.to_radians());
             if !run.scenario().machine.is_redundant() {
                 let why = format!("two drives follow the path in one way, and the base turns by up to {peak} rad");
                 return match limit > 0.0 {
@@ -187,9 +187,10 @@ impl Statement {
                         false => (StatusLight::Good, "holds b".to_owned(), why),
                     }
                 } else {
+                    // A base that floats gives way.
+                    let law = if run.scenario().base.floats() { "n_B" } else { "n_B = −D₁ b̈" };
                     let why = format!(
-                        "b goes from {:.3} rad to {:.3} rad, within {least:.3} to {greatest:.3}; n_B = −D₁ b̈, up to {} N m \
-                     foreseen",
+                        "b goes from {:.3} rad to {:.3} rad, within {least:.3} to {greatest:.3}; {law}, up to {} N m foreseen",
                         forecast.b_start,
                         forecast.b_end,
                         significant(forecast.moment)

@@ -4,7 +4,6 @@
 //! [`MovingBody`] contains the constants of all moving parts, computed from these data.
 
 mod base;
-mod base_forecast;
 mod differences;
 mod each;
 mod friction;
@@ -15,7 +14,6 @@ mod state;
 mod wheel;
 
 pub use base::{Base, BaseKind};
-pub use base_forecast::BaseForecast;
 pub use differences::{LENGTH_KEYS, LinkDifference, PlantDifferences};
 pub use each::DriveValues;
 pub use friction::{Contacts, Friction, FrictionTorques, MAX_CONTACTS, SlipDirections};
