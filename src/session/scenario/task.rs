@@ -44,6 +44,7 @@ const ANGLE: Range = Range::either_way(1e3, "rad");
 const SAMPLED: &str = "no samples, which say where to go";
 const UNSAMPLED_ANGLES: &str = "no samples of drive angles, which begin at a pose of their own";
 const CURVED: &str = "points, and the kind reactionless, minimum-norm, least-reaction or zero-momentum";
+const GOING: &str = "no samples, which say where to go, and another kind than turn-base, which returns to A";
 const VISITING: &str = "another kind than turn-base, which returns to A";
 const FREE: &str =
     "four drives or more, and the kind reactionless in the shape line, arc, spline or freehand, or samples of x and y";
@@ -78,7 +79,8 @@ keyed! {
         /// Points between A and B, in order, at most 2000.
         via: Vec<[f64; 2]> = "[]", range: POINT_RANGE, when: VISITING => |task| task.kind != TaskKind::TurnBase;
         /// The point B; by default where samples end.
-        to: [f64; 2] = Key::REQUIRED, range: POINT_RANGE, when: SAMPLED => |task| task.samples.is_none(), saved: always;
+        to: [f64; 2] = Key::REQUIRED, range: POINT_RANGE, when: GOING
+            => |task| task.samples.is_none() && task.kind != TaskKind::TurnBase, saved: always;
         /// Where the points after A are meant: seen from the base pin, or in space.
         frame: Option<TipFrame> = Key::NONE, instead: "space if the base is free, otherwise base",
             when: "the kind zero-momentum" => |task| task.kind == TaskKind::ZeroMomentum;
@@ -187,6 +189,11 @@ impl Task {
         Some(DriveAngles(start.of(drives)))
     }
 
+    /// Returns whether the motion returns to A, and no other B is stated, which would have no effect.
+    pub(super) fn returns_to_a(&self) -> bool {
+        self.kind == TaskKind::TurnBase && self.to == self.from
+    }
+
     /// Returns the task with A and b of its start, if it has one: they may be those of a machine that has changed.
     pub fn at_its_start(&self, machine: &Machine) -> Option<Self> {
         // Samples of drive angles begin at a pose of their own.
@@ -195,7 +202,8 @@ impl Task {
             return None;
         }
         let (from, b) = place_and_b(machine, &self.start_pose(machine.drives())?);
-        ((from, b) != (self.from, self.b)).then(|| Self { from, b, ..self.clone() })
+        let to = if self.returns_to_a() { from } else { self.to };
+        ((from, b) != (self.from, self.b)).then(|| Self { from, to, b, ..self.clone() })
     }
 
     /// Returns a task given by samples. Samples of the end effector are followed at `b`, rad; samples of drive angles
@@ -356,7 +364,10 @@ impl Task {
         if !begins && (task.from, task.b) != (self.from, self.b) {
             task.start = None;
         }
-        task.completed(|key| stated.contains_key(key), machine).map_err(|why| why.to_string())
+        // Where the motion returns, B goes with A.
+        let follows = self.returns_to_a() && task.kind == self.kind && !change.contains_key("to");
+        let is_stated = |key: &str| stated.contains_key(key) && !(follows && key == "to");
+        task.completed(is_stated, machine).map_err(|why| why.to_string())
     }
 
     /// Names in a change all of start, A and b if it sets one of them and there is a start, or comes to be one.
