@@ -228,12 +228,12 @@ fn found_machine(name: &str) -> Result<FoundMachine, Failure> {
     Ok(found)
 }
 
-/// Returns a scenario by name or file whose base floats.
+/// Returns a scenario by name or file, with settings changed, whose base floats.
 ///
 /// # Errors
-/// If there is no such scenario, or if its base does not float.
-pub fn floating_scenario(name: &str) -> Result<Scenario, Failure> {
-    let found = scenario(name, &Settings::default())?;
+/// As [`scenario`], or if its base does not float.
+pub fn floating_scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
+    let found = scenario(name, settings)?;
     let why = || format!("--base {name}: its base does not float: want a scenario with [base] kind = \"free\"");
     if found.base.kind == BaseKind::Free { Ok(found) } else { Err(Failure::wrong_input(why())) }
 }

@@ -217,7 +217,10 @@ fn what_has_no_effect_is_told() {
         (&["simulate", "case-3", "--set", "payload.axial=0.1"], ["payload.axial has no use", "payload.mass"]),
         (&["check", "nine-link", "--set", "payload.offset=0.1,0"], ["payload.offset has no use", "payload.mass"]),
         (&["simulate", "case-1", "--set", "task.corners=blend"], ["task.corners has no use", "three points"]),
-        (&["plan", "spot-turn", "--set", "task.to=0.1,0.2"], ["task.to has no use", "turn-base, which returns to A"]),
+        (
+            &["simulate", "spot-turn", "--set", "task.to=0.1,0.2"],
+            ["task.to has no use", "turn-base, which returns to A"],
+        ),
         (&["plan", "case-3", "--blend", "0.05"], ["--blend has no use", "three points"]),
         (&["simulate", "case-3", "--set", "tolerance.seed=3"], ["tolerance.seed has no use", "command tolerance"]),
         (&["plan", "case-3", "--set", "tolerance.link.*.com=normal:0.1"], ["has no use", "command tolerance"]),
@@ -280,7 +283,7 @@ fn what_is_refused_says_what_would_be_right() {
         ),
         (&["plan", "spot", "--set", "length.arm=1"], ["the length \"arm\"", "lengths = { arm = 0.5 }"]),
         (&["plan", "spot", "--set", "part.1.width=1"], ["width of part 1", "part = [{ link = \"1\", shape = "]),
-        (&["plan", "spot-turn", "--set", "task.cycles=-2"], [whole, "--set task.cycles=1"]),
+        (&["simulate", "spot-turn", "--set", "task.cycles=-2"], [whole, "--set task.cycles=1"]),
         (&["plan", "spot-turn", "--set", "task.cycles=99999999999"], ["a whole number, 1 to 100", "task.cycles=100"]),
     ] {
         fails(args, 2, &words);

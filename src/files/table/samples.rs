@@ -127,6 +127,15 @@ impl Columns {
         let mut all = vec![time];
         match coordinates {
             Coordinates::Drives => {
+                let is_of = |cell: &str, k: usize| [format!("q{k}"), format!("q_{k}")].contains(&cell.to_owned());
+                let known = (1..).take_while(|k| cells.iter().any(|(name, _)| is_of(name, *k))).count();
+                if (1..machine.drives()).contains(&known) && drives.iter().flatten().count() == known {
+                    let (own, has) = (machine.name(), machine.drives());
+                    let known = counted(known, "drive");
+                    return Err(format!(
+                        "the angles are those of {known}, and the machine {own} has {has}: want {want}"
+                    ));
+                }
                 for (k, column) in drives.into_iter().enumerate() {
                     all.push(column.ok_or_else(|| missing(&format!("q{}", k + 1)))?);
                 }

@@ -166,6 +166,14 @@ pub enum IncompleteTask {
     /// A key is missing.
     #[error("missing field `{0}`")]
     Missing(&'static str),
+    /// The samples are those of another number of drives.
+    #[error("{}", samples_of_others(*got, *want))]
+    Samples {
+        /// Number of values of a sample beside the time.
+        got: usize,
+        /// Number of drives.
+        want: usize,
+    },
     /// The start has not one angle for each drive.
     #[error("{}: want {want}, one for each drive", counted(*got, "angle"))]
     Angles {
@@ -174,6 +182,15 @@ pub enum IncompleteTask {
         /// Number of drives.
         want: usize,
     },
+}
+
+/// Says that samples of so many values beside the time do not fit a machine of `drives` drives.
+pub(crate) fn samples_of_others(values: usize, drives: usize) -> String {
+    format!(
+        "the samples are angles of {}, and the machine has {drives}: want rows of t, q1 … q{drives} or of t, x, y, or a \
+         machine of as many drives",
+        counted(values, "drive")
+    )
 }
 
 /// Returns where a pose has the end effector, m, and its b, rad.
@@ -240,6 +257,10 @@ impl Task {
         let place = |key: &'static str, own: [f64; 2], end: Option<[f64; 2]>| match end {
             _ if stated(key) => Ok(own),
             Some(end) => Ok(end),
+            // Where the samples begin and end is then unknown.
+            None if self.samples.is_some() => {
+                Err(IncompleteTask::Samples { got: self.columns().unwrap_or_default(), want: drives })
+            }
             None => Err(IncompleteTask::Missing(key)),
         };
         let at_start = start.map(|q| place_and_b(machine, &q));
