@@ -60,7 +60,9 @@ fn settings_of_the_base_are_taken_in_orbit() {
     assert!(off(&[]) > 1e-4 && off(&heavy) < 1e-8, "{} {}", off(&[]), off(&heavy));
     let held = ["trim", "a.csv", "spot", "--base", "spot", "--set", "base.kind=fixed"];
     assert!(said_in(&folder, &held, 2).contains("does not float"));
-    assert!(said_in(&folder, &["trim", "a.csv", "spot", "--set", "base.mass=12"], 2).contains("no setting base.mass"));
+    assert!(
+        said_in(&folder, &["trim", "a.csv", "spot", "--set", "base.mass=12"], 2).contains("no setting \"base.mass\"")
+    );
 }
 
 /// Units, other separators, named motions: the same numbers.

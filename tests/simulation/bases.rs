@@ -65,7 +65,7 @@ fn a_free_base_begins_without_momentum() {
         begins("zero-momentum", "start = [1.9, 2.6, 3.4]", &|t| vec![x + 0.1 * eased(t), y - 0.07 * eased(t)], "spot");
     let drives = |t: f64| [1.0, 1.7, 0.2].iter().enumerate().map(|(k, q)| q + (0.5 + k as f64) * eased(t)).collect();
     let given = begins("given", "", &drives, "spot");
-    let geared = |t: f64| [1.0, 1.7, 2.2].iter().enumerate().map(|(k, q)| q + 0.2 * k as f64 * eased(t)).collect();
+    let geared = |t: f64| [1.6, 3.5, 2.0].iter().enumerate().map(|(k, q)| q + 0.2 * k as f64 * eased(t)).collect();
     let wheel = Wheel { inertia: 0.01, ..Wheel::default() };
     let mut wheeled = given.clone();
     wheeled.base.wheel = Some(wheel);
@@ -224,7 +224,8 @@ fn simulation_mass(machine: &Machine) -> f64 {
     machine.mass()
 }
 
-/// An hour of tumbling without a motor: momenta stay to the last digits, because they are the state.
+/// An hour of tumbling without a motor: momenta stay to the last digits, because they are the state. Arm and base turn
+/// against each other, for a free base begins without momentum.
 #[test]
 fn momentum_is_kept_for_an_hour() {
     let model = builtin("nine-link-table-1").expect("built in").set("link.1.com", "0.1").expect("valid");
@@ -246,7 +247,8 @@ fn momentum_is_kept_for_an_hour() {
     let setup = Setup { model: &model, plant: &plant, base: &base, control: &control, step };
     let mut simulation = Simulation::new(&setup, guide).expect("valid");
     let start = simulation.frame();
-    assert!(start.momentum.norm() > 0.1 && start.angular_momentum.abs() > 0.1, "it turns");
+    assert!(start.base_velocity.norm() > 0.01 && start.base_rate.abs() > 0.1 && start.qd.max_abs() > 0.1, "it turns");
+    assert!(start.momentum.norm() < 1e-13 && start.angular_momentum.abs() < 1e-13, "{start:?}");
     let mut worst = [0.0_f64; 2];
     for i in 1..=360_000 {
         simulation.advance();

@@ -130,10 +130,10 @@ impl Columns {
                 let is_of = |cell: &str, k: usize| [format!("q{k}"), format!("q_{k}")].contains(&cell.to_owned());
                 let known = (1..).take_while(|k| cells.iter().any(|(name, _)| is_of(name, *k))).count();
                 if (1..machine.drives()).contains(&known) && drives.iter().flatten().count() == known {
-                    let (own, has) = (machine.name(), machine.drives());
-                    let known = counted(known, "drive");
+                    let (lacks, own, has) = (missing(&format!("q{}", known + 1)), machine.name(), machine.drives());
                     return Err(format!(
-                        "the angles are those of {known}, and the machine {own} has {has}: want {want}"
+                        "{lacks}; these are angles of {}, and {own} has {has}",
+                        counted(known, "drive")
                     ));
                 }
                 for (k, column) in drives.into_iter().enumerate() {
