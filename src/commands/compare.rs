@@ -1,6 +1,6 @@
 //! `stillbase compare`
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -15,7 +15,7 @@ use stillbase_study::comparison::{
 use super::exit::print_message;
 use super::failure::Failure;
 use super::file_form::FileForm;
-use super::input::{DEFAULT_SCENARIO, Settings, distinct_name, machine, scenario};
+use super::input::{DEFAULT_SCENARIO, Settings, distinct_names, machine, scenario};
 #[cfg(feature = "record")]
 use super::output::say_written;
 use super::output::{Format, TextTable};
@@ -115,39 +115,35 @@ impl CompareArguments {
             let scenario = scenario(name, &self.settings)?;
             return Ok(alternatives(&scenario).into_iter().map(|(way, s)| (Some(way.name()), s)).collect());
         }
-        let mut all: Vec<(Option<&'static str>, Scenario)> = Vec::new();
-        for name in &self.names {
-            let mut next = scenario(name, &self.settings)?;
-            next.name = distinct_name(&next.name, |name| all.iter().any(|(_, s)| s.name == name));
-            all.push((None, next));
-        }
-        Ok(all)
+        let all: Result<Vec<Scenario>, Failure> =
+            self.names.iter().map(|called| scenario(called, &self.settings)).collect();
+        let all = all?;
+        let names = distinct_names(
+            &self.names.iter().zip(&all).map(|(called, s)| (called.as_str(), s.name.as_str())).collect::<Vec<_>>(),
+        );
+        Ok(names.into_iter().zip(all).map(|(name, scenario)| (None, Scenario { name, ..scenario })).collect())
     }
 
-    /// Returns the task of a scenario on each machine, named as the machine. A single one is compared with the machine of
+    /// Returns the task of a scenario on each machine, named as the machine. A single machine is compared with the machine of
     /// the scenario.
     fn on_task(&self, task: &str) -> Result<Vec<(Option<&'static str>, Scenario)>, Failure> {
         let [of_machine, own] = [true, false].map(|wanted| self.settings.of_keys(|key| is_of_machine(key) == wanted));
         let scenario = scenario(task, &own)?;
-        let mut machines: Vec<(String, Machine)> = Vec::new();
+        let mut machines: Vec<(&str, Machine)> = Vec::new();
         if self.names.len() == 1 {
-            let machine = with_start_edits(&scenario)?.0.machine;
-            machines.push((machine.name().to_owned(), machine));
+            machines.push((task, with_start_edits(&scenario)?.0.machine));
         }
         for called in &self.names {
-            let machine = of_machine.apply(machine(called)?.machine).map_err(|why| why.with_context(called))?;
-            let is_taken = |name: &str| machines.iter().any(|(known, _)| known == name);
-            // A design has the name of the machine that it is made from; the files tell them apart.
-            let stem =
-                Path::new(called).file_stem().map_or_else(|| called.clone(), |stem| stem.to_string_lossy().into());
-            let name = if is_taken(machine.name()) { stem } else { machine.name().to_owned() };
-            machines.push((distinct_name(&name, is_taken), machine));
+            machines
+                .push((called, of_machine.apply(machine(called)?.machine).map_err(|why| why.with_context(called))?));
         }
+        let names =
+            distinct_names(&machines.iter().map(|(called, machine)| (*called, machine.name())).collect::<Vec<_>>());
         let all: Vec<&Machine> = machines.iter().map(|(_, machine)| machine).collect();
         let tasks = SharedTask::on(&scenario, &all)?;
-        let named = machines.iter().zip(tasks).map(|((name, _), SharedTask { scenario, note })| {
+        let named = names.into_iter().zip(tasks).map(|(name, SharedTask { scenario, note })| {
             note.into_iter().for_each(|note| print_message(format!("note: {name}: {note}")));
-            (None, Scenario { name: name.clone(), ..scenario })
+            (None, Scenario { name, ..scenario })
         });
         Ok(named.collect())
     }

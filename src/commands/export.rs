@@ -165,8 +165,6 @@ impl ExportArguments {
     fn reference(&self, run: &Run) -> Result<(Rows, f64), Failure> {
         let (motion, body) = (&run.plan().motion, arm_on_base(run.scenario()));
         let (model, whole) = (body.arm(), motion.duration());
-        let start = motion.at(0.0);
-        let momentum = body.momentum_at_rest(&start.q.units(), &start.qd);
         self.check_rows(whole)?;
         // The end adds a row unless a whole number of intervals reaches it.
         let spaces = (whole * self.rate * (1.0 - 1e-9)).ceil() as usize;
@@ -174,7 +172,7 @@ impl ExportArguments {
         let row = |i: usize| {
             let t = if i == spaces { whole } else { i as f64 / self.rate };
             let r = motion.at(t);
-            let (torque, _) = body.dynamics(&r.q.units(), &r.qd, &r.qdd, momentum);
+            let (torque, _) = body.dynamics(&r.q.units(), &r.qd, &r.qdd);
             let torque = model.motors().motor_torques(&torque);
             let p = run.end_effector_at(&r.q);
             // Adding zero removes the sign of -0.

@@ -22,7 +22,7 @@ use super::exit::print_message;
 use super::failure::Failure;
 use super::file_form::FileForm;
 use super::import_model::OfBase;
-use super::input::{MachineArgument, floating_scenario};
+use super::input::{MachineArgument, Settings, floating_scenario};
 use super::output::{Format, TextTable, write_file};
 
 /// Export a machine: a model for MuJoCo (.xml) or for ROS and Pinocchio (.urdf), drawings for cutting (.svg, .dxf),
@@ -120,7 +120,7 @@ impl ExportModelArguments {
     /// Writes the file.
     pub fn run(&self) -> Result<(), Failure> {
         let FoundMachine { machine, base, scenario, .. } = self.machine.find()?;
-        let other = self.base.as_deref().map(floating_scenario).transpose()?;
+        let other = self.base.as_deref().map(|base| floating_scenario(base, &Settings::default())).transpose()?;
         let base = other.as_ref().map_or(base, |other| Some(other.base));
         let floating = base.as_ref().and_then(floating_base);
         let ending = self.form.check(&self.format, Some(&self.output), self.force, &form::endings())?;

@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::fmt;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -198,15 +198,16 @@ impl MachineArgument {
     /// # Errors
     /// As [`load`](Self::load); the error names the machine as the command line does.
     pub fn load_with(&self, others: &[String]) -> Result<(Vec<(String, Machine)>, DesignBrief), Failure> {
-        let mut all: Vec<(String, Machine)> = Vec::new();
+        let mut all: Vec<(&str, Machine)> = Vec::new();
         let mut brief = None;
         for called in std::iter::once(&self.name).chain(others) {
             let MachineFile { machine, design } = machine(called)?;
             brief.get_or_insert(design);
-            let machine = self.settings.apply(machine).map_err(|why| why.with_context(called))?;
-            all.push((distinct_name(machine.name(), |name| all.iter().any(|(known, _)| known == name)), machine));
+            all.push((called, self.settings.apply(machine).map_err(|why| why.with_context(called))?));
         }
-        Ok((all, brief.unwrap_or_default()))
+        let names = distinct_names(&all.iter().map(|(called, machine)| (*called, machine.name())).collect::<Vec<_>>());
+        let machines = all.into_iter().map(|(_, machine)| machine);
+        Ok((names.into_iter().zip(machines).collect(), brief.unwrap_or_default()))
     }
 }
 
@@ -227,12 +228,12 @@ fn found_machine(name: &str) -> Result<FoundMachine, Failure> {
     Ok(found)
 }
 
-/// Returns a scenario by name or file whose base floats.
+/// Returns a scenario by name or file, with settings changed, whose base floats.
 ///
 /// # Errors
-/// If there is no such scenario, or if its base does not float.
-pub fn floating_scenario(name: &str) -> Result<Scenario, Failure> {
-    let found = scenario(name, &Settings::default())?;
+/// As [`scenario`], or if its base does not float.
+pub fn floating_scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
+    let found = scenario(name, settings)?;
     let why = || format!("--base {name}: its base does not float: want a scenario with [base] kind = \"free\"");
     if found.base.kind == BaseKind::Free { Ok(found) } else { Err(Failure::wrong_input(why())) }
 }
@@ -248,14 +249,27 @@ pub fn left_out<'a>(file: &'a str, notes: &'a [String]) -> impl Iterator<Item = 
     notes.iter().map(move |note| format!("{file}: {note}"))
 }
 
-/// Returns a name that is not taken: `own`, or `own` with the first free number, from 2 on.
-pub fn distinct_name(own: &str, taken: impl Fn(&str) -> bool) -> String {
-    let (mut name, mut count) = (own.to_owned(), 1);
-    while taken(&name) {
-        count += 1;
-        name = format!("{own}-{count}");
+/// Returns a distinct name for each of some things, given as the command line calls each and by its own name. Those of one
+/// name are told apart by their files, or by the paths of these; the same thing once more has a number.
+pub fn distinct_names(all: &[(&str, &str)]) -> Vec<String> {
+    let mut names: Vec<String> = all.iter().map(|(_, own)| (*own).to_owned()).collect();
+    let stem = |called: &Path| called.file_stem().map(Path::new).unwrap_or(called).to_path_buf();
+    let whole = |called: &Path| called.with_file_name(stem(called));
+    for telling in [&stem as &dyn Fn(&Path) -> PathBuf, &whole] {
+        let before = names.clone();
+        for (name, (called, _)) in names.iter_mut().zip(all).filter(|(_, (called, _))| *called != STANDARD_INPUT) {
+            if before.iter().filter(|other| *other == name).count() > 1 {
+                *name = telling(Path::new(called)).display().to_string();
+            }
+        }
     }
-    name
+    let mut distinct: Vec<String> = Vec::new();
+    for name in names {
+        let numbered = (2..).map(|count| format!("{name}-{count}"));
+        let free = std::iter::once(name.clone()).chain(numbered).find(|name| !distinct.contains(name));
+        distinct.push(free.unwrap_or(name));
+    }
+    distinct
 }
 
 /// Returns a scenario by name or file, with settings changed before anything is planned, for a command that samples no

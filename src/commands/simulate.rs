@@ -92,7 +92,8 @@ struct Outcome {
     /// Limits of momentum and torque of the wheel.
     #[serde(skip)]
     wheel_limits: [Option<f64>; 2],
-    miss: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    miss: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     past_limit: Option<Past>,
     /// Limit of a drive that is exceeded by the largest factor, and that factor.

@@ -1,7 +1,7 @@
 //! `--strict`: what is judged and not good ends with exit status 1, and a message that says what that is.
 
 use clap::Args;
-use stillbase_session::verdict::{Statement, StatusLight, TARGET_TOLERANCE, Verdict};
+use stillbase_session::verdict::{Statement, StatusLight, Verdict};
 use stillbase_settings::number::significant;
 
 use super::failure::Failure;
@@ -32,14 +32,13 @@ impl Strict {
 /// Returns what of a finished run is not good: that it does not spare its base, exceeds limits of joints and drives, or
 /// misses its target.
 pub fn run_faults(name: &str, verdict: &Verdict) -> Vec<String> {
-    let misses = verdict.has_target && (verdict.target_distance > TARGET_TOLERANCE || verdict.target_distance.is_nan());
     let base = (!verdict.spares_base()).then(|| verdict.word().to_owned());
     let joint = verdict.past_limit.as_ref();
     let joint = joint.map(|(angle, by)| format!("past the limit of the angle {angle} by {} rad", significant(*by)));
     let drive = verdict.exceeded_limit.as_ref();
     let drive = drive
         .map(|(limit, factor)| format!("past a limit of a drive: {limit}, by the factor {}", significant(*factor)));
-    let miss = misses.then(|| format!("off its target by {} m", significant(verdict.target_distance)));
+    let miss = verdict.miss().map(|miss| format!("off its target by {} m", significant(miss)));
     [base, joint, drive, miss].into_iter().flatten().map(|fault| format!("{name}: {fault}")).collect()
 }
 

@@ -13,11 +13,11 @@
 //! # Source
 //! A free base is one more drive, with g_θ = m_b ρ, C_θθ = m_b |ρ|², J_θ = I_b. Its translation drops out of the equations
 //! if everything is referred to R: the torques are H φ̈ + V with H formed from C'. Torques between drives and base
-//! cancel, so a base that floats has Σ_kl H_kl φ̇_l = L and Σ_k (H φ̈ + V)_k = 0. These give θ̇ and θ̈. A wheel that holds
-//! the base gives Σ_k (H φ̈ + V)_k at θ̇ = θ̈ = 0. Gravity accelerates all parts alike and loads no drive.
+//! cancel, so a base that floats has L = 0 and L̇ = Σ_k (H φ̈ + V)_k = 0. These give θ̇ and θ̈. A wheel that holds the base
+//! gives L̇ at θ̇ = θ̈ = 0. Gravity accelerates all parts alike and loads no drive.
 //!
 //! The force on a free base is m_b times the acceleration of its centre of mass. The moment about B is
-//! I_b θ̈ + ρ × f − Σ_k (H φ̈ + V)_k, as the arm holds the rest of L.
+//! I_b θ̈ + ρ × f − L̇, as the arm holds the rest of L.
 
 use crate::dynamics::{
     BaseWrench, ExternalLoads, assemble, by_drives, holding_torque, inverse, inverse_with_wrench, matrix_times,
@@ -91,8 +91,6 @@ pub struct RestingBase {
     pub moment: f64,
     /// B relative to R, m.
     pub pin: Vector,
-    /// Its rate, m/s.
-    pub pin_rate: Vector,
 }
 
 /// What carries an arm.
@@ -174,7 +172,7 @@ impl ArmOnBase {
     pub fn moving_torque(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive) -> PerDrive {
         match &self.carrier {
             Carrier::Fixed(_) => inverse(&self.arm, e, qd, qdd, &ExternalLoads::default()),
-            Carrier::Free { .. } => self.dynamics(e, qd, qdd, 0.0).0,
+            Carrier::Free { .. } => self.dynamics(e, qd, qdd).0,
         }
     }
 
@@ -188,23 +186,14 @@ impl ArmOnBase {
     }
 
     /// Returns the torques of the drives, N m, and the wrench on the base about B in its axes, at a pose with rates and
-    /// accelerations relative to the base. `momentum` is L of a base that floats, kg m²/s.
+    /// accelerations relative to the base. A base that floats turns so that L is zero.
     #[inline]
-    pub fn dynamics(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive, momentum: f64) -> (PerDrive, BaseWrench) {
+    pub fn dynamics(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive) -> (PerDrive, BaseWrench) {
         match &self.carrier {
             Carrier::Fixed(around) => inverse_with_wrench(&self.arm, e, qd, qdd, around),
             Carrier::Free { body, floats } => {
-                by_drives!(body.rotating.drives, dynamics_of(body, *floats, e, [qd, qdd], momentum))
+                by_drives!(body.rotating.drives, dynamics_of(body, *floats, e, [qd, qdd]))
             }
-        }
-    }
-
-    /// Returns the angular momentum L about R if the drives move while a base that floats is at rest, kg m²/s; 0 for
-    /// other bases.
-    pub fn momentum_at_rest(&self, e: &UnitVectors, qd: &PerDrive) -> f64 {
-        match &self.carrier {
-            Carrier::Free { body, floats: true } => body.beside_rest(e, qd, &PerDrive::zeros(qd.len())).momentum,
-            _ => 0.0,
         }
     }
 }
@@ -216,15 +205,14 @@ fn beside<const N: usize>(e: &UnitVectors, of_drives: [&PerDrive; 2]) -> ([Vecto
     (e, of_drives.map(padded))
 }
 
-/// Returns the torques of the drives and the wrench on the base, in its axes. A base that `floats` turns, with the
-/// angular momentum L about R; otherwise it keeps its orientation.
+/// Returns the torques of the drives and the wrench on the base, in its axes. A base that `floats` turns
+/// so that L is zero; otherwise it keeps its orientation.
 #[inline]
 fn dynamics_of<const N: usize>(
     body: &FreeBody,
     floats: bool,
     e: &UnitVectors,
     rates: [&PerDrive; 2],
-    momentum: f64,
 ) -> (PerDrive, BaseWrench) {
     let n = N - 1;
     let sum = |x: &[f64; N]| x.iter().sum::<f64>();
@@ -232,7 +220,7 @@ fn dynamics_of<const N: usize>(
     let (h, mut v) = assemble(&body.rotating, &e, &rate);
     if floats {
         let all = sum(&matrix_times(&h, &[1.0; N]));
-        let turning = (momentum - sum(&matrix_times(&h, &rate))) / all;
+        let turning = -sum(&matrix_times(&h, &rate)) / all;
         rate.iter_mut().for_each(|rate| *rate += turning);
         (_, v) = assemble(&body.rotating, &e, &rate);
         let turning = -(sum(&matrix_times(&h, &acceleration)) + sum(&v)) / all;
@@ -255,12 +243,10 @@ fn beside_rest_of<const N: usize>(body: &FreeBody, e: &UnitVectors, qd: &PerDriv
     let (e, [rate, acceleration]) = beside::<N>(e, [qd, qdd]);
     let (h, v) = assemble(&body.rotating, &e, &rate);
     let sum = |x: &[f64; N]| x.iter().sum::<f64>();
-    let arms: [Vector; N] = std::array::from_fn(|k| body.base_chain[k] * e[k]);
     RestingBase {
         inertia: sum(&matrix_times(&h, &[1.0; N])),
         momentum: sum(&matrix_times(&h, &rate)),
         moment: sum(&matrix_times(&h, &acceleration)) + sum(&v),
-        pin: arms.iter().sum(),
-        pin_rate: arms.iter().zip(rate).map(|(arm, rate)| Vector::new(0.0, rate) * arm).sum(),
+        pin: (0..N).map(|k| body.base_chain[k] * e[k]).sum(),
     }
 }

@@ -52,7 +52,7 @@ const EXCEEDED_ABOVE: f64 = 1.0 + 1e-6;
 
 impl Forecast {
     /// Returns the forecast of a motion of an arm on its base, with a number of samples that depends on the path. A base
-    /// that floats is at rest at the start.
+    /// that floats has no momentum.
     pub fn of(motion: &Motion, arm: &ArmOnBase, limits: &DriveLimits) -> Self {
         let instants = (SAMPLES_PER_PART * motion.path.parts()).clamp(MIN_SAMPLES, MAX_SAMPLES);
         Self::at(motion, arm, limits, instants)
@@ -76,7 +76,6 @@ impl Forecast {
         let n = arm.arm().drives();
         let motors = arm.arm().motors();
         let start = motion.at(0.0);
-        let momentum = arm.momentum_at_rest(&start.q.units(), &start.qd);
         let mut sum = Self {
             time,
             torque: PerDrive::zeros(n),
@@ -101,7 +100,7 @@ impl Forecast {
                 break;
             }
             let r = motion.at((i as f64 + 0.5) * dt);
-            let (torque, wrench) = arm.dynamics(&r.q.units(), &r.qd, &r.qdd, momentum);
+            let (torque, wrench) = arm.dynamics(&r.q.units(), &r.qd, &r.qdd);
             let (torque, rate, acceleration) =
                 (motors.motor_torques(&torque), motors.to_motors(&r.qd), motors.to_motors(&r.qdd));
             let most = |most: &mut PerDrive, x: &PerDrive| {

@@ -22,7 +22,7 @@ use stillbase_simulation::frame::{Frame, Peaks, Phase};
 use stillbase_simulation::plant::BaseKind;
 
 /// Maximum final distance of the end effector from its target, m, at which the target counts as reached.
-pub const TARGET_TOLERANCE: f64 = 1e-4;
+const TARGET_TOLERANCE: f64 = 1e-4;
 
 /// A joint counts as past its limit if it exceeds the limit by more than this, rad.
 pub const LIMIT_TOLERANCE: f64 = 1e-6;
@@ -62,10 +62,9 @@ pub struct Verdict {
     pub force: f64,
     /// Largest moment that tilts the base, from heights along the axis, N m; the verdict does not depend on it.
     pub tilt: f64,
-    /// Distance of the end effector from its target, m; for samples of drive angles the target is where they end.
-    pub target_distance: f64,
-    /// Whether the run has a target: samples of drive angles prescribe no point of the end effector.
-    pub has_target: bool,
+    /// Distance of the end effector from its target, m; `None` if the run has none, as samples of drive angles prescribe no
+    /// point of the end effector.
+    pub target_distance: Option<f64>,
     /// Relative joint angle that exceeded its limit by most, and the largest excess, rad.
     pub past_limit: Option<(String, f64)>,
     /// Torque or speed limit of a drive that was exceeded by the largest factor, and that factor.
@@ -189,8 +188,7 @@ impl Verdict {
             past_wheel: scenario.base.wheel.map(|_| peaks.moment),
             force: peaks.force,
             tilt: peaks.tilt,
-            target_distance: (frame.end_effector - frame.target.at).norm(),
-            has_target: !gives_drives(scenario, frame),
+            target_distance: (!gives_drives(scenario, frame)).then(|| (frame.end_effector - frame.target.at).norm()),
             past_limit: (by > LIMIT_TOLERANCE).then(|| (name(angle), by)),
             fault: frame.first_violation(),
             never_held: Some([frame.time, scenario.plant.payload.from]).filter(|[end, from]| {
@@ -206,6 +204,11 @@ impl Verdict {
     pub fn spares_base(&self) -> bool {
         let is_spared = self.attitude.map_or(self.is_base_unloaded, |attitude| attitude.is_as_wanted());
         self.fault.is_none() && (self.reactionless || is_spared)
+    }
+
+    /// Returns the distance of the end effector from its target, m, if the target does not count as reached.
+    pub fn miss(&self) -> Option<f64> {
+        self.target_distance.filter(|distance| *distance > TARGET_TOLERANCE || distance.is_nan())
     }
 
     /// Returns `reactionless`, `not reactionless`, `reactionless past the wheel`, or `untrusted`. Of a free base it tells
@@ -288,8 +291,8 @@ impl Verdict {
             };
             add(short, format!("the {limit} goes up to {} times its limit", significant(factor)));
         }
-        if finished && self.has_target && (self.target_distance > TARGET_TOLERANCE || self.target_distance.is_nan()) {
-            add("off its target", format!("ends {} m from its target", significant(self.target_distance)));
+        if let Some(miss) = self.miss().filter(|_| finished) {
+            add("off its target", format!("ends {} m from its target", significant(miss)));
         }
         all
     }

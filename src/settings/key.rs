@@ -198,7 +198,9 @@ impl KeyType {
         }
         match self {
             Self::Number(_) => number(value),
-            Self::Whole(_) => value.is_integer(),
+            Self::Whole(range) => {
+                value.as_integer().is_some_and(|whole| u32::try_from(whole).is_ok() || range.contains(whole as f64))
+            }
             Self::PerDrive(_) => number(value) || list(value, None),
             Self::List(count, _) => list(value, Some(*count)),
             Self::Points(_) => value.as_array().is_some_and(|points| points.iter().all(|p| list(p, Some(2)))),

@@ -127,10 +127,16 @@ impl Problem {
             }
             Wrong::UnknownKey(known) => self.unknown_key(known, words),
             Wrong::Value(said) | Wrong::Kind(said) => {
-                let want = if said.contains("want ") { String::new() } else { want(&self.path) };
+                let own = want(&self.path);
+                // A reader of TOML knows the type alone; the words of the key go on from there.
+                let said = said
+                    .find(": want ")
+                    .filter(|at| own.starts_with(&said[*at..]))
+                    .map_or(said.as_str(), |at| &said[..at]);
+                let want = if said.contains("want ") { String::new() } else { own };
                 let verb = if said.starts_with("is ") || said.starts_with("has ") { " " } else { ": " };
                 match self.path.0.is_empty() {
-                    true => said.clone(),
+                    true => said.to_owned(),
                     false => format!("{}{verb}{said}{want}", called(&self.path, words)),
                 }
             }

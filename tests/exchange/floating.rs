@@ -6,7 +6,8 @@ use stillbase::exchange::import::{ImportedMachine, import};
 use stillbase::exchange::mjcf::{middle, mjcf, qpos};
 use stillbase::exchange::urdf::urdf;
 use stillbase::files::scenario;
-use stillbase::mechanics::planar::Vector;
+use stillbase::mechanics::machine::builtin;
+use stillbase::mechanics::planar::{DriveAngles, Vector};
 use stillbase::session::replay;
 use stillbase::session::scenario::{Scenario, TaskKind};
 use stillbase::simulation::plant::BaseKind;
@@ -127,6 +128,16 @@ fn a_base_of_another_program_floats() {
     }
     let held = import(&craft("", "")).expect("an arm");
     assert!(!held.floats && held.base.is_none() && held.machine.spec().gravity == [0.0, -9.81]);
+    let is_fixed = |notes: &[String]| {
+        let found =
+            notes.iter().find(|note| note.starts_with("the body \"bus\" has no joint, so the base is fixed there"));
+        found.is_some_and(|note| note.contains("want a free joint in it, or two joints of type slide and a hinge"))
+    };
+    assert!(is_fixed(&held.notes), "{:?}", held.notes);
+    assert!(!import(&craft(PLANAR, "")).expect("an arm").notes.iter().any(|note| note.contains("fixed")));
+    // What this program writes for a base that stands weighs nothing, so nothing is left out.
+    let stands = mjcf(builtin("spot").expect("built in"), None, &DriveAngles::from([0.0; 3]), &Cut::default());
+    assert!(import(&stands.expect("a model")).expect("an arm").notes.is_empty());
     let inertial = "<inertial><origin xyz=\"0.2 -0.1 0\"/><mass value=\"50\"/>\
                     <inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"6\"/></inertial>";
     let floats = "<joint name=\"free\" type=\"floating\"><parent link=\"space\"/><child link=\"world\"/>\

@@ -54,6 +54,7 @@ fn what_is_wrong_is_said_by_line_and_column() {
         (String::new(), Some(1), "nothing here: want a header t,q1,q2,q3"),
         ("1,2,3,4\n".into(), Some(1), "no header"),
         (worse(1, "t,q1,q2"), Some(1), "no column q3"),
+        (worse(1, "t,q1,q2"), Some(1), "these are angles of 2 drives, and nine-link has 3"),
         (worse(1, "t,q1,q1,q3"), Some(1), "columns 2 and 3 are both q1"),
         (worse(1, "t,q1 (ft),q2,q3"), Some(1), "unit \"ft\""),
         (worse(5, "0.16,1.7,,2.2"), Some(5), "column q2: nothing there"),

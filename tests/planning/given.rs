@@ -280,7 +280,10 @@ fn samples_that_do_not_fit_the_task_are_refused_with_the_way_out() {
         (with(&drives, &|t| t.law = stillbase::planning::timing::TimeLaw::Fastest), "law quintic"),
         (with(&tip, &|t| t.kind = TaskKind::ChangeB), "given, reactionless, minimum-norm or zero-momentum"),
         (with(&tip, &|t| t.b = 5.0), "would do"),
-        (with(&drives, &|t| t.samples = Some(samples(&uneven(20), |t| vec![t; 4]))), "want 3 drive angles"),
+        (
+            with(&drives, &|t| t.samples = Some(samples(&uneven(20), |t| vec![t; 4]))),
+            "angles of 4 drives, and the machine has 3: want rows of t, q1 … q3",
+        ),
         // Past a joint limit.
         (with(&drives, &|t| t.samples = Some(samples(&uneven(20), |t| vec![0.0, t - 0.5, 0.0]))), "limit"),
     ] {

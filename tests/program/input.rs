@@ -217,6 +217,10 @@ fn what_has_no_effect_is_told() {
         (&["simulate", "case-3", "--set", "payload.axial=0.1"], ["payload.axial has no use", "payload.mass"]),
         (&["check", "nine-link", "--set", "payload.offset=0.1,0"], ["payload.offset has no use", "payload.mass"]),
         (&["simulate", "case-1", "--set", "task.corners=blend"], ["task.corners has no use", "three points"]),
+        (
+            &["simulate", "spot-turn", "--set", "task.to=0.1,0.2"],
+            ["task.to has no use", "turn-base, which returns to A"],
+        ),
         (&["plan", "case-3", "--blend", "0.05"], ["--blend has no use", "three points"]),
         (&["simulate", "case-3", "--set", "tolerance.seed=3"], ["tolerance.seed has no use", "command tolerance"]),
         (&["plan", "case-3", "--set", "tolerance.link.*.com=normal:0.1"], ["has no use", "command tolerance"]),
@@ -248,10 +252,55 @@ fn what_has_no_effect_is_told() {
     let late = "[plant.payload]\nmass = 0.1\nfrom = 2.0";
     told(late, "plant.payload.from is 2 s, and the run ends at 1.000 s: nothing is picked up");
     told(late, "reactionless: yes, payload never held");
+    // A loop returns to A, wherever it begins: another B is told, the same is not.
+    let turn = include_str!("../../assets/scenarios/spot-turn.toml");
+    let said = |text: String, more: &[&str]| {
+        let file = word(folder.file("turn.toml", text));
+        let out = stillbase(&[&["plan", &file][..], more].concat());
+        assert_eq!(out.status.code(), Some(0), "{}", self::text(&out.stderr));
+        self::text(&out.stderr).contains("task.to has no use")
+    };
+    assert!(said(turn.replace("time = 10.0", "time = 10.0\nto = [0.1, 0.2]"), &[]));
+    assert!(!said(turn.into(), &["--set", "task.start=1.5,2.2,3.2"]));
     // A plan that is written keeps its tolerances.
     let out = word(folder.path("new.toml"));
     prints(&["plan", "case-3", "--set", "tolerance.seed=3", "-o", &out]);
     assert!(fs::read_to_string(&out).expect("written").contains("seed = 3"));
+}
+
+/// What is refused says what would be right: how a part is made that does not exist yet, and which numbers count.
+#[test]
+fn what_is_refused_says_what_would_be_right() {
+    let whole = "(task.cycles) is \"-2\": want a whole number, 1 to 100";
+    for (args, words) in [
+        (
+            &["plan", "spot", "--set", "limits.elbow=0,1"][..],
+            ["want one that exists", "angle = [{ name = \"elbow\", to = \"elbow\", from = \"shoulder\" }]"],
+        ),
+        (
+            &["plan", "case-3", "--set", "material.bronze.density=3"],
+            ["(material.bronze.density)", "material = [{ name = \"bronze\", density = 8800.0 }]"],
+        ),
+        (&["plan", "spot", "--set", "length.arm=1"], ["the length \"arm\"", "lengths = { arm = 0.5 }"]),
+        (&["plan", "spot", "--set", "part.1.width=1"], ["width of part 1", "part = [{ link = \"1\", shape = "]),
+        (&["simulate", "spot-turn", "--set", "task.cycles=-2"], [whole, "--set task.cycles=1"]),
+        (&["plan", "spot-turn", "--set", "task.cycles=99999999999"], ["a whole number, 1 to 100", "task.cycles=100"]),
+    ] {
+        fails(args, 2, &words);
+    }
+    let folder = Folder::new("cli");
+    let turn = include_str!("../../assets/scenarios/spot-turn.toml");
+    let file =
+        |cycles: &str| word(folder.file("turn.toml", turn.replace("[base]", &format!("cycles = {cycles}\n[base]"))));
+    for cycles in ["-2", "1.5"] {
+        let said = format!("(task.cycles) is the number {cycles}: want a whole number, 1 to 100");
+        fails(&["plan", &file(cycles)], 2, &[&said]);
+    }
+    // What is said to be right is right.
+    let spot = include_str!("../../assets/machines/spot.toml");
+    let angle = "angle = [{ name = \"elbow\", to = \"elbow\", from = \"shoulder\" }]\n";
+    let arm = word(folder.file("arm.toml", format!("{angle}{spot}")));
+    prints(&["check", &arm, "--set", "limits.elbow=0,1"]);
 }
 
 /// Limits of drives that are passed in a run are told wherever a run is: in words, in tables and in JSON.

@@ -181,6 +181,25 @@ fn compare_puts_machines_on_one_task() {
     let mass = |name: &str| object(&[&["check", name], &heavy[..]].concat())["mass"].as_f64();
     let masses = [0, 1].map(|i| got["runs"][i]["design"]["mass"].as_f64());
     assert_eq!(masses, ["nine-link-bare", &file].map(mass), "settings of machines hold for each");
+    // Rows say which file they are of.
+    let names = |args: &[&str]| -> Vec<String> {
+        let got = object(&[&["compare"], args].concat());
+        let runs = got["runs"].as_array().expect("runs").iter();
+        runs.map(|run| run["scenario"].as_str().expect("a name").to_owned()).collect()
+    };
+    assert_eq!(names(&["nine-link", "--task", "case-3"]), ["case-3", "nine-link"]);
+    assert_eq!(names(&[&file, &other]), ["after", "twin"]);
+    let alike = ["a", "b"].map(|inner| {
+        fs::create_dir_all(folder.path(inner)).expect("made");
+        word(folder.file(&format!("{inner}/arm.toml"), NINE_LINK))
+    });
+    let told = names(&[&alike[0], &alike[1], "--task", "case-3"]);
+    assert!(told[0].ends_with("a/arm") && told[1].ends_with("b/arm"), "{told:?}");
+    assert_eq!(names(&["case-3", "case-3"]), ["case-3", "case-3-2"]);
+    // Samples of drive angles name no place to go to, so nothing is missed.
+    let swing = object(&["compare", "spot-swing", "spot"]);
+    assert!(swing["runs"][0]["miss"].is_null() && swing["runs"][1]["miss"].is_number(), "{swing}");
+    assert!(object(&["simulate", "spot-swing", "--every", "100000"])["verdict"]["miss"].is_null());
     fails(&["compare", "--task", "case-3"], 2, &["MACHINE"]);
     fails(&["compare", "case-4", "--task", "case-3"], 2, &["case-4"]);
     fails(&["compare", "nine-link", "--task", "case-9"], 2, &["case-9"]);

@@ -38,6 +38,33 @@ fn what_the_program_writes_is_measured_data() {
     assert!(said_in(&folder, &written, 2).contains("--force"));
 }
 
+/// In orbit, settings of the base are those of its scenario: a base of another mass is named once the right one is set.
+#[test]
+fn settings_of_the_base_are_taken_in_orbit() {
+    let folder = folder("trim-orbit");
+    let start = ["--set", "task.start=1.2,0.4,-0.6", "--set", "task.to=0.34,0.45"];
+    let heavy = ["--set", "base.inertia=0.21"];
+    let fly = |more: &[&str], file: &str| {
+        said_in(&folder, &[&["simulate", "spot", "--every", "20", "-o", file][..], &heavy, more].concat(), 0);
+    };
+    fly(&[], "a.csv");
+    fly(&start, "b.csv");
+    said_in(&folder, &[&["simulate", "spot-swing", "--every", "20", "-o", "c.csv"][..], &heavy].concat(), 0);
+    let off = |more: &[&str]| -> f64 {
+        let all = [&["trim", "a.csv", "b.csv", "c.csv", "spot", "--base", "spot", "--json"], more].concat();
+        let out = stillbase_in(&folder, &all);
+        assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+        let got: Value = serde_json::from_slice(&out.stdout).expect("an object");
+        got["rate_off"].as_f64().expect("a number")
+    };
+    assert!(off(&[]) > 1e-4 && off(&heavy) < 1e-8, "{} {}", off(&[]), off(&heavy));
+    let held = ["trim", "a.csv", "spot", "--base", "spot", "--set", "base.kind=fixed"];
+    assert!(said_in(&folder, &held, 2).contains("does not float"));
+    assert!(
+        said_in(&folder, &["trim", "a.csv", "spot", "--set", "base.mass=12"], 2).contains("no setting \"base.mass\"")
+    );
+}
+
 /// Units, other separators, named motions: the same numbers.
 #[test]
 fn units_and_separators_change_nothing() {

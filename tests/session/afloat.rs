@@ -70,7 +70,7 @@ fn every_shape_of_path_leaves_the_base_as_it_is_oriented() {
         let to = scenario.task.to;
         let at = if frame == "space" { end.end_effector } else { end.in_base(end.end_effector) };
         assert!(turned < 1e-9 && (at - Vector::new(to[0], to[1])).norm() < 1e-7, "{shape}, {frame}: {turned:e} rad");
-        assert!(Verdict::of(&scenario, &end).target_distance < 1e-7, "{shape}, {frame}");
+        assert!(Verdict::of(&scenario, &end).target_distance.expect("a target") < 1e-7, "{shape}, {frame}");
     }
     let rows: Vec<String> = (0..=10)
         .map(|i| f64::from(i) / 10.0)

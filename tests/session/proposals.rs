@@ -60,6 +60,23 @@ fn ways_out_of_a_drawn_path_keep_the_limits_or_say_so() {
     assert!(seen > 0, "no proposal met a limit");
 }
 
+/// No other kind turns the base, so no other task is proposed in its place.
+#[test]
+fn a_base_that_is_to_turn_gets_no_other_task() {
+    let found = |settings: &[(&str, &str)]| {
+        let all = proven(&set("spot-turn", settings));
+        all.iter().flat_map(Proposal::settings).collect::<Vec<_>>()
+    };
+    assert_eq!(found(&[("base.kind", "fixed")]), ["base.kind=free"]);
+    assert_eq!(found(&[("base.wheel.inertia", "0.02")]), ["base.wheel=default"]);
+    assert_eq!(
+        found(&[("base.kind", "fixed"), ("base.wheel.inertia", "0.02")]),
+        ["base.kind=free", "base.wheel=default"]
+    );
+    assert_eq!(found(&[("task.base_turn", "300")]), ["task.cycles=2"]);
+    assert_eq!(found(&[("task.base_turn", "0")]), [""; 0]);
+}
+
 fn texts(proposals: &[Proposal]) -> Vec<&str> {
     proposals.iter().map(|proposal| proposal.text.as_str()).collect()
 }

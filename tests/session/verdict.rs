@@ -98,7 +98,7 @@ fn a_miss_is_said_at_the_end() {
     let scenario = case("case-2", &[], "[base]\nkind = \"free\"");
     let (verdict, frames) = run(&scenario);
     let end = &frames[frames.len() - 1];
-    assert!(verdict.target_distance > 1e-3 && verdict.target_distance == (end.end_effector - end.target.at).norm());
+    assert!(verdict.miss() > Some(1e-3) && verdict.miss() == Some((end.end_effector - end.target.at).norm()));
     assert_eq!(shorts(&verdict), ["off its target"]);
     let on_the_way = Verdict::of(&scenario, &frames[frames.len() / 2]);
     assert!(on_the_way.so_far().is_empty() && Verdict::of(&scenario, end).so_far().len() == 1);

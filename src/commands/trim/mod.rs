@@ -14,6 +14,7 @@ use stillbase_mechanics::planar::Vector;
 use stillbase_query::{Shared, answer_now};
 use stillbase_session::scenario::MachineFile;
 use stillbase_settings::number::counted;
+use stillbase_simulation::plant::Base;
 use stillbase_study::trim::{
     MeasurementSet, NoTrim, OrbitBase, OrbitMotion, TrimMethod, TrimQuery, TrimRequest, TrimResult as Found,
     corrected_as_built, free_weights, identified_machine, orbit_trim,
@@ -54,6 +55,7 @@ Examples:
   stillbase trim slow.csv fast.csv arm.toml -o trimmed.toml --identified as-built.toml
   stillbase trim measured.csv arm.toml --fix counterweight.2.at --bound counterweight.1.mass=1.9,2.1
   stillbase trim orbit.csv spot --base spot
+  stillbase trim orbit.csv spot --base spot --set base.mass=11.5
   stillbase trim measured.csv nine-link --range 1=-0.3,0.1 --range 2=-0.2,0.1 --range 3=-0.2,0.1 \\
     --range 8=-0.3,0.3 --range 9=-0.3,0.3 --json")]
 pub struct TrimArguments {
@@ -128,10 +130,14 @@ impl TrimArguments {
             _ => return Err(Failure::wrong_input("want files and a machine, as in trim measured.csv nine-link")),
         };
         let MachineFile { machine, design } = input::machine(name)?;
-        let machine = self.settings.apply(machine)?;
+        // In orbit, settings of the base belong to its scenario.
+        let [of_base, own] =
+            [true, false].map(|wanted| self.settings.of_keys(|key| (self.base.is_some() && is_of_base(key)) == wanted));
+        let machine = own.apply(machine)?;
         let drives = machine.drives();
         if let Some(base) = &self.base {
-            return self.in_orbit(&machine, base, files);
+            let base = floating_scenario(base, &of_base)?.base;
+            return self.in_orbit(&machine, &base, files);
         }
         if !(self.accelerations.is_empty() || self.accelerations.len() == drives) {
             return Err(Failure::wrong_input(format!(
@@ -202,8 +208,7 @@ impl TrimArguments {
     }
 
     /// Prints what motions in orbit tell about the machine.
-    fn in_orbit(&self, machine: &Machine, base: &str, files: &[String]) -> Result<(), Failure> {
-        let base = floating_scenario(base)?.base;
+    fn in_orbit(&self, machine: &Machine, base: &Base, files: &[String]) -> Result<(), Failure> {
         let base = OrbitBase { body: base.body(), wheel: base.wheel.map_or(0.0, |wheel| wheel.inertia) };
         let motion = |file: &String| -> Result<OrbitMotion, Failure> {
             let table = signals(Path::new(file))?;
@@ -241,6 +246,11 @@ impl TrimArguments {
         apply_bounds(&mut request, machine, &self.fix, &self.free, &self.bound)?;
         Ok(TrimMethod::Change(request))
     }
+}
+
+/// Returns whether a setting is one of the base.
+fn is_of_base(key: &str) -> bool {
+    key.split('.').next() == Some("base")
 }
 
 /// Converts the reason why measurements cannot be used into a failure.

@@ -223,6 +223,16 @@ impl<'a> MjcfBodies<'a> {
         self.hinges.floating.as_ref()
     }
 
+    /// Returns the body that is fixed to the world and carries the arm, if it has a mass or shapes.
+    pub fn fixed_base(&self) -> Option<&ImportedPart> {
+        let carriers = |i: usize| std::iter::successors(self.parts[i].parent, |i| self.parts[*i].parent);
+        let turns = |i: usize| self.parts[i].hinge.is_some();
+        let stands = |i: &usize| turns(*i) && !carriers(*i).any(turns);
+        let has_body = |i: &usize| ["inertial", "geom"].iter().any(|name| child(self.bodies[*i], name).is_some());
+        let arms = (0..self.parts.len()).filter(stands);
+        arms.flat_map(carriers).find(has_body).filter(|_| self.floating().is_none()).map(|i| &self.parts[i])
+    }
+
     /// Returns the part in the world that carries a part, or is it.
     fn root(&self, part: usize) -> usize {
         std::iter::successors(Some(part), |i| self.parts[*i].parent).last().unwrap_or(part)

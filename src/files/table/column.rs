@@ -55,8 +55,13 @@ impl TableColumn {
 
 /// Returns the message that a column is missing in a table.
 pub(super) fn no_column(name: &str, head: &csv::StringRecord, want: &str) -> String {
+    format!("{}: want {want}", lacking(name, head))
+}
+
+/// Says that a header lacks a column.
+pub(super) fn lacking(name: &str, head: &csv::StringRecord) -> String {
     let have: Vec<String> = head.iter().map(|word| format!("{:?}", quote_clipped(word))).collect();
-    format!("no column {name} among {}: want {want}", shortened(&have.join(", "), 300))
+    format!("no column {name} among {}", shortened(&have.join(", "), 300))
 }
 
 /// Splits a lower-case header cell such as `q1 (deg)` or `q1 [deg]` into name and unit; `None` without brackets.

@@ -1,7 +1,7 @@
 //! A motion given by samples of the drive angles or of the end effector over time.
 
 use super::angle::{GAP_FACTOR, continuous_angle, continuous_length};
-use super::column::{ANGLE, TIME, TableColumn, UnitNames, angles, named, no_column, unit_in_brackets};
+use super::column::{ANGLE, TIME, TableColumn, UnitNames, angles, lacking, named, no_column, unit_in_brackets};
 use super::error::TableError;
 use super::opened::Table;
 use super::reader::RowPlace;
@@ -127,6 +127,16 @@ impl Columns {
         let mut all = vec![time];
         match coordinates {
             Coordinates::Drives => {
+                let is_of = |cell: &str, k: usize| [format!("q{k}"), format!("q_{k}")].contains(&cell.to_owned());
+                let known = (1..).take_while(|k| cells.iter().any(|(name, _)| is_of(name, *k))).count();
+                if (1..machine.drives()).contains(&known) && drives.iter().flatten().count() == known {
+                    let (lacks, own, has) =
+                        (lacking(&format!("q{}", known + 1), head), machine.name(), machine.drives());
+                    return Err(format!(
+                        "{lacks}: these are angles of {}, and {own} has {has}; want {want}",
+                        counted(known, "drive")
+                    ));
+                }
                 for (k, column) in drives.into_iter().enumerate() {
                     all.push(column.ok_or_else(|| missing(&format!("q{}", k + 1)))?);
                 }

@@ -140,7 +140,7 @@ fn look_up(what: &'static str, names: &[&str], name: &str, place: impl Fn() -> K
         what,
         name: name.into(),
         known: names.iter().map(|name| (*name).into()).collect(),
-        more: "",
+        more: "".into(),
     })
 }
 
@@ -164,7 +164,7 @@ fn named_length(
         what: "length",
         name: name.into(),
         known: spec.lengths.keys().cloned().collect(),
-        more,
+        more: more.into(),
     })
 }
 
@@ -217,7 +217,13 @@ fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<ResolvedLink>, Machi
             Attach::Base(word) => {
                 let (known, more) = (vec!["base".into()], ", or { link = \"…\", at = \"tip\" }");
                 let name = word.clone();
-                return Err(MachineError::Unknown { place: place(), what: "attachment", name, known, more });
+                return Err(MachineError::Unknown {
+                    place: place(),
+                    what: "attachment",
+                    name,
+                    known,
+                    more: more.into(),
+                });
             }
             Attach::On(point) => Some(locate(spec, names, point, &place)?),
         });

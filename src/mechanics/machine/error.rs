@@ -1,5 +1,7 @@
 //! [`MachineError`]: an error in a machine specification, with its place and the allowed values.
 
+use std::borrow::Cow;
+
 use thiserror::Error;
 
 use super::spec::MachineSpec;
@@ -48,7 +50,7 @@ pub enum MachineError {
         /// The names that exist.
         known: Vec<String>,
         /// Words that follow the names: what else would do.
-        more: &'static str,
+        more: Cow<'static, str>,
     },
     /// Two parts have the same name.
     #[error("{} is {:?}, which is taken: want a name of its own", named(place), quote_clipped(name))]

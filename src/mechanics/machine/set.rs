@@ -3,9 +3,12 @@
 use toml::{Table, Value};
 
 use super::keys::{FieldAccess, KEYS, KeyRow, MACHINE_KEYS};
+use super::words::{MachineWords, with_names};
 use super::{KeyPath, Machine, MachineError, MachineSpec, Part, PlaceOnLink};
 use stillbase_settings::change::{self, DEFAULT_WORD};
 use stillbase_settings::key::{self, Key};
+use stillbase_settings::key_path::AsKeyStep;
+use stillbase_settings::mending::Vocabulary as _;
 
 /// The tables and keys of a scenario that set its machine.
 pub const MACHINE_TABLES: [&str; 10] =
@@ -221,9 +224,24 @@ fn body_of(spec: &MachineSpec, key: &str) -> Result<usize, MachineError> {
         place: KeyPath::new(&[&key]),
         what,
         name: name.into(),
+        more: if names.is_empty() { first_of(spec, what, name).into() } else { "".into() },
         known: names.into_iter().map(Into::into).collect(),
-        more: "",
     })
+}
+
+/// Says how a machine that has no angle, part … yet gets one of this name.
+fn first_of(spec: &MachineSpec, what: &str, name: &str) -> String {
+    let list = if what == "length" { "lengths" } else { what };
+    let example = |path: &[&dyn AsKeyStep]| MachineWords.example(&KeyPath::new(path)).unwrap_or_default();
+    // A length is named by its key, others by one in their table.
+    let own = format!("name = {}", example(&[&list, &0, &"name"]));
+    let named = example(&[&list]).replace("l1 =", &format!("{name} =")).replace(&own, &format!("name = {name:?}"));
+    let links: Vec<&str> = spec.links.iter().map(|link| link.name.as_str()).collect();
+    let drives: Vec<&str> = spec.drives.iter().map(|drive| drive.name.as_str()).collect();
+    format!(
+        "one that exists; there is none yet, so state it in the machine file first: {list} = {}",
+        with_names(named, &links, &drives)
+    )
 }
 
 fn is_default(value: &Value) -> bool {

@@ -65,7 +65,7 @@ const ROWS: &[WordRow] = &[
     row("material.*", "material *", "", ""),
     row("material.*.name", "name of material *", OWN_NAME, "\"bronze\""),
     row("material.*.density", "density of *", "", "8800.0"),
-    row("part", "list of parts", "one [[part]] for each", ""),
+    row("part", "list of parts", "one [[part]] for each", PART),
     row("part.*", "part *", "", ""),
     row("part.*.link", "link of part *", OF_LINK, "\"1\""),
     row("part.*.name", "name of part *", "a text in quotes", "\"bar\""),
@@ -138,6 +138,8 @@ const ROWS: &[WordRow] = &[
     row("angle.*.max", "upper limit of angle *", "-25.2 to 25.2 rad, four turns", "2.9"),
     row("limits.*", "limits of angle *", "", "[0.2, 2.9]"),
 ];
+
+const PART: &str = "[{ link = \"1\", shape = \"flat\", width = 0.03, thickness = 0.006 }]";
 
 const LINK: &str = "[{ name = \"1\", drive = \"1\", attach = \"base\", length = 0.5, mass = 1.2, inertia = 0.02, \
                     com = 0.25 }]";
@@ -220,6 +222,18 @@ const MEANT: &[(&str, &[&str], Meant)] = &[
 /// The words of machine files.
 pub struct MachineWords;
 
+/// Returns an example with links and drives "1" and "2" as the first two of some names.
+pub(super) fn with_names(example: String, links: &[&str], drives: &[&str]) -> String {
+    let own = |names: &[&str], keys: &[&str], text: String| {
+        let pairs = ["1", "2"].into_iter().zip(names.iter().chain(names.last()));
+        pairs.filter(|(made_up, _)| !names.contains(made_up)).fold(text, |text, (made_up, name)| {
+            keys.iter()
+                .fold(text, |text, key| text.replace(&format!("{key} = {made_up:?}"), &format!("{key} = {name:?}")))
+        })
+    };
+    own(drives, &["drive", "to", "from"], own(links, &["link"], example))
+}
+
 fn row_of(path: &KeyPath) -> Option<&'static WordRow> {
     WordRow::of(ROWS, path)
 }
@@ -242,18 +256,7 @@ impl Vocabulary for MachineWords {
     /// Examples are about the links and drives "1" and "2": these become the first two that the file names.
     fn with_own_names(&self, example: String, file: &StatedFile) -> String {
         // A whole table states its own names.
-        if example.contains("[[") {
-            return example;
-        }
-        let own = |list: &str, keys: &[&str], text: String| {
-            let names = file.names(list);
-            let pairs = ["1", "2"].into_iter().zip(names.iter().chain(names.last()));
-            pairs.filter(|(made_up, _)| !names.contains(made_up)).fold(text, |text, (made_up, name)| {
-                keys.iter()
-                    .fold(text, |text, key| text.replace(&format!("{key} = {made_up:?}"), &format!("{key} = {name:?}")))
-            })
-        };
-        own("drive", &["drive", "to", "from"], own("link", &["link"], example))
+        if example.contains("[[") { example } else { with_names(example, &file.names("link"), &file.names("drive")) }
     }
 
     fn meant(&self, path: &KeyPath) -> Option<Meant> {

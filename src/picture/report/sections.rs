@@ -81,8 +81,8 @@ impl Report<'_> {
             row(("peak momentum of the wheel", ""), wheel.momentum, REACTION_DECIMALS, "N m s");
             row(("peak torque of the wheel", "|τ_w|"), wheel.torque, REACTION_DECIMALS, "N m");
         }
-        if verdict.has_target {
-            row(("end effector from its target at the end", ""), verdict.target_distance, REACTION_DECIMALS, "m");
+        if let Some(distance) = verdict.target_distance {
+            row(("end effector from its target at the end", ""), distance, REACTION_DECIMALS, "m");
         }
         table.html()
     }

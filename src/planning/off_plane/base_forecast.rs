@@ -3,14 +3,14 @@
 //!
 //! # Source
 //! With the angles q_k of the drives relative to the base and H formed from C' (see [`ArmOnBase`]), the angular momentum
-//! about the common centre of mass is L = Σ_kl H_kl (q̇_l + θ̇), θ included. H depends on relative angles only. So θ̇ =
-//! (L − Σ_kl H_kl q̇_l)/Σ_kl H_kl is a quadrature. A wheel that holds the base takes up Σ_kl H_kl q̇_l − L.
+//! about the common centre of mass is Σ_kl H_kl (q̇_l + θ̇) = 0, θ included. H depends on relative angles only. So θ̇ =
+//! −Σ_kl H_kl q̇_l/Σ_kl H_kl is a quadrature. A wheel that holds the base takes up Σ_kl H_kl q̇_l.
 
 use crate::Motion;
 use stillbase_mechanics::arm_on_base::{ArmOnBase, FreeBody, RestingBase};
 use stillbase_mechanics::planar::unit;
 
-/// Motion of a free base under a motion of the drives that starts with the base at rest.
+/// Motion of a free base under a motion of the drives, with all momentum zero.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BaseForecast {
     /// Largest |θ| without a wheel, rad.
@@ -46,7 +46,6 @@ impl BaseForecast {
         let intervals = (INTERVALS_PER_PART * motion.path.parts()).clamp(INTERVALS, MAX_INTERVALS);
         let h = time / intervals as f64;
         let start = beside_rest(body, motion, 0.0);
-        let drift = -start.pin_rate;
         let mut most = Self { course: Vec::with_capacity(intervals + 1), ..Self::default() };
         most.course.push([motion.profile.at(0.0).s, 0.0]);
         let mut angle = 0.0;
@@ -55,10 +54,10 @@ impl BaseForecast {
             for (x, weight) in GAUSS.into_iter().zip(WEIGHTS) {
                 let t = (i as f64 + x) * h;
                 let now = beside_rest(body, motion, t);
-                let turned = start.momentum - now.momentum;
+                let turned = -now.momentum;
                 let turning = turned / now.inertia;
                 next += weight * h * turning;
-                let place = now.pin * unit(angle + x * h * turning) - start.pin + drift * t;
+                let place = now.pin * unit(angle + x * h * turning) - start.pin;
                 most.shift = most.shift.max(place.norm());
                 most.wheel_momentum = most.wheel_momentum.max(turned.abs());
                 most.wheel_torque = most.wheel_torque.max(now.moment.abs());
@@ -67,7 +66,7 @@ impl BaseForecast {
             most.angle = most.angle.max(angle.abs());
             most.course.push([motion.profile.at((i + 1) as f64 * h).s, angle]);
         }
-        let end = beside_rest(body, motion, time).pin * unit(angle) - start.pin + drift * time;
+        let end = beside_rest(body, motion, time).pin * unit(angle) - start.pin;
         Some(Self { angle_end: angle, shift: most.shift.max(end.norm()), ..most })
     }
 

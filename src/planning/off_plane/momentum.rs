@@ -130,6 +130,11 @@ impl MomentumModel {
         self.arm == other.arm && self.floating == other.floating
     }
 
+    /// Returns the arm, with couplings as they are beside the base.
+    pub(super) fn arm(&self) -> &Inertia {
+        &self.arm
+    }
+
     /// Returns the number of drives.
     pub fn drives(&self) -> usize {
         self.arm.drives

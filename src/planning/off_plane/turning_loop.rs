@@ -51,6 +51,12 @@ pub enum NoLoop {
     /// One drive can only retrace its way.
     #[error("one drive retraces its way, which turns the base back: want two drives or more")]
     OneDrive,
+    /// The momentum that the rate of a drive brings is the same in every pose.
+    #[error(
+        "no closed motion turns the base of a balanced arm: its mass matrix is constant, so the base turns back as the arm \
+         returns; want an arm that is not balanced, or a motion that ends in another pose"
+    )]
+    Balanced,
     /// Small loops do not turn the base in any plane.
     #[error("no closed motion of this arm turns its base: how far the base turns depends on the pose alone")]
     Flat,
@@ -60,6 +66,17 @@ pub enum NoLoop {
         /// The largest turn in the wanted sense, rad.
         turn: f64,
     },
+}
+
+impl NoLoop {
+    /// Returns why an arm turns no base, wherever it starts; `None` if some loop of it may.
+    pub fn of(arm: &Inertia) -> Option<Self> {
+        if arm.drives < 2 {
+            return Some(Self::OneDrive);
+        }
+        // Without couplings and first moments, neither D nor I depends on the pose, so A = −D/I has no curl.
+        arm.is_balanced().then_some(Self::Balanced)
+    }
 }
 
 /// Number of directions of the circles in a plane.
@@ -181,8 +198,8 @@ impl<'a> Search<'a> {
         if !model.floats() {
             return Err(NoLoop::Held);
         }
-        if n < 2 {
-            return Err(NoLoop::OneDrive);
+        if let Some(why) = NoLoop::of(model.arm()) {
+            return Err(why);
         }
         let (stations, fine) = (stations(PARTS), stations(FINE_PARTS));
         let small = gram(&stations);

@@ -9,7 +9,7 @@ use super::momentum::zero_momentum;
 use super::plan::{Plan, PlannerSpace};
 use super::proposals::tried_refusal;
 use super::rates::{minimum_norm, same_tip};
-use super::turn_base::turn_base;
+use super::turn_base::{may_turn_base, turn_base};
 use stillbase_mechanics::planar::DriveAngles;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::timing::TimeLaw;
@@ -33,8 +33,12 @@ pub fn plan(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusa
         return plan(&Scenario { task, ..scenario.clone() }, space);
     }
     let task = &scenario.task;
-    start_within_limits(scenario)?;
     let given = task.samples.is_some();
+    // No other start helps an arm that turns no base.
+    if task.kind == TaskKind::TurnBase && !given {
+        may_turn_base(scenario)?;
+    }
+    start_within_limits(scenario)?;
     let leaves_plane = !given && matches!(task.kind, TaskKind::MinimumNorm | TaskKind::LeastReaction);
     let plan = directly(scenario, space).map_err(|refusal| match space {
         // With planes, other values of b can be tried quickly.

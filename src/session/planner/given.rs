@@ -7,7 +7,7 @@ use super::momentum::sampled_at_zero_momentum;
 use super::plan::{Plan, PlannerSpace, PlanningEffort, arm_on_base, keeps_rules};
 use super::poses::start;
 use crate::refusal::Refusal;
-use crate::scenario::{Scenario, TaskKind};
+use crate::scenario::{Scenario, TaskKind, samples_of_others};
 use stillbase_planning::Motion;
 use stillbase_planning::curves::path::minimum_norm_curve;
 use stillbase_planning::curves::{Curve, Path, PathTable};
@@ -72,9 +72,7 @@ pub(super) fn given(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan
             table
         }
         (TaskKind::Given, _) => {
-            return refuse(format!(
-                "samples of {columns} values beside the time: want {drives} drive angles, or 2, x and y"
-            ));
+            return refuse(samples_of_others(columns, drives));
         }
         (_, 2) => {
             return refuse(

@@ -8,6 +8,7 @@ use super::plan::{Plan, PlannerSpace, arm_on_base};
 use super::poses::start;
 use crate::refusal::Refusal;
 use crate::scenario::{MAX_CYCLES, Scenario};
+use stillbase_mechanics::machine::Inertia;
 use stillbase_planning::curves::Path;
 use stillbase_planning::off_plane::base_forecast::BaseForecast;
 use stillbase_planning::off_plane::momentum::TipFrame;
@@ -16,17 +17,25 @@ use stillbase_planning::off_plane::turning_loop::{NoLoop, TurningLoop};
 /// Number of counts of loops that are tried for a proposal.
 const MAX_TRIES: usize = 3;
 
-/// Plans the shortest loop of the drives found that turns the base by the angle of the task, as often as the task says.
-pub(super) fn turn_base(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
-    let task = &scenario.task;
+/// Checks that some loop of the drives may turn the base by the angle of the task, wherever it starts.
+pub(super) fn may_turn_base(scenario: &Scenario) -> Result<(), Refusal> {
     if !scenario.base.floats() {
         return Err(Refusal::Task(
             "an arm turns only a base that floats: want base.kind = free, and no wheel that holds it".into(),
         ));
     }
-    if task.base_turn == 0.0 {
+    if scenario.task.base_turn == 0.0 {
         return Err(Refusal::Task("a base that stays needs no motion: want task.base_turn other than 0".into()));
     }
+    match NoLoop::of(&Inertia::of(&scenario.machine)) {
+        Some(why) => Err(Refusal::Loop { why, cycles: None }),
+        None => Ok(()),
+    }
+}
+
+/// Plans the shortest loop of the drives found that turns the base by the angle of the task, as often as the task says.
+pub(super) fn turn_base(scenario: &Scenario, space: PlannerSpace<'_>) -> Result<Plan, Refusal> {
+    let task = &scenario.task;
     let start = start(scenario, space, &task.points())?;
     let model = momentum_model(scenario, &start, TipFrame::Space);
     let shortest = |cycles: u32| {

@@ -6,7 +6,7 @@ use toml::Table;
 
 use super::Proposal;
 use super::improve::{improvements_while, within_limits};
-use super::task::{candidates, made_task, shows_only_in_motion, would_plan};
+use super::task::{candidates, made_task, may_take_another_task, shows_only_in_motion};
 use super::value::{nearest_values, taking_back};
 use super::wider::{names_limits, wider_limits};
 use crate::changes::after_start_edit;
@@ -115,7 +115,8 @@ pub fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: Progress
     let candidates = candidates(&start, refusal);
     let count = candidates.len() + 2;
     // Wider limits and a task made for the machine take a search, so this is done only if the loop gets to it.
-    let made = std::iter::once_with(|| would_plan(refusal).then(|| made_task(&start)).flatten()).flatten();
+    let takes_another = may_take_another_task(&start.task, refusal);
+    let made = std::iter::once_with(|| takes_another.then(|| made_task(&start)).flatten()).flatten();
     let wider = std::iter::once_with(|| names_limits(refusal).then(|| wider_limits(&start)).flatten()).flatten();
     let is_edited_later = with_start_edits(scenario).is_ok_and(|(_, others)| others > 0);
     let in_motion = shows_only_in_motion(refusal) || is_edited_later;

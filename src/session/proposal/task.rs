@@ -12,7 +12,7 @@ use stillbase_mechanics::planar::{Vector, unit};
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::reactionless::Decimal;
 use stillbase_planning::timing::TimeLaw;
-use stillbase_settings::change::{DEFAULT_WORD, single_change};
+use stillbase_settings::change::{DEFAULT_WORD, join, single_change};
 use stillbase_settings::number::significant;
 use stillbase_settings::range::Requirement;
 use stillbase_settings::word::Choice;
@@ -54,7 +54,6 @@ pub(super) fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal
                 Proposal::new(format!("take {cycles} loops"), single_change("task.cycles", i64::from(*cycles)))
             };
             found.extend(cycles.iter().map(take));
-            return found;
         }
         Refusal::Diverged { .. } | Refusal::Untrusted { .. } => {
             found.extend(FINER_STEPS.map(|factor| taking("step", round_up(scenario.step / factor))));
@@ -67,13 +66,15 @@ pub(super) fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal
         _ => {}
     }
     if task.kind == TaskKind::TurnBase && !scenario.base.floats() {
-        found.push(Proposal::new("let the base float", single_change("base.kind", BaseKind::Free.words().file)));
-        if scenario.base.wheel.is_some() {
-            found.push(Proposal::new("take the wheel off", single_change("base.wheel", DEFAULT_WORD)));
-        }
-        return found;
+        let free = single_change("base.kind", BaseKind::Free.words().file);
+        let bare = single_change("base.wheel", DEFAULT_WORD);
+        found.push(match (scenario.base.kind == BaseKind::Free, scenario.base.wheel.is_some()) {
+            (true, _) => Proposal::new("take the wheel off", bare),
+            (false, false) => Proposal::new("let the base float", free),
+            (false, true) => Proposal::new("let the base float, and take the wheel off", join(free, &bare)),
+        });
     }
-    if !would_plan(refusal) {
+    if !may_take_another_task(task, refusal) {
         return found;
     }
     let is_of_path = matches!(
@@ -105,8 +106,13 @@ pub(super) fn shows_only_in_motion(refusal: &Refusal) -> bool {
     matches!(refusal, Refusal::Edit { .. } | Refusal::Diverged { .. } | Refusal::Untrusted { .. })
 }
 
+/// Returns whether another task may stand in for a refused one. Of all kinds, one alone turns the base.
+pub(super) fn may_take_another_task(task: &Task, refusal: &Refusal) -> bool {
+    task.kind != TaskKind::TurnBase && would_plan(refusal)
+}
+
 /// Returns whether another plan may lead out of a refusal. It cannot if the task could be planned already.
-pub(super) fn would_plan(refusal: &Refusal) -> bool {
+fn would_plan(refusal: &Refusal) -> bool {
     match refusal {
         Refusal::Edit { refusal, .. } => would_plan(refusal),
         Refusal::TooManySteps { .. }

@@ -253,8 +253,9 @@ impl Reading<'_> {
                 self.syntax(Problem { path: KeyPath::new(&[&"task"]), wrong: Wrong::Missing(key.into()) })
             }
             // Without a start of all angles it is unknown which other keys the task lacks.
-            off @ IncompleteTask::Angles { .. } => {
-                let path = KeyPath::new(&[&"task", &"start"]);
+            off @ (IncompleteTask::Angles { .. } | IncompleteTask::Samples { .. }) => {
+                let key = if matches!(off, IncompleteTask::Angles { .. }) { "start" } else { "samples" };
+                let path = KeyPath::new(&[&"task", &key]);
                 let said = format!("{}: {off}", called(&path, &ScenarioWords));
                 self.syntax(Problem { path, wrong: Wrong::Last(said) })
             }

@@ -42,5 +42,6 @@ pub(crate) use points::name_of_point;
 pub use settings::SettingError;
 pub use sketched::UnfinishedDrawing;
 pub use snap_point::{PathPoint, SnapPoint};
+pub(crate) use task::samples_of_others;
 pub use task::{MAX_CYCLES, MAX_POINTS, MOTION_TIME_RANGE, POINT_RANGE, POSE_CONSTANT_RANGE, Task, TaskChange, Value};
 pub use tolerance::{Amount, MAX_SAMPLES, Spread, Tolerance, default_spreads};

@@ -302,9 +302,10 @@ impl Scenario {
         let stated = self.stated();
         let of_machine = self.machine.ineffective_keys(self.is_pushed()).map(str::to_owned);
         let given = change::leaves(&stated).into_iter().map(|(path, _)| path);
+        let is_elsewhere = self.task.kind == TaskKind::TurnBase && !self.task.returns_to_a();
         of_machine
             .chain(given)
-            .filter(|path| !ALWAYS_STATED.contains(&path.as_str()))
+            .filter(|path| !ALWAYS_STATED.contains(&path.as_str()) || (path == "task.to" && is_elsewhere))
             .filter_map(|path| self.condition_for_effect(&path).map(|want| (path, want)))
             .collect()
     }

@@ -44,6 +44,7 @@ const ANGLE: Range = Range::either_way(1e3, "rad");
 const SAMPLED: &str = "no samples, which say where to go";
 const UNSAMPLED_ANGLES: &str = "no samples of drive angles, which begin at a pose of their own";
 const CURVED: &str = "points, and the kind reactionless, minimum-norm, least-reaction or zero-momentum";
+const GOING: &str = "no samples, which say where to go, and another kind than turn-base, which returns to A";
 const VISITING: &str = "another kind than turn-base, which returns to A";
 const FREE: &str =
     "four drives or more, and the kind reactionless in the shape line, arc, spline or freehand, or samples of x and y";
@@ -78,7 +79,8 @@ keyed! {
         /// Points between A and B, in order, at most 2000.
         via: Vec<[f64; 2]> = "[]", range: POINT_RANGE, when: VISITING => |task| task.kind != TaskKind::TurnBase;
         /// The point B; by default where samples end.
-        to: [f64; 2] = Key::REQUIRED, range: POINT_RANGE, when: SAMPLED => |task| task.samples.is_none(), saved: always;
+        to: [f64; 2] = Key::REQUIRED, range: POINT_RANGE, when: GOING
+            => |task| task.samples.is_none() && task.kind != TaskKind::TurnBase, saved: always;
         /// Where the points after A are meant: seen from the base pin, or in space.
         frame: Option<TipFrame> = Key::NONE, instead: "space if the base is free, otherwise base",
             when: "the kind zero-momentum" => |task| task.kind == TaskKind::ZeroMomentum;
@@ -164,6 +166,14 @@ pub enum IncompleteTask {
     /// A key is missing.
     #[error("missing field `{0}`")]
     Missing(&'static str),
+    /// The samples are those of another number of drives.
+    #[error("{}", samples_of_others(*got, *want))]
+    Samples {
+        /// Number of values of a sample beside the time.
+        got: usize,
+        /// Number of drives.
+        want: usize,
+    },
     /// The start has not one angle for each drive.
     #[error("{}: want {want}, one for each drive", counted(*got, "angle"))]
     Angles {
@@ -172,6 +182,15 @@ pub enum IncompleteTask {
         /// Number of drives.
         want: usize,
     },
+}
+
+/// Says that samples of so many values beside the time do not fit a machine of `drives` drives.
+pub(crate) fn samples_of_others(values: usize, drives: usize) -> String {
+    format!(
+        "the samples are angles of {}, and the machine has {drives}: want rows of t, q1 … q{drives} or of t, x, y, or a \
+         machine of as many drives",
+        counted(values, "drive")
+    )
 }
 
 /// Returns where a pose has the end effector, m, and its b, rad.
@@ -187,6 +206,11 @@ impl Task {
         Some(DriveAngles(start.of(drives)))
     }
 
+    /// Returns whether the motion returns to A, and no other B is stated, which would have no effect.
+    pub(super) fn returns_to_a(&self) -> bool {
+        self.kind == TaskKind::TurnBase && self.to == self.from
+    }
+
     /// Returns the task with A and b of its start, if it has one: they may be those of a machine that has changed.
     pub fn at_its_start(&self, machine: &Machine) -> Option<Self> {
         // Samples of drive angles begin at a pose of their own.
@@ -195,7 +219,8 @@ impl Task {
             return None;
         }
         let (from, b) = place_and_b(machine, &self.start_pose(machine.drives())?);
-        ((from, b) != (self.from, self.b)).then(|| Self { from, b, ..self.clone() })
+        let to = if self.returns_to_a() { from } else { self.to };
+        ((from, b) != (self.from, self.b)).then(|| Self { from, to, b, ..self.clone() })
     }
 
     /// Returns a task given by samples. Samples of the end effector are followed at `b`, rad; samples of drive angles
@@ -232,6 +257,10 @@ impl Task {
         let place = |key: &'static str, own: [f64; 2], end: Option<[f64; 2]>| match end {
             _ if stated(key) => Ok(own),
             Some(end) => Ok(end),
+            // Where the samples begin and end is then unknown.
+            None if self.samples.is_some() => {
+                Err(IncompleteTask::Samples { got: self.columns().unwrap_or_default(), want: drives })
+            }
             None => Err(IncompleteTask::Missing(key)),
         };
         let at_start = start.map(|q| place_and_b(machine, &q));
@@ -356,7 +385,10 @@ impl Task {
         if !begins && (task.from, task.b) != (self.from, self.b) {
             task.start = None;
         }
-        task.completed(|key| stated.contains_key(key), machine).map_err(|why| why.to_string())
+        // Where the motion returns, B goes with A.
+        let follows = self.returns_to_a() && task.kind == self.kind && !change.contains_key("to");
+        let is_stated = |key: &str| stated.contains_key(key) && !(follows && key == "to");
+        task.completed(is_stated, machine).map_err(|why| why.to_string())
     }
 
     /// Names in a change all of start, A and b if it sets one of them and there is a start, or comes to be one.

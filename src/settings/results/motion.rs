@@ -24,7 +24,11 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("base_angle", "rad", "Largest angle |θ| by which the base turns; of a plan, without a wheel."),
     row("base_angle_end", "rad", "Angle of a free base at the end; of a plan, without a wheel.").sign(TURN).frame(BASE),
     row("keeps_attitude", "", "Whether a free base turns by no more than 1e-6 rad."),
-    row("miss", "m", "Distance of the end effector from its target at the end."),
+    row(
+        "miss",
+        "m",
+        "Distance of the end effector from its target at the end; none for samples of drive angles, which have no target.",
+    ),
     row("energy", "J", "Energy that the motors took, with none given back."),
     row("wheel_rate", "rad/s", "Largest rate of the reaction wheel."),
     row(

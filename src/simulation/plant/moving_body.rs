@@ -183,6 +183,23 @@ impl MovingBody {
         State { q, momenta, position: place, momentum, wheel: 0.0, work: 0.0, lost: 0.0, impulse }
     }
 
+    /// Returns the state from which a run begins: for given angles and rates of the drives, seen from a base at the origin.
+    /// A free base moves so that all momentum is zero, as if everything had rested before; another base rests.
+    pub fn started(&self, q: &DriveAngles, qd: &PerDrive) -> State {
+        let turning_at = |rate: f64| {
+            let absolute = PerDrive::from_fn(qd.len(), |k| qd[k] + rate);
+            self.state(q, &absolute, Pose2::default(), Vector::default(), rate)
+        };
+        let resting = turning_at(0.0);
+        if !self.is_free {
+            return resting;
+        }
+        // The angular momentum of everything, which is linear in the rate of the base.
+        let total = |state: &State| state.momenta[q.len()];
+        let rate = -total(&resting) / (total(&turning_at(1.0)) - total(&resting));
+        State { momentum: Vector::default(), ..turning_at(rate) }
+    }
+
     /// Returns the position and velocity of the point that a chain describes, m and m/s, relative to the chain's
     /// origin.
     #[inline(always)]

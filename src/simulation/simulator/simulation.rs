@@ -7,7 +7,7 @@ use stillbase_mechanics::dynamics::{self, BaseWrench, ExternalLoads, by_drives};
 use stillbase_mechanics::joint_forces::{InternalLoads, PinLoads};
 use stillbase_mechanics::kinematics::{end_effector, least_transmission};
 use stillbase_mechanics::machine::{Inertia, Machine, MachineError, RelativeAngle};
-use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Pose2, Vector, length};
+use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, length};
 use stillbase_planning::Reference;
 use stillbase_planning::pose_space::plane_map;
 use stillbase_planning::reactionless::PlaneMap;
@@ -72,7 +72,8 @@ impl Baseline {
 }
 
 impl Simulation {
-    /// Builds a simulation at the start of its guide, with the guide's rates, on a base at rest at the origin.
+    /// Builds a simulation at the start of its guide, with the guide's rates, on a base at the origin. A free base moves so
+    /// that all momentum is zero; another rests.
     ///
     /// # Errors
     /// If the plant is not a valid machine, or if a moving base exceeds the maximum number of rotational coordinates.
@@ -114,7 +115,7 @@ impl Simulation {
         let controller = Controller::new(setup.control, n, models);
         let control_loop = ControlLoop::new(controller, setup.control, setup.step, limits, setup.base);
         let loaded = usize::from(first);
-        let state = bodies[loaded].state(&reference.q, &reference.qd, Pose2::default(), Vector::default(), 0.0);
+        let state = bodies[loaded].started(&reference.q, &reference.qd);
         let now = bodies[loaded].slope_without_torque(&state);
         let mut sim = Self {
             bodies: Box::new(bodies),

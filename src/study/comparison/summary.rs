@@ -33,8 +33,8 @@ pub struct Summary {
     pub base_tilt: f64,
     /// θ at the end of a free base, rad.
     pub base_angle_end: Option<f64>,
-    /// Distance of the end effector from its target at the end, m.
-    pub miss: f64,
+    /// Distance of the end effector from its target at the end, m; `None` for samples of drive angles, which have none.
+    pub miss: Option<f64>,
     /// Largest |τ_k| of any drive, N m.
     pub peak_torque: f64,
     /// Energy of the motors without recuperation, ∫ Σ |τ_k (q̇_k − θ̇)| dt including the wheel, J.
@@ -98,9 +98,7 @@ pub const SUMMARY_COLUMNS: [SummaryColumn; 18] = [
     column(["base_angle_end", "base angle, end", "angle end", "angle of a free base at the end"], "rad", 5, 17, |s| {
         s.base_angle_end
     }),
-    column(["miss", "miss", "miss", "distance of the end effector from its target at the end"], "m", 5, 15, |s| {
-        Some(s.miss)
-    }),
+    column(["miss", "miss", "miss", "distance of the end effector from its target at the end"], "m", 5, 15, |s| s.miss),
     column(["peak_torque", "peak torque", "peak τ", "largest torque of any drive"], "N m", 4, 22, |s| {
         Some(s.peak_torque)
     }),

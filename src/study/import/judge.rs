@@ -120,12 +120,10 @@ impl MotionEvaluator {
 
     /// Returns n_B at the instants for drawing, s, N m.
     fn moment(&self, motion: &Motion) -> Vec<[f64; 2]> {
-        let start = motion.at(0.0);
-        let momentum = self.arm.momentum_at_rest(&start.q.units(), &start.qd);
         let at = |i: usize| {
             let t = motion.duration() * i as f64 / DRAWN_INTERVALS as f64;
             let r = motion.at(t);
-            let (_, wrench) = self.arm.dynamics(&r.q.units(), &r.qd, &r.qdd, momentum);
+            let (_, wrench) = self.arm.dynamics(&r.q.units(), &r.qd, &r.qdd);
             [t, wrench.total().moment + 0.0]
         };
         (0..=DRAWN_INTERVALS).map(at).collect()

@@ -27,6 +27,9 @@
 //! ω is predicted from angles and rates of the drives, and L is fitted for each motion. Least squares of measured less
 //! predicted ω have no bias from its noise, which a fit of L itself would have. Gauss–Newton steps begin at the machine's
 //! file. Intervals are those of [`fit`](super::fit()).
+//!
+//! r_k is the absolute rate less ω as measured. Encoders measure r_k, and absolute rates are their sum with ω: the noise of
+//! ω cancels in r_k. Absolute rates from elsewhere leave it there, where it bends the fit: the intervals do not hold.
 
 use nalgebra::{DMatrix, DVector, SVD};
 use schemars::JsonSchema;

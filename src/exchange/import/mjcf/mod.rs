@@ -17,6 +17,7 @@ use super::floating::FloatingBase;
 use super::linkage::{Ground, ImportedLinkage};
 use super::read::{child, numbers, vector};
 use super::refusal::ImportError;
+use stillbase_settings::range::quote_clipped;
 
 /// Reads the linkage of a `<mujoco>`.
 ///
@@ -65,6 +66,13 @@ impl CoupledBodies<'_> {
     fn notes(&self) -> Result<Vec<String>, ImportError> {
         let model = self.bodies.model;
         let mut notes = Vec::new();
+        if let Some(base) = self.bodies.fixed_base() {
+            notes.push(format!(
+                "the body \"{}\" has no joint, so the base is fixed there, and its mass is left out; if it floats: want a free \
+                 joint in it, or two joints of type slide and a hinge",
+                quote_clipped(&base.name)
+            ));
+        }
         if model.descendants().any(|node| node.has_tag_name("mesh")) {
             notes.push("meshes are left out: a machine here is made of bars".to_owned());
         }

@@ -54,6 +54,6 @@ pub(super) fn density(spec: &MachineSpec, name: &str, place: impl Fn() -> KeyPat
         what: "material",
         name: name.into(),
         known: spec.known_materials().map(|(name, _)| name.into()).collect(),
-        more: ", or a [[material]] of this name with its density",
+        more: ", or a [[material]] of this name with its density".into(),
     })
 }
