@@ -180,6 +180,7 @@ impl AppState {
             Command::Session(command) => matches!(
                 command,
                 SessionCommand::OpenFile(_)
+                    | SessionCommand::AddFile(_)
                     | SessionCommand::Save
                     | SessionCommand::Export(..)
                     | SessionCommand::Recover(_)
