@@ -129,7 +129,7 @@ fn what_a_table_is_of_is_told_by_its_columns() {
         "{found:?}"
     );
     assert!(matches!(on(&head, row, false), Ok(TableData::Measurement(_))), "a base that stands still");
-    let why = on(&head.replace("base rad,", "base deg,"), row, true).expect_err("degrees").to_string();
+    let why = on(&head.replace("base rad,", "base (deg),"), row, true).expect_err("degrees").to_string();
     assert_eq!(why, "in.csv: attitude/base: unit \"deg\": want rad");
 }
 

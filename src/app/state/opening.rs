@@ -112,6 +112,7 @@ impl AppState {
             self.view_state.measurements.clear();
             self.view_state.framing = Default::default();
         }
+        self.motion_before_drag = None;
         // The measurements of an open table now refer to the newly opened machine.
         if let Some(given) = &mut self.opened_table {
             given.measured = Shared(Arc::new(self.session.scenario().machine.clone()));
