@@ -71,6 +71,8 @@ pub(super) struct Opening {
     pub plays: bool,
     /// Whether the file dialog closes.
     pub closes: bool,
+    /// Whether a table is added to the one on display.
+    pub adds: bool,
     /// The message.
     pub message: Option<String>,
     /// Title in the history, if it is not the usual one.

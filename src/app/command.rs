@@ -92,6 +92,8 @@ pub enum SessionCommand {
     Case(&'static str),
     /// Open a saved session or scenario.
     OpenFile(PathBuf),
+    /// Add a table to the measurement on display.
+    AddFile(PathBuf),
     /// Answer the question about a session left by an earlier program run.
     Recover(Recovery),
     /// Save the session to its own file, or ask for one.
@@ -353,6 +355,7 @@ impl FileDialog {
     pub fn named(self, file: PathBuf) -> SessionCommand {
         match self.purpose {
             FilePurpose::Open => SessionCommand::OpenFile(file),
+            FilePurpose::Add => SessionCommand::AddFile(file),
             FilePurpose::Save => SessionCommand::SaveFile(file),
             FilePurpose::Record => SessionCommand::Record(file),
             FilePurpose::Plot(plot, kind) => SessionCommand::WritePlot(file, plot, kind),

@@ -20,6 +20,8 @@ pub struct FileDialog {
 pub enum FilePurpose {
     /// Open a session, a machine or a table.
     Open,
+    /// Add a file to the measurement on display.
+    Add,
     /// Write the session.
     Save,
     /// Write a recording.
@@ -76,6 +78,7 @@ impl FilePurpose {
     pub(super) fn words(&self) -> [&'static str; 3] {
         match self {
             Self::Open => ["Open a file", "Open", ".toml .urdf .xml .csv .parquet"],
+            Self::Add => ["Add a file of the measurement", "Add", ".csv .parquet"],
             Self::Save => ["Save the session", "Save", "session.toml"],
             Self::Record => ["Record for the Rerun viewer", "Record", "run.rrd"],
             Self::Export(wanted) => [wanted.title(), "Save", wanted.example()],
@@ -129,7 +132,7 @@ pub(super) const MACHINE_FORMATS: [(&str, &str); 9] = [
 impl FileDialog {
     /// Returns whether it asks for a file to open.
     pub(super) fn opens(&self) -> bool {
-        self.purpose == FilePurpose::Open
+        matches!(self.purpose, FilePurpose::Open | FilePurpose::Add)
     }
 
     /// Returns the ending of the name typed so far; empty if it has none.
@@ -149,6 +152,11 @@ impl FileDialog {
         Self { purpose: FilePurpose::Open, path: String::new() }
     }
 
+    /// Returns a dialog to add a file to the measurement on display.
+    pub fn adding() -> Self {
+        Self { purpose: FilePurpose::Add, path: String::new() }
+    }
+
     /// Returns a dialog to save the machine as a file of this program.
     pub fn of_machine(session: &Session) -> Self {
         let name = stillbase_files::free_name(session.scenario().machine.name(), MACHINE_EXTENSION);
@@ -160,7 +168,7 @@ impl FileDialog {
         let own = &session.scenario().name;
         let free = |name: &str, ending: &str| stillbase_files::free_name(name, ending).display().to_string();
         let name = match &purpose {
-            FilePurpose::Open => String::new(),
+            FilePurpose::Open | FilePurpose::Add => String::new(),
             FilePurpose::Save => free(own, "toml"),
             FilePurpose::Record => free(own, "rrd"),
             FilePurpose::Machine => free(session.scenario().machine.name(), form::DEFAULT_EXTENSION),

@@ -4,7 +4,10 @@
 pub(super) mod assess;
 mod measured;
 mod motion;
+mod orbit;
 mod parts;
+
+use std::path::Path;
 
 use egui::{Align, ComboBox, Frame, Label, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
@@ -18,6 +21,7 @@ use parts::{column, worded};
 use stillbase_picture::scene::palette::Palette;
 use stillbase_study::advice::Advice;
 use stillbase_study::import::PreservedPath;
+use stillbase_study::trim::OrbitReport;
 
 /// Default and minimum height of the panel, points.
 const DEFAULT_HEIGHT_PT: f32 = 268.0;
@@ -27,14 +31,17 @@ const OPTIONS_WIDTH_PT: f32 = 250.0;
 
 /// Returns the title line: file name and content of the table.
 fn summary(shown: &TableView<'_>) -> String {
-    let file = shown.table.file.file_name().unwrap_or_default().to_string_lossy();
+    let name = |file: &Path| file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let more = shown.table.more.iter().map(|(file, _)| file);
+    let files = [&shown.table.file].into_iter().chain(more).map(|file| name(file)).collect::<Vec<_>>().join(", ");
     let held = match shown.answer {
         Some(Ok(TableAssessment::Motion { motion, .. })) => motion::summary(motion),
         Some(Ok(TableAssessment::Measured(trimmed))) => measured::summary(trimmed),
+        Some(Ok(TableAssessment::Orbit(report))) => orbit::summary(report),
         Some(Err(_)) => String::new(),
         None => "reading it …".into(),
     };
-    [file.into_owned(), held].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("  ·  ")
+    [files, held].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("  ·  ")
 }
 
 /// Draws this panel.
@@ -46,6 +53,7 @@ pub(super) fn show(ui: &mut Ui, shown: TableView<'_>, view_state: &ViewState, co
     Panel::bottom("given").default_size(height).size_range(MIN_HEIGHT_PT..=most).resizable(true).frame(frame).show(
         ui,
         |ui| {
+            let is_measurement = shown.content() == Some(TableContent::Measurement);
             ui.horizontal(|ui| {
                 let title = match shown.content() {
                     Some(TableContent::Measurement) => "Measured machine",
@@ -61,6 +69,10 @@ pub(super) fn show(ui: &mut Ui, shown: TableView<'_>, view_state: &ViewState, co
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     if ui.button("Close").on_hover_text("What was taken from it stays").clicked() {
                         commands.push(ViewChange::Switch(Switch::Table, false).into());
+                    }
+                    let tip = "Another file of this measurement, with other motions";
+                    if is_measurement && ui.button("Add…").on_hover_text(tip).clicked() {
+                        commands.push(ViewChange::Dialog(Some(FileDialog::adding())).into());
                     }
                     if ui.button("Open…").on_hover_text("Another table, or a session (Ctrl O)").clicked() {
                         commands.push(ViewChange::Dialog(Some(FileDialog::opening())).into());
@@ -84,6 +96,7 @@ pub(super) fn show(ui: &mut Ui, shown: TableView<'_>, view_state: &ViewState, co
                         Some(Ok(TableAssessment::Measured(trimmed))) => {
                             measured::show(ui, &p, &shown, trimmed, commands)
                         }
+                        Some(Ok(TableAssessment::Orbit(report))) => orbit::show(ui, &p, report),
                     }
                 });
             });
@@ -109,6 +122,11 @@ fn options_column(ui: &mut Ui, p: &Palette, shown: &TableView<'_>, commands: &mu
     choice(ui, "read", "What the table is taken for", &choices, options.content, |to| {
         shown.ask(commands, |options| options.content = to);
     });
+    if let Some(Ok(TableAssessment::Orbit(_))) = shown.answer {
+        note(ui, p, OrbitReport::KNOWN_WORDS);
+        note(ui, p, "The base is that of the session. Nothing is changed: no counterweight can be moved up there.");
+        return;
+    }
     if content == Some(TableContent::Measurement) {
         let tip = "Ignores measured rates and accelerations, and computes both from the angles";
         switch(ui, "from the angles alone", tip, options.angles_only, |on| {

@@ -149,8 +149,13 @@ impl<'a> ScenePointer<'a> {
         let pick = Pick { grip: pick.grip.map(|grip| grip.snapping(snaps)), ..pick };
         let aim = self.views.aim(self.view, &pick, self.shown, &pointer, session.b_aim())?;
         let aim = if snaps { aim.snapped() } else { aim };
-        if let DragAction::Target(at) | DragAction::Waypoint(_, at) = aim {
-            view_state.gesture.position = Some(at);
+        match aim {
+            DragAction::Target([x, y]) if self.view.shows_machine() => {
+                let at = self.shown.near_target(Vector::new(x, y));
+                view_state.gesture.position = Some([at.re, at.im]);
+            }
+            DragAction::Target(at) | DragAction::Waypoint(_, at) => view_state.gesture.position = Some(at),
+            _ => {}
         }
         edit_of(aim, session, view_state).map(|it| Command::Session(SessionCommand::Edit(it)))
     }

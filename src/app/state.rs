@@ -28,7 +28,7 @@ use super::saving::{LeftSession, Saving};
 use super::watched_file::WatchedFile;
 use super::{Activity, Framing, Intro, Layout, Message, Preferences, ResumePoint, SessionCommand, ViewState};
 use stillbase_mechanics::machine::Machine;
-use stillbase_picture::scene::exaggeration::exaggeration;
+use stillbase_picture::scene::exaggeration::{exaggeration, exaggeration_kept};
 use stillbase_picture::scene::palette::Theme;
 use stillbase_picture::scene::stage::Stage;
 use stillbase_picture::scene::views::{ViewKind, Views};
@@ -68,6 +68,8 @@ pub struct AppState {
     seeking: Option<<LengthsQuery as Query>::Input>,
     /// The table opened last.
     opened_table: Option<OpenedTable>,
+    /// [`Self::base_motion`] before the machine was dragged off its plan.
+    motion_before_drag: Option<[f64; 2]>,
     /// Work in the background.
     background: Background<Self>,
     /// Simulated time that is due but not simulated yet, s.
@@ -109,6 +111,7 @@ impl AppState {
             comparison: None,
             runs: SavedRuns::default(),
             opened_table: None,
+            motion_before_drag: None,
             fronts: Vec::new(),
             seeking: None,
             background,
@@ -301,14 +304,23 @@ impl AppState {
     /// largest base motion of the run, as far as the run is computed.
     pub fn base_exaggeration(&self) -> f64 {
         // A plan that accounts for the base puts the end effector where it is to be; enlarged, it would seem to miss.
-        let is_planned = self.session.frame().base_is_planned;
+        let is_planned = self.session.frames().first().is_some_and(|frame| frame.base_is_planned);
         if !self.view_state.exaggerates_base || !self.session.scenario().base.moves() || is_planned {
             return 1.0;
         }
+        let (motion, reach) = (self.base_motion(), self.views.stage().linkage().reach());
+        // A hand that leads the machine off its plan finds the picture as it was.
+        match self.motion_before_drag.filter(|_| self.session.is_dragged()) {
+            Some(before) => exaggeration_kept(before, motion, reach),
+            None => exaggeration(motion, reach),
+        }
+    }
+
+    /// Returns the largest displacement of the base, m, and its largest rotation, rad, of the run as far as it is known.
+    fn base_motion(&self) -> [f64; 2] {
         let newest = self.session.frames().last().map_or_else(Totals::default, |frame| frame.totals);
         let ahead = self.queries().last::<RunAhead>().map_or_else(Totals::default, |totals| *totals);
-        let motion = [newest.shift.max(ahead.shift), newest.base_angle.max(ahead.base_angle)];
-        exaggeration(motion, self.views.stage().linkage().reach())
+        [newest.shift.max(ahead.shift), newest.base_angle.max(ahead.base_angle)]
     }
 
     /// The signals of the machine on display.

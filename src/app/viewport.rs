@@ -175,6 +175,18 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
     shown.inner
 }
 
+/// Returns the camera of a picture of a view alone, of a size in points. It shows areas of turns to their ends, the same
+/// at every instant of the run.
+pub fn camera(session: &Session, views: &Views, view: ViewKind, size: [f32; 2]) -> Camera {
+    let camera = views.camera(view);
+    if !(view.shows_machine() && views.stage().has_turn_areas()) {
+        return camera;
+    }
+    let area = framing::area(Rect::from_min_size(egui::Pos2::ZERO, size.into()), &[]);
+    let start = session.frames().first().unwrap_or(session.frame());
+    views.content(view, start, &motion(session)).framed(camera, &area)
+}
+
 /// Returns the scene on display without hints at gestures, framed for a picture of a size in points.
 pub fn still(content: SceneContent<'_>, size: [f32; 2], view_state: &mut ViewState) -> (Scene, Camera) {
     let SceneContent { session, views, .. } = content;

@@ -4,13 +4,18 @@ use std::fmt::Write as _;
 
 use egui::Key;
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::{SessionCommand, TableAction, TableOptions, WindowCommand};
+use stillbase::app::{SessionCommand, TableAction, TableOptions, ViewChange, WindowCommand};
 use stillbase::files::row_file::RowFile;
 use stillbase::mechanics::machine::Inertia;
+use stillbase::picture::numbers::signed;
 use stillbase::picture::scene::palette::Theme;
-use stillbase::session::replay;
 use stillbase::session::scenario::Scenario;
-use stillbase::settings::change::single_change;
+use stillbase::session::{Edit, replay};
+use stillbase::settings::change::{join, single_change};
+use stillbase::simulation::signal_table::SignalTable;
+use stillbase::simulation::signals::signals;
+use stillbase::study::trim::{OrbitBase, OrbitMotion, OrbitReport, orbit_trim};
+use toml::Table;
 
 use super::{Window, session, window};
 use crate::Test;
@@ -22,6 +27,7 @@ pub const TESTS: &[Test] = tests![
     a_table_that_cannot_be_read_says_why_and_a_choice_mends_it,
     where_no_table_was_opened_one_is_asked_for,
     every_machine_takes_tables_of_its_own,
+    momentum_tells_what_is_off_in_orbit,
 ];
 
 /// Angles of the drives in a run of a scenario, and what its base feels, as a table.
@@ -203,6 +209,66 @@ fn every_machine_takes_tables_of_its_own() {
             std::fs::remove_file(folder.path(name)).expect("it was written");
         }
     }
+}
+
+/// Files of three motions on a base that floats are one measurement, with the numbers of `trim --base`.
+fn momentum_tells_what_is_off_in_orbit() {
+    let folder = Folder::new("given");
+    let other = join(single_change("task.start", vec![1.2, 0.4, -0.6]), &single_change("task.to", vec![0.34, 0.45]));
+    let flights = [("spot", Table::new()), ("spot", other), ("spot-swing", Table::new())];
+    let mut h = window("spot", Theme::Dark);
+    let scenario = session(&h).scenario().clone();
+    let mut motions = Vec::new();
+    for (i, (name, change)) in flights.into_iter().enumerate() {
+        let change = join(change, &single_change("plant.link.2.com", 0.22));
+        let flown = Scenario::builtin(name).expect("built in").with_settings(&change).expect("valid");
+        let all = signals(&flown.machine);
+        let mut measured = SignalTable::of(&all);
+        replay(&flown, |_, frame| {
+            if frame.step.is_multiple_of(5) {
+                measured.push(&all, frame);
+            }
+        })
+        .expect("it runs");
+        let mut text = measured.heads().join(",") + "\n";
+        for row in 0..measured.time.len() {
+            text += &(measured.row(row).map(|x| x.to_string()).collect::<Vec<_>>().join(",") + "\n");
+        }
+        motions.push(OrbitMotion::of(&flown.machine, &measured).expect("signals"));
+        let file = folder.file(&format!("{i}.csv"), text);
+        if i == 0 {
+            open(&mut h, file);
+            assert!(h.query_by_label("Measured machine").is_some());
+            assert!(h.query_by_label("g elbow along is off").is_none(), "one motion tells little");
+            h.get_by_label("Add…").click();
+            h.run_steps(4);
+            assert!(h.query_by_label("File name").is_some(), "it asks for a file");
+            h.state_mut().app_state_mut().carry_out(ViewChange::Dialog(None));
+        } else {
+            h.state_mut().app_state_mut().carry_out(SessionCommand::AddFile(file));
+        }
+        h.run_steps(4);
+    }
+    let report = orbit_trim(&scenario.machine, &OrbitBase::of(&scenario.base), &motions).expect("a fit");
+    assert!(
+        h.query_by_label_contains(&report.rate_words()).is_some() && h.query_by_label_contains("3 motions").is_some()
+    );
+    let of = |name: &str| report.numbers.iter().find(|number| number.name == name).expect("a number");
+    let elbow = of("g elbow along");
+    assert!(elbow.off && h.query_by_label("g elbow along is off").is_some(), "{elbow:?}");
+    assert!(h.query_by_label(&signed(elbow.measured.expect("told"), 5)).is_some());
+    assert!(h.query_by_label(OrbitReport::KNOWN_WORDS).is_some());
+    assert_eq!(*session(&h).scenario(), scenario, "nothing is changed");
+    // A file that is no table is refused, and nothing is lost.
+    h.state_mut().app_state_mut().carry_out(SessionCommand::AddFile("machine.toml".into()));
+    h.run_steps(2);
+    assert!(h.query_by_label_contains("machine.toml: want a table").is_some());
+    assert!(h.query_by_label("g elbow along is off").is_some());
+    // The same table is no measurement of a base that is held, and says so.
+    let base = Edit::of("base", single_change("kind", "fixed"));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(base));
+    h.run_steps(4);
+    assert!(h.query_by_label_contains("or a base that is free").is_some());
 }
 
 fn where_no_table_was_opened_one_is_asked_for() {

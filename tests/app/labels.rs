@@ -2,7 +2,7 @@
 
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 use egui_kittest::kittest::Queryable as _;
-use stillbase::app::{Layout, Preferences, SessionCommand, Switch, ViewChange};
+use stillbase::app::{AppState, Layout, PictureOrder, Preferences, SessionCommand, Shot, Switch, ViewChange};
 use stillbase::mechanics::machine;
 use stillbase::picture::charts::choice::PlotChange;
 use stillbase::picture::notation::{NameOrder, Notation};
@@ -20,10 +20,43 @@ pub const TESTS: &[Test] = tests![
     nothing_overlaps_in_any_machine,
     nothing_overlaps_beside_another_run,
     labels_do_not_jump,
+    every_area_of_turns_is_named_and_whole,
     the_table_of_runs_fits,
     no_card_of_the_scene_shows_under_a_window,
     what_is_dragged_stays_in_the_scene,
 ];
+
+/// In a picture every boundary of the areas of turns has a label of its own, on it, and all areas lie within the frame.
+fn every_area_of_turns_is_named_and_whole() {
+    let order = PictureOrder::new(Shot::View(ViewKind::Flat), Theme::Dark, [1280, 800]);
+    for name in ["spot", "ets-vii-silent"] {
+        let scenario = Scenario::builtin(name).expect("built in");
+        let mut app_state = AppState::new(scenario, Theme::Dark).expect("it runs");
+        let (scene, camera) = order.scene(&mut app_state);
+        let reach = app_state.stage().linkage().reach() as f32;
+        let mut places: Vec<[f32; 3]> = Vec::new();
+        for i in 0..5 {
+            let label = scene.labels.iter().find(|label| label.name == format!("turns/{i}/label"));
+            let label = label.unwrap_or_else(|| panic!("{name}: area {i} has no label"));
+            let line = scene.lines.iter().find(|line| line.name == format!("turns/{i}/boundary")).expect("a boundary");
+            let far = |a: [f32; 3], b: [f32; 3]| (a[0] - b[0]).hypot(a[1] - b[1]);
+            let m = &line.world_from_item;
+            let world = |p: &[f32; 3]| [0, 1, 2].map(|k| m[0][k] * p[0] + m[1][k] * p[1] + m[2][k] * p[2] + m[3][k]);
+            let points: Vec<[f32; 3]> = line.strips.iter().flatten().map(world).collect();
+            let nearest = points.iter().map(|p| far(*p, label.at)).fold(f32::INFINITY, f32::min);
+            assert!(nearest < 1e-4 * reach, "{name}: label {i} is {nearest} m off its boundary");
+            assert!(places.iter().all(|other| far(*other, label.at) > 0.1 * reach), "{name}: labels of {i} are near");
+            places.push(label.at);
+            for p in &points {
+                let seen = camera.project(p.map(f64::from), 1.6).expect("before the camera");
+                assert!(
+                    seen.iter().all(|x| (0.0..=1.0).contains(x)),
+                    "{name}: {p:?} of area {i} is out of the picture"
+                );
+            }
+        }
+    }
+}
 
 const SIZES: [[f32; 2]; 4] = [[960.0, 600.0], [1280.0, 800.0], [1440.0, 900.0], [1920.0, 1200.0]];
 

@@ -25,6 +25,7 @@ pub const TESTS: &[Test] = tests![
     any_setting_is_found_and_typed,
     a_link_that_differs_is_named,
     a_base_that_moves_is_seen_to_move,
+    a_drag_on_an_exaggerated_base_leaves_it_as_drawn,
     dots_tell_the_audit,
     tolerances_are_shown_and_set,
     the_bar_covers_nothing,
@@ -225,6 +226,44 @@ fn a_base_that_moves_is_seen_to_move() {
     h.get_by_label("Base back to normal").click();
     h.run_steps(2);
     assert_eq!(session(&h).scenario().base, Base::default());
+}
+
+/// A drag that begins on an exaggerated base leaves the base as it was drawn, and the tip under the pointer.
+fn a_drag_on_an_exaggerated_base_leaves_it_as_drawn() {
+    for (name, floats) in [("ets-vii", true), ("case-1", false)] {
+        let mut scenario = Scenario::builtin(name).expect("built in");
+        if !floats {
+            scenario.base = Base { kind: BaseKind::Free, ..Base::default() };
+        }
+        let mut h = window_of(scenario, Theme::Dark, 900.0);
+        h.state_mut().app_state_mut().run_to_end();
+        h.run_steps(2);
+        let factor = h.state().app_state().base_exaggeration();
+        let before = *session(&h).frame();
+        assert!(factor > 1.0 && before.base.angle.abs() > 1e-3, "{name}: {factor} of {:?}", before.base);
+        let drawn = |h: &Window| {
+            let frame = *session(h).frame();
+            let shown = DrawnFrame::of(&frame, Exaggeration::Times(h.state().app_state().base_exaggeration()));
+            (shown.base, shown.end_effector)
+        };
+        let (base, tip) = drawn(&h);
+        // A hand puts the target a little off the tip as it is drawn.
+        let place = tip * 0.98;
+        let real = DrawnFrame::of(&before, Exaggeration::Times(factor)).target_at(place);
+        let drag = Edit::DragTarget { x: real.re, y: real.im };
+        h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(drag));
+        h.run_steps(1);
+        let (now, now_tip) = drawn(&h);
+        assert!(session(&h).is_dragged());
+        assert_eq!(h.state().app_state().base_exaggeration(), factor, "{name}");
+        let moved = (now.at - base.at).norm() + (now.angle - base.angle).abs() + (now_tip - tip).norm();
+        assert!(moved < 2e-3, "{name}: the picture jumps by {moved}");
+        // The arm comes to rest where the hand is, as it is drawn.
+        h.run_steps(200);
+        let (_, tip) = drawn(&h);
+        assert_eq!(h.state().app_state().base_exaggeration(), factor, "{name}");
+        assert!((place - tip).norm() < 2e-3, "{name}: drawn at {tip}, led to {place}");
+    }
 }
 
 /// Six dots say how far every audited figure is from zero.

@@ -92,10 +92,11 @@ fn motions_part_where_time_leaps_or_begins_anew() {
 #[test]
 fn what_a_table_is_of_is_told_by_its_columns() {
     let machine = builtin("nine-link").expect("built in");
-    let of = |head: &str, row: &str| {
+    let on = |head: &str, row: &str, floats: bool| {
         let text = table(head, |t| format!("{t}{row}"));
-        TableData::of(&Table::of_csv(text, "in.csv"), machine, false)
+        TableData::of(&Table::of_csv(text, "in.csv"), machine, floats, false)
     };
+    let of = |head: &str, row: &str| on(head, row, false);
     for (head, row, coordinates) in [
         ("t,q1,q2,q3", ",1.7,3.7,2.2", Coordinates::Drives),
         ("\u{feff}t;q1 (rad);q2;q3", ";1.7;3.7;2.2", Coordinates::Drives),
@@ -117,14 +118,29 @@ fn what_a_table_is_of_is_told_by_its_columns() {
         let found = of(head, row).expect(head);
         assert!(matches!(found, TableData::Measurement(ref motions) if motions[0].t.len() == 20), "{head}: {found:?}");
     }
+    // Rates of a base are a measurement if it floats; forces beside them are left alone.
+    let drives = "angle/1 rad,angle/2 rad,angle/3 rad,rate/1 rad/s,rate/2 rad/s,rate/3 rad/s";
+    let head =
+        format!("time s,{drives},force/x N,force/y N,moment/total N m,attitude/base rad,attitude_rate/base rad/s");
+    let row = ",1.7,3.7,2.2,1,2,3,0,0,0,0.1,0.5";
+    let found = on(&head, row, true).expect("a motion in orbit");
+    assert!(
+        matches!(found, TableData::Orbit(ref motion) if motion.base_rate == [0.5; 20] && motion.rates[0][2] == 2.5
+            && (motion.angles[0][1] - 3.6).abs() < 1e-12),
+        "{found:?}"
+    );
+    assert!(matches!(on(&head, row, false), Ok(TableData::Measurement(_))), "a base that stands still");
+    let why = on(&head.replace("base rad,", "base (deg),"), row, true).expect_err("degrees").to_string();
+    assert_eq!(why, "in.csv: attitude/base: unit \"deg\": want rad");
 }
 
 /// A table that is neither is refused, with the columns of both.
 #[test]
 fn a_table_that_is_neither_is_refused() {
     let machine = builtin("nine-link").expect("built in");
-    let refused =
-        |text: &str| TableData::of(&Table::of_csv(text, "in.csv"), machine, false).expect_err("neither").to_string();
+    let refused = |text: &str| {
+        TableData::of(&Table::of_csv(text, "in.csv"), machine, false, false).expect_err("neither").to_string()
+    };
     let both = "want a header t,q1,q2,q3 (rad) or t,x,y (m) of a motion, or t,q1,q2,q3,fx,fy,nz (s, rad, N, N m) of a \
                 measurement";
     for (text, what) in [

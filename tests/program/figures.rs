@@ -608,3 +608,31 @@ fn a_view_is_drawn_as_outlines() {
         render("plain.svg", &[])
     });
 }
+
+/// The areas of the turn map are those of `turn-map`, and dynamic singularities lie on the inner one.
+#[test]
+fn a_turn_map_is_drawn_as_it_is_computed() {
+    let folder = Folder::new("turns");
+    draw(&folder, &["figures", "spot", "--what", "turn-map", "-o", "turns.svg"]);
+    let out = folder.run(&["turn-map", "spot", "--json"]);
+    let map: serde_json::Value = serde_json::from_slice(&out.stdout).expect("JSON");
+    let drawn = curves(&read(&folder, "turns.csv"));
+    let of = |name: &str| &drawn.iter().find(|((_, own), _)| own == name).unwrap_or_else(|| panic!("{name}")).1;
+    let area = |points: &Points| points.windows(2).map(|w| 0.5 * (w[0][0] * w[1][1] - w[1][0] * w[0][1])).sum::<f64>();
+    let numbers = |key: &str| map[key].as_array().expect(key).iter().map(|x| x.as_f64().expect("a number"));
+    let mut last = 0.0;
+    for (limit, want) in numbers("turn_limits").zip(numbers("areas")) {
+        let name = if limit == 0.0 { "zero momentum".into() } else { format!("base turns by at most {limit}°") };
+        close(&name, area(of(&name)), want, 1e-6);
+        assert!(want > last, "{name}: the areas are nested");
+        last = want;
+    }
+    let (inner, singular) = (of("zero momentum"), of("dynamic singularity"));
+    assert!(singular.len() > 10 && singular.iter().all(|point| inner.contains(point)));
+    let out = folder.run(&["figures", "two-drive", "--what", "turn-map", "-o", "none.svg"]);
+    let why = text(&out.stderr);
+    assert!(
+        !out.status.success() && why.contains("want a machine of three") && !folder.path("none.svg").exists(),
+        "{why}"
+    );
+}

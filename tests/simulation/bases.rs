@@ -88,7 +88,7 @@ fn a_free_base_begins_without_momentum() {
             assert!((last.end_effector - Vector::new(x, y)).norm() < 1e-6 && last.base.angle.abs() < 1e-9, "{last:?}");
         }
         if let Some(turn) = run.plan().base_turn.as_ref().filter(|_| scenario.base.floats()) {
-            assert!((turn.at(1.0) - last.base.angle).abs() < 1e-6, "{} {}", turn.at(1.0), last.base.angle);
+            assert!((turn.angle_end - last.base.angle).abs() < 1e-6, "{} {}", turn.angle_end, last.base.angle);
         }
     }
 }

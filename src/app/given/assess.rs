@@ -4,14 +4,18 @@ use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use stillbase_files::table::{SampleTable, Table, TableData as Read, motions, samples};
+use stillbase_files::table::{SampleTable, Table, TableData as Read, motions, orbit_motion, samples};
 use stillbase_mechanics::machine::Machine;
 use stillbase_planning::curves::Coordinates;
 use stillbase_query::{Portion, ProgressCallback, Query, Shared};
 use stillbase_session::scenario::Scenario;
+use stillbase_simulation::plant::BaseKind;
 use stillbase_study::advice::Advice;
 use stillbase_study::import::{GivenMotion, ImportQuery, ImportedMotion, MotionImportError, PreservedPath, Request};
-use stillbase_study::trim::{MeasuredMotion, MeasurementSet, TrimMethod, TrimOutcome, TrimQuery, TrimRequest};
+use stillbase_study::trim::{
+    MeasuredMotion, MeasurementSet, OrbitBase, OrbitMotion, OrbitReport, TrimError, TrimMethod, TrimOutcome, TrimQuery,
+    TrimRequest, orbit_trim,
+};
 
 /// Type of content of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,7 +24,7 @@ pub enum TableContent {
     Drives,
     /// Samples of the end effector.
     Tip,
-    /// Motions of a machine with the measured reactions on its base.
+    /// Motions of a machine with the measured reactions on its base, or the rates of a base that floats.
     Measurement,
 }
 
@@ -50,6 +54,8 @@ pub struct OpenedTable {
     pub file: PathBuf,
     /// Its content.
     pub table: Shared<Table>,
+    /// Further files of the same measurement, with their content.
+    pub more: Vec<(PathBuf, Shared<Table>)>,
     /// Its options.
     pub options: TableOptions,
     /// The measured machine: the machine on display when the table, or later a session, was opened.
@@ -87,8 +93,9 @@ impl OpenedTable {
             design: design.clone(),
             ..Scenario::builtin("case-3")?
         };
-        let (table, options, measured) = (self.table.clone(), self.options.clone(), self.measured.clone());
-        Some(TableRequest { table, scenario: Shared(scenario.into()), measured, options })
+        let (options, measured) = (self.options.clone(), self.measured.clone());
+        let more = self.more.iter().map(|(_, table)| table.clone()).collect();
+        Some(TableRequest { table: self.table.clone(), more, scenario: Shared(scenario.into()), measured, options })
     }
 }
 
@@ -97,6 +104,8 @@ impl OpenedTable {
 pub struct TableRequest {
     /// The table.
     pub table: Shared<Table>,
+    /// Further tables of the same measurement.
+    pub more: Vec<Shared<Table>>,
     /// A scenario with the session's machine, plant, base, control, step and design.
     pub scenario: Shared<Scenario>,
     /// The measured machine.
@@ -119,6 +128,8 @@ pub enum TableAssessment {
     },
     /// Assessment of a measured machine.
     Measured(Box<TrimOutcome>),
+    /// Assessment of a machine that was measured in orbit.
+    Orbit(Box<Result<OrbitReport, TrimError>>),
 }
 
 /// Query that reads a table, then runs the import of a motion or the trim of a machine.
@@ -131,6 +142,7 @@ pub struct AssessmentQuery {
 enum Work {
     Motion { motion: Arc<GivenMotion>, unwrapped: Vec<usize>, importing: Box<ImportQuery> },
     Measured(Box<TrimQuery>),
+    Orbit(Vec<OrbitMotion>),
 }
 
 /// Fraction of the progress that is assigned to reading the table.
@@ -167,24 +179,39 @@ impl Query for AssessmentQuery {
                 Portion::Stopped => Portion::Stopped,
                 Portion::Done(trimmed) => Portion::Done(Ok(TableAssessment::Measured(trimmed.into()))),
             },
+            Some(Work::Orbit(motions)) => {
+                let base = OrbitBase::of(&self.request.scenario.0.base);
+                let report = orbit_trim(&self.request.measured.0, &base, motions);
+                Portion::Done(Ok(TableAssessment::Orbit(report.into())))
+            }
         }
     }
 }
 
 impl TableRequest {
     fn read(&self) -> Result<Work, Advice> {
-        let Self { table, scenario, options, measured } = self;
+        let Self { table, more, scenario, options, measured } = self;
         let (table, machine) = (&*table.0, &scenario.0.machine);
+        let floats = scenario.0.base.kind == BaseKind::Free;
         let of = |coordinates| samples(table, machine, Some(coordinates), options.gaps).map(Read::Motion);
         let read = match options.content {
-            None => Read::of(table, machine, options.gaps),
+            None => Read::of(table, machine, floats, options.gaps),
             Some(TableContent::Drives) => of(Coordinates::Drives),
             Some(TableContent::Tip) => of(Coordinates::EndEffector),
-            Some(TableContent::Measurement) => motions(table, &measured.0).map(Read::Measurement),
+            Some(TableContent::Measurement) => Read::measurement(table, &measured.0, floats),
         };
         match read? {
             Read::Motion(table) => self.import(table),
-            Read::Measurement(motions) => Ok(self.trim(motions)),
+            Read::Measurement(mut all) => {
+                for table in more {
+                    all.extend(motions(&table.0, &measured.0)?);
+                }
+                Ok(self.trim(all))
+            }
+            Read::Orbit(first) => {
+                let more = more.iter().map(|table| orbit_motion(&table.0, &measured.0));
+                Ok(Work::Orbit([Ok(first)].into_iter().chain(more).collect::<Result<_, _>>()?))
+            }
         }
     }
 

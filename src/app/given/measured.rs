@@ -1,16 +1,16 @@
 //! A measured machine, and the change that balances it.
 
-use egui::{Align, Grid, Label, Layout, RichText, Ui};
+use egui::{Grid, Label, RichText, Ui};
 
 use super::assess::TableAction;
-use super::parts::{PROPOSAL_WIDTH, TableView, column, rows, take, title};
+use super::parts::{PROPOSAL_WIDTH, TableView, column, heads, name_cell, number_cell, rows, take, title, unit_cell};
 use crate::Command;
 use crate::theme::{colour, plain};
 use crate::widgets::note;
 use stillbase_picture::numbers::signed;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_settings::number::{counted, fixed_or_scientific as rounded};
-use stillbase_study::trim::{MeasuredUnknown, NoTrim, Number, ParameterChange, TrimOutcome, TrimReport, TrimResult};
+use stillbase_study::trim::{NoTrim, Number, ParameterChange, TrimOutcome, TrimReport, TrimResult};
 
 /// Width of the table of numbers, points.
 const NUMBERS_WIDTH_PT: f32 = 470.0;
@@ -74,30 +74,16 @@ fn refused(ui: &mut Ui, p: &Palette, why: &NoTrim, shown: &TableView<'_>, comman
 }
 
 fn numbers(ui: &mut Ui, p: &Palette, report: &TrimReport) {
-    let dim = |text: &str| RichText::new(text.to_owned()).font(plain(11.5)).color(colour(p.dim));
-    let right = |ui: &mut Ui, text: RichText| {
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.add(Label::new(text).extend()));
-    };
     rows(ui);
     Grid::new("balance").num_columns(6).spacing([14.0, 3.0]).min_col_width(0.0).show(ui, |ui| {
-        ui.label("");
-        for head in ["machine", "measured", "± 95 %", "after the change"] {
-            right(ui, dim(head));
-        }
-        ui.end_row();
+        heads(ui, p, &["machine", "measured", "± 95 %", "after the change"]);
         for Number { unknown, residual, .. } in &report.numbers {
-            let MeasuredUnknown { name, unit, nominal, measured, half_width, off, .. } = unknown;
-            let tone = colour(if *off { p.reaction } else { p.ink });
-            let number = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), |x| signed(x, 5));
-            let text = |x: Option<f64>| RichText::new(number(x)).font(plain(12.5));
-            let what = if *off { format!("{name} is off") } else { name.clone() };
-            ui.label(RichText::new(what).font(plain(12.5)).color(tone));
-            right(ui, text(Some(*nominal)));
-            right(ui, text(*measured).color(tone));
-            right(ui, text(*half_width).color(colour(p.dim)));
-            right(ui, text(*residual));
-            ui.label(dim(unit));
-            ui.end_row();
+            let tone = name_cell(ui, p, unknown);
+            number_cell(ui, Some(unknown.nominal), p.ink);
+            number_cell(ui, unknown.measured, tone);
+            number_cell(ui, unknown.half_width, p.dim);
+            number_cell(ui, *residual, p.ink);
+            unit_cell(ui, p, unknown.unit);
         }
     });
 }

@@ -1,13 +1,16 @@
 //! Parts of the panel of a table: its content, its columns, and the buttons that apply results.
 
-use egui::{Align, Button, Layout, RichText, ScrollArea, Ui, vec2};
+use egui::{Align, Button, Label, Layout, RichText, ScrollArea, Ui, vec2};
 
 use super::assess::{OpenedTable, TableAction, TableAssessment, TableContent, TableOptions};
 use crate::theme::{bold, colour, plain};
 use crate::{Command, SessionCommand, WindowCommand, fit, focus};
+use stillbase_picture::numbers::signed;
+use stillbase_picture::scene::Rgba;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_planning::curves::Coordinates;
 use stillbase_study::advice::{Advice, Remedy};
+use stillbase_study::trim::MeasuredUnknown;
 
 /// Minimum width of the column that describes the proposal, points.
 pub(super) const PROPOSAL_WIDTH: f32 = 300.0;
@@ -27,7 +30,7 @@ impl TableView<'_> {
     /// Returns the type of content; `None` while it is not known.
     pub fn content(&self) -> Option<TableContent> {
         match self.answer {
-            Some(Ok(TableAssessment::Measured(_))) => Some(TableContent::Measurement),
+            Some(Ok(TableAssessment::Measured(_) | TableAssessment::Orbit(_))) => Some(TableContent::Measurement),
             Some(Ok(TableAssessment::Motion { motion, .. })) => match motion.coordinates {
                 Coordinates::Drives => Some(TableContent::Drives),
                 Coordinates::EndEffector => Some(TableContent::Tip),
@@ -68,6 +71,39 @@ pub(super) fn column(ui: &mut Ui, id: &str, width: f32, add: impl FnOnce(&mut Ui
 /// Makes the rows of a table as high as their text.
 pub(super) fn rows(ui: &mut Ui) {
     ui.spacing_mut().interact_size.y = 16.0;
+}
+
+fn right(ui: &mut Ui, text: RichText) {
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.add(Label::new(text).extend()));
+}
+
+/// Draws the heads of a table of measured numbers, after an empty one for their names.
+pub(super) fn heads(ui: &mut Ui, p: &Palette, heads: &[&str]) {
+    ui.label("");
+    for head in heads {
+        right(ui, RichText::new(*head).font(plain(11.5)).color(colour(p.dim)));
+    }
+    ui.end_row();
+}
+
+/// Draws the name of a measured number, and whether it is off. Returns the colour of its value.
+pub(super) fn name_cell(ui: &mut Ui, p: &Palette, MeasuredUnknown { name, off, .. }: &MeasuredUnknown) -> Rgba {
+    let tone = if *off { p.reaction } else { p.ink };
+    let words = if *off { format!("{name} is off") } else { name.clone() };
+    ui.label(RichText::new(words).font(plain(12.5)).color(colour(tone)));
+    tone
+}
+
+/// Draws a number of a table, or a dash.
+pub(super) fn number_cell(ui: &mut Ui, x: Option<f64>, tone: Rgba) {
+    let words = x.map_or_else(|| "–".to_owned(), |x| signed(x, 5));
+    right(ui, RichText::new(words).font(plain(12.5)).color(colour(tone)));
+}
+
+/// Draws the unit at the end of a row of a table.
+pub(super) fn unit_cell(ui: &mut Ui, p: &Palette, unit: &str) {
+    ui.label(RichText::new(unit).font(plain(11.5)).color(colour(p.dim)));
+    ui.end_row();
 }
 
 /// Draws a title within a column.

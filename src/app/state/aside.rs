@@ -118,6 +118,7 @@ impl AppState {
         (self.views, self.comparison, self.fronts) = (aside.views, aside.comparison, aside.fronts);
         (self.seeking, self.opened_table, self.runs) = (aside.seeking, aside.opened_table, aside.runs);
         (self.designed_from, self.branch_message, self.due_s) = (None, None, 0.0);
+        self.motion_before_drag = None;
         self.run_ahead();
         self.refresh();
         true
@@ -180,6 +181,7 @@ impl AppState {
             Command::Session(command) => matches!(
                 command,
                 SessionCommand::OpenFile(_)
+                    | SessionCommand::AddFile(_)
                     | SessionCommand::Save
                     | SessionCommand::Export(..)
                     | SessionCommand::Recover(_)

@@ -16,7 +16,7 @@ use stillbase_study::comparison::{AlternativeRuns, ComparedRun, Comparison};
 use stillbase_study::tolerance::{StudiedRun, Study, StudyQuery};
 
 /// Maximum number of planned steps of a run that is simulated ahead to find the motion of its base.
-const MAX_STEPS_AHEAD: f64 = 20_000.0;
+const MAX_STEPS_AHEAD: f64 = 100_000.0;
 
 impl AppState {
     /// Runs the follow-up of all finished background work; returns whether there was any.

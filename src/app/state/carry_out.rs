@@ -157,6 +157,7 @@ impl AppState {
             }
             SessionCommand::Case(name) => self.open_case(name),
             SessionCommand::OpenFile(path) => self.open_file(path),
+            SessionCommand::AddFile(path) => self.add_file(path)?,
             SessionCommand::Recover(what) => self.recover(what),
             SessionCommand::Save => match self.saving.own_file(self.session.undo_count()).cloned() {
                 Some(file) => {

@@ -19,6 +19,7 @@ pub struct DisplayCopy {
     comparison: Option<Comparison>,
     fronts: Vec<FrontCase>,
     opened_table: Option<OpenedTable>,
+    motion_before_drag: Option<[f64; 2]>,
 }
 
 impl DisplayCopy {
@@ -29,10 +30,11 @@ impl DisplayCopy {
 
     /// Opens the copy, with all of its work done at once.
     pub fn open(self) -> AppState {
-        let Self { session, view_state, comparison, fronts, opened_table } = self;
+        let Self { session, view_state, comparison, fronts, opened_table, motion_before_drag } = self;
         let mut app_state = AppState::around(session, view_state.arrangement.theme);
         app_state.view_state = view_state;
         (app_state.comparison, app_state.fronts, app_state.opened_table) = (comparison, fronts, opened_table);
+        app_state.motion_before_drag = motion_before_drag;
         app_state.refresh();
         app_state
     }
@@ -54,7 +56,8 @@ impl AppState {
         // The panel of tolerances is left out, so that a picture does not compute the study again.
         view_state.below = view_state.below.filter(|below| *below != BottomPanel::Tolerances);
         let (comparison, fronts) = (self.comparison.clone(), self.fronts.clone());
-        DisplayCopy { session, view_state, comparison, fronts, opened_table: self.opened_table.clone() }
+        let (opened_table, motion_before_drag) = (self.opened_table.clone(), self.motion_before_drag);
+        DisplayCopy { session, view_state, comparison, fronts, opened_table, motion_before_drag }
     }
 
     /// Returns the scene on display, framed for a picture of a size in points.

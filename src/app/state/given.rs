@@ -19,9 +19,23 @@ impl AppState {
     pub(super) fn take_up(&mut self, file: PathBuf, table: Table) {
         self.saving.uses(&file);
         let measured = Shared(Arc::new(self.session.scenario().machine.clone()));
-        self.opened_table =
-            Some(OpenedTable { file, table: Shared(table.into()), options: TableOptions::default(), measured });
+        self.opened_table = Some(OpenedTable {
+            file,
+            table: Shared(table.into()),
+            more: Vec::new(),
+            options: TableOptions::default(),
+            measured,
+        });
         self.view_state.below = Some(BottomPanel::Table);
+        self.view_state.open.dialog = None;
+    }
+
+    /// Adds a table to the one that is open, with further motions of the same measurement.
+    pub(super) fn add_table(&mut self, file: PathBuf, table: Table) {
+        self.saving.uses(&file);
+        if let Some(given) = &mut self.opened_table {
+            given.more.push((file, Shared(table.into())));
+        }
         self.view_state.open.dialog = None;
     }
 

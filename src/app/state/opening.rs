@@ -8,6 +8,7 @@ use crate::background::{Opening, SessionFile};
 use crate::change::{NotOpened, Opened, OpenedSession, SessionChange, SessionSource};
 use crate::saving::LeftSession;
 use crate::{Activity, Framing, Recovery};
+use stillbase_files::table::{TABLE_ENDINGS, is_table};
 use stillbase_mechanics::machine::Machine;
 use stillbase_query::{Shared, Ticket};
 use stillbase_session::Session;
@@ -29,6 +30,7 @@ impl AppState {
             report: None,
         };
         match opened.unwrap_or_else(|| Err(broken())) {
+            Ok(Opened::Table(file, table)) if opening.adds => self.add_table(file, table),
             Ok(Opened::Table(file, table)) => self.take_up(file, table),
             Ok(Opened::Session(opened)) => {
                 let OpenedSession { session, note, left_out, left_off } = *opened;
@@ -110,6 +112,7 @@ impl AppState {
             self.view_state.measurements.clear();
             self.view_state.framing = Default::default();
         }
+        self.motion_before_drag = None;
         // The measurements of an open table now refer to the newly opened machine.
         if let Some(given) = &mut self.opened_table {
             given.measured = Shared(Arc::new(self.session.scenario().machine.clone()));
@@ -160,6 +163,18 @@ impl AppState {
         let message = Some(format!("opened {}{back}", path.display()));
         let file = Some(SessionFile::Own(path.clone()));
         self.open(SessionSource::File(path), Opening { closes: true, message, file, ..Opening::default() });
+    }
+
+    /// Opens a file of further motions of the measurement on display.
+    ///
+    /// # Errors
+    /// If it is no table.
+    pub(super) fn add_file(&mut self, path: PathBuf) -> Result<(), String> {
+        if !is_table(&path) {
+            return Err(format!("{}: want a table, .{}", path.display(), TABLE_ENDINGS.join(" or .")));
+        }
+        self.open(SessionSource::File(path), Opening { closes: true, adds: true, ..Opening::default() });
+        Ok(())
     }
 
     pub(super) fn recover(&mut self, what: Recovery) {

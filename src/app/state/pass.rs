@@ -47,6 +47,9 @@ impl AppState {
         if self.collect() | self.outline() {
             ui.ctx().request_repaint();
         }
+        if !self.session.is_dragged() {
+            self.motion_before_drag = Some(self.base_motion());
+        }
         if let Some(text) = self.clipboard.take() {
             ui.ctx().copy_text(text);
         }

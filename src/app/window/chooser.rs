@@ -61,7 +61,7 @@ impl Chooser {
                 app_state.carry_out(SessionCommand::Replace(file.clone()));
                 // A file to open keeps its name.
                 let file = match dialog.purpose {
-                    FilePurpose::Open => file,
+                    FilePurpose::Open | FilePurpose::Add => file,
                     _ => match endings(&dialog.purpose).first() {
                         Some(ending) => with_ending(file, ending),
                         None => file,
@@ -84,6 +84,7 @@ impl Chooser {
 fn endings(purpose: &FilePurpose) -> Vec<&'static str> {
     match purpose {
         FilePurpose::Open => [&["toml", "urdf", "xml"], TABLE_ENDINGS, &["rrd"]].concat(),
+        FilePurpose::Add => TABLE_ENDINGS.to_vec(),
         FilePurpose::Save => vec!["toml"],
         FilePurpose::Record => vec!["rrd"],
         FilePurpose::Plot(_, file) => file.endings(),
@@ -108,6 +109,7 @@ fn system_dialog(dialog: &FileDialog, folder: Option<&Path>, window: &Window) ->
     let ([title, ..], endings) = (dialog.purpose.words(), endings(&dialog.purpose));
     let kind = match &dialog.purpose {
         FilePurpose::Open => "Sessions, machines, models and tables",
+        FilePurpose::Add => "Tables",
         FilePurpose::Save => "Sessions",
         FilePurpose::Record => "Recordings",
         FilePurpose::Plot(..) => "Plots",
@@ -122,7 +124,7 @@ fn system_dialog(dialog: &FileDialog, folder: Option<&Path>, window: &Window) ->
         asks = asks.set_directory(folder);
     }
     match (&dialog.purpose, Path::new(&dialog.path).file_name()) {
-        (FilePurpose::Open, _) => Box::pin(asks.add_filter("All files", &["*"]).pick_file()),
+        (FilePurpose::Open | FilePurpose::Add, _) => Box::pin(asks.add_filter("All files", &["*"]).pick_file()),
         (_, Some(name)) => Box::pin(asks.set_file_name(name.to_string_lossy()).save_file()),
         (_, None) => Box::pin(asks.save_file()),
     }

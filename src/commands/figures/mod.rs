@@ -34,6 +34,7 @@ Examples:
   stillbase figures --paper fig-3 --machine nine-link-geared --point 0.6,0.5 --point 0.4,0.8
   stillbase figures case-1 --what torque,moment -o case-1.pdf
   stillbase figures case-1 --what torque -o - | rsvg-convert -o torque.png
+  stillbase figures spot --what turn-map -o turns.pdf --width 120
   stillbase figures case-3 --what linkage --at 0.5 -o linkage.svg --width 120
   stillbase figures window tower -o assets/pictures --force")]
 pub struct FiguresArguments {

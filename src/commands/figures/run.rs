@@ -8,13 +8,14 @@ use stillbase_app::{AppState, PictureOrder, SessionCommand, Shot};
 use stillbase_files::check_new;
 use stillbase_picture::charts::charts;
 use stillbase_picture::charts::figure::Figure;
-use stillbase_picture::print::paper::{PrintPart, PrintedFigure, chart_plot, snapshots_plot, workspaces};
+use stillbase_picture::print::paper::{PrintPart, PrintedFigure, chart_plot, snapshots_plot, turn_areas, workspaces};
 use stillbase_picture::print::scene_figure;
 use stillbase_picture::scene::palette::Theme;
 use stillbase_picture::scene::views::ViewKind;
 use stillbase_settings::number::fixed;
 use stillbase_settings::text::shell_word;
 use stillbase_simulation::signals::{group_of, signals};
+use stillbase_study::turn_map::{TurnMap, turn_limits};
 use stillbase_study::workspace::WorkspaceReport;
 
 use super::{FIGURE_ENDINGS, FiguresArguments, print, write};
@@ -43,6 +44,8 @@ pub enum RunFigure {
     Pin,
     /// Reactionless workspace of the b of the task
     Workspace,
+    /// Areas that straight rays from A reach at zero momentum, and while the base turns by a few degrees
+    TurnMap,
     /// Poses along the run, and the path of the end effector
     Snapshots,
     /// The machine at an instant, as the window shows it
@@ -126,6 +129,13 @@ fn plot(part: RunFigure, app_state: &AppState, width: f32) -> Result<PrintPart, 
             let report = WorkspaceReport::of(&scenario.machine, &space, b, &[]);
             let report = report.ok_or_else(|| Failure::no_answer("the joint limits leave no pose: want wider ones"))?;
             Ok(PrintPart::Plot(workspaces(Theme::Light, &[(b, report)]), DRAWING_HEIGHT * width))
+        }
+        RunFigure::TurnMap => {
+            let rays = session.run().rays();
+            let rays = rays.map_err(|why| Failure::no_answer(format!("{}: {why}", scenario.name)))?;
+            let map = TurnMap::of(&rays, turn_limits(scenario.base.floats()), &mut |_| true);
+            let map = map.ok_or_else(|| Failure::no_answer("there is no map"))?;
+            Ok(PrintPart::Plot(turn_areas(Theme::Light, &map), DRAWING_HEIGHT * width))
         }
         RunFigure::Snapshots => {
             let linkage = app_state.views().stage().linkage();

@@ -76,7 +76,6 @@ fn measured(number: &MeasuredUnknown) -> [String; 5] {
 
 /// Formats the report of a machine in orbit as text.
 pub fn orbit_text(report: &OrbitReport) -> String {
-    let [off, noise] = [report.rate_off, report.rate_noise].map(|rate| fixed_or_scientific(rate, 4));
     let mut table = TextTable::new(["", "machine", "measured", "± 95 %", "off", "± if known is 1 % off", "unit"]);
     for number in &report.numbers {
         let known = number.per_percent.map_or_else(|| "–".into(), |x| fixed_or_scientific(x, 6));
@@ -86,12 +85,12 @@ pub fn orbit_text(report: &OrbitReport) -> String {
     let doubts = lines(report.doubts());
     let untold = lines(report.untold_words().chain(report.advice.clone()).collect());
     format!(
-        "{} · {}, {} · rates of a base that floats\nbase rate not explained: by the machine's file {off} rad/s rms, by what \
-         was measured {noise} rad/s\n{doubts}\n{table}Known are mass and inertia of the base and the wheel, and the mass of the \
-         arm; ± 95 % is of noise alone.\n{untold}",
+        "{} · {}, {} · rates of a base that floats\n{}\n{doubts}\n{table}{}\n{untold}",
         report.machine,
         counted(report.motions, "motion"),
         counted(report.rows, "row"),
+        report.rate_words(),
+        OrbitReport::KNOWN_WORDS,
     )
 }
 

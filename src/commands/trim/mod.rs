@@ -209,7 +209,7 @@ impl TrimArguments {
 
     /// Prints what motions in orbit tell about the machine.
     fn in_orbit(&self, machine: &Machine, base: &Base, files: &[String]) -> Result<(), Failure> {
-        let base = OrbitBase { body: base.body(), wheel: base.wheel.map_or(0.0, |wheel| wheel.inertia) };
+        let base = OrbitBase::of(base);
         let motion = |file: &String| -> Result<OrbitMotion, Failure> {
             let table = signals(Path::new(file))?;
             OrbitMotion::of(machine, &table).map_err(|why| Failure::wrong_input(why).with_context(file))

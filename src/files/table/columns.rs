@@ -33,18 +33,17 @@ impl ColumnTable {
     ///
     /// # Errors
     /// If it has no such columns, or if its time does not increase.
-    pub fn signals(mut self, file: &str) -> Result<SignalTable, TableError> {
+    pub fn signals(&self, file: &str) -> Result<SignalTable, TableError> {
         let refused = |why: String| TableError::of_file(file, why);
         let heads = SignalHeads::of(self.heads.iter().map(String::as_str)).map_err(refused)?;
         if self.rows == 0 {
             return Err(refused("no row: want at least one".into()));
         }
-        let mut values = |place: usize| {
-            let taken = std::mem::replace(&mut self.columns[place], ColumnValues::Other("nothing any more"));
-            let what = match taken {
-                ColumnValues::Numbers(values) => return Ok(values),
+        let values = |place: usize| {
+            let what = match &self.columns[place] {
+                ColumnValues::Numbers(values) => return Ok(values.clone()),
                 ColumnValues::Texts(_) => "text",
-                ColumnValues::Other(what) => what,
+                ColumnValues::Other(what) => *what,
             };
             Err(refused(format!("column {}: {what}: want numbers", quote_clipped(&self.heads[place]))))
         };

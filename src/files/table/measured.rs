@@ -91,7 +91,9 @@ pub(super) fn motions_or(table: &Table, machine: &Machine, want: &str) -> Result
     }
     let mut parts = read.parts();
     if let Some((column, place)) = columns.moving(&parts) {
-        let why = format!("column {column}: the base moves: want a measurement on a base that stands still");
+        let why = format!(
+            "column {column}: the base moves: want a measurement on a base that stands still, or a base that is free"
+        );
         return Err(place.error(file, why));
     }
     for Part { rows, places } in &mut parts {

@@ -23,7 +23,7 @@ mod samples;
 mod signals;
 
 pub use error::TableError;
-pub use kind::TableData;
+pub use kind::{TableData, orbit_motion};
 pub use measured::{MAX_ROWS, motions};
 pub use opened::{NoTable, TABLE_ENDINGS, Table, is_table};
 pub use samples::{SampleTable, samples};

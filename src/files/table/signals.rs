@@ -25,10 +25,19 @@ pub fn signals(file: &Path) -> Result<SignalTable, TableError> {
             TableError::of_file(&file.display().to_string(), format!("{source}: want a plain file that can be read"))
         }
     });
-    let Table { name, content } = opened?;
-    match content {
-        TableContent::Csv(text) => signals_of(&text, &name),
-        TableContent::Columns(columns) => columns.signals(&name),
+    opened?.signals()
+}
+
+impl Table {
+    /// Reads the table as signals over time, as [`signals`] does.
+    ///
+    /// # Errors
+    /// If it is no such table, or if its time does not increase.
+    pub fn signals(&self) -> Result<SignalTable, TableError> {
+        match &self.content {
+            TableContent::Csv(text) => signals_of(text, &self.name),
+            TableContent::Columns(columns) => columns.signals(&self.name),
+        }
     }
 }
 

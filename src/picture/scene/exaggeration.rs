@@ -11,6 +11,9 @@ const PICTURE_HEIGHT: f64 = 1.64;
 /// Minimum size of the largest motion, as a fraction of the height of the picture.
 const VISIBLE_MOTION: f64 = 0.025;
 
+/// Maximum size of the largest motion of a run that has changed, as a fraction of the height of the picture.
+const MAX_MOTION: f64 = 0.25;
+
 /// Motion below this fraction of the reach is rounding error and is not exaggerated.
 const NOISE_LEVEL: f64 = 1e-10;
 
@@ -26,6 +29,15 @@ pub fn exaggeration([shift, angle]: [f64; 2], reach: f64) -> f64 {
     }
     let wanted = VISIBLE_MOTION * PICTURE_HEIGHT * reach / motion;
     if wanted <= 1.0 { 1.0 } else { round_up(wanted).min(MAX_FACTOR) }
+}
+
+/// Returns the factor for the motion of a base `before` a run was changed, unless it enlarges the `present` motion
+/// beyond [`MAX_MOTION`].
+pub fn exaggeration_kept(before: [f64; 2], present: [f64; 2], reach: f64) -> f64 {
+    let kept = exaggeration(before, reach);
+    let [shift, angle] = present;
+    let fits = kept * (shift + angle * reach) <= MAX_MOTION * PICTURE_HEIGHT * reach;
+    if fits { kept } else { exaggeration(present, reach) }
 }
 
 /// Rule by which the motion of a base is drawn.
@@ -92,7 +104,7 @@ impl<'a> DrawnFrame<'a> {
         let mut q = frame.q;
         q.0.iter_mut().for_each(|q| *q += more);
         let target = match exaggeration {
-            Exaggeration::Times(_) if frame.target_rides => moved(target_handle(frame)),
+            Exaggeration::Times(_) if is_led(frame) => moved(target_handle(frame)),
             // The target stays where it was set, however far the base moves.
             Exaggeration::Times(_) => target_handle(frame),
             // The base itself is at rest; the whole picture is rotated.
@@ -101,10 +113,25 @@ impl<'a> DrawnFrame<'a> {
         Self { frame, base, q, end_effector: moved(frame.end_effector), com: moved(frame.com), target }
     }
 
+    /// Returns where a place near the end effector is drawn, m: beside the drawn one if this is led to it.
+    pub fn near_target(&self, place: Vector) -> Vector {
+        if is_led(self.frame) { self.base.place(self.frame.in_base(place)) } else { place }
+    }
+
+    /// Returns the target, m, that leads the drawn end effector to a drawn position, if the base is free.
+    pub fn target_at(&self, drawn: Vector) -> Vector {
+        if self.frame.floats || is_led(self.frame) { self.frame.base.place(self.in_base(drawn)) } else { drawn }
+    }
+
     /// Converts a drawn position, m, to the axes of the drawn base.
     pub fn in_base(&self, place: Vector) -> Vector {
         self.base.seen(place)
     }
+}
+
+/// Whether the end effector goes to the target wherever the base is.
+fn is_led(frame: &Frame) -> bool {
+    frame.target_rides || frame.base_is_planned
 }
 
 impl<'a> From<&'a Frame> for DrawnFrame<'a> {

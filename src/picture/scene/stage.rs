@@ -18,6 +18,7 @@ mod workspace;
 
 pub use base::PULL_STIFFNESS;
 use turn_areas::TurnAreas;
+pub use turn_areas::limit_words;
 use workspace::WorkspaceParts;
 pub use workspace::{OutlineQuery, OutlineSubject, Outlined, Workspace};
 
@@ -163,6 +164,11 @@ impl Stage {
             Reached::Wanted(subject, _) => Some(subject.clone()),
             _ => None,
         }
+    }
+
+    /// Returns whether it shows what is reached as the base turns a little.
+    pub fn has_turn_areas(&self) -> bool {
+        matches!(self.reached, Reached::Done(Outlined::Turns(_)))
     }
 
     /// Sets the outline of what the end effector reaches; `None` if there is none.

@@ -16,7 +16,7 @@ use super::sketching::{self, SketchOptions};
 use super::stage::{OutlineQuery, OutlineSubject, Outlined, PULL_STIFFNESS, Stage};
 use super::tower::Tower;
 use stillbase_mechanics::machine::Machine;
-use stillbase_mechanics::planar::DriveAngles;
+use stillbase_mechanics::planar::{DriveAngles, Vector};
 use stillbase_mechanics::sketch::{Resolved, Sketch};
 use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork, WeakQueries};
 use stillbase_session::Run;
@@ -509,7 +509,10 @@ impl Views {
             _ => {
                 let at = pointer.ray()?.at_height(self.stage.handle_height())?;
                 match pick.handle {
-                    Handle::Target => Some(DragAction::Target(at)),
+                    Handle::Target => {
+                        let at = shown.target_at(Vector::new(at[0], at[1]));
+                        Some(DragAction::Target([at.re, at.im]))
+                    }
                     Handle::Ring => self.stage.ring_b(at, b, shown).map(DragAction::B),
                     Handle::EndEffector => Some(DragAction::Push([
                         PULL_STIFFNESS * (at[0] - shown.end_effector.re),

@@ -59,6 +59,16 @@ pub enum TrimError {
         /// Path of the signal.
         path: String,
     },
+    /// A signal of a motion in orbit has another unit.
+    #[error("{path}: unit {unit:?}: want {want}")]
+    SignalUnit {
+        /// Path of the signal.
+        path: String,
+        /// Its unit.
+        unit: String,
+        /// The expected unit.
+        want: &'static str,
+    },
     /// A reaction wheel turns that the base does not have.
     #[error(
         "a wheel turns by up to {} rad/s, but the base has none: want its inertia as base.wheel.inertia of the scenario",

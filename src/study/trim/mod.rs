@@ -64,7 +64,7 @@ pub use machine_correction::{
     MachineCorrection, NoCorrection, ParameterChange, correct_machine, corrected_as_built, identified_machine,
 };
 pub use next_excitation::{Excitation, NextMeasurement, next_excitation};
-pub use orbit::{OrbitBase, OrbitMotion, OrbitReport, orbit_trim};
+pub use orbit::{BASE_RATE, OrbitBase, OrbitMotion, OrbitReport, orbit_trim};
 pub use recording::{MeasuredMotion, MeasurementSet};
 pub use report::{ExcitationReport, MeasuredUnknown, Number, Suggestion, TrimImprovement, TrimReport};
 pub use rows::{Regressor, RegressorSource};

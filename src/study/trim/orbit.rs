@@ -46,7 +46,8 @@ use stillbase_mechanics::balance::Condition;
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive, Vector, unit};
 use stillbase_settings::number::{counted, fixed_or_scientific};
-use stillbase_simulation::signal_table::SignalTable;
+use stillbase_simulation::plant::Base;
+use stillbase_simulation::signal_table::{SignalColumn, SignalTable};
 
 /// Maximum number of Gauss–Newton steps.
 const MAX_STEPS: usize = 40;
@@ -71,6 +72,9 @@ const NEGLIGIBLE: f64 = 1e-4;
 const STILL_RAD: f64 = 1e-3;
 /// Motions that tell all numbers, if they differ enough.
 const ENOUGH_MOTIONS: usize = 3;
+
+/// The signal that only a measurement in orbit has.
+pub const BASE_RATE: &str = "attitude_rate/base";
 
 /// Samples of one motion in orbit. All lists have one entry per time.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,7 +126,24 @@ pub struct OrbitReport {
     pub unidentifiable: Vec<Vec<String>>,
 }
 
+impl OrbitBase {
+    /// Returns the base of a scenario, which floats.
+    pub fn of(base: &Base) -> Self {
+        Self { body: base.body(), wheel: base.wheel.map_or(0.0, |wheel| wheel.inertia) }
+    }
+}
+
 impl OrbitReport {
+    /// What is taken as known, and what the intervals are of.
+    pub const KNOWN_WORDS: &str = "Known are mass and inertia of the base and the wheel, and the mass of the arm; \
+                                   ± 95 % is of noise alone.";
+
+    /// Returns in words how much of the base rate is not explained.
+    pub fn rate_words(&self) -> String {
+        let [off, noise] = [self.rate_off, self.rate_noise].map(|rate| fixed_or_scientific(rate, 4));
+        format!("base rate not explained: by the machine's file {off} rad/s rms, by what was measured {noise} rad/s")
+    }
+
     /// Returns sentences about what makes the intervals doubtful.
     pub fn doubts(&self) -> Vec<String> {
         let mut words = Vec::new();
@@ -159,17 +180,23 @@ impl OrbitMotion {
     /// `attitude/base`, `attitude_rate/base`, and `wheel/rate` if there is a wheel.
     ///
     /// # Errors
-    /// If a signal is missing, or not a number throughout.
+    /// If a signal is missing, has another unit, or is not a number throughout.
     pub fn of(machine: &Machine, table: &SignalTable) -> Result<Self, TrimError> {
-        let column = |path: String| match table.column(&path) {
+        let column = |path: String, want: &'static str| match table.column(&path) {
+            Some(SignalColumn { unit, .. }) if ![want, ""].contains(&unit.as_str()) => {
+                Err(TrimError::SignalUnit { path, unit: unit.clone(), want })
+            }
             Some(column) if column.values.iter().all(|x| x.is_finite()) => Ok(column.values.as_slice()),
             _ => Err(TrimError::Signal { path }),
         };
         let drives = || machine.spec().drives.iter().map(|drive| drive.name.as_str());
-        let each = |what: &str| drives().map(|name| column(format!("{what}/{name}"))).collect::<Result<Vec<_>, _>>();
-        let (angles, rates) = (each("angle")?, each("rate")?);
-        let (turn, base_rate) = (column("attitude/base".into())?, column("attitude_rate/base".into())?);
-        let wheel = table.column("wheel/rate").map_or(Ok(None), |_| column("wheel/rate".into()).map(Some))?;
+        let each = |what: &str, unit: &'static str| {
+            drives().map(|name| column(format!("{what}/{name}"), unit)).collect::<Result<Vec<_>, _>>()
+        };
+        let (angles, rates) = (each("angle", "rad")?, each("rate", "rad/s")?);
+        let (turn, base_rate) = (column("attitude/base".into(), "rad")?, column(BASE_RATE.into(), "rad/s")?);
+        let wheel = "wheel/rate";
+        let wheel = table.column(wheel).map_or(Ok(None), |_| column(wheel.into(), "rad/s").map(Some))?;
         let less = |of: &[&[f64]], base: &[f64]| -> Vec<PerDrive> {
             base.iter().enumerate().map(|(i, base)| PerDrive::from_fn(of.len(), |k| of[k][i] - base)).collect()
         };

@@ -2,9 +2,11 @@
 
 mod motion;
 mod table;
+mod turns;
 
 pub use motion::{chart_plot, snapshots_plot, torque_plot};
 pub use table::{TableColumn, parameters};
+pub use turns::turn_areas;
 
 use super::numbers::curves_table;
 use super::page::Page;

@@ -37,7 +37,7 @@ pub fn draw(scene: &mut Scene, palette: &Palette, shown: &DrawnFrame<'_>, option
     };
     let (first, anchor) = match waits {
         Some(nearest) => {
-            let nearest = if frame.target_rides { shown.base.place(frame.in_base(nearest)) } else { nearest };
+            let nearest = shown.near_target(nearest);
             scene.lines.push(between("target/gap", nearest));
             let disc = Marker::disc("target/nearest", point(nearest, z), 4.5, palette.background);
             scene.markers.push(disc.edged(palette.amber, 2.0));

@@ -10,14 +10,15 @@ use stillbase_mechanics::planar::{Pose2, Vector, unit};
 use stillbase_planning::off_plane::momentum::MomentumModel;
 use stillbase_planning::off_plane::rays::Rays;
 use stillbase_query::ProgressCallback;
-use stillbase_study::turn_map::{TurnMap, turn_limits};
+use stillbase_study::turn_map::{TurnMap, TurnRay, turn_limits};
 
 /// Opacity of the fill of each area; inner areas lie on outer ones and so are darker.
 const FILL_OPACITY: f32 = 0.07;
 /// Distance of the fills below their boundaries and from each other, as a fraction of the reach.
 const FILL_DEPTH: f64 = 1e-3;
-/// Boundaries closer to each other than this fraction of the reach share a label.
-const LABEL_GAP: f64 = 0.08;
+/// Labels lie at least this far apart, and their boundaries go on evenly around them, as fractions of the reach.
+const LABEL_GAP: f64 = 0.12;
+const EVEN: f64 = 0.05;
 
 /// Nested areas around the start of a task.
 #[derive(Clone, Debug)]
@@ -47,26 +48,12 @@ impl TurnAreas {
     /// `None` if it returns false.
     pub fn of(rays: &Rays, floats: bool, goes_on: ProgressCallback<'_>) -> Option<Self> {
         let map = TurnMap::of(rays, turn_limits(floats), goes_on)?;
-        let last = map.turn_limits.len() - 1;
-        // The ray with the most room between the boundaries carries the labels.
-        let room = |reaches: &[f64]| match reaches {
-            [one] => *one,
-            many => many.windows(2).fold(f64::INFINITY, |least, pair| least.min(pair[1] - pair[0])),
-        };
-        let widest = map.rays.iter().enumerate().max_by(|a, b| room(&a.1.reaches).total_cmp(&room(&b.1.reaches)))?.0;
-        let mut labelled = f64::NEG_INFINITY;
+        let places = label_places(&map, rays.model().reach());
         let area = |i: usize| {
             let outline = map.outline(i);
-            let gap = LABEL_GAP * rays.model().reach();
-            let at = map.rays[widest].reaches[i];
-            let has_room = at - labelled > gap && (i == last || map.rays[widest].reaches[last] - at > gap);
-            let label = has_room.then(|| {
-                labelled = at;
-                let turn = map.turn_limits[i];
-                (map.end(i, &map.rays[widest]), if turn == 0.0 { "zero momentum".into() } else { format!("{turn}°") })
-            });
             let line = outline.iter().chain(outline.first()).map(|p| point(*p, 0.0)).collect::<Vec<_>>();
             let loops = [outline.iter().map(|p| [p.re, p.im]).collect()];
+            let label = places[i].map(|at| (at, limit_words(map.turn_limits[i])));
             TurnArea { boundary: [line].into(), mesh: Arc::new(fill::mesh(&loops)), label }
         };
         let curves = map.singular_curves();
@@ -76,7 +63,7 @@ impl TurnAreas {
         Some(Self {
             singular_label: longest.filter(has_room).map(|curve| curve[curve.len() / 2]),
             singular: curves.iter().map(|curve| curve.iter().map(|p| point(*p, 0.0)).collect::<Vec<_>>()).collect(),
-            areas: (0..=last).map(area).collect(),
+            areas: (0..map.turn_limits.len()).map(area).collect(),
             model: rays.model().clone(),
             carried: rays.model().is_carried(),
         })
@@ -92,10 +79,10 @@ impl TurnAreas {
         self.areas.iter().map(|area| &*area.mesh)
     }
 
-    /// Returns points of the boundary of what zero momentum reaches, with the base of a frame, m.
+    /// Returns points of the boundaries of all areas, with the base of a frame, m.
     pub fn points(&self, base: Pose2) -> Vec<Vector> {
         let base = if self.carried { base } else { Pose2::default() };
-        let all = self.areas.iter().take(1).flat_map(|area| area.boundary.iter().flatten());
+        let all = self.areas.iter().flat_map(|area| area.boundary.iter().flatten());
         all.map(|[x, y, _]| base.place(Vector::new(f64::from(*x), f64::from(*y)))).collect()
     }
 
@@ -147,4 +134,35 @@ impl TurnAreas {
             ));
         }
     }
+}
+
+/// Returns the words for the area within a turn of the base, °.
+pub fn limit_words(turn: f64) -> String {
+    if turn == 0.0 { "zero momentum".into() } else { format!("{turn}°") }
+}
+
+/// Returns a place for the label of each boundary, m: where the boundary is far from its neighbours, goes on evenly, and
+/// no other label is near. `None` if the boundary lies on the next one throughout.
+pub fn label_places(map: &TurnMap, reach: f64) -> Vec<Option<Vector>> {
+    let count = map.turn_limits.len();
+    let mut places: Vec<Option<Vector>> = vec![None; count];
+    // The outer boundaries have most room.
+    for i in (0..count).rev() {
+        let rays: Vec<&TurnRay> = map.rays_of(i).collect();
+        let ends: Vec<Vector> = rays.iter().map(|ray| map.end(i, ray)).collect();
+        let n = ends.len();
+        let room = |ray: &TurnRay| {
+            let inner = if i == 0 { f64::INFINITY } else { ray.reaches[i] - ray.reaches[i - 1] };
+            let outer = if i + 1 == count { f64::INFINITY } else { ray.reaches[i + 1] - ray.reaches[i] };
+            inner.min(outer).min(ray.reaches[i])
+        };
+        let is_even =
+            |k: usize| [(k + 1) % n, (k + n - 1) % n].iter().all(|next| (ends[*next] - ends[k]).norm() < EVEN * reach);
+        let apart =
+            |k: usize| places.iter().flatten().map(|other| (other - ends[k]).norm()).fold(f64::INFINITY, f64::min);
+        let is_free = |k: &usize| is_even(*k) && apart(*k) > LABEL_GAP * reach && room(rays[*k]) > 0.0;
+        let widest = (0..n).filter(is_free).max_by(|a, b| room(rays[*a]).total_cmp(&room(rays[*b])));
+        places[i] = widest.map(|k| ends[k]);
+    }
+    places
 }
