@@ -258,7 +258,8 @@ pub fn distinct_names(all: &[(&str, &str)]) -> Vec<String> {
     for telling in [&stem as &dyn Fn(&Path) -> PathBuf, &whole] {
         let before = names.clone();
         for (name, (called, _)) in names.iter_mut().zip(all).filter(|(_, (called, _))| *called != STANDARD_INPUT) {
-            if before.iter().filter(|other| *other == name).count() > 1 {
+            // A path does not tell the same file once more.
+            if before.iter().zip(all).any(|(other, (elsewhere, _))| other == name && elsewhere != called) {
                 *name = telling(Path::new(called)).display().to_string();
             }
         }

@@ -1,12 +1,13 @@
 //! Proposals that lead out of a refusal: of a scenario, or of settings that a scenario cannot have.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
 use toml::Table;
 
 use super::Proposal;
 use super::improve::{improvements_while, within_limits};
-use super::task::{candidates, made_task, may_take_another_task, shows_only_in_motion};
+use super::task::{candidates, made_task, shows_only_in_motion, would_plan};
 use super::value::{nearest_values, taking_back};
 use super::wider::{names_limits, wider_limits};
 use crate::changes::after_start_edit;
@@ -14,7 +15,7 @@ use crate::edit::Edit;
 use crate::refusal::Refusal;
 use crate::replay::{replay_while, with_start_edits};
 use crate::run::Run;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, TaskKind};
 use stillbase_query::{Portion, ProgressCallback, Queries, Query, Shared};
 use stillbase_settings::change::join;
 
@@ -115,8 +116,10 @@ pub fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: Progress
     let candidates = candidates(&start, refusal);
     let count = candidates.len() + 2;
     // Wider limits and a task made for the machine take a search, so this is done only if the loop gets to it.
-    let takes_another = may_take_another_task(&start.task, refusal);
-    let made = std::iter::once_with(|| takes_another.then(|| made_task(&start)).flatten()).flatten();
+    // Of all kinds, one alone turns the base: another task is the last resort.
+    let has_way_out = Cell::new(false);
+    let takes_another = || would_plan(refusal) && !(start.task.kind == TaskKind::TurnBase && has_way_out.get());
+    let made = std::iter::once_with(|| takes_another().then(|| made_task(&start)).flatten()).flatten();
     let wider = std::iter::once_with(|| names_limits(refusal).then(|| wider_limits(&start)).flatten()).flatten();
     let is_edited_later = with_start_edits(scenario).is_ok_and(|(_, others)| others > 0);
     let in_motion = shows_only_in_motion(refusal) || is_edited_later;
@@ -147,6 +150,7 @@ pub fn proposals_while(scenario: &Scenario, refusal: &Refusal, goes_on: Progress
         };
         if let Some(working) = working {
             proposals.push(working);
+            has_way_out.set(true);
             known.push(first);
             if proposals.len() == MAX_PROPOSALS {
                 break;

@@ -74,7 +74,7 @@ pub(super) fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal
             (false, true) => Proposal::new("let the base float, and take the wheel off", join(free, &bare)),
         });
     }
-    if !may_take_another_task(task, refusal) {
+    if task.kind == TaskKind::TurnBase || !would_plan(refusal) {
         return found;
     }
     let is_of_path = matches!(
@@ -106,13 +106,8 @@ pub(super) fn shows_only_in_motion(refusal: &Refusal) -> bool {
     matches!(refusal, Refusal::Edit { .. } | Refusal::Diverged { .. } | Refusal::Untrusted { .. })
 }
 
-/// Returns whether another task may stand in for a refused one. Of all kinds, one alone turns the base.
-pub(super) fn may_take_another_task(task: &Task, refusal: &Refusal) -> bool {
-    task.kind != TaskKind::TurnBase && would_plan(refusal)
-}
-
 /// Returns whether another plan may lead out of a refusal. It cannot if the task could be planned already.
-fn would_plan(refusal: &Refusal) -> bool {
+pub(super) fn would_plan(refusal: &Refusal) -> bool {
     match refusal {
         Refusal::Edit { refusal, .. } => would_plan(refusal),
         Refusal::TooManySteps { .. }
