@@ -24,7 +24,8 @@ use stillbase_simulation::plant::BaseKind;
 ///
 /// Columns are t; q, qd, qdd, tau_ff of each drive; x, y of the end effector; and b. Numbers are in SI units and
 /// radians, with all digits. A simulation on a moving base adds base_x, base_y, theta and their rates base_xd, base_yd,
-/// thetad. Angles q are absolute: an encoder reads q - theta. The last columns of a simulation are fx, fy, nz. These
+/// thetad. Its angles q are absolute, and its x, y are in space: an encoder reads
+/// q - theta. A planned reference has all of these as seen from the base. The last columns of a simulation are fx, fy, nz. These
 /// are the force and moment that the machine transmits to its base, weight included. A force plate reads the same
 /// (`stillbase trim`). The first row is the start and the last row the end, even if the rate does not divide the
 /// duration.
@@ -115,10 +116,14 @@ impl ExportArguments {
                         counted(later, "edit")
                     ));
                 }
-                if start.base.kind == BaseKind::Compliant {
-                    print_message(
+                match start.base.kind {
+                    BaseKind::Fixed => {}
+                    BaseKind::Compliant => print_message(
                         "note: tau_ff is of the model on a fixed base; --what simulated gives what control asks for",
-                    );
+                    ),
+                    BaseKind::Free => print_message(
+                        "note: angles, x and y are seen from the base; --what simulated has them in space, with its theta",
+                    ),
                 }
                 let (rows, duration) = self.reference(&Run::new(&start).map_err(|e| Failure::refused(&start, e))?)?;
                 (rows, duration, None, Vec::new())

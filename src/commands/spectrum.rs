@@ -18,6 +18,7 @@ use super::rows::{RowTarget, Rows};
 use super::simulate::require_audit;
 use super::strict::Strict;
 use stillbase_settings::number::{counted, fixed, fixed_or_scientific};
+use stillbase_simulation::plant::BaseKind;
 
 /// Compute the spectra of the base reactions of a run, and compare them with jitter limits
 ///
@@ -92,6 +93,12 @@ impl SpectrumArguments {
         let to = RowTarget::wanted(&self.format, &self.form, self.output.as_deref(), self.force)?;
         if scenario.base.wheel.is_some() {
             print_message(format!("note: {}: n_B is the moment minus that of the reaction wheel", scenario.name));
+        }
+        if scenario.base.kind == BaseKind::Free {
+            print_message(format!(
+                "note: {}: n_B is the moment that turns the free base, about its own centre of mass",
+                scenario.name
+            ));
         }
         let failed = |why| failed(why, &scenario);
         let mut of = BaseSpectrum::of(&scenario, self.window).map_err(failed)?;

@@ -1,7 +1,7 @@
 //! [`Forecast`]: torques, speeds and reactions of a motion that is followed exactly, computed before it is run.
 
-use crate::Motion;
 use crate::timing::limits::{DriveLimit, DriveLimits, LimitedQuantity};
+use crate::{Motion, Reference};
 use stillbase_mechanics::arm_on_base::ArmOnBase;
 use stillbase_mechanics::planar::PerDrive;
 use stillbase_query::ProgressCallback;
@@ -44,6 +44,10 @@ const SAMPLES_PER_PART: usize = 100;
 /// Maximum number of samples of a motion.
 const MAX_SAMPLES: usize = 100_000;
 
+/// Change of the largest torque between two samples, as a share of its peak, from which peaks are sought between them.
+const STEEP_SHARE: f64 = 0.05;
+/// Number of parts into which such an interval is divided.
+const FINE_SAMPLES: u32 = 32;
 /// Number of samples between two progress reports.
 const SAMPLES_PER_REPORT: usize = 1024;
 
@@ -74,7 +78,6 @@ impl Forecast {
     ) -> Self {
         let (time, lambda) = (motion.duration(), arm.arm().lambda());
         let n = arm.arm().drives();
-        let motors = arm.arm().motors();
         let start = motion.at(0.0);
         let mut sum = Self {
             time,
@@ -94,46 +97,77 @@ impl Forecast {
         // The samples are midpoints, but the range of b includes both ends of the motion.
         sum.b = [sum.b_start.min(sum.b_end), sum.b_start.max(sum.b_end)];
         let dt = time / instants as f64;
+        let mut torques = Vec::with_capacity(instants);
         // At midpoints, so that a jump of the acceleration is not sampled on the wrong side.
         for i in 0..instants {
             if i % SAMPLES_PER_REPORT == 0 && !goes_on(i as f64 / instants as f64) {
                 break;
             }
             let r = motion.at((i as f64 + 0.5) * dt);
-            let (torque, wrench) = arm.dynamics(&r.q.units(), &r.qd, &r.qdd);
-            let (torque, rate, acceleration) =
-                (motors.motor_torques(&torque), motors.to_motors(&r.qd), motors.to_motors(&r.qdd));
-            let most = |most: &mut PerDrive, x: &PerDrive| {
-                most.iter_mut().zip(x.iter()).for_each(|(m, x)| *m = m.max(x.abs()));
-            };
-            most(&mut sum.torque, &torque);
-            most(&mut sum.speed, &rate);
-            for (quantity, values) in [
-                (LimitedQuantity::Torque, &torque),
-                (LimitedQuantity::Speed, &rate),
-                (LimitedQuantity::Acceleration, &acceleration),
-            ] {
-                for (drive, (x, limit)) in values.iter().zip(limits.on(quantity).iter()).enumerate() {
-                    let factor = x.abs() / limit;
-                    // Excess within rounding is ignored.
-                    if factor > EXCEEDED_ABOVE && sum.exceeded_limit.is_none_or(|(_, most)| factor > most) {
-                        sum.exceeded_limit = Some((DriveLimit { quantity, drive }, factor));
-                    }
-                }
-            }
-            let moment = wrench.total().moment.abs();
-            sum.moment = sum.moment.max(moment);
+            let Loads { moment, force, torque } = sum.include(arm, limits, &r);
+            torques.push(torque);
             sum.impulse += moment * dt;
-            sum.force = sum.force.max(wrench.dynamic.force.norm());
             sum.moment_rms += moment * moment / instants as f64;
-            sum.force_rms += wrench.dynamic.force.norm_sqr() / instants as f64;
+            sum.force_rms += force * force / instants as f64;
             let b = lambda.dot(&r.q);
             sum.b = [sum.b[0].min(b), sum.b[1].max(b)];
             sum.b_mean += (b - sum.b_start) / instants as f64;
+        }
+        // Peaks between samples, as where a path crosses a singularity.
+        let most = torques.iter().copied().fold(0.0, f64::max);
+        let last = torques.len().saturating_sub(1);
+        let is_steep = |i: usize| (torques[i + 1] - torques[i]).abs() > STEEP_SHARE * most;
+        // A peak may lie between two equal samples, beside steep ones.
+        let is_by_steep = |i: &usize| (i.saturating_sub(1)..(i + 2).min(last)).any(is_steep);
+        for i in (0..last).filter(is_by_steep) {
+            (1..FINE_SAMPLES).for_each(|k| {
+                let share = f64::from(k) / f64::from(FINE_SAMPLES);
+                sum.include(arm, limits, &motion.at((i as f64 + 0.5 + share) * dt));
+            });
         }
         sum.b_mean += sum.b_start;
         sum.moment_rms = sum.moment_rms.sqrt();
         sum.force_rms = sum.force_rms.sqrt();
         sum
     }
+
+    /// Includes an instant of a motion in the peaks.
+    fn include(&mut self, arm: &ArmOnBase, limits: &DriveLimits, r: &Reference) -> Loads {
+        let (torque, wrench) = arm.dynamics(&r.q.units(), &r.qd, &r.qdd);
+        let motors = arm.arm().motors();
+        let (torque, rate, acceleration) =
+            (motors.motor_torques(&torque), motors.to_motors(&r.qd), motors.to_motors(&r.qdd));
+        let most = |most: &mut PerDrive, x: &PerDrive| {
+            most.iter_mut().zip(x.iter()).for_each(|(m, x)| *m = m.max(x.abs()));
+        };
+        most(&mut self.torque, &torque);
+        most(&mut self.speed, &rate);
+        for (quantity, values) in [
+            (LimitedQuantity::Torque, &torque),
+            (LimitedQuantity::Speed, &rate),
+            (LimitedQuantity::Acceleration, &acceleration),
+        ] {
+            for (drive, (x, limit)) in values.iter().zip(limits.on(quantity).iter()).enumerate() {
+                let factor = x.abs() / limit;
+                // Excess within rounding is ignored.
+                if factor > EXCEEDED_ABOVE && self.exceeded_limit.is_none_or(|(_, most)| factor > most) {
+                    self.exceeded_limit = Some((DriveLimit { quantity, drive }, factor));
+                }
+            }
+        }
+        let (moment, force) = (wrench.total().moment.abs(), wrench.dynamic.force.norm());
+        self.moment = self.moment.max(moment);
+        self.force = self.force.max(force);
+        Loads { moment, force, torque: torque.max_abs() }
+    }
+}
+
+/// Sizes of the loads at an instant.
+struct Loads {
+    /// |n_B|, N m.
+    moment: f64,
+    /// Dynamic |f_B|, N.
+    force: f64,
+    /// Largest |torque|, N m.
+    torque: f64,
 }

@@ -131,13 +131,15 @@ impl WheelUse {
     }
 }
 
-/// Returns the torque or speed limit that the peaks exceed by the largest factor, and that factor.
+/// Returns the limit on torque, speed or acceleration that the peaks exceed by the largest factor, and that factor.
 fn over(limits: &DriveLimits, peaks: &Peaks) -> Option<(DriveLimit, f64)> {
     let of = |quantity, peaks: PerDrive| {
         let factors = PerDrive::from_fn(peaks.len(), |k| peaks[k] / limits.on(quantity)[k]);
         (0..peaks.len()).map(move |drive| (DriveLimit { quantity, drive }, factors[drive]))
     };
-    let all = of(LimitedQuantity::Torque, peaks.torque).chain(of(LimitedQuantity::Speed, peaks.rate));
+    let all = of(LimitedQuantity::Torque, peaks.torque)
+        .chain(of(LimitedQuantity::Speed, peaks.rate))
+        .chain(of(LimitedQuantity::Acceleration, peaks.acceleration));
     all.filter(|(_, factor)| *factor > MAX_LIMIT_RATIO).max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
@@ -287,7 +289,8 @@ impl Verdict {
         if let Some((limit, factor)) = self.exceeded_limit {
             let short = match limit.quantity {
                 LimitedQuantity::Torque => "past a torque limit",
-                _ => "past a speed limit",
+                LimitedQuantity::Speed => "past a speed limit",
+                _ => "past an acceleration limit",
             };
             add(short, format!("the {limit} goes up to {} times its limit", significant(factor)));
         }

@@ -220,7 +220,7 @@ impl fmt::Display for KeyType {
             Self::Whole(range) => write!(f, "a whole number, {range}"),
             Self::PerDrive(range) => write!(f, "{range}, for all drives or a list with one for each"),
             Self::List(count, range) => write!(f, "{count} numbers, each {range}"),
-            Self::Points(range) => write!(f, "points x, y, each {range}"),
+            Self::Points(range) => write!(f, "points [[x, y], …], each {range}"),
             Self::Choice(words) => f.write_str(&words.join(", ")),
             Self::Switch => f.write_str("true or false"),
             Self::Bounds(range) => write!(f, "{}, or the least and the greatest, each {range}", HOLD_WORDS.join(", ")),

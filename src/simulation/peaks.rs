@@ -20,8 +20,10 @@ pub struct Peaks {
     pub inertial_pull: f64,
     /// Static force of weight and of the force at the end effector, N: the scale of rounding errors.
     pub weight: f64,
-    /// |q̇_k − θ̇|, rad/s.
+    /// Rates of the motors, seen from what carries them, rad/s: |q̇_k − θ̇| for motors on the base.
     pub rate: PerDrive,
+    /// Their accelerations, rad/s².
+    pub acceleration: PerDrive,
     /// Moment that tilts the base, due to heights along the axis, N m.
     pub tilt: f64,
     /// Maximum distance of a relative joint angle beyond a limit, rad, and index of the angle in the machine's order.
@@ -40,15 +42,18 @@ impl Peaks {
             inertial_pull: 0.0,
             weight: 0.0,
             rate: PerDrive::zeros(drives),
+            acceleration: PerDrive::zeros(drives),
             tilt: 0.0,
             past_limit: (0.0, 0),
         }
     }
 
-    /// Includes the values of one more instant, of which torques and rates may be negative.
+    /// Includes the values of one more instant, of which torques, rates and accelerations may be negative.
     pub(crate) fn include(&mut self, now: &Self) {
-        for (peak, t) in self.torque.iter_mut().zip(now.torque.iter()) {
-            *peak = worse(*peak, t.abs());
+        for (peaks, now) in
+            [(&mut self.torque, &now.torque), (&mut self.rate, &now.rate), (&mut self.acceleration, &now.acceleration)]
+        {
+            peaks.iter_mut().zip(now.iter()).for_each(|(peak, x)| *peak = worse(*peak, x.abs()));
         }
         self.torque_sum = worse(self.torque_sum, now.torque_sum);
         self.force = worse(self.force, now.force);
@@ -56,9 +61,6 @@ impl Peaks {
         self.moment = worse(self.moment, now.moment);
         self.inertial_pull = worse(self.inertial_pull, now.inertial_pull);
         self.weight = worse(self.weight, now.weight);
-        for (peak, rate) in self.rate.iter_mut().zip(now.rate.iter()) {
-            *peak = worse(*peak, rate.abs());
-        }
         self.tilt = worse(self.tilt, now.tilt);
         if now.past_limit.0 > self.past_limit.0 {
             self.past_limit = now.past_limit;

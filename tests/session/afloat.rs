@@ -297,3 +297,19 @@ fn a_start_is_undone_with_its_point() {
         assert_eq!(changed.with_settings(&back).expect("as it was").task, scenario.task, "{text}");
     }
 }
+
+/// Where the path crosses a dynamic singularity, peaks last for milliseconds; the plan has those of a run of short steps.
+#[test]
+fn plans_have_the_peaks_of_crossings() {
+    for to in ["[0.4, 0.0]", "[0.0, 0.0]"] {
+        let task = "kind = 'zero-momentum'\nstart = [1.9, 2.6, 3.4]\nturn_limit = 43.0\ntime = 10.0\nframe = 'space'";
+        let mut crossing = spot(&format!("{task}\nto = {to}"));
+        crossing.step = 2e-4;
+        let (frame, _) = run(&crossing);
+        let planned = Run::new(&crossing).expect("it plans").plan().forecast;
+        let (got, want) = (planned.moment, frame.peaks.arm_moment);
+        assert!((got / want - 1.0).abs() < 5e-3, "{to}: {got} N m for {want}");
+        let (got, want) = (planned.force, frame.peaks.force);
+        assert!((got / want - 1.0).abs() < 5e-3, "{to}: {got} N for {want}");
+    }
+}

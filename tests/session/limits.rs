@@ -2,7 +2,8 @@
 
 use proptest::prelude::*;
 use stillbase::session::scenario::Scenario;
-use stillbase::session::{Edit, Refusal, Session};
+use stillbase::session::verdict::Verdict;
+use stillbase::session::{Edit, Refusal, Session, replay};
 
 use super::{coarse, do_it, open, set, state};
 
@@ -133,5 +134,19 @@ proptest! {
         leads: bool,
     ) {
         apply(one, other, steps, plays, leads)?;
+    }
+}
+
+/// A motor on another drive turns at the rate between both, in the plan as in the run.
+#[test]
+fn limits_are_those_of_motors_that_sit_on_other_drives() {
+    for (key, limit) in [("speed_limit", 0.5), ("acceleration_limit", 0.1)] {
+        let mut arm = Scenario::builtin("spot").expect("built in").clone();
+        arm.machine = arm.machine.set(&format!("drive.elbow.{key}"), &limit.to_string()).expect("a limit");
+        let run = replay(&arm, |_, _| {}).expect("it runs");
+        let (planned, by) = run.plan().forecast.exceeded_limit.expect("the plan is past it");
+        let (found, factor) = Verdict::of(run.scenario(), &run.frame()).exceeded_limit.expect("so is the run");
+        assert_eq!(planned, found);
+        assert!((factor / by - 1.0).abs() < 1e-3, "{key}: {factor} is not {by}");
     }
 }

@@ -32,7 +32,7 @@ pub fn exaggeration([shift, angle]: [f64; 2], reach: f64) -> f64 {
 }
 
 /// Returns the factor for the motion of a base `before` a run was changed, unless it enlarges the `present` motion
-/// beyond [`MAX_MOTION`].
+/// beyond a quarter of the height of the picture.
 pub fn exaggeration_kept(before: [f64; 2], present: [f64; 2], reach: f64) -> f64 {
     let kept = exaggeration(before, reach);
     let [shift, angle] = present;

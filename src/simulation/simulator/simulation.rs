@@ -339,6 +339,10 @@ impl Simulation {
         let (total, felt) = (wrench.total().moment, self.felt_moment(&wrench));
         let loaded = usize::from(self.loaded);
         let past = |(i, angle): (usize, &RelativeAngle)| (angle.past_limit(&self.state.q), i);
+        let arm = self.body().arm();
+        let at_motors =
+            |x: &PerDrive, base: f64| arm.motors().to_motors(&PerDrive::from_fn(self.drives, |k| x[k] - base));
+        let base_acceleration = x.qdd.get(self.drives).copied().unwrap_or(0.0);
         let now = Peaks {
             torque: x.torque,
             torque_sum: x.torque.iter().map(|t| t.abs()).sum(),
@@ -347,7 +351,8 @@ impl Simulation {
             moment: felt.abs(),
             inertial_pull: dynamics::inertial_pull(&self.link_moments[loaded], &x.e, &qd, &qdd),
             weight: length(x.wrench.static_part.force),
-            rate: PerDrive::from_fn(self.drives, |k| qd[k] - turning),
+            rate: at_motors(&qd, turning),
+            acceleration: at_motors(&qdd, base_acceleration),
             tilt: self.inside[loaded].tilt(&x.e, &qd, &qdd, &self.field()),
             past_limit: self.angles.iter().enumerate().map(past).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a }),
         };
