@@ -78,6 +78,20 @@ fn a_base_that_is_to_turn_gets_another_task_last() {
     assert!(last.contains(&"task.kind=zero-momentum".to_owned()), "{last:?}");
 }
 
+/// A task without B, as one that turns the base has none, gets a B that can be reached.
+#[test]
+fn points_that_are_the_same_are_moved_apart() {
+    for kind in ["minimum-norm", "zero-momentum"] {
+        let scenario = set("spot-turn", &[("task.kind", kind)]);
+        let found = proven(&scenario);
+        let apart = found.iter().find(|one| one.text.starts_with("take B")).unwrap_or_else(|| panic!("{found:?}"));
+        let changed = scenario.with_settings(&typed(apart)).expect("settings");
+        let [a, b] = [0, 1].map(|i| changed.task.points()[i]);
+        assert!(((a - b).norm() - 0.1).abs() < 0.05, "{kind}: {apart:?}");
+        assert!(Run::new(&changed).is_ok());
+    }
+}
+
 fn texts(proposals: &[Proposal]) -> Vec<&str> {
     proposals.iter().map(|proposal| proposal.text.as_str()).collect()
 }

@@ -1,5 +1,7 @@
 //! Changes of a task that may lead out of a refusal. Whether one does, a trial shows.
 
+use std::f64::consts::TAU;
+
 use super::points::{ReachablePoints, in_first_period};
 use super::value::taking;
 use super::{Proposal, round_up};
@@ -9,6 +11,7 @@ use crate::refusal::Refusal;
 use crate::scenario::{MAX_STEPS, PathShape, Scenario, Task, TaskKind};
 use stillbase_mechanics::machine::Inertia;
 use stillbase_mechanics::planar::{Vector, unit};
+use stillbase_planning::curves::CurveError;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::reactionless::Decimal;
 use stillbase_planning::timing::TimeLaw;
@@ -18,6 +21,9 @@ use stillbase_settings::range::Requirement;
 use stillbase_settings::word::Choice;
 use stillbase_simulation::plant::BaseKind;
 
+/// Distance of B from A, if both are the same, as a share of the reach, and the number of directions that are tried.
+const APART_SHARE: f64 = 0.1;
+const DIRECTIONS: u32 = 8;
 /// Factors by which a step is made finer, in the order of the trials.
 const FINER_STEPS: [f64; 2] = [4.0, 20.0];
 /// Numbers of decimals of turned points, m, in the order of the trials.
@@ -45,6 +51,7 @@ pub(super) fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal
             found.push(taking(what, value.clamp(range.low(), range.high())));
         }
         Refusal::Unreachable { point, .. } => found.extend(moved_point(scenario, point)),
+        Refusal::Curve(CurveError::Coincident(..)) => found.extend(apart(scenario)),
         Refusal::Turns { turn_limit, .. } => {
             let text = format!("let the base turn by {turn_limit}°");
             found.push(Proposal::new(text, single_change("task.turn_limit", *turn_limit)));
@@ -99,6 +106,17 @@ pub(super) fn candidates(scenario: &Scenario, refusal: &Refusal) -> Vec<Proposal
         found.push(kind(TaskKind::MinimumNorm, "follow the path, whatever the base feels"));
     }
     found
+}
+
+/// Returns changes that move B away from A, in several directions; they have one text, so the first that works is proposed.
+fn apart(scenario: &Scenario) -> impl Iterator<Item = Proposal> {
+    let from = scenario.task.points()[0];
+    let far = round_up(APART_SHARE * scenario.machine.reach());
+    (0..DIRECTIONS).map(move |i| {
+        let to = from + far * unit(TAU * f64::from(i) / f64::from(DIRECTIONS));
+        let [x, y] = [to.re, to.im].map(|x| (x * 1e3).round() / 1e3);
+        Proposal::new(format!("take B {far} m from A"), single_change("task.to", vec![x, y]))
+    })
 }
 
 /// Returns whether a change must be simulated to see if it leads out of a refusal: the task itself could be planned.

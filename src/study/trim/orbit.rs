@@ -147,6 +147,13 @@ impl OrbitReport {
     /// Returns sentences about what makes the intervals doubtful.
     pub fn doubts(&self) -> Vec<String> {
         let mut words = Vec::new();
+        if self.rate_noise > self.rate_off {
+            words.push(
+                "The fit explains these rates worse than the machine's file does: the columns do not belong together. Check \
+                 that angles and rates of drives and base count from the same axis with the same sign, and are in rad."
+                    .into(),
+            );
+        }
         if let [first, others @ ..] = &self.known[..] {
             let value = |known: &KnownValue| {
                 let [file, explains] = [known.file, known.explains].map(|x| fixed_or_scientific(x, 5));
