@@ -169,7 +169,8 @@ impl OrbitReport {
         if self.residual_is_slow {
             words.push(
                 "What is not explained varies slowly, unlike noise: the model does not explain the rates, and the \
-                 intervals do not hold. Check masses, inertia of base and wheel, and that no thruster is on."
+                 intervals do not hold. Check masses, inertia of base and wheel, that no thruster is on, and that all angles \
+                 and rates count from the same axis, with the same sign."
                     .into(),
             );
         }
