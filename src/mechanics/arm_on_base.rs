@@ -185,8 +185,8 @@ impl ArmOnBase {
         }
     }
 
-    /// Returns the torques of the drives, N m, and the wrench on the base about B in its axes, at a pose with rates and
-    /// accelerations relative to the base. A base that floats turns so that L is zero.
+    /// Returns the torques of the drives, N m, and the wrench on the base about B, in axes of the base. Rates and
+    /// accelerations are relative to the base. A base that floats turns so that L is zero.
     #[inline]
     pub fn dynamics(&self, e: &UnitVectors, qd: &PerDrive, qdd: &PerDrive) -> (PerDrive, BaseWrench) {
         match &self.carrier {

@@ -7,13 +7,15 @@ use stillbase::mechanics::machine::{Inertia, parse};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector, cross, unit};
 
 /// A link of a serial arm: length, m, mass, kg, inertia, kg m², and centre of mass along and across it, m.
-type Bar = [f64; 5];
+pub type Bar = [f64; 5];
 
-fn bar() -> impl Strategy<Value = Bar> {
+/// Bars of random arms.
+pub fn bar() -> impl Strategy<Value = Bar> {
     (0.1..1.0f64, 0.1..5.0f64, 0.001..0.5f64, -0.3..0.8f64, -0.2..0.2f64).prop_map(|(l, m, i, x, y)| [l, m, i, x, y])
 }
 
-fn arm(bars: &[Bar]) -> Inertia {
+/// The serial arm of some bars, each driven from the base.
+pub fn arm(bars: &[Bar]) -> Inertia {
     let mut text = "name = \"serial\"\n".to_owned();
     for (k, [length, mass, inertia, com, normal]) in bars.iter().enumerate() {
         let attach = if k == 0 { "\"base\"".into() } else { format!("{{ link = \"{k}\", at = \"tip\" }}") };

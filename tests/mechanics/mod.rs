@@ -1,6 +1,6 @@
 //! Tests of `src/mechanics`: machines, kinematics, dynamics, pin forces and balance.
 
-mod arm_on_base;
+pub mod arm_on_base;
 mod balance;
 mod bodies;
 mod breakdown;

@@ -2,35 +2,13 @@
 
 use proptest::prelude::*;
 use stillbase::mechanics::arm_on_base::FloatingBase;
-use stillbase::mechanics::machine::{Inertia, parse};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 use stillbase::planning::curves::Curve;
 use stillbase::planning::off_plane::drift::zero_momentum_curve;
 use stillbase::planning::off_plane::momentum::{MomentumModel, TipFrame};
 use stillbase::planning::off_plane::null_space::rates;
 
-/// A link of a serial arm: length, m, mass, kg, inertia, kg m², and centre of mass along and across it, m.
-#[derive(Clone, Debug)]
-struct Bar([f64; 5]);
-
-fn bar() -> impl Strategy<Value = Bar> {
-    (0.1..1.0f64, 0.1..5.0f64, 0.001..0.5f64, -0.3..0.8f64, -0.2..0.2f64)
-        .prop_map(|(l, m, i, x, y)| Bar([l, m, i, x, y]))
-}
-
-fn arm(bars: &[Bar]) -> Inertia {
-    let mut text = "name = \"serial\"\n".to_owned();
-    for (k, Bar([length, mass, inertia, com, normal])) in bars.iter().enumerate() {
-        let attach = if k == 0 { "\"base\"".into() } else { format!("{{ link = \"{k}\", at = \"tip\" }}") };
-        let k = k + 1;
-        text += &format!(
-            "[[drive]]\nname = \"{k}\"\n[[link]]\nname = \"{k}\"\ndrive = \"{k}\"\nattach = {attach}\nlength = {length}\n\
-             mass = {mass}\ninertia = {inertia}\ncom = {com}\ncom_normal = {normal}\n"
-        );
-    }
-    text += &format!("[end_effector]\nlink = \"{}\"\n", bars.len());
-    Inertia::of(&parse(&text, "serial").expect("valid"))
-}
+use crate::mechanics::arm_on_base::{Bar, arm, bar};
 
 /// Returns sums over the bodies for rates q̇, with linear momentum 0 and a base that does not turn: the angular momentum
 /// about the common centre of mass, kg m²/s, and the velocities of base pin and end effector in space, m/s.
@@ -39,7 +17,7 @@ fn by_bodies(bars: &[Bar], base: &FloatingBase, q: &[f64], qd: &[f64]) -> (f64, 
     let (mut root, mut root_rate) = (Vector::default(), Vector::default());
     let mut bodies = vec![(base.mass, base.com, Vector::default())];
     let mut spin = 0.0;
-    for (Bar([length, mass, inertia, com, normal]), (q, qd)) in bars.iter().zip(q.iter().zip(qd)) {
+    for ([length, mass, inertia, com, normal], (q, qd)) in bars.iter().zip(q.iter().zip(qd)) {
         let e = unit(*q);
         let centre = Vector::new(*com, *normal) * e;
         bodies.push((*mass, root + centre, root_rate + i * centre * *qd));
@@ -113,7 +91,7 @@ fn lines_of_the_arm_on_an_air_bearing_end_where_they_should() {
         [0.3045, 0.335, 0.003506, 0.198152],
         [0.08725, 0.111, 0.000106, 0.062097],
     ]
-    .map(|[length, mass, inertia, com]| Bar([length, mass, inertia, com, 0.0]));
+    .map(|[length, mass, inertia, com]| [length, mass, inertia, com, 0.0]);
     let model = arm(&bars);
     let com = -Vector::new(0.0680112181717378, 0.24212956077851439);
     let base = FloatingBase { mass: 11.211, inertia: 0.20215, com };
