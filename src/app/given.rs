@@ -96,7 +96,7 @@ pub(super) fn show(ui: &mut Ui, shown: TableView<'_>, view_state: &ViewState, co
                         Some(Ok(TableAssessment::Measured(trimmed))) => {
                             measured::show(ui, &p, &shown, trimmed, commands)
                         }
-                        Some(Ok(TableAssessment::Orbit(report))) => orbit::show(ui, &p, report),
+                        Some(Ok(TableAssessment::Orbit(report))) => orbit::show(ui, &p, &shown, report, commands),
                     }
                 });
             });
@@ -122,21 +122,28 @@ fn options_column(ui: &mut Ui, p: &Palette, shown: &TableView<'_>, commands: &mu
     choice(ui, "read", "What the table is taken for", &choices, options.content, |to| {
         shown.ask(commands, |options| options.content = to);
     });
-    if let Some(Ok(TableAssessment::Orbit(_))) = shown.answer {
-        note(ui, p, OrbitReport::KNOWN_WORDS);
-        note(ui, p, "The base is that of the session. Nothing is changed: no counterweight can be moved up there.");
-        return;
-    }
     if content == Some(TableContent::Measurement) {
+        let is_in_orbit = matches!(shown.answer, Some(Ok(TableAssessment::Orbit(_))));
         let tip = "Ignores measured rates and accelerations, and computes both from the angles";
-        switch(ui, "from the angles alone", tip, options.angles_only, |on| {
-            shown.ask(commands, |options| options.angles_only = on);
-        });
+        if !is_in_orbit {
+            switch(ui, "from the angles alone", tip, options.angles_only, |on| {
+                shown.ask(commands, |options| options.angles_only = on);
+            });
+        }
         let tip = "Takes the columns as they are, even where another sign, order or unit explains them far better";
         switch(ui, "columns as they are", tip, options.as_given, |on| {
             shown.ask(commands, |options| options.as_given = on);
         });
-        note(ui, p, "Only what the design view leaves free may change: counterweights that are there, or new ones.");
+        if is_in_orbit {
+            note(ui, p, OrbitReport::KNOWN_WORDS);
+            note(ui, p, "The base is that of the session. Nothing is changed: no counterweight can be moved up there.");
+        } else {
+            note(
+                ui,
+                p,
+                "Only what the design view leaves free may change: counterweights that are there, or new ones.",
+            );
+        }
         return;
     }
     if content == Some(TableContent::Drives) {

@@ -149,7 +149,9 @@ fn measurements_as_csv() {
             Ok(fit) => fit,
             Err(why) => return is_short(&why.to_string()),
         };
-        if !fit.measured.iter().all(|x| x.is_finite()) || !(0..fit.unknowns.count()).all(|i| fit.half_width(i) >= 0.0) {
+        if !fit.numbers.measured.iter().all(|x| x.is_finite())
+            || !(0..fit.numbers.unknowns.count()).all(|i| fit.numbers.half_width(i) >= 0.0)
+        {
             return Err("a number that is none".into());
         }
         let taken = adopt_parameters(&fit);

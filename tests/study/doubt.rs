@@ -223,7 +223,7 @@ fn relative_angles_of_the_file_are_known() {
     let doubt = asked(&other, &spoilt(&recording, relative)).expect("refused");
     assert!(doubt.causes[0].what.contains("hold the relative angles a1 and a2 of the machine's file"), "{doubt}");
     // What is said to explain it explains all but the noise that there is.
-    let [force, moment] = doubt.causes[0].noise;
+    let [force, moment] = [0, 1].map(|of| doubt.causes[0].residuals[of].noise);
     assert!(force < 1.3 * QUICK.sigma[1] && moment < 1.3 * QUICK.sigma[2], "{doubt:?}");
 }
 

@@ -5,12 +5,16 @@ use std::f64::consts::TAU;
 use stillbase::exchange::mjcf::middle;
 use stillbase::mechanics::arm_on_base::FloatingBase;
 use stillbase::mechanics::machine::{Inertia, Machine, builtin};
-use stillbase::mechanics::planar::Vector;
+use stillbase::mechanics::planar::{PerDrive, Vector};
+use stillbase::query::{Shared, answer_now};
 use stillbase::session::replay;
 use stillbase::session::scenario::Scenario;
-use stillbase::simulation::signal_table::SignalTable;
+use stillbase::simulation::signal_table::{SignalColumn, SignalTable};
 use stillbase::simulation::signals::signals;
-use stillbase::study::trim::{MeasuredUnknown, OrbitBase, OrbitMotion, OrbitReport, TrimError, Unknowns, orbit_trim};
+use stillbase::study::trim::{
+    Doubt, MeasuredUnknown, NoTrim, OrbitBase, OrbitMotion, OrbitReport, OrbitTrimQuery, OrbitTrimRequest, TrimError,
+    Unknowns, orbit_trim,
+};
 
 use crate::support::Noise;
 
@@ -135,6 +139,8 @@ fn what_momentum_does_not_tell_is_named() {
     let told: Vec<bool> = report.numbers.iter().map(|number| number.identifiable).collect();
     assert!(!told[..6].contains(&true) && report.unidentifiable.iter().flatten().any(|name| name == "g elbow along"));
     let still = OrbitMotion {
+        t: motion.t[..100].to_vec(),
+        attitude: vec![0.0; 100],
         angles: motion.angles[..1].repeat(100),
         rates: motion.rates[..1].repeat(100),
         base_rate: vec![0.0; 100],
@@ -232,4 +238,139 @@ fn one_swing_says_what_is_wanted() {
     let more =
         orbit_trim(&scenario.machine, &base(RHO, 0.0), &[flown(&scenario.machine, RHO, "", 0.0)]).expect("a fit");
     assert_eq!(more.advice, None);
+}
+
+/// One row as its columns say.
+struct Row {
+    /// Absolute angles and rates of the drives.
+    q: PerDrive,
+    qd: PerDrive,
+    /// Angle and rate of the base.
+    turn: f64,
+    rate: f64,
+    wheel: f64,
+}
+
+/// A mistake of the columns.
+type Spoil = fn(&mut Row);
+
+fn spoilt(motion: &OrbitMotion, spoil: Spoil) -> OrbitMotion {
+    let mut all = motion.clone();
+    let shifted = |of: &PerDrive, by: f64| PerDrive::from_fn(of.len(), |k| of[k] + by);
+    for i in 0..motion.rows() {
+        let (turn, rate) = (motion.attitude[i], motion.base_rate[i]);
+        let (q, qd) = (shifted(&motion.angles[i], turn), shifted(&motion.rates[i], rate));
+        let mut row = Row { q, qd, turn, rate, wheel: motion.wheel_rate[i] };
+        spoil(&mut row);
+        (all.angles[i], all.rates[i]) = (shifted(&row.q, -row.turn), shifted(&row.qd, -row.rate));
+        (all.attitude[i], all.base_rate[i], all.wheel_rate[i]) = (row.turn, row.rate, row.wheel);
+    }
+    all
+}
+
+impl Row {
+    /// Replaces angles and rates of the drives by linear functions of them.
+    fn each(&mut self, value: impl Fn(&PerDrive, f64, usize) -> f64) {
+        self.q = PerDrive::from_fn(self.q.len(), |k| value(&self.q, self.turn, k));
+        self.qd = PerDrive::from_fn(self.qd.len(), |k| value(&self.qd, self.rate, k));
+    }
+}
+
+fn doubted(file: &Machine, base: OrbitBase, motions: Vec<OrbitMotion>) -> Option<Doubt> {
+    let request = OrbitTrimRequest {
+        machine: Shared(file.clone().into()),
+        base,
+        motions: Shared(motions.into()),
+        as_given: false,
+    };
+    match answer_now::<OrbitTrimQuery>(request).outcome {
+        Ok(_) => None,
+        Err(NoTrim::Doubted(doubt)) => Some(*doubt),
+        Err(why) => panic!("{why}"),
+    }
+}
+
+/// Each usual mistake of the columns is refused and named first, with little noise; motions without one are believed, with
+/// much noise, too.
+#[test]
+fn mistakes_of_columns_are_named() {
+    const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+    let mistakes: [(&str, Spoil); 13] = [
+        ("the drives are measured relative to the base", |row| row.each(|q, turn, k| q[k] - turn)),
+        ("angle/shoulder relative to the base and angle/elbow and angle/wrist to the drive before", |row| {
+            row.each(|q, turn, k| q[k] - if k == 0 { turn } else { q[k - 1] });
+        }),
+        ("angle/elbow counts the other way", |row| row.each(|q, _, k| if k == 1 { -q[k] } else { q[k] })),
+        ("rate/elbow has the wrong sign", |row| {
+            row.qd = PerDrive::from_fn(row.qd.len(), |k| if k == 1 { -row.qd[k] } else { row.qd[k] });
+        }),
+        ("angle/shoulder and angle/elbow are exchanged", |row| row.each(|q, _, k| q[[1, 0, 2][k]])),
+        ("the angles are in degrees", |row| row.each(|q, _, k| DEGREES * q[k])),
+        ("rate/shoulder, rate/elbow and rate/wrist are in degrees", |row| row.qd = row.qd.scaled(DEGREES)),
+        ("attitude/base and attitude_rate/base count the other way", |row| {
+            (row.turn, row.rate) = (-row.turn, -row.rate);
+        }),
+        ("attitude_rate/base has the wrong sign", |row| row.rate = -row.rate),
+        ("attitude_rate/base is in degrees per second", |row| row.rate *= DEGREES),
+        ("wheel/rate is relative to the base", |row| row.wheel -= row.rate),
+        ("wheel/rate has the wrong sign", |row| row.wheel = -row.wheel),
+        ("wheel/rate is in turns per minute", |row| row.wheel *= 60.0 / TAU),
+    ];
+    let file = builtin("spot").expect("built in");
+    let built = file.set_all([("link.2.com", "0.20"), ("link.1.com_normal", "0.002")]).expect("valid");
+    let mut noise = Noise::of(9);
+    // The wheel turns less than the arm moves the base, so that the base turns, too.
+    let more = "[base.wheel]\ninertia = 0.01\ntorque_limit = 0.002";
+    let flights = [0.0, 2.0].map(|turn| flown(&built, RHO, more, turn));
+    let mut measured = |size: f64| {
+        let mut motions = flights.to_vec();
+        for motion in &mut motions {
+            for i in 0..motion.rows() {
+                motion.base_rate[i] += size * (0..12).map(|_| noise.between(-0.5, 0.5)).sum::<f64>();
+            }
+        }
+        motions
+    };
+    for size in [0.0, 1e-4, 1e-2] {
+        let got = doubted(file, base(RHO, 0.01), measured(size));
+        assert_eq!(got.map(|doubt| doubt.to_string()), None, "{size} rad/s");
+    }
+    for (what, spoil) in mistakes {
+        for size in [0.0, 1e-5] {
+            let motions = measured(size).iter().map(|motion| spoilt(motion, spoil)).collect();
+            let doubt = doubted(file, base(RHO, 0.01), motions).unwrap_or_else(|| panic!("{what} is believed"));
+            assert!(doubt.causes.first().is_some_and(|cause| cause.what.starts_with(what)), "{what}: {doubt}");
+            assert!(doubt.to_string().contains("want "), "{doubt}");
+        }
+    }
+}
+
+/// Degrees and turns per minute that a header names are understood.
+#[test]
+fn units_of_the_header_are_understood() {
+    let file = builtin("spot").expect("built in");
+    let motion = flown(file, RHO, "[base.wheel]\ninertia = 0.01", 0.0);
+    let mut table = SignalTable { time: motion.t.clone(), columns: Vec::new() };
+    let mut add = |path: String, unit: &str, factor: f64, values: Vec<f64>| {
+        let values = values.iter().map(|x| factor * x).collect();
+        table.columns.push(SignalColumn { path, unit: unit.into(), values });
+    };
+    let degrees = 180.0 / std::f64::consts::PI;
+    for (k, drive) in file.spec().drives.iter().enumerate() {
+        let sums = |of: &[PerDrive], base: &[f64]| of.iter().zip(base).map(|(x, base)| x[k] + base).collect();
+        add(format!("angle/{}", drive.name), "deg", degrees, sums(&motion.angles, &motion.attitude));
+        add(format!("rate/{}", drive.name), "deg/s", degrees, sums(&motion.rates, &motion.base_rate));
+    }
+    add("attitude/base".into(), "°", degrees, motion.attitude.clone());
+    add("attitude_rate/base".into(), "", 1.0, motion.base_rate.clone());
+    add("wheel/rate".into(), "rpm", 60.0 / TAU, motion.wheel_rate.clone());
+    let read = OrbitMotion::of(file, &table).expect("units");
+    let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12 * (1.0 + b.abs()));
+    assert!(near(&read.attitude, &motion.attitude) && near(&read.wheel_rate, &motion.wheel_rate));
+    for (read, own) in read.angles.iter().chain(&read.rates).zip(motion.angles.iter().chain(&motion.rates)) {
+        assert!((0..3).all(|k| (read[k] - own[k]).abs() < 1e-12), "{read:?} {own:?}");
+    }
+    table.columns[0].unit = "turns".into();
+    let why = OrbitMotion::of(file, &table).expect_err("no unit of angles").to_string();
+    assert!(why.contains("angle/shoulder") && why.contains("want rad"), "{why}");
 }

@@ -114,7 +114,7 @@ fn built(machine: &Machine, noise: &mut Noise, size: f64) -> Machine {
 }
 
 fn truth(fit: &Fit, machine: &Machine) -> Vec<f64> {
-    fit.unknowns.nominal(&Inertia::of(machine))
+    fit.numbers.unknowns.nominal(&Inertia::of(machine))
 }
 
 fn fitted(machine: &Machine, recording: &MeasurementSet, angles_only: bool) -> Fit {
@@ -123,8 +123,8 @@ fn fitted(machine: &Machine, recording: &MeasurementSet, angles_only: bool) -> F
 
 /// The largest error by the scale of the machine.
 fn furthest(fit: &Fit, hidden: &Machine) -> f64 {
-    let scales = fit.unknowns.scales(&Inertia::of(hidden));
-    let all = truth(fit, hidden).into_iter().zip(fit.measured.iter()).zip(scales);
+    let scales = fit.numbers.unknowns.scales(&Inertia::of(hidden));
+    let all = truth(fit, hidden).into_iter().zip(fit.numbers.measured.iter()).zip(scales);
     all.map(|((want, got), scale)| (want - got).abs() / scale).fold(0.0, f64::max)
 }
 
@@ -141,7 +141,7 @@ fn without_noise_every_number_is_found() {
         let hidden = built(&machine, &mut noise, 0.05);
         let recording = measured(&hidden, &mut noise, EXACT, &vec![true; n]);
         let fit = fitted(&machine, &recording, false);
-        assert!(fit.identifiable.iter().all(|told| *told), "{:?}", fit.confounded);
+        assert!(fit.numbers.identifiable.iter().all(|told| *told), "{:?}", fit.confounded);
         let off = furthest(&fit, &hidden);
         assert!(off < 1e-9, "{n} drives: {off:e}");
         drives[n] += 1;
@@ -233,10 +233,11 @@ fn intervals_are_honest() {
             let mut noise = Noise::of(1000 + seed);
             let hidden = built(machine, &mut noise, 0.02);
             let fit = fitted(machine, &measured(&hidden, &mut noise, how, &[true; 2]), false);
-            for (i, want) in truth(&fit, &hidden).into_iter().enumerate().filter(|(i, _)| fit.identifiable[*i]) {
-                held += usize::from((fit.measured[i] - want).abs() <= fit.half_width(i));
+            for (i, want) in truth(&fit, &hidden).into_iter().enumerate().filter(|(i, _)| fit.numbers.identifiable[*i])
+            {
+                held += usize::from((fit.numbers.measured[i] - want).abs() <= fit.numbers.half_width(i));
                 all += 1;
-                wide = wide.max(fit.half_width(i));
+                wide = wide.max(fit.numbers.half_width(i));
             }
         }
         let share = held as f64 / all as f64;
@@ -270,10 +271,14 @@ fn laws_of_scale() {
         motion.moment.iter_mut().for_each(|n| *n *= 3.0);
     }
     let heavier = fitted(machine, &heavier, false);
-    for i in 0..fit.unknowns.count() {
-        assert!(near(fit.measured[i], same.measured[i]) && near(fit.half_width(i), same.half_width(i)), "{i}");
-        assert!(near(3.0 * fit.measured[i], heavier.measured[i]), "{i}");
-        assert!(near(3.0 * fit.half_width(i), heavier.half_width(i)), "{i}");
+    for i in 0..fit.numbers.unknowns.count() {
+        assert!(
+            near(fit.numbers.measured[i], same.numbers.measured[i])
+                && near(fit.numbers.half_width(i), same.numbers.half_width(i)),
+            "{i}"
+        );
+        assert!(near(3.0 * fit.numbers.measured[i], heavier.numbers.measured[i]), "{i}");
+        assert!(near(3.0 * fit.numbers.half_width(i), heavier.numbers.half_width(i)), "{i}");
     }
 }
 
@@ -290,16 +295,22 @@ fn what_data_cannot_tell_is_named() {
         let rows = Regressor::of(machine, &recording, false).expect("rows");
         assert_eq!(rows.moves, [true, false, true]);
         let fit = fit(machine, &rows).expect("a fit");
-        for i in 0..fit.unknowns.count() {
+        for i in 0..fit.numbers.unknowns.count() {
             // At fixed q₂ its couplings still show in the moment of the others.
-            let lost = match fit.unknowns.at(i) {
+            let lost = match fit.numbers.unknowns.at(i) {
                 Unknown::Of(Condition::Force(1), _) | Unknown::Momentum(1) => true,
                 Unknown::Of(Condition::Force(_), _) | Unknown::Momentum(_) => false,
                 Unknown::Of(Condition::Coupling(0, 2), ComplexPart::Along | ComplexPart::Across) => false,
                 Unknown::Of(..) => continue,
             };
-            assert_eq!(!fit.identifiable[i], lost, "{}: {:?}", fit.unknowns.at(i).name(machine), fit.confounded);
-            assert!(!lost || fit.measured[i] == fit.nominal[i]);
+            assert_eq!(
+                !fit.numbers.identifiable[i],
+                lost,
+                "{}: {:?}",
+                fit.numbers.unknowns.at(i).name(machine),
+                fit.confounded
+            );
+            assert!(!lost || fit.numbers.measured[i] == fit.numbers.nominal[i]);
         }
         let alone: Vec<_> = fit.confounded.iter().filter(|group| group.len() == 1).flatten().collect();
         for (i, lost) in [(2, true), (3, true), (13, true), (0, false), (12, false)] {
@@ -310,10 +321,10 @@ fn what_data_cannot_tell_is_named() {
     let recording = measured(&hidden, &mut noise, angles, &[true, false, true]);
     let fit = fitted(machine, &recording, false);
     let taken = adopt_parameters(&fit);
-    for i in 0..fit.unknowns.of_balance() {
-        let near = [fit.measured[i], fit.nominal[i]].map(|of| (taken.values[i] - of).abs());
-        assert!(near[0] <= 2.0 * fit.half_width(i) || near[1] == 0.0, "{i}: {near:?}");
-        assert!(fit.identifiable[i] || near[1] == 0.0);
+    for i in 0..fit.numbers.unknowns.of_balance() {
+        let near = [fit.numbers.measured[i], fit.numbers.nominal[i]].map(|of| (taken.values[i] - of).abs());
+        assert!(near[0] <= 2.0 * fit.numbers.half_width(i) || near[1] == 0.0, "{i}: {near:?}");
+        assert!(fit.numbers.identifiable[i] || near[1] == 0.0);
     }
     let none = measured(&hidden, &mut noise, exact, &[false; 3]);
     assert_eq!(Regressor::of(machine, &none, false).unwrap_err(), TrimError::Still);
@@ -417,10 +428,14 @@ fn the_real_machine_is_mended() {
         let (before, now) = (shaking(&hidden, &recording), shaking(&after, &recording));
         assert!(now < 0.5 * how.sigma[1] && now < 0.15 * before, "{before} N to {now} N");
         // And each number stays within what was said of it, with room for what is taken from the file and for rounding.
-        let left = fit.unknowns.nominal(&Inertia::of(&after));
-        let scales = fit.unknowns.scales(&Inertia::of(&after));
-        for (i, left) in left.iter().enumerate().take(fit.unknowns.of_balance()) {
-            assert!(left.abs() < 2.0 * fit.half_width(i) + 1e-3 * scales[i], "{i}: {left}, {}", fit.half_width(i));
+        let left = fit.numbers.unknowns.nominal(&Inertia::of(&after));
+        let scales = fit.numbers.unknowns.scales(&Inertia::of(&after));
+        for (i, left) in left.iter().enumerate().take(fit.numbers.unknowns.of_balance()) {
+            assert!(
+                left.abs() < 2.0 * fit.numbers.half_width(i) + 1e-3 * scales[i],
+                "{i}: {left}, {}",
+                fit.numbers.half_width(i)
+            );
         }
     }
 }
@@ -436,11 +451,11 @@ fn off_and_taken_agree() {
         let hidden = built(machine, &mut noise, 0.004);
         let fit = fitted(machine, &measured(&hidden, &mut noise, how, &[true; 2]), false);
         let taken = adopt_parameters(&fit);
-        for i in 0..fit.unknowns.of_balance() {
+        for i in 0..fit.numbers.unknowns.of_balance() {
             assert_eq!(taken.differs[i], taken.measured[i]);
-            assert_eq!(taken.differs[i], taken.values[i] != fit.nominal[i]);
+            assert_eq!(taken.differs[i], taken.values[i] != fit.numbers.nominal[i]);
             assert_eq!(taken.differs[i], taken.half_widths[i] > 0.0);
-            assert!(!taken.differs[i] || (taken.values[i] - fit.nominal[i]).abs() > taken.half_widths[i]);
+            assert!(!taken.differs[i] || (taken.values[i] - fit.numbers.nominal[i]).abs() > taken.half_widths[i]);
             (off, not) = (off + u32::from(taken.differs[i]), not + u32::from(!taken.differs[i]));
         }
     }
@@ -472,7 +487,7 @@ fn a_change_is_proposed_where_it_helps() {
             continue;
         }
         // The force of the true machine before and after.
-        let truth = fit.unknowns.nominal(&Inertia::of(&hidden));
+        let truth = fit.numbers.unknowns.nominal(&Inertia::of(&hidden));
         let size = |by: f64| {
             let left = |i: usize| Vector::new(truth[2 * i], truth[2 * i + 1]) + mended.effects[i] * by;
             (0..3).map(|i| left(i).norm_sqr()).sum::<f64>()
@@ -508,7 +523,7 @@ fn the_query_puts_all_of_it_together() {
     let fit = fitted(&machine, &recording, false);
     assert_eq!(trim.adopted, adopt_parameters(&fit));
     let told = trim.report.numbers.iter().map(|number| number.unknown.measured.expect("told"));
-    assert!(told.eq(fit.measured.iter().map(|x| x + 0.0)) && trim.report.rows == 400);
+    assert!(told.eq(fit.numbers.measured.iter().map(|x| x + 0.0)) && trim.report.rows == 400);
     let mended = trim.correction.expect("a change");
     let gain = trim.report.worth.expect("what it is worth");
     assert_eq!((gain.helps, trim.report.changes.is_empty()), (gain.worth.helps(), !gain.helps));
@@ -615,10 +630,10 @@ fn the_next_motion_keeps_its_promise() {
             let mut both = recording.clone();
             both.motions.push(more);
             let after = fitted(machine, &both, false);
-            let ratio = after.half_width(told.least_known) / candidate.half_width;
-            assert!((0.6..1.6).contains(&ratio), "{candidate:?}: {} found", after.half_width(told.least_known));
-            let balance = before.unknowns.of_balance();
-            let gains = (0..balance).map(|i| (before.half_width(i) / after.half_width(i)).ln());
+            let ratio = after.numbers.half_width(told.least_known) / candidate.half_width;
+            assert!((0.6..1.6).contains(&ratio), "{candidate:?}: {} found", after.numbers.half_width(told.least_known));
+            let balance = before.numbers.unknowns.of_balance();
+            let gains = (0..balance).map(|i| (before.numbers.half_width(i) / after.numbers.half_width(i)).ln());
             let all = (gains.sum::<f64>() / balance as f64).exp();
             assert!((0.7..1.45).contains(&(all / candidate.all)), "{candidate:?}: {all} found");
             gained = f64::max(gained, all);
@@ -664,8 +679,9 @@ fn estimates_scatter_as_their_intervals_say() {
             let mut noise = Noise::of(3000 + seed);
             let hidden = built(machine, &mut noise, 0.02);
             let fit = fitted(machine, &measured(&hidden, &mut noise, how, &[true; 2]), false);
-            for (i, want) in truth(&fit, &hidden).into_iter().enumerate().filter(|(i, _)| fit.identifiable[*i]) {
-                sum += (1.96 * (fit.measured[i] - want) / fit.half_width(i)).powi(2);
+            for (i, want) in truth(&fit, &hidden).into_iter().enumerate().filter(|(i, _)| fit.numbers.identifiable[*i])
+            {
+                sum += (1.96 * (fit.numbers.measured[i] - want) / fit.numbers.half_width(i)).powi(2);
                 all += 1.0;
             }
         }
@@ -709,7 +725,7 @@ fn the_interval_of_a_gain_counts_what_it_was_chosen_by() {
     let mut taken = adopt_parameters(&fit);
     let mended = correct_machine(&machine, &taken, &of_weights(&machine)).expect("a change");
     let mut of = |count: usize| {
-        taken.measured = (0..fit.unknowns.of_balance()).map(|i| i < count).collect();
+        taken.measured = (0..fit.numbers.unknowns.of_balance()).map(|i| i < count).collect();
         correction_benefit(&machine, &rows, &fit, &taken, &mended)
     };
     let first = of(1);
@@ -772,7 +788,7 @@ fn what_is_no_recording_is_refused() {
     if let Ok(rows) = Regressor::of(machine, &huge, true) {
         assert!(matches!(rows.source, RegressorSource::Windows { .. }));
         if let Ok(fit) = fit(machine, &rows) {
-            assert!(fit.measured.iter().all(|x| x.is_finite()));
+            assert!(fit.numbers.measured.iter().all(|x| x.is_finite()));
         }
     }
 }

@@ -13,8 +13,8 @@ use stillbase_simulation::plant::BaseKind;
 use stillbase_study::advice::Advice;
 use stillbase_study::import::{GivenMotion, ImportQuery, ImportedMotion, MotionImportError, PreservedPath, Request};
 use stillbase_study::trim::{
-    MeasuredMotion, MeasurementSet, OrbitBase, OrbitMotion, OrbitReport, TrimError, TrimMethod, TrimOutcome, TrimQuery,
-    TrimRequest, orbit_trim,
+    MeasuredMotion, MeasurementSet, OrbitBase, OrbitMotion, OrbitOutcome, OrbitTrimQuery, OrbitTrimRequest, TrimMethod,
+    TrimOutcome, TrimQuery, TrimRequest,
 };
 
 /// Type of content of a table.
@@ -129,7 +129,7 @@ pub enum TableAssessment {
     /// Assessment of a measured machine.
     Measured(Box<TrimOutcome>),
     /// Assessment of a machine that was measured in orbit.
-    Orbit(Box<Result<OrbitReport, TrimError>>),
+    Orbit(Box<OrbitOutcome>),
 }
 
 /// Query that reads a table, then runs the import of a motion or the trim of a machine.
@@ -142,7 +142,7 @@ pub struct AssessmentQuery {
 enum Work {
     Motion { motion: Arc<GivenMotion>, unwrapped: Vec<usize>, importing: Box<ImportQuery> },
     Measured(Box<TrimQuery>),
-    Orbit(Vec<OrbitMotion>),
+    Orbit(Box<OrbitTrimQuery>),
 }
 
 /// Fraction of the progress that is assigned to reading the table.
@@ -179,11 +179,11 @@ impl Query for AssessmentQuery {
                 Portion::Stopped => Portion::Stopped,
                 Portion::Done(trimmed) => Portion::Done(Ok(TableAssessment::Measured(trimmed.into()))),
             },
-            Some(Work::Orbit(motions)) => {
-                let base = OrbitBase::of(&self.request.scenario.0.base);
-                let report = orbit_trim(&self.request.measured.0, &base, motions);
-                Portion::Done(Ok(TableAssessment::Orbit(report.into())))
-            }
+            Some(Work::Orbit(trimming)) => match trimming.go_on(goes_on) {
+                Portion::More(done) => Portion::More(done.max(READING_SHARE)),
+                Portion::Stopped => Portion::Stopped,
+                Portion::Done(trimmed) => Portion::Done(Ok(TableAssessment::Orbit(trimmed.into()))),
+            },
         }
     }
 }
@@ -210,7 +210,14 @@ impl TableRequest {
             }
             Read::Orbit(first) => {
                 let more = more.iter().map(|table| orbit_motion(&table.0, &measured.0));
-                Ok(Work::Orbit([Ok(first)].into_iter().chain(more).collect::<Result<_, _>>()?))
+                let motions: Vec<OrbitMotion> = [Ok(first)].into_iter().chain(more).collect::<Result<_, _>>()?;
+                let request = OrbitTrimRequest {
+                    machine: measured.clone(),
+                    base: OrbitBase::of(&scenario.0.base),
+                    motions: Shared(motions.into()),
+                    as_given: options.as_given,
+                };
+                Ok(Work::Orbit(OrbitTrimQuery::begin(request).into()))
             }
         }
     }

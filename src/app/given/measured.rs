@@ -64,7 +64,8 @@ pub(super) fn show(
     });
 }
 
-fn refused(ui: &mut Ui, p: &Palette, why: &NoTrim, shown: &TableView<'_>, commands: &mut Vec<Command>) {
+/// Shows why a measurement has no result, with a button that takes doubtful columns as they are.
+pub(super) fn refused(ui: &mut Ui, p: &Palette, why: &NoTrim, shown: &TableView<'_>, commands: &mut Vec<Command>) {
     ui.add(Label::new(RichText::new(why.to_string()).font(plain(12.5)).color(colour(p.reaction))).wrap());
     let is_doubted = matches!(why, NoTrim::Doubted(_));
     let tip = "Takes the columns as they are: they are right";

@@ -2,31 +2,38 @@
 
 use egui::{Grid, Label, RichText, Ui};
 
-use super::parts::{PROPOSAL_WIDTH, column, heads, name_cell, number_cell, rows, title, unit_cell};
+use super::measured::refused;
+use super::parts::{PROPOSAL_WIDTH, TableView, column, heads, name_cell, number_cell, rows, title, unit_cell};
+use crate::Command;
 use crate::theme::{colour, plain};
 use crate::widgets::note;
 use stillbase_picture::scene::palette::Palette;
 use stillbase_settings::number::counted;
-use stillbase_study::trim::{MeasuredUnknown, OrbitReport, TrimError};
+use stillbase_study::trim::{MeasuredUnknown, OrbitOutcome, OrbitReport};
 
 /// Width of the table of numbers, points.
 const NUMBERS_WIDTH_PT: f32 = 520.0;
 
 /// Returns a text with the number of motions and rows, and the base rate that is not explained.
-pub(super) fn summary(outcome: &Result<OrbitReport, TrimError>) -> String {
-    let Ok(report) = outcome else { return String::new() };
+pub(super) fn summary(trimmed: &OrbitOutcome) -> String {
+    let Ok(report) = &trimmed.outcome else { return String::new() };
     let [motions, rows] = [counted(report.motions, "motion"), counted(report.rows, "row")];
     format!("{motions}, {rows}  ·  {}", report.rate_words())
 }
 
 /// Draws the identified numbers of the machine, and what makes them doubtful.
-pub(super) fn show(ui: &mut Ui, p: &Palette, outcome: &Result<OrbitReport, TrimError>) {
-    let report = match outcome {
+pub(super) fn show(
+    ui: &mut Ui,
+    p: &Palette,
+    shown: &TableView<'_>,
+    trimmed: &OrbitOutcome,
+    commands: &mut Vec<Command>,
+) {
+    let report = match &trimmed.outcome {
         Ok(report) => report,
         Err(why) => {
-            let words = RichText::new(why.to_string()).font(plain(12.5)).color(colour(p.reaction));
             let rest = ui.available_width();
-            return column(ui, "refused", rest, |ui| drop(ui.add(Label::new(words).wrap())));
+            return column(ui, "refused", rest, |ui| refused(ui, p, why, shown, commands));
         }
     };
     column(ui, "numbers", NUMBERS_WIDTH_PT, |ui| numbers(ui, p, report));
@@ -42,7 +49,8 @@ pub(super) fn show(ui: &mut Ui, p: &Palette, outcome: &Result<OrbitReport, TrimE
         for words in report.doubts() {
             ui.add(Label::new(RichText::new(words).font(plain(12.5)).color(colour(p.reaction))).wrap());
         }
-        for words in report.untold_words().chain(report.advice.clone()) {
+        let doubt = trimmed.doubt.iter().map(|doubt| doubt.to_string());
+        for words in doubt.chain(report.untold_words()).chain(report.advice.clone()).chain(report.next.words()) {
             note(ui, p, &words);
         }
     });

@@ -85,12 +85,13 @@ pub fn orbit_text(report: &OrbitReport) -> String {
     let doubts = lines(report.doubts());
     let untold = lines(report.untold_words().chain(report.advice.clone()).collect());
     format!(
-        "{} · {}, {} · rates of a base that floats\n{}\n{doubts}\n{table}{}\n{untold}",
+        "{} · {}, {} · rates of a base that floats\n{}\n{doubts}\n{table}{}\n{untold}\n{}",
         report.machine,
         counted(report.motions, "motion"),
         counted(report.rows, "row"),
         report.rate_words(),
         OrbitReport::KNOWN_WORDS,
+        suggestion_text(&report.next),
     )
 }
 

@@ -16,8 +16,8 @@ use stillbase_session::scenario::MachineFile;
 use stillbase_settings::number::counted;
 use stillbase_simulation::plant::Base;
 use stillbase_study::trim::{
-    MeasurementSet, NoTrim, OrbitBase, OrbitMotion, TrimMethod, TrimQuery, TrimRequest, TrimResult as Found,
-    corrected_as_built, free_weights, identified_machine, orbit_trim,
+    MeasurementSet, NoTrim, OrbitBase, OrbitMotion, OrbitTrimQuery, OrbitTrimRequest, TrimMethod, TrimQuery,
+    TrimRequest, TrimResult as Found, corrected_as_built, free_weights, identified_machine,
 };
 
 use super::exit::print_message;
@@ -66,7 +66,7 @@ pub struct TrimArguments {
     settings: Settings,
     /// The files are of motions in orbit, on the base of this scenario, which floats
     #[arg(long, value_name = "SCENARIO", conflicts_with_all = [
-        "fix", "free", "bound", "range", "across", "angles_only", "as_given", "accelerations", "output", "identified",
+        "fix", "free", "bound", "range", "across", "angles_only", "accelerations", "output", "identified",
     ])]
     base: Option<String>,
     /// Keep these parameters fixed: counterweight.1.mass, counterweight.2.at, 3.com
@@ -215,7 +215,14 @@ impl TrimArguments {
             OrbitMotion::of(machine, &table).map_err(|why| Failure::wrong_input(why).with_context(file))
         };
         let motions = files.iter().map(motion).collect::<Result<Vec<_>, _>>()?;
-        let report = orbit_trim(machine, &base, &motions).map_err(Failure::no_answer)?;
+        let found = answer_now::<OrbitTrimQuery>(OrbitTrimRequest {
+            machine: Shared(machine.clone().into()),
+            base,
+            motions: Shared(motions.into()),
+            as_given: self.as_given,
+        });
+        found.doubt.iter().for_each(|doubt| print_message(format!("note: {doubt}")));
+        let report = found.outcome.map_err(as_failure)?;
         self.format.print(&report, answer::orbit_text)?;
         let off = report.numbers.iter().filter(|number| number.off);
         self.strict.require(off.map(|number| format!("{} is off", number.name)))

@@ -127,7 +127,7 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("known.file", "of unit", "Value of the file."),
     row("explains", "of unit", "Value that explains the rates."),
     row("rate_left", "rad/s", "Standard deviation of the base rate that is then not explained."),
-    row("advice", "", "What to measure, if not all is told."),
+    row("advice", "", "Why not all is told, if a cause is known."),
     row("exact", "of unit", "New value before rounding."),
     row("worth", "", "Effect of the change over these motions."),
     row("worth.force", "N", "Root mean square force of imbalance before and after the change."),

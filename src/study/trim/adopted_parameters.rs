@@ -40,34 +40,37 @@ const ROUNDING_TOLERANCE: f64 = 1e-10;
 /// difference exceeds the half width of its interval. So noise is not mistaken for imbalance, and a well-determined sum
 /// is kept even if its parts are not well determined.
 pub fn adopt_parameters(fit: &Fit) -> AdoptedParameters {
-    let count = fit.unknowns.of_balance();
-    let (values, covariance, inverse) = (fit.measured.clone(), fit.covariance.clone(), fit.inverse.clone());
+    let count = fit.numbers.unknowns.of_balance();
+    let (values, covariance, inverse) =
+        (fit.numbers.measured.clone(), fit.numbers.covariance.clone(), fit.inverse.clone());
     let mut known = Known { values, covariance, inverse };
-    let mut measured: Vec<bool> = fit.identifiable[..count].to_vec();
-    let rounding = (ROUNDING_TOLERANCE * fit.measured.amax()).max(f64::MIN_POSITIVE);
-    let half_width = |covariance: &DMatrix<f64>, i: usize| fit.critical * covariance[(i, i)].max(0.0).sqrt();
+    let mut measured: Vec<bool> = fit.numbers.identifiable[..count].to_vec();
+    let rounding = (ROUNDING_TOLERANCE * fit.numbers.measured.amax()).max(f64::MIN_POSITIVE);
+    let half_width = |covariance: &DMatrix<f64>, i: usize| fit.numbers.critical * covariance[(i, i)].max(0.0).sqrt();
     loop {
         let Known { values, covariance, .. } = &known;
-        let certainty = |i: usize| (values[i] - fit.nominal[i]).abs() / half_width(covariance, i).max(rounding);
+        let certainty = |i: usize| (values[i] - fit.numbers.nominal[i]).abs() / half_width(covariance, i).max(rounding);
         let others = (0..count).filter(|i| measured[*i]);
         let Some(least) = others.min_by(|a, b| certainty(*a).total_cmp(&certainty(*b))) else { break };
         if certainty(least) > 1.0 {
             break;
         }
-        known.fix(least, fit.nominal[least]);
+        known.fix(least, fit.numbers.nominal[least]);
         measured[least] = false;
     }
     let Known { mut values, mut covariance, .. } = known;
     // Unknowns that are not identifiable have the values of the file, without uncertainty.
-    for i in (0..count).filter(|i| !fit.identifiable[*i]) {
-        values[i] = fit.nominal[i];
+    for i in (0..count).filter(|i| !fit.numbers.identifiable[*i]) {
+        values[i] = fit.numbers.nominal[i];
         covariance.row_mut(i).fill(0.0);
         covariance.column_mut(i).fill(0.0);
     }
-    let momentum = |i: usize| fit.identifiable[i].then(|| values[i]);
-    let momenta = (count..fit.unknowns.count()).map(momentum).collect();
+    let momentum = |i: usize| fit.numbers.identifiable[i].then(|| values[i]);
+    let momenta = (count..fit.numbers.unknowns.count()).map(momentum).collect();
     let half_widths: Vec<f64> = (0..values.len()).map(|i| half_width(&covariance, i)).collect();
-    let differs = |i: usize| fit.identifiable[i] && (values[i] - fit.nominal[i]).abs() > half_widths[i].max(rounding);
+    let differs = |i: usize| {
+        fit.numbers.identifiable[i] && (values[i] - fit.numbers.nominal[i]).abs() > half_widths[i].max(rounding)
+    };
     let off = (0..values.len()).map(|i| measured.get(i).copied().unwrap_or_else(|| differs(i))).collect();
     AdoptedParameters { values, covariance, half_widths, measured, differs: off, momenta }
 }

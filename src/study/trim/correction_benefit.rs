@@ -67,7 +67,7 @@ pub fn correction_benefit(
     taken: &AdoptedParameters,
     mended: &MachineCorrection,
 ) -> CorrectionBenefit {
-    let count = fit.unknowns.of_balance();
+    let count = fit.numbers.unknowns.of_balance();
     let inertia = Inertia::of(machine);
     let radius_squared = inertia.diagonals().iter().sum::<f64>() / inertia.mass();
     let mean = |of: usize| {
@@ -76,14 +76,14 @@ pub fn correction_benefit(
     };
     let (force, moment): (DMatrix<f64>, DMatrix<f64>) = (mean(0) + mean(1), mean(2));
     let by = DVector::from_iterator(count, mended.effects.iter().flat_map(|by| [by.re, by.im]));
-    let now = fit.measured.rows(0, count).clone_owned();
+    let now = fit.numbers.measured.rows(0, count).clone_owned();
     let then = &now + &by;
     let rms = |of: &DMatrix<f64>, x: &DVector<f64>| x.dot(&(of * x)).max(0.0).sqrt();
     let weight = &force * radius_squared + &moment;
     let all = now.dot(&(&weight * &now)).max(f64::MIN_POSITIVE);
     let pull = &weight * &by;
     let gain = -2.0 * pull.dot(&now) - pull.dot(&by);
-    let covariance = fit.covariance.view((0, 0), (count, count));
+    let covariance = fit.numbers.covariance.view((0, 0), (count, count));
     let deviation = 2.0 * pull.dot(&(covariance * &pull)).max(0.0).sqrt();
     let chosen = taken.measured.iter().filter(|measured| **measured).count().max(1) as f64;
     // Wilson and Hilferty (1931): the cube root of χ² is approximately normal.
@@ -93,6 +93,6 @@ pub fn correction_benefit(
         force: [rms(&force, &now), rms(&force, &then)],
         moment: [rms(&moment, &now), rms(&moment, &then)],
         gain: gain / all,
-        half_width: scheffe / 1.96 * fit.critical * deviation / all,
+        half_width: scheffe / 1.96 * fit.numbers.critical * deviation / all,
     }
 }

@@ -60,7 +60,7 @@ pub enum TrimError {
         path: String,
     },
     /// A signal of a motion in orbit has another unit.
-    #[error("{path}: unit {unit:?}: want {want}")]
+    #[error("{path}: unit {unit:?}: want {want}, or degrees for radians")]
     SignalUnit {
         /// Path of the signal.
         path: String,

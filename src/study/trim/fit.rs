@@ -8,9 +8,9 @@ use super::rows::{Channel, Regressor, RegressorSource, TREND_PARAMETERS};
 use super::unknowns::Unknowns;
 use stillbase_mechanics::machine::{Inertia, Machine};
 
-/// Result of the least-squares fit.
+/// Values of all unknowns, with their uncertainty, whatever they were measured by.
 #[derive(Clone, Debug)]
-pub struct Fit {
+pub struct IdentifiedNumbers {
     /// The unknowns.
     pub unknowns: Unknowns,
     /// Values in the machine's file.
@@ -23,6 +23,16 @@ pub struct Fit {
     pub critical: f64,
     /// Whether each unknown is identifiable from the data.
     pub identifiable: Vec<bool>,
+    /// Information on the unknowns: the inverse of their covariance, 0 along directions that are not identifiable. Correlated
+    /// rows count as the effective number of rows.
+    pub(super) information: DMatrix<f64>,
+}
+
+/// Result of the least-squares fit.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// Values of the unknowns.
+    pub numbers: IdentifiedNumbers,
     /// Groups of unknowns that are only identifiable in combination; a group of one is not identifiable at
     /// all.
     pub confounded: Vec<Vec<usize>>,
@@ -36,8 +46,6 @@ pub struct Fit {
     pub effective: [f64; 2],
     /// Pseudo-inverse of XᵀX over the identifiable directions, rows weighted by 1/σ.
     pub(super) inverse: DMatrix<f64>,
-    /// Information matrix: XᵀX with rows weighted by 1/σ, divided by the correlation length in rows.
-    pub(super) information: DMatrix<f64>,
     /// σ² times the correlation time of the residuals, of force and of moment, N² s and N² m² s.
     pub(super) density: [f64; 2],
 }
@@ -152,27 +160,21 @@ pub(super) fn estimate(machine: &Machine, rows: &Regressor) -> Result<Estimate, 
     let force = (gram(0) + gram(1)) * (weights[0] / correlation[0]);
     let information = force + gram(2) * (weights[2] / correlation[1]);
     let density = [0, 1].map(|of| sigma[of] * sigma[of] * correlation[of] * rows.spacing);
-    let fit = Fit {
+    let numbers = IdentifiedNumbers {
         unknowns: rows.unknowns.clone(),
         measured: &nominal + &solved.deviation,
         nominal,
         covariance,
         critical: t_quantile(lags as f64 / count as f64),
         identifiable,
-        confounded,
-        noise: sigma,
-        size,
-        largest,
-        effective,
-        inverse: solved.inverse,
         information,
-        density,
     };
-    let finite = fit.measured.iter().chain(fit.covariance.iter()).all(|x| x.is_finite());
+    let fit = Fit { numbers, confounded, noise: sigma, size, largest, effective, inverse: solved.inverse, density };
+    let finite = fit.numbers.measured.iter().chain(fit.numbers.covariance.iter()).all(|x| x.is_finite());
     if finite { Ok(Estimate { fit, rank, share }) } else { Err(TrimError::NotFinite) }
 }
 
-impl Fit {
+impl IdentifiedNumbers {
     /// Returns the half width of the 95 % interval of an unknown.
     pub fn half_width(&self, place: usize) -> f64 {
         self.critical * self.covariance[(place, place)].max(0.0).sqrt()

@@ -5,7 +5,7 @@
 //! D_k. A few measured motions and least squares therefore identify them with their uncertainty. They also yield the
 //! least change of counterweights that corrects the balance, and the motion that would add most information.
 //!
-//! In orbit there is no force to measure; [`orbit_trim`] takes the rates of the base instead.
+//! In orbit there is no force to measure; [`OrbitTrimQuery`] takes the rates of the base instead.
 //!
 //! # Symbols
 //! | letter | meaning | unit |
@@ -40,7 +40,6 @@ mod differences;
 mod doubt;
 mod error;
 mod fit;
-mod known;
 mod long_run;
 mod machine_correction;
 mod next_excitation;
@@ -56,15 +55,17 @@ mod window;
 pub use adopted_parameters::{AdoptedParameters, adopt_parameters};
 pub use adopting_edit::adopting_edit;
 pub use correction_benefit::{CorrectionBenefit, correction_benefit};
-pub use doubt::{Cause, Doubt, MeasuredValue, doubt};
+pub use doubt::{Cause, Doubt, MeasuredValue, Residual, doubt};
 pub use error::TrimError;
-pub use fit::{Fit, fit};
-pub use known::KnownValue;
+pub use fit::{Fit, IdentifiedNumbers, fit};
 pub use machine_correction::{
     MachineCorrection, NoCorrection, ParameterChange, correct_machine, corrected_as_built, identified_machine,
 };
 pub use next_excitation::{Excitation, NextMeasurement, next_excitation};
-pub use orbit::{BASE_RATE, OrbitBase, OrbitMotion, OrbitReport, orbit_trim};
+pub use orbit::{
+    BASE_RATE, KnownValue, OrbitBase, OrbitMotion, OrbitOutcome, OrbitReport, OrbitTrimQuery, OrbitTrimRequest,
+    orbit_trim,
+};
 pub use recording::{MeasuredMotion, MeasurementSet};
 pub use report::{ExcitationReport, MeasuredUnknown, Number, Suggestion, TrimImprovement, TrimReport};
 pub use rows::{Regressor, RegressorSource};

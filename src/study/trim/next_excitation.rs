@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::fit::Fit;
+use super::fit::{Fit, IdentifiedNumbers};
 use super::recording::{MeasuredMotion, MeasurementSet};
 use super::rows::{LinearTrend, Regressor};
 use super::unknowns::Unknowns;
@@ -71,10 +71,8 @@ const DEFAULT_AMPLITUDE_RAD: f64 = 0.5;
 /// Acceleration if none was measured, rad/s².
 const DEFAULT_ACCELERATION: f64 = 5.0;
 
-/// Assesses candidates: each drive alone, every pair in step and against each other, all drives in step, and all at
-/// different frequencies. Amplitudes are those measured; accelerations are the largest measured, unless they are given,
-/// rad/s². The uncertainty after each candidate is predicted from the information that its rows add at the identified
-/// noise.
+/// Assesses motions on a force plate, as [`next_motion`] does: with the amplitudes of the drives that were measured, and their
+/// largest accelerations unless they are given, rad/s².
 pub fn next_excitation(
     machine: &Machine,
     recording: &MeasurementSet,
@@ -82,22 +80,38 @@ pub fn next_excitation(
     fit: &Fit,
     accelerations: Option<&[f64]>,
 ) -> NextMeasurement {
-    let limits = Limits::of(machine, recording, rows, accelerations);
-    let scales = rows.unknowns.scales(&Inertia::of(machine));
-    let balance = rows.unknowns.of_balance();
-    let size = |i: usize| if fit.identifiable[i] { fit.half_width(i) / scales[i] } else { f64::INFINITY };
+    let motions = &recording.motions;
+    let samples = || motions.iter().flat_map(|motion| &motion.q);
+    let limits = DriveLimits::of(machine.drives(), samples, |k| rows.moves[k], |k, _| rows.fastest[k])
+        .with_accelerations(accelerations);
+    let duration = motions.iter().map(MeasuredMotion::duration).sum::<f64>() / motions.len() as f64;
+    let more = |sines: &Sines| sines.information(machine, &rows.unknowns, duration, fit);
+    next_motion(machine, &fit.numbers, &limits, duration, more)
+}
+
+/// Assesses candidates: each drive alone, every pair in step and against each other, all drives in step, and all at
+/// different frequencies, within `limits` and for `duration`, s. The uncertainty after each candidate is predicted from
+/// the `information` that it adds.
+pub(super) fn next_motion(
+    machine: &Machine,
+    numbers: &IdentifiedNumbers,
+    limits: &DriveLimits,
+    duration: f64,
+    information: impl Fn(&Sines) -> DMatrix<f64>,
+) -> NextMeasurement {
+    let scales = numbers.unknowns.scales(&Inertia::of(machine));
+    let balance = numbers.unknowns.of_balance();
+    let size = |i: usize| if numbers.identifiable[i] { numbers.half_width(i) / scales[i] } else { f64::INFINITY };
     let least_known = (0..balance).max_by(|a, b| size(*a).total_cmp(&size(*b))).unwrap_or_default();
-    let half_width = if fit.identifiable[least_known] { fit.half_width(least_known) } else { f64::INFINITY };
-    let duration = recording.motions.iter().map(MeasuredMotion::duration).sum::<f64>() / recording.motions.len() as f64;
-    let now = Known::of(&fit.information, &scales);
+    let half_width = if numbers.identifiable[least_known] { numbers.half_width(least_known) } else { f64::INFINITY };
+    let now = Known::of(&numbers.information, &scales);
     let assessed = |drives: Vec<(usize, f64)>, own_frequencies: bool| {
         let motion = limits.motion(machine, &drives, own_frequencies);
-        let more = motion.information(machine, &rows.unknowns, duration, fit);
-        let then = Known::of(&(&fit.information + more), &scales);
-        let half_width = match (fit.identifiable[least_known], then.variance(least_known)) {
+        let then = Known::of(&(&numbers.information + information(&motion)), &scales);
+        let half_width = match (numbers.identifiable[least_known], then.variance(least_known)) {
             (_, None) => f64::INFINITY,
             (true, Some(after)) => half_width * now.variance(least_known).map_or(1.0, |now| (after / now).sqrt()),
-            (false, Some(after)) => fit.critical * after.sqrt() * scales[least_known],
+            (false, Some(after)) => numbers.critical * after.sqrt() * scales[least_known],
         };
         let all = (0.5 * (then.log_volume(balance) - now.log_volume(balance)) / balance as f64).exp();
         let amplitude = drives.iter().map(|(k, _)| motion.amplitude[*k]).collect();
@@ -122,35 +136,45 @@ pub fn next_excitation(
 }
 
 /// Ranges and accelerations of the drives.
-struct Limits {
+pub(super) struct DriveLimits {
     middle: Vec<f64>,
     reach: Vec<f64>,
     acceleration: Vec<f64>,
 }
 
-impl Limits {
-    fn of(machine: &Machine, recording: &MeasurementSet, rows: &Regressor, given: Option<&[f64]>) -> Self {
-        let n = machine.drives();
-        let samples = || recording.motions.iter().flat_map(|m| &m.q);
+impl DriveLimits {
+    /// Returns the ranges over which the drives moved in `samples`, rad. `moves` returns whether a drive moved.
+    /// `fastest` returns the acceleration of a drive, rad/s², that moved by an amplitude, rad.
+    pub fn of<'a, I: Iterator<Item = &'a PerDrive>>(
+        n: usize,
+        samples: impl Fn() -> I,
+        moves: impl Fn(usize) -> bool,
+        fastest: impl Fn(usize, f64) -> f64,
+    ) -> Self {
         let ends = |k: usize| {
             let start = [f64::INFINITY, f64::NEG_INFINITY];
             samples().fold(start, |[low, high], q| [low.min(q[k]), high.max(q[k])])
         };
         let ends: Vec<[f64; 2]> = (0..n).map(ends).collect();
-        let moving = |k: &usize| rows.moves[*k];
-        let widest = (0..n).filter(moving).map(|k| 0.5 * (ends[k][1] - ends[k][0])).fold(0.0, f64::max);
-        let reach =
-            |k: usize| if rows.moves[k] { 0.5 * (ends[k][1] - ends[k][0]) } else { widest.min(DEFAULT_AMPLITUDE_RAD) };
-        let seen = |k: usize| rows.fastest[k];
-        let most = (0..n).filter(moving).map(seen).fold(0.0, f64::max);
+        let half = |k: usize| 0.5 * (ends[k][1] - ends[k][0]);
+        let widest = (0..n).filter(|k| moves(*k)).map(half).fold(0.0, f64::max);
+        let reach = |k: usize| if moves(k) { half(k) } else { widest.min(DEFAULT_AMPLITUDE_RAD) };
+        let reach: Vec<f64> = (0..n).map(|k| reach(k).max(1e-6)).collect();
+        let seen = |k: usize| fastest(k, reach[k]);
+        let most = (0..n).filter(|k| moves(*k)).map(seen).fold(0.0, f64::max);
         let usual = if most > 0.0 { most } else { DEFAULT_ACCELERATION };
-        let own = |k: usize| if rows.moves[k] && seen(k) > 0.0 { seen(k) } else { usual };
-        let acceleration = (0..n).map(|k| given.and_then(|all| all.get(k)).copied().unwrap_or_else(|| own(k)));
+        let own = |k: usize| if moves(k) && seen(k) > 0.0 { seen(k) } else { usual };
         Self {
             middle: ends.iter().map(|[low, high]| 0.5 * (low + high)).collect(),
-            reach: (0..n).map(|k| reach(k).max(1e-6)).collect(),
-            acceleration: acceleration.collect(),
+            acceleration: (0..n).map(own).collect(),
+            reach,
         }
+    }
+
+    /// Returns these limits with accelerations that are given, rad/s².
+    pub fn with_accelerations(self, given: Option<&[f64]>) -> Self {
+        let own = |(k, usual): (usize, &f64)| given.and_then(|all| all.get(k)).copied().unwrap_or(*usual);
+        Self { acceleration: self.acceleration.iter().enumerate().map(own).collect(), ..self }
     }
 
     /// Returns sines of some drives with the amplitudes `reach`, reduced as far as the joint limits require.
@@ -183,7 +207,8 @@ impl Limits {
     }
 }
 
-struct Sines {
+/// Drives that swing about the middle of their ranges.
+pub(super) struct Sines {
     middle: Vec<f64>,
     amplitude: Vec<f64>,
     signed: Vec<f64>,
@@ -191,7 +216,13 @@ struct Sines {
 }
 
 impl Sines {
-    fn at(&self, t: f64) -> [PerDrive; 3] {
+    /// Returns the instants of a motion of a duration, s, at which it is evaluated.
+    pub fn instants(duration: f64) -> impl Iterator<Item = f64> {
+        (0..INSTANTS).map(move |i| duration * (i as f64 + 0.5) / INSTANTS as f64)
+    }
+
+    /// Returns angles, rates and accelerations at a time, s.
+    pub fn at(&self, t: f64) -> [PerDrive; 3] {
         let n = self.middle.len();
         let each = |f: &dyn Fn(usize) -> f64| PerDrive::from_fn(n, f);
         [
@@ -214,12 +245,12 @@ impl Sines {
     }
 
     /// Returns the information Σ xᵀ x over time, divided by the noise densities of force and moment.
-    fn information(&self, machine: &Machine, unknowns: &Unknowns, duration: f64, fit: &Fit) -> DMatrix<f64> {
+    pub fn information(&self, machine: &Machine, unknowns: &Unknowns, duration: f64, fit: &Fit) -> DMatrix<f64> {
         let p = unknowns.count();
         let mut rows = [0, 1, 2].map(|_| DMatrix::zeros(INSTANTS, p));
         let mut one = [0, 1, 2].map(|_| vec![0.0; p]);
-        for i in 0..INSTANTS {
-            let [q, qd, qdd] = self.at(duration * (i as f64 + 0.5) / INSTANTS as f64);
+        for (i, t) in Self::instants(duration).enumerate() {
+            let [q, qd, qdd] = self.at(t);
             let [fx, fy, n] = &mut one;
             unknowns.reaction(&DriveAngles(q).units(), &qd, &qdd, machine.gravity(), [fx, fy, n]);
             for (rows, one) in rows.iter_mut().zip(&one) {

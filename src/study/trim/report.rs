@@ -9,6 +9,7 @@ use super::fit::Fit;
 use super::machine_correction::{MachineCorrection, ParameterChange};
 use super::next_excitation::{Excitation, NextMeasurement};
 use super::rows::{Regressor, RegressorSource};
+use super::unknowns::Unknowns;
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
 use stillbase_settings::number::{fixed, fixed_or_scientific};
@@ -118,6 +119,22 @@ pub struct Suggestion {
 }
 
 impl Suggestion {
+    /// Returns a proposal with the names of the machine.
+    pub(super) fn of(machine: &Machine, unknowns: &Unknowns, next: &NextMeasurement) -> Self {
+        let worst = unknowns.at(next.least_known);
+        let tried = |candidate: &Excitation| ExcitationReport {
+            motion: candidate.words(machine),
+            candidate: candidate.clone(),
+        };
+        Self {
+            worst: worst.name(machine),
+            half_width: Some(next.half_width).filter(|half| half.is_finite()),
+            unit: worst.unit(),
+            duration: next.duration,
+            candidates: next.candidates.iter().map(tried).collect(),
+        }
+    }
+
     /// Returns in words the least known unknown and the effect of the best motion; `None` if there are no candidates.
     pub fn words(&self) -> Option<String> {
         let best = self.candidates.first()?;
@@ -186,20 +203,20 @@ impl TrimReport {
         worth: Option<CorrectionBenefit>,
         next: &NextMeasurement,
     ) -> Self {
-        let unknowns = &fit.unknowns;
+        let unknowns = &fit.numbers.unknowns;
         let number = |i: usize| {
             let what = unknowns.at(i);
-            let identifiable = fit.identifiable[i];
+            let identifiable = fit.numbers.identifiable[i];
             let part = |left: &Vector| if i.is_multiple_of(2) { left.re } else { left.im };
             let balance = i < unknowns.of_balance();
             Number {
                 unknown: MeasuredUnknown {
                     name: what.name(machine),
                     unit: what.unit(),
-                    nominal: fit.nominal[i] + 0.0,
+                    nominal: fit.numbers.nominal[i] + 0.0,
                     identifiable,
-                    measured: identifiable.then_some(fit.measured[i] + 0.0),
-                    half_width: identifiable.then_some(fit.half_width(i)),
+                    measured: identifiable.then_some(fit.numbers.measured[i] + 0.0),
+                    half_width: identifiable.then_some(fit.numbers.half_width(i)),
                     per_percent: None,
                     off: taken.differs[i],
                 },
@@ -210,11 +227,6 @@ impl TrimReport {
             }
         };
         let name = |i: &usize| unknowns.at(*i).name(machine);
-        let worst = unknowns.at(next.least_known);
-        let tried = |candidate: &Excitation| ExcitationReport {
-            motion: candidate.words(machine),
-            candidate: candidate.clone(),
-        };
         Self {
             machine: machine.name().to_owned(),
             motions: rows.motions.len(),
@@ -228,13 +240,7 @@ impl TrimReport {
             unidentifiable: fit.confounded.iter().map(|group| group.iter().map(name).collect()).collect(),
             changes: mended.map_or_else(Vec::new, |mended| mended.changes.clone()),
             worth: worth.map(|worth| TrimImprovement { worth, helps: worth.helps() }),
-            next: Suggestion {
-                worst: worst.name(machine),
-                half_width: Some(next.half_width).filter(|half| half.is_finite()),
-                unit: worst.unit(),
-                duration: next.duration,
-                candidates: next.candidates.iter().map(tried).collect(),
-            },
+            next: Suggestion::of(machine, unknowns, next),
         }
     }
 }

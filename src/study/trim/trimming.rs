@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::adopted_parameters::{AdoptedParameters, adopt_parameters};
 use super::correction_benefit::correction_benefit;
-use super::doubt::{Doubt, DoubtSearch};
+use super::doubt::{Doubt, DoubtSearch, PlateMeasurement};
 use super::error::TrimError;
 use super::fit::{Fit, fit};
 use super::machine_correction::{MachineCorrection, NoCorrection, correct_machine};
@@ -93,7 +93,7 @@ enum Stage {
     Begun,
     /// Rows are built.
     Made(Regressor),
-    Doubting(Regressor, Box<DoubtSearch>),
+    Doubting(Regressor, Box<DoubtSearch<PlateMeasurement>>),
     /// No fault is suspected, or the measurement is accepted as given.
     Believed(Regressor),
     Fitted(Regressor, Box<Fit>),
@@ -132,8 +132,8 @@ impl TrimQuery {
                 };
                 (Stage::Made(rows), MADE_AT)
             }
-            Stage::Made(rows) => match DoubtSearch::begin(machine, recording, *angles_only) {
-                Ok(doubting) => (Stage::Doubting(rows, doubting.into()), MADE_AT),
+            Stage::Made(rows) => match PlateMeasurement::of(machine, recording, *angles_only) {
+                Ok(measured) => (Stage::Doubting(rows, DoubtSearch::of(machine, measured).into()), MADE_AT),
                 // The fit reports errors of the recording itself.
                 Err(_) => (Stage::Believed(rows), TRIED_AT),
             },

@@ -1,16 +1,14 @@
 //! [`DoubtSearch`]: the test of all faults, one after the other.
 
-use super::fault::Fault;
-use super::odds::{FitTrial, likelihood_ratio, shares, try_fit};
+use super::odds::{FitTrial, likelihood_ratio};
+use super::plate::PlateMeasurement;
 use super::possible::impossible_numbers;
 use super::rejection::{Cause, Doubt, MeasuredValue};
 use super::tolerances::{Tolerances, known_numbers};
 use crate::trim::error::TrimError;
-use crate::trim::recording::{MeasuredMotion, MeasurementSet};
-use crate::trim::rows::Regressor;
-use crate::trim::unknowns::{Unknown, Unknowns};
+use crate::trim::recording::MeasurementSet;
+use crate::trim::unknowns::Unknown;
 use stillbase_mechanics::machine::Machine;
-use stillbase_mechanics::planar::Vector;
 
 /// Threshold of ln Λ above which a fault is accepted: odds of 10⁴.
 const MIN_LOG_ODDS: f64 = 9.21;
@@ -22,29 +20,50 @@ const LOG_ODDS_PER_MISTAKE: f64 = 2.3;
 const MAX_LOG_ODDS_BEHIND: f64 = 6.9;
 /// Maximum number of faults that are named.
 const MAX_NAMED: usize = 5;
-/// Maximum number of samples times the square of the number of unknowns, unless 1 000 samples already exceed it.
-const MAX_WORK: usize = 4_000_000;
 
 /// Tests a measurement for faults; `None` if it is plausible as given. Only parts of a long recording are tested.
 ///
 /// # Errors
 /// Fails if the recording cannot be used.
 pub fn doubt(machine: &Machine, recording: &MeasurementSet, angles_only: bool) -> Result<Option<Doubt>, TrimError> {
-    let mut doubting = DoubtSearch::begin(machine, recording, angles_only)?;
+    let mut doubting = DoubtSearch::of(machine, PlateMeasurement::of(machine, recording, angles_only)?);
     while doubting.next(machine) {}
     Ok(doubting.doubt(machine))
 }
 
+/// A measurement that can be fitted as given, and without each of some faults.
+pub(in crate::trim) trait Suspected {
+    /// Returns the fit of the measurement as given.
+    fn given(&self) -> &FitTrial;
+
+    /// Returns the description of a fault, by its index; `None` after the last one.
+    fn fault(&self, index: usize) -> Option<&FaultWords>;
+
+    /// Returns the number of faults.
+    fn faults(&self) -> usize;
+
+    /// Fits the measurement without a fault. The second fit is that of the measurement as given with which it has to be
+    /// compared, if this is another one than [`given`](Self::given).
+    fn without(&self, machine: &Machine, fault: usize) -> Option<(FitTrial, Option<FitTrial>)>;
+}
+
+/// A fault in words.
+#[derive(Clone, Debug)]
+pub(in crate::trim) struct FaultWords {
+    /// Description, as a sentence without its full stop.
+    pub what: String,
+    /// Remedy.
+    pub want: String,
+    /// Number of independent mistakes that the fault counts as; a wrong unit of force counts as three.
+    pub mistakes: usize,
+}
+
 /// A test for faults in progress.
-pub struct DoubtSearch {
-    recording: MeasurementSet,
-    angles_only: bool,
-    rows: Regressor,
-    given: FitTrial,
+pub(in crate::trim) struct DoubtSearch<S> {
+    suspected: S,
     tolerances: Tolerances,
     /// Unknowns whose values, fitted to the measurement as given, no machine can have.
     infeasible: Vec<Unknown>,
-    faults: Vec<Fault>,
     /// Number of faults tested.
     done: usize,
     likely: Vec<Likely>,
@@ -56,71 +75,50 @@ struct Likely {
     odds: f64,
     /// ln Λ by which faults are ordered.
     ranks: f64,
-    fault: Fault,
+    fault: FaultWords,
     tried: FitTrial,
 }
 
-impl DoubtSearch {
-    /// Fits the measurement as given, before any fault is tested.
-    ///
-    /// # Errors
-    /// Fails if the recording cannot be used.
-    pub fn begin(machine: &Machine, recording: &MeasurementSet, angles_only: bool) -> Result<Self, TrimError> {
-        recording.check(machine.drives())?;
-        let recording = shortened(machine, recording);
-        let rows = Regressor::of(machine, &recording, angles_only)?;
-        let given = try_fit(machine, &rows, limit_violation(machine, &recording))?;
-        Ok(Self {
+impl<S: Suspected> DoubtSearch<S> {
+    /// Begins a test, before any fault is tested.
+    pub fn of(machine: &Machine, suspected: S) -> Self {
+        Self {
             tolerances: Tolerances::of(machine),
-            infeasible: impossible_numbers(machine, &given.fit),
-            faults: Fault::all(machine),
+            infeasible: impossible_numbers(machine, &suspected.given().numbers),
             done: 0,
             likely: Vec::new(),
-            recording,
-            angles_only,
-            rows,
-            given,
-        })
+            suspected,
+        }
     }
 
     /// Returns the fraction done, from 0 to 1.
     pub fn share(&self) -> f64 {
-        self.done as f64 / self.faults.len().max(1) as f64
+        self.done as f64 / self.suspected.faults().max(1) as f64
     }
 
     /// Tests the next fault; returns whether there was one.
     pub fn next(&mut self, machine: &Machine) -> bool {
-        let Some(fault) = self.faults.get(self.done) else { return false };
-        self.likely.extend(self.explained(machine, fault));
+        if self.done >= self.suspected.faults() {
+            return false;
+        }
+        self.likely.extend(self.explained(machine, self.done));
         self.done += 1;
         true
     }
 
     /// Returns a fault with its odds; `None` if it does not explain the measurement.
-    fn explained(&self, machine: &Machine, fault: &Fault) -> Option<Likely> {
-        let Self { rows, given, .. } = self;
-        let own = fault.angles.as_ref().map(|angles| angles.undo(&self.recording));
-        let (mut transformed, mut as_given, mut violation) = (rows.clone(), None, given.limit_violation);
-        if let Some(own) = &own {
-            violation = limit_violation(machine, own);
-            let fresh = Regressor::at_least(rows.half(), machine, own, self.angles_only).ok()?;
-            // Residuals must be compared for the same windows.
-            if fresh.half() > rows.half() {
-                let wide = Regressor::at_least(fresh.half(), machine, &self.recording, self.angles_only);
-                as_given = wide.and_then(|rows| try_fit(machine, &rows, given.limit_violation)).ok();
-            }
-            transformed = fresh;
-        }
-        transformed.transform(|force, moment| fault.undo(force, moment));
-        let other = try_fit(machine, &transformed, violation).ok()?;
-        let [decides, ranks] = likelihood_ratio(&self.tolerances, as_given.as_ref().unwrap_or(given), &other)?;
+    fn explained(&self, machine: &Machine, fault: usize) -> Option<Likely> {
+        let (other, as_given) = self.suspected.without(machine, fault)?;
+        let fault = self.suspected.fault(fault)?;
+        let given = as_given.as_ref().unwrap_or(self.suspected.given());
+        let [decides, ranks] = likelihood_ratio(&self.tolerances, given, &other)?;
         // If the values as given are impossible, any fault with possible values and a positive ranking ln Λ explains
         // them.
         let explains = match self.infeasible.as_slice() {
             [] => decides > MIN_LOG_ODDS,
             _ => ranks > 0.0,
         };
-        (explains && impossible_numbers(machine, &other.fit).is_empty()).then(|| Likely {
+        (explains && impossible_numbers(machine, &other.numbers).is_empty()).then(|| Likely {
             odds: decides.max(ranks),
             ranks: ranks - LOG_ODDS_PER_MISTAKE * (fault.mistakes - 1) as f64,
             fault: fault.clone(),
@@ -136,23 +134,24 @@ impl DoubtSearch {
         self.likely.sort_by(|a, b| b.ranks.total_cmp(&a.ranks));
         let best = self.likely.first().map_or(0.0, |first| first.ranks);
         self.likely.retain(|one| one.ranks > best - MAX_LOG_ODDS_BEHIND);
-        let Self { given: FitTrial { fit, .. }, infeasible, likely, .. } = &self;
+        let Self { infeasible, likely, suspected, .. } = &self;
+        let given = suspected.given();
+        let numbers = &given.numbers;
         let measured_value = |place: usize| MeasuredValue {
-            name: fit.unknowns.at(place).name(machine),
-            unit: fit.unknowns.at(place).unit(),
-            value: fit.measured[place],
-            half_width: fit.half_width(place),
-            file: fit.nominal[place],
+            name: numbers.unknowns.at(place).name(machine),
+            unit: numbers.unknowns.at(place).unit(),
+            value: numbers.measured[place],
+            half_width: numbers.half_width(place),
+            file: numbers.nominal[place],
         };
-        let place = |unknown: &Unknown| (0..fit.unknowns.count()).find(|i| fit.unknowns.at(*i) == *unknown);
-        let furthest = furthest(machine, &self.given, likely.first().map(|first| &first.tried));
+        let place = |unknown: &Unknown| (0..numbers.unknowns.count()).find(|i| numbers.unknowns.at(*i) == *unknown);
+        let furthest = furthest(machine, given, likely.first().map(|first| &first.tried));
         let causes = likely.iter().map(|Likely { odds, fault, tried, .. }| Cause {
             what: fault.what.clone(),
             want: fault.want.clone(),
             odds: odds / std::f64::consts::LN_10,
-            noise: tried.fit.noise,
-            shares: shares(&tried.fit),
-            furthest: furthest.map(|place| tried.fit.measured[place]),
+            residuals: tried.residuals(),
+            furthest: furthest.map(|place| tried.numbers.measured[place]),
             limit_violation: tried.limit_violation,
         });
         let mut causes: Vec<Cause> = causes.collect();
@@ -162,9 +161,8 @@ impl DoubtSearch {
             causes,
             impossible: infeasible.iter().filter_map(place).map(measured_value).collect(),
             furthest: furthest.map(measured_value),
-            noise: fit.noise,
-            shares: shares(fit),
-            limit_violation: self.given.limit_violation,
+            residuals: given.residuals(),
+            limit_violation: given.limit_violation,
         })
     }
 }
@@ -172,69 +170,13 @@ impl DoubtSearch {
 /// Returns the identifiable unknown with the largest relative deviation from the other fit, or from the file if there
 /// is no other fit. Only momenta are compared, and first moments and couplings that are clearly not zero in the file.
 fn furthest(machine: &Machine, given: &FitTrial, other: Option<&FitTrial>) -> Option<usize> {
-    let (fit, known) = (&given.fit, known_numbers(machine));
+    let (numbers, known) = (&given.numbers, known_numbers(machine));
     let off = |i: &usize| {
-        let better = other.map_or(fit.nominal[*i], |other| other.fit.measured[*i]);
-        (fit.measured[*i] - better).abs() / fit.nominal[*i].abs().max(f64::MIN_POSITIVE)
+        let better = other.map_or(numbers.nominal[*i], |other| other.numbers.measured[*i]);
+        (numbers.measured[*i] - better).abs() / numbers.nominal[*i].abs().max(f64::MIN_POSITIVE)
     };
-    let candidates = (0..fit.unknowns.count()).filter(|i| fit.identifiable[*i] && known[*i]);
+    let candidates = (0..numbers.unknowns.count()).filter(|i| numbers.identifiable[*i] && known[*i]);
     // Values that agree with the other fit, or else with the file, are no evidence.
     let candidates = candidates.filter(|i| off(i) > EQUAL_BELOW);
     candidates.max_by(|a, b| off(a).total_cmp(&off(b)))
-}
-
-/// Returns the largest violation of the limits of relative angles, modulo whole turns, rad; 0 if there is none.
-fn limit_violation(machine: &Machine, recording: &MeasurementSet) -> f64 {
-    let mut most: f64 = 0.0;
-    for angle in machine.angles() {
-        let (low, high) = (*angle.limits.start(), *angle.limits.end());
-        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-        if !half.is_finite() {
-            continue;
-        }
-        for q in recording.motions.iter().flat_map(|motion| &motion.q) {
-            let by = angle.value(q) - middle;
-            let turns = std::f64::consts::TAU * (by / std::f64::consts::TAU).round();
-            most = most.max((by - turns).abs() - half);
-        }
-    }
-    most
-}
-
-/// Returns a recording short enough for many fits: a long one is reduced to the first samples of some of its motions.
-fn shortened(machine: &Machine, recording: &MeasurementSet) -> MeasurementSet {
-    let unknowns = Unknowns::of(machine.drives()).count();
-    let most = (MAX_WORK / unknowns.pow(2)).clamp(1_000, 20_000);
-    let samples: usize = recording.motions.iter().map(|motion| motion.t.len()).sum();
-    if samples <= most {
-        return recording.clone();
-    }
-    let count = recording.motions.len().min(most / 250);
-    let each = most / count;
-    let truncated = |motion: &MeasuredMotion| {
-        let rows = motion.t.len().min(each);
-        let part = |all: &[_]| all.iter().copied().take(rows).collect();
-        MeasuredMotion {
-            t: motion.t[..rows].to_vec(),
-            q: part(&motion.q),
-            qd: part(&motion.qd),
-            qdd: part(&motion.qdd),
-            force: motion.force[..rows].to_vec(),
-            moment: motion.moment[..rows].to_vec(),
-        }
-    };
-    let motions = (0..count).map(|i| truncated(&recording.motions[i * recording.motions.len() / count])).collect();
-    MeasurementSet { motions }
-}
-
-impl Regressor {
-    /// Transforms the measured force and moment. The straight line taken out of each motion stays out, because the
-    /// transformation is linear.
-    fn transform(&mut self, transformation: impl Fn(Vector, f64) -> (Vector, f64)) {
-        let [fx, fy, n] = &mut self.channels;
-        for ((fx, fy), n) in fx.y.iter_mut().zip(&mut fy.y).zip(&mut n.y) {
-            let (force, moment) = transformation(Vector::new(*fx, *fy), *n);
-            (*fx, *fy, *n) = (force.re, force.im, moment);
-        }
-    }
 }

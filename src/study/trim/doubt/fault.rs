@@ -7,6 +7,7 @@
 //! | u | the true force is u f or u conj(f), where f is the given force as a complex number |
 //! | s | the true moment is s n, where n is the given moment |
 
+use super::doubting::FaultWords;
 use crate::trim::{MeasuredMotion, MeasurementSet};
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{PerDrive, Vector};
@@ -14,12 +15,8 @@ use stillbase_mechanics::planar::{PerDrive, Vector};
 /// A fault: its description, the remedy, and the correction of the measurement.
 #[derive(Clone, Debug)]
 pub(super) struct Fault {
-    /// Description, as a sentence without its full stop.
-    pub what: String,
-    /// Remedy.
-    pub want: String,
-    /// Number of independent mistakes that the fault counts as; a wrong unit of force counts as three.
-    pub mistakes: usize,
+    /// Description and remedy.
+    pub words: FaultWords,
     /// Correction of the angles; `None` if only force and moment are affected.
     pub angles: Option<Angles>,
     /// Factor u, and whether f is conjugated.
@@ -30,27 +27,32 @@ pub(super) struct Fault {
 
 /// The correction of angles: matrix A by rows, and offset b.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Angles {
+pub(in crate::trim) struct Angles {
     rows: Vec<PerDrive>,
     offset: PerDrive,
 }
 
 impl Angles {
-    fn linear(n: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
+    pub fn linear(n: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
         let rows = (0..n).map(|k| PerDrive::from_fn(n, |l| entry(k, l))).collect();
         Self { rows, offset: PerDrive::zeros(n) }
     }
 
-    fn of(&self, x: &PerDrive) -> PerDrive {
+    /// Returns A x: corrected rates.
+    pub fn rates(&self, x: &PerDrive) -> PerDrive {
         PerDrive::from_fn(self.rows.len(), |k| self.rows[k].dot(x))
+    }
+
+    /// Returns A x + b: corrected angles.
+    pub fn angles(&self, x: &PerDrive) -> PerDrive {
+        self.rates(x).plus(1.0, &self.offset)
     }
 
     /// Returns the recording with corrected angles.
     pub fn undo(&self, recording: &MeasurementSet) -> MeasurementSet {
         let motion = |motion: &MeasuredMotion| {
-            let each = |all: &[PerDrive]| all.iter().map(|x| self.of(x)).collect::<Vec<_>>();
-            let mut q = each(&motion.q);
-            q.iter_mut().for_each(|q| *q = q.plus(1.0, &self.offset));
+            let each = |all: &[PerDrive]| all.iter().map(|x| self.rates(x)).collect::<Vec<_>>();
+            let q = motion.q.iter().map(|q| self.angles(q)).collect();
             MeasuredMotion { q, qd: each(&motion.qd), qdd: each(&motion.qdd), ..motion.clone() }
         };
         MeasurementSet { motions: recording.motions.iter().map(motion).collect() }
@@ -68,31 +70,55 @@ impl Fault {
     /// exchange of any two, degrees for radians and the reverse, and relative angles. With up to four drives also
     /// cyclic exchanges of three. With eight drives there are at most 63.
     pub fn all(machine: &Machine) -> Vec<Self> {
-        let n = machine.drives();
+        let names = (0..machine.drives()).map(|k| format!("q{}", k + 1)).collect();
+        let columns = ColumnNames { angles: names, with: "with rates and accelerations" };
+        let of_angles =
+            |(words, angles)| Self { words, angles: Some(angles), force: (Vector::new(1.0, 0.0), false), moment: 1.0 };
         let mut all = frames();
         all.extend(units());
-        all.extend((0..n).map(|k| reversed(n, |l| l == k, &format!("q{} counts the other way", k + 1))));
-        if n > 1 {
-            all.push(reversed(n, |_| true, "all angles count the other way"));
-        }
-        all.extend(orders(n).into_iter().map(|order| reordered(&order)));
-        all.extend([degrees(n, std::f64::consts::PI / 180.0, true), degrees(n, 180.0 / std::f64::consts::PI, false)]);
-        if n > 1 {
-            all.push(relative(n));
-            all.extend(relative_of_file(machine));
-        }
+        all.extend(angle_faults(machine, &columns).into_iter().map(of_angles));
         all
     }
 }
 
+/// Names of the columns of angles in messages.
+pub(in crate::trim) struct ColumnNames {
+    /// Name of the column of each drive.
+    pub angles: Vec<String>,
+    /// The columns that change with those of the angles, as "with rates".
+    pub with: &'static str,
+}
+
+/// A fault of the angles, and their correction.
+pub(in crate::trim) type NamedAngles = (FaultWords, Angles);
+
+/// Returns the faults of the angles: signs, the exchange of any two, degrees for radians and the reverse, and relative
+/// angles. With up to four drives also cyclic exchanges of three.
+pub(in crate::trim) fn angle_faults(machine: &Machine, columns: &ColumnNames) -> Vec<NamedAngles> {
+    let n = machine.drives();
+    let mut all: Vec<NamedAngles> =
+        (0..n).map(|k| columns.reversed(|l| l == k, &format!("{} counts the other way", columns.angles[k]))).collect();
+    if n > 1 {
+        all.push(columns.reversed(|_| true, "all angles count the other way"));
+    }
+    all.extend(orders(n).into_iter().map(|order| columns.reordered(&order)));
+    let degree = std::f64::consts::PI / 180.0;
+    all.extend([columns.degrees(degree, true), columns.degrees(degree.recip(), false)]);
+    if n > 1 {
+        all.push(columns.relative());
+        all.extend(columns.relative_of_file(machine));
+    }
+    all
+}
+
 /// Returns a fault of force and moment only.
 fn channels(what: &str, want: &str, mistakes: usize, force: (Vector, bool), moment: f64) -> Fault {
-    Fault { what: what.into(), want: want.into(), mistakes, angles: None, force, moment }
+    Fault { words: FaultWords { what: what.into(), want: want.into(), mistakes }, angles: None, force, moment }
 }
 
 /// Returns a fault of the angles only.
-fn of_angles(what: String, want: String, angles: Angles) -> Fault {
-    Fault { what, want, mistakes: 1, angles: Some(angles), force: (Vector::new(1.0, 0.0), false), moment: 1.0 }
+fn of_angles(what: String, want: String, angles: Angles) -> NamedAngles {
+    (FaultWords { what, want, mistakes: 1 }, angles)
 }
 
 /// Returns the faults of all sensor frames with axes parallel to those of the base, in any order and sense.
@@ -197,20 +223,6 @@ fn units() -> Vec<Fault> {
     ]
 }
 
-fn reversed(n: usize, which: impl Fn(usize) -> bool, what: &str) -> Fault {
-    let names: Vec<String> = (0..n).filter(|k| which(*k)).map(|k| format!("q{}", k + 1)).collect();
-    let angles = Angles::linear(n, |k, l| {
-        if k != l {
-            0.0
-        } else if which(k) {
-            -1.0
-        } else {
-            1.0
-        }
-    });
-    of_angles(what.into(), format!("{} times −1, with rates and accelerations", list(&names)), angles)
-}
-
 /// Returns the orders of columns that are tested: the true angle of drive k is in column `order[k]`.
 fn orders(n: usize) -> Vec<Vec<usize>> {
     let exchanged = |moves: &[(usize, usize)]| {
@@ -228,76 +240,95 @@ fn orders(n: usize) -> Vec<Vec<usize>> {
     all
 }
 
-fn reordered(order: &[usize]) -> Fault {
-    let moved: Vec<usize> = (0..order.len()).filter(|k| order[*k] != *k).collect();
-    let names =
-        |of: &dyn Fn(usize) -> usize| list(&moved.iter().map(|k| format!("q{}", of(*k) + 1)).collect::<Vec<_>>());
-    let (here, there) = (names(&|k| order[k]), names(&|k| k));
-    let what = match moved.len() {
-        2 => format!("{there} are exchanged"),
-        _ => format!("{here} stand in the place of {there}"),
-    };
-    let angles = Angles::linear(order.len(), |k, l| if order[k] == l { 1.0 } else { 0.0 });
-    of_angles(what, format!("the columns {here} named {there} in the header, with rates and accelerations"), angles)
-}
-
-fn degrees(n: usize, scale: f64, are_degrees: bool) -> Fault {
-    let [is, not, unit] = if are_degrees { ["degrees", "radians", "deg"] } else { ["radians", "degrees", "rad"] };
-    let angles = Angles::linear(n, |k, l| if k == l { scale } else { 0.0 });
-    of_angles(
-        format!("the angles are in {is}, not in {not}"),
-        format!("the unit in the header, as q1 ({unit})"),
-        angles,
-    )
-}
-
-/// Returns the fault that each angle is relative to the preceding drive.
-fn relative(n: usize) -> Fault {
-    let names: Vec<String> = (1..n).map(|k| format!("q{}", k + 1)).collect();
-    let what = format!("{} are relative angles, each seen from the drive before", list(&names));
-    let want = "absolute ones: add q1 to q2, then the new q2 to q3, and so on, row by row";
-    of_angles(
-        if n == 2 { "q2 is a relative angle, seen from drive 1".into() } else { what },
-        if n == 2 { "an absolute one: q1 + q2 in each row".into() } else { want.into() },
-        Angles::linear(n, |k, l| if l <= k { 1.0 } else { 0.0 }),
-    )
-}
-
-/// Returns the fault that the columns after the first contain the relative angles of the machine's file, in its order;
-/// `None` if these do not determine all drives.
-fn relative_of_file(machine: &Machine) -> Option<Fault> {
-    let (n, angles) = (machine.drives(), machine.angles());
-    if angles.len() + 1 != n {
-        return None;
+impl ColumnNames {
+    fn reversed(&self, which: impl Fn(usize) -> bool, what: &str) -> NamedAngles {
+        let n = self.angles.len();
+        let names: Vec<String> = (0..n).filter(|k| which(*k)).map(|k| self.angles[k].clone()).collect();
+        let angles = Angles::linear(n, |k, l| {
+            if k != l {
+                0.0
+            } else if which(k) {
+                -1.0
+            } else {
+                1.0
+            }
+        });
+        of_angles(what.into(), format!("{} times −1, {}", list(&names), self.with), angles)
     }
-    let mut known: Vec<Option<(PerDrive, f64)>> = vec![None; n];
-    known[0] = Some((PerDrive::from_fn(n, |l| if l == 0 { 1.0 } else { 0.0 }), 0.0));
-    // Each pass finds at least one more drive, unless no further drive can be found.
-    for _ in 1..n {
-        for (i, angle) in angles.iter().enumerate() {
-            let own = |by: f64| PerDrive::from_fn(n, |l| if l == i + 1 { by } else { 0.0 });
-            match (known[angle.from], known[angle.to]) {
-                (Some((row, offset)), None) => {
-                    known[angle.to] = Some((row.plus(1.0, &own(1.0)), offset - angle.offset));
+
+    fn reordered(&self, order: &[usize]) -> NamedAngles {
+        let moved: Vec<usize> = (0..order.len()).filter(|k| order[*k] != *k).collect();
+        let names =
+            |of: &dyn Fn(usize) -> usize| list(&moved.iter().map(|k| self.angles[of(*k)].clone()).collect::<Vec<_>>());
+        let (here, there) = (names(&|k| order[k]), names(&|k| k));
+        let what = match moved.len() {
+            2 => format!("{there} are exchanged"),
+            _ => format!("{here} stand in the place of {there}"),
+        };
+        let angles = Angles::linear(order.len(), |k, l| if order[k] == l { 1.0 } else { 0.0 });
+        of_angles(what, format!("the columns {here} named {there} in the header, {}", self.with), angles)
+    }
+
+    fn degrees(&self, scale: f64, are_degrees: bool) -> NamedAngles {
+        let [is, not, unit] = if are_degrees { ["degrees", "radians", "deg"] } else { ["radians", "degrees", "rad"] };
+        let angles = Angles::linear(self.angles.len(), |k, l| if k == l { scale } else { 0.0 });
+        of_angles(
+            format!("the angles are in {is}, not in {not}"),
+            format!("the unit in the header, as {} ({unit})", self.angles[0]),
+            angles,
+        )
+    }
+
+    /// Returns the fault that each angle is relative to the preceding drive.
+    fn relative(&self) -> NamedAngles {
+        let (n, names) = (self.angles.len(), &self.angles[1..]);
+        let what = format!("{} are relative angles, each seen from the drive before", list(names));
+        let [first, second] = [&self.angles[0], &self.angles[1]];
+        let want =
+            format!("absolute ones: add {first} to {second}, then the new {second} to the next, and so on, row by row");
+        of_angles(
+            if n == 2 { format!("{second} is a relative angle, seen from drive 1") } else { what },
+            if n == 2 { format!("an absolute one: {first} + {second} in each row") } else { want },
+            Angles::linear(n, |k, l| if l <= k { 1.0 } else { 0.0 }),
+        )
+    }
+
+    /// Returns the fault that the columns after the first contain the relative angles of the machine's file, in its order;
+    /// `None` if these do not determine all drives.
+    pub fn relative_of_file(&self, machine: &Machine) -> Option<NamedAngles> {
+        let (n, angles) = (machine.drives(), machine.angles());
+        if angles.len() + 1 != n {
+            return None;
+        }
+        let mut known: Vec<Option<(PerDrive, f64)>> = vec![None; n];
+        known[0] = Some((PerDrive::from_fn(n, |l| if l == 0 { 1.0 } else { 0.0 }), 0.0));
+        // Each pass finds at least one more drive, unless no further drive can be found.
+        for _ in 1..n {
+            for (i, angle) in angles.iter().enumerate() {
+                let own = |by: f64| PerDrive::from_fn(n, |l| if l == i + 1 { by } else { 0.0 });
+                match (known[angle.from], known[angle.to]) {
+                    (Some((row, offset)), None) => {
+                        known[angle.to] = Some((row.plus(1.0, &own(1.0)), offset - angle.offset));
+                    }
+                    (None, Some((row, offset))) => {
+                        known[angle.from] = Some((row.plus(-1.0, &own(1.0)), offset + angle.offset));
+                    }
+                    _ => {}
                 }
-                (None, Some((row, offset))) => {
-                    known[angle.from] = Some((row.plus(-1.0, &own(1.0)), offset + angle.offset));
-                }
-                _ => {}
             }
         }
+        let known: Vec<(PerDrive, f64)> = known.into_iter().collect::<Option<_>>()?;
+        let names: Vec<String> = angles.iter().map(|angle| angle.name.clone()).collect();
+        let offset = PerDrive::from_fn(n, |k| known[k].1);
+        let map = Angles { rows: known.into_iter().map(|(row, _)| row).collect(), offset };
+        let what =
+            format!("{} hold the relative angles {} of the machine's file", list(&self.angles[1..]), list(&names));
+        Some(of_angles(what, "absolute drive angles".into(), map))
     }
-    let known: Vec<(PerDrive, f64)> = known.into_iter().collect::<Option<_>>()?;
-    let names: Vec<String> = angles.iter().map(|angle| angle.name.clone()).collect();
-    let columns: Vec<String> = (1..n).map(|k| format!("q{}", k + 1)).collect();
-    let offset = PerDrive::from_fn(n, |k| known[k].1);
-    let map = Angles { rows: known.into_iter().map(|(row, _)| row).collect(), offset };
-    let what = format!("{} hold the relative angles {} of the machine's file", list(&columns), list(&names));
-    Some(of_angles(what, "absolute drive angles".into(), map))
 }
 
 /// Joins names to a list in words.
-fn list(names: &[String]) -> String {
+pub(in crate::trim) fn list(names: &[String]) -> String {
     match names {
         [rest @ .., last] if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
         _ => names.concat(),

@@ -29,10 +29,14 @@
 mod doubting;
 mod fault;
 mod odds;
+mod plate;
 mod possible;
 mod rejection;
 mod tolerances;
 
-pub(super) use doubting::DoubtSearch;
 pub use doubting::doubt;
-pub use rejection::{Cause, Doubt, MeasuredValue};
+pub(super) use doubting::{DoubtSearch, FaultWords, Suspected};
+pub(super) use fault::{Angles, ColumnNames, NamedAngles, angle_faults, list};
+pub(super) use odds::{ChannelFit, FitTrial};
+pub(super) use plate::{PlateMeasurement, limit_violation};
+pub use rejection::{Cause, Doubt, MeasuredValue, Residual};

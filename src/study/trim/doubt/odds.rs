@@ -1,10 +1,8 @@
 //! Likelihood ratio of a measurement corrected for a fault to the measurement as given.
 
+use super::rejection::Residual;
 use super::tolerances::Tolerances;
-use crate::trim::error::TrimError;
-use crate::trim::fit::{Fit, estimate};
-use crate::trim::rows::Regressor;
-use stillbase_mechanics::machine::Machine;
+use crate::trim::fit::IdentifiedNumbers;
 
 /// Contribution to ln Λ if only one of both fits keeps the joint limits: ln 10⁶.
 const LIMITS_LOG_ODDS: f64 = 13.8;
@@ -23,35 +21,52 @@ const ROUNDING_LEVEL: f64 = 1e-10;
 /// Lower bound on relative residuals: smaller residuals are errors of the finite differences, and no evidence.
 const MIN_RELATIVE_RESIDUAL: f64 = 1e-6;
 
-/// A fit, its degrees of freedom as a fraction of the effective rows, and its violation of the joint limits, rad.
-pub(super) struct FitTrial {
-    pub fit: Fit,
-    share: f64,
+/// A fit of a measurement, as given or without a fault.
+pub(in crate::trim) struct FitTrial {
+    pub numbers: IdentifiedNumbers,
+    /// Force and moment; or the rate of a base that floats, and each rate against its angle.
+    pub channels: Vec<ChannelFit>,
+    /// Degrees of freedom as a fraction of the effective rows; values outside of 0.1 … 1 count as these.
+    pub share: f64,
+    /// Violation of the joint limits, rad.
     pub limit_violation: f64,
 }
 
-pub(super) fn try_fit(machine: &Machine, rows: &Regressor, limit_violation: f64) -> Result<FitTrial, TrimError> {
-    let estimate = estimate(machine, rows)?;
-    Ok(FitTrial { fit: estimate.fit, share: estimate.share.clamp(0.1, 1.0), limit_violation })
+/// What a fit leaves unexplained of one measured quantity.
+pub(in crate::trim) struct ChannelFit {
+    pub residual: Residual,
+    /// Effective number of independent rows.
+    pub effective: f64,
+    /// Largest root mean square value that a machine of this size could have in these motions.
+    pub largest: f64,
+    /// Shares of either fit below this are no evidence.
+    pub floor: f64,
+    /// Factor between the shares of two fits that is no evidence.
+    pub slack: f64,
 }
 
-/// Returns the residuals of force and of moment as fractions of the measured values.
-pub(super) fn shares(fit: &Fit) -> [f64; 2] {
-    [0, 1].map(|of| fit.noise[of] / fit.size[of].max(f64::MIN_POSITIVE))
+impl FitTrial {
+    /// Returns what is not explained.
+    pub fn residuals(&self) -> Vec<Residual> {
+        self.channels.iter().map(|channel| channel.residual.clone()).collect()
+    }
 }
 
 /// Returns ln Λ for the decision, and ln Λ for the ranking; `None` if they cannot be computed.
 pub(super) fn likelihood_ratio(tolerances: &Tolerances, given: &FitTrial, other: &FitTrial) -> Option<[f64; 2]> {
-    let (was, now) = (&given.fit, &other.fit);
-    let residuals = |of: usize| {
-        let [before, after] = [was, now].map(|fit| shares(fit)[of].max(MIN_RELATIVE_RESIDUAL));
-        let evidence =
-            COUNTED_FRACTION * was.effective[of].min(now.effective[of]) * other.share * (before / after).ln();
+    let share = other.share.clamp(0.1, 1.0);
+    let evidence = |was: &ChannelFit, now: &ChannelFit| {
+        let floor = was.floor.max(now.floor).max(MIN_RELATIVE_RESIDUAL);
+        let [before, after] = [was, now].map(|fit| fit.residual.share.max(floor));
+        let (less, slack) = ((before / after).ln(), was.slack.ln());
+        let improvement = less.signum() * (less.abs() - slack).max(0.0);
+        let evidence = COUNTED_FRACTION * was.effective.min(now.effective) * share * improvement;
         // Residuals within rounding need no explanation: a balanced machine gives no force, whatever its unit.
-        let is_explained = was.noise[of] <= ROUNDING_LEVEL * was.largest[of];
+        let is_explained = was.residual.noise <= ROUNDING_LEVEL * was.largest;
         if is_explained { evidence.min(0.0) } else { evidence }
     };
-    let (before, after) = (tolerances.distance(was)?, tolerances.distance(now)?);
+    let residuals: f64 = given.channels.iter().zip(&other.channels).map(|(was, now)| evidence(was, now)).sum();
+    let (before, after) = (tolerances.distance(&given.numbers)?, tolerances.distance(&other.numbers)?);
     // A change of units changes which unknowns are well determined; take the larger number.
     let p = before.numbers.max(after.numbers);
     let scale = before.balance.max(after.balance) + p;
@@ -60,7 +75,7 @@ pub(super) fn likelihood_ratio(tolerances: &Tolerances, given: &FitTrial, other:
         [was, now] if was < LIMIT_KEPT_WITHIN && now > LIMIT_LEFT_BEYOND => -LIMITS_LOG_ODDS,
         _ => 0.0,
     };
-    let common = residuals(0) + residuals(1) + limits;
+    let common = residuals + limits;
     let momenta = 0.5 * p * ((before.momenta + scale) / (after.momenta + scale)).ln();
     // A distance below its expected value p is replaced by p.
     let all = 0.5 * p * (before.all.max(p) / after.all.max(p)).ln();

@@ -11,7 +11,8 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use crate::trim::{Fit, Unknown};
+use crate::trim::Unknown;
+use crate::trim::fit::IdentifiedNumbers;
 use stillbase_mechanics::balance::Condition;
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::Vector;
@@ -27,12 +28,12 @@ const MAX_ITERATIONS: usize = 10_000;
 
 /// Returns up to three unknowns whose values are impossible together, the largest contribution first; empty if positive
 /// masses can explain all values.
-pub(super) fn impossible_numbers(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
+pub(super) fn impossible_numbers(machine: &Machine, numbers: &IdentifiedNumbers) -> Vec<Unknown> {
     let (inertia, n) = (Inertia::of(machine), machine.drives());
-    let unknowns = &fit.unknowns;
+    let unknowns = &numbers.unknowns;
     let from = unknowns.of_balance();
     let rotors = |k: usize| inertia.rotors[..n].iter().map(|rotor| rotor.inertia * rotor.rates[k]).sum::<f64>();
-    let drives: Vec<usize> = (0..n).filter(|k| fit.identifiable[from + k]).collect();
+    let drives: Vec<usize> = (0..n).filter(|k| numbers.identifiable[from + k]).collect();
     let size = |k: usize| (inertia.momentum(k) - rotors(k)).abs().max(1e-9 * inertia.diagonal(k)).sqrt();
     let all_identifiable = |of: &[usize]| {
         let used = |condition: &Condition| match condition {
@@ -40,7 +41,7 @@ pub(super) fn impossible_numbers(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
             Condition::Coupling(k, l) => of.contains(k) && of.contains(l),
         };
         let conditions = unknowns.conditions().iter().enumerate();
-        conditions.filter(|(_, c)| used(c)).all(|(i, _)| fit.identifiable[2 * i] && fit.identifiable[2 * i + 1])
+        conditions.filter(|(_, c)| used(c)).all(|(i, _)| numbers.identifiable[2 * i] && numbers.identifiable[2 * i + 1])
     };
     // First each drive alone, then all drives with their first moments, if all these unknowns are identifiable.
     let alone = drives.iter().map(|k| (vec![*k], false));
@@ -57,7 +58,7 @@ pub(super) fn impossible_numbers(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
             z[(0, 0)] = Vector::new(1.0, 0.0);
         }
         for (i, k) in of.iter().enumerate() {
-            let own = fit.measured[from + k] - rotors(*k);
+            let own = numbers.measured[from + k] - rotors(*k);
             z[(i + offset, i + offset)] = Vector::new(own * scale(i + offset).powi(2), 0.0);
         }
         // Row and column in Z of each condition: g_k for (7), C_kl for (8).
@@ -71,7 +72,7 @@ pub(super) fn impossible_numbers(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
             .collect();
         for (i, at) in places.iter().enumerate() {
             if let Some((a, b)) = *at {
-                let value = Vector::new(fit.measured[2 * i], fit.measured[2 * i + 1]) * (scale(a) * scale(b));
+                let value = Vector::new(numbers.measured[2 * i], numbers.measured[2 * i + 1]) * (scale(a) * scale(b));
                 (z[(a, b)], z[(b, a)]) = (value, value.conj());
             }
         }
@@ -89,10 +90,11 @@ pub(super) fn impossible_numbers(machine: &Machine, fit: &Fit) -> Vec<Unknown> {
                 (slope[2 * i], slope[2 * i + 1]) = (by.re, -by.im);
             }
         }
-        let half = fit.critical * slope.dot(&(&fit.covariance * &slope)).max(0.0).sqrt();
+        let half = numbers.critical * slope.dot(&(&numbers.covariance * &slope)).max(0.0).sqrt();
         if value + MIN_HALF_WIDTHS * half < -EIGENVALUE_ROUNDING {
             // Contribution of each unknown to the eigenvalue.
-            let contribution = |i: usize| slope[i] * (fit.measured[i] - if i < from { 0.0 } else { rotors(i - from) });
+            let contribution =
+                |i: usize| slope[i] * (numbers.measured[i] - if i < from { 0.0 } else { rotors(i - from) });
             let mut all: Vec<usize> = (0..unknowns.count()).filter(|i| contribution(*i) < 0.0).collect();
             all.sort_by(|a, b| contribution(*a).total_cmp(&contribution(*b)));
             return all.into_iter().take(3).map(|i| unknowns.at(i)).collect();

@@ -14,10 +14,8 @@ pub struct Doubt {
     pub impossible: Vec<MeasuredValue>,
     /// The unknown that deviates most from its value after the likeliest correction, or else from the file.
     pub furthest: Option<MeasuredValue>,
-    /// Root mean square residuals of force, N, and of moment, N m, as given.
-    pub noise: [f64; 2],
-    /// These residuals as fractions of the measured values.
-    pub shares: [f64; 2],
+    /// What is not explained of each measured quantity as given.
+    pub residuals: Vec<Residual>,
     /// Violation of the limits of relative angles as given, rad; 0 if there is none.
     pub limit_violation: f64,
 }
@@ -31,14 +29,23 @@ pub struct Cause {
     pub want: String,
     /// log₁₀ of the likelihood ratio to the measurement as given.
     pub odds: f64,
-    /// Root mean square residuals of force, N, and of moment, N m, after correction.
-    pub noise: [f64; 2],
-    /// These residuals as fractions of the corrected measured values.
-    pub shares: [f64; 2],
+    /// What is not explained of each measured quantity after correction.
+    pub residuals: Vec<Residual>,
     /// Value, after correction, of the unknown in [`Doubt::furthest`].
     pub furthest: Option<f64>,
     /// Violation of the limits of relative angles after correction, rad; 0 if there is none.
     pub limit_violation: f64,
+}
+
+/// What a fit leaves unexplained of a measured quantity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Residual {
+    /// Unit of the quantity, and what it is of if there are several with this unit: N, N m, rad/s of rate/1.
+    pub unit: String,
+    /// Root mean square residual.
+    pub noise: f64,
+    /// What counts of it, as a fraction of the root mean square of the measured values.
+    pub share: f64,
 }
 
 /// Value of an unknown by the measurement as given.
@@ -90,11 +97,11 @@ impl fmt::Display for Doubt {
             }
         }
         if let Some(then) = then {
-            for (i, unit) in ["N", "N m"].into_iter().enumerate() {
+            for (was, now) in self.residuals.iter().zip(&then.residuals) {
                 // A residual that changed only because its unit changed is no evidence.
-                if self.shares[i] > 1.1 * then.shares[i] {
-                    write!(f, "\n  As given, {} {unit} are not explained;", number(self.noise[i]))?;
-                    write!(f, " without the fault {}.", number(then.noise[i]))?;
+                if was.share > 1.1 * now.share {
+                    write!(f, "\n  As given, {} {} are not explained;", number(was.noise), was.unit)?;
+                    write!(f, " without the fault {}.", number(now.noise))?;
                 }
             }
             if self.limit_violation > LIMIT_LEFT_BEYOND && then.limit_violation < LIMIT_KEPT_WITHIN {

@@ -16,7 +16,8 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use crate::trim::{Fit, Unknown, Unknowns};
+use crate::trim::fit::IdentifiedNumbers;
+use crate::trim::{Unknown, Unknowns};
 use stillbase_mechanics::balance::Condition;
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::Vector;
@@ -128,8 +129,8 @@ impl Tolerances {
     }
 
     /// Returns the distance of a measured machine from its file; `None` if it cannot be computed.
-    pub fn distance(&self, fit: &Fit) -> Option<Distance> {
-        let off = &fit.measured - &fit.nominal;
+    pub fn distance(&self, numbers: &IdentifiedNumbers) -> Option<Distance> {
+        let off = &numbers.measured - &numbers.nominal;
         let part = |of: &dyn Fn(usize) -> bool| -> Option<[f64; 2]> {
             let scale = |i: usize| if of(i) { 1.0 } else { FREE_FACTOR };
             let entry = |i: usize, j: usize| match of(i) == of(j) {
@@ -137,7 +138,7 @@ impl Tolerances {
                 false => 0.0,
             };
             let factor = DMatrix::from_fn(off.len(), off.len(), entry).cholesky()?.l();
-            let seen = factor.tr_mul(&(&fit.information * &factor));
+            let seen = factor.tr_mul(&(&numbers.information * &factor));
             let eigen = SymmetricEigen::try_new(seen, f64::EPSILON, MAX_ITERATIONS)?;
             let apart = eigen.eigenvectors.tr_mul(&factor.solve_lower_triangular(&off)?);
             let share = eigen.eigenvalues.map(|value| value.max(0.0) / (1.0 + value.max(0.0)));
@@ -146,9 +147,9 @@ impl Tolerances {
         };
         let [momenta, _] = part(&|i| i >= self.balance)?;
         let [balance, _] = part(&|i| i < self.balance)?;
-        let [all, numbers] = part(&|_| true)?;
+        let [all, count] = part(&|_| true)?;
         let is_balanced = !self.known[..self.balance].contains(&true);
         let known = if is_balanced { None } else { Some(part(&|i| self.known[i])?) };
-        Some(Distance { momenta, balance, all, numbers, known })
+        Some(Distance { momenta, balance, all, numbers: count, known })
     }
 }

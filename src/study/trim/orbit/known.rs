@@ -1,4 +1,4 @@
-//! [`KnownValue`]: masses and inertias that [`orbit_trim`](super::orbit_trim) takes as known, and how far it depends on them.
+//! [`KnownValue`]: masses and inertias that [`orbit_trim`](super::orbit_trim()) takes as known, and how far it depends on them.
 //!
 //! Without a wheel the fit takes up any error of these values: it turns into wrong coefficients, and nothing of it is left
 //! in the rates. So a fit of all unknowns cannot tell it. But if one known value alone explains the rates as well as
@@ -7,7 +7,8 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::orbit::{Craft, OrbitBase, OrbitMotion};
+use super::craft::Craft;
+use super::motion::{OrbitBase, OrbitMotion};
 use nalgebra::DVector;
 use stillbase_mechanics::machine::{Inertia, Machine};
 

@@ -1,0 +1,292 @@
+//! [`OrbitMeasurement`]: motions in orbit, tested for the usual mistakes of their columns.
+//!
+//! Two quantities speak for a fault: what a fit leaves unexplained of the base rate, and what each measured rate leaves of the
+//! differences of its angle. Of the first, only what varies slowly counts: noise of the base rate is in absolute rates of the
+//! drives, too, and a wrong hypothesis would explain noise by itself.
+
+use nalgebra::DMatrix;
+
+use super::fit::{OrbitFit, correlation_length};
+use super::motion::{BASE_RATE, DEGREE, OrbitBase, OrbitMotion, RPM};
+use crate::trim::doubt::{
+    Angles, ChannelFit, ColumnNames, FaultWords, FitTrial, NamedAngles, Residual, Suspected, angle_faults,
+    limit_violation, list,
+};
+use crate::trim::error::TrimError;
+use crate::trim::long_run::bartlett_lags;
+use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::planar::PerDrive;
+
+/// Maximum number of rows that are fitted.
+const MAX_ROWS: usize = 3000;
+/// Fraction of a rate that its angle need not explain: angles are rounded and noisy, and differences are not derivatives.
+const RATE_FLOOR: f64 = 0.02;
+/// Factor between the residuals of two fits that is no evidence of a fault.
+const SLACK: f64 = 2.0;
+/// Residuals below this fraction of the base rate are rounding errors.
+const EXACT: f64 = 1e-6;
+/// Number of standard deviations of a slow part of white noise that count as zero.
+const SURE: f64 = 1.5;
+
+/// Numbers of one row as the columns say.
+struct Columns {
+    /// Absolute angles, rad, and rates, rad/s, of the drives.
+    angles: PerDrive,
+    rates: PerDrive,
+    /// Angle, rad, and rate, rad/s, of the base.
+    attitude: f64,
+    base_rate: f64,
+    /// Absolute rate of the wheel, rad/s.
+    wheel_rate: f64,
+}
+
+/// A mistake, and the row corrected for it.
+struct OrbitFault {
+    words: FaultWords,
+    correct: Box<dyn Fn(&mut Columns) + Send + Sync>,
+}
+
+/// Motions with their fit as given and the faults that are tested.
+pub(super) struct OrbitMeasurement {
+    base: OrbitBase,
+    motions: Vec<OrbitMotion>,
+    given: FitTrial,
+    faults: Vec<OrbitFault>,
+}
+
+impl OrbitMeasurement {
+    /// Fits motions as given.
+    ///
+    /// # Errors
+    /// As [`OrbitFit::of`].
+    pub fn of(machine: &Machine, base: OrbitBase, motions: &[OrbitMotion]) -> Result<Self, TrimError> {
+        let given = tried(machine, &base, motions)?;
+        let has_wheel = motions.iter().flat_map(|motion| &motion.wheel_rate).any(|rate| *rate != 0.0);
+        Ok(Self { base, motions: motions.to_vec(), given, faults: OrbitFault::all(machine, has_wheel) })
+    }
+}
+
+impl Suspected for OrbitMeasurement {
+    fn given(&self) -> &FitTrial {
+        &self.given
+    }
+
+    fn fault(&self, index: usize) -> Option<&FaultWords> {
+        self.faults.get(index).map(|fault| &fault.words)
+    }
+
+    fn faults(&self) -> usize {
+        self.faults.len()
+    }
+
+    fn without(&self, machine: &Machine, fault: usize) -> Option<(FitTrial, Option<FitTrial>)> {
+        let fault = self.faults.get(fault)?;
+        let motions: Vec<OrbitMotion> = self.motions.iter().map(|motion| fault.undo(motion)).collect();
+        let other = tried(machine, &self.base, &motions).ok()?;
+        // What explains the rates worse is no explanation, however near to the file it comes.
+        let [was, now] = [&self.given, &other].map(|fit| &fit.channels[0]);
+        let floor = was.floor.max(now.floor).max(EXACT);
+        (now.residual.share <= SLACK * was.residual.share.max(floor)).then_some((other, None))
+    }
+}
+
+fn tried(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) -> Result<FitTrial, TrimError> {
+    let rows: usize = motions.iter().map(OrbitMotion::rows).sum();
+    let thinned: Vec<OrbitMotion> = motions.iter().map(|motion| motion.every(rows.div_ceil(MAX_ROWS))).collect();
+    let fit = OrbitFit::of(machine, base, &thinned)?;
+    let (slow, size) = (fit.slow_noise(), fit.size.max(f64::MIN_POSITIVE));
+    // By chance, a part of white noise varies slowly, too.
+    let floor = SURE * (2.0 / (fit.errors.len() as f64).sqrt()).sqrt() * white_noise(&thinned) / size;
+    let rate = ChannelFit {
+        residual: Residual { unit: format!("rad/s of {BASE_RATE}"), noise: fit.noise, share: slow / size },
+        effective: fit.effective,
+        largest: fit.largest,
+        floor,
+        slack: SLACK,
+    };
+    let names = machine.spec().drives.iter().map(|drive| format!("rate/{}", drive.name));
+    let names = [BASE_RATE.to_owned()].into_iter().chain(names);
+    let channels = [rate].into_iter().chain(names.enumerate().map(|(k, name)| rate_against_angle(motions, k, &name)));
+    Ok(FitTrial {
+        channels: channels.collect(),
+        share: (fit.effective - fit.rank as f64) / fit.effective,
+        limit_violation: limit_violation(machine, motions.iter().flat_map(|motion| &motion.angles)),
+        numbers: fit.numbers,
+    })
+}
+
+/// Returns the standard deviation of the noise of the base rate, rad/s, by second differences: the same for all faults.
+fn white_noise(motions: &[OrbitMotion]) -> f64 {
+    let differences = || {
+        let triples = motions.iter().flat_map(|motion| motion.base_rate.windows(3));
+        triples.map(|rate| (rate[0] - 2.0 * rate[1] + rate[2]).powi(2) / 6.0)
+    };
+    (differences().sum::<f64>() / differences().count().max(1) as f64).sqrt()
+}
+
+/// Compares the rate of the base, 0, or of drive k, k + 1, with the differences of its angle.
+fn rate_against_angle(motions: &[OrbitMotion], of: usize, name: &str) -> ChannelFit {
+    let counts: Vec<usize> = motions.iter().map(|motion| motion.rows() - 1).collect();
+    let at = |motion: &OrbitMotion, row: usize| match of.checked_sub(1) {
+        None => [motion.attitude[row], motion.base_rate[row]],
+        Some(k) => [motion.angles[row][k] + motion.attitude[row], motion.rates[row][k] + motion.base_rate[row]],
+    };
+    let (mut errors, mut size) = (Vec::new(), 0.0);
+    for motion in motions {
+        for row in 1..motion.rows() {
+            let ([before, earlier], [q, rate]) = (at(motion, row - 1), at(motion, row));
+            let mean = 0.5 * (earlier + rate);
+            errors.push((q - before) / (motion.t[row] - motion.t[row - 1]) - mean);
+            size += mean * mean;
+        }
+    }
+    let count = errors.len();
+    let lags = bartlett_lags(&[errors.as_slice()], &counts, 1);
+    let errors = DMatrix::from_vec(count, 1, errors);
+    let [noise, size] = [errors.norm_squared(), size].map(|sum| (sum / count.max(1) as f64).sqrt());
+    ChannelFit {
+        residual: Residual {
+            unit: format!("rad/s of {name} against its angle"),
+            noise,
+            share: noise / size.max(f64::MIN_POSITIVE),
+        },
+        effective: count as f64 / correlation_length(&errors, &counts, lags),
+        largest: size,
+        floor: RATE_FLOOR,
+        slack: SLACK,
+    }
+}
+
+impl OrbitFault {
+    fn of(
+        what: impl Into<String>,
+        want: impl Into<String>,
+        correct: impl Fn(&mut Columns) + Send + Sync + 'static,
+    ) -> Self {
+        let words = FaultWords { what: what.into(), want: want.into(), mistakes: 1 };
+        Self { words, correct: Box::new(correct) }
+    }
+
+    /// Returns all faults that are tested: angles and rates of the drives that count from elsewhere, the other way, in
+    /// another order or unit; the same of the base and its wheel.
+    fn all(machine: &Machine, has_wheel: bool) -> Vec<Self> {
+        let names = |what: &str| -> Vec<String> {
+            machine.spec().drives.iter().map(|drive| format!("{what}/{}", drive.name)).collect()
+        };
+        let (angles, rates) = (names("angle"), names("rate"));
+        let n = angles.len();
+        let columns = ColumnNames { angles: angles.clone(), with: "with rates" };
+        let of_angles = |(words, by): NamedAngles| Self {
+            words,
+            correct: Box::new(move |row| {
+                (row.angles, row.rates) = (by.angles(&row.angles), by.rates(&row.rates));
+            }),
+        };
+        let mut all: Vec<Self> = angle_faults(machine, &columns).into_iter().map(of_angles).collect();
+        let seen_from_base = |row: &mut Columns| {
+            row.angles = PerDrive::from_fn(row.angles.len(), |k| row.angles[k] + row.attitude);
+            row.rates = PerDrive::from_fn(row.rates.len(), |k| row.rates[k] + row.base_rate);
+        };
+        let add = format!("attitude/base added to each angle, and {BASE_RATE} to each rate");
+        all.push(Self::of("the drives are measured relative to the base, not to space", add.clone(), seen_from_base));
+        if n > 1 {
+            let sums = Angles::linear(n, |k, l| if l <= k { 1.0 } else { 0.0 });
+            let first = format!("{} relative to the base and {} to the drive before", angles[0], list(&angles[1..]));
+            let want = format!("absolute ones: in each row, sums of the angles up to each drive, and {add}");
+            all.push(Self::of(first, want, move |row| {
+                (row.angles, row.rates) = (sums.angles(&row.angles), sums.rates(&row.rates));
+                seen_from_base(row);
+            }));
+            if let Some((words, by)) = columns.relative_of_file(machine) {
+                let what = format!("{}, and {} is relative to the base", words.what, angles[0]);
+                let want = format!("{}, with {add}", words.want);
+                all.push(Self::of(what, want, move |row| {
+                    (row.angles, row.rates) = (by.angles(&row.angles), by.rates(&row.rates));
+                    seen_from_base(row);
+                }));
+            }
+        }
+        for (k, rate) in rates.iter().enumerate() {
+            all.push(Self::of(format!("{rate} has the wrong sign"), format!("{rate} times −1"), move |row| {
+                row.rates = PerDrive::from_fn(row.rates.len(), |l| if k == l { -row.rates[l] } else { row.rates[l] });
+            }));
+        }
+        let turn = |factor: f64| {
+            move |row: &mut Columns| {
+                (row.attitude, row.base_rate) = (factor * row.attitude, factor * row.base_rate);
+            }
+        };
+        let both = format!("attitude/base and {BASE_RATE}");
+        let in_degrees = |unit: &str, column: &str| format!("the unit in the header, as {column} ({unit})");
+        let degrees = |row: &mut Columns| {
+            (row.angles, row.rates) = (row.angles.scaled(DEGREE), row.rates.scaled(DEGREE));
+        };
+        all.extend([
+            Self::of(format!("{both} count the other way"), format!("{both} times −1"), turn(-1.0)),
+            Self::of(format!("{BASE_RATE} has the wrong sign"), format!("{BASE_RATE} times −1"), |row| {
+                row.base_rate = -row.base_rate;
+            }),
+            Self::of(
+                format!("{both} are in degrees, not in radians"),
+                in_degrees("deg", "attitude/base"),
+                turn(DEGREE),
+            ),
+            Self::of(
+                format!("{BASE_RATE} is in degrees per second, not in rad/s"),
+                in_degrees("deg/s", BASE_RATE),
+                |row| row.base_rate *= DEGREE,
+            ),
+            Self::of(
+                "angles and rates of drives and base are in degrees, not in radians",
+                in_degrees("deg", "attitude/base"),
+                move |row| {
+                    degrees(row);
+                    turn(DEGREE)(row);
+                },
+            ),
+            Self::of(
+                format!("{} are in degrees per second, not in rad/s", list(&rates)),
+                in_degrees("deg/s", &rates[0]),
+                |row| row.rates = row.rates.scaled(DEGREE),
+            ),
+        ]);
+        if has_wheel {
+            let relative = format!("{BASE_RATE} added to wheel/rate");
+            all.extend([
+                Self::of("wheel/rate is relative to the base, not to space", relative, |row| {
+                    row.wheel_rate += row.base_rate;
+                }),
+                Self::of("wheel/rate has the wrong sign", "wheel/rate times −1", |row| {
+                    row.wheel_rate = -row.wheel_rate
+                }),
+                Self::of("wheel/rate is in turns per minute, not in rad/s", in_degrees("rpm", "wheel/rate"), |row| {
+                    row.wheel_rate *= RPM;
+                }),
+            ]);
+        }
+        all
+    }
+
+    /// Returns a motion corrected for this fault.
+    fn undo(&self, motion: &OrbitMotion) -> OrbitMotion {
+        let mut all = motion.clone();
+        for row in 0..motion.rows() {
+            let [turn, rate] = [motion.attitude[row], motion.base_rate[row]];
+            let seen = |of: &PerDrive, base: f64| PerDrive::from_fn(of.len(), |k| of[k] + base);
+            let mut columns = Columns {
+                angles: seen(&motion.angles[row], turn),
+                rates: seen(&motion.rates[row], rate),
+                attitude: turn,
+                base_rate: rate,
+                wheel_rate: motion.wheel_rate[row],
+            };
+            (self.correct)(&mut columns);
+            all.attitude[row] = columns.attitude;
+            all.base_rate[row] = columns.base_rate;
+            all.angles[row] = seen(&columns.angles, -columns.attitude);
+            all.rates[row] = seen(&columns.rates, -columns.base_rate);
+            all.wheel_rate[row] = columns.wheel_rate;
+        }
+        all
+    }
+}
