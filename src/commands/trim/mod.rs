@@ -47,7 +47,7 @@ use super::strict::Strict;
 /// In orbit no force can be measured: with `--base` the files are of the machine on a base that floats, one motion each, with
 /// the columns that `simulate` writes: angle/… and rate/… of every drive, attitude/base, attitude_rate/base, and wheel/rate.
 /// Angular momentum stays constant, which tells first moments and couplings relative to the inertia of the base, with
-/// their intervals. Nothing is changed.
+/// their intervals. Usual mistakes of the columns are tested here, too. Nothing is changed.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:

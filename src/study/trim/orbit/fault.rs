@@ -115,11 +115,11 @@ fn tried(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) -> Result
     })
 }
 
-/// Returns the standard deviation of the noise of the base rate, rad/s, by second differences: the same for all faults.
+/// Returns the standard deviation of the noise of the base rate, rad/s, by fourth differences: the same for all faults.
 fn white_noise(motions: &[OrbitMotion]) -> f64 {
     let differences = || {
-        let triples = motions.iter().flat_map(|motion| motion.base_rate.windows(3));
-        triples.map(|rate| (rate[0] - 2.0 * rate[1] + rate[2]).powi(2) / 6.0)
+        let rows = motions.iter().flat_map(|motion| motion.base_rate.windows(5));
+        rows.map(|rate| (rate[0] - 4.0 * (rate[1] + rate[3]) + 6.0 * rate[2] + rate[4]).powi(2) / 70.0)
     };
     (differences().sum::<f64>() / differences().count().max(1) as f64).sqrt()
 }
