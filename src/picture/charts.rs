@@ -53,6 +53,8 @@ pub enum ChartPlace {
     Pins,
     /// In recordings only, on the page of internal signals.
     Inside,
+    /// In recordings of several cases only, where these are overlaid.
+    Compared,
 }
 
 /// A chart without signals; the base of all others.
@@ -95,6 +97,17 @@ const BASE: Chart = Chart {
     signals: &["base", "attitude"],
     min_range: 0.01,
     scale: 1e3,
+    ..EMPTY_CHART
+};
+/// A motion that leaves the attitude of a base that floats may well shift it, so its turn is compared by itself.
+const TURN: Chart = Chart {
+    title: "Turn of the base",
+    unit: "mrad",
+    signals: &["attitude/base"],
+    min_range: 0.01,
+    scale: 1e3,
+    place: ChartPlace::Compared,
+    is_overlaid: true,
     ..EMPTY_CHART
 };
 const FRICTION: Chart =
@@ -153,6 +166,7 @@ pub fn charts(scenario: &Scenario, wheels_differ: bool) -> Vec<Chart> {
     // There is no pose constant b if no drive exerts a moment on the base, or if λ depends strongly on the pose.
     list.extend(Some(POSE).filter(|_| constant_inertia(&scenario.machine).is_ok()));
     list.extend([EACH_PIN, TILT, TRANSMISSION, CHANGE_POINT]);
+    list.extend(Some(TURN).filter(|_| scenario.base.moves()));
     let size = load_scale(scenario);
     for chart in list.iter_mut().filter(|chart| chart.unit.starts_with('N')) {
         chart.min_range *= size;
@@ -177,7 +191,7 @@ impl Chart {
         match self.place {
             ChartPlace::Beside => true,
             ChartPlace::Pins => pins,
-            ChartPlace::Inside => false,
+            ChartPlace::Inside | ChartPlace::Compared => false,
         }
     }
 

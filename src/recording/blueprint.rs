@@ -303,7 +303,7 @@ impl Layout<'_> {
         name: &str,
         holds: fn(&Chart, &str) -> bool,
     ) -> Result<Option<Part>, StoreError> {
-        let is_here = |chart: &&Chart| holds(chart, group_of(chart.signals[0]));
+        let is_here = |chart: &&Chart| chart.place != ChartPlace::Compared && holds(chart, group_of(chart.signals[0]));
         let charts: Vec<&Chart> = case.charts.iter().map(|(chart, _)| chart).filter(is_here).collect();
         let mut parts = Vec::new();
         for chart in &charts {
@@ -404,17 +404,18 @@ impl Layout<'_> {
     /// Adds a plot of one signal for all cases, with series named by case.
     fn compared(&mut self, cases: &[Preview], chart: &Chart, range: [f64; 2]) -> Result<Part, StoreError> {
         let of = |case: &Preview| case.topics.iter().find(|topic| topic.name == chart.signals[0]).cloned();
-        let topics: Vec<_> = cases.iter().filter_map(|case| Some((case, of(case)?))).collect();
-        let contents: Vec<_> = topics.iter().map(|(case, topic)| topic.path(&case.root).to_string()).collect();
+        // Each case keeps its colour, also where others have no such signal.
+        let topics: Vec<_> = cases.iter().enumerate().filter_map(|(i, case)| Some((i, case, of(case)?))).collect();
+        let contents: Vec<_> = topics.iter().map(|(_, case, topic)| topic.path(&case.root).to_string()).collect();
         let legend = cases.len() <= MAX_LEGEND_CASES;
         let range = if legend { with_legend_space(range, cases.len()) } else { range };
         // These plots take the lower half of the window.
         let range = with_ticks(range, 2);
         let plot = self.time_series(&name_of(chart), &EntityPath::root(), &contents, Some(range), legend)?;
-        for (i, (case, topic)) in topics.iter().enumerate() {
+        for (i, case, topic) in &topics {
             let style = SeriesLines::new()
                 .with_names(topic.signals.iter().map(|signal| format!("{} · {}", case.name, series_name(signal))))
-                .with_colors([colour(self.palette.run(i))])
+                .with_colors([colour(self.palette.run(*i))])
                 .with_widths([1.8]);
             self.draw_as(&plot, &topic.path(&case.root), &style)?;
         }

@@ -72,8 +72,11 @@ impl Preview {
         let topics = Topic::all(signals.clone(), &charts);
         let mut charts: Vec<_> = charts.into_iter().map(|chart| (chart, none)).collect();
         charts.retain(|(chart, _)| signals.iter().any(|signal| chart.contains(signal)));
-        let held = |signal: &Signal| charts.iter().position(|(chart, _)| chart.contains(signal));
-        let drawn: Vec<_> = signals.iter().filter_map(|signal| Some((held(signal)?, signal.clone()))).collect();
+        let held = |signal: Signal| {
+            let of = charts.iter().enumerate().filter(move |(_, (chart, _))| chart.contains(&signal));
+            of.map(|(i, _)| i).collect::<Vec<_>>()
+        };
+        let drawn: Vec<_> = signals.iter().map(|signal| (held(signal.clone()), signal.clone())).collect();
         let (mut b, mut first) = (none, None);
         let (mut extent, mut linkage) = (Vec::new(), None::<(Machine, LinkageModel)>);
         let every = (steps(scenario) / EXTENT_POSES).max(1);
@@ -86,7 +89,9 @@ impl Preview {
                 extent.extend(ends(known, frame));
             }
             wider(&mut b, frame.b);
-            drawn.iter().for_each(|(i, signal)| wider(&mut charts[*i].1, signal.value(frame)));
+            for (held, signal) in &drawn {
+                held.iter().for_each(|i| wider(&mut charts[*i].1, signal.value(frame)));
+            }
             !frame.step.is_multiple_of(1024) || tick(frame.step)
         })?;
         // A limit is drawn under the same condition as in the window.

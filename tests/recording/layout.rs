@@ -2,7 +2,7 @@
 
 use super::design::tensor_values;
 use super::*;
-use stillbase::picture::charts::charts;
+use stillbase::picture::charts::{ChartPlace, charts};
 use stillbase::picture::scene::palette::{Theme, palette};
 
 #[test]
@@ -213,7 +213,8 @@ fn rounding_does_not_fill_a_plot() {
         let classes = layout_texts(&contents, "ViewBlueprint:class_identifier");
         let known = signals(&scenario.machine);
         let mut plots = charts(scenario, false);
-        plots.retain(|chart| known.iter().any(|signal| chart.contains(signal)));
+        // Those that compare cases are not of one case alone.
+        plots.retain(|chart| chart.place != ChartPlace::Compared && known.iter().any(|signal| chart.contains(signal)));
         let views: Vec<&String> =
             classes.iter().filter(|(_, class)| class[0] == "TimeSeries").map(|(view, _)| view).collect();
         assert_eq!(views.len(), plots.len(), "{name}");
@@ -249,4 +250,19 @@ fn rounding_does_not_fill_a_plot() {
     }
     assert!(flat > 50 && still > 10, "{flat} signals stand still, {still} but for rounding");
     assert!(bar_plots > 10, "only {bar_plots} plots of bars");
+}
+
+/// Where a base floats, the cases of a recording are compared by its turn, too: it is what a silent arm keeps.
+#[test]
+fn the_turn_of_the_base_is_compared() {
+    let folder = Folder::new("turn");
+    let titles = |names: &[&str], file: &str| {
+        record_in(&folder, file, &names.iter().map(|name| short(name)).collect::<Vec<_>>()).expect("cases");
+        let contents = Contents::of(&folder.path(file));
+        layout_texts(&contents, "ViewBlueprint:display_name").into_values().map(|title| title[0].clone()).collect()
+    };
+    let both: Vec<String> = titles(&["ets-vii", "ets-vii-silent"], "both.rrd");
+    assert!(both.iter().any(|title| title.starts_with("Turn of the base")), "{both:?}");
+    let held: Vec<String> = titles(&["case-1", "case-2"], "held.rrd");
+    assert!(!held.iter().any(|title| title.starts_with("Turn of the base")), "{held:?}");
 }
