@@ -11,7 +11,7 @@ use stillbase_exchange::mjcf::{qpos, usual_pose};
 use stillbase_exchange::stl;
 use stillbase_exchange::urdf::joint;
 use stillbase_files::row_file::{RowForm, table_bytes};
-use stillbase_files::{FoundMachine, floating_base, left_out_of_base, scenario_on_free_base};
+use stillbase_files::{FoundMachine, floating_base, left_out_of_base};
 use stillbase_mechanics::machine::Machine;
 use stillbase_session::Run;
 use stillbase_session::scenario::Scenario;
@@ -22,7 +22,7 @@ use super::exit::print_message;
 use super::failure::Failure;
 use super::file_form::FileForm;
 use super::import_model::OfBase;
-use super::input::{MachineArgument, Settings, floating_scenario};
+use super::input::{MachineArgument, Settings, floating_scenario, say_base_is_held};
 use super::output::{Format, TextTable, write_file};
 
 /// Export a machine: a model for MuJoCo (.xml) or for ROS and Pinocchio (.urdf), drawings for cutting (.svg, .dxf),
@@ -136,13 +136,8 @@ impl ExportModelArguments {
             }
             false => self.pose.clone(),
         };
-        if let Some(afloat) = scenario_on_free_base(&machine).filter(|_| base.is_none() && form.is_model()) {
-            print_message(format!(
-                "note: the base of {} is held; --base {} gives it the one of the scenario {}, which floats",
-                machine.name(),
-                afloat.name,
-                afloat.name
-            ));
+        if base.is_none() && form.is_model() {
+            say_base_is_held(&machine);
         }
         let cut = self.dimensions.cut(&machine);
         let exported = Exported { machine: &machine, base: floating.as_ref(), pose: &pose, cut: &cut };

@@ -17,7 +17,7 @@ use stillbase_study::import::{GivenMotion, ImportQuery, ImportedMotion, MotionIm
 
 use super::exit::print_message;
 use super::failure::Failure;
-use super::input::{self, DEFAULT_SCENARIO, Settings, above_zero, pose_constant};
+use super::input::{self, DEFAULT_SCENARIO, Settings, above_zero, floating_scenario, pose_constant, say_base_is_held};
 use super::output::{Format, check_output};
 use super::remedy::option;
 use super::strict::Strict;
@@ -35,6 +35,7 @@ use table::table;
 Examples:
   stillbase import motion.csv
   stillbase import motion.csv --smooth 20 -o quiet.toml     also writes quiet-given.toml
+  stillbase import motion.csv --machine spot --base spot    on a base that floats
   stillbase headless quiet.toml quiet-given.toml -o both.rrd
   stillbase export quiet.toml --rate 500 -o quiet.csv")]
 pub struct ImportArguments {
@@ -44,6 +45,9 @@ pub struct ImportArguments {
     /// A built-in machine or a TOML file
     #[arg(long, value_name = "MACHINE", default_value = "nine-link")]
     machine: String,
+    /// The machine stands on the base of this scenario, which floats; --set base.… changes it
+    #[arg(long, value_name = "SCENARIO")]
+    base: Option<String>,
     /// Pose constant of the proposal, rad; default: the one that moves the drives least, or for x and y the middle of
     /// the feasible interval
     #[arg(long, value_name = "B", value_parser = pose_constant)]
@@ -121,7 +125,12 @@ impl ImportArguments {
             check_output(file, self.force, &["toml"])?;
         }
         let MachineFile { machine, design } = input::machine(&self.machine)?;
-        let machine = self.settings.apply(machine)?;
+        let [of_base, own] = self.settings.base_apart(self.base.is_some());
+        let machine = own.apply(machine)?;
+        let afloat = self.base.as_ref().map(|base| floating_scenario(base, &of_base)).transpose()?;
+        if afloat.is_none() {
+            say_base_is_held(&machine);
+        }
         let name = self.file.display().to_string();
         let wanted = self.columns.map(|columns| match columns {
             Columns::Drives => Coordinates::Drives,
@@ -144,7 +153,7 @@ impl ImportArguments {
             Some(cut_off) => motion.smoothed(cut_off).map_err(|e| Failure::wrong_input(e).with_context("--smooth"))?,
             None => motion,
         };
-        let base = Scenario::builtin(DEFAULT_SCENARIO)
+        let usual = Scenario::builtin(DEFAULT_SCENARIO)
             .ok_or_else(|| Failure::wrong_input("the built-in scenarios are gone: want a whole installation"))?;
         let stem = files.as_ref().map_or_else(|| "import".to_owned(), |[file, _]| stem(file));
         let title = self.file.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
@@ -152,7 +161,9 @@ impl ImportArguments {
             Kept::Tip => PreservedPath::Tip,
             Kept::Joints => PreservedPath::Joints,
         });
-        let scenario = Shared(Scenario { name: stem, title, summary: String::new(), machine, design, ..base }.into());
+        let base = afloat.map_or(usual.base, |afloat| afloat.base);
+        let own = Scenario { name: stem, title, summary: String::new(), machine, design, base, ..usual };
+        let scenario = Shared(own.into());
         let request = Request { scenario, motion: Shared(motion.into()), b: self.b, keep };
         let found = answer_now::<ImportQuery>(request)?;
         found.notes.iter().for_each(|note| print_message(format!("note: {}", note.worded(option))));

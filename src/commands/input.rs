@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use stillbase_files::FoundMachine;
 use stillbase_files::table::{NoTable, TABLE_ENDINGS, Table};
 use stillbase_files::text::STANDARD_INPUT;
+use stillbase_files::{FoundMachine, scenario_on_free_base};
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
 use stillbase_mechanics::sketch::{Missing, resolve};
@@ -118,6 +118,13 @@ impl Settings {
     #[must_use]
     pub fn of_keys(&self, is_wanted: impl Fn(&str) -> bool) -> Self {
         Self { pairs: self.pairs.iter().filter(|(key, _)| is_wanted(key)).cloned().collect() }
+    }
+
+    /// Returns the settings of the base and all others. Without a scenario of a base, settings of the base are as all others.
+    #[must_use]
+    pub fn base_apart(&self, has_base: bool) -> [Self; 2] {
+        let is_of_base = |key: &str| key.split('.').next() == Some("base");
+        [true, false].map(|wanted| self.of_keys(|key| (has_base && is_of_base(key)) == wanted))
     }
 
     /// Whether a key is set.
@@ -236,6 +243,16 @@ pub fn floating_scenario(name: &str, settings: &Settings) -> Result<Scenario, Fa
     let found = scenario(name, settings)?;
     let why = || format!("--base {name}: its base does not float: want a scenario with [base] kind = \"free\"");
     if found.base.kind == BaseKind::Free { Ok(found) } else { Err(Failure::wrong_input(why())) }
+}
+
+/// Says which base a machine has that is taken as held, if a built-in scenario of its name has one that floats.
+pub fn say_base_is_held(machine: &Machine) {
+    if let Some(Scenario { name: afloat, .. }) = scenario_on_free_base(machine) {
+        let name = machine.name();
+        print_message(format!(
+            "note: the base of {name} is held; --base {afloat} gives it the one of the scenario {afloat}, which floats"
+        ));
+    }
 }
 
 /// Prints what was left out of a file.

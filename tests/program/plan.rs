@@ -1,5 +1,7 @@
 //! `plan`, `compare` and `import`.
 
+use std::f64::consts::FRAC_PI_2;
+
 use super::*;
 
 /// A plan says what it takes, its scenario does just that, and the fastest straight line is the closed form.
@@ -501,4 +503,32 @@ fn compare_has_the_ways_of_any_number_of_drives() {
         assert!(name == "scara" || peak("reactionless").expect("it runs") < 1e-6, "{name}");
         assert!(name != "four-drive" || peak("other-pose").expect("it runs") > 0.1);
     }
+}
+
+/// A motion of one's own on a base that floats: the quarter turn of the shoulder turns it by −34.921°, whatever the time law.
+#[test]
+fn a_motion_of_ones_own_turns_a_base_that_floats() {
+    let folder = folder("import-afloat");
+    let row = |i: u32| {
+        let s = f64::from(i) / 60.0;
+        let turn = FRAC_PI_2 * s * s * s * (10.0 - 15.0 * s + 6.0 * s * s);
+        let q = FRAC_PI_2 + turn;
+        format!("{},{q},{q},{q}\n", 8.0 * s)
+    };
+    let rows: String = (0..=60).map(row).collect();
+    std::fs::write(folder.join("swing.csv"), format!("t,q1,q2,q3\n{rows}")).expect("a file");
+    let import = ["import", "swing.csv", "--machine", "spot", "--json"];
+    let held = stillbase_in(&folder, &import);
+    assert!(text(&held.stderr).contains("--base spot"), "{}", text(&held.stderr));
+    let read = |out: &std::process::Output| -> Value { serde_json::from_slice(&out.stdout).expect("an object") };
+    let held = read(&held);
+    assert!(held["given"]["base_turn"].is_null(), "{held}");
+    let afloat = read(&stillbase_in(&folder, &[&import[..], &["--base", "spot"]].concat()));
+    let turn = afloat["given"]["base_turn"].as_f64().expect("a number");
+    assert!((turn + 34.921_f64.to_radians()).abs() < 1e-5, "{turn}");
+    let moment = |of: &Value| of["given"]["peak_base_moment"].as_f64().expect("a number");
+    assert!(moment(&afloat) < 0.7 * moment(&held), "{} {}", moment(&afloat), moment(&held));
+    let heavy = [&import[..], &["--base", "spot", "--set", "base.inertia=20"]].concat();
+    let heavy = read(&stillbase_in(&folder, &heavy))["given"]["base_turn"].as_f64().expect("a number");
+    assert!(heavy < 0.0 && heavy > 0.1 * turn, "{heavy}");
 }

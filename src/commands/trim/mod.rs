@@ -131,8 +131,7 @@ impl TrimArguments {
         };
         let MachineFile { machine, design } = input::machine(name)?;
         // In orbit, settings of the base belong to its scenario.
-        let [of_base, own] =
-            [true, false].map(|wanted| self.settings.of_keys(|key| (self.base.is_some() && is_of_base(key)) == wanted));
+        let [of_base, own] = self.settings.base_apart(self.base.is_some());
         let machine = own.apply(machine)?;
         let drives = machine.drives();
         if let Some(base) = &self.base {
@@ -253,11 +252,6 @@ impl TrimArguments {
         apply_bounds(&mut request, machine, &self.fix, &self.free, &self.bound)?;
         Ok(TrimMethod::Change(request))
     }
-}
-
-/// Returns whether a setting is one of the base.
-fn is_of_base(key: &str) -> bool {
-    key.split('.').next() == Some("base")
 }
 
 /// Converts the reason why measurements cannot be used into a failure.

@@ -12,6 +12,7 @@ use stillbase_planning::Motion;
 use stillbase_planning::curves::Coordinates;
 use stillbase_planning::following::nearest::Deviation;
 use stillbase_planning::forecast::Forecast;
+use stillbase_planning::off_plane::base_forecast::BaseForecast;
 use stillbase_planning::pose_space::{NoPoseSpace, PoseSpace};
 use stillbase_planning::timing::DriveLimits;
 use stillbase_query::{ProgressCallback, part};
@@ -34,6 +35,9 @@ pub struct MotionEffects {
     pub peak_base_force: f64,
     /// Root mean square of the dynamic |f_B|, N.
     pub rms_base_force: f64,
+    /// Angle by which a base that floats turns from start to end, rad.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub base_turn: Option<f64>,
     /// Largest |torque| of each motor, N m.
     pub peak_torque: Vec<f64>,
     /// Largest |rate| of each motor, rad/s.
@@ -151,6 +155,7 @@ impl MotionEvaluator {
             moment_impulse: f.impulse,
             peak_base_force: f.force,
             rms_base_force: f.force_rms,
+            base_turn: BaseForecast::of(&self.arm, motion).map(|turn| turn.angle_end),
             peak_torque: f.torque.to_vec(),
             peak_speed: f.speed.to_vec(),
             over: f.exceeded_limit.map(|(limit, factor)| (limit.to_string(), factor)),
