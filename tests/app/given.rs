@@ -6,7 +6,8 @@ use egui::Key;
 use egui_kittest::kittest::Queryable as _;
 use stillbase::app::{SessionCommand, TableAction, TableOptions, ViewChange, WindowCommand};
 use stillbase::files::row_file::RowFile;
-use stillbase::mechanics::machine::Inertia;
+use stillbase::mechanics::machine::{Inertia, Machine};
+use stillbase::mechanics::planar::PerDrive;
 use stillbase::picture::numbers::signed;
 use stillbase::picture::scene::palette::Theme;
 use stillbase::session::scenario::Scenario;
@@ -212,6 +213,19 @@ fn every_machine_takes_tables_of_its_own() {
     }
 }
 
+/// A motion in orbit as a table.
+fn orbit_table(machine: &Machine, motion: &OrbitMotion) -> String {
+    let names = |what: &str| machine.spec().drives.iter().map(|d| format!(",{what}/{}", d.name)).collect::<String>();
+    let mut text = format!("t{}{},attitude/base,attitude_rate/base\n", names("angle"), names("rate"));
+    for row in 0..motion.rows() {
+        let (turn, rate) = (motion.attitude[row], motion.base_rate[row]);
+        let all = |of: &PerDrive, base: f64| (0..of.len()).map(|k| format!(",{}", of[k] + base)).collect::<String>();
+        let [angles, rates] = [all(&motion.angles[row], turn), all(&motion.rates[row], rate)];
+        writeln!(text, "{}{angles}{rates},{turn},{rate}", motion.t[row]).expect("text");
+    }
+    text
+}
+
 /// Files of three motions on a base that floats are one measurement, with the numbers of `trim --base`.
 fn momentum_tells_what_is_off_in_orbit() {
     let folder = Folder::new("given");
@@ -270,6 +284,21 @@ fn momentum_tells_what_is_off_in_orbit() {
     h.state_mut().app_state_mut().carry_out(SessionCommand::Edit(base));
     h.run_steps(4);
     assert!(h.query_by_label_contains("or a base that is free").is_some());
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Undo);
+    // Drives measured relative to the base are doubted, and taken where the reader insists.
+    let mut spoilt = motions[2].clone();
+    let seen = |of: &PerDrive, base: f64| PerDrive::from_fn(of.len(), |k| of[k] - base);
+    for row in 0..spoilt.rows() {
+        spoilt.angles[row] = seen(&spoilt.angles[row], spoilt.attitude[row]);
+        spoilt.rates[row] = seen(&spoilt.rates[row], spoilt.base_rate[row]);
+    }
+    open(&mut h, folder.file("spoilt.csv", orbit_table(&scenario.machine, &spoilt)));
+    let mends = "the drives are measured relative to the base, not to space: want attitude/base added";
+    assert!(h.query_by_label_contains(mends).is_some());
+    h.get_by_label("Take the columns as they are").click();
+    h.run_steps(6);
+    assert!(h.query_by_label("Take the columns as they are").is_none());
+    assert!(h.query_by_label_contains("the drives are measured relative to the base").is_some(), "the doubt stays");
 }
 
 fn where_no_table_was_opened_one_is_asked_for() {
