@@ -130,8 +130,15 @@ fn what_a_table_is_of_is_told_by_its_columns() {
         "{found:?}"
     );
     assert!(matches!(on(&head, row, false), Ok(TableData::Measurement(_))), "a base that stands still");
-    let why = on(&head.replace("base rad,", "base (deg),"), row, true).expect_err("degrees").to_string();
-    assert_eq!(why, "in.csv: attitude/base: unit \"deg\": want rad");
+    let turned = on(&head.replace("base rad,", "base (deg),"), row, true).expect("degrees");
+    let turn = 0.1_f64.to_radians();
+    assert!(
+        matches!(turned, TableData::Orbit(ref motion) if (motion.attitude[0] - turn).abs() < 1e-15
+            && (motion.angles[0][1] - 3.7 + turn).abs() < 1e-12),
+        "{turned:?}"
+    );
+    let why = on(&head.replace("base rad,", "base (turns),"), row, true).expect_err("turns").to_string();
+    assert_eq!(why, "in.csv: attitude/base: unit \"turns\": want rad, or degrees for radians");
 }
 
 /// A table that is neither is refused, with the columns of both.
