@@ -311,7 +311,7 @@ fn doubted(file: &Machine, base: OrbitBase, motions: Vec<OrbitMotion>) -> Option
 #[test]
 fn mistakes_of_columns_are_named() {
     const DEGREES: f64 = 180.0 / std::f64::consts::PI;
-    let mistakes: [(&str, Spoil); 13] = [
+    let mistakes: [(&str, Spoil); 17] = [
         ("the drives are measured relative to the base", |row| row.each(|q, turn, k| q[k] - turn)),
         ("angle/shoulder relative to the base and angle/elbow and angle/wrist to the drive before", |row| {
             row.each(|q, turn, k| q[k] - if k == 0 { turn } else { q[k - 1] });
@@ -328,6 +328,16 @@ fn mistakes_of_columns_are_named() {
         }),
         ("attitude_rate/base has the wrong sign", |row| row.rate = -row.rate),
         ("attitude_rate/base is in degrees per second", |row| row.rate *= DEGREES),
+        ("angle/elbow has the wrong sign", |row| {
+            row.q = PerDrive::from_fn(row.q.len(), |k| if k == 1 { -row.q[k] } else { row.q[k] });
+        }),
+        ("the angles of the drives are measured relative to the base, their rates are not", |row| {
+            row.q = PerDrive::from_fn(row.q.len(), |k| row.q[k] - row.turn);
+        }),
+        ("angle/shoulder, angle/elbow and angle/wrist are in degrees, their rates are not", |row| {
+            row.q = row.q.scaled(DEGREES);
+        }),
+        ("attitude/base has the wrong sign", |row| row.turn = -row.turn),
         ("wheel/rate is relative to the base", |row| row.wheel -= row.rate),
         ("wheel/rate has the wrong sign", |row| row.wheel = -row.wheel),
         ("wheel/rate is in turns per minute", |row| row.wheel *= 60.0 / TAU),
@@ -399,6 +409,19 @@ fn swings_of_all_joints_tell_all_numbers() {
     };
     let [said, got] = [best.candidate.half_width, half(&then)].map(|now| now / half(&report));
     assert!(got < 0.6 && (0.3..3.0).contains(&(got / said)), "{}: {said} was said, {got} came", best.motion);
+}
+
+/// One spoilt motion among three is found alone, and named by its number.
+#[test]
+fn one_spoilt_motion_among_others_is_named() {
+    let file = builtin("spot").expect("built in");
+    let built = file.set("link.2.com", "0.22").expect("valid");
+    let mut motions = vec![flown(&built, RHO, "", 0.0), flown(&built, RHO, "", 2.0), flown(&built, RHO, "", 4.0)];
+    assert_eq!(doubted(file, base(RHO, 0.0), motions.clone()), None);
+    motions[1] = spoilt(&motions[1], |row| row.rate = -row.rate);
+    let doubt = doubted(file, base(RHO, 0.0), motions).expect("it is spoilt");
+    let words = doubt.to_string();
+    assert!(words.starts_with("motion 2: attitude_rate/base has the wrong sign"), "{words}");
 }
 
 /// Degrees and turns per minute that a header names are understood.

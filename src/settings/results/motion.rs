@@ -82,6 +82,7 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("price", "", "Cost of a change of b."),
     row("least_peak", "N m", "Smallest possible peak |n_B| of any motion of this duration."),
     row("least_rms", "N m", "Root mean square of n_B in the motion with the smallest peak."),
+    row("peak_base_turn", "rad", "Largest angle of a base that floats."),
     row("base_turn", "rad", "Angle by which a freely floating base turns.").sign(TURN),
     row("loop_length", "rad", "Length of the closed motion that turns the base, ∮ |dq| in drive angles."),
     row("alternatives", "", "Three ways to make the same motion of the end effector, by their base moments."),

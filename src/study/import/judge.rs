@@ -35,6 +35,9 @@ pub struct MotionEffects {
     pub peak_base_force: f64,
     /// Root mean square of the dynamic |f_B|, N.
     pub rms_base_force: f64,
+    /// Largest angle of a base that floats, rad.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub peak_base_turn: Option<f64>,
     /// Angle by which a base that floats turns from start to end, rad.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub base_turn: Option<f64>,
@@ -148,6 +151,7 @@ impl MotionEvaluator {
         let limits = DriveLimits::of(&self.machine);
         let f = Forecast::at_while(motion, &self.arm, &limits, self.instants, goes_on);
         let ends = [0.0, motion.duration()].map(|t| motion.at(t));
+        let turn = BaseForecast::of(&self.arm, motion);
         let [start, end] = [0, 1].map(|i| angular_momentum(self.arm.arm(), &ends[i].q.units(), &ends[i].qd) + 0.0);
         MotionEffects {
             peak_base_moment: f.moment,
@@ -155,7 +159,8 @@ impl MotionEvaluator {
             moment_impulse: f.impulse,
             peak_base_force: f.force,
             rms_base_force: f.force_rms,
-            base_turn: BaseForecast::of(&self.arm, motion).map(|turn| turn.angle_end),
+            peak_base_turn: turn.as_ref().map(|turn| turn.angle),
+            base_turn: turn.map(|turn| turn.angle_end),
             peak_torque: f.torque.to_vec(),
             peak_speed: f.speed.to_vec(),
             over: f.exceeded_limit.map(|(limit, factor)| (limit.to_string(), factor)),

@@ -41,7 +41,8 @@ impl ImportedMotion {
             both("rms f_B".into(), &|a| a.rms_base_force, 9, "N"),
         ];
         if given.or(proposal.map(|p| &p.account)).is_some_and(|a| a.base_turn.is_some()) {
-            lines.push(both("turn of the base".into(), &|a| a.base_turn.unwrap_or_default(), 6, "rad"));
+            lines.push(both("peak turn of the base".into(), &|a| a.peak_base_turn.unwrap_or_default(), 6, "rad"));
+            lines.push(both("turn of the base at the end".into(), &|a| a.base_turn.unwrap_or_default(), 6, "rad"));
         }
         let drives = given.or(proposal.map(|p| &p.account)).map_or(0, |a| a.peak_torque.len());
         lines.extend((0..drives).map(|k| both(format!("peak |τ_{}|", k + 1), &|a| a.peak_torque[k], 6, "N m")));

@@ -50,7 +50,15 @@ pub enum TrimError {
         /// Minimum number of rows.
         want: usize,
     },
-    /// A signal of a motion in orbit is missing or not a number throughout.
+    /// A value of a signal of a motion in orbit is not a number.
+    #[error("{path}: no number in row {row} below the head: want numbers throughout")]
+    SignalRow {
+        /// Path of the signal.
+        path: String,
+        /// Row, from 1.
+        row: usize,
+    },
+    /// A signal of a motion in orbit is missing.
     #[error(
         "no numbers of {path}: want angle and rate of every drive, attitude/base and attitude_rate/base, as simulate \
          writes them"

@@ -158,6 +158,7 @@ impl<S: Suspected> DoubtSearch<S> {
         causes.dedup_by(|a, b| a.what == b.what && a.want == b.want);
         causes.truncate(MAX_NAMED);
         Some(Doubt {
+            motion: None,
             causes,
             impossible: infeasible.iter().filter_map(place).map(measured_value).collect(),
             furthest: furthest.map(measured_value),

@@ -8,6 +8,8 @@ use stillbase_settings::number::fixed_or_scientific;
 /// Reason for rejecting a measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Doubt {
+    /// Index of the motion that is doubted alone; `None` if all are.
+    pub motion: Option<usize>,
     /// Possible faults, the most likely first; empty if no known fault explains the measurement.
     pub causes: Vec<Cause>,
     /// Values that no machine can have.
@@ -66,6 +68,9 @@ pub struct MeasuredValue {
 impl fmt::Display for Doubt {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let number = |x: f64| fixed_or_scientific(x, 4);
+        if let Some(motion) = self.motion {
+            write!(f, "motion {}: ", motion + 1)?;
+        }
         match self.causes.as_slice() {
             [] => write!(
                 f,

@@ -211,6 +211,35 @@ impl OrbitFault {
                 row.rates = PerDrive::from_fn(row.rates.len(), |l| if k == l { -row.rates[l] } else { row.rates[l] });
             }));
         }
+        // Angles alone, unlike their rates.
+        for (k, angle) in angles.iter().enumerate() {
+            all.push(Self::of(format!("{angle} has the wrong sign"), format!("{angle} times −1"), move |row| {
+                row.angles =
+                    PerDrive::from_fn(row.angles.len(), |l| if k == l { -row.angles[l] } else { row.angles[l] });
+            }));
+        }
+        all.extend([
+            Self::of(
+                "the angles of the drives are measured relative to the base, their rates are not",
+                "attitude/base added to each angle",
+                |row| row.angles = PerDrive::from_fn(row.angles.len(), |k| row.angles[k] + row.attitude),
+            ),
+            Self::of(
+                format!("{} are in degrees, their rates are not", list(&angles)),
+                format!("the unit in the header, as {} (deg)", angles[0]),
+                |row| row.angles = row.angles.scaled(DEGREE),
+            ),
+            Self::of("attitude/base has the wrong sign", "attitude/base times −1", |row| {
+                row.attitude = -row.attitude
+            }),
+            Self::of(
+                "attitude/base is in degrees, its rate is not",
+                "the unit in the header, as attitude/base (deg)",
+                |row| {
+                    row.attitude *= DEGREE;
+                },
+            ),
+        ]);
         let turn = |factor: f64| {
             move |row: &mut Columns| {
                 (row.attitude, row.base_rate) = (factor * row.attitude, factor * row.base_rate);

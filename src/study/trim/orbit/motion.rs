@@ -122,9 +122,9 @@ impl OrbitMotion {
             let Some((_, factor)) = units.iter().find(|(name, _)| *name == unit) else {
                 return Err(TrimError::SignalUnit { path, unit: unit.to_owned(), want: units[0].0 });
             };
-            match column.values.iter().all(|x| x.is_finite()) {
-                true => Ok(column.values.iter().map(|x| factor * x).collect()),
-                false => Err(TrimError::Signal { path }),
+            match column.values.iter().position(|x| !x.is_finite()) {
+                None => Ok(column.values.iter().map(|x| factor * x).collect()),
+                Some(row) => Err(TrimError::SignalRow { path, row: row + 1 }),
             }
         };
         let drives = || machine.spec().drives.iter().map(|drive| drive.name.as_str());

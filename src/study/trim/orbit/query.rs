@@ -39,12 +39,15 @@ pub struct OrbitOutcome {
 pub struct OrbitTrimQuery {
     request: OrbitTrimRequest,
     stage: Stage,
+    /// The doubts found so far.
+    doubts: Vec<Doubt>,
 }
 
 /// Stage of the work.
 enum Stage {
-    Begun,
-    Doubting(Box<DoubtSearch<OrbitMeasurement>>),
+    /// The number of searches done: of all motions together, then of each alone. One spoilt file of several is found so.
+    Begun(usize),
+    Doubting(usize, Box<DoubtSearch<OrbitMeasurement>>),
 }
 
 impl Query for OrbitTrimQuery {
@@ -52,26 +55,38 @@ impl Query for OrbitTrimQuery {
     type Answer = OrbitOutcome;
 
     fn begin(request: OrbitTrimRequest) -> Self {
-        Self { request, stage: Stage::Begun }
+        Self { request, stage: Stage::Begun(0), doubts: Vec::new() }
     }
 
     fn go_on(&mut self, _: ProgressCallback<'_>) -> Portion<OrbitOutcome> {
         let OrbitTrimRequest { machine: Shared(machine), base, motions: Shared(motions), as_given } = &self.request;
-        let doubt = match std::mem::replace(&mut self.stage, Stage::Begun) {
-            Stage::Begun => match OrbitMeasurement::of(machine, *base, motions) {
-                Ok(measured) => {
-                    self.stage = Stage::Doubting(DoubtSearch::of(machine, measured).into());
-                    return Portion::More(0.0);
-                }
-                Err(why) => return Portion::Done(OrbitOutcome { doubt: None, outcome: Err(NoTrim::Unusable(why)) }),
-            },
-            Stage::Doubting(mut doubting) => {
+        // All together, and each alone if there are several.
+        let searches = if motions.len() > 1 { 1 + motions.len() } else { 1 };
+        let share = |done: usize, part: f64| TRIED_AT * (done as f64 + part) / searches as f64;
+        let doubt = match std::mem::replace(&mut self.stage, Stage::Begun(searches)) {
+            Stage::Begun(done) if done >= searches => chosen(std::mem::take(&mut self.doubts)),
+            Stage::Begun(done) => {
+                let part = done.checked_sub(1).map_or(motions.as_slice(), |alone| &motions[alone..=alone]);
+                self.stage = match OrbitMeasurement::of(machine, *base, part) {
+                    Ok(measured) => Stage::Doubting(done, DoubtSearch::of(machine, measured).into()),
+                    Err(why) if done == 0 => {
+                        return Portion::Done(OrbitOutcome { doubt: None, outcome: Err(NoTrim::Unusable(why)) });
+                    }
+                    // Alone, a motion may be too short.
+                    Err(_) => Stage::Begun(done + 1),
+                };
+                return Portion::More(share(done, 0.0));
+            }
+            Stage::Doubting(done, mut doubting) => {
                 if doubting.next(machine) {
-                    let share = TRIED_AT * doubting.share();
-                    self.stage = Stage::Doubting(doubting);
+                    let share = share(done, doubting.share());
+                    self.stage = Stage::Doubting(done, doubting);
                     return Portion::More(share);
                 }
-                doubting.doubt(machine)
+                let found = doubting.doubt(machine).map(|doubt| Doubt { motion: done.checked_sub(1), ..doubt });
+                self.doubts.extend(found);
+                self.stage = Stage::Begun(done + 1);
+                return Portion::More(share(done, 1.0));
             }
         };
         match doubt {
@@ -83,6 +98,19 @@ impl Query for OrbitTrimQuery {
                 Portion::Done(OrbitOutcome { doubt, outcome })
             }
         }
+    }
+}
+
+/// Returns the doubt to report. A fault of all motions together counts if it is the likeliest of one of them alone, too, or
+/// if none is doubted alone. Otherwise one motion is spoilt: that with the greatest odds.
+fn chosen(mut doubts: Vec<Doubt>) -> Option<Doubt> {
+    let first = |doubt: &Doubt| doubt.causes.first().map(|cause| cause.what.clone());
+    let odds = |doubt: &Doubt| doubt.causes.first().map_or(0.0, |cause| cause.odds);
+    let together = doubts.iter().position(|doubt| doubt.motion.is_none()).map(|place| doubts.remove(place));
+    let is_common = |doubt: &Doubt| doubts.is_empty() || doubts.iter().any(|alone| first(alone) == first(doubt));
+    match together.filter(is_common) {
+        Some(common) => Some(common),
+        None => doubts.into_iter().max_by(|a, b| odds(a).total_cmp(&odds(b))),
     }
 }
 
