@@ -71,12 +71,16 @@ fn scipy_finds_the_same() {
     for ((machine, recording), theirs) in machines.iter().zip(&recordings).zip(theirs) {
         let ours = fit(machine, &Regressor::of(machine, recording, false).expect("rows")).expect("a fit");
         let found = theirs["found"].as_array().expect("a list");
-        assert_eq!(found.len(), ours.unknowns.count());
+        assert_eq!(found.len(), ours.numbers.unknowns.count());
         // Weights, which both find from what is left, matter with weight only, and end within a thousandth.
         let part = if machine.gravity() == Vector::default() { 1e-6 } else { 1e-3 };
         for (i, theirs) in found.iter().enumerate() {
-            let off = (ours.measured[i] - theirs.as_f64().expect("a number")).abs();
-            assert!(ours.identifiable[i] && off < part * ours.half_width(i), "{} {i}: {off:e}", machine.name());
+            let off = (ours.numbers.measured[i] - theirs.as_f64().expect("a number")).abs();
+            assert!(
+                ours.numbers.identifiable[i] && off < part * ours.numbers.half_width(i),
+                "{} {i}: {off:e}",
+                machine.name()
+            );
         }
         for (ours, theirs) in ours.noise.iter().zip(theirs["sigma"].as_array().expect("two")) {
             assert!((ours / theirs.as_f64().expect("a number") - 1.0).abs() < 1e-3);

@@ -71,8 +71,9 @@ const DEFAULT_AMPLITUDE_RAD: f64 = 0.5;
 /// Acceleration if none was measured, rad/s².
 const DEFAULT_ACCELERATION: f64 = 5.0;
 
-/// Assesses motions on a force plate, as [`next_motion`] does: with the amplitudes of the drives that were measured, and their
-/// largest accelerations unless they are given, rad/s².
+/// Assesses motions on a force plate: each drive alone, every pair in step and against each other, all drives in step, and
+/// all at different frequencies. Amplitudes are those measured; accelerations are the largest measured, unless they are given,
+/// rad/s². The uncertainty after each is predicted from the information that its rows add at the identified noise.
 pub fn next_excitation(
     machine: &Machine,
     recording: &MeasurementSet,
