@@ -19,7 +19,7 @@ use stillbase_query::Queries;
 use stillbase_session::scenario::Scenario;
 use stillbase_session::{Refusal, replay_while, with_start_edits};
 use stillbase_simulation::frame::{Frame, Peaks};
-use stillbase_simulation::signals::{Signal, signals};
+use stillbase_simulation::signals::signals;
 use stillbase_study::comparison::DesignCandidate;
 
 /// Extreme values of a run, and the views and charts that they determine.
@@ -72,11 +72,11 @@ impl Preview {
         let topics = Topic::all(signals.clone(), &charts);
         let mut charts: Vec<_> = charts.into_iter().map(|chart| (chart, none)).collect();
         charts.retain(|(chart, _)| signals.iter().any(|signal| chart.contains(signal)));
-        let held = |signal: Signal| {
-            let of = charts.iter().enumerate().filter(move |(_, (chart, _))| chart.contains(&signal));
-            of.map(|(i, _)| i).collect::<Vec<_>>()
+        let held = |(i, (chart, _)): (usize, &(Chart, _))| {
+            let held = signals.iter().filter(|signal| chart.contains(signal));
+            held.map(|signal| (i, signal.clone())).collect::<Vec<_>>()
         };
-        let drawn: Vec<_> = signals.iter().map(|signal| (held(signal.clone()), signal.clone())).collect();
+        let drawn: Vec<_> = charts.iter().enumerate().flat_map(held).collect();
         let (mut b, mut first) = (none, None);
         let (mut extent, mut linkage) = (Vec::new(), None::<(Machine, LinkageModel)>);
         let every = (steps(scenario) / EXTENT_POSES).max(1);
@@ -89,9 +89,7 @@ impl Preview {
                 extent.extend(ends(known, frame));
             }
             wider(&mut b, frame.b);
-            for (held, signal) in &drawn {
-                held.iter().for_each(|i| wider(&mut charts[*i].1, signal.value(frame)));
-            }
+            drawn.iter().for_each(|(i, signal)| wider(&mut charts[*i].1, signal.value(frame)));
             !frame.step.is_multiple_of(1024) || tick(frame.step)
         })?;
         // A limit is drawn under the same condition as in the window.

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector, SVD};
 
 use super::error::TrimError;
-use super::long_run::{bartlett_lags, long_run, t_quantile};
+use super::long_run::{bartlett_lags, correlation_length, long_run, t_quantile};
 use super::rows::{Channel, Regressor, RegressorSource, TREND_PARAMETERS};
 use super::unknowns::Unknowns;
 use stillbase_mechanics::machine::{Inertia, Machine};
@@ -128,11 +128,8 @@ pub(super) fn estimate(machine: &Machine, rows: &Regressor) -> Result<Estimate, 
     let fitted = if rows.source == RegressorSource::Samples { TREND_PARAMETERS as i32 } else { 1 };
     // Ratio of the long-run variance to the variance of one row: correlation length in rows.
     let correlation = |of: &[usize]| {
-        let both = |f: &dyn Fn(usize) -> f64| of.iter().map(|c| f(*c)).sum::<f64>();
-        let long =
-            both(&|c| long_run(&DMatrix::from_column_slice(count, 1, parts[c]), &rows.motions, lags, fitted)[(0, 0)]);
-        let own = both(&|c| errors[c].norm_squared());
-        if own > 0.0 { (long / own).max(1.0) } else { 1.0 }
+        let columns: Vec<DVector<f64>> = of.iter().map(|c| errors[*c].clone()).collect();
+        correlation_length(&DMatrix::from_columns(&columns), &rows.motions, lags, fitted)
     };
     let y = |of: usize| DVector::from_column_slice(&rows.channels[of].y);
     let size = [rms(&[&y(0), &y(1)]), rms(&[&y(2)])];

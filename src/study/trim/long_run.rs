@@ -38,17 +38,30 @@ pub(super) fn long_run(scores: &DMatrix<f64>, motions: &[usize], lags: usize, fi
 /// than slightly too wide ones.
 const LAG_FACTOR: f64 = 2.0;
 
+/// Returns the ratio of the long-run variance of errors to the variance of one row, at least 1: their correlation length in
+/// rows. Each column of `errors` is one measured quantity; other symbols as in [`long_run`].
+pub(super) fn correlation_length(errors: &DMatrix<f64>, motions: &[usize], lags: usize, fitted: i32) -> f64 {
+    let (long, own) = (long_run(errors, motions, lags, fitted).trace(), errors.norm_squared());
+    if own > 0.0 { (long / own).max(1.0) } else { 1.0 }
+}
+
+/// Returns Σ y_i² and Σ y_i y_{i+1}, summed motion by motion.
+pub(super) fn neighbour_products(y: &[f64], motions: &[usize]) -> [f64; 2] {
+    let (mut own, mut next, mut from) = (0.0, 0.0, 0);
+    for &n in motions {
+        let y = &y[from..from + n];
+        own += y.iter().map(|x| x * x).sum::<f64>();
+        next += y.windows(2).map(|w| w[0] * w[1]).sum::<f64>();
+        from += n;
+    }
+    [own, next]
+}
+
 /// Returns the number of lags of Bartlett's window for residuals: at least `least`, at most half the longest motion.
 pub(super) fn bartlett_lags(residuals: &[&[f64]], motions: &[usize], least: usize) -> usize {
     let count: usize = motions.iter().sum();
     let first = |y: &[f64]| {
-        let (mut own, mut next, mut from) = (0.0, 0.0, 0);
-        for &n in motions {
-            let y = &y[from..from + n];
-            own += y.iter().map(|x| x * x).sum::<f64>();
-            next += y.windows(2).map(|w| w[0] * w[1]).sum::<f64>();
-            from += n;
-        }
+        let [own, next] = neighbour_products(y, motions);
         if own > 0.0 { (next / own).abs().min(0.97) } else { 0.0 }
     };
     let rho = residuals.iter().map(|y| first(y)).fold(0.0, f64::max);

@@ -132,8 +132,8 @@ impl TrimQuery {
                 };
                 (Stage::Made(rows), MADE_AT)
             }
-            Stage::Made(rows) => match PlateMeasurement::of(machine, recording, *angles_only) {
-                Ok(measured) => (Stage::Doubting(rows, DoubtSearch::of(machine, measured).into()), MADE_AT),
+            Stage::Made(rows) => match PlateMeasurement::search(machine, recording, *angles_only) {
+                Ok(doubting) => (Stage::Doubting(rows, doubting.into()), MADE_AT),
                 // The fit reports errors of the recording itself.
                 Err(_) => (Stage::Believed(rows), TRIED_AT),
             },

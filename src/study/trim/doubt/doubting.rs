@@ -26,25 +26,23 @@ const MAX_NAMED: usize = 5;
 /// # Errors
 /// Fails if the recording cannot be used.
 pub fn doubt(machine: &Machine, recording: &MeasurementSet, angles_only: bool) -> Result<Option<Doubt>, TrimError> {
-    let mut doubting = DoubtSearch::of(machine, PlateMeasurement::of(machine, recording, angles_only)?);
+    let mut doubting = PlateMeasurement::search(machine, recording, angles_only)?;
     while doubting.next(machine) {}
     Ok(doubting.doubt(machine))
 }
 
-/// A measurement that can be fitted as given, and without each of some faults.
+/// A measurement that can be fitted without each of some faults.
 pub(in crate::trim) trait Suspected {
-    /// Returns the fit of the measurement as given.
-    fn given(&self) -> &FitTrial;
+    /// A fault, with its correction.
+    type Fault;
 
-    /// Returns the description of a fault, by its index; `None` after the last one.
-    fn fault(&self, index: usize) -> Option<&FaultWords>;
-
-    /// Returns the number of faults.
-    fn faults(&self) -> usize;
+    /// Returns the description of a fault.
+    fn words(fault: &Self::Fault) -> &FaultWords;
 
     /// Fits the measurement without a fault. The second fit is that of the measurement as given with which it has to be
-    /// compared, if this is another one than [`given`](Self::given).
-    fn without(&self, machine: &Machine, fault: usize) -> Option<(FitTrial, Option<FitTrial>)>;
+    /// compared, if this is another one than `given`.
+    fn without(&self, machine: &Machine, given: &FitTrial, fault: &Self::Fault)
+    -> Option<(FitTrial, Option<FitTrial>)>;
 }
 
 /// A fault in words.
@@ -59,8 +57,10 @@ pub(in crate::trim) struct FaultWords {
 }
 
 /// A test for faults in progress.
-pub(in crate::trim) struct DoubtSearch<S> {
+pub(in crate::trim) struct DoubtSearch<S: Suspected> {
     suspected: S,
+    given: FitTrial,
+    faults: Vec<S::Fault>,
     tolerances: Tolerances,
     /// Unknowns whose values, fitted to the measurement as given, no machine can have.
     infeasible: Vec<Unknown>,
@@ -80,37 +80,37 @@ struct Likely {
 }
 
 impl<S: Suspected> DoubtSearch<S> {
-    /// Begins a test, before any fault is tested.
-    pub fn of(machine: &Machine, suspected: S) -> Self {
+    /// Begins a test of faults, before any is tested; `given` is the fit of the measurement as given.
+    pub fn of(machine: &Machine, suspected: S, given: FitTrial, faults: Vec<S::Fault>) -> Self {
         Self {
             tolerances: Tolerances::of(machine),
-            infeasible: impossible_numbers(machine, &suspected.given().numbers),
+            infeasible: impossible_numbers(machine, &given.numbers),
             done: 0,
             likely: Vec::new(),
             suspected,
+            given,
+            faults,
         }
     }
 
     /// Returns the fraction done, from 0 to 1.
     pub fn share(&self) -> f64 {
-        self.done as f64 / self.suspected.faults().max(1) as f64
+        self.done as f64 / self.faults.len().max(1) as f64
     }
 
     /// Tests the next fault; returns whether there was one.
     pub fn next(&mut self, machine: &Machine) -> bool {
-        if self.done >= self.suspected.faults() {
-            return false;
-        }
-        self.likely.extend(self.explained(machine, self.done));
+        let Some(fault) = self.faults.get(self.done) else { return false };
+        self.likely.extend(self.explained(machine, fault));
         self.done += 1;
         true
     }
 
     /// Returns a fault with its odds; `None` if it does not explain the measurement.
-    fn explained(&self, machine: &Machine, fault: usize) -> Option<Likely> {
-        let (other, as_given) = self.suspected.without(machine, fault)?;
-        let fault = self.suspected.fault(fault)?;
-        let given = as_given.as_ref().unwrap_or(self.suspected.given());
+    fn explained(&self, machine: &Machine, fault: &S::Fault) -> Option<Likely> {
+        let (other, as_given) = self.suspected.without(machine, &self.given, fault)?;
+        let fault = S::words(fault);
+        let given = as_given.as_ref().unwrap_or(&self.given);
         let [decides, ranks] = likelihood_ratio(&self.tolerances, given, &other)?;
         // If the values as given are impossible, any fault with possible values and a positive ranking ln Λ explains
         // them.
@@ -134,8 +134,7 @@ impl<S: Suspected> DoubtSearch<S> {
         self.likely.sort_by(|a, b| b.ranks.total_cmp(&a.ranks));
         let best = self.likely.first().map_or(0.0, |first| first.ranks);
         self.likely.retain(|one| one.ranks > best - MAX_LOG_ODDS_BEHIND);
-        let Self { infeasible, likely, suspected, .. } = &self;
-        let given = suspected.given();
+        let Self { infeasible, likely, given, .. } = &self;
         let numbers = &given.numbers;
         let measured_value = |place: usize| MeasuredValue {
             name: numbers.unknowns.at(place).name(machine),

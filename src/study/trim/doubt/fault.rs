@@ -14,7 +14,7 @@ use stillbase_mechanics::planar::{PerDrive, Vector};
 
 /// A fault: its description, the remedy, and the correction of the measurement.
 #[derive(Clone, Debug)]
-pub(super) struct Fault {
+pub(in crate::trim) struct Fault {
     /// Description and remedy.
     pub words: FaultWords,
     /// Correction of the angles; `None` if only force and moment are affected.

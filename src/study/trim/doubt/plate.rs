@@ -1,6 +1,6 @@
 //! [`PlateMeasurement`]: forces and moments of a machine on a fixed base, tested for faults.
 
-use super::doubting::{FaultWords, Suspected};
+use super::doubting::{DoubtSearch, FaultWords, Suspected};
 use super::fault::Fault;
 use super::odds::{ChannelFit, FitTrial};
 use super::rejection::Residual;
@@ -15,45 +15,40 @@ use stillbase_mechanics::planar::{PerDrive, Vector};
 /// Maximum number of samples times the square of the number of unknowns, unless 1 000 samples already exceed it.
 const MAX_WORK: usize = 4_000_000;
 
-/// A measurement of force and moment, with its fit as given and the faults that are tested.
+/// A measurement of force and moment, with its rows as given.
 pub(in crate::trim) struct PlateMeasurement {
     recording: MeasurementSet,
     angles_only: bool,
     rows: Regressor,
-    given: FitTrial,
-    faults: Vec<Fault>,
 }
 
 impl PlateMeasurement {
-    /// Fits a recording as given. Only parts of a long one are tested.
+    /// Fits a recording as given, and begins the search for faults. Only parts of a long one are tested.
     ///
     /// # Errors
     /// Fails if the recording cannot be used.
-    pub fn of(machine: &Machine, recording: &MeasurementSet, angles_only: bool) -> Result<Self, TrimError> {
+    pub fn search(
+        machine: &Machine,
+        recording: &MeasurementSet,
+        angles_only: bool,
+    ) -> Result<DoubtSearch<Self>, TrimError> {
         recording.check(machine.drives())?;
         let recording = shortened(machine, recording);
         let rows = Regressor::of(machine, &recording, angles_only)?;
         let given = try_fit(machine, &rows, limits_left(machine, &recording))?;
-        Ok(Self { faults: Fault::all(machine), recording, angles_only, rows, given })
+        Ok(DoubtSearch::of(machine, Self { recording, angles_only, rows }, given, Fault::all(machine)))
     }
 }
 
 impl Suspected for PlateMeasurement {
-    fn given(&self) -> &FitTrial {
-        &self.given
+    type Fault = Fault;
+
+    fn words(fault: &Fault) -> &FaultWords {
+        &fault.words
     }
 
-    fn fault(&self, index: usize) -> Option<&FaultWords> {
-        self.faults.get(index).map(|fault| &fault.words)
-    }
-
-    fn faults(&self) -> usize {
-        self.faults.len()
-    }
-
-    fn without(&self, machine: &Machine, fault: usize) -> Option<(FitTrial, Option<FitTrial>)> {
-        let Self { rows, given, .. } = self;
-        let fault = self.faults.get(fault)?;
+    fn without(&self, machine: &Machine, given: &FitTrial, fault: &Fault) -> Option<(FitTrial, Option<FitTrial>)> {
+        let rows = &self.rows;
         let own = fault.angles.as_ref().map(|angles| angles.undo(&self.recording));
         let (mut transformed, mut as_given, mut violation) = (rows.clone(), None, given.limit_violation);
         if let Some(own) = &own {

@@ -6,19 +6,17 @@
 
 use nalgebra::DMatrix;
 
-use super::fit::{OrbitFit, correlation_length};
+use super::fit::OrbitFit;
 use super::motion::{BASE_RATE, DEGREE, OrbitBase, OrbitMotion, RPM};
 use crate::trim::doubt::{
-    Angles, ChannelFit, ColumnNames, FaultWords, FitTrial, NamedAngles, Residual, Suspected, angle_faults,
+    Angles, ChannelFit, ColumnNames, DoubtSearch, FaultWords, FitTrial, NamedAngles, Residual, Suspected, angle_faults,
     limit_violation, list,
 };
 use crate::trim::error::TrimError;
-use crate::trim::long_run::bartlett_lags;
+use crate::trim::long_run::{bartlett_lags, correlation_length};
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::PerDrive;
 
-/// Maximum number of rows that are fitted.
-const MAX_ROWS: usize = 3000;
 /// Fraction of a rate that its angle need not explain: angles are rounded and noisy, and differences are not derivatives.
 const RATE_FLOOR: f64 = 0.02;
 /// Factor between the residuals of two fits that is no evidence of a fault.
@@ -40,59 +38,72 @@ struct Columns {
     wheel_rate: f64,
 }
 
+impl Columns {
+    /// Maps angles and rates of the drives.
+    fn map(&mut self, by: &Angles) {
+        (self.angles, self.rates) = (by.angles(&self.angles), by.rates(&self.rates));
+    }
+
+    /// Adds angle and rate of the base to those of the drives, which were seen from it.
+    fn add_base(&mut self) {
+        (self.angles, self.rates) = (raised(&self.angles, self.attitude), raised(&self.rates, self.base_rate));
+    }
+}
+
+/// Returns all values plus one number.
+fn raised(of: &PerDrive, by: f64) -> PerDrive {
+    PerDrive::from_fn(of.len(), |k| of[k] + by)
+}
+
+/// Returns values of which one has the other sign.
+fn reversed(of: &PerDrive, which: usize) -> PerDrive {
+    PerDrive::from_fn(of.len(), |k| if k == which { -of[k] } else { of[k] })
+}
+
 /// A mistake, and the row corrected for it.
-struct OrbitFault {
+pub(super) struct OrbitFault {
     words: FaultWords,
     correct: Box<dyn Fn(&mut Columns) + Send + Sync>,
 }
 
-/// Motions with their fit as given and the faults that are tested.
+/// Motions that are tested for faults.
 pub(super) struct OrbitMeasurement {
     base: OrbitBase,
     motions: Vec<OrbitMotion>,
-    given: FitTrial,
-    faults: Vec<OrbitFault>,
 }
 
 impl OrbitMeasurement {
-    /// Fits motions as given.
+    /// Fits motions as given, and begins the search for faults.
     ///
     /// # Errors
     /// As [`OrbitFit::of`].
-    pub fn of(machine: &Machine, base: OrbitBase, motions: &[OrbitMotion]) -> Result<Self, TrimError> {
+    pub fn search(machine: &Machine, base: OrbitBase, motions: &[OrbitMotion]) -> Result<DoubtSearch<Self>, TrimError> {
         let given = tried(machine, &base, motions)?;
         let has_wheel = motions.iter().flat_map(|motion| &motion.wheel_rate).any(|rate| *rate != 0.0);
-        Ok(Self { base, motions: motions.to_vec(), given, faults: OrbitFault::all(machine, has_wheel) })
+        let measured = Self { base, motions: motions.to_vec() };
+        Ok(DoubtSearch::of(machine, measured, given, OrbitFault::all(machine, has_wheel)))
     }
 }
 
 impl Suspected for OrbitMeasurement {
-    fn given(&self) -> &FitTrial {
-        &self.given
+    type Fault = OrbitFault;
+
+    fn words(fault: &OrbitFault) -> &FaultWords {
+        &fault.words
     }
 
-    fn fault(&self, index: usize) -> Option<&FaultWords> {
-        self.faults.get(index).map(|fault| &fault.words)
-    }
-
-    fn faults(&self) -> usize {
-        self.faults.len()
-    }
-
-    fn without(&self, machine: &Machine, fault: usize) -> Option<(FitTrial, Option<FitTrial>)> {
-        let fault = self.faults.get(fault)?;
+    fn without(&self, machine: &Machine, given: &FitTrial, fault: &OrbitFault) -> Option<(FitTrial, Option<FitTrial>)> {
         let motions: Vec<OrbitMotion> = self.motions.iter().map(|motion| fault.undo(motion)).collect();
         let other = tried(machine, &self.base, &motions).ok()?;
         // What explains the rates worse is no explanation, however near to the file it comes.
-        let [was, now] = [&self.given, &other].map(|fit| &fit.channels[0]);
+        let [was, now] = [given, &other].map(|fit| &fit.channels[0]);
         let floor = was.floor.max(now.floor).max(EXACT);
         (now.residual.share <= SLACK * was.residual.share.max(floor)).then_some((other, None))
     }
 }
 
 fn tried(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) -> Result<FitTrial, TrimError> {
-    let rows: usize = motions.iter().map(OrbitMotion::rows).sum();
-    let thinned: Vec<OrbitMotion> = motions.iter().map(|motion| motion.every(rows.div_ceil(MAX_ROWS))).collect();
+    let thinned = OrbitMotion::thinned(motions);
     let fit = OrbitFit::of(machine, base, &thinned)?;
     let (slow, size) = (fit.slow_noise(), fit.size.max(f64::MIN_POSITIVE));
     // By chance, a part of white noise varies slowly, too.
@@ -150,7 +161,7 @@ fn rate_against_angle(motions: &[OrbitMotion], of: usize, name: &str) -> Channel
             noise,
             share: noise / size.max(f64::MIN_POSITIVE),
         },
-        effective: count as f64 / correlation_length(&errors, &counts, lags),
+        effective: count as f64 / correlation_length(&errors, &counts, lags, 1),
         largest: size,
         floor: RATE_FLOOR,
         slack: SLACK,
@@ -176,69 +187,60 @@ impl OrbitFault {
         let (angles, rates) = (names("angle"), names("rate"));
         let n = angles.len();
         let columns = ColumnNames { angles: angles.clone(), with: "with rates" };
-        let of_angles = |(words, by): NamedAngles| Self {
-            words,
-            correct: Box::new(move |row| {
-                (row.angles, row.rates) = (by.angles(&row.angles), by.rates(&row.rates));
-            }),
-        };
+        let of_angles = |(words, by): NamedAngles| Self { words, correct: Box::new(move |row| row.map(&by)) };
         let mut all: Vec<Self> = angle_faults(machine, &columns).into_iter().map(of_angles).collect();
-        let seen_from_base = |row: &mut Columns| {
-            row.angles = PerDrive::from_fn(row.angles.len(), |k| row.angles[k] + row.attitude);
-            row.rates = PerDrive::from_fn(row.rates.len(), |k| row.rates[k] + row.base_rate);
-        };
         let add = format!("attitude/base added to each angle, and {BASE_RATE} to each rate");
-        all.push(Self::of("the drives are measured relative to the base, not to space", add.clone(), seen_from_base));
+        all.push(Self::of(
+            "the drives are measured relative to the base, not to space",
+            add.clone(),
+            Columns::add_base,
+        ));
         if n > 1 {
             let sums = Angles::linear(n, |k, l| if l <= k { 1.0 } else { 0.0 });
             let first = format!("{} relative to the base and {} to the drive before", angles[0], list(&angles[1..]));
             let want = format!("absolute ones: in each row, sums of the angles up to each drive, and {add}");
             all.push(Self::of(first, want, move |row| {
-                (row.angles, row.rates) = (sums.angles(&row.angles), sums.rates(&row.rates));
-                seen_from_base(row);
+                row.map(&sums);
+                row.add_base();
             }));
             if let Some((words, by)) = columns.relative_of_file(machine) {
                 let what = format!("{}, and {} is relative to the base", words.what, angles[0]);
                 let want = format!("{}, with {add}", words.want);
                 all.push(Self::of(what, want, move |row| {
-                    (row.angles, row.rates) = (by.angles(&row.angles), by.rates(&row.rates));
-                    seen_from_base(row);
+                    row.map(&by);
+                    row.add_base();
                 }));
             }
         }
         for (k, rate) in rates.iter().enumerate() {
             all.push(Self::of(format!("{rate} has the wrong sign"), format!("{rate} times −1"), move |row| {
-                row.rates = PerDrive::from_fn(row.rates.len(), |l| if k == l { -row.rates[l] } else { row.rates[l] });
+                row.rates = reversed(&row.rates, k);
             }));
         }
+        let in_degrees = |unit: &str, column: &str| format!("the unit in the header, as {column} ({unit})");
         // Angles alone, unlike their rates.
         for (k, angle) in angles.iter().enumerate() {
             all.push(Self::of(format!("{angle} has the wrong sign"), format!("{angle} times −1"), move |row| {
-                row.angles =
-                    PerDrive::from_fn(row.angles.len(), |l| if k == l { -row.angles[l] } else { row.angles[l] });
+                row.angles = reversed(&row.angles, k);
             }));
         }
         all.extend([
             Self::of(
                 "the angles of the drives are measured relative to the base, their rates are not",
                 "attitude/base added to each angle",
-                |row| row.angles = PerDrive::from_fn(row.angles.len(), |k| row.angles[k] + row.attitude),
+                |row| row.angles = raised(&row.angles, row.attitude),
             ),
             Self::of(
                 format!("{} are in degrees, their rates are not", list(&angles)),
-                format!("the unit in the header, as {} (deg)", angles[0]),
+                in_degrees("deg", &angles[0]),
                 |row| row.angles = row.angles.scaled(DEGREE),
             ),
             Self::of("attitude/base has the wrong sign", "attitude/base times −1", |row| {
                 row.attitude = -row.attitude
             }),
-            Self::of(
-                "attitude/base is in degrees, its rate is not",
-                "the unit in the header, as attitude/base (deg)",
-                |row| {
-                    row.attitude *= DEGREE;
-                },
-            ),
+            Self::of("attitude/base is in degrees, its rate is not", in_degrees("deg", "attitude/base"), |row| {
+                row.attitude *= DEGREE;
+            }),
         ]);
         let turn = |factor: f64| {
             move |row: &mut Columns| {
@@ -246,7 +248,6 @@ impl OrbitFault {
             }
         };
         let both = format!("attitude/base and {BASE_RATE}");
-        let in_degrees = |unit: &str, column: &str| format!("the unit in the header, as {column} ({unit})");
         let degrees = |row: &mut Columns| {
             (row.angles, row.rates) = (row.angles.scaled(DEGREE), row.rates.scaled(DEGREE));
         };
@@ -301,10 +302,9 @@ impl OrbitFault {
         let mut all = motion.clone();
         for row in 0..motion.rows() {
             let [turn, rate] = [motion.attitude[row], motion.base_rate[row]];
-            let seen = |of: &PerDrive, base: f64| PerDrive::from_fn(of.len(), |k| of[k] + base);
             let mut columns = Columns {
-                angles: seen(&motion.angles[row], turn),
-                rates: seen(&motion.rates[row], rate),
+                angles: raised(&motion.angles[row], turn),
+                rates: raised(&motion.rates[row], rate),
                 attitude: turn,
                 base_rate: rate,
                 wheel_rate: motion.wheel_rate[row],
@@ -312,8 +312,8 @@ impl OrbitFault {
             (self.correct)(&mut columns);
             all.attitude[row] = columns.attitude;
             all.base_rate[row] = columns.base_rate;
-            all.angles[row] = seen(&columns.angles, -columns.attitude);
-            all.rates[row] = seen(&columns.rates, -columns.base_rate);
+            all.angles[row] = raised(&columns.angles, -columns.attitude);
+            all.rates[row] = raised(&columns.rates, -columns.base_rate);
             all.wheel_rate[row] = columns.wheel_rate;
         }
         all

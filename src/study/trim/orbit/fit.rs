@@ -6,7 +6,7 @@ use super::craft::Craft;
 use super::motion::{OrbitBase, OrbitMotion};
 use crate::trim::error::TrimError;
 use crate::trim::fit::{IdentifiedNumbers, confounded};
-use crate::trim::long_run::{bartlett_lags, long_run, t_quantile};
+use crate::trim::long_run::{bartlett_lags, correlation_length, long_run, neighbour_products, t_quantile};
 use stillbase_mechanics::machine::{Inertia, Machine};
 
 /// Maximum number of Gauss–Newton steps.
@@ -192,7 +192,8 @@ impl OrbitFit {
         let (confounded, identifiable) = confounded(&free.rows(0, p).clone_owned(), p);
         let [noise, size] =
             [rms(&errors), rms(&DVector::from_iterator(count, rows.samples().map(|(_, m, row)| m.base_rate[row])))];
-        let correlation = correlation_length(&DMatrix::from_column_slice(count, 1, errors.as_slice()), &counts, lags);
+        let correlation =
+            correlation_length(&DMatrix::from_column_slice(count, 1, errors.as_slice()), &counts, lags, 1);
         let own = slopes.columns(0, p);
         let largest = own.column_iter().zip(&scales).map(|(column, scale)| column.norm_squared() * scale * scale);
         let numbers = IdentifiedNumbers {
@@ -226,13 +227,8 @@ impl OrbitFit {
     /// Returns the root mean square of the part of the errors, rad/s, by which neighbouring rows are alike: of white noise
     /// nearly zero.
     pub fn slow_noise(&self) -> f64 {
-        let (mut from, mut sum) = (0, 0.0);
-        for count in &self.counts {
-            let own = &self.errors.as_slice()[from..from + count];
-            sum += own.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>();
-            from += count;
-        }
-        (sum.max(0.0) / self.errors.len() as f64).sqrt()
+        let [_, next] = neighbour_products(self.errors.as_slice(), &self.counts);
+        (next.max(0.0) / self.errors.len() as f64).sqrt()
     }
 
     /// Returns how far each unknown moves if the craft is another one, in one Gauss–Newton step.
@@ -260,11 +256,4 @@ fn information(slopes: &DMatrix<f64>, p: usize) -> DMatrix<f64> {
         all.ger(-1.0 / momentum.norm_squared().max(f64::MIN_POSITIVE), &along, &along, 1.0);
     }
     all
-}
-
-/// Returns the ratio of the long-run variance of errors to the variance of one row, at least 1. Each column of `errors`
-/// is one measured quantity.
-pub(super) fn correlation_length(errors: &DMatrix<f64>, counts: &[usize], lags: usize) -> f64 {
-    let (long, own) = (long_run(errors, counts, lags, 1).trace(), errors.norm_squared());
-    if own > 0.0 { (long / own).max(1.0) } else { 1.0 }
 }

@@ -19,8 +19,6 @@ const SMALL_CHANGE: f64 = 1e-5;
 const LAST_CHANGE: f64 = 1e-9;
 /// Maximum number of Gauss–Newton steps.
 const MAX_STEPS: usize = 20;
-/// Maximum number of rows: one unknown needs few.
-const MAX_ROWS: usize = 3000;
 
 /// A value that is taken as known, and another value of it that alone explains the rates of the base.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
@@ -37,18 +35,16 @@ pub struct KnownValue {
     pub rate_left: f64,
 }
 
-/// Rows by which explanations are compared: every so manieth of each motion.
+/// Rows by which explanations are compared.
 pub(super) struct Explained<'a> {
     machine: &'a Machine,
     base: &'a OrbitBase,
-    motions: &'a [OrbitMotion],
-    stride: usize,
+    motions: Vec<OrbitMotion>,
 }
 
 impl<'a> Explained<'a> {
-    pub fn of(machine: &'a Machine, base: &'a OrbitBase, motions: &'a [OrbitMotion]) -> Self {
-        let rows: usize = motions.iter().map(|motion| motion.base_rate.len()).sum();
-        Self { machine, base, motions, stride: rows.div_ceil(MAX_ROWS).max(1) }
+    pub fn of(machine: &'a Machine, base: &'a OrbitBase, motions: &[OrbitMotion]) -> Self {
+        Self { machine, base, motions: OrbitMotion::thinned(motions) }
     }
 
     /// Returns the known values that alone explain the rates up to `most`, rad/s: the best first.
@@ -116,9 +112,8 @@ impl<'a> Explained<'a> {
     fn errors(&self, craft: &Craft, x: &DVector<f64>) -> DVector<f64> {
         let of = craft.coefficients(x);
         let mut errors = Vec::new();
-        for motion in self.motions {
-            let rows: Vec<[f64; 2]> = (0..motion.base_rate.len())
-                .step_by(self.stride)
+        for motion in &self.motions {
+            let rows: Vec<[f64; 2]> = (0..motion.rows())
                 .map(|row| {
                     let [still, turning] = craft.row(&of, &motion.angles[row], &motion.rates[row], None, &mut []);
                     let wheel = craft.wheel * motion.wheel_rate[row];

@@ -19,6 +19,9 @@ pub const BASE_RATE: &str = "attitude_rate/base";
 const ANGLE: &[(&str, f64)] = &[("rad", 1.0), ("deg", DEGREE), ("°", DEGREE)];
 const RATE: &[(&str, f64)] = &[("rad/s", 1.0), ("deg/s", DEGREE), ("°/s", DEGREE), ("rpm", RPM)];
 
+/// Maximum number of rows by which explanations are compared: they need few.
+const MAX_TRIED_ROWS: usize = 3000;
+
 /// Samples of one motion in orbit. All lists have one entry per time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrbitMotion {
@@ -78,8 +81,14 @@ impl OrbitMotion {
         }
     }
 
+    /// Returns motions with at most about [`MAX_TRIED_ROWS`] rows in all, evenly spaced.
+    pub(super) fn thinned(motions: &[Self]) -> Vec<Self> {
+        let stride = motions.iter().map(Self::rows).sum::<usize>().div_ceil(MAX_TRIED_ROWS);
+        motions.iter().map(|motion| motion.every(stride)).collect()
+    }
+
     /// Returns every `stride`-th row.
-    pub(super) fn every(&self, stride: usize) -> Self {
+    fn every(&self, stride: usize) -> Self {
         fn thin<T: Clone>(all: &[T], stride: usize) -> Vec<T> {
             all.iter().step_by(stride.max(1)).cloned().collect()
         }

@@ -67,8 +67,8 @@ impl Query for OrbitTrimQuery {
             Stage::Begun(done) if done >= searches => chosen(std::mem::take(&mut self.doubts)),
             Stage::Begun(done) => {
                 let part = done.checked_sub(1).map_or(motions.as_slice(), |alone| &motions[alone..=alone]);
-                self.stage = match OrbitMeasurement::of(machine, *base, part) {
-                    Ok(measured) => Stage::Doubting(done, DoubtSearch::of(machine, measured).into()),
+                self.stage = match OrbitMeasurement::search(machine, *base, part) {
+                    Ok(doubting) => Stage::Doubting(done, doubting.into()),
                     Err(why) if done == 0 => {
                         return Portion::Done(OrbitOutcome { doubt: None, outcome: Err(NoTrim::Unusable(why)) });
                     }

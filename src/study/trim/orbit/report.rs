@@ -23,6 +23,7 @@ const SLOW: f64 = 0.9;
 const NEGLIGIBLE: f64 = 1e-4;
 /// Angles that vary by less than this do not move, rad.
 const STILL_RAD: f64 = 1e-3;
+
 /// First moments, couplings and momenta of a machine in orbit, from momentum alone.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct OrbitReport {
@@ -159,10 +160,10 @@ fn next(machine: &Machine, motions: &[OrbitMotion], fit: &OrbitFit) -> NextMeasu
     let fastest: Vec<f64> = (0..n).map(largest).collect();
     let samples = || motions.iter().flat_map(|motion| &motion.angles);
     let limits = DriveLimits::of(n, samples, |k| varies(motions, |q| q[k]), |k, reach| fastest[k].powi(2) / reach);
-    let duration = motions.iter().map(OrbitMotion::duration).sum::<f64>() / motions.len() as f64;
-    let step = motions.iter().map(OrbitMotion::duration).sum::<f64>() / fit.errors.len() as f64;
-    // Of each second, as much is known as of the seconds that were measured.
-    let density = fit.noise.powi(2) * fit.errors.len() as f64 / fit.effective * step;
+    let total = motions.iter().map(OrbitMotion::duration).sum::<f64>();
+    let duration = total / motions.len() as f64;
+    // A second tells as much as one of those that were measured: variance times the time of an independent row.
+    let density = fit.noise.powi(2) * total / fit.effective;
     let more = |sines: &Sines| {
         let motion = OrbitMotion::swung(sines, duration);
         fit.information(&motion, density * motion.rows() as f64 / duration)
