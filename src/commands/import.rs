@@ -29,7 +29,8 @@ use table::table;
 /// may have units: "t (ms)", "q1 (deg)", "x (mm)"; default: s, rad, m. Other columns are ignored. A quintic spline
 /// interpolates the samples. The proposal keeps the timing, and b is constant. It keeps the path of the end effector if
 /// some plane reaches all of it. Otherwise it keeps the relative angles and turns the arm as a whole. A simulation
-/// checks the proposal before it is called reactionless.
+/// checks the proposal before it is called reactionless. A machine that has no b moves its end effector without angular
+/// momentum: that turns no base, but a force remains.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -161,6 +162,7 @@ impl ImportArguments {
             Kept::Tip => PreservedPath::Tip,
             Kept::Joints => PreservedPath::Joints,
         });
+        let floats = afloat.is_some();
         let base = afloat.map_or(usual.base, |afloat| afloat.base);
         let own = Scenario { name: stem, title, summary: String::new(), machine, design, base, ..usual };
         let scenario = Shared(own.into());
@@ -170,6 +172,10 @@ impl ImportArguments {
         let imported = ImportedMotion { reason: found.reason.map(|reason| reason.worded(option)), ..found };
         self.format.print(&Answer { file: &name, imported: &imported }, |answer| table(answer.imported))?;
         let Some([proposed, given]) = &imported.scenarios else {
+            if let Some(([_, file], given)) = files.as_ref().zip(imported.as_given.as_ref()) {
+                finish_all([write_temporary(file, given.to_toml().as_bytes(), self.force)?])?;
+                print_message(format!("wrote {}, the motion as given", file.display()));
+            }
             return Err(Failure::no_answer(imported.reason.unwrap_or_default()));
         };
         if let Some([file, given_file]) = &files {
@@ -181,8 +187,10 @@ impl ImportArguments {
         }
         self.strict.require(imported.proposal.as_ref().into_iter().flat_map(|proposal| {
             let effects = &proposal.account;
+            // A base that floats is to keep its attitude.
+            let is_quiet = proposal.reactionless || floats && proposal.turns_no_base;
             let found = [
-                (proposal.reactionless, "not reactionless"),
+                (is_quiet, "not reactionless"),
                 (effects.over.is_none(), "past a limit of a drive"),
                 (effects.past_limits <= 0.0, "past the limit of an angle"),
             ];

@@ -106,7 +106,12 @@ impl Peaks {
 
     /// Returns whether the moment that the base feels and the dynamic force on it count as zero.
     pub fn is_base_unloaded(&self) -> bool {
-        self.moment <= self.no_moment() && self.force <= self.no_force()
+        self.turns_no_base() && self.force <= self.no_force()
+    }
+
+    /// Returns whether the moment that the base feels counts as zero: on a free base about its own centre of mass.
+    pub fn turns_no_base(&self) -> bool {
+        self.moment <= self.no_moment()
     }
 }
 

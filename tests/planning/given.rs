@@ -719,6 +719,24 @@ mod commands {
         assert!(said.contains("half of the mean rate"), "{said}");
     }
 
+    /// Where nothing can be proposed, the motion as given is written all the same.
+    #[test]
+    fn a_motion_without_proposal_is_written_as_given() {
+        let folder = Folder::new("given");
+        let eased = |s: f64| s * s * s * (10.0 - 15.0 * s + 6.0 * s * s);
+        let row = |i: i32| {
+            let e = eased(f64::from(i) / 40.0);
+            vec![0.05 * f64::from(i), 0.2 + 0.8 * e, 0.9 + 0.3 * e, 1.6 - 0.6 * e]
+        };
+        folder.file("own.csv", csv("t,q1,q2,q3", (0..=40).map(row)));
+        let on_spot = ["import", "own.csv", "--machine", "spot", "--base", "spot", "-o", "quiet.toml"];
+        let (printed, said) = folder.ends(1, &on_spot);
+        assert!(printed.contains("peak turn of the base") && said.contains("dynamic singularity"), "{printed}{said}");
+        assert!(said.contains("wrote quiet-given.toml"), "{said}");
+        folder.ends(0, &["plan", "quiet-given.toml"]);
+        assert!(!folder.path("quiet.toml").exists());
+    }
+
     #[test]
     fn what_is_wrong_is_said_with_file_line_and_column() {
         let folder = Folder::new("given");

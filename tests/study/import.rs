@@ -36,6 +36,41 @@ fn request(machine: &Machine, coordinates: Coordinates, samples: Samples) -> Req
     Request { scenario: Shared(scenario.into()), motion: Shared(motion.into()), b: None, keep: None }
 }
 
+/// An arm without b moves its end effector as given without angular momentum, from the given start: on a base that floats
+/// the simulated base stays as it is oriented, and the end effector goes where it went, seen from the base. Where a dynamic
+/// singularity is in the way, only the motion as given is left, and it is said why.
+#[test]
+fn an_arm_without_b_turns_no_base() {
+    let spot = Scenario::builtin("spot").expect("built in");
+    let found = |from: &[f64], by: &[f64], floats: bool| {
+        let request = request(&spot.machine, Coordinates::Drives, moving(from, by));
+        let Shared(scenario) = request.scenario;
+        let base = if floats { spot.base } else { scenario.base };
+        let scenario = Scenario { base, ..(*scenario).clone() };
+        answer_now::<ImportQuery>(Request { scenario: Shared(scenario.into()), ..request }).expect("a motion")
+    };
+    for floats in [false, true] {
+        let found = found(&[0.255, 1.302, 2.349], &[-0.155, -0.052, 0.551], floats);
+        let proposal = found.proposal.as_ref().unwrap_or_else(|| panic!("{:?}", found.reason));
+        assert!(proposal.way == "zero-momentum" && proposal.turns_no_base && !proposal.reactionless);
+        assert!(proposal.tip_deviation < 1e-7 && proposal.simulated_peak_base_force > 1e-3);
+        let given = found.given.as_ref().expect("it moves");
+        assert!(floats || proposal.simulated_peak_base_moment < 1e-6 * given.peak_base_moment);
+        let [proposed, as_given] = found.scenarios.as_ref().expect("both");
+        let turn = |scenario: &Scenario| {
+            let mut most = 0.0_f64;
+            replay(scenario, |_, frame| most = most.max(frame.base.angle.abs())).expect("it runs");
+            most
+        };
+        assert!(!floats || turn(proposed) < 1e-9 && turn(as_given) > 0.03);
+        assert!(found.lines().iter().all(|line| !line.name.contains("b on the way")));
+    }
+    let none = found(&[0.2, 0.9, 1.6], &[0.8, 0.3, -0.6], true);
+    let reason = none.reason.expect("a reason").to_string();
+    assert!(none.proposal.is_none() && none.as_given.is_some(), "{reason}");
+    assert!(reason.contains("no pose constant b") && reason.contains("dynamic singularity"), "{reason}");
+}
+
 /// What already holds b is left as it is; what does not is moved onto a plane, and both scenarios do what is said.
 #[test]
 fn a_motion_is_moved_onto_a_plane() {

@@ -141,7 +141,8 @@ fn proposal(ui: &mut Ui, p: &Palette, shown: &TableView<'_>, imported: &Imported
     match (&imported.proposal, &imported.reason) {
         (Some(proposal), _) => {
             let Proposal { b, why, .. } = proposal;
-            title(ui, p, "Proposed: no reactions", &format!("b = {} rad", signed(*b, 3)));
+            let b = if proposal.holds_b() { format!("b = {} rad", signed(*b, 3)) } else { String::new() };
+            title(ui, p, &format!("Proposed: {}", proposal.effect()), &b);
             takes(ui, shown, imported, commands);
             ink(ui, &format!("{}: {why}.", proposal.keeps()), p.ink);
         }

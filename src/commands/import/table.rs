@@ -16,8 +16,9 @@ pub fn table(answer: &ImportedMotion) -> String {
         table.row([name, given, proposed, unit.into()]);
     }
     let way = answer.proposal.as_ref().map(|p| {
-        let (b, kept, clean) = (fixed(p.b, 6), p.keeps(), yes(p.reactionless));
-        format!("\nproposed: b = {b} rad, {kept}: {}\nreactionless: {clean}\n", p.why)
+        let (kept, clean, still) = (p.keeps(), yes(p.reactionless), yes(p.turns_no_base));
+        let b = if p.holds_b() { format!("b = {} rad, ", fixed(p.b, 6)) } else { String::new() };
+        format!("\nproposed: {b}{kept}: {}\nreactionless: {clean}\nturns no base: {still}\n", p.why)
     });
     let smoothed = answer
         .smoothed_at

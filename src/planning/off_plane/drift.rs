@@ -161,6 +161,8 @@ pub fn zero_momentum_curve(
             DriftError::Singular { s, at, cycle, why } => {
                 DriftError::Singular { s: from + s * (to - from), at, cycle, why }
             }
+            // The pieces before did not lead there within the tolerance.
+            DriftError::Start { .. } if from > 0.0 => stop(model, &q, &|s| curve.at(s), from, cycle),
             other => other,
         })
     };

@@ -121,6 +121,7 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("joint_deviation", "rad", "Largest deviation of each drive from the given motion."),
     row("rms_deviation", "rad", "Root mean square deviation in the metric of kinetic energy."),
     row("simulated_peak_base_moment", "N m", "Largest |n_B| in the simulation."),
+    row("turns_no_base", "", "Whether the base feels no moment in the simulation."),
     row("simulated_peak_base_force", "N", "Largest dynamic |f_B| in the simulation."),
     // A motion that is taken elsewhere.
     row("export.what", "", "What is written: the reference, or the simulated motion."),

@@ -48,6 +48,9 @@ pub struct ImportedMotion {
     /// The nearest motion without reactions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proposal: Option<Proposal>,
+    /// Whether the machine has a pose constant b.
+    #[serde(skip)]
+    pub has_b: bool,
     /// Remarks on the motions, one sentence each.
     #[serde(skip)]
     pub notes: Vec<Advice>,
@@ -88,6 +91,7 @@ impl ImportedMotion {
             feasible: false,
             reason: None,
             proposal: None,
+            has_b: judge.space.is_ok(),
             notes: Vec::new(),
             scenarios: None,
             as_given: None,

@@ -4,6 +4,7 @@ use super::drives::of_drives;
 use super::given::GivenMotion;
 use super::imported::ImportedMotion;
 use super::judge::{AssessedMotion, MotionCandidate, MotionEvaluator};
+use super::momentum::{ZERO_MOMENTUM, without_momentum};
 use super::request::{MotionImportError, PreservedPath, Request};
 use super::tip::of_tip;
 use super::ways::{MotionProposals, unchanged_motion};
@@ -112,10 +113,7 @@ fn ways(
         Ok(space) if drives => of_drives(request, judge, space, samples, goes_on),
         Ok(space) => of_tip(request, judge, space, samples, goes_on),
         Err(NoPoseSpace::Free) => unchanged_motion(judge, samples, drives, goes_on),
-        Err(why) => {
-            let given = unchanged_motion(judge, samples, drives, goes_on)?;
-            Ok(MotionProposals { candidates: Err(why.to_string().into()), ..given })
-        }
+        Err(why) => without_momentum(request, judge, why, goes_on),
     }
 }
 
@@ -153,7 +151,7 @@ impl Trying {
         let scenario = self.judge.scenario(candidate.task.clone(), step, candidate.method);
         let mut own = part(goes_on, [self.share(0.0), self.share(1.0)]);
         match self.judge.proposal(candidate, &scenario, self.given.as_ref(), &mut own) {
-            Ok(proposal) if proposal.reactionless => {
+            Ok(proposal) if proposal.reactionless || candidate.method == ZERO_MOMENTUM && proposal.turns_no_base => {
                 match self.judge.as_given(motion, candidate.task.b, step) {
                     Some(as_given) => self.imported.propose(proposal, [scenario, as_given]),
                     None => self.imported.reason = Some("the samples make no task".into()),
@@ -165,6 +163,11 @@ impl Trying {
                 self.imported.reason = Some(self.judge.why_not_reactionless(&proposal, given));
             }
             Err(Refusal::Stopped) => return true,
+            Err(why) if candidate.method == ZERO_MOMENTUM => {
+                let no_b = self.judge.space.as_ref().err().map(|why| format!("{why}. ")).unwrap_or_default();
+                let way = "Without angular momentum its end effector cannot go this way";
+                self.imported.reason = Some(format!("{no_b}{way}: {why}").into());
+            }
             Err(why) => self.imported.reason = Some(why.to_string().into()),
         }
         self.tried += 1;

@@ -68,11 +68,11 @@ pub struct MotionEffects {
 /// A proposed motion, simulated.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Proposal {
-    /// Method by which it was found: `same-tip`, `turned`, `on-plane` or `as-given`.
+    /// Method by which it was found: `same-tip`, `turned`, `on-plane`, `as-given` or `zero-momentum`.
     pub way: &'static str,
     /// Reason for choosing this motion, in words.
     pub why: String,
-    /// Mean pose constant, rad.
+    /// Mean pose constant, rad; it varies along a motion by `zero-momentum`.
     pub b: f64,
     /// Largest distance of the end effector from the given motion, m.
     pub tip_deviation: f64,
@@ -89,6 +89,8 @@ pub struct Proposal {
     pub simulated_peak_base_force: f64,
     /// Whether the simulated motion is reactionless.
     pub reactionless: bool,
+    /// Whether the base feels no moment in the simulation. That is true of reactionless motions, too.
+    pub turns_no_base: bool,
 }
 
 /// Number of intervals at which n_B is sampled for drawing.
@@ -239,6 +241,7 @@ impl MotionEvaluator {
             simulated_peak_base_moment: peaks.arm_moment,
             simulated_peak_base_force: peaks.force,
             reactionless: peaks.is_reactionless(),
+            turns_no_base: peaks.turns_no_base(),
         })
     }
 

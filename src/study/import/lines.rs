@@ -2,6 +2,7 @@
 
 use super::imported::ImportedMotion;
 use super::judge::{MotionEffects, Proposal};
+use super::momentum::ZERO_MOMENTUM;
 
 /// A value of the given and of the proposed motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,10 +47,12 @@ impl ImportedMotion {
         }
         let drives = given.or(proposal.map(|p| &p.account)).map_or(0, |a| a.peak_torque.len());
         lines.extend((0..drives).map(|k| both(format!("peak |τ_{}|", k + 1), &|a| a.peak_torque[k], 6, "N m")));
-        lines.push(both("least b on the way".into(), &|a| a.b_range[0], 6, "rad"));
-        lines.push(both("greatest b on the way".into(), &|a| a.b_range[1], 6, "rad"));
+        if self.has_b {
+            lines.push(both("least b on the way".into(), &|a| a.b_range[0], 6, "rad"));
+            lines.push(both("greatest b on the way".into(), &|a| a.b_range[1], 6, "rad"));
+        }
         // The spline may exceed the samples: show both where they differ.
-        let range = given.map(|a| a.b_range);
+        let range = given.map(|a| a.b_range).filter(|_| self.has_b);
         if let Some(([low, high], [least, greatest])) = self.b_samples.zip(range)
             && (low - least).max(greatest - high) > 5e-7
         {
@@ -60,7 +63,7 @@ impl ImportedMotion {
             lines.push(of_samples("least b of the samples", low));
             lines.push(of_samples("greatest b of the samples", high));
         }
-        lines.push(both("momentum at the end".into(), &|a| a.angular_momentum_end, 9, "kg m²/s"));
+        lines.push(both("momentum about B at the end".into(), &|a| a.angular_momentum_end, 9, "kg m²/s"));
         lines.extend(proposal.into_iter().flat_map(|proposal| proposal.lines(given.is_some())));
         lines
     }
@@ -84,12 +87,23 @@ impl Proposal {
         lines
     }
 
+    /// Returns in words what the base feels no more.
+    pub fn effect(&self) -> &'static str {
+        if self.reactionless { "no reactions" } else { "the base does not turn" }
+    }
+
+    /// Returns whether b is constant, if the machine has one.
+    pub fn holds_b(&self) -> bool {
+        self.way != ZERO_MOMENTUM
+    }
+
     /// Returns in words what the proposal keeps of the given motion.
     pub fn keeps(&self) -> &'static str {
         match self.way {
             "turned" => "the relative joint angles kept, the arm turned as a whole",
             "same-tip" => "the end effector's motion kept",
             "as-given" => "the motion as it is",
+            ZERO_MOMENTUM => "the end effector's motion kept, without angular momentum",
             _ => "the end effector's motion on one plane",
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! A quintic spline interpolates all samples. The proposal has the same timing and a constant b. It keeps the motion of
 //! the end effector if possible; otherwise the arm is turned as a whole. It counts as reactionless only if a simulation
-//! confirms this.
+//! confirms this. A machine without b moves its end effector without angular momentum, which leaves a force.
 //!
 //! | what | type |
 //! |---|---|
@@ -18,6 +18,7 @@ mod imported;
 mod importing;
 mod judge;
 mod lines;
+mod momentum;
 mod plane;
 mod request;
 mod tip;

@@ -39,3 +39,15 @@ pub(super) fn noise(t: &[f64], y: impl Fn(usize) -> f64) -> Option<f64> {
     };
     Some((places.map(squared_error).sum::<f64>() / count).sqrt())
 }
+
+/// Number of samples through which values between them are interpolated.
+const NEAR_POINTS: usize = 4;
+
+/// Returns the value of samples at a time: the polynomial through the nearest two on either side.
+pub(super) fn interpolated(t: &[f64], y: &[f64], at: f64) -> f64 {
+    let count = NEAR_POINTS.min(t.len());
+    let from = t.partition_point(|t| *t < at).saturating_sub(count / 2).min(t.len() - count);
+    let near = from..from + count;
+    let weight = |j: usize| near.clone().filter(|m| *m != j).map(|m| (at - t[m]) / (t[j] - t[m])).product::<f64>();
+    near.clone().map(|j| weight(j) * y[j]).sum()
+}

@@ -58,6 +58,32 @@ pub enum TrimError {
         /// Row, from 1.
         row: usize,
     },
+    /// A rate is the same in all rows, though its angle changes.
+    #[error(
+        "motion {}: {path} is {} rad/s in every row, but its angle changes by {} rad/s rms: want the measured rate",
+        motion + 1, fixed(*value, 6), fixed(*by_angle, 6)
+    )]
+    DeadSignal {
+        /// Index of the motion, from 0.
+        motion: usize,
+        /// Path of the rate.
+        path: String,
+        /// Its value, rad/s.
+        value: f64,
+        /// Root mean square rate by its angle, rad/s.
+        by_angle: f64,
+    },
+    /// The base does not turn, though the arm turns it.
+    #[error(
+        "motion {}: the base does not turn, but by the machine's file the arm turns it by {} rad/s rms: want the rate of a \
+         base that floats, or `trim` with forces and moments if it is held", motion + 1, fixed(*by_file, 6)
+    )]
+    StillBase {
+        /// Index of the motion, from 0.
+        motion: usize,
+        /// Root mean square rate by the machine's file, rad/s.
+        by_file: f64,
+    },
     /// A signal of a motion in orbit is missing.
     #[error(
         "no numbers of {path}: want angle and rate of every drive, attitude/base and attitude_rate/base, as simulate \

@@ -55,7 +55,7 @@ mod window;
 pub use adopted_parameters::{AdoptedParameters, adopt_parameters};
 pub use adopting_edit::adopting_edit;
 pub use correction_benefit::{CorrectionBenefit, correction_benefit};
-pub use doubt::{Cause, Doubt, MeasuredValue, Residual, doubt};
+pub use doubt::{Cause, Doubt, MeasuredValue, OtherZero, Residual, doubt};
 pub use error::TrimError;
 pub use fit::{Fit, IdentifiedNumbers, fit};
 pub use machine_correction::{

@@ -18,6 +18,8 @@ const EQUAL_BELOW: f64 = 1e-3;
 const LOG_ODDS_PER_MISTAKE: f64 = 2.3;
 /// A fault is named if its ln Λ is at most this far below that of the best fault.
 const MAX_LOG_ODDS_BEHIND: f64 = 6.9;
+/// Number of tolerances per unknown beyond which no built machine differs from its file.
+const IMPLAUSIBLE: f64 = 100.0;
 /// Maximum number of faults that are named.
 const MAX_NAMED: usize = 5;
 
@@ -112,6 +114,9 @@ impl<S: Suspected> DoubtSearch<S> {
         let fault = S::words(fault);
         let given = as_given.as_ref().unwrap_or(&self.given);
         let [decides, ranks] = likelihood_ratio(&self.tolerances, given, &other)?;
+        if self.is_farther(&other) {
+            return None;
+        }
         // If the values as given are impossible, any fault with possible values and a positive ranking ln Λ explains
         // them.
         let explains = match self.infeasible.as_slice() {
@@ -124,6 +129,16 @@ impl<S: Suspected> DoubtSearch<S> {
             fault: fault.clone(),
             tried: other,
         })
+    }
+
+    /// Returns whether a fit is so much farther from the machine's file than the measurement as given that it explains
+    /// nothing, however small its residuals: one more number would explain as much.
+    fn is_farther(&self, other: &FitTrial) -> bool {
+        let distance = |fit: &FitTrial| self.tolerances.distance(&fit.numbers);
+        let Some([was, now]) = distance(&self.given).zip(distance(other)).map(|(was, now)| [was, now]) else {
+            return true;
+        };
+        now.all > was.all && now.all > IMPLAUSIBLE.powi(2) * now.numbers
     }
 
     /// Returns the result of the faults tested; `None` if the measurement is plausible as given.

@@ -8,6 +8,8 @@
 //! | s | the true moment is s n, where n is the given moment |
 
 use super::doubting::FaultWords;
+use super::zeros::zero_faults;
+use crate::trim::fit::IdentifiedNumbers;
 use crate::trim::{MeasuredMotion, MeasurementSet};
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{PerDrive, Vector};
@@ -36,6 +38,12 @@ impl Angles {
     pub fn linear(n: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
         let rows = (0..n).map(|k| PerDrive::from_fn(n, |l| entry(k, l))).collect();
         Self { rows, offset: PerDrive::zeros(n) }
+    }
+
+    /// Returns the correction of angles that lack an offset, rad.
+    pub fn shifted(offset: PerDrive) -> Self {
+        let n = offset.len();
+        Self { offset, ..Self::linear(n, |k, l| if k == l { 1.0 } else { 0.0 }) }
     }
 
     /// Returns A x: corrected rates.
@@ -68,15 +76,21 @@ impl Fault {
 
     /// Returns all faults that are tested. For force and moment: signs, order and units. For the angles: signs, the
     /// exchange of any two, degrees for radians and the reverse, and relative angles. With up to four drives also
-    /// cyclic exchanges of three. With eight drives there are at most 63.
-    pub fn all(machine: &Machine) -> Vec<Self> {
-        let names = (0..machine.drives()).map(|k| format!("q{}", k + 1)).collect();
-        let columns = ColumnNames { angles: names, with: "with rates and accelerations" };
+    /// cyclic exchanges of three. With eight drives there are at most 79.
+    ///
+    /// `numbers` are those of the fit as given: they tell from which zeros the angles may count.
+    pub fn all(machine: &Machine, numbers: &IdentifiedNumbers) -> Vec<Self> {
+        let columns = ColumnNames {
+            angles: (0..machine.drives()).map(|k| format!("q{}", k + 1)).collect(),
+            with: "with rates and accelerations",
+            base_angle: None,
+        };
         let of_angles =
             |(words, angles)| Self { words, angles: Some(angles), force: (Vector::new(1.0, 0.0), false), moment: 1.0 };
         let mut all = frames();
         all.extend(units());
         all.extend(angle_faults(machine, &columns).into_iter().map(of_angles));
+        all.extend(zero_faults(machine, numbers, &columns).into_iter().map(of_angles));
         all
     }
 }
@@ -87,6 +101,8 @@ pub(in crate::trim) struct ColumnNames {
     pub angles: Vec<String>,
     /// The columns that change with those of the angles, as "with rates".
     pub with: &'static str,
+    /// Name of the column of the angle of a base that floats.
+    pub base_angle: Option<&'static str>,
 }
 
 /// A fault of the angles, and their correction.

@@ -33,6 +33,7 @@ mod plate;
 mod possible;
 mod rejection;
 mod tolerances;
+mod zeros;
 
 pub use doubting::doubt;
 pub(super) use doubting::{DoubtSearch, FaultWords, Suspected};
@@ -40,3 +41,5 @@ pub(super) use fault::{Angles, ColumnNames, NamedAngles, angle_faults, list};
 pub(super) use odds::{ChannelFit, FitTrial};
 pub(super) use plate::{PlateMeasurement, limit_violation};
 pub use rejection::{Cause, Doubt, MeasuredValue, Residual};
+pub use zeros::OtherZero;
+pub(super) use zeros::{other_zero, zero_faults};

@@ -36,7 +36,8 @@ impl PlateMeasurement {
         let recording = shortened(machine, recording);
         let rows = Regressor::of(machine, &recording, angles_only)?;
         let given = try_fit(machine, &rows, limits_left(machine, &recording))?;
-        Ok(DoubtSearch::of(machine, Self { recording, angles_only, rows }, given, Fault::all(machine)))
+        let faults = Fault::all(machine, &given.numbers);
+        Ok(DoubtSearch::of(machine, Self { recording, angles_only, rows }, given, faults))
     }
 }
 

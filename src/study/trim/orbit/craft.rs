@@ -11,7 +11,7 @@ use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive, Vector, unit};
 
 /// Coefficients of the momentum about the common centre of mass.
 pub(super) struct Coefficients {
-    /// D₀ and the sum of all D′.
+    /// D₀.
     base: f64,
     own: [f64; MAX_DRIVES],
     to_base: [Vector; MAX_DRIVES],
@@ -49,6 +49,62 @@ impl Craft {
             moment: own * com,
             inertia: about + own * (1.0 - own / mass) * com.norm_sqr() + rotors,
             wheel: base.wheel,
+        }
+    }
+
+    /// Returns unknowns, followed by anything, as coefficients in which the momentum is linear: C₀_k in the place of g_k, C′_kl
+    /// of C_kl, and D′_k of D_k.
+    pub fn to_linear(&self, x: &DVector<f64>) -> DVector<f64> {
+        let of = self.coefficients(x);
+        let mut all = x.clone();
+        for place in 0..self.unknowns.count() {
+            let part = |of: Vector, part| if part == ComplexPart::Along { of.re } else { of.im };
+            all[place] = match self.unknowns.at(place) {
+                Unknown::Of(Condition::Force(k), of_part) => part(of.to_base[k], of_part),
+                Unknown::Of(Condition::Coupling(k, l), of_part) => part(of.between[k][l], of_part),
+                Unknown::Momentum(k) => of.own[k],
+            };
+        }
+        all
+    }
+
+    /// Inverse of [`to_linear`](Self::to_linear). With the centre of mass of the base at the base pin, C₀ tells no first moments:
+    /// then they are those of the machine's `file`.
+    pub fn unknowns_of(&self, file: &DVector<f64>, y: &DVector<f64>) -> DVector<f64> {
+        let n = self.unknowns.drives();
+        let value = |of: &DVector<f64>, place: usize| Vector::new(of[2 * place], of[2 * place + 1]);
+        // First moments come first.
+        let is_told = self.moment.norm() > 1e-9 * self.mass * (self.inertia / self.mass).sqrt();
+        let first_moment =
+            |k: usize| if is_told { -self.mass * value(y, k) / self.moment.conj() } else { value(file, k) };
+        let g: Vec<Vector> = (0..n).map(first_moment).collect();
+        let mut all = y.clone();
+        for place in 0..self.unknowns.count() {
+            let part = |of: Vector, part| if part == ComplexPart::Along { of.re } else { of.im };
+            all[place] = match self.unknowns.at(place) {
+                Unknown::Of(Condition::Force(k), of_part) => part(g[k], of_part),
+                Unknown::Of(Condition::Coupling(k, l), of_part) => {
+                    y[place] + part(g[k].conj() * g[l], of_part) / self.mass
+                }
+                Unknown::Momentum(k) => y[place] + g[k].norm_sqr() / self.mass,
+            };
+        }
+        all
+    }
+
+    /// Computes the momentum per unit of each linear coefficient, at the rate ω of the base.
+    pub fn linear_row(&self, angles: &PerDrive, rates: &PerDrive, base_rate: f64, row: &mut [f64]) {
+        for (place, value) in row.iter_mut().enumerate() {
+            let part = |e: Vector, part| if part == ComplexPart::Along { e.re } else { -e.im };
+            *value = match self.unknowns.at(place) {
+                Unknown::Of(Condition::Force(k), of_part) => {
+                    part(unit(angles[k]), of_part) * (rates[k] + 2.0 * base_rate)
+                }
+                Unknown::Of(Condition::Coupling(k, l), of_part) => {
+                    part(unit(angles[l] - angles[k]), of_part) * (rates[k] + rates[l] + 2.0 * base_rate)
+                }
+                Unknown::Momentum(k) => rates[k] + base_rate,
+            };
         }
     }
 

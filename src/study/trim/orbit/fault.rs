@@ -6,23 +6,25 @@
 
 use nalgebra::DMatrix;
 
+use super::delay::Delay;
 use super::fit::OrbitFit;
-use super::motion::{BASE_RATE, DEGREE, OrbitBase, OrbitMotion, RPM};
+use super::motion::{BASE_RATE, DEGREE, OrbitBase, OrbitMotion, RPM, raised};
 use crate::trim::doubt::{
     Angles, ChannelFit, ColumnNames, DoubtSearch, FaultWords, FitTrial, NamedAngles, Residual, Suspected, angle_faults,
-    limit_violation, list,
+    limit_violation, list, zero_faults,
 };
 use crate::trim::error::TrimError;
+use crate::trim::fit::IdentifiedNumbers;
 use crate::trim::long_run::{bartlett_lags, correlation_length};
-use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::PerDrive;
 
 /// Fraction of a rate that its angle need not explain: angles are rounded and noisy, and differences are not derivatives.
 const RATE_FLOOR: f64 = 0.02;
 /// Factor between the residuals of two fits that is no evidence of a fault.
-const SLACK: f64 = 2.0;
+pub(super) const SLACK: f64 = 2.0;
 /// Residuals below this fraction of the base rate are rounding errors.
-const EXACT: f64 = 1e-6;
+pub(super) const EXACT: f64 = 1e-6;
 /// Number of standard deviations of a slow part of white noise that count as zero.
 const SURE: f64 = 1.5;
 
@@ -50,20 +52,22 @@ impl Columns {
     }
 }
 
-/// Returns all values plus one number.
-fn raised(of: &PerDrive, by: f64) -> PerDrive {
-    PerDrive::from_fn(of.len(), |k| of[k] + by)
-}
-
 /// Returns values of which one has the other sign.
 fn reversed(of: &PerDrive, which: usize) -> PerDrive {
     PerDrive::from_fn(of.len(), |k| if k == which { -of[k] } else { of[k] })
 }
 
-/// A mistake, and the row corrected for it.
+/// A mistake, and the motion corrected for it.
 pub(super) struct OrbitFault {
     words: FaultWords,
-    correct: Box<dyn Fn(&mut Columns) + Send + Sync>,
+    correction: Correction,
+}
+
+/// How a mistake is undone.
+enum Correction {
+    /// Row by row.
+    Row(Box<dyn Fn(&mut Columns) + Send + Sync>),
+    Delay(Delay),
 }
 
 /// Motions that are tested for faults.
@@ -80,8 +84,13 @@ impl OrbitMeasurement {
     pub fn search(machine: &Machine, base: OrbitBase, motions: &[OrbitMotion]) -> Result<DoubtSearch<Self>, TrimError> {
         let given = tried(machine, &base, motions)?;
         let has_wheel = motions.iter().flat_map(|motion| &motion.wheel_rate).any(|rate| *rate != 0.0);
+        let mut faults = OrbitFault::all(machine, &given.numbers, has_wheel);
+        let delays = Delay::all(machine, &base, motions);
+        faults.extend(
+            delays.into_iter().map(|delay| OrbitFault { words: delay.words(), correction: Correction::Delay(delay) }),
+        );
         let measured = Self { base, motions: motions.to_vec() };
-        Ok(DoubtSearch::of(machine, measured, given, OrbitFault::all(machine, has_wheel)))
+        Ok(DoubtSearch::of(machine, measured, given, faults))
     }
 }
 
@@ -168,6 +177,15 @@ fn rate_against_angle(motions: &[OrbitMotion], of: usize, name: &str) -> Channel
     }
 }
 
+/// Returns the names of the columns of angles.
+pub(super) fn column_names(machine: &Machine) -> ColumnNames {
+    ColumnNames {
+        angles: machine.spec().drives.iter().map(|drive| format!("angle/{}", drive.name)).collect(),
+        with: "with rates",
+        base_angle: Some("attitude/base"),
+    }
+}
+
 impl OrbitFault {
     fn of(
         what: impl Into<String>,
@@ -175,20 +193,24 @@ impl OrbitFault {
         correct: impl Fn(&mut Columns) + Send + Sync + 'static,
     ) -> Self {
         let words = FaultWords { what: what.into(), want: want.into(), mistakes: 1 };
-        Self { words, correct: Box::new(correct) }
+        Self { words, correction: Correction::Row(Box::new(correct)) }
+    }
+
+    fn of_angles((words, by): NamedAngles) -> Self {
+        Self { words, correction: Correction::Row(Box::new(move |row| row.map(&by))) }
     }
 
     /// Returns all faults that are tested: angles and rates of the drives that count from elsewhere, the other way, in
     /// another order or unit; the same of the base and its wheel.
-    fn all(machine: &Machine, has_wheel: bool) -> Vec<Self> {
+    fn all(machine: &Machine, numbers: &IdentifiedNumbers, has_wheel: bool) -> Vec<Self> {
         let names = |what: &str| -> Vec<String> {
             machine.spec().drives.iter().map(|drive| format!("{what}/{}", drive.name)).collect()
         };
         let (angles, rates) = (names("angle"), names("rate"));
         let n = angles.len();
-        let columns = ColumnNames { angles: angles.clone(), with: "with rates" };
-        let of_angles = |(words, by): NamedAngles| Self { words, correct: Box::new(move |row| row.map(&by)) };
-        let mut all: Vec<Self> = angle_faults(machine, &columns).into_iter().map(of_angles).collect();
+        let columns = column_names(machine);
+        let mut all: Vec<Self> = angle_faults(machine, &columns).into_iter().map(Self::of_angles).collect();
+        all.extend(zero_faults(machine, numbers, &columns).into_iter().map(Self::of_angles));
         let add = format!("attitude/base added to each angle, and {BASE_RATE} to each rate");
         all.push(Self::of(
             "the drives are measured relative to the base, not to space",
@@ -211,6 +233,14 @@ impl OrbitFault {
                     row.add_base();
                 }));
             }
+        }
+        // Rates alone, unlike their angles.
+        for (k, l) in Inertia::pairs(n) {
+            let [one, other] = [&rates[k], &rates[l]];
+            let want = format!("the names {one} and {other} exchanged in the header");
+            all.push(Self::of(format!("{one} and {other} are exchanged, their angles are not"), want, move |row| {
+                (row.rates[k], row.rates[l]) = (row.rates[l], row.rates[k]);
+            }));
         }
         for (k, rate) in rates.iter().enumerate() {
             all.push(Self::of(format!("{rate} has the wrong sign"), format!("{rate} times −1"), move |row| {
@@ -299,6 +329,10 @@ impl OrbitFault {
 
     /// Returns a motion corrected for this fault.
     fn undo(&self, motion: &OrbitMotion) -> OrbitMotion {
+        let correct = match &self.correction {
+            Correction::Row(correct) => correct,
+            Correction::Delay(delay) => return delay.undo(motion),
+        };
         let mut all = motion.clone();
         for row in 0..motion.rows() {
             let [turn, rate] = [motion.attitude[row], motion.base_rate[row]];
@@ -309,7 +343,7 @@ impl OrbitFault {
                 base_rate: rate,
                 wheel_rate: motion.wheel_rate[row],
             };
-            (self.correct)(&mut columns);
+            correct(&mut columns);
             all.attitude[row] = columns.attitude;
             all.base_rate[row] = columns.base_rate;
             all.angles[row] = raised(&columns.angles, -columns.attitude);

@@ -17,6 +17,8 @@ const STEP_TOLERANCE: f64 = 1e-10;
 const RANK_TOLERANCE: f64 = 1e-9;
 /// Steps with a threshold of their own; later ones share one, so that they converge.
 const FREE_STEPS: usize = 10;
+/// A fit from another start counts if its residuals are below this fraction of those from the file.
+const MUCH_BETTER: f64 = 0.9;
 /// A direction is determined if the standard deviation along it is below this fraction of the scales: the fit is linear
 /// in no larger region.
 const MAX_DEVIATION: f64 = 0.2;
@@ -98,6 +100,111 @@ impl Rows<'_> {
         }
         slopes
     }
+
+    /// Returns the solution of least squares of L, which is linear in other coefficients: near the least residuals of ω,
+    /// however far from the machine's `file`, but with a bias by noise.
+    fn linear(&self, file: &DVector<f64>, scale: &[f64]) -> Option<DVector<f64>> {
+        let (p, all) = (self.unknowns, file.len());
+        let count = self.motions.iter().map(OrbitMotion::rows).sum();
+        let home = self.craft.to_linear(file);
+        let turning = self.craft.inertia.max(scale[p - 1]);
+        let (mut table, mut own) = (DMatrix::zeros(count, all + 1), vec![0.0; p]);
+        for (at, (i, motion, row)) in self.samples().enumerate() {
+            let rate = motion.base_rate[row];
+            self.craft.linear_row(&motion.angles[row], &motion.rates[row], rate, &mut own);
+            let known = self.craft.inertia * rate + self.craft.wheel * motion.wheel_rate[row];
+            let momentum: f64 = (0..p).map(|j| own[j] * home[j]).sum();
+            own.iter().enumerate().for_each(|(j, slope)| table[(at, j)] = turning * slope);
+            table[(at, p + i)] = -turning;
+            table[(at, all)] = file[p + i] - known - momentum;
+        }
+        let r = table.qr().unpack_r();
+        let (slopes, right) = (r.columns(0, all).clone_owned(), r.column(all).clone_owned());
+        let svd = SVD::try_new(slopes.clone(), true, true, 5.0 * f64::EPSILON, 10_000)?;
+        let mut deviation = DVector::zeros(all);
+        let mut threshold = RANK_TOLERANCE * svd.singular_values.max();
+        // First with all directions, then without those in which the noise that is left would lead far.
+        for _ in 0..2 {
+            deviation = svd.solve(&right, threshold).ok()?;
+            threshold = threshold.max((&slopes * &deviation - &right).norm() / (count as f64).sqrt() / MAX_DEVIATION);
+        }
+        let x = home + turning * deviation;
+        Some(self.craft.unknowns_of(file, &x)).filter(|x| x.iter().all(|x| x.is_finite()))
+    }
+}
+
+/// Unknowns and L of each motion where Gauss–Newton steps end.
+struct Descent {
+    x: DVector<f64>,
+    slopes: DMatrix<f64>,
+    errors: DVector<f64>,
+    /// Pseudo-inverse of slopesᵀ slopes over the identifiable directions.
+    inverse: DMatrix<f64>,
+    /// Orthonormal basis of the other directions, in units of the scales.
+    free: DMatrix<f64>,
+}
+
+/// Returns the root mean square of errors.
+fn rms(errors: &DVector<f64>) -> f64 {
+    (errors.norm_squared() / errors.len() as f64).sqrt()
+}
+
+impl Descent {
+    /// Descends from a start. What is not determined becomes as in the machine's `file`.
+    fn from(rows: &Rows<'_>, file: &DVector<f64>, scale: &[f64], start: DVector<f64>) -> Result<Self, TrimError> {
+        let all = file.len();
+        let (mut errors, mut x) = (rows.errors(&start), start);
+        let off_file = rms(&rows.errors(file));
+        let (mut fixed_threshold, mut solved) = (None, None);
+        for iteration in 0..MAX_STEPS {
+            let slopes = rows.slopes(&x);
+            let off = rms(&errors);
+            let mut scaled = slopes.clone();
+            (0..all).for_each(|j| scaled.column_mut(j).scale_mut(scale[j]));
+            let svd = SVD::try_new(scaled.qr().unpack_r(), false, true, 5.0 * f64::EPSILON, 10_000)
+                .ok_or(TrimError::NotFinite)?;
+            let v = svd.v_t.ok_or(TrimError::NotFinite)?.transpose();
+            // A direction in which noise alone could lead far from the file is not determined.
+            let threshold = match fixed_threshold {
+                Some(fixed) => fixed,
+                None => (RANK_TOLERANCE * svd.singular_values.max()).max(off / MAX_DEVIATION),
+            };
+            if iteration + 1 >= FREE_STEPS {
+                fixed_threshold = Some(threshold);
+            }
+            let is_kept = |i: &usize| svd.singular_values[*i] > threshold;
+            let (kept, rest): (Vec<usize>, Vec<usize>) = (0..all).partition(is_kept);
+            let mut inverse = DMatrix::zeros(all, all);
+            for i in kept {
+                let column = DVector::from_fn(all, |j, _| v[(j, i)] * scale[j]);
+                inverse += &column * column.transpose() / svd.singular_values[i].powi(2);
+            }
+            let mut step = &inverse * slopes.tr_mul(&errors);
+            // What is not determined goes back to the file, whatever earlier steps have made of it.
+            for i in &rest {
+                let way: f64 = (0..all).map(|j| v[(j, *i)] * (file[j] - x[j]) / scale[j]).sum();
+                (0..all).for_each(|j| step[j] += way * v[(j, *i)] * scale[j]);
+            }
+            let size = (0..all).map(|j| (step[j] / scale[j]).abs()).fold(0.0, f64::max);
+            if !size.is_finite() {
+                return Err(TrimError::NotFinite);
+            }
+            // A step that leads to larger errors than the file's is too long for a linear model.
+            let tried = (0..=MAX_HALVINGS).map(|halvings| &x + &step * 0.5_f64.powi(halvings as i32));
+            let most = WORSE_THAN_FILE * off_file.max(off) + f64::MIN_POSITIVE;
+            let next = tried.map(|x| (rows.errors(&x), x)).find(|(errors, _)| rms(errors) <= most);
+            let reached = next.is_none() || size < STEP_TOLERANCE;
+            solved = Some((slopes, errors.clone(), inverse, v.select_columns(&rest)));
+            if let Some(next) = next {
+                (errors, x) = next;
+            }
+            if reached {
+                break;
+            }
+        }
+        let (slopes, errors, inverse, free) = solved.ok_or(TrimError::NotFinite)?;
+        Ok(Self { x, slopes, errors, inverse, free })
+    }
 }
 
 impl OrbitFit {
@@ -123,9 +230,7 @@ impl OrbitFit {
         }
         let nominal = DVector::from_vec(craft.unknowns.nominal(&inertia));
         let scales = craft.unknowns.scales(&inertia);
-        let scale = |j: usize| if j < p { scales[j] } else { craft.inertia };
         let rows = Rows { craft: &craft, motions, unknowns: p };
-        let rms = |errors: &DVector<f64>| (errors.norm_squared() / count as f64).sqrt();
         // L of each motion, as the machine's file has it on average.
         let mut x = nominal.clone().resize_vertically(all, 0.0);
         let of = craft.coefficients(&nominal);
@@ -134,56 +239,17 @@ impl OrbitFit {
             let momentum = still + turning * motion.base_rate[row] + craft.wheel * motion.wheel_rate[row];
             x[p + i] += momentum / counts[i] as f64;
         }
-        let mut errors = rows.errors(&x);
-        let file = rms(&errors);
-        let (start, mut fixed_threshold, mut solved) = (x.clone(), None, None);
-        for iteration in 0..MAX_STEPS {
-            let slopes = rows.slopes(&x);
-            let off = rms(&errors);
-            let mut scaled = slopes.clone();
-            (0..all).for_each(|j| scaled.column_mut(j).scale_mut(scale(j)));
-            let svd = SVD::try_new(scaled.qr().unpack_r(), false, true, 5.0 * f64::EPSILON, 10_000)
-                .ok_or(TrimError::NotFinite)?;
-            let v = svd.v_t.ok_or(TrimError::NotFinite)?.transpose();
-            // A direction in which noise alone could lead far from the file is not determined.
-            let threshold = match fixed_threshold {
-                Some(fixed) => fixed,
-                None => (RANK_TOLERANCE * svd.singular_values.max()).max(off / MAX_DEVIATION),
-            };
-            if iteration + 1 >= FREE_STEPS {
-                fixed_threshold = Some(threshold);
-            }
-            let is_kept = |i: &usize| svd.singular_values[*i] > threshold;
-            let (kept, rest): (Vec<usize>, Vec<usize>) = (0..all).partition(is_kept);
-            let mut inverse = DMatrix::zeros(all, all);
-            for i in kept {
-                let column = DVector::from_fn(all, |j, _| v[(j, i)] * scale(j));
-                inverse += &column * column.transpose() / svd.singular_values[i].powi(2);
-            }
-            let mut step = &inverse * slopes.tr_mul(&errors);
-            // What is not determined goes back to where it was, whatever earlier steps have made of it.
-            for i in &rest {
-                let way: f64 = (0..all).map(|j| v[(j, *i)] * (start[j] - x[j]) / scale(j)).sum();
-                (0..all).for_each(|j| step[j] += way * v[(j, *i)] * scale(j));
-            }
-            let size = (0..all).map(|j| (step[j] / scale(j)).abs()).fold(0.0, f64::max);
-            if !size.is_finite() {
-                return Err(TrimError::NotFinite);
-            }
-            // A step that leads to larger errors than the file's is too long for a linear model.
-            let tried = (0..=MAX_HALVINGS).map(|halvings| &x + &step * 0.5_f64.powi(halvings as i32));
-            let most = WORSE_THAN_FILE * file.max(off) + f64::MIN_POSITIVE;
-            let next = tried.map(|x| (rows.errors(&x), x)).find(|(errors, _)| rms(errors) <= most);
-            let reached = next.is_none() || size < STEP_TOLERANCE;
-            solved = Some((slopes, errors.clone(), inverse, v.select_columns(&rest)));
-            if let Some(next) = next {
-                (errors, x) = next;
-            }
-            if reached {
-                break;
-            }
+        let scale: Vec<f64> = (0..all).map(|j| if j < p { scales[j] } else { craft.inertia }).collect();
+        let file = rms(&rows.errors(&x));
+        let mut found = Descent::from(&rows, &x, &scale, x.clone())?;
+        // Far from the file, steps may end elsewhere than at the least residuals.
+        let linear = rows.linear(&x, &scale).filter(|start| rms(&rows.errors(start)) < rms(&found.errors));
+        if let Some(other) = linear.and_then(|start| Descent::from(&rows, &x, &scale, start).ok())
+            && rms(&other.errors) < MUCH_BETTER * rms(&found.errors)
+        {
+            found = other;
         }
-        let (slopes, errors, inverse, free) = solved.ok_or(TrimError::NotFinite)?;
+        let Descent { x, slopes, errors, inverse, free } = found;
         let lags = bartlett_lags(&[errors.as_slice()], &counts, 1);
         let scores = DMatrix::from_fn(count, all, |i, j| slopes[(i, j)] * errors[i]);
         let rank = all - free.ncols();
@@ -229,6 +295,18 @@ impl OrbitFit {
     pub fn slow_noise(&self) -> f64 {
         let [_, next] = neighbour_products(self.errors.as_slice(), &self.counts);
         (next.max(0.0) / self.errors.len() as f64).sqrt()
+    }
+
+    /// Returns by how much a parameter of motions, beside the unknowns, changes in one Gauss–Newton step with all of them, and
+    /// its standard deviation; `None` if nothing tells it. `changed` are the motions with the parameter larger by `change`.
+    pub fn parameter(&self, changed: &[OrbitMotion], change: f64) -> Option<[f64; 2]> {
+        let rows = Rows { craft: &self.craft, motions: changed, unknowns: self.numbers.unknowns.count() };
+        let slope = (rows.errors(&self.x) - &self.errors) / change;
+        let alone = &slope - &self.slopes * (&self.inverse * self.slopes.tr_mul(&slope));
+        let size = alone.norm();
+        let step = -alone.dot(&self.errors) / (size * size);
+        let deviation = self.noise * (self.errors.len() as f64 / self.effective).sqrt() / size;
+        step.is_finite().then_some([step, deviation])
     }
 
     /// Returns how far each unknown moves if the craft is another one, in one Gauss–Newton step.

@@ -33,6 +33,8 @@
 //! ω cancels in r_k. Absolute rates from elsewhere leave it there, where it bends the fit: the intervals do not hold.
 
 mod craft;
+mod dead;
+mod delay;
 mod fault;
 mod fit;
 mod known;

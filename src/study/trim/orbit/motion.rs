@@ -48,6 +48,11 @@ pub struct OrbitBase {
     pub wheel: f64,
 }
 
+/// Returns all values plus one number.
+pub(super) fn raised(of: &PerDrive, by: f64) -> PerDrive {
+    PerDrive::from_fn(of.len(), |k| of[k] + by)
+}
+
 impl OrbitBase {
     /// Returns the base of a scenario, which floats.
     pub fn of(base: &Base) -> Self {

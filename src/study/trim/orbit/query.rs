@@ -1,6 +1,7 @@
 //! [`OrbitTrimQuery`]: the query that evaluates motions in orbit.
 
-use super::fault::OrbitMeasurement;
+use super::dead::dead_signal;
+use super::fault::{EXACT, OrbitMeasurement, SLACK};
 use super::fit::OrbitFit;
 use super::motion::{OrbitBase, OrbitMotion};
 use super::report::OrbitReport;
@@ -65,6 +66,9 @@ impl Query for OrbitTrimQuery {
         let share = |done: usize, part: f64| TRIED_AT * (done as f64 + part) / searches as f64;
         let doubt = match std::mem::replace(&mut self.stage, Stage::Begun(searches)) {
             Stage::Begun(done) if done >= searches => chosen(std::mem::take(&mut self.doubts)),
+            Stage::Begun(0) if !as_given && let Some(why) = dead_signal(machine, base, motions) => {
+                return Portion::Done(OrbitOutcome { doubt: None, outcome: Err(NoTrim::Unusable(why)) });
+            }
             Stage::Begun(done) => {
                 let part = done.checked_sub(1).map_or(motions.as_slice(), |alone| &motions[alone..=alone]);
                 self.stage = match OrbitMeasurement::search(machine, *base, part) {
@@ -101,13 +105,20 @@ impl Query for OrbitTrimQuery {
     }
 }
 
-/// Returns the doubt to report. A fault of all motions together counts if it is the likeliest of one of them alone, too, or
-/// if none is doubted alone. Otherwise one motion is spoilt: that with the greatest odds.
+/// Returns the doubt to report. A fault of all motions together counts if it is the likeliest of one of them alone, too, if
+/// none is doubted alone, or if it is likelier than theirs and leaves as little. Otherwise one motion is spoilt: that with the
+/// greatest odds.
 fn chosen(mut doubts: Vec<Doubt>) -> Option<Doubt> {
     let first = |doubt: &Doubt| doubt.causes.first().map(|cause| cause.what.clone());
     let odds = |doubt: &Doubt| doubt.causes.first().map_or(0.0, |cause| cause.odds);
     let together = doubts.iter().position(|doubt| doubt.motion.is_none()).map(|place| doubts.remove(place));
-    let is_common = |doubt: &Doubt| doubts.is_empty() || doubts.iter().any(|alone| first(alone) == first(doubt));
+    let left = |doubt: &Doubt| doubt.causes.first().map_or(f64::INFINITY, |cause| cause.residuals[0].share);
+    let explains_as_well =
+        |common: &Doubt, alone: &Doubt| odds(common) > odds(alone) && left(common) <= SLACK * left(alone).max(EXACT);
+    let is_common = |doubt: &Doubt| {
+        doubts.iter().any(|alone| first(alone) == first(doubt))
+            || doubts.iter().all(|alone| explains_as_well(doubt, alone))
+    };
     match together.filter(is_common) {
         Some(common) => Some(common),
         None => doubts.into_iter().max_by(|a, b| odds(a).total_cmp(&odds(b))),

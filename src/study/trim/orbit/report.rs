@@ -4,9 +4,11 @@ use nalgebra::DVector;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::fault::column_names;
 use super::fit::OrbitFit;
 use super::known::{Explained, KnownValue, one_percent_off};
 use super::motion::{OrbitBase, OrbitMotion};
+use crate::trim::doubt::{OtherZero, other_zero};
 use crate::trim::next_excitation::{DriveLimits, NextMeasurement, Sines, next_motion};
 use crate::trim::report::{MeasuredUnknown, Suggestion, untold_words};
 use stillbase_mechanics::machine::Machine;
@@ -42,6 +44,9 @@ pub struct OrbitReport {
     /// Known values one of which alone explains the rates as well as all numbers together.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub known: Vec<KnownValue>,
+    /// A zero of the angles with which fewer unknowns differ from the machine's file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub zero: Option<OtherZero>,
     /// Why not all is told, if a cause is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub advice: Option<String>,
@@ -96,6 +101,7 @@ impl OrbitReport {
             residual_is_slow: *rate_noise > NEGLIGIBLE * fit.size
                 && fit.slow_noise().powi(2) > SLOW * rate_noise.powi(2),
             known,
+            zero: other_zero(machine, numbers, &column_names(machine)),
             advice: if is_told { None } else { advice(machine, base, motions) },
             numbers: (0..p).map(number).collect(),
             unidentifiable: fit.confounded.iter().map(|group| group.iter().map(name).collect()).collect(),
@@ -133,6 +139,12 @@ impl OrbitReport {
                 "One known value alone explains these rates as well as the whole table: {}{others}. \
                  Then the intervals do not hold: weigh the parts, and check masses and the inertia of the base first.",
                 value(first)
+            ));
+        }
+        if let Some(OtherZero { what, want, off_given, off_then }) = &self.zero {
+            words.push(format!(
+                "If {what}, {off_then} numbers differ from the file instead of {off_given}: want {want}. Momentum does not tell \
+                 zeros of angles, so check them first."
             ));
         }
         if self.residual_is_slow {
