@@ -31,7 +31,12 @@ use stillbase_session::scenario::Scenario;
 ///
 /// # Errors
 /// If there is no display, library or adapter, or the scenario cannot start.
-pub fn run(scenario: Scenario, file: Option<PathBuf>, theme: Option<Theme>) -> Result<(), WindowError> {
+pub fn run(
+    scenario: Scenario,
+    file: Option<PathBuf>,
+    tables: Vec<PathBuf>,
+    theme: Option<Theme>,
+) -> Result<(), WindowError> {
     error::check_libraries()?;
     let liked: Preferences = preferences::load();
     let liked = Preferences { theme: theme.unwrap_or(liked.theme), ..liked }.sound();
@@ -39,7 +44,8 @@ pub fn run(scenario: Scenario, file: Option<PathBuf>, theme: Option<Theme>) -> R
         .with_workers(Threads::Background)
         .watching(file.clone())
         .with_preferences(&liked)
-        .offering_recovery(keeper::find_left_session());
+        .offering_recovery(keeper::find_left_session())
+        .with_tables(tables);
     // Opening the file tells where it was left, and whether a recording equals its run.
     let left = file.filter(|file| {
         is_recording(&file.to_string_lossy())

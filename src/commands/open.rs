@@ -21,6 +21,10 @@ pub struct OpenArguments {
     /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file to open in a window
     #[arg(value_name = "SCENARIO", default_value = DEFAULT_SCENARIO)]
     scenario: String,
+    /// Tables of a motion of your own or of measurements to open beside it, .csv or .parquet
+    #[cfg(feature = "window")]
+    #[arg(value_name = "TABLE")]
+    tables: Vec<PathBuf>,
     /// Colours of the window
     #[cfg(feature = "window")]
     #[arg(long, value_enum)]
@@ -70,7 +74,9 @@ impl OpenArguments {
             failure => failure,
         })?;
         #[cfg(feature = "window")]
-        let why = match stillbase_app::window::run(scenario.clone(), self.file(), self.theme.map(Theme::from)) {
+        let theme = self.theme.map(Theme::from);
+        #[cfg(feature = "window")]
+        let why = match stillbase_app::window::run(scenario.clone(), self.file(), self.tables.clone(), theme) {
             Ok(()) => return Ok(()),
             Err(WindowError::Refused(refusal)) => return Err(Failure::refused(&scenario, refusal)),
             Err(lost @ WindowError::DeviceLost { .. }) => return Err(Failure::no_answer(lost)),

@@ -75,7 +75,6 @@ const MOMENT: Chart = Chart {
     unit: "N m",
     signals: &["moment/total"],
     min_range: 0.5,
-    is_overlaid: true,
     ..EMPTY_CHART
 };
 /// The moment that the machine transmits, and the moment that turns the base past its reaction wheel, or about its own
@@ -83,6 +82,13 @@ const MOMENT: Chart = Chart {
 const MOMENT_OF_BOTH: Chart = Chart { signals: &["moment/total", "moment/felt"], ..MOMENT };
 /// The moment on the base alone, for runs with and without a wheel beside each other. Without one it is n_B.
 const MOMENT_FELT: Chart = Chart { signals: &["moment/felt"], ..MOMENT };
+/// Cases are compared by what turns the base: past a wheel, or on a base that floats, it is not n_B.
+const MOMENT_COMPARED: Chart = Chart {
+    title: "Turning moment that the base feels",
+    place: ChartPlace::Compared,
+    is_overlaid: true,
+    ..MOMENT_FELT
+};
 const FORCE: Chart = Chart {
     title: "Force on the base",
     unit: "N, from motion",
@@ -158,7 +164,7 @@ pub fn charts(scenario: &Scenario, wheels_differ: bool) -> Vec<Chart> {
         (false, true) => MOMENT_OF_BOTH,
         (false, false) => MOMENT,
     };
-    let mut list = vec![TORQUE, moment, FORCE];
+    let mut list = vec![TORQUE, moment, MOMENT_COMPARED, FORCE];
     list.extend(Some(BASE).filter(|_| scenario.base.moves()));
     list.extend(Some(FRICTION).filter(|_| has_friction));
     // The angles of the drives are those of their links in space; on a fixed base both are the same.

@@ -402,19 +402,25 @@ impl EventLog {
     /// Adds events when reactions begin or cease to reach the base. `dt` is the step size, s.
     fn base(&mut self, frame: &Frame, dt: f64) {
         let [ever, of_late] = self.now.felt;
-        if !frame.is_base_unloaded() && !frame.peaks.is_base_unloaded() {
+        // A force shifts a base that floats, whatever the arm does; only a moment is news.
+        let (is_quiet, what) = match frame.floats {
+            true => (frame.turns_no_base() || frame.peaks.turns_no_base(), "a turning moment"),
+            false => (frame.is_base_unloaded() || frame.peaks.is_base_unloaded(), "the arm"),
+        };
+        if !is_quiet {
             self.now.quiet = None;
             self.now.felt = [true, true];
             match (ever, of_late) {
-                (false, _) => self.add(frame.step, EventKind::Warning, "the base begins to feel the arm"),
-                (true, false) => self.add(frame.step, EventKind::Warning, "the base feels the arm again"),
+                (false, _) => self.add(frame.step, EventKind::Warning, format!("the base begins to feel {what}")),
+                (true, false) => self.add(frame.step, EventKind::Warning, format!("the base feels {what} again")),
                 (true, true) => {}
             }
         } else if of_late {
             let since = *self.now.quiet.get_or_insert(frame.step);
             if (frame.step - since) as f64 * dt >= MIN_QUIET_S {
                 self.now.felt[1] = false;
-                self.add(since, EventKind::Note, "the base feels nothing again");
+                let nothing = if frame.floats { "no turning moment any more" } else { "nothing again" };
+                self.add(since, EventKind::Note, format!("the base feels {nothing}"));
             }
         }
     }

@@ -151,9 +151,13 @@ impl Frame {
         self.q[k] - self.base.angle
     }
 
+    /// Returns whether the moment that the base feels is zero now, relative to the run's peaks.
+    pub fn turns_no_base(&self) -> bool {
+        self.felt_moment.abs() <= self.peaks.no_moment().max(1e-15)
+    }
+
     /// Returns whether the moment and force that the base feels are zero now, relative to the run's peaks.
     pub fn is_base_unloaded(&self) -> bool {
-        self.felt_moment.abs() <= self.peaks.no_moment().max(1e-15)
-            && self.wrench.dynamic.force.norm() <= self.peaks.no_force().max(1e-15)
+        self.turns_no_base() && self.wrench.dynamic.force.norm() <= self.peaks.no_force().max(1e-15)
     }
 }

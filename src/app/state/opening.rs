@@ -165,6 +165,17 @@ impl AppState {
         self.open(SessionSource::File(path), Opening { closes: true, message, file, ..Opening::default() });
     }
 
+    /// Opens tables, all of them as one measurement, and shows them; what is wrong with one is said.
+    #[must_use]
+    pub fn with_tables(mut self, files: Vec<PathBuf>) -> Self {
+        for (i, file) in files.into_iter().enumerate() {
+            let opening = Opening { adds: i > 0, ..Opening::default() };
+            let opened = SessionSource::File(file).open(&mut |_| true);
+            self.take_opened(opening, Some(opened));
+        }
+        self
+    }
+
     /// Opens a file of further motions of the measurement on display.
     ///
     /// # Errors

@@ -10,6 +10,9 @@ use stillbase_simulation::signals::name_and_unit as simulation_head;
 pub(super) const WANT: &str = "a column for the time, such as time s or t, and one for each signal with its unit, such \
                                as torque/1 N m";
 
+/// Units that no simulation writes, but that a head may end with as those that one does.
+const OTHER_UNITS: [&str; 5] = ["deg/s", "°/s", "rpm", "deg", "°"];
+
 /// The heads of a table of signals.
 pub(super) struct SignalHeads {
     /// Index of the column of the time.
@@ -80,6 +83,10 @@ fn name_and_unit(head: &str) -> (String, String) {
     let head = head.trim();
     if let Some((name, unit)) = unit_in_brackets(head) {
         return (name, unit.unwrap_or_default());
+    }
+    let other = |unit: &str| Some((head.strip_suffix(unit)?.strip_suffix(' ')?.to_owned(), unit.to_owned()));
+    if let Some(split) = OTHER_UNITS.into_iter().find_map(other) {
+        return split;
     }
     let (name, unit) = simulation_head(head);
     (name.into(), unit.into())

@@ -142,6 +142,7 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("helps", "", "Whether the 95 % interval of the gain lies above 0."),
     row("next", "", "What to measure next."),
     row("next.worst", "", "Name of the least known unknown."),
+    row("faster", "1", "Factor on the measured accelerations, without which no motion would tell the unknown."),
     row("candidates", "", "Motions, the best first."),
     row("motion", "", "The motion, in words."),
     row("amplitude", "rad", "Amplitude of each drive."),

@@ -60,6 +60,8 @@ pub struct NextMeasurement {
     pub duration: f64,
     /// Candidates, the best first.
     pub candidates: Vec<Excitation>,
+    /// Factor on the accelerations that were measured, without which no candidate would tell the least known unknown.
+    pub faster: f64,
 }
 
 /// Number of instants at which a candidate is evaluated.
@@ -87,17 +89,18 @@ pub fn next_excitation(
         .with_accelerations(accelerations);
     let duration = motions.iter().map(MeasuredMotion::duration).sum::<f64>() / motions.len() as f64;
     let more = |sines: &Sines| sines.information(machine, &rows.unknowns, duration, fit);
-    next_motion(machine, &fit.numbers, &limits, duration, more)
+    next_motion(machine, &fit.numbers, &limits, duration, f64::INFINITY, more)
 }
 
 /// Assesses candidates: each drive alone, every pair in step and against each other, all drives in step, and all at
 /// different frequencies, within `limits` and for `duration`, s. The uncertainty after each candidate is predicted from
-/// the `information` that it adds.
+/// the `information` that it adds. An unknown is told if its standard deviation is below the fraction `told` of its scale.
 pub(super) fn next_motion(
     machine: &Machine,
     numbers: &IdentifiedNumbers,
     limits: &DriveLimits,
     duration: f64,
+    told: f64,
     information: impl Fn(&Sines) -> DMatrix<f64>,
 ) -> NextMeasurement {
     let scales = numbers.unknowns.scales(&Inertia::of(machine));
@@ -109,7 +112,8 @@ pub(super) fn next_motion(
     let assessed = |drives: Vec<(usize, f64)>, own_frequencies: bool| {
         let motion = limits.motion(machine, &drives, own_frequencies);
         let then = Known::of(&(&numbers.information + information(&motion)), &scales);
-        let half_width = match (numbers.identifiable[least_known], then.variance(least_known)) {
+        let after = then.variance(least_known).filter(|after| after.sqrt() < told);
+        let half_width = match (numbers.identifiable[least_known], after) {
             (_, None) => f64::INFINITY,
             (true, Some(after)) => half_width * now.variance(least_known).map_or(1.0, |now| (after / now).sqrt()),
             (false, Some(after)) => numbers.critical * after.sqrt() * scales[least_known],
@@ -133,7 +137,28 @@ pub(super) fn next_motion(
         candidates.push(assessed(every(), true));
     }
     candidates.sort_by(|a, b| a.half_width.total_cmp(&b.half_width));
-    NextMeasurement { least_known, half_width, duration, candidates }
+    NextMeasurement { least_known, half_width, duration, candidates, faster: 1.0 }
+}
+
+/// Largest factor by which a proposed motion is faster than those that were measured.
+const MAX_FASTER: f64 = 64.0;
+
+impl NextMeasurement {
+    /// Returns the proposal of `propose` for drives that accelerate as strongly as they did, or, where no such motion tells
+    /// the least known unknown, for the smallest power of two times as strongly.
+    pub(super) fn telling(limits: &DriveLimits, propose: impl Fn(&DriveLimits) -> Self) -> Self {
+        let mut faster = 1.0;
+        loop {
+            let next = Self { faster, ..propose(&limits.faster(faster)) };
+            if next.candidates.first().is_none_or(|best| best.half_width.is_finite()) {
+                return next;
+            }
+            faster *= 2.0;
+            if faster > MAX_FASTER {
+                return propose(limits);
+            }
+        }
+    }
 }
 
 /// Ranges and accelerations of the drives.
@@ -176,6 +201,12 @@ impl DriveLimits {
     pub fn with_accelerations(self, given: Option<&[f64]>) -> Self {
         let own = |(k, usual): (usize, &f64)| given.and_then(|all| all.get(k)).copied().unwrap_or(*usual);
         Self { acceleration: self.acceleration.iter().enumerate().map(own).collect(), ..self }
+    }
+
+    /// Returns these limits with accelerations larger by a factor.
+    fn faster(&self, factor: f64) -> Self {
+        let acceleration = self.acceleration.iter().map(|own| factor * own).collect();
+        Self { middle: self.middle.clone(), reach: self.reach.clone(), acceleration }
     }
 
     /// Returns sines of some drives with the amplitudes `reach`, reduced as far as the joint limits require.

@@ -114,9 +114,14 @@ pub struct Suggestion {
     pub unit: &'static str,
     /// Duration of each motion, s.
     pub duration: f64,
+    /// Factor on the accelerations that were measured, without which none of these motions would tell the unknown.
+    pub faster: f64,
     /// Motions, the best first.
     pub candidates: Vec<ExcitationReport>,
 }
+
+/// Half widths below this are rounding errors.
+const KNOWN_BELOW: f64 = 1e-12;
 
 impl Suggestion {
     /// Returns a proposal with the names of the machine.
@@ -131,13 +136,15 @@ impl Suggestion {
             half_width: Some(next.half_width).filter(|half| half.is_finite()),
             unit: worst.unit(),
             duration: next.duration,
+            faster: next.faster,
             candidates: next.candidates.iter().map(tried).collect(),
         }
     }
 
-    /// Returns in words the least known unknown and the effect of the best motion; `None` if there are no candidates.
+    /// Returns in words the least known unknown and the effect of the best motion; `None` if there are no candidates, or if
+    /// all is known to rounding.
     pub fn words(&self) -> Option<String> {
-        let best = self.candidates.first()?;
+        let best = self.candidates.first().filter(|_| self.half_width.is_none_or(|half| half > KNOWN_BELOW))?;
         let now = match self.half_width {
             Some(half) => format!("Least known is {}, ± {} {}", self.worst, fixed_or_scientific(half, 6), self.unit),
             None => format!("Nothing is known of {} yet", self.worst),
@@ -146,7 +153,11 @@ impl Suggestion {
             half if half.is_finite() => format!("would make that ± {} {}", fixed_or_scientific(half, 6), self.unit),
             _ => "would not identify it either".into(),
         };
-        Some(format!("{now}; {} s of {} {then}.", fixed(self.duration, 2), best.motion))
+        let faster = match self.faster > 1.0 {
+            true => format!(", accelerated {:.0} times as strongly as these motions,", self.faster),
+            false => String::new(),
+        };
+        Some(format!("{now}; {} s of {}{faster} {then}.", fixed(self.duration, 2), best.motion))
     }
 }
 

@@ -21,7 +21,7 @@ const FREE_STEPS: usize = 10;
 const MUCH_BETTER: f64 = 0.9;
 /// A direction is determined if the standard deviation along it is below this fraction of the scales: the fit is linear
 /// in no larger region.
-const MAX_DEVIATION: f64 = 0.2;
+pub(super) const MAX_DEVIATION: f64 = 0.2;
 /// Factor on the residual of the machine's file that no step may exceed.
 const WORSE_THAN_FILE: f64 = 1.1;
 /// Maximum number of times a step is halved.

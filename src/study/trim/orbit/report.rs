@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::fault::column_names;
-use super::fit::OrbitFit;
+use super::fit::{MAX_DEVIATION, OrbitFit};
 use super::known::{Explained, KnownValue, one_percent_off};
 use super::motion::{OrbitBase, OrbitMotion};
 use crate::trim::doubt::{OtherZero, other_zero};
@@ -180,7 +180,9 @@ fn next(machine: &Machine, motions: &[OrbitMotion], fit: &OrbitFit) -> NextMeasu
         let motion = OrbitMotion::swung(sines, duration);
         fit.information(&motion, density * motion.rows() as f64 / duration)
     };
-    next_motion(machine, &fit.numbers, &limits, duration, more)
+    NextMeasurement::telling(&limits, |limits| {
+        next_motion(machine, &fit.numbers, limits, duration, MAX_DEVIATION, more)
+    })
 }
 
 /// Returns whether a function of the angles, rad, varies within one of the motions.
