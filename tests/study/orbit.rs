@@ -429,7 +429,7 @@ fn a_small_offset_is_named_in_the_report() {
     let mut motion = swing(&built, &|k, t| (TAU * hertz[k] * t + 0.7 * k as f64).sin());
     let mut noise = Noise::of(5);
     for rate in &mut motion.base_rate {
-        *rate += 3e-3 * (0..12).map(|_| noise.between(-0.5, 0.5)).sum::<f64>();
+        *rate += 1e-3 * (0..12).map(|_| noise.between(-0.5, 0.5)).sum::<f64>();
     }
     let report = |motion: OrbitMotion| {
         assert_eq!(doubted(file, base(RHO, 0.0), vec![motion.clone()]), None);
