@@ -39,11 +39,12 @@ pub fn run(
 ) -> Result<(), WindowError> {
     error::check_libraries()?;
     let liked: Preferences = preferences::load();
-    let liked = Preferences { theme: theme.unwrap_or(liked.theme), ..liked }.sound();
-    let mut app_state = AppState::open_or_explain(scenario, liked.theme)?
+    let liked = liked.sound();
+    let shown = Preferences { theme: theme.unwrap_or(liked.theme), ..liked.clone() };
+    let mut app_state = AppState::open_or_explain(scenario, shown.theme)?
         .with_workers(Threads::Background)
         .watching(file.clone())
-        .with_preferences(&liked)
+        .with_preferences(&shown)
         .offering_recovery(keeper::find_left_session())
         .with_tables(tables);
     // Opening the file tells where it was left, and whether a recording equals its run.

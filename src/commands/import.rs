@@ -46,7 +46,7 @@ pub struct ImportArguments {
     /// A built-in machine or a TOML file
     #[arg(long, value_name = "MACHINE", default_value = "nine-link")]
     machine: String,
-    /// The machine stands on the base of this scenario, which floats; --set base.… changes it
+    /// The machine stands on the base of this scenario, which floats; --set base.… changes it. x and y are seen from it
     #[arg(long, value_name = "SCENARIO")]
     base: Option<String>,
     /// Pose constant of the proposal, rad; default: the one that moves the drives least, or for x and y the middle of

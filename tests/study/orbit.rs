@@ -495,8 +495,83 @@ fn dead_signals_are_named() {
     assert!(matches!(&why, TrimError::DeadSignal { path, .. } if path == "attitude_rate/base"), "{why}");
     let why = refused(spoilt(&motion, |row| row.qd = PerDrive::from_fn(3, |k| if k == 1 { 0.0 } else { row.qd[k] })));
     assert!(matches!(&why, TrimError::DeadSignal { path, .. } if path == "rate/elbow"), "{why}");
+    let why = refused(spoilt(&motion, |row| row.turn = 0.0));
+    assert!(matches!(&why, TrimError::DeadAngle { angle, .. } if angle == "attitude/base"), "{why}");
     let why = refused(spoilt(&motion, |row| (row.turn, row.rate) = (0.0, 0.0)));
     assert!(matches!(why, TrimError::StillBase { by_file, .. } if by_file > 0.01), "{why}");
+}
+
+/// Rates that no usual mistake explains, but that are not those of their angles; and rates that no machine explains.
+#[test]
+fn what_contradicts_itself_is_refused() {
+    let file = builtin("spot").expect("built in");
+    let mut motion = flown(file, RHO, "", 0.0);
+    let mut noise = Noise::of(8);
+    motion.base_rate.iter_mut().for_each(|rate| *rate += 1e-3 * noise.between(-1.0, 1.0));
+    let outcome = |motion: OrbitMotion, as_given: bool| {
+        let motions = Shared(vec![motion].into());
+        let machine = Shared(file.clone().into());
+        answer_now::<OrbitTrimQuery>(OrbitTrimRequest { machine, base: base(RHO, 0.0), motions, as_given }).outcome
+    };
+    let refused = |motion: &OrbitMotion| match outcome(motion.clone(), false) {
+        Err(why) => why.to_string(),
+        Ok(report) => panic!("{report:?}"),
+    };
+    let why = refused(&OrbitMotion { t: motion.t.iter().map(|t| 1e3 * t).collect(), ..motion.clone() });
+    assert!(why.contains("every rate is 1000") && why.contains("not in ms"), "{why}");
+    // The same factor in all rates of the drives and in that of the base; then in that of one drive.
+    let why =
+        refused(&spoilt(&motion, |row| row.qd = PerDrive::from_fn(3, |k| if k == 1 { 1.1 } else { 1.0 } * row.qd[k])));
+    assert!(why.contains("rate/elbow is not the rate of angle/elbow: it is 1.1"), "{why}");
+    // A thruster fires.
+    let mut pushed = motion.clone();
+    for i in 0..pushed.rows() {
+        let (t, turn) = (pushed.t[i], 2e-3 * pushed.t[i]);
+        pushed.base_rate[i] += turn;
+        pushed.rates[i] = PerDrive::from_fn(3, |k| pushed.rates[i][k] - turn);
+        pushed.attitude[i] += 1e-3 * t * t;
+        pushed.angles[i] = PerDrive::from_fn(3, |k| pushed.angles[i][k] - 1e-3 * t * t);
+    }
+    let why = refused(&pushed);
+    assert!(why.contains("no machine explains") && why.contains("thrusters off"), "{why}");
+    assert!(outcome(pushed, true).is_ok() && outcome(motion.clone(), false).is_ok());
+    // Rows that are missing are no contradiction.
+    let mut gap = motion;
+    for list in [&mut gap.t, &mut gap.attitude, &mut gap.base_rate, &mut gap.wheel_rate] {
+        list.drain(150..230);
+    }
+    gap.angles.drain(150..230);
+    gap.rates.drain(150..230);
+    assert!(outcome(gap, false).is_ok());
+}
+
+/// Encoders that are set to zero at the start of each of three motions, and relative ones with zeros of their own.
+#[test]
+fn zeros_of_each_motion_are_found() {
+    let file = builtin("spot").expect("built in");
+    let built = file.set("link.2.com", "0.205").expect("valid");
+    let whole = [0.0, 2.0, 4.0].map(|turn| flown(&built, RHO, "", turn));
+    let zeros = [[1.6, 2.3, 3.0], [1.2, 2.6, 0.4], [-0.5, 0.9, 2.0]];
+    let mut zeroed = whole.clone();
+    for (motion, zeros) in zeroed.iter_mut().zip(zeros) {
+        motion.angles.iter_mut().for_each(|q| *q = PerDrive::from_fn(3, |k| q[k] - zeros[k]));
+    }
+    let doubt = doubted(file, base(RHO, 0.0), zeroed.to_vec()).expect("zeros");
+    let first = &doubt.causes[0];
+    assert!(first.what.starts_with("each motion counts its angles from zeros of its own"), "{doubt}");
+    let said: Vec<f64> = first.want.split_whitespace().filter_map(|word| word.replace('−', "-").parse().ok()).collect();
+    let turned = |by: f64| (by + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
+    let near = |(said, want): (&f64, &f64)| turned(said - want).abs() < 0.03;
+    assert!(said.len() == 9 && said.iter().zip(zeros.as_flattened()).all(near), "{said:?}");
+    let encoders = whole.map(|motion| {
+        spoilt(&motion, |row| {
+            row.each(|q, turn, k| q[k] - if k == 0 { turn } else { q[k - 1] });
+            row.q = PerDrive::from_fn(3, |k| row.q[k] - [1.9, 0.7, 0.8][k]);
+        })
+    });
+    let doubt = doubted(file, base(RHO, 0.0), encoders.to_vec()).expect("encoders");
+    let what = &doubt.causes[0].what;
+    assert!(what.starts_with("angle/shoulder relative to the base") && what.contains("other zeros"), "{doubt}");
 }
 
 /// What the guide says: ten seconds in which every joint swings at its own frequency tell all, with noise of 0.001 rad/s. The

@@ -7,6 +7,7 @@ use crate::jobs::Threads;
 use crate::{AppState, LeftSession, Preferences, ResumePoint};
 use stillbase_files::journal::{self, Journal, LeftoverJournal};
 use stillbase_files::preferences;
+use stillbase_picture::scene::palette::Theme;
 use stillbase_query::{Job, Poll};
 
 /// Writes the first change at once, later ones within a second; the journal is written in the background.
@@ -27,6 +28,8 @@ struct Liked {
     now: Preferences,
     written: Preferences,
     when: Instant,
+    /// The theme of this start, and the preferred one.
+    passing: Option<(Theme, Theme)>,
 }
 
 impl Liked {
@@ -61,7 +64,10 @@ impl Keeper {
     pub fn new(liked: Preferences, app_state: &AppState) -> Self {
         let now = Instant::now();
         let held = (app_state.changes().0, app_state.left_off());
-        let liked = Liked { now: liked.clone(), written: liked, when: now };
+        let given = app_state.view_state().arrangement.theme;
+        // A theme for this start alone stays no preference, unless another is chosen.
+        let passing = (given != liked.theme).then_some((given, liked.theme));
+        let liked = Liked { now: liked.clone(), written: liked, when: now, passing };
         Self { liked, journal: None, held, writing: None, next: now, going: None }
     }
 
@@ -75,6 +81,11 @@ impl Keeper {
         let size = ctx.content_rect().size();
         let liked = &mut self.liked;
         liked.now = app_state.preferences([size.x, size.y]);
+        match liked.passing {
+            Some((given, own)) if liked.now.theme == given => liked.now.theme = own,
+            Some(_) => liked.passing = None,
+            None => {}
+        }
         if liked.now == liked.written {
             return;
         }

@@ -11,12 +11,17 @@ pub(super) const WANT: &str = "a column for the time, such as time s or t, and o
                                as torque/1 N m";
 
 /// Units that no simulation writes, but that a head may end with as those that one does.
-const OTHER_UNITS: [&str; 5] = ["deg/s", "°/s", "rpm", "deg", "°"];
+const OTHER_UNITS: [&str; 8] = ["deg/s", "°/s", "rpm", "deg", "°", "ms", "µs", "us"];
+
+/// Units of the time, with the factor to s.
+const TIME_UNITS: [(&str, f64); 5] = [("", 1.0), ("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("us", 1e-6)];
 
 /// The heads of a table of signals.
 pub(super) struct SignalHeads {
     /// Index of the column of the time.
     pub time: usize,
+    /// Unit of the time, s.
+    second: f64,
     /// Index, name and unit of each other column.
     columns: Vec<(usize, String, String)>,
 }
@@ -41,9 +46,10 @@ impl SignalHeads {
         let Some(time) = all.iter().position(is_time) else {
             return Err(format!("no column for the time among {}: want {WANT}", names()));
         };
-        if !["", "s"].contains(&all[time].1.as_str()) {
-            return Err(format!("column {}: unit {:?}: want the time in s", all[time].0, quote_clipped(&all[time].1)));
-        }
+        let Some((_, second)) = TIME_UNITS.into_iter().find(|(unit, _)| *unit == all[time].1) else {
+            let unit = quote_clipped(&all[time].1).to_string();
+            return Err(format!("column {}: unit {unit:?}: want the time in s, ms or µs", all[time].0));
+        };
         if all.len() < 2 {
             return Err(format!("nothing but the time: want {WANT}"));
         }
@@ -51,7 +57,7 @@ impl SignalHeads {
             return Err(format!("two columns {:?}: want different names", quote_clipped(&all[i].0)));
         }
         let columns = all.into_iter().enumerate().filter(|(place, _)| *place != time && !older[*place]);
-        Ok(Self { time, columns: columns.map(|(place, (name, unit))| (place, name, unit)).collect() })
+        Ok(Self { time, second, columns: columns.map(|(place, (name, unit))| (place, name, unit)).collect() })
     }
 
     /// Returns the index and the name of each column besides the time.
@@ -63,6 +69,7 @@ impl SignalHeads {
     pub fn table(self, time: Vec<f64>, values: Vec<Vec<f64>>) -> SignalTable {
         let columns = self.columns.into_iter().zip(values);
         let columns = columns.map(|((_, path, unit), values)| SignalColumn { path, unit, values });
+        let time = if self.second == 1.0 { time } else { time.iter().map(|t| self.second * t).collect() };
         SignalTable { time, columns: columns.collect() }
     }
 }

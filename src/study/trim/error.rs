@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use stillbase_settings::number::{counted, fixed};
+use stillbase_settings::number::{counted, fixed, significant};
 
 /// Reason that a measurement cannot be evaluated.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -73,6 +73,46 @@ pub enum TrimError {
         /// Root mean square rate by its angle, rad/s.
         by_angle: f64,
     },
+    /// An angle is the same in all rows, though its rate is not zero.
+    #[error(
+        "motion {}: {angle} is the same in every row, but {rate} is {} rad/s rms: want the measured angle",
+        motion + 1, fixed(*size, 6)
+    )]
+    DeadAngle {
+        /// Index of the motion, from 0.
+        motion: usize,
+        /// Path of the angle.
+        angle: String,
+        /// Path of the rate.
+        rate: String,
+        /// Root mean square of the rate, rad/s.
+        size: f64,
+    },
+    /// A rate is not that of its angle.
+    #[error("motion {}: {rate} is not the rate of {angle}: {}; want the rate of this angle", motion + 1, rate_words(*factor, *off))]
+    RateOfAngle {
+        /// Index of the motion, from 0.
+        motion: usize,
+        /// Path of the angle.
+        angle: String,
+        /// Path of the rate.
+        rate: String,
+        /// The rate is as many times that of the angle, if a factor explains it.
+        factor: Option<f64>,
+        /// Root mean square difference between the angle and the integrated rate, rad.
+        off: f64,
+    },
+    /// All rates are those of their angles times a factor.
+    #[error(
+        "motion {}: every rate is {} times that of its angle over the time: want the time in s{}",
+        motion + 1, significant(*factor), if *factor > 1.0 { ", not in ms" } else { "" }
+    )]
+    WrongTime {
+        /// Index of the motion, from 0.
+        motion: usize,
+        /// The factor.
+        factor: f64,
+    },
     /// The base does not turn, though the arm turns it.
     #[error(
         "motion {}: the base does not turn, but by the machine's file the arm turns it by {} rad/s rms: want the rate of a \
@@ -129,4 +169,12 @@ pub enum TrimError {
     /// A result is not finite.
     #[error("numbers so large or so far apart that nothing can be computed with them: want SI units")]
     NotFinite,
+}
+
+/// Returns in words how a rate differs from that of its angle.
+fn rate_words(factor: Option<f64>, off: f64) -> String {
+    match factor {
+        Some(factor) => format!("it is {} times that", significant(factor)),
+        None => format!("integrated, it differs from the angle by {} rad rms", fixed(off, 4)),
+    }
 }

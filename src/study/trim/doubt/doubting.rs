@@ -190,8 +190,11 @@ fn furthest(machine: &Machine, given: &FitTrial, other: Option<&FitTrial>) -> Op
         let better = other.map_or(numbers.nominal[*i], |other| other.numbers.measured[*i]);
         (numbers.measured[*i] - better).abs() / numbers.nominal[*i].abs().max(f64::MIN_POSITIVE)
     };
+    let apart = |i: &usize| {
+        (numbers.measured[*i] - other.map_or(numbers.nominal[*i], |other| other.numbers.measured[*i])).abs()
+    };
     let candidates = (0..numbers.unknowns.count()).filter(|i| numbers.identifiable[*i] && known[*i]);
     // Values that agree with the other fit, or else with the file, are no evidence.
-    let candidates = candidates.filter(|i| off(i) > EQUAL_BELOW);
+    let candidates = candidates.filter(|i| off(i) > EQUAL_BELOW && apart(i) > numbers.half_width(*i));
     candidates.max_by(|a, b| off(a).total_cmp(&off(b)))
 }

@@ -119,7 +119,9 @@ pub(in crate::trim) fn angle_faults(machine: &Machine, columns: &ColumnNames) ->
     }
     all.extend(orders(n).into_iter().map(|order| columns.reordered(&order)));
     let degree = std::f64::consts::PI / 180.0;
-    all.extend([columns.degrees(degree, true), columns.degrees(degree.recip(), false)]);
+    all.push(columns.degrees(degree, true));
+    // In orbit, only a header turns degrees into radians.
+    all.extend(columns.base_angle.is_none().then(|| columns.degrees(degree.recip(), false)));
     if n > 1 {
         all.push(columns.relative());
         all.extend(columns.relative_of_file(machine));

@@ -42,4 +42,4 @@ pub(super) use odds::{ChannelFit, FitTrial};
 pub(super) use plate::{PlateMeasurement, limit_violation};
 pub use rejection::{Cause, Doubt, MeasuredValue, Residual};
 pub use zeros::OtherZero;
-pub(super) use zeros::{other_zero, zero_faults};
+pub(super) use zeros::{nearest_zeros, other_zero, own_zeros, zero_faults, zeros_in_words};

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::odds::{LIMIT_KEPT_WITHIN, LIMIT_LEFT_BEYOND};
-use stillbase_settings::number::fixed_or_scientific;
+use stillbase_settings::number::{fixed, fixed_or_scientific};
 
 /// Reason for rejecting a measurement.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,6 +72,18 @@ impl fmt::Display for Doubt {
             write!(f, "motion {}: ", motion + 1)?;
         }
         match self.causes.as_slice() {
+            [] if self.impossible.is_empty() => {
+                write!(f, "no machine explains this measurement, with none of the usual mistakes undone, either")?;
+                for left in &self.residuals {
+                    let percent = fixed(100.0 * left.share, 1);
+                    write!(f, ": {} {} are left, {percent} % of it", number(left.noise), left.unit)?;
+                }
+                write!(
+                    f,
+                    ", and vary slowly, unlike noise.\n  Want angles and rates checked for two mistakes at once, each file \
+                     alone, known masses and inertias weighed, thrusters off"
+                )?;
+            }
             [] => write!(
                 f,
                 "no machine can give this measurement: want the columns, their signs and their units checked"

@@ -203,6 +203,29 @@ pub(in crate::trim) fn zero_faults(
     zeros.map(|zeros| (zeros.words, Angles::shifted(zeros.offsets))).collect()
 }
 
+/// Returns the zeros with which the numbers are nearest to the file; `None` if those of the file are.
+pub(in crate::trim) fn nearest_zeros(
+    machine: &Machine,
+    numbers: &IdentifiedNumbers,
+    columns: &ColumnNames,
+) -> Option<NamedAngles> {
+    let zeros = Zeros::all(machine, numbers, columns).into_iter();
+    let best = zeros.min_by_key(|zeros| zeros.off(numbers) + zeros.words.mistakes)?;
+    Some((best.words, Angles::shifted(best.offsets)))
+}
+
+/// Returns what each angle lacks, rad; `None` if that is not told.
+pub(in crate::trim) fn own_zeros(machine: &Machine, numbers: &IdentifiedNumbers) -> Option<PerDrive> {
+    let offsets = Phases::of(machine, numbers).each()?;
+    Some(PerDrive::from_fn(offsets.len(), |k| offsets[k]))
+}
+
+/// Returns what is to be added to each angle, in words.
+pub(in crate::trim) fn zeros_in_words(columns: &ColumnNames, zeros: &PerDrive) -> String {
+    let added = zeros.iter().zip(&columns.angles).map(|(zero, name)| format!("{} rad added to {name}", number(*zero)));
+    list(&added.collect::<Vec<_>>())
+}
+
 /// A zero of angles with which fewer unknowns differ from the machine's file.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct OtherZero {

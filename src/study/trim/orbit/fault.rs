@@ -4,14 +4,17 @@
 //! differences of its angle. Of the first, only what varies slowly counts: noise of the base rate is in absolute rates of the
 //! drives, too, and a wrong hypothesis would explain noise by itself.
 
+use std::sync::Arc;
+
 use nalgebra::DMatrix;
 
+use super::consistency::noise;
 use super::delay::Delay;
 use super::fit::OrbitFit;
 use super::motion::{BASE_RATE, DEGREE, OrbitBase, OrbitMotion, RPM, raised};
 use crate::trim::doubt::{
     Angles, ChannelFit, ColumnNames, DoubtSearch, FaultWords, FitTrial, NamedAngles, Residual, Suspected, angle_faults,
-    limit_violation, list, zero_faults,
+    limit_violation, list, nearest_zeros, own_zeros, zero_faults, zeros_in_words,
 };
 use crate::trim::error::TrimError;
 use crate::trim::fit::IdentifiedNumbers;
@@ -66,9 +69,16 @@ pub(super) struct OrbitFault {
 /// How a mistake is undone.
 enum Correction {
     /// Row by row.
-    Row(Box<dyn Fn(&mut Columns) + Send + Sync>),
+    Row(RowCorrection),
+    /// Row by row, then what the angles lack.
+    RowThenZeros(RowCorrection, Angles),
+    /// What the angles of each motion lack.
+    Zeros(Vec<Angles>),
     Delay(Delay),
 }
+
+/// Corrects the numbers of a row.
+type RowCorrection = Arc<dyn Fn(&mut Columns) + Send + Sync>;
 
 /// Motions that are tested for faults.
 pub(super) struct OrbitMeasurement {
@@ -85,6 +95,8 @@ impl OrbitMeasurement {
         let given = tried(machine, &base, motions)?;
         let has_wheel = motions.iter().flat_map(|motion| &motion.wheel_rate).any(|rate| *rate != 0.0);
         let mut faults = OrbitFault::all(machine, &given.numbers, has_wheel);
+        faults.extend(OrbitFault::encoders_with_zeros(machine, &base, motions));
+        faults.extend(zeros_of_motions(machine, &base, motions));
         let delays = Delay::all(machine, &base, motions);
         faults.extend(
             delays.into_iter().map(|delay| OrbitFault { words: delay.words(), correction: Correction::Delay(delay) }),
@@ -102,13 +114,21 @@ impl Suspected for OrbitMeasurement {
     }
 
     fn without(&self, machine: &Machine, given: &FitTrial, fault: &OrbitFault) -> Option<(FitTrial, Option<FitTrial>)> {
-        let motions: Vec<OrbitMotion> = self.motions.iter().map(|motion| fault.undo(motion)).collect();
+        let motions = self.motions.iter().enumerate();
+        let motions: Vec<OrbitMotion> = motions.map(|(i, motion)| fault.undo(i, motion)).collect();
         let other = tried(machine, &self.base, &motions).ok()?;
         // What explains the rates worse is no explanation, however near to the file it comes.
         let [was, now] = [given, &other].map(|fit| &fit.channels[0]);
         let floor = was.floor.max(now.floor).max(EXACT);
         (now.residual.share <= SLACK * was.residual.share.max(floor)).then_some((other, None))
     }
+}
+
+/// Returns the standard deviation of the noise of the base rate, rad/s: the same for all faults.
+fn white_noise(motions: &[OrbitMotion]) -> f64 {
+    let rows: usize = motions.iter().map(OrbitMotion::rows).sum();
+    let squares = motions.iter().map(|motion| motion.rows() as f64 * noise(&motion.base_rate).powi(2));
+    (squares.sum::<f64>() / rows.max(1) as f64).sqrt()
 }
 
 fn tried(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) -> Result<FitTrial, TrimError> {
@@ -133,15 +153,6 @@ fn tried(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) -> Result
         limit_violation: limit_violation(machine, motions.iter().flat_map(|motion| &motion.angles)),
         numbers: fit.numbers,
     })
-}
-
-/// Returns the standard deviation of the noise of the base rate, rad/s, by fourth differences: the same for all faults.
-fn white_noise(motions: &[OrbitMotion]) -> f64 {
-    let differences = || {
-        let rows = motions.iter().flat_map(|motion| motion.base_rate.windows(5));
-        rows.map(|rate| (rate[0] - 4.0 * (rate[1] + rate[3]) + 6.0 * rate[2] + rate[4]).powi(2) / 70.0)
-    };
-    (differences().sum::<f64>() / differences().count().max(1) as f64).sqrt()
 }
 
 /// Compares the rate of the base, 0, or of drive k, k + 1, with the differences of its angle.
@@ -177,6 +188,55 @@ fn rate_against_angle(motions: &[OrbitMotion], of: usize, name: &str) -> Channel
     }
 }
 
+/// Maximum number of Gauss–Newton steps for the zeros of motions, and the change that ends them, rad.
+const ZERO_STEPS: usize = 6;
+const LAST_ZERO_CHANGE: f64 = 1e-6;
+/// Change of a zero for derivatives, rad.
+const ZERO_CHANGE: f64 = 1e-5;
+
+/// Returns the fault that each of several motions counts its angles from zeros of its own; `None` if there is one motion, or if
+/// one of them does not tell its zeros.
+fn zeros_of_motions(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) -> Option<OrbitFault> {
+    let (columns, n) = (column_names(machine), machine.drives());
+    if motions.len() < 2 {
+        return None;
+    }
+    // Each alone tells its own phases, then all together what is left between them.
+    let alone = |motion: &OrbitMotion| {
+        let fit = OrbitFit::of(machine, base, &OrbitMotion::thinned(std::slice::from_ref(motion))).ok()?;
+        own_zeros(machine, &fit.numbers)
+    };
+    let mut zeros: Vec<PerDrive> = motions.iter().map(alone).collect::<Option<_>>()?;
+    let undone = |zeros: &[PerDrive]| {
+        let shifted = motions.iter().zip(zeros).map(|(motion, zeros)| {
+            let by = Angles::shifted(*zeros);
+            corrected(motion, &|row| row.map(&by))
+        });
+        OrbitMotion::thinned(&shifted.collect::<Vec<_>>())
+    };
+    for _ in 0..ZERO_STEPS {
+        let fit = OrbitFit::of(machine, base, &undone(&zeros)).ok()?;
+        let changed = (0..motions.len() * n).map(|place| {
+            let mut changed = zeros.clone();
+            changed[place / n][place % n] += ZERO_CHANGE;
+            undone(&changed)
+        });
+        let step = fit.parameters(changed, ZERO_CHANGE)?;
+        (0..step.len()).for_each(|place| zeros[place / n][place % n] += step[place]);
+        if step.amax() < LAST_ZERO_CHANGE {
+            break;
+        }
+    }
+    let each = |(i, zeros): (usize, &PerDrive)| format!("motion {}: {}", i + 1, zeros_in_words(&columns, zeros));
+    let want: Vec<String> = zeros.iter().enumerate().map(each).collect();
+    let words = FaultWords {
+        what: "each motion counts its angles from zeros of its own, as of encoders set to zero at its start".into(),
+        want: format!("zeros as in the file, by its masses: {}", want.join("; ")),
+        mistakes: n * motions.len(),
+    };
+    Some(OrbitFault { words, correction: Correction::Zeros(zeros.into_iter().map(Angles::shifted).collect()) })
+}
+
 /// Returns the names of the columns of angles.
 pub(super) fn column_names(machine: &Machine) -> ColumnNames {
     ColumnNames {
@@ -193,30 +253,23 @@ impl OrbitFault {
         correct: impl Fn(&mut Columns) + Send + Sync + 'static,
     ) -> Self {
         let words = FaultWords { what: what.into(), want: want.into(), mistakes: 1 };
-        Self { words, correction: Correction::Row(Box::new(correct)) }
+        Self { words, correction: Correction::Row(Arc::new(correct)) }
     }
 
     fn of_angles((words, by): NamedAngles) -> Self {
-        Self { words, correction: Correction::Row(Box::new(move |row| row.map(&by))) }
+        Self { words, correction: Correction::Row(Arc::new(move |row| row.map(&by))) }
     }
 
-    /// Returns all faults that are tested: angles and rates of the drives that count from elsewhere, the other way, in
-    /// another order or unit; the same of the base and its wheel.
-    fn all(machine: &Machine, numbers: &IdentifiedNumbers, has_wheel: bool) -> Vec<Self> {
-        let names = |what: &str| -> Vec<String> {
-            machine.spec().drives.iter().map(|drive| format!("{what}/{}", drive.name)).collect()
-        };
-        let (angles, rates) = (names("angle"), names("rate"));
-        let n = angles.len();
+    /// Returns the faults of drives that are measured relative to the base, or each to the drive before.
+    fn relative_encoders(machine: &Machine) -> Vec<Self> {
         let columns = column_names(machine);
-        let mut all: Vec<Self> = angle_faults(machine, &columns).into_iter().map(Self::of_angles).collect();
-        all.extend(zero_faults(machine, numbers, &columns).into_iter().map(Self::of_angles));
+        let (angles, n) = (&columns.angles, columns.angles.len());
         let add = format!("attitude/base added to each angle, and {BASE_RATE} to each rate");
-        all.push(Self::of(
+        let mut all = vec![Self::of(
             "the drives are measured relative to the base, not to space",
             add.clone(),
             Columns::add_base,
-        ));
+        )];
         if n > 1 {
             let sums = Angles::linear(n, |k, l| if l <= k { 1.0 } else { 0.0 });
             let first = format!("{} relative to the base and {} to the drive before", angles[0], list(&angles[1..]));
@@ -234,6 +287,39 @@ impl OrbitFault {
                 }));
             }
         }
+        all
+    }
+
+    /// Returns the same faults of encoders that count from other zeros, too: those that bring the numbers nearest to the file.
+    fn encoders_with_zeros(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) -> Vec<Self> {
+        let columns = column_names(machine);
+        let with_zeros = |fault: Self| {
+            let undone: Vec<OrbitMotion> = motions.iter().map(|motion| fault.undo(0, motion)).collect();
+            let fit = OrbitFit::of(machine, base, &OrbitMotion::thinned(&undone)).ok()?;
+            let (zeros, by) = nearest_zeros(machine, &fit.numbers, &columns)?;
+            let Correction::Row(correct) = fault.correction else { return None };
+            let words = FaultWords {
+                what: format!("{}, and {}", fault.words.what, zeros.what),
+                want: format!("{}; then {}", fault.words.want, zeros.want),
+                mistakes: fault.words.mistakes + zeros.mistakes,
+            };
+            Some(Self { words, correction: Correction::RowThenZeros(correct, by) })
+        };
+        Self::relative_encoders(machine).into_iter().filter_map(with_zeros).collect()
+    }
+
+    /// Returns all faults that are tested: angles and rates of the drives that count from elsewhere, the other way, in
+    /// another order or unit; the same of the base and its wheel.
+    fn all(machine: &Machine, numbers: &IdentifiedNumbers, has_wheel: bool) -> Vec<Self> {
+        let names = |what: &str| -> Vec<String> {
+            machine.spec().drives.iter().map(|drive| format!("{what}/{}", drive.name)).collect()
+        };
+        let (angles, rates) = (names("angle"), names("rate"));
+        let n = angles.len();
+        let columns = column_names(machine);
+        let mut all: Vec<Self> = angle_faults(machine, &columns).into_iter().map(Self::of_angles).collect();
+        all.extend(zero_faults(machine, numbers, &columns).into_iter().map(Self::of_angles));
+        all.extend(Self::relative_encoders(machine));
         // Rates alone, unlike their angles.
         for (k, l) in Inertia::pairs(n) {
             let [one, other] = [&rates[k], &rates[l]];
@@ -259,6 +345,11 @@ impl OrbitFault {
                 "the angles of the drives are measured relative to the base, their rates are not",
                 "attitude/base added to each angle",
                 |row| row.angles = raised(&row.angles, row.attitude),
+            ),
+            Self::of(
+                "the rates of the drives are measured relative to the base, their angles are not",
+                format!("{BASE_RATE} added to each rate"),
+                |row| row.rates = raised(&row.rates, row.base_rate),
             ),
             Self::of(
                 format!("{} are in degrees, their rates are not", list(&angles)),
@@ -327,29 +418,38 @@ impl OrbitFault {
         all
     }
 
-    /// Returns a motion corrected for this fault.
-    fn undo(&self, motion: &OrbitMotion) -> OrbitMotion {
-        let correct = match &self.correction {
-            Correction::Row(correct) => correct,
-            Correction::Delay(delay) => return delay.undo(motion),
-        };
-        let mut all = motion.clone();
-        for row in 0..motion.rows() {
-            let [turn, rate] = [motion.attitude[row], motion.base_rate[row]];
-            let mut columns = Columns {
-                angles: raised(&motion.angles[row], turn),
-                rates: raised(&motion.rates[row], rate),
-                attitude: turn,
-                base_rate: rate,
-                wheel_rate: motion.wheel_rate[row],
-            };
-            correct(&mut columns);
-            all.attitude[row] = columns.attitude;
-            all.base_rate[row] = columns.base_rate;
-            all.angles[row] = raised(&columns.angles, -columns.attitude);
-            all.rates[row] = raised(&columns.rates, -columns.base_rate);
-            all.wheel_rate[row] = columns.wheel_rate;
+    /// Returns the i-th motion corrected for this fault.
+    fn undo(&self, i: usize, motion: &OrbitMotion) -> OrbitMotion {
+        match &self.correction {
+            Correction::Row(correct) => corrected(motion, correct.as_ref()),
+            Correction::RowThenZeros(correct, zeros) => corrected(motion, &|row| {
+                correct(row);
+                row.map(zeros);
+            }),
+            Correction::Zeros(each) => corrected(motion, &|row| row.map(&each[i])),
+            Correction::Delay(delay) => delay.undo(motion),
         }
-        all
     }
+}
+
+/// Returns a motion with each row corrected.
+fn corrected(motion: &OrbitMotion, correct: &dyn Fn(&mut Columns)) -> OrbitMotion {
+    let mut all = motion.clone();
+    for row in 0..motion.rows() {
+        let [turn, rate] = [motion.attitude[row], motion.base_rate[row]];
+        let mut columns = Columns {
+            angles: raised(&motion.angles[row], turn),
+            rates: raised(&motion.rates[row], rate),
+            attitude: turn,
+            base_rate: rate,
+            wheel_rate: motion.wheel_rate[row],
+        };
+        correct(&mut columns);
+        all.attitude[row] = columns.attitude;
+        all.base_rate[row] = columns.base_rate;
+        all.angles[row] = raised(&columns.angles, -columns.attitude);
+        all.rates[row] = raised(&columns.rates, -columns.base_rate);
+        all.wheel_rate[row] = columns.wheel_rate;
+    }
+    all
 }

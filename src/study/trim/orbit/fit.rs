@@ -17,6 +17,8 @@ const STEP_TOLERANCE: f64 = 1e-10;
 const RANK_TOLERANCE: f64 = 1e-9;
 /// Steps with a threshold of their own; later ones share one, so that they converge.
 const FREE_STEPS: usize = 10;
+/// Singular values of parameters below this fraction of the largest are treated as zero.
+const UNTOLD: f64 = 1e-3;
 /// A fit from another start counts if its residuals are below this fraction of those from the file.
 const MUCH_BETTER: f64 = 0.9;
 /// A direction is determined if the standard deviation along it is below this fraction of the scales: the fit is linear
@@ -307,6 +309,21 @@ impl OrbitFit {
         let step = -alone.dot(&self.errors) / (size * size);
         let deviation = self.noise * (self.errors.len() as f64 / self.effective).sqrt() / size;
         step.is_finite().then_some([step, deviation])
+    }
+
+    /// Returns by how much several parameters of motions change in one Gauss–Newton step with all unknowns, as
+    /// [`parameter`](Self::parameter) does for one. What nothing tells does not change.
+    pub fn parameters(&self, changed: impl Iterator<Item = Vec<OrbitMotion>>, change: f64) -> Option<DVector<f64>> {
+        let alone = |motions: Vec<OrbitMotion>| {
+            let rows = Rows { craft: &self.craft, motions: &motions, unknowns: self.numbers.unknowns.count() };
+            let slope = (rows.errors(&self.x) - &self.errors) / change;
+            &slope - &self.slopes * (&self.inverse * self.slopes.tr_mul(&slope))
+        };
+        let columns: Vec<DVector<f64>> = changed.map(alone).collect();
+        let svd = SVD::try_new(DMatrix::from_columns(&columns), true, true, 5.0 * f64::EPSILON, 10_000)?;
+        // Zeros that all motions have in common turn the unknowns only.
+        let step = svd.solve(&-&self.errors, UNTOLD * svd.singular_values.max()).ok()?;
+        step.iter().all(|x| x.is_finite()).then_some(step)
     }
 
     /// Returns how far each unknown moves if the craft is another one, in one Gauss–Newton step.

@@ -32,8 +32,8 @@
 //! r_k is the absolute rate less ω as measured. Encoders measure r_k, and absolute rates are their sum with ω: the noise of
 //! ω cancels in r_k. Absolute rates from elsewhere leave it there, where it bends the fit: the intervals do not hold.
 
+mod consistency;
 mod craft;
-mod dead;
 mod delay;
 mod fault;
 mod fit;

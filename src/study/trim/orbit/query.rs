@@ -1,6 +1,6 @@
 //! [`OrbitTrimQuery`]: the query that evaluates motions in orbit.
 
-use super::dead::dead_signal;
+use super::consistency::{contradiction, dead_signal};
 use super::fault::{EXACT, OrbitMeasurement, SLACK};
 use super::fit::OrbitFit;
 use super::motion::{OrbitBase, OrbitMotion};
@@ -65,7 +65,14 @@ impl Query for OrbitTrimQuery {
         let searches = if motions.len() > 1 { 1 + motions.len() } else { 1 };
         let share = |done: usize, part: f64| TRIED_AT * (done as f64 + part) / searches as f64;
         let doubt = match std::mem::replace(&mut self.stage, Stage::Begun(searches)) {
-            Stage::Begun(done) if done >= searches => chosen(std::mem::take(&mut self.doubts)),
+            Stage::Begun(done) if done >= searches => {
+                let doubt = chosen(std::mem::take(&mut self.doubts));
+                // What no usual mistake explains may still be no motion.
+                if let Some(why) = contradiction(machine, motions).filter(|_| doubt.is_none() && !as_given) {
+                    return Portion::Done(OrbitOutcome { doubt: None, outcome: Err(NoTrim::Unusable(why)) });
+                }
+                doubt
+            }
             Stage::Begun(0) if !as_given && let Some(why) = dead_signal(machine, base, motions) => {
                 return Portion::Done(OrbitOutcome { doubt: None, outcome: Err(NoTrim::Unusable(why)) });
             }
@@ -99,6 +106,9 @@ impl Query for OrbitTrimQuery {
             }
             doubt => {
                 let outcome = orbit_trim(machine, base, motions).map_err(NoTrim::NoFit);
+                // Where the model leaves much, intervals mean nothing.
+                let unexplained = outcome.as_ref().ok().filter(|_| !as_given).and_then(OrbitReport::unexplained);
+                let outcome = unexplained.map_or(outcome, |doubt| Err(NoTrim::Doubted(doubt.into())));
                 Portion::Done(OrbitOutcome { doubt, outcome })
             }
         }

@@ -7,11 +7,11 @@ use serde::Serialize;
 use super::fault::column_names;
 use super::fit::{MAX_DEVIATION, OrbitFit};
 use super::known::{Explained, KnownValue, one_percent_off};
-use super::motion::{OrbitBase, OrbitMotion};
-use crate::trim::doubt::{OtherZero, other_zero};
+use super::motion::{BASE_RATE, OrbitBase, OrbitMotion};
+use crate::trim::doubt::{Doubt, OtherZero, Residual, other_zero};
 use crate::trim::next_excitation::{DriveLimits, NextMeasurement, Sines, next_motion};
 use crate::trim::report::{MeasuredUnknown, Suggestion, untold_words};
-use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::PerDrive;
 use stillbase_settings::number::fixed_or_scientific;
 
@@ -21,8 +21,12 @@ const EXPLAINED: f64 = 0.5;
 const NEARLY_ALL: f64 = 1e-3;
 /// Residuals whose neighbours are correlated more strongly than this vary slowly, unlike noise.
 const SLOW: f64 = 0.9;
+/// Slow residuals above this fraction of the base rate refuse a measurement.
+const UNEXPLAINED: f64 = 0.01;
 /// Residuals below this fraction of the base rate count for nothing.
 const NEGLIGIBLE: f64 = 1e-4;
+/// Differences from the file below this fraction of the scale of an unknown are rounding errors.
+const ROUNDING: f64 = 1e-9;
 /// Angles that vary by less than this do not move, rad.
 const STILL_RAD: f64 = 1e-3;
 
@@ -39,6 +43,9 @@ pub struct OrbitReport {
     pub rate_noise: f64,
     /// Root mean square of the base rate that the machine's file does not explain, rad/s.
     pub rate_off: f64,
+    /// Root mean square of the base rate, rad/s.
+    #[serde(skip)]
+    rate_size: f64,
     /// Whether what is not explained varies slowly, unlike noise.
     pub residual_is_slow: bool,
     /// Known values one of which alone explains the rates as well as all numbers together.
@@ -67,6 +74,8 @@ impl OrbitReport {
         // How far each number moves with each known value.
         let shifts: Vec<DVector<f64>> =
             one_percent_off(machine, base).iter().map(|craft| fit.shift(craft, motions)).collect();
+        let scales = numbers.unknowns.scales(&Inertia::of(machine));
+        let rounding: Vec<f64> = scales.iter().map(|scale| ROUNDING * scale).collect();
         let number = |i: usize| {
             let (what, half, is_told) = (numbers.unknowns.at(i), numbers.half_width(i), numbers.identifiable[i]);
             let (measured, nominal) = (numbers.measured[i], numbers.nominal[i]);
@@ -78,7 +87,7 @@ impl OrbitReport {
                 measured: is_told.then_some(measured + 0.0),
                 half_width: is_told.then_some(half),
                 per_percent: is_told.then(|| shifts.iter().map(|shift| shift[i].powi(2)).sum::<f64>().sqrt()),
-                off: is_told && (measured - nominal).abs() > half,
+                off: is_told && (measured - nominal).abs() > half + rounding[i],
             }
         };
         let name = |i: &usize| numbers.unknowns.at(*i).name(machine);
@@ -98,6 +107,7 @@ impl OrbitReport {
             rows,
             rate_noise: *rate_noise,
             rate_off: *rate_off,
+            rate_size: fit.size,
             residual_is_slow: *rate_noise > NEGLIGIBLE * fit.size
                 && fit.slow_noise().powi(2) > SLOW * rate_noise.powi(2),
             known,
@@ -107,6 +117,20 @@ impl OrbitReport {
             unidentifiable: fit.confounded.iter().map(|group| group.iter().map(name).collect()).collect(),
             next: Suggestion::of(machine, &numbers.unknowns, &next(machine, motions, fit)),
         }
+    }
+
+    /// Returns the doubt of rates that the model leaves unexplained beyond noise; `None` if it leaves little.
+    pub(super) fn unexplained(&self) -> Option<Doubt> {
+        let share = self.rate_noise / self.rate_size.max(f64::MIN_POSITIVE);
+        let left = Residual { unit: format!("rad/s of {BASE_RATE}"), noise: self.rate_noise, share };
+        (self.residual_is_slow && share > UNEXPLAINED).then(|| Doubt {
+            motion: None,
+            causes: Vec::new(),
+            impossible: Vec::new(),
+            furthest: None,
+            residuals: vec![left],
+            limit_violation: 0.0,
+        })
     }
 
     /// What is taken as known, and what the intervals are of.
