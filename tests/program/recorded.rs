@@ -231,7 +231,7 @@ fn what_is_no_recording_and_no_table_is_refused() {
     fails(&["replay", &word(folder.path("none.rrd"))], 2, &["none.rrd"]);
     let tables = [
         ("torque/1 N m,x m\n0,1\n", "no column for the time among torque/1, x"),
-        ("time ms,x m\n0,1\n", "want"),
+        ("time (h),x m\n0,1\n", "want the time in s, ms"),
         ("time s,torque/1 N m\n0,1\n0,1\n", ":3: column time"),
         ("time s,torque/1 N m\n0,one\n", ":2: column torque/1: \"one\""),
         ("time s,torque/1 N m\n0\n", ":2: column torque/1: nothing there"),
