@@ -229,6 +229,7 @@
 //! | `recording` | recordings for the Rerun viewer (feature `record`) |
 //! | `app` | the window (features `ui`, `window`) |
 //! | `commands` | the program's subcommands, one file each |
+//! | `python` | the package for Python: dynamics of whole arrays, and every answer of the command line; a plain build leaves it out |
 //!
 //! # Where to add something
 //! * **A signal**: a row of the table in `simulation/signals.rs`. A new quantity also needs a field in

@@ -2,9 +2,7 @@
 
 use std::process::ExitCode;
 
-use clap::{ArgMatches, FromArgMatches};
 use stillbase_commands as commands;
-use stillbase_commands::Arguments;
 
 /// Sets `XDG_RUNTIME_DIR`, if unset, to a folder that does not exist. Otherwise graphics libraries that look for a
 /// display there print on standard error that the variable is not set.
@@ -16,12 +14,6 @@ fn name_runtime_folder() {
     }
 }
 
-/// Returns whether the subcommand is to print JSON.
-fn asks_for_json(matches: &ArgMatches) -> bool {
-    let asks = |(_, own): (&str, &ArgMatches)| matches!(own.try_get_one::<bool>("json"), Ok(Some(true)));
-    matches.subcommand().is_some_and(asks)
-}
-
 fn main() -> ExitCode {
     name_runtime_folder();
     option_env!("STILLBASE_COMMIT").into_iter().for_each(commands::name_commit);
@@ -30,14 +22,5 @@ fn main() -> ExitCode {
     if let Ok(wanted) = std::env::var("STILLBASE_FAULT") {
         stillbase::files::fault::arm_fault(&wanted);
     }
-    let words: Vec<_> = commands::words(std::env::args_os()).collect();
-    let parses = |words: &[_]| Arguments::program().try_get_matches_from(words).is_ok();
-    let line = commands::Line { words: &words, parses: &parses };
-    let matches = Arguments::program().try_get_matches_from(&words);
-    let parsed = matches.and_then(|matches| Ok((Arguments::from_arg_matches(&matches)?, asks_for_json(&matches))));
-    let (arguments, as_json) = match parsed {
-        Ok(parsed) => parsed,
-        Err(error) => return commands::usage(&error, &line),
-    };
-    commands::exit_code(arguments.run(), as_json, &line)
+    ExitCode::from(commands::carry_out(std::env::args_os()))
 }

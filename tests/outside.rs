@@ -39,6 +39,8 @@ mod mesh;
 mod mujoco;
 #[path = "support/noise.rs"]
 mod noise;
+#[path = "outside/package.rs"]
+mod package;
 #[cfg(feature = "cli")]
 #[path = "outside/page.rs"]
 mod page;
@@ -80,6 +82,9 @@ fn main() -> ExitCode {
         ("mujoco", mujoco::TESTS),
         ("mujoco", planar::TESTS),
         ("pinocchio", pinocchio::TESTS),
+        ("stillbase", package::TESTS),
+        #[cfg(feature = "cli")]
+        ("stillbase", page::PACKAGE),
         ("scipy", drags::TESTS),
         ("scipy", postures::TESTS),
         ("scipy", trim::TESTS),

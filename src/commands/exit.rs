@@ -4,7 +4,6 @@ use std::error::Error;
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{self, Write};
-use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::builder::Styles;
@@ -17,6 +16,7 @@ use stillbase_settings::range::shortened;
 use stillbase_settings::text::{plain, shell_word, shorten_message};
 
 use super::failure::{Failure, RefusedScenario};
+use super::in_process::{is_in_process, take};
 use super::input::WrongNumber;
 use super::misnamed::Misnamed;
 use super::output::{Format, has_answered};
@@ -24,9 +24,9 @@ use super::output::{Format, has_answered};
 /// Whether notes are left out.
 static IS_QUIET: AtomicBool = AtomicBool::new(false);
 
-/// Leaves out notes and progress from now on; errors stay.
-pub fn silence_notes() {
-    IS_QUIET.store(true, Ordering::Relaxed);
+/// Leaves out notes and progress from now on, or not; errors stay.
+pub fn silence_notes(is_quiet: bool) {
+    IS_QUIET.store(is_quiet, Ordering::Relaxed);
 }
 
 /// Returns whether notes and progress are left out.
@@ -37,21 +37,30 @@ pub fn is_quiet() -> bool {
 /// Prints a note on standard error, in one line, unless notes are left out.
 pub fn print_message(message: impl Display) {
     if !is_quiet() {
-        print_line(message, "stillbase:");
+        let line = in_one_line_of(message);
+        if take(|said| said.notes.push(line.clone())).is_none() {
+            print_line(&line, "stillbase:");
+        }
     }
 }
 
 /// Prints an error on standard error, in one line, with the colour of errors in help if that is a terminal.
 fn print_error(message: impl Display) {
-    let style = *Styles::styled().get_error();
-    print_line(message, &format!("{style}stillbase:{style:#}"));
+    let line = in_one_line_of(message);
+    if take(|said| said.errors.push(line.clone())).is_none() {
+        let style = *Styles::styled().get_error();
+        print_line(&line, &format!("{style}stillbase:{style:#}"));
+    }
 }
 
-fn print_line(message: impl Display, name: &str) {
+/// Returns a message in one line.
+fn in_one_line_of(message: impl Display) -> String {
     let message = message.to_string();
     let line = message.lines().map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join(" ");
-    let line = shorten_message(&line);
-    let line = plain(&line);
+    plain(&shorten_message(&line)).into_owned()
+}
+
+fn print_line(line: &str, name: &str) {
     // When standard error is closed, there is no place for a message.
     let _ = writeln!(anstream::stderr(), "{name} {line}");
 }
@@ -63,7 +72,10 @@ fn print_faults(why: &str, file: &str, faults: &Faults) {
             // Examples are printed as they may be pasted.
             print_error("for example:");
             for line in fault.example.lines() {
-                let _ = writeln!(io::stderr(), "{}", plain(format!("    {line}").trim_end()));
+                let line = plain(format!("    {line}").trim_end()).into_owned();
+                if take(|said| said.errors.push(line.clone())).is_none() {
+                    let _ = writeln!(io::stderr(), "{line}");
+                }
             }
         }
     };
@@ -98,8 +110,8 @@ pub struct FailureReport<'a> {
 /// Prints the reason of a failure in one line, and a line for each proposal that leads out of it; returns the exit
 /// status. With `as_json`, also prints the reason and the proposals on standard output, unless an answer is there
 /// already. `line` is the command line that has failed.
-pub fn exit_code(done: Result<(), Failure>, as_json: bool, line: &Line<'_>) -> ExitCode {
-    let Err(failure) = done else { return ExitCode::SUCCESS };
+pub(super) fn status(done: Result<(), Failure>, as_json: bool, line: &Line<'_>) -> u8 {
+    let Err(failure) = done else { return 0 };
     let RefusedScenario { failure, mut proposals, misnamed, faults } = match failure {
         Failure::Refused(refused) => *refused,
         failure => RefusedScenario { failure, proposals: Vec::new(), misnamed: None, faults: None },
@@ -108,10 +120,10 @@ pub fn exit_code(done: Result<(), Failure>, as_json: bool, line: &Line<'_>) -> E
     let (status, why) = match failure {
         Failure::NoAnswer(why) => (1, why),
         Failure::WrongInput(why) => (2, why),
-        Failure::ReaderGone | Failure::Refused(_) => return ExitCode::SUCCESS,
-        Failure::Told => return ExitCode::FAILURE,
+        Failure::ReaderGone | Failure::Refused(_) => return 0,
+        Failure::Told => return 1,
     };
-    if as_json && !has_answered() {
+    if as_json && !is_in_process() && !has_answered() {
         // If this fails because standard output cannot be written, standard error still gives the reason.
         let list = faults.as_ref().map(|(_, faults)| &faults.list[..]);
         let more_faults = faults.as_ref().map(|(_, faults)| faults.more);
@@ -134,7 +146,7 @@ pub fn exit_code(done: Result<(), Failure>, as_json: bool, line: &Line<'_>) -> E
         };
         print_error(format!("{}: {typed}", proposal.text));
     }
-    ExitCode::from(status)
+    status
 }
 
 /// A command line.
@@ -161,10 +173,10 @@ fn instead(misnamed: &Misnamed, line: &Line<'_>) -> Vec<Proposal> {
 
 /// Prints help, or the error of a command line that cannot be parsed, with the nearest one that can; returns the exit
 /// status.
-pub fn usage(error: &clap::Error, line: &Line<'_>) -> ExitCode {
+pub(super) fn usage_status(error: &clap::Error, line: &Line<'_>) -> u8 {
     if !error.use_stderr() {
         let printed = error.print().and_then(|()| io::stdout().flush());
-        return exit_code(printed.map_err(|e| Failure::standard_output(&e)), false, line);
+        return status(printed.map_err(|e| Failure::standard_output(&e)), false, line);
     }
     let as_json = line.words.iter().any(|word| word == "--json");
     let nearest = nearest_line(error, line.words).filter(|words| (line.parses)(words));
@@ -182,7 +194,7 @@ pub fn usage(error: &clap::Error, line: &Line<'_>) -> ExitCode {
             None => Failure::WrongInput(in_one_line(&error.render().to_string())).with_proposals(Vec::new()),
         },
     };
-    exit_code(Err(failure), as_json, line)
+    status(Err(failure), as_json, line)
 }
 
 /// Returns the first word if it was taken for a scenario, but is near the name of a command.

@@ -25,6 +25,7 @@ mod headless;
 mod holds;
 mod import;
 mod import_model;
+mod in_process;
 pub mod input;
 mod interrupt;
 mod joints;
@@ -68,8 +69,7 @@ mod trim;
 mod turn_map;
 mod workspace;
 
-pub use exit::{Line, exit_code, usage};
-pub use input::words;
+pub use in_process::{InProcessAnswer, answer, carry_out};
 pub use interrupt::watch;
 pub use open::OpenArguments;
 pub use program::{Arguments, name_commit};

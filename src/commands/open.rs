@@ -8,10 +8,14 @@ use clap::Args;
 use stillbase_app::window::WindowError;
 #[cfg(feature = "window")]
 use stillbase_files::recorded_case::is_recording;
+#[cfg(feature = "window")]
+use stillbase_files::table::{TABLE_ENDINGS, is_table};
 #[cfg(feature = "ui")]
 use stillbase_picture::scene::palette::Theme;
 use stillbase_session::scenario::Scenario;
 
+#[cfg(any(feature = "window", feature = "record"))]
+use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, overlay_for_study};
 
@@ -74,6 +78,11 @@ impl OpenArguments {
             failure => failure,
         })?;
         #[cfg(feature = "window")]
+        if let Some(other) = self.tables.iter().find(|file| !is_table(file)) {
+            let want = TABLE_ENDINGS.join(" or .");
+            return Err(Failure::wrong_input(format!("{}: want a table, .{want}", other.display())));
+        }
+        #[cfg(feature = "window")]
         let theme = self.theme.map(Theme::from);
         #[cfg(feature = "window")]
         let why = match stillbase_app::window::run(scenario.clone(), self.file(), self.tables.clone(), theme) {
@@ -85,6 +94,12 @@ impl OpenArguments {
         };
         #[cfg(not(feature = "window"))]
         let why = "this build has no window".to_string();
+        #[cfg(feature = "window")]
+        if !self.tables.is_empty() {
+            print_message(
+                "note: tables are shown in a window only; `stillbase import` and `trim` read them without one",
+            );
+        }
         record_instead(scenario, &why)
     }
 }
@@ -94,7 +109,6 @@ fn record_instead(scenario: Scenario, why: &str) -> Result<(), Failure> {
     use stillbase_files::free_name;
     use stillbase_settings::number::counted;
 
-    use super::exit::print_message;
     use super::headless::{Target, record_with_bar, unpictured};
 
     let file = free_name(&scenario.name, "rrd");

@@ -15,6 +15,7 @@ use stillbase_settings::text::plain;
 use super::exit::{is_quiet, print_message};
 use super::failure::Failure;
 use super::file_form::FileForm;
+use super::in_process::take;
 
 /// Whether a file takes standard output.
 static IS_TAKEN: AtomicBool = AtomicBool::new(false);
@@ -25,6 +26,11 @@ static HAS_ANSWERED: AtomicBool = AtomicBool::new(false);
 /// Returns whether an answer was printed as JSON; a failure after it prints no second object.
 pub fn has_answered() -> bool {
     HAS_ANSWERED.load(Ordering::Relaxed)
+}
+
+/// Forgets what an earlier command of this process has printed.
+pub(super) fn begin() {
+    [&IS_TAKEN, &HAS_ANSWERED].into_iter().for_each(|flag| flag.store(false, Ordering::Relaxed));
 }
 
 /// Output format of a command.
@@ -53,6 +59,10 @@ impl Format {
         // The JSON is made in both cases, because that detects numbers that are not finite.
         let json = json(answer)?;
         let is_taken = IS_TAKEN.load(Ordering::Relaxed);
+        // Another program takes only what it can read.
+        if take(|said| said.json = Some(json.clone()).filter(|_| self.json)).is_some() {
+            return Ok(());
+        }
         let text = if self.json { json } else { plain(&human(answer)).into_owned() };
         if is_taken {
             if !is_quiet() {

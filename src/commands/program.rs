@@ -59,9 +59,7 @@ impl Arguments {
 
     /// Carries out what the arguments ask for.
     pub fn run(&self) -> Result<(), Failure> {
-        if self.quiet {
-            silence_notes();
-        }
+        silence_notes(self.quiet);
         match &self.command {
             Some(command) => command.run(),
             None => self.open.run(),

@@ -12,11 +12,13 @@ use stillbase_mechanics::machine::Machine;
 use stillbase_session::verdict::{Statements, Verdict};
 use stillbase_session::{Run, replay_if, with_start_edits};
 use stillbase_simulation::frame::Frame;
+use stillbase_simulation::signal_table::{SignalColumn, SignalTable};
 use stillbase_simulation::signals::{Signal, row_heads, signals};
 
 use super::exit::print_message;
 use super::failure::Failure;
 use super::file_form::FileForm;
+use super::in_process::{is_in_process, take};
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, check_size};
 use super::rows::{RowTarget, Rows};
@@ -270,6 +272,13 @@ impl SimulateArguments {
         }
         let fault = verdict.audit_failed.clone();
         let name = scenario.name.clone();
+        if is_in_process() {
+            // Another program gets the numbers as they are.
+            let named = table.iter().zip(std::mem::take(&mut columns));
+            let columns = named.map(|(s, values)| SignalColumn { path: s.path.clone(), unit: s.unit.into(), values });
+            let signals = SignalTable { time: std::mem::take(&mut time), columns: columns.collect() };
+            take(|said| said.signals = Some(signals));
+        }
         let answer = Answer {
             scenario: scenario.name,
             units: Columns(table.iter().map(|s| (s.path.clone(), s.unit)).collect()),

@@ -1,5 +1,6 @@
 //! Reads text from plain files of bounded size.
 
+use std::cell::RefCell;
 use std::fs::{self, File, Metadata};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
@@ -13,11 +14,34 @@ pub const STANDARD_INPUT: &str = "-";
 /// What standard input held, or why it could not be read.
 static INPUT: OnceLock<Result<String, (ErrorKind, String)>> = OnceLock::new();
 
+thread_local! {
+    /// Text that takes the place of standard input on this thread.
+    static GIVEN: RefCell<Option<String>> = const { RefCell::new(None) };
+}
+
+/// Calls a function for which a text takes the place of standard input on this thread.
+pub fn with_standard_input<T>(text: String, call: impl FnOnce() -> T) -> T {
+    let _given = Given(GIVEN.replace(Some(text)));
+    call()
+}
+
+/// Puts back what stood in the place of standard input before, also after a panic.
+struct Given(Option<String>);
+
+impl Drop for Given {
+    fn drop(&mut self) {
+        GIVEN.set(self.0.take());
+    }
+}
+
 /// Returns all of standard input, at most [`MAX_TEXT_BYTES`]; it is read once.
 ///
 /// # Errors
 /// If it is longer, or cannot be read.
 fn standard_input() -> io::Result<String> {
+    if let Some(given) = GIVEN.with_borrow(Clone::clone) {
+        return Ok(given);
+    }
     let read = || {
         let mut text = String::new();
         let read = io::stdin().lock().take(MAX_TEXT_BYTES + 1).read_to_string(&mut text);

@@ -69,20 +69,13 @@ const EDGES: &[(&str, &[&str])] = &[
             "commands/interrupt.rs",
             "commands/tolerance/parallel.rs",
             "files/video.rs",
+            "python/dynamics.rs",
         ],
     ),
     ("std::net", &[]),
     (
         "std::process",
-        &[
-            "commands/exit.rs",
-            "files/draft.rs",
-            "files/fault.rs",
-            "files/new_file.rs",
-            "files/video.rs",
-            "main.rs",
-            "recording/viewer.rs",
-        ],
+        &["files/draft.rs", "files/fault.rs", "files/new_file.rs", "files/video.rs", "main.rs", "recording/viewer.rs"],
     ),
     // Text comes in at one place; everything else of the core takes it from there.
     (
@@ -243,6 +236,7 @@ fn what_is_derived_is_kept_by_queries_alone() {
         ("session/scenario/catalog.rs", "the scenarios that come along"),
         ("picture/scene/stage/workspace.rs", "bounds that follow from the planes it holds"),
         ("planning/pose_space/pattern.rs", "patterns that follow from the space they are of"),
+        ("commands/in_process.rs", "what a command says to the program that carries it out"),
         ("commands/program.rs", "the commit that was built, which the program names once"),
         ("files/parquet_guard.rs", "whether a thread reads a file whose panics are errors of the file"),
     ];

@@ -8,11 +8,16 @@ use super::python::python;
 use crate::Test;
 
 pub const TABLES: &[Test] = tests![a_run_is_a_table, a_recording_is_a_table];
+pub const PACKAGE: &[Test] = tests![the_package_runs_as_shown];
 pub const PARQUET: &[Test] = tests![what_pandas_writes_is_read];
 pub const IN_MUJOCO: &[Test] = tests![the_same_motion_in_mujoco];
 pub const IN_PINOCCHIO: &[Test] = tests![the_mass_matrix_by_pinocchio];
 
 const PAGE: &str = include_str!("../../src/guide/python.md");
+
+fn the_package_runs_as_shown() {
+    runs("package.py");
+}
 
 /// Text of the block of a kind: `python table.py`, or `text table.py` for what it prints.
 fn block(kind: &str) -> String {

@@ -8,6 +8,7 @@ mod files;
 mod guide;
 mod headless;
 mod help;
+mod in_process;
 mod input;
 mod joints;
 mod learn;

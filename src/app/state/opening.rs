@@ -168,8 +168,8 @@ impl AppState {
     /// Opens tables, all of them as one measurement, and shows them; what is wrong with one is said.
     #[must_use]
     pub fn with_tables(mut self, files: Vec<PathBuf>) -> Self {
-        for (i, file) in files.into_iter().enumerate() {
-            let opening = Opening { adds: i > 0, ..Opening::default() };
+        for file in files {
+            let opening = Opening { adds: self.opened_table.is_some(), ..Opening::default() };
             let opened = SessionSource::File(file).open(&mut |_| true);
             self.take_opened(opening, Some(opened));
         }

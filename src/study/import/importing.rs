@@ -8,6 +8,7 @@ use super::momentum::{ZERO_MOMENTUM, without_momentum};
 use super::request::{MotionImportError, PreservedPath, Request};
 use super::tip::of_tip;
 use super::ways::{MotionProposals, unchanged_motion};
+use crate::advice::{Advice, Remedy};
 use stillbase_planning::curves::Coordinates;
 use stillbase_planning::pose_space::NoPoseSpace;
 use stillbase_query::{Portion, ProgressCallback, Query, part};
@@ -157,6 +158,11 @@ impl Trying {
                     None => self.imported.reason = Some("the samples make no task".into()),
                 }
                 return false;
+            }
+            Ok(proposal) if candidate.method == ZERO_MOMENTUM => {
+                let left = proposal.simulated_peak_base_moment;
+                let what = format!("without angular momentum the simulation still leaves up to {left:.2e} N m: want ");
+                self.imported.reason = Some(Advice::from(what).name(Remedy::Smoothing).then(", or fewer samples"));
             }
             Ok(proposal) => {
                 let given = self.imported.given.as_ref();

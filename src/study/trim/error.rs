@@ -104,8 +104,8 @@ pub enum TrimError {
     },
     /// All rates are those of their angles times a factor.
     #[error(
-        "motion {}: every rate is {} times that of its angle over the time: want the time in s{}",
-        motion + 1, significant(*factor), if *factor > 1.0 { ", not in ms" } else { "" }
+        "motion {}: every rate is {} times that of its angle over the time: want {}", motion + 1, significant(*factor),
+        time_words(*factor)
     )]
     WrongTime {
         /// Index of the motion, from 0.
@@ -169,6 +169,18 @@ pub enum TrimError {
     /// A result is not finite.
     #[error("numbers so large or so far apart that nothing can be computed with them: want SI units")]
     NotFinite,
+}
+
+/// Returns in words what makes all rates too large or too small by a factor.
+fn time_words(factor: f64) -> &'static str {
+    let is_near = |other: f64| (factor / other - 1.0).abs() < 0.05;
+    match () {
+        () if is_near(1e3) => "the time in s, not in ms",
+        () if is_near(1e6) => "the time in s, not in µs",
+        () if is_near(180.0 / std::f64::consts::PI) => "rates in rad/s, not in deg/s, or this unit in their headers",
+        () if is_near(std::f64::consts::PI / 180.0) => "angles in rad, not in deg, or this unit in their headers",
+        () => "the time in s, angles in rad and rates in rad/s",
+    }
 }
 
 /// Returns in words how a rate differs from that of its angle.

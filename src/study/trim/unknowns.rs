@@ -43,6 +43,9 @@ impl Unknown {
     }
 }
 
+/// Differences below this fraction of the scale of an unknown are rounding errors.
+const ROUNDING: f64 = 1e-9;
+
 /// The unknowns for n drives: the parts along and across of each line of (7), then of (8), then every D_k.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unknowns {
@@ -101,6 +104,11 @@ impl Unknowns {
             _ => turning,
         };
         (0..self.count()).map(of).collect()
+    }
+
+    /// Returns for each unknown the largest difference from a file that is a rounding error.
+    pub(super) fn rounding(&self, inertia: &Inertia) -> Vec<f64> {
+        self.scales(inertia).into_iter().map(|scale| ROUNDING * scale).collect()
     }
 
     /// Computes dynamic force (x, y) and moment on the base, that of the weight included, per unit of each unknown.

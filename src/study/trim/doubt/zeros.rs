@@ -26,7 +26,7 @@ use super::tolerances::known_numbers;
 use crate::trim::fit::IdentifiedNumbers;
 use crate::trim::unknowns::Unknown;
 use stillbase_mechanics::balance::Condition;
-use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::{PerDrive, Vector};
 
 /// Relative deviation of a phase, rad, that is expected of a built machine.
@@ -163,8 +163,9 @@ impl Zeros {
 
     /// Returns the number of unknowns that differ from the file beyond their intervals, with angles that count from these
     /// zeros.
-    fn off(&self, numbers: &IdentifiedNumbers) -> usize {
+    fn off(&self, machine: &Machine, numbers: &IdentifiedNumbers) -> usize {
         let unknowns = &numbers.unknowns;
+        let rounding = unknowns.rounding(&Inertia::of(machine));
         let is_off = |i: usize| {
             // The measured part i, turned back: the sum of two measured values with weights.
             let (turn, pair) = match unknowns.at(i) {
@@ -181,9 +182,13 @@ impl Zeros {
                     own * own * c[(i, i)] + 2.0 * own * other * c[(i, pair)] + other * other * c[(pair, pair)],
                 ),
             };
-            (value - numbers.nominal[i]).abs() > numbers.critical * variance.max(0.0).sqrt()
+            (value - numbers.nominal[i]).abs() > numbers.critical * variance.max(0.0).sqrt() + rounding[i]
         };
-        (0..unknowns.count()).filter(|i| numbers.identifiable[*i] && is_off(*i)).count()
+        let is_told = |i: &usize| {
+            let pair = if *i < unknowns.of_balance() { i ^ 1 } else { *i };
+            numbers.identifiable[*i] && numbers.identifiable[pair]
+        };
+        (0..unknowns.count()).filter(is_told).filter(|i| is_off(*i)).count()
     }
 }
 
@@ -203,14 +208,15 @@ pub(in crate::trim) fn zero_faults(
     zeros.map(|zeros| (zeros.words, Angles::shifted(zeros.offsets))).collect()
 }
 
-/// Returns the zeros with which the numbers are nearest to the file; `None` if those of the file are.
+/// Returns the zeros with which fewest numbers differ from the file, each offset counted as one; `None` if no other zeros are
+/// told.
 pub(in crate::trim) fn nearest_zeros(
     machine: &Machine,
     numbers: &IdentifiedNumbers,
     columns: &ColumnNames,
 ) -> Option<NamedAngles> {
     let zeros = Zeros::all(machine, numbers, columns).into_iter();
-    let best = zeros.min_by_key(|zeros| zeros.off(numbers) + zeros.words.mistakes)?;
+    let best = zeros.min_by_key(|zeros| zeros.off(machine, numbers) + zeros.words.mistakes)?;
     Some((best.words, Angles::shifted(best.offsets)))
 }
 
@@ -247,8 +253,8 @@ pub(in crate::trim) fn other_zero(
 ) -> Option<OtherZero> {
     let none = PerDrive::zeros(machine.drives());
     let words = FaultWords { what: String::new(), want: String::new(), mistakes: 1 };
-    let given = Zeros { words, offsets: none }.off(numbers);
-    let zeros = Zeros::all(machine, numbers, columns).into_iter().map(|zeros| (zeros.off(numbers), zeros));
+    let given = Zeros { words, offsets: none }.off(machine, numbers);
+    let zeros = Zeros::all(machine, numbers, columns).into_iter().map(|zeros| (zeros.off(machine, numbers), zeros));
     let (then, best) = zeros.min_by_key(|(off, zeros)| off + zeros.words.mistakes)?;
     let FaultWords { what, want, mistakes } = best.words;
     let is_simpler = then + MIN_FEWER * mistakes <= given;

@@ -15,6 +15,8 @@ use stillbase_mechanics::machine::Machine;
 const MIN_DIFFERENCE: f64 = 0.5;
 /// Rates below this are none, rad/s.
 const MIN_RATE: f64 = 1e-4;
+/// Rates below this factor times their noise are none.
+const NOISE_FACTOR: f64 = 3.0;
 /// Angle and integrated rate may differ by this fraction of what they change by.
 const MAX_FRACTION: f64 = 0.03;
 /// Smaller differences of angle and integrated rate, rad, are none.
@@ -72,14 +74,15 @@ fn dead_in(machine: &Machine, base: &OrbitBase, motion: usize, of: &OrbitMotion)
     };
     let dead = |pair: &Pair| {
         let [angle, rate] = &pair.names;
-        if is_constant(&pair.angle) && rms(pair.rate.iter().copied()) > MIN_RATE && !is_constant(&pair.rate) {
-            let size = rms(pair.rate.iter().copied());
+        let size = rms(pair.rate.iter().copied());
+        if is_constant(&pair.angle) && !is_constant(&pair.rate) && size > MIN_RATE.max(NOISE_FACTOR * noise(&pair.rate))
+        {
             return Some(TrimError::DeadAngle { motion, angle: angle.clone(), rate: rate.clone(), size });
         }
         let value = *pair.rate.first().filter(|_| is_constant(&pair.rate))?;
         let by_angle = by_angle(pair);
         let (differs, size) = (rms(by_angle.iter().map(|rate| rate - value)), rms(by_angle.iter().copied()));
-        let is_dead = differs > MIN_RATE.max(MIN_DIFFERENCE * size);
+        let is_dead = differs > MIN_RATE.max(MIN_DIFFERENCE * size).max(NOISE_FACTOR * noise(&by_angle));
         is_dead.then(|| TrimError::DeadSignal { motion, path: rate.clone(), value, by_angle: size })
     };
     if let Some(error) = all.iter().find_map(dead) {
@@ -87,7 +90,7 @@ fn dead_in(machine: &Machine, base: &OrbitBase, motion: usize, of: &OrbitMotion)
     }
     if is_constant(&of.base_rate) {
         // A base that a wheel holds does not turn, and the fit knows of the wheel.
-        let off = OrbitFit::of(machine, base, std::slice::from_ref(of)).ok()?.off;
+        let off = OrbitFit::of(machine, base, &OrbitMotion::thinned(std::slice::from_ref(of))).ok()?.off;
         return (off > MIN_RATE).then_some(TrimError::StillBase { motion, by_file: off });
     }
     None

@@ -8,6 +8,7 @@ use super::motion::{BASE_RATE, OrbitBase, OrbitMotion, raised};
 use crate::trim::differences::interpolated;
 use crate::trim::doubt::FaultWords;
 use stillbase_mechanics::machine::Machine;
+use stillbase_settings::number::fixed_or_finer;
 
 /// Maximum number of Gauss–Newton steps, and the change that ends them, as a fraction of the mean time between two rows.
 const MAX_STEPS: usize = 12;
@@ -70,7 +71,7 @@ impl Delay {
         let (rate, both) = (BASE_RATE.to_owned(), format!("attitude/base and {BASE_RATE}"));
         let [come, moved] = if self.late > 0.0 { ["late", "earlier"] } else { ["early", "later"] };
         let (what, comes) = if self.attitude { (both, "come") } else { (rate, "comes") };
-        let by = format!("{:.4} s", self.late.abs());
+        let by = format!("{} s", fixed_or_finer(self.late.abs(), 4));
         let built = if self.attitude { "angles and rates" } else { "rates" };
         let (within, anew) = match self.within_drives {
             true => (format!(", also within absolute {built} of the drives"), ", and those built with it anew"),

@@ -28,7 +28,7 @@ const RATE_FLOOR: f64 = 0.02;
 pub(super) const SLACK: f64 = 2.0;
 /// Residuals below this fraction of the base rate are rounding errors.
 pub(super) const EXACT: f64 = 1e-6;
-/// Number of standard deviations of a slow part of white noise that count as zero.
+/// Factor on the standard deviation of the slow part of white noise that counts as zero.
 const SURE: f64 = 1.5;
 
 /// Numbers of one row as the columns say.
@@ -124,7 +124,7 @@ impl Suspected for OrbitMeasurement {
     }
 }
 
-/// Returns the standard deviation of the noise of the base rate, rad/s: the same for all faults.
+/// Returns the standard deviation of the noise of the base rate, rad/s.
 fn white_noise(motions: &[OrbitMotion]) -> f64 {
     let rows: usize = motions.iter().map(OrbitMotion::rows).sum();
     let squares = motions.iter().map(|motion| motion.rows() as f64 * noise(&motion.base_rate).powi(2));
@@ -201,9 +201,10 @@ fn zeros_of_motions(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]
     if motions.len() < 2 {
         return None;
     }
+    let motions = &OrbitMotion::thinned(motions);
     // Each alone tells its own phases, then all together what is left between them.
     let alone = |motion: &OrbitMotion| {
-        let fit = OrbitFit::of(machine, base, &OrbitMotion::thinned(std::slice::from_ref(motion))).ok()?;
+        let fit = OrbitFit::of(machine, base, std::slice::from_ref(motion)).ok()?;
         own_zeros(machine, &fit.numbers)
     };
     let mut zeros: Vec<PerDrive> = motions.iter().map(alone).collect::<Option<_>>()?;
@@ -212,7 +213,7 @@ fn zeros_of_motions(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]
             let by = Angles::shifted(*zeros);
             corrected(motion, &|row| row.map(&by))
         });
-        OrbitMotion::thinned(&shifted.collect::<Vec<_>>())
+        shifted.collect::<Vec<_>>()
     };
     for _ in 0..ZERO_STEPS {
         let fit = OrbitFit::of(machine, base, &undone(&zeros)).ok()?;
@@ -292,10 +293,10 @@ impl OrbitFault {
 
     /// Returns the same faults of encoders that count from other zeros, too: those that bring the numbers nearest to the file.
     fn encoders_with_zeros(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) -> Vec<Self> {
-        let columns = column_names(machine);
+        let (columns, motions) = (column_names(machine), OrbitMotion::thinned(motions));
         let with_zeros = |fault: Self| {
             let undone: Vec<OrbitMotion> = motions.iter().map(|motion| fault.undo(0, motion)).collect();
-            let fit = OrbitFit::of(machine, base, &OrbitMotion::thinned(&undone)).ok()?;
+            let fit = OrbitFit::of(machine, base, &undone).ok()?;
             let (zeros, by) = nearest_zeros(machine, &fit.numbers, &columns)?;
             let Correction::Row(correct) = fault.correction else { return None };
             let words = FaultWords {

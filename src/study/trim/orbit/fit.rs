@@ -196,7 +196,7 @@ impl Descent {
             let most = WORSE_THAN_FILE * off_file.max(off) + f64::MIN_POSITIVE;
             let next = tried.map(|x| (rows.errors(&x), x)).find(|(errors, _)| rms(errors) <= most);
             let reached = next.is_none() || size < STEP_TOLERANCE;
-            solved = Some((slopes, errors.clone(), inverse, v.select_columns(&rest)));
+            solved = Some((slopes, inverse, v.select_columns(&rest)));
             if let Some(next) = next {
                 (errors, x) = next;
             }
@@ -204,7 +204,7 @@ impl Descent {
                 break;
             }
         }
-        let (slopes, errors, inverse, free) = solved.ok_or(TrimError::NotFinite)?;
+        let (slopes, inverse, free) = solved.ok_or(TrimError::NotFinite)?;
         Ok(Self { x, slopes, errors, inverse, free })
     }
 }

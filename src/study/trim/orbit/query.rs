@@ -68,10 +68,16 @@ impl Query for OrbitTrimQuery {
             Stage::Begun(done) if done >= searches => {
                 let doubt = chosen(std::mem::take(&mut self.doubts));
                 // What no usual mistake explains may still be no motion.
-                if let Some(why) = contradiction(machine, motions).filter(|_| doubt.is_none() && !as_given) {
+                if doubt.is_none()
+                    && !as_given
+                    && let Some(why) = contradiction(machine, motions)
+                {
                     return Portion::Done(OrbitOutcome { doubt: None, outcome: Err(NoTrim::Unusable(why)) });
                 }
                 doubt
+            }
+            Stage::Begun(0) if let Some(why) = unsound(machine, motions) => {
+                return Portion::Done(OrbitOutcome { doubt: None, outcome: Err(NoTrim::Unusable(why)) });
             }
             Stage::Begun(0) if !as_given && let Some(why) = dead_signal(machine, base, motions) => {
                 return Portion::Done(OrbitOutcome { doubt: None, outcome: Err(NoTrim::Unusable(why)) });
@@ -113,6 +119,11 @@ impl Query for OrbitTrimQuery {
             }
         }
     }
+}
+
+/// Returns the error of the first motion whose lists do not belong together.
+fn unsound(machine: &Machine, motions: &[OrbitMotion]) -> Option<TrimError> {
+    motions.iter().enumerate().find_map(|(i, motion)| motion.check(i, machine.drives()).err())
 }
 
 /// Returns the doubt to report. A fault of all motions together counts if it is the likeliest of one of them alone, too, if

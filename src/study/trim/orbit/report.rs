@@ -25,8 +25,6 @@ const SLOW: f64 = 0.9;
 const UNEXPLAINED: f64 = 0.01;
 /// Residuals below this fraction of the base rate count for nothing.
 const NEGLIGIBLE: f64 = 1e-4;
-/// Differences from the file below this fraction of the scale of an unknown are rounding errors.
-const ROUNDING: f64 = 1e-9;
 /// Angles that vary by less than this do not move, rad.
 const STILL_RAD: f64 = 1e-3;
 
@@ -74,8 +72,7 @@ impl OrbitReport {
         // How far each number moves with each known value.
         let shifts: Vec<DVector<f64>> =
             one_percent_off(machine, base).iter().map(|craft| fit.shift(craft, motions)).collect();
-        let scales = numbers.unknowns.scales(&Inertia::of(machine));
-        let rounding: Vec<f64> = scales.iter().map(|scale| ROUNDING * scale).collect();
+        let rounding = numbers.unknowns.rounding(&Inertia::of(machine));
         let number = |i: usize| {
             let (what, half, is_told) = (numbers.unknowns.at(i), numbers.half_width(i), numbers.identifiable[i]);
             let (measured, nominal) = (numbers.measured[i], numbers.nominal[i]);

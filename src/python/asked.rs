@@ -1,0 +1,145 @@
+//! [`ask`]: commands that are carried out within the interpreter.
+
+use std::ffi::OsString;
+
+use pyo3::create_exception;
+use pyo3::exceptions::{PyException, PyTypeError, PyUserWarning};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyString, PyTuple};
+use stillbase_commands::{InProcessAnswer, answer};
+use stillbase_files::text::with_standard_input;
+
+create_exception!(
+    stillbase,
+    StillbaseError,
+    PyException,
+    "Why a command did not finish; `answer` holds what it answered before."
+);
+create_exception!(stillbase, NoAnswer, StillbaseError, "The question has no answer: the reason, and ways out of it.");
+create_exception!(stillbase, WrongInput, StillbaseError, "The input is wrong: where, and what would be right.");
+
+/// Returns a value as the command line takes it: lists with commas, `true` and `false` in small letters.
+pub fn setting(value: &Bound<'_, PyAny>) -> PyResult<String> {
+    if let Ok(is_so) = value.extract::<bool>() {
+        return Ok(is_so.to_string());
+    }
+    if value.is_instance_of::<PyDict>() || value.is_instance_of::<PyBytes>() {
+        return Err(PyTypeError::new_err(format!("{}: want a number, a word or a list", value.repr()?)));
+    }
+    if is_list(value)? {
+        let parts = value.try_iter()?.map(|part| setting(&part?)).collect::<PyResult<Vec<_>>>()?;
+        return Ok(parts.join(","));
+    }
+    Ok(value.str()?.to_string())
+}
+
+/// Returns options as words of the command line: `min_reach=1.2` is `--min-reach 1.2`, `keep=True` is `--keep`. A list is one
+/// word with commas; a list of lists, or a dictionary, is the option repeated. `None` and `False` leave an option out.
+pub fn options(given: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<OsString>> {
+    let mut words: Vec<OsString> = Vec::new();
+    for (key, value) in given.into_iter().flat_map(|given| given.iter()) {
+        let name = key.str()?.to_string();
+        let name = format!("--{}", name.trim_end_matches('_').replace('_', "-"));
+        let mut add = |value: String| words.extend([name.clone().into(), value.into()]);
+        if let Ok(pairs) = value.cast::<PyDict>() {
+            for (key, value) in pairs.iter() {
+                add(format!("{}={}", key.str()?, setting(&value)?));
+            }
+        } else if value.is_none() {
+        } else if let Ok(is_given) = value.extract::<bool>() {
+            words.extend(is_given.then(|| name.into()));
+        } else if is_list(&value)? {
+            let parts = value.try_iter()?.collect::<PyResult<Vec<_>>>()?;
+            let are_lists = parts.iter().map(is_list).collect::<PyResult<Vec<_>>>()?;
+            let parts = parts.iter().map(setting).collect::<PyResult<Vec<_>>>()?;
+            if !parts.is_empty() && !are_lists.contains(&false) {
+                parts.into_iter().for_each(add);
+            } else {
+                add(parts.join(","));
+            }
+        } else {
+            add(setting(&value)?);
+        }
+    }
+    Ok(words)
+}
+
+fn is_list(value: &Bound<'_, PyAny>) -> PyResult<bool> {
+    // An array without dimensions is a number, although it has the method.
+    let is_number = value.hasattr("ndim")? && value.getattr("ndim")?.eq(0)?;
+    Ok(value.hasattr("__iter__")? && !is_number && !value.is_instance_of::<PyString>())
+}
+
+/// Carries out a command line. `input` takes the place of standard input. Notes become warnings, and failures exceptions.
+///
+/// # Errors
+/// If the command fails.
+pub fn carried_out(py: Python<'_>, words: Vec<OsString>, input: Option<String>) -> PyResult<InProcessAnswer> {
+    let said = py.detach(|| match input {
+        Some(text) => with_standard_input(text, || answer(words)),
+        None => answer(words),
+    });
+    for note in &said.notes {
+        let note = std::ffi::CString::new(note.as_str())?;
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &note, 1)?;
+    }
+    if said.status == 0 {
+        return Ok(said);
+    }
+    let why = said.errors.join("\n");
+    let error = if said.status == 1 { NoAnswer::new_err(why) } else { WrongInput::new_err(why) };
+    let answer = said.json.as_deref().map(|json| parsed(py, json)).transpose()?;
+    Err(with_answer(py, error, answer)?)
+}
+
+/// Returns an exception with what was answered before.
+fn with_answer(py: Python<'_>, error: PyErr, answer: Option<Bound<'_, PyAny>>) -> PyResult<PyErr> {
+    error.value(py).setattr("answer", answer)?;
+    Ok(error)
+}
+
+/// Returns the exception of wrong input.
+pub fn wrong_input(py: Python<'_>, why: impl ToString) -> PyErr {
+    with_answer(py, WrongInput::new_err(why.to_string()), None).unwrap_or_else(|error| error)
+}
+
+/// Returns JSON as Python's objects.
+pub fn parsed<'py>(py: Python<'py>, json: &str) -> PyResult<Bound<'py, PyAny>> {
+    py.import("json")?.call_method1("loads", (json,))
+}
+
+/// Carries out a command line with `--json` and returns its answer; `None` if there is none.
+pub fn answered<'py>(py: Python<'py>, mut words: Vec<OsString>, input: Option<String>) -> PyResult<Bound<'py, PyAny>> {
+    words.push("--json".into());
+    match carried_out(py, words, input)?.json {
+        Some(json) => parsed(py, &json),
+        None => Ok(py.None().into_bound(py)),
+    }
+}
+
+/// Carries out a command of the command line, and returns its answer as dictionaries and lists. Options are keywords:
+/// `min_reach=1.2` is `--min-reach 1.2`, `keep=True` is `--keep`, `set={"payload.mass": 0.1}` is `--set payload.mass=0.1`.
+///
+/// ```python
+/// >>> import stillbase as sb
+/// >>> sb.ask("reach", "nine-link", "0.5,0.5")["period"] > 6
+/// True
+///
+/// ```
+#[pyfunction]
+#[pyo3(name = "ask", signature = (*words, **given))]
+pub fn ask<'py>(
+    py: Python<'py>,
+    words: &Bound<'py, PyTuple>,
+    given: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let mut line = words.iter().map(|word| Ok(setting(&word)?.into())).collect::<PyResult<Vec<OsString>>>()?;
+    line.extend(options(given)?);
+    answered(py, line, None)
+}
+
+/// Carries out a command line as the program does, and returns its exit status. The first word is the name of the program.
+#[pyfunction]
+pub fn main(py: Python<'_>, words: Vec<OsString>) -> u8 {
+    py.detach(|| stillbase_commands::carry_out(words))
+}

@@ -1,0 +1,34 @@
+//! Stillbase in Python: machines, their dynamics, and everything that the command line answers.
+//!
+//! Answers of the command line are found by the command line: it is carried out within the interpreter, and its JSON becomes
+//! Python's dictionaries, so that names, numbers and errors are the same. Only what has to be fast goes another way: the
+//! signals of a run become arrays without a copy, and [`dynamics`] evaluates whole arrays.
+//!
+//! This crate serves the workspace alone, and may change in any version.
+
+mod asked;
+mod dynamics;
+mod machine;
+mod run;
+
+use pyo3::prelude::*;
+
+/// Zero reaction manipulators: the part of the package that is written in Rust.
+#[pymodule]
+mod _stillbase {
+    #[pymodule_export]
+    use super::asked::{NoAnswer, StillbaseError, WrongInput, ask, main};
+    #[pymodule_export]
+    use super::dynamics::Dynamics;
+    #[pymodule_export]
+    use super::machine::Machine;
+    #[pymodule_export]
+    use super::run::{Run, simulate};
+
+    use super::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}
