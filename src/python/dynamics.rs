@@ -76,7 +76,7 @@ fn dense<'py>(py: Python<'py>, of: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArr
     let options = PyDict::new(py);
     options.set_item("dtype", "float64")?;
     options.set_item("order", "C")?;
-    Ok(py.import("numpy")?.call_method("asarray", (of,), Some(&options))?.extract()?)
+    py.import("numpy")?.call_method("asarray", (of,), Some(&options))?.extract()
 }
 
 /// Evaluates states of motion on a number of threads; the interpreter is free meanwhile.
