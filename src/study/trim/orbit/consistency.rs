@@ -60,8 +60,8 @@ fn is_constant(values: &[f64]) -> bool {
     values.windows(2).all(|pair| (pair[0] - pair[1]).abs() <= 1e-12)
 }
 
-/// Returns the error of the first signal that is the same in all rows of a motion though its partner tells otherwise, or of a
-/// base that stands still though the machine's file turns it.
+/// Returns the error of the first dead signal: an angle or rate that is the same in all rows of a motion, although the other one
+/// changes. A base that stands still is an error, too, if the arm turns it by the machine's file.
 pub(super) fn dead_signal(machine: &Machine, base: &OrbitBase, motions: &[OrbitMotion]) -> Option<TrimError> {
     motions.iter().enumerate().find_map(|(i, motion)| dead_in(machine, base, i, motion))
 }
@@ -142,8 +142,7 @@ impl Compared {
         if size < MIN_ANGLE {
             return None;
         }
-        let rms = |of: &DVector<f64>| of.norm() / (of.len() as f64).sqrt();
-        let off = rms(&(&y - &x));
+        let off = rms((&y - &x).iter().copied());
         let scale = x.dot(&y) / x.norm_squared().max(f64::MIN_POSITIVE);
         let time = t[t.len() - 1] - t[0];
         let walk = noise(rate) * (time * time / t.len() as f64).sqrt();
@@ -151,7 +150,7 @@ impl Compared {
             off,
             most: (MAX_FRACTION * size).max(MIN_ANGLE).max(WALK_FACTOR * walk),
             factor: scale.recip(),
-            is_factor: rms(&(&y - scale * &x)) < LEFT_BY_FACTOR * off,
+            is_factor: rms((&y - scale * &x).iter().copied()) < LEFT_BY_FACTOR * off,
         })
     }
 

@@ -26,7 +26,7 @@ const MIN_DEVIATIONS: f64 = 5.0;
 pub(super) struct Delay {
     /// Delay τ, s; negative if early.
     late: f64,
-    /// Whether the angle of the base is late by as much as its rate.
+    /// `true` if the angle of the base is as late as its rate.
     attitude: bool,
     /// Whether absolute angles and rates of the drives were built with what is late.
     within_drives: bool,

@@ -76,10 +76,7 @@ impl Query for OrbitTrimQuery {
                 }
                 doubt
             }
-            Stage::Begun(0) if let Some(why) = unsound(machine, motions) => {
-                return Portion::Done(OrbitOutcome { doubt: None, outcome: Err(NoTrim::Unusable(why)) });
-            }
-            Stage::Begun(0) if !as_given && let Some(why) = dead_signal(machine, base, motions) => {
+            Stage::Begun(0) if let Some(why) = unusable(&self.request) => {
                 return Portion::Done(OrbitOutcome { doubt: None, outcome: Err(NoTrim::Unusable(why)) });
             }
             Stage::Begun(done) => {
@@ -121,14 +118,18 @@ impl Query for OrbitTrimQuery {
     }
 }
 
-/// Returns the error of the first motion whose lists do not belong together.
-fn unsound(machine: &Machine, motions: &[OrbitMotion]) -> Option<TrimError> {
-    motions.iter().enumerate().find_map(|(i, motion)| motion.check(i, machine.drives()).err())
+/// Returns the error of the first motion whose lists do not belong together, or that has a dead signal. Dead signals are
+/// accepted if columns are taken as given.
+fn unusable(request: &OrbitTrimRequest) -> Option<TrimError> {
+    let OrbitTrimRequest { machine: Shared(machine), base, motions: Shared(motions), as_given } = request;
+    let unsound = motions.iter().enumerate().find_map(|(i, motion)| motion.check(i, machine.drives()).err());
+    let dead = || if *as_given { None } else { dead_signal(machine, base, motions) };
+    unsound.or_else(dead)
 }
 
-/// Returns the doubt to report. A fault of all motions together counts if it is the likeliest of one of them alone, too, if
-/// none is doubted alone, or if it is likelier than theirs and leaves as little. Otherwise one motion is spoilt: that with the
-/// greatest odds.
+/// Returns the doubt to report. A fault of all motions together counts in three cases: it is the likeliest of one motion alone,
+/// no motion is doubted alone, or it is likelier than the faults of single motions and leaves as little unexplained. Otherwise
+/// one motion is spoilt: that with the greatest odds.
 fn chosen(mut doubts: Vec<Doubt>) -> Option<Doubt> {
     let first = |doubt: &Doubt| doubt.causes.first().map(|cause| cause.what.clone());
     let odds = |doubt: &Doubt| doubt.causes.first().map_or(0.0, |cause| cause.odds);
