@@ -3,13 +3,13 @@
 use std::io::Write;
 use std::sync::Arc;
 
-use parquet::basic::{LogicalType, Repetition, Type as Physical};
+use parquet::basic::{Compression, Encoding, LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
-use parquet::schema::types::Type;
+use parquet::schema::types::{ColumnPath, Type};
 
 /// Maximum number of rows of a row group.
 pub const GROUP_ROWS: usize = 65_536;
@@ -22,6 +22,8 @@ pub struct ParquetHead<'a> {
     pub columns: Vec<(ColumnKind, &'a str)>,
     /// Key and value of a note in the file's metadata, if there is one.
     pub note: Option<[&'a str; 2]>,
+    /// Whether columns are compressed, with Snappy, and encoded for that.
+    pub is_compressed: bool,
 }
 
 /// What the cells of a column are.
@@ -80,8 +82,19 @@ impl<W: Write + Send> ParquetRows<W> {
         let fields = head.columns.iter().map(column).collect::<Result<Vec<_>, _>>()?;
         let schema = Type::group_type_builder(head.row).with_fields(fields).build()?;
         // Numbers that hardly repeat do not compress with a dictionary.
-        let properties = WriterProperties::builder()
-            .set_dictionary_enabled(false)
+        let mut properties = WriterProperties::builder().set_dictionary_enabled(false);
+        if head.is_compressed {
+            properties = properties.set_compression(Compression::SNAPPY);
+            for (kind, name) in &head.columns {
+                let column = ColumnPath::from(*name);
+                properties = match kind {
+                    ColumnKind::Count => properties.set_column_encoding(column, Encoding::DELTA_BINARY_PACKED),
+                    ColumnKind::Text => properties.set_column_dictionary_enabled(column, true),
+                    ColumnKind::Number => properties.set_column_encoding(column, Encoding::BYTE_STREAM_SPLIT),
+                };
+            }
+        }
+        let properties = properties
             .set_created_by(format!("stillbase {}", env!("CARGO_PKG_VERSION")))
             .set_key_value_metadata(head.note.map(|[key, value]| vec![KeyValue::new(key.into(), value.to_owned())]))
             .build();

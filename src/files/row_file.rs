@@ -170,7 +170,8 @@ impl RowFile {
             RowForm::Parquet => {
                 let texts = texts.iter().map(|name| (ColumnKind::Text, *name));
                 let numbers = columns.iter().map(|name| (ColumnKind::Number, name.as_str()));
-                let head = ParquetHead { row: of, columns: texts.chain(numbers).collect(), note: None };
+                let head =
+                    ParquetHead { row: of, columns: texts.chain(numbers).collect(), note: None, is_compressed: false };
                 Out::Parquet(Box::new(ParquetRows::begin(sink, &head).map_err(|e| parquet_error(file, e))?))
             }
         };
@@ -259,7 +260,8 @@ fn parquet_bytes(table: &CellTable) -> Result<Vec<u8>, ParquetError> {
     let about = table.about.join("\n");
     let note = Some([ABOUT_KEY, &*about]).filter(|_| !table.about.is_empty());
     let columns = kinds.iter().copied().zip(table.head.iter().map(String::as_str)).collect();
-    let mut rows = ParquetRows::begin(Vec::new(), &ParquetHead { row: table.row, columns, note })?;
+    let mut rows =
+        ParquetRows::begin(Vec::new(), &ParquetHead { row: table.row, columns, note, is_compressed: false })?;
     for row in &table.rows {
         // A column of words may hold numbers, too.
         let texts: Vec<String> = row.iter().map(text_of).collect();

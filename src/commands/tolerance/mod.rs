@@ -5,15 +5,19 @@ mod report;
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use stillbase_files::row_file::{ROW_ENDINGS, RowForm};
-use stillbase_files::shards::{ShardError, ShardHeader, StudyId, Writer, merge};
+use stillbase_files::shards::{
+    ShardError, ShardHeader, StudyId, Writer, is_summary, merge, merge_summaries, read_summary, write_summary,
+};
 use stillbase_session::scenario::{MAX_SAMPLES, Scenario, Spread, Tolerance as Section};
 use stillbase_session::{Run, with_start_edits};
 use stillbase_study::tolerance::{
-    Distributions, Ensemble, EnsemblePart, Mode, PartReport, SampleOutcome, ToleranceError, Yields,
+    BinValues, Ensemble, EnsemblePart, KnownRanks, Limits, Mode, PartReport, PartResults, SampleOutcome, Summary,
+    ToleranceError, Yields,
 };
 
 pub use self::report::{MergedParts, ToleranceAnswer};
@@ -38,10 +42,14 @@ Examples:
   stillbase tolerance case-3 --spread link.*.com=normal:0.0005 --spread link.*.mass=uniform:1%
   stillbase tolerance case-3 --samples 1000000 --shard 1/2 -o part-1.parquet
   stillbase tolerance --merge part-1.parquet part-2.parquet -o whole.parquet
+  stillbase tolerance case-3 --samples 1000000000 --summary --shard 1/1000 -o part-0001.parquet
   stillbase tolerance case-1 --simulate --samples 500
 
 A file has one row a machine: its number, its parameters, peak |n_B|, peak dynamic |f_B|, and the root mean square of
 both over time. Its head holds a checksum of it all, which --merge looks at. Machine i depends on the seed and on i only, so shards put together are the whole, exactly.
+
+A summary has one row a bin instead, at most 0.1 % wide: its machines, extremes and exact sums. It stays below 1 MB for
+any number of machines, and merging is addition.
 
 JSON keys: scenario, simulated, samples, shard [from, to), seed, duration; parameters [{key, unit, nominal, spread,
 deviation, mean_deviation, cut}]; nominal {peak_base_moment, peak_base_force, rms_base_moment, rms_base_force};
@@ -50,7 +58,8 @@ both: {limit, good, of, share, interval}}; shares {parameters [{key, unit, devia
 moment_share, force_share}], moment_first_order, force_first_order}; bands {time, samples, moment, force} with percentiles
 5, 25, 50, 75, 95; agreement {tolerance, sampled_tolerance; moment_mean, moment_deviation, force_rms, force_mean, force_deviation, sampling:
 {worst, time, share}}; against_tracking with --simulate; file with -o. With --merge: file, samples, seed, the four
-distributions, yield. Older names stay until version 0.3: `stillbase results older`.")]
+distributions, yield; with summaries missing [[from, to)], if machines are. The distributions of a summary have
+quantile_error unless they are exact. Older names stay until version 0.3: `stillbase results older`.")]
 pub struct ToleranceArguments {
     /// A built-in scenario (case-1, spacecraft …; an unknown name lists them all) or a TOML file; by default case-3
     #[arg(value_name = "SCENARIO")]
@@ -81,13 +90,22 @@ pub struct ToleranceArguments {
     /// Simulate each machine under control instead of perfect tracking
     #[arg(long)]
     simulate: bool,
-    /// Merge these parts, in any order, into the file of -o
+    /// Keep a summary in bins instead of every machine, for any number of machines; -o writes it, as .parquet
+    #[arg(long)]
+    summary: bool,
+    /// Draw the machines of this summary again, and find its quantiles exactly; with the scenario and options that it was
+    /// made with
+    #[arg(long, value_name = "SUMMARY", conflicts_with_all = ["shard", "output", "summary", "limit_moment", "limit_force"])]
+    exact: Option<PathBuf>,
+    /// Merge these parts, in any order, into the file of -o; summaries of some parts may be merged again
     #[arg(
         long, value_name = "PART", num_args = 1.., requires = "output",
-        conflicts_with_all = ["scenario", "samples", "seed", "spreads", "instants", "shard", "simulate", "pairs"]
+        conflicts_with_all = [
+            "scenario", "samples", "seed", "spreads", "instants", "shard", "simulate", "summary", "exact", "pairs"
+        ]
     )]
     merge: Vec<PathBuf>,
-    /// Write every machine to this file, .csv or .parquet; `-` is standard output
+    /// Write every machine to this file, .csv or .parquet, or the summary; `-` is standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Replace the file if it exists
@@ -105,6 +123,9 @@ pub struct ToleranceArguments {
 
 /// Maximum number of machines of one run, because all of their results are held in memory.
 const MAX_MACHINES: u64 = 20_000_000;
+
+/// Number of machines after which a thread hands over the numbers that it has collected.
+const WAITING_MACHINES: usize = 1 << 14;
 
 fn samples(text: &str) -> Result<u64, String> {
     let count = text.trim().parse().ok().filter(|n| (1..=MAX_SAMPLES).contains(n));
@@ -167,20 +188,56 @@ impl ToleranceArguments {
     fn merge_parts(&self) -> Result<(), Failure> {
         let Some(whole) = &self.output else { return Err(Failure::wrong_input("--merge: want -o FILE")) };
         let ending = self.form.check(&self.format, Some(whole), self.force, &ROW_ENDINGS)?;
-        let (study, outcomes) = merge(&self.merge, (whole, row_form(ending)), self.force)?;
-        let Some(distributions) = Distributions::of(&outcomes) else {
-            return Err(Failure::no_answer("the parts hold no machine"));
+        let kinds = self.merge.iter().map(|part| is_summary(part)).collect::<Result<Vec<_>, _>>()?;
+        let (study, results, missing) = if kinds.iter().all(|is_summary| *is_summary) {
+            let (study, sum) = merge_summaries(&self.merge)?;
+            self.say_uncounted(&sum)?;
+            write_summary(whole, self.force, &study, &sum)?;
+            (study, sum.results(&KnownRanks::default()), sum.missing(study.samples))
+        } else if let Some((part, _)) = self.merge.iter().zip(&kinds).find(|(_, is_summary)| **is_summary) {
+            let why = format!("{}: a summary, but other parts have every machine: want one kind", part.display());
+            return Err(Failure::wrong_input(why));
+        } else {
+            let (study, outcomes) = merge(&self.merge, (whole, row_form(ending)), self.force)?;
+            (study, PartResults::of(&outcomes, &[], self.limits()), Vec::new())
         };
+        let Some(results) = results else { return Err(Failure::no_answer("the parts hold no machine")) };
+        for Range { start, end } in &missing {
+            print_message(format!("note: machines {start} to {} are in no part", end - 1));
+        }
         let answer = MergedParts {
             file: whole.display().to_string(),
             samples: study.samples,
             seed: study.seed,
-            distributions,
-            yields: Yields::of(&outcomes, self.limit_moment, self.limit_force),
+            missing: missing.iter().map(|gap| [gap.start, gap.end]).collect(),
+            distributions: results.distributions,
+            yields: results.yields,
         };
         say_written(whole);
         self.format.print(&answer, MergedParts::text)?;
         self.strict.require(past_limits(&answer.yields))
+    }
+
+    fn limits(&self) -> Limits {
+        Limits { moment: self.limit_moment, force: self.limit_force }
+    }
+
+    /// Refuses limits that the parts of a summary did not count, and says what their bins tell.
+    fn say_uncounted(&self, sum: &Summary) -> Result<(), Failure> {
+        let (asked, counted) = (self.limits(), sum.limits());
+        let limits =
+            [("--limit-moment", 0, asked.moment, counted.moment), ("--limit-force", 1, asked.force, counted.force)];
+        for (option, number, asked, counted) in limits {
+            let Some(limit) = asked.filter(|_| asked != counted) else { continue };
+            let [least, most] = sum.within(number, limit);
+            let had = counted.map_or_else(|| "none".to_owned(), |limit| limit.to_string());
+            return Err(Failure::wrong_input(format!(
+                "{option} {limit}: the parts did not count it (their limit: {had}); by their bins, {least} to {most} of \
+                 {} machines are within: want {option} with every part",
+                sum.count()
+            )));
+        }
+        Ok(())
     }
 
     /// Returns the tolerances of the scenario, overridden by those of the command line.
@@ -223,8 +280,12 @@ impl ToleranceArguments {
         let samples = section.samples.unwrap_or(if self.simulate { 1000 } else { 100_000 });
         let (i, n) = self.shard.unwrap_or((1, 1));
         let range = stillbase_study::tolerance::shard(samples, i, n);
-        if range.end - range.start > MAX_MACHINES {
-            let why = format!("{} machines at once: want at most {MAX_MACHINES}, in shards", range.end - range.start);
+        let is_summarized = self.summary || self.exact.is_some();
+        if range.end - range.start > MAX_MACHINES && !is_summarized {
+            let why = format!(
+                "{} machines at once: want at most {MAX_MACHINES}, in shards, or --summary",
+                range.end - range.start
+            );
             return Err(Failure::wrong_input(why));
         }
         if range.is_empty() {
@@ -239,22 +300,113 @@ impl ToleranceArguments {
         let motion = &run.plan().motion;
         let ensemble = Ensemble::new(&plant, motion, self.instants as usize, &section.spreads, seed)?;
         let study = StudyId::of(&scenario, &section, [samples, seed], self.instants, self.simulate);
-        let (outcomes, tracking) = self.evaluate(&ensemble, &run, (&study, to), range.clone())?;
-        let part = EnsemblePart {
-            run: &run,
-            ensemble: &ensemble,
-            samples,
-            first: range.start,
-            outcomes: &outcomes,
-            tracking: &tracking,
-            simulated: self.simulate,
+        let limits = Limits { moment: section.moment_limit, force: section.force_limit };
+        let (machines, results) = match &self.exact {
+            Some(file) => self.exact_results(&ensemble, &run, &study, file)?,
+            None if self.summary => {
+                let sum = self.summarize(&ensemble, &run, limits, &range)?;
+                self.output.iter().try_for_each(|file| write_summary(file, self.force, &study, &sum))?;
+                (range, sum.results(&KnownRanks::default()))
+            }
+            None => {
+                let (outcomes, tracking) = self.evaluate(&ensemble, &run, (&study, to), range.clone())?;
+                (range, PartResults::of(&outcomes, &tracking, limits))
+            }
         };
-        let report = PartReport::of(&part, &section).map_err(|e| Failure::refused(&scenario, e))?;
-        let report = report.ok_or_else(|| Failure::no_answer("no machine was drawn"))?;
+        let results = results.ok_or_else(|| Failure::no_answer("no machine was drawn"))?;
+        let part = EnsemblePart { run: &run, ensemble: &ensemble, samples, machines, simulated: self.simulate };
+        let report = PartReport::of(&part, results).map_err(|e| Failure::refused(&scenario, e))?;
         let answer = ToleranceAnswer { report, file: self.output.as_ref().map(|file| file.display().to_string()) };
         self.output.iter().for_each(|file| say_written(file));
         self.format.print(&answer, |answer| report::text(&answer.report))?;
         self.strict.require(past_limits(&answer.report.yields))
+    }
+
+    fn mode<'a>(&self, run: &'a Run) -> Mode<'a> {
+        if self.simulate { Mode::Simulated(run) } else { Mode::Tracking }
+    }
+
+    /// Evaluates the machines of a range and keeps their summary.
+    fn summarize(
+        &self,
+        ensemble: &Ensemble,
+        run: &Run,
+        limits: Limits,
+        range: &Range<u64>,
+    ) -> Result<Summary, Failure> {
+        let bar = self.progress(range.end - range.start);
+        let workers = parallel::share_out(
+            ensemble,
+            self.mode(run),
+            std::slice::from_ref(range),
+            || Summary::new(limits),
+            |sum, batch| {
+                sum.add(batch.samples.start, &batch.outcomes);
+                bar.inc(batch.samples.end - batch.samples.start);
+            },
+        );
+        bar.finish_and_clear();
+        let mut whole = Summary::new(limits);
+        for sum in workers.map_err(|e| Failure::refused(run.scenario(), e))? {
+            // Every machine was given to one of them.
+            whole.merge(&sum).map_err(|_| Failure::no_answer("a machine was counted twice"))?;
+        }
+        Ok(whole)
+    }
+
+    /// Draws the machines of a summary again, and returns its results with exact quantiles.
+    fn exact_results(
+        &self,
+        ensemble: &Ensemble,
+        run: &Run,
+        study: &StudyId,
+        file: &Path,
+    ) -> Result<(Range<u64>, Option<PartResults>), Failure> {
+        let (own, sum) = read_summary(file)?;
+        if own != *study {
+            let why = "want the scenario and options that it was made with, --samples and --seed included";
+            return Err(Failure::wrong_input(format!("{}: a summary of another study: {why}", file.display())));
+        }
+        let bins = sum.quantile_bins();
+        let mut known = KnownRanks::default();
+        let bar = self.progress(sum.count());
+        for mut pass in BinValues::passes(&bins) {
+            let empty = pass.clone();
+            pass.reserve(&bins);
+            let all = Mutex::new(pass);
+            let take_over = |found: &mut BinValues| {
+                all.lock().unwrap_or_else(PoisonError::into_inner).take_over(found);
+            };
+            let workers = parallel::share_out(
+                ensemble,
+                self.mode(run),
+                sum.machines(),
+                || (empty.clone(), 0),
+                |(found, since), batch| {
+                    found.add(&batch.outcomes);
+                    *since += batch.outcomes.len();
+                    // What waits on a thread stays small.
+                    if *since >= WAITING_MACHINES {
+                        take_over(found);
+                        *since = 0;
+                    }
+                    bar.inc(batch.samples.end - batch.samples.start);
+                },
+            );
+            workers
+                .map_err(|e| Failure::refused(run.scenario(), e))?
+                .iter_mut()
+                .for_each(|(found, _)| take_over(found));
+            let pass = all.into_inner().unwrap_or_else(PoisonError::into_inner);
+            if sum.learn(pass, &mut known).is_err() {
+                let why = "its bins hold other machines than this program draws: want it made by the same version";
+                return Err(Failure::wrong_input(format!("{}: {why}", file.display())));
+            }
+        }
+        bar.finish_and_clear();
+        let held = sum.machines();
+        let machines = held.first().map_or(0, |own| own.start)..held.last().map_or(0, |own| own.end);
+        Ok((machines, sum.results(&known)))
     }
 
     /// Evaluates the machines of a range and writes them if requested. Returns their outcomes and, if these are
@@ -274,7 +426,7 @@ impl ToleranceArguments {
             }
             None => None,
         };
-        let mode = if self.simulate { Mode::Simulated(run) } else { Mode::Tracking };
+        let mode = self.mode(run);
         let bar = self.progress(range.end - range.start);
         let mut outcomes = Vec::with_capacity((range.end - range.start) as usize);
         let (mut tracking, mut numbers) = (Vec::new(), Vec::new());
@@ -301,7 +453,7 @@ impl ToleranceArguments {
     }
 
     fn progress(&self, machines: u64) -> ProgressBar {
-        if !self.simulate || is_quiet() {
+        if !self.simulate && machines <= MAX_MACHINES || is_quiet() {
             return ProgressBar::hidden();
         }
         let style = ProgressStyle::with_template("{bar:30} {human_pos} of {human_len} machines, {eta} left");

@@ -1,6 +1,8 @@
-//! Evaluates machines on all cores, with results in order.
+//! Evaluates machines on all cores, with results in order, or shared out among workers.
 
 use std::ops::Range;
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
@@ -11,6 +13,41 @@ use stillbase_study::tolerance::{Batch, CHUNK, Ensemble, Mode, Sampler};
 /// Between two waves, threads
 /// wait for the slowest; with many chunks, they wait for a small part of the time.
 const CHUNKS_PER_THREAD: usize = 32;
+
+/// Gives every batch of machines of some ranges to one of several workers, in no order, and returns the workers.
+///
+/// # Errors
+/// If a simulation fails.
+pub fn share_out<W: Send>(
+    ensemble: &Ensemble,
+    mode: Mode,
+    ranges: &[Range<u64>],
+    worker: impl Fn() -> W,
+    see: impl Fn(&mut W, &Batch) + Sync,
+) -> Result<Vec<W>, Refusal> {
+    let mut workers: Vec<W> = (0..thread::available_parallelism().map_or(1, usize::from)).map(|_| worker()).collect();
+    for range in ranges.iter().filter(|range| !range.is_empty()) {
+        let next = AtomicU64::new(range.start / CHUNK as u64);
+        let after = range.end.div_ceil(CHUNK as u64);
+        let work = |worker: &mut W| {
+            let mut sampler = ensemble.sampler();
+            loop {
+                let chunk = next.fetch_add(1, Ordering::Relaxed);
+                if chunk >= after {
+                    return Ok(());
+                }
+                see(worker, &Batch::of(ensemble, &mut sampler, mode, chunk, range, false)?);
+            }
+        };
+        let done: Vec<Result<(), Refusal>> = thread::scope(|scope| {
+            let threads: Vec<_> = workers.iter_mut().map(|worker| scope.spawn(|| work(worker))).collect();
+            let end = |thread: thread::ScopedJoinHandle<'_, _>| thread.join().unwrap_or_else(|e| resume_unwind(e));
+            threads.into_iter().map(end).collect()
+        });
+        done.into_iter().collect::<Result<(), _>>()?;
+    }
+    Ok(workers)
+}
 
 /// Evaluates every sample of a range, and calls `see` with the batches in order.
 ///

@@ -52,6 +52,9 @@ pub struct MergedParts {
     pub samples: u64,
     /// Seed of the random machines.
     pub seed: u64,
+    /// Machines that are in no part of a summary: the first of each gap, and the last plus one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub missing: Vec<[u64; 2]>,
     /// Distributions of peaks and root mean squares.
     #[serde(flatten)]
     pub distributions: Distributions,
@@ -63,7 +66,9 @@ pub struct MergedParts {
 impl MergedParts {
     /// Formats the results as text.
     pub fn text(&self) -> String {
-        let head = format!("{} · {}, seed {}", self.file, counted(self.samples, "machine"), self.seed);
+        let missing: u64 = self.missing.iter().map(|[from, to]| to - from).sum();
+        let of = if missing > 0 { format!("{} of ", self.samples - missing) } else { String::new() };
+        let head = format!("{} · {of}{}, seed {}", self.file, counted(self.samples, "machine"), self.seed);
         let yields = yields_table(&self.yields).map(|t| format!("\n{t}")).unwrap_or_default();
         format!("{head}\n\n{}{yields}", distributions_table(&self.distributions, None))
     }

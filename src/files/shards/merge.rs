@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use super::error::ShardError;
-use super::rows::{ShardHeader, StudyId, StudyPart, Writer, outcome_of};
+use super::rows::{StudyId, StudyPart, Writer, difference, outcome_of};
 use crate::row_file::RowForm;
 use stillbase_study::tolerance::SampleOutcome;
 
@@ -26,7 +26,12 @@ pub fn merge(
     let head = reference.head.clone();
     if let Some((_, other)) = opened.iter().find(|(_, part)| part.head != head) {
         let [other_file, file] = [other, reference].map(|part| part.file.display());
-        let why = difference(&other.head, &head);
+        let is_same_draw = other.head.study.samples == head.study.samples && other.head.study.seed == head.study.seed;
+        let varies = is_same_draw && other.head.columns != head.columns;
+        let why = match difference(&other.head.study, &head.study) {
+            Some(why) if !varies => why,
+            _ => "other numbers vary".into(),
+        };
         return Err(ShardError::Wrong(format!("{other_file} and {file} are parts of different studies: {why}")));
     }
     // Shards without machines come last.
@@ -64,19 +69,4 @@ pub fn merge(
 
 fn missing(first: u64, last: u64) -> ShardError {
     ShardError::Wrong(format!("samples {first} to {last} are in no part: want every shard"))
-}
-
-/// Returns the difference between two headers in words.
-fn difference(a: &ShardHeader, b: &ShardHeader) -> String {
-    let (one, two) = (a.study, b.study);
-    if one.samples != two.samples {
-        return format!("of {} and of {} samples", one.samples, two.samples);
-    }
-    if one.seed != two.seed {
-        return format!("seeds {} and {}", one.seed, two.seed);
-    }
-    match a.columns == b.columns {
-        true => "the scenario, a spread, the instants, the mode or the program's version differ".into(),
-        false => "other numbers vary".into(),
-    }
 }

@@ -36,10 +36,10 @@ pub struct StudyId {
     pub problem: u64,
 }
 
+/// The name of the study, and room for a checksum.
 impl fmt::Display for StudyId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { samples, seed, problem } = self;
-        write!(f, "sample of {samples} seed {seed} problem {problem:016x}{CHECKSUM_PREFIX}{CHECKSUM_BLANK}")
+        write!(f, "{}{CHECKSUM_PREFIX}{CHECKSUM_BLANK}", self.name())
     }
 }
 
@@ -65,9 +65,19 @@ impl StudyId {
         Self { samples, seed, problem }
     }
 
+    /// Returns the name of the study.
+    pub fn name(&self) -> String {
+        let Self { samples, seed, problem } = self;
+        format!("sample of {samples} seed {seed} problem {problem:016x}")
+    }
+
     fn parse(text: &str) -> Option<Self> {
-        let ["sample", "of", samples, "seed", seed, "problem", problem, "check", _] =
-            *text.splitn(9, ' ').collect::<Vec<_>>()
+        Self::of_name(text.rsplit_once(CHECKSUM_PREFIX)?.0)
+    }
+
+    /// Returns the study of a name.
+    pub(super) fn of_name(name: &str) -> Option<Self> {
+        let ["sample", "of", samples, "seed", seed, "problem", problem] = *name.splitn(8, ' ').collect::<Vec<_>>()
         else {
             return None;
         };
@@ -97,13 +107,11 @@ impl ShardHeader {
 
 /// Returns the outcome of a machine from the last numbers of its row.
 pub fn outcome_of(row: &[f64]) -> SampleOutcome {
-    let last = row.last_chunk().copied().unwrap_or([f64::NAN; OUTCOME_COUNT]);
-    let [peak_moment, peak_force, rms_moment, rms_force] = last;
-    SampleOutcome { peak_moment, peak_force, rms_moment, rms_force }
+    SampleOutcome::of_numbers(row.last_chunk().copied().unwrap_or([f64::NAN; OUTCOME_COUNT]))
 }
 
 /// Number of columns of the outcome of a machine.
-pub const OUTCOME_COUNT: usize = 4;
+pub const OUTCOME_COUNT: usize = SampleOutcome::NUMBERS;
 
 /// Names of the last columns, which hold the outcome of each machine.
 pub const OUTCOME_COLUMNS: [&str; OUTCOME_COUNT] = ["peak moment N m", "peak force N", "rms moment N m", "rms force N"];
@@ -127,7 +135,7 @@ const MAX_LINE_BYTES: u64 = 1 << 18;
 const MAX_CONTENTS_BYTES: u64 = 1 << 27;
 
 /// The metadata key under which a Parquet file identifies its study.
-const STUDY_KEY: &str = "stillbase.study";
+pub(super) const STUDY_KEY: &str = "stillbase.study";
 
 /// Writes rows.
 pub enum Writer {
@@ -166,8 +174,7 @@ impl Writer {
     /// # Errors
     /// If it cannot be written.
     pub fn machine(&mut self, sample: u64, numbers: &[f64], outcome: &SampleOutcome) -> Result<(), ShardError> {
-        let SampleOutcome { peak_moment, peak_force, rms_moment, rms_force } = *outcome;
-        self.row(sample, &[numbers, &[peak_moment, peak_force, rms_moment, rms_force]].concat())
+        self.row(sample, &[numbers, &outcome.numbers()].concat())
     }
 
     /// Writes a row.
@@ -207,7 +214,7 @@ fn csv_failure(file: &Path, error: csv::Error) -> ShardError {
     }
 }
 
-fn parquet_failure(file: &Path) -> impl Fn(ParquetError) -> ShardError + use<> {
+pub(super) fn parquet_failure(file: &Path) -> impl Fn(ParquetError) -> ShardError + use<> {
     let file = file.to_owned();
     move |e| shard_error(&file, format!("{e}: want a Parquet file that can be read, or a place to write one"))
 }
@@ -219,7 +226,7 @@ impl Groups {
         let note = Some([STUDY_KEY, &study]);
         let numbers = head.columns.iter().map(|name| (ColumnKind::Number, name.as_str()));
         let columns = [(ColumnKind::Count, "sample")].into_iter().chain(numbers).collect();
-        let named = ParquetHead { row: "machine", columns, note };
+        let named = ParquetHead { row: "machine", columns, note, is_compressed: false };
         let rows = ParquetRows::begin(out, &named).map_err(parquet_failure(&file))?;
         Ok(Self { rows, file })
     }
@@ -380,13 +387,25 @@ impl StudyPart {
     }
 }
 
+/// Returns how two studies differ, in words; `None` if they do not.
+pub(super) fn difference(one: &StudyId, two: &StudyId) -> Option<String> {
+    if one.samples != two.samples {
+        return Some(format!("of {} and of {} samples", one.samples, two.samples));
+    }
+    if one.seed != two.seed {
+        return Some(format!("seeds {} and {}", one.seed, two.seed));
+    }
+    let why = "the scenario, a spread, the instants, the mode or the program's version differ";
+    (one.problem != two.problem).then(|| why.into())
+}
+
 fn foreign(file: &Path) -> ShardError {
     let why = "want a file that this version's `stillbase tolerance -o` wrote";
     shard_error(file, why)
 }
 
 /// Opens a plain file.
-fn plain_file(file: &Path) -> Result<(RowForm, File), ShardError> {
+pub(super) fn plain_file(file: &Path) -> Result<(RowForm, File), ShardError> {
     let form = form_of(file)?;
     let unreadable = |e| shard_error(file, format!("{e}: want a plain file that can be read"));
     // Opening a pipe would block until its other end is opened.

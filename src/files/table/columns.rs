@@ -7,7 +7,7 @@ use stillbase_simulation::signal_table::SignalTable;
 
 /// A table given by columns.
 #[derive(Debug, PartialEq)]
-pub(super) struct ColumnTable {
+pub(crate) struct ColumnTable {
     /// Names of the columns.
     pub heads: Vec<String>,
     /// Number of rows.
@@ -19,7 +19,7 @@ pub(super) struct ColumnTable {
 /// Values of a column.
 #[cfg_attr(not(feature = "rows"), expect(dead_code, reason = "Parquet is not read"))]
 #[derive(Debug, PartialEq)]
-pub(super) enum ColumnValues {
+pub(crate) enum ColumnValues {
     /// Numbers, NaN for nulls.
     Numbers(Vec<f64>),
     /// Texts, empty for nulls.

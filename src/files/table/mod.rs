@@ -10,7 +10,7 @@
 
 mod angle;
 mod column;
-mod columns;
+pub(crate) mod columns;
 mod error;
 mod heads;
 mod kind;
@@ -26,5 +26,7 @@ pub use error::TableError;
 pub use kind::{TableData, orbit_motion};
 pub use measured::{MAX_ROWS, motions};
 pub use opened::{NoTable, TABLE_ENDINGS, Table, is_table};
+#[cfg(feature = "rows")]
+pub(crate) use parquet_table::parquet_columns;
 pub use samples::{SampleTable, samples};
 pub use signals::{has_signal_head, signals, signals_of};

@@ -35,7 +35,7 @@ const NAMELESS_INDEX: &str = "__index_level_";
 ///
 /// # Errors
 /// If it cannot be read, or is larger than what is read.
-pub(super) fn parquet_columns(file: File, name: &str) -> Result<ColumnTable, TableError> {
+pub(crate) fn parquet_columns(file: File, name: &str) -> Result<ColumnTable, TableError> {
     guarded(|| read(file, name), || TableError::of_file(name, "damaged: want a whole Parquet file"))
 }
 

@@ -15,7 +15,7 @@ use stillbase_settings::mending::{Problem, Wrong};
 use stillbase_settings::range::{Range, quote_clipped};
 
 /// Maximum number of samples of one study.
-pub const MAX_SAMPLES: u64 = 1_000_000_000;
+pub const MAX_SAMPLES: u64 = 1_000_000_000_000;
 
 /// The `[tolerance]` of a scenario: spreads by key of a setting, and the numbers of a study.
 ///

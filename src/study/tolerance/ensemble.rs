@@ -47,6 +47,25 @@ pub struct SampleOutcome {
     pub rms_force: f64,
 }
 
+impl SampleOutcome {
+    /// How many numbers an outcome has.
+    pub const NUMBERS: usize = 4;
+
+    /// Name of each number, as in answers.
+    pub const NAMES: [&str; Self::NUMBERS] =
+        ["peak_base_moment", "peak_base_force", "rms_base_moment", "rms_base_force"];
+
+    /// Returns the numbers, N m and N, in the order of their names.
+    pub fn numbers(&self) -> [f64; Self::NUMBERS] {
+        [self.peak_moment, self.peak_force, self.rms_moment, self.rms_force]
+    }
+
+    /// Returns the outcome of numbers, in the order of their names.
+    pub fn of_numbers([peak_moment, peak_force, rms_moment, rms_force]: [f64; Self::NUMBERS]) -> Self {
+        Self { peak_moment, peak_force, rms_moment, rms_force }
+    }
+}
+
 /// How an outcome is serialised: its four numbers, and each once more under an older name that version 0.3 drops.
 #[derive(JsonSchema, Serialize)]
 struct StatedOutcome {

@@ -20,6 +20,7 @@
 //! | the whole study of a run, for display | [`Study`] |
 //! | consecutive machines, with perfect tracking or simulated | [`Batch`] |
 //! | quantiles, histograms, yield | [`Quantiles`], [`Histogram`], [`Yield`] |
+//! | results of any number of machines in bounded memory, which add up exactly | [`Summary`], [`Bin`], [`Octave`], [`BinValues`] |
 //! | results over all machines, or a part of them | [`PartReport`]: [`Distributions`], [`Yields`], [`TrackingComparison`] |
 
 mod bands;
@@ -36,6 +37,7 @@ mod shares;
 mod simulate;
 mod statistics;
 mod study;
+mod summary;
 
 pub use bands::{Agreement, BandDifference, Bands, ForceBand, MomentBand, PERCENTILES};
 pub use batch::{Batch, Mode};
@@ -43,9 +45,13 @@ pub use deviate::{CHUNK, inverse_normal};
 pub use ensemble::{Ensemble, SampleOutcome, Sampler};
 pub use error::ToleranceError;
 pub use parameter::UncertainParameter;
-pub use part::{EnsemblePart, PartReport, shard};
+pub use part::{EnsemblePart, PartReport, PartResults, shard};
 pub use report::{Distribution, Distributions, LimitYield, TrackingComparison, Yields};
 pub use shares::{Share, Shares};
 pub use simulate::simulate;
 pub use statistics::{Histogram, Quantiles, Yield};
 pub use study::{STUDY_INSTANTS, StudiedRun, Study, StudyQuery, neglected_effects};
+pub use summary::{
+    BIN_WIDTH, Bin, BinPlace, BinValues, Extreme, KnownRanks, Limits, OCTAVE_BINS, OCTAVES, Octave, Summary,
+    Unmergeable, bin_of, lower_edge,
+};

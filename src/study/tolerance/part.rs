@@ -6,14 +6,13 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{
-    Agreement, Bands, Distributions, Ensemble, SampleOutcome, Shares, TrackingComparison, UncertainParameter, Yields,
-    simulate,
+    Agreement, Bands, Distributions, Ensemble, Limits, SampleOutcome, Shares, TrackingComparison, UncertainParameter,
+    Yields, simulate,
 };
-use stillbase_session::scenario::Tolerance;
 use stillbase_session::{Refusal, Run};
 
-/// Consecutive machines of an ensemble with their outcomes.
-#[derive(Clone, Copy, Debug)]
+/// Consecutive machines of an ensemble.
+#[derive(Clone, Debug)]
 pub struct EnsemblePart<'a> {
     /// The run whose planned motion the machines perform.
     pub run: &'a Run,
@@ -21,14 +20,33 @@ pub struct EnsemblePart<'a> {
     pub ensemble: &'a Ensemble,
     /// Number of machines in the whole study.
     pub samples: u64,
-    /// Sample number of the first machine of this part.
-    pub first: u64,
-    /// Outcome of each machine.
-    pub outcomes: &'a [SampleOutcome],
-    /// Outcomes with perfect tracking, if the machines were simulated.
-    pub tracking: &'a [SampleOutcome],
+    /// Sample numbers of this part.
+    pub machines: Range<u64>,
     /// Whether the machines were simulated.
     pub simulated: bool,
+}
+
+/// Results of some machines.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartResults {
+    /// Distributions of peaks and root mean squares.
+    pub distributions: Distributions,
+    /// Fractions of machines within limits.
+    pub yields: Yields,
+    /// Comparison of the simulation with perfect tracking.
+    pub against_tracking: Option<TrackingComparison>,
+}
+
+impl PartResults {
+    /// Returns the results of machines from their outcomes and, if they were simulated, those with perfect tracking; `None`
+    /// if there are no machines.
+    pub fn of(outcomes: &[SampleOutcome], tracking: &[SampleOutcome], limits: Limits) -> Option<Self> {
+        Some(Self {
+            distributions: Distributions::of(outcomes)?,
+            yields: Yields::of(outcomes, limits.moment, limits.force),
+            against_tracking: TrackingComparison::of(outcomes, tracking),
+        })
+    }
 }
 
 /// Results of a part of the machines.
@@ -70,13 +88,13 @@ pub struct PartReport {
 }
 
 impl PartReport {
-    /// Returns the report on assessed machines, with the limits of a tolerance; `None` if there are no machines.
+    /// Returns the report on assessed machines.
     ///
     /// # Errors
     /// Fails if the machines were simulated, but the nominal machine cannot be.
-    pub fn of(part: &EnsemblePart<'_>, tolerance: &Tolerance) -> Result<Option<Self>, Refusal> {
-        let EnsemblePart { run, ensemble, samples, first, outcomes, tracking, simulated } = *part;
-        let Some(distributions) = Distributions::of(outcomes) else { return Ok(None) };
+    pub fn of(part: &EnsemblePart<'_>, results: PartResults) -> Result<Self, Refusal> {
+        let &EnsemblePart { run, ensemble, samples, ref machines, simulated } = part;
+        let PartResults { distributions, yields, against_tracking } = results;
         let bands = Bands::of(ensemble, samples);
         // Computed like the other machines: simulated with the same base, control and friction, or with perfect
         // tracking.
@@ -84,23 +102,23 @@ impl PartReport {
             true => simulate(run, ensemble.machine())?,
             false => ensemble.nominal_outcome(),
         };
-        Ok(Some(Self {
+        Ok(Self {
             scenario: run.scenario().name.clone(),
             simulated,
             samples,
-            shard: [first, first + outcomes.len() as u64],
+            shard: [machines.start, machines.end],
             seed: ensemble.seed(),
             duration: run.plan().motion.duration(),
             motion_time: run.plan().motion.duration(),
             parameters: ensemble.parameters().to_vec(),
             nominal,
             distributions,
-            yields: Yields::of(outcomes, tolerance.moment_limit, tolerance.force_limit),
+            yields,
             shares: Shares::of(ensemble),
             agreement: Agreement::of(&bands),
             bands,
-            against_tracking: TrackingComparison::of(outcomes, tracking),
-        }))
+            against_tracking,
+        })
     }
 }
 

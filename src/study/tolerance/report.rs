@@ -16,7 +16,10 @@ pub struct Distribution {
     pub deviation: f64,
     /// Quantiles at [`Quantiles::LEVELS`].
     pub quantiles: Quantiles,
-    /// Histogram with equal intervals between the extremes.
+    /// Largest relative error of the quantiles between the extremes, where they come from bins.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub quantile_error: Option<f64>,
+    /// Histogram with equal intervals between the extremes, or with inner edges at those of bins.
     pub histogram: Histogram,
 }
 
@@ -33,6 +36,7 @@ impl Distribution {
             mean,
             deviation: (squares / (n - 1.0).max(1.0)).sqrt(),
             quantiles: Quantiles::of_sorted(&values, &Quantiles::LEVELS)?,
+            quantile_error: None,
             histogram: Histogram::of_sorted(&values, BINS)?,
         })
     }

@@ -30,14 +30,21 @@ impl Quantiles {
 
 /// Returns the quantile of a sample in ascending order at a level from 0 to 1; `None` if it is empty.
 pub(super) fn quantile(sorted: &[f64], level: f64) -> Option<f64> {
-    let last = sorted.len().checked_sub(1)?;
-    let place = level.clamp(0.0, 1.0) * last as f64;
-    let below = (place.floor() as usize).min(last);
-    let above = (below + 1).min(last);
-    Some(sorted[below] + (place - below as f64) * (sorted[above] - sorted[below]))
+    let (below, above, part) = ranks(sorted.len() as u64, level)?;
+    let [below, above] = [below, above].map(|rank| sorted[rank as usize]);
+    Some(below + part * (above - below))
 }
 
-/// Histogram of a sample, with equal intervals between its extremes.
+/// Returns the ranks, from 0, between which the quantile of a number of values lies, and its part of the way; `None` if
+/// there are no values.
+pub(super) fn ranks(count: u64, level: f64) -> Option<(u64, u64, f64)> {
+    let last = count.checked_sub(1)?;
+    let place = level.clamp(0.0, 1.0) * last as f64;
+    let below = (place.floor() as u64).min(last);
+    Some((below, (below + 1).min(last), place - below as f64))
+}
+
+/// Histogram of a sample, with equal intervals between its extremes; those of a summary end at edges of its bins.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Histogram {
     /// Edges of the intervals: one more than counts.

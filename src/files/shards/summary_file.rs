@@ -1,0 +1,385 @@
+//! Summaries of studies in Parquet files: tables that any engine adds up with one GROUP BY.
+//!
+//! | column | content |
+//! |---|---|
+//! | `study` | the study: number of machines, seed, and a hash of all else that they depend on |
+//! | `outcome` | a number of an outcome, or that with `_sums`; or `machines`, or a limit |
+//! | `bin` | upper 22 bits of the number as IEEE 754 stores it, with `_sums` the upper 12; of `machines` the first, else 0 |
+//! | `count` | number of machines |
+//! | `least`, `least_machine` | the least number, and the first machine that has it; of a limit the limit; of sums 0 |
+//! | `greatest`, `greatest_machine` | the same for the greatest |
+//! | `sum_0` to `sum_2` | of sums Σ r, r the 52 bits of the mantissa, as digits to the base 2³¹, the lowest first; else 0 |
+//! | `low_0`, `low_1` | of sums Σ l, l the lowest 10 bits of r |
+//! | `square_0` to `square_3` | of sums Σ u², u the upper 42 bits of r |
+//!
+//! Rows of the same study, outcome and bin add up: `count` and all digits by SUM, `least` by MIN, `greatest` by MAX, with
+//! their machines. Digits may then exceed 2³¹; up to four million parts they are whole even as floating point numbers.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use parquet::file::reader::{FileReader, SerializedFileReader};
+
+use super::checksum::{self, CheckedFile, ChecksumPlace};
+use super::error::{ShardError, shard_error};
+use super::rows::{STUDY_KEY, StudyId, difference, parquet_failure, plain_file};
+use crate::parquet_guard::guarded;
+use crate::parquet_rows::{ColumnKind, ParquetCell, ParquetHead, ParquetRows};
+use crate::row_file::RowForm;
+use crate::table::columns::{ColumnTable, ColumnValues};
+use crate::table::parquet_columns;
+use crate::{NewFile, WriteError};
+use stillbase_session::scenario::MAX_SAMPLES;
+use stillbase_settings::range::quote_clipped;
+use stillbase_study::tolerance::{
+    Bin, Extreme, Limits, OCTAVE_BINS, OCTAVES, Octave, SampleOutcome, Summary, Unmergeable,
+};
+
+const WORDS: [&str; 2] = ["study", "outcome"];
+
+/// Names of the columns of numbers: the bin, its count and its extremes.
+const PLACES: [&str; 6] = ["bin", "count", "least", "least_machine", "greatest", "greatest_machine"];
+
+/// Names of the columns of digits of sums.
+const DIGITS: [&str; 9] = ["sum_0", "sum_1", "sum_2", "low_0", "low_1", "square_0", "square_1", "square_2", "square_3"];
+
+/// Number of bits of a digit.
+const DIGIT_BITS: usize = 31;
+
+/// What the outcome of rows of sums has after the name of its number.
+const SUMS: &str = "_sums";
+
+/// The outcome of rows that say which machines a summary has.
+const MACHINES: &str = "machines";
+
+/// The outcomes of rows that count machines within limits: of the moment, of the force, both.
+const LIMITS: [&str; 3] = ["within_moment_limit", "within_force_limit", "within_both_limits"];
+
+/// Returns whether a file is a table of this kind, by its columns.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn is_summary(file: &Path) -> Result<bool, ShardError> {
+    let (form, opened) = plain_file(file)?;
+    if form != RowForm::Parquet {
+        return Ok(false);
+    }
+    let damaged = || shard_error(file, "damaged: want a whole Parquet file");
+    let reader = guarded(|| SerializedFileReader::new(opened).map_err(parquet_failure(file)), damaged)?;
+    let schema = reader.metadata().file_metadata().schema_descr();
+    Ok(schema.columns().iter().any(|column| column.name() == "bin"))
+}
+
+/// A row of the table.
+struct Row {
+    outcome: String,
+    at: u64,
+    bin: Bin,
+    octave: Octave,
+}
+
+/// Returns the rows of a summary, in the order of the table.
+fn rows(summary: &Summary) -> Vec<Row> {
+    let row = |outcome: &str, at: u64, bin: Bin| Row { outcome: outcome.into(), at, bin, octave: Octave::default() };
+    let machine = |i: u64| Extreme { value: i as f64, machine: i };
+    let held = |own: &Range<u64>| {
+        let [least, greatest] = [own.start, own.end.saturating_sub(1)].map(machine);
+        row(MACHINES, own.start, Bin { count: own.end - own.start, least, greatest })
+    };
+    let mut all: Vec<Row> = summary.machines().iter().map(held).collect();
+    let Limits { moment, force } = summary.limits();
+    let both = moment.and(force).map(|_| 0.0);
+    let plain = |value: f64| Extreme { value, machine: 0 };
+    for ((outcome, limit), count) in LIMITS.into_iter().zip([moment, force, both]).zip(summary.kept()) {
+        let limit = limit.map(plain);
+        all.extend(limit.map(|limit| row(outcome, 0, Bin { count, least: limit, greatest: limit })));
+    }
+    for (number, outcome) in SampleOutcome::NAMES.into_iter().enumerate() {
+        all.extend(summary.octaves(number).map(|(at, octave)| {
+            let bin = Bin { count: octave.count, least: plain(0.0), greatest: plain(0.0) };
+            Row { octave: *octave, ..row(&format!("{outcome}{SUMS}"), at, bin) }
+        }));
+        all.extend(summary.bins(number).map(|(at, bin)| row(outcome, at, *bin)));
+    }
+    all
+}
+
+/// Returns the digits of a number, the lowest first.
+fn digits<const N: usize>(number: u128) -> [u64; N] {
+    std::array::from_fn(|i| (number >> (DIGIT_BITS * i)) as u64 & ((1 << DIGIT_BITS) - 1))
+}
+
+fn count<'c>(x: u64) -> ParquetCell<'c> {
+    ParquetCell::Count(x as i64)
+}
+
+/// Writes a summary.
+///
+/// # Errors
+/// If it cannot be written, or if the name does not end in `.parquet`.
+pub fn write_summary(file: &Path, force: bool, study: &StudyId, summary: &Summary) -> Result<(), ShardError> {
+    if RowForm::of(file).ok() != Some(RowForm::Parquet) {
+        return Err(shard_error(file, "a summary is a Parquet file: want a name that ends in .parquet"));
+    }
+    let out = CheckedFile::new(NewFile::create(file, force)?);
+    let failed = parquet_failure(file);
+    let note = study.to_string();
+    let kind = |name: &str| if ["least", "greatest"].contains(&name) { ColumnKind::Number } else { ColumnKind::Count };
+    let texts = WORDS.iter().map(|name| (ColumnKind::Text, *name));
+    let columns = texts.chain(PLACES.iter().chain(&DIGITS).map(|name| (kind(name), *name))).collect();
+    // Names repeat, and numbers of neighbouring rows are alike.
+    let head = ParquetHead { row: "bin", columns, note: Some([STUDY_KEY, &note]), is_compressed: true };
+    let mut table = ParquetRows::begin(out, &head).map_err(&failed)?;
+    let name = study.name();
+    for Row { outcome, at, bin: Bin { count: machines, least, greatest }, octave } in rows(summary) {
+        let words = [&*name, &*outcome].map(ParquetCell::Text);
+        let extremes = [least, greatest].map(|of| [ParquetCell::Number(of.value), count(of.machine)]);
+        let sums =
+            digits::<3>(octave.sum).into_iter().chain(digits::<2>(octave.low)).chain(digits::<4>(octave.squares));
+        let places = [count(at), count(machines)].into_iter().chain(extremes.into_iter().flatten());
+        table.row(words.into_iter().chain(places).chain(sums.map(count))).map_err(&failed)?;
+    }
+    let mut out = table.finish().map_err(&failed)?;
+    std::io::Write::flush(&mut out).map_err(|source| WriteError::Failed { file: file.into(), source })?;
+    Ok(out.finish(ChecksumPlace::Tail)?)
+}
+
+/// Reads a summary: one that this program wrote, or a table of the same columns of another program. Rows of the same bin
+/// are added up.
+///
+/// # Errors
+/// If it cannot be read, was changed or damaged, or holds what no machines bring about.
+pub fn read_summary(file: &Path) -> Result<(StudyId, Summary), ShardError> {
+    let wrong = |why: String| shard_error(file, why);
+    let (_, mut opened) = plain_file(file)?;
+    // Tables that other programs added up have no checksum; those of this program have.
+    let checked = checksum::verify(&mut opened, ChecksumPlace::Tail).map_err(|e| wrong(e.to_string()))?;
+    if checked == Some(false) {
+        let why = "its checksum does not fit its bytes, so it was changed or damaged: want it written again";
+        return Err(wrong(why.into()));
+    }
+    let name = file.display().to_string();
+    let table = parquet_columns(opened, &name).map_err(|e| ShardError::Wrong(e.to_string()))?;
+    let [studies, outcomes] = texts(&table).map_err(wrong)?;
+    let (places, sums) = (numbers(&table, PLACES).map_err(wrong)?, numbers(&table, DIGITS).map_err(wrong)?);
+    let first = studies.first().ok_or_else(|| wrong("no row: want a summary".into()))?;
+    if let Some(other) = studies.iter().find(|other| *other != first) {
+        return Err(wrong(format!("rows of {} and of {}: want one study", quote_clipped(first), quote_clipped(other))));
+    }
+    let study = StudyId::of_name(first).ok_or_else(|| {
+        wrong(format!("column study: {}: want what `stillbase tolerance --summary` wrote there", quote_clipped(first)))
+    })?;
+    let mut found = Found::default();
+    for (i, outcome) in outcomes.iter().enumerate() {
+        let at_row = |why: String| wrong(format!("row {}, {}: {why}", i + 1, quote_clipped(outcome)));
+        let row = FoundRow { places: places.map(|column| column[i]), digits: sums.map(|column| column[i]) };
+        found.add(&study, outcome, &row).map_err(at_row)?;
+    }
+    Ok((study, found.summary(&study).map_err(wrong)?))
+}
+
+fn texts(table: &ColumnTable) -> Result<[&[String]; 2], String> {
+    let of = |name: &str| match column(table, name)? {
+        ColumnValues::Texts(texts) => Ok(texts.as_slice()),
+        _ => Err(format!("column {name}: want text")),
+    };
+    Ok([of(WORDS[0])?, of(WORDS[1])?])
+}
+
+fn numbers<'a, const N: usize>(table: &'a ColumnTable, names: [&str; N]) -> Result<[&'a [f64]; N], String> {
+    let mut all = [&[][..]; N];
+    for (to, name) in all.iter_mut().zip(names) {
+        *to = match column(table, name)? {
+            ColumnValues::Numbers(values) => values,
+            ColumnValues::Texts(_) => return Err(format!("column {name}: text: want numbers")),
+            ColumnValues::Other(what) => return Err(format!("column {name}: {what}: want whole numbers of 64 bits")),
+        };
+    }
+    Ok(all)
+}
+
+fn column<'a>(table: &'a ColumnTable, name: &str) -> Result<&'a ColumnValues, String> {
+    let at = table.heads.iter().position(|head| head == name);
+    let at = at.ok_or_else(|| format!("no column {name}: want the columns of `stillbase tolerance --summary`"))?;
+    Ok(&table.columns[at])
+}
+
+/// The numbers of a row of a file.
+struct FoundRow {
+    places: [f64; PLACES.len()],
+    digits: [f64; DIGITS.len()],
+}
+
+/// Largest whole number that floating point numbers hold with all before it.
+const MAX_WHOLE: f64 = (1_u64 << 53) as f64;
+
+/// Returns a whole number, which is at most `most`.
+fn whole(name: &str, x: f64, most: u64) -> Result<u64, String> {
+    match x {
+        x if x >= 0.0 && x <= MAX_WHOLE.min(most as f64) && x.fract() == 0.0 => Ok(x as u64),
+        x => Err(format!("{name} is {x}: want a whole number from 0 to {most}")),
+    }
+}
+
+impl FoundRow {
+    /// Returns the bin, its count and extremes. Machines are those of a study.
+    fn bin(&self, samples: u64) -> Result<(u64, Bin), String> {
+        let place = |i: usize, most: u64| whole(PLACES[i], self.places[i], most);
+        let last = samples.saturating_sub(1);
+        let extreme = |i: usize| Ok::<_, String>(Extreme { value: self.places[i], machine: place(i + 1, last)? });
+        Ok((
+            place(0, last.max(OCTAVES * OCTAVE_BINS - 1))?,
+            Bin { count: place(1, samples)?, least: extreme(2)?, greatest: extreme(4)? },
+        ))
+    }
+
+    /// Returns the sums.
+    fn octave(&self, count: u64) -> Result<Octave, String> {
+        let mut totals = [0_u128; 3];
+        for (total, places) in totals.iter_mut().zip([0..3, 3..5, 5..9]) {
+            for (digit, place) in places.enumerate() {
+                let x = u128::from(whole(DIGITS[place], self.digits[place], MAX_WHOLE as u64)?);
+                let sum = x.checked_mul(1 << (DIGIT_BITS * digit)).and_then(|x| total.checked_add(x));
+                *total = sum.filter(|sum| *sum < 1 << 126).ok_or_else(|| format!("{}: too large", DIGITS[place]))?;
+            }
+        }
+        let [sum, low, squares] = totals;
+        Ok(Octave { count, sum, low, squares })
+    }
+}
+
+/// What the rows read so far hold.
+#[derive(Default)]
+struct Found {
+    machines: Vec<Range<u64>>,
+    limits: [Option<f64>; 3],
+    kept: [u64; 3],
+    bins: Vec<(usize, u64, Bin)>,
+    octaves: Vec<(usize, u64, Octave)>,
+}
+
+/// Returns the place of a number of an outcome by its name.
+fn place_of(name: &str) -> Option<usize> {
+    SampleOutcome::NAMES.iter().position(|own| *own == name)
+}
+
+impl Found {
+    fn add(&mut self, study: &StudyId, outcome: &str, row: &FoundRow) -> Result<(), String> {
+        let (at, bin) = row.bin(study.samples)?;
+        let Bin { count, least, greatest } = bin;
+        if outcome == MACHINES {
+            let (from, to) = (least.machine, greatest.machine + 1);
+            if to <= from || at != from {
+                return Err(format!("machines {from} to {}: want the first before the last", greatest.machine));
+            }
+            // A table that was added up from the same part twice counts its machines twice.
+            if count != to - from {
+                let why = "they are counted twice, or not all: want every part once";
+                return Err(format!("{count} machines from {from} to {}: {why}", to - 1));
+            }
+            self.machines.push(from..to);
+        } else if let Some(i) = LIMITS.iter().position(|name| *name == outcome) {
+            let limit = least.value;
+            if limit != greatest.value || self.limits[i].is_some_and(|own| own != limit) {
+                let own = self.limits[i].unwrap_or(limit);
+                return Err(format!("limits {own} and {}: want parts with the same limit", greatest.value));
+            }
+            if i < 2 && !(limit.is_finite() && limit > 0.0) {
+                return Err(format!("the limit is {limit}: want a number above 0"));
+            }
+            self.limits[i] = Some(limit);
+            self.kept[i] += count;
+        } else if let Some(number) = outcome.strip_suffix(SUMS).and_then(place_of) {
+            if at >= OCTAVES {
+                return Err(format!("bin is {at}: want at most {}", OCTAVES - 1));
+            }
+            self.octaves.push((number, at, row.octave(count)?));
+        } else if let Some(number) = place_of(outcome) {
+            if at >= OCTAVES * OCTAVE_BINS || !bin.is_plausible(at) {
+                return Err(format!("bin {at} has extremes that are not of this bin: want them as they were written"));
+            }
+            self.bins.push((number, at, bin));
+        } else {
+            let (limits, names) = (LIMITS.join(", "), SampleOutcome::NAMES.join(", "));
+            return Err(format!(
+                "no such outcome: want {MACHINES}, {limits}, {names}, or one of the last four with {SUMS}"
+            ));
+        }
+        Ok(())
+    }
+
+    fn summary(self, study: &StudyId) -> Result<Summary, String> {
+        let [moment, force, both] = self.limits;
+        if both.is_some() != (moment.is_some() && force.is_some()) {
+            return Err("rows of limits are missing: want all rows".into());
+        }
+        let mut summary = Summary::new(Limits { moment, force });
+        for machines in self.machines {
+            if let Some(twice) = summary.hold(machines) {
+                return Err(counted_twice(&twice));
+            }
+        }
+        for (number, at, bin) in &self.bins {
+            summary.add_bin(*number, *at, bin);
+        }
+        for (number, at, octave) in &self.octaves {
+            summary.add_octave(*number, *at, octave);
+        }
+        summary.add_kept(self.kept);
+        let machines = summary.count();
+        for (number, name) in SampleOutcome::NAMES.iter().enumerate() {
+            let count: u64 = summary.bins(number).map(|(_, bin)| bin.count).sum();
+            if count != machines {
+                let why = "want every row of every part once";
+                return Err(format!(
+                    "{name} counts {count} machines, but there are {machines} of {}: {why}",
+                    study.samples
+                ));
+            }
+        }
+        if let Some((number, at)) = summary.implausible() {
+            let name = SampleOutcome::NAMES[number];
+            return Err(format!(
+                "{name}{SUMS} of bin {at} do not fit the bins of {name}: want every row of every part once"
+            ));
+        }
+        match summary.kept().iter().all(|kept| *kept <= machines) {
+            true => Ok(summary),
+            false => Err("more machines within limits than there are: want every row once".into()),
+        }
+    }
+}
+
+fn counted_twice(machines: &Range<u64>) -> String {
+    format!("machines {} to {} are counted twice: want every part once", machines.start, machines.end - 1)
+}
+
+/// Adds up summaries of one study, given in any order.
+///
+/// # Errors
+/// If one cannot be read, belongs to another study, or holds machines that another one holds, too.
+pub fn merge_summaries(parts: &[PathBuf]) -> Result<(StudyId, Summary), ShardError> {
+    let mut whole: Option<(StudyId, Summary, &Path)> = None;
+    for file in parts {
+        let (study, summary) = read_summary(file)?;
+        let Some((first, sum, before)) = &mut whole else {
+            whole = Some((study, summary, file));
+            continue;
+        };
+        let names = || format!("{} and {}", before.display(), file.display());
+        if *first != study {
+            let why = difference(first, &study).unwrap_or_else(|| "they vary otherwise".into());
+            return Err(ShardError::Wrong(format!("{} are parts of different studies: {why}", names())));
+        }
+        sum.merge(&summary).map_err(|why| match why {
+            Unmergeable::Twice(machines) => shard_error(file, counted_twice(&machines)),
+            Unmergeable::Limits(..) => {
+                let why = "have different limits: want the same --limit-moment and --limit-force for every part";
+                ShardError::Wrong(format!("{} {why}", names()))
+            }
+        })?;
+    }
+    whole.map(|(study, sum, _)| (study, sum)).ok_or_else(|| ShardError::Wrong("--merge: want parts".into()))
+}
+
+const _: () = assert!(MAX_SAMPLES <= 1 << 40, "sums of squares have 128 bits");
