@@ -98,6 +98,12 @@ fn main() -> ExitCode {
         ("pandas, mujoco", page::IN_MUJOCO),
         #[cfg(feature = "cli")]
         ("pinocchio", page::IN_PINOCCHIO),
+        #[cfg(feature = "cli")]
+        ("stillbase, dask.distributed", page::DASK),
+        #[cfg(feature = "cli")]
+        ("stillbase, ray", page::RAY),
+        #[cfg(feature = "cli")]
+        ("duckdb, datafusion", page::DATABASES),
         #[cfg(feature = "record")]
         ("rerun_cli", viewer::TESTS),
     ];

@@ -132,7 +132,7 @@ subcommands! {
     Keys: keys::KeysArguments => [keys::Answer],
     Check: check::CheckArguments => [check::Answer],
     Learn: learn::LearnArguments => [StatedEquations],
-    Design: design::DesignArguments => [DesignReport, RebalanceReport, CounterweightReport, design::FrontsAnswer],
+    Design: design::DesignArguments => [DesignReport, RebalanceReport, CounterweightReport, design::FrontsAnswer, design::VariedAnswer],
     Layers: layers::LayersArguments => [LayersReport],
     Dynamics: dynamics::DynamicsArguments => [dynamics::Answer],
     Reach: reach::ReachArguments => [reach::Answer],

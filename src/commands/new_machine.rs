@@ -28,6 +28,11 @@ impl NewMachine {
         self.output.is_some()
     }
 
+    /// Whether a file that exists is replaced.
+    pub fn replaces(&self) -> bool {
+        self.force
+    }
+
     /// Checks, before any work is done, that the file may be written.
     pub fn check(&self, format: &Format) -> Result<(), Failure> {
         self.output.as_ref().map_or(Ok(()), |file| format.check_output(file, self.force, &["toml"]).map(|_| ()))

@@ -36,6 +36,7 @@ pages! {
     command_line: "command_line.md",
     recording: "recording.md",
     python: "python.md",
+    many_machines: "many_machines.md",
     paper: "paper.md",
     speed: "speed.md",
 }

@@ -12,6 +12,7 @@ pub mod centres;
 #[doc(hidden)]
 pub mod comparison;
 pub mod counterweights;
+pub mod design_space;
 pub mod difference;
 #[doc(hidden)]
 pub mod equations;

@@ -4,4 +4,6 @@
 mod shards;
 #[cfg(feature = "cli")]
 mod signals;
+#[cfg(feature = "cli")]
+mod summaries;
 mod table;

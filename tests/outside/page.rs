@@ -1,4 +1,5 @@
-//! The scripts of the page *From Python* of the guide run as they stand there, and print what the page shows.
+//! The scripts of the pages *From Python* and *A billion machines* of the guide run as they stand there, and print what the
+//! page shows.
 
 use std::process::Stdio;
 
@@ -7,13 +8,16 @@ use super::markdown::blocks;
 use super::python::python;
 use crate::Test;
 
+pub const DASK: &[Test] = tests![summaries_by_dask];
+pub const RAY: &[Test] = tests![summaries_by_ray];
+pub const DATABASES: &[Test] = tests![summaries_by_databases];
 pub const TABLES: &[Test] = tests![a_run_is_a_table, a_recording_is_a_table];
 pub const PACKAGE: &[Test] = tests![the_package_runs_as_shown];
 pub const PARQUET: &[Test] = tests![what_pandas_writes_is_read];
 pub const IN_MUJOCO: &[Test] = tests![the_same_motion_in_mujoco];
 pub const IN_PINOCCHIO: &[Test] = tests![the_mass_matrix_by_pinocchio];
 
-const PAGE: &str = include_str!("../../src/guide/python.md");
+const PAGES: [&str; 2] = [include_str!("../../src/guide/python.md"), include_str!("../../src/guide/many_machines.md")];
 
 fn the_package_runs_as_shown() {
     runs("package.py");
@@ -21,10 +25,9 @@ fn the_package_runs_as_shown() {
 
 /// Text of the block of a kind: `python table.py`, or `text table.py` for what it prints.
 fn block(kind: &str) -> String {
-    let all = blocks(PAGE);
-    let mut found = all.into_iter().filter(|block| block.kind == kind);
-    let one = found.next().unwrap_or_else(|| panic!("the page has no block {kind:?}"));
-    assert!(found.next().is_none(), "the page has one block {kind:?}");
+    let mut found = PAGES.into_iter().flat_map(blocks).filter(|block| block.kind == kind);
+    let one = found.next().unwrap_or_else(|| panic!("the pages have no block {kind:?}"));
+    assert!(found.next().is_none(), "the pages have one block {kind:?}");
     one.text
 }
 
@@ -118,6 +121,18 @@ fn what_pandas_writes_is_read() {
     assert!(status == Some(2) && said.contains("column word: text: want numbers"), "{said}");
     let (status, said) = program(&["import", "times.parquet", "-o", "times.toml"]);
     assert!(status == Some(2) && said.contains("durations"), "{said}");
+}
+
+fn summaries_by_dask() {
+    runs("with_dask.py");
+}
+
+fn summaries_by_ray() {
+    runs("with_ray.py");
+}
+
+fn summaries_by_databases() {
+    runs("merged.py");
 }
 
 fn a_recording_is_a_table() {

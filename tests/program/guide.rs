@@ -182,5 +182,5 @@ pages! {
     command_line: "src/guide/command_line.md", 5;
     recording: "src/guide/recording.md", 1;
     paper: "src/guide/paper.md", 2;
-    | "src/guide/first_run.md", "src/guide/python.md", "src/guide/speed.md"
+    | "src/guide/first_run.md", "src/guide/many_machines.md", "src/guide/python.md", "src/guide/speed.md"
 }

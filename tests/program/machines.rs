@@ -392,6 +392,65 @@ fn counterweights_are_placed_written_and_counted_in() {
     assert_eq!(quick["front"].as_array().expect("a front").len(), 3);
 }
 
+/// Each design of a study is the one that is found alone, parts are the whole, and the best are those that no other beats.
+#[test]
+fn designs_of_a_study_are_those_found_alone() {
+    let folder = Folder::new("designs");
+    let study = ["design", BARE, "--counterweights", "--max-mass", "9"];
+    let vary =
+        ["--vary", "length.l5=0.3:0.6:4", "--vary", "material=steel,tungsten", "--vary", "payload.mass=0,0.4,40"];
+    let named = |name: &str| word(folder.path(name));
+    let [csv, parquet] = [named("all.csv"), named("all.parquet")];
+    let all = object(&[&study[..], &vary, &["--table", &csv]].concat());
+    assert_eq!((&all["points"], &all["shard"]), (&json!(24), &json!([0, 24])));
+    // The heaviest payload cannot be balanced by 9 kg a link.
+    assert_eq!((&all["found"], &all["refused"]), (&json!(16), &json!(8)));
+    assert!(all["reasons"][0]["point"] == 2 && all["reasons"][0]["why"].as_str().is_some_and(|why| why.contains("9")));
+    for best in all["best"].as_array().expect("a list") {
+        let options: Vec<&str> = best["options"].as_str().expect("options").split(' ').collect();
+        let alone = object(&[&study[..], &options].concat());
+        near(&best["added_mass"], &alone["added_mass"], 1e-12, "added mass");
+        assert_eq!((&best["gap"], &best["certified"]), (&alone["gap"], &alone["certified"]));
+    }
+    let text = std::fs::read_to_string(&csv).expect("there");
+    let rows: Vec<Vec<String>> = text.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect();
+    assert!(rows[0].starts_with(&["outcome", "material", "point", "length.l5", "payload.mass"].map(String::from)));
+    assert_eq!(rows.len(), 25);
+    // No design in the table is better in both than one that is told.
+    let measures = |row: &Vec<String>| Some([row.get(5)?.parse::<f64>().ok()?, row.get(6)?.parse::<f64>().ok()?]);
+    let designs: Vec<[f64; 2]> = rows.iter().filter(|row| row[0] == "found").filter_map(measures).collect();
+    assert_eq!(designs.len(), 16);
+    for best in all["best"].as_array().expect("a list") {
+        let [mass, inertia] = ["added_mass", "inertia"].map(|key| best[key].as_f64().expect("a number"));
+        assert!(designs.iter().all(|[m, d]| *m > mass * (1.0 - 1e-9) && *d >= inertia || *m > mass || *d > inertia));
+        assert!(!designs.iter().any(|[m, d]| *m < mass * (1.0 - 1e-9) && *d < inertia));
+    }
+    // Parts stand one below the other.
+    let parts: Vec<String> = (["1/2", "2/2"].iter().zip(["1.csv", "2.csv"]))
+        .map(|(shard, name)| {
+            let file = named(name);
+            object(&[&study[..], &vary, &["--shard", shard, "--table", &file]].concat());
+            std::fs::read_to_string(&file).expect("there")
+        })
+        .collect();
+    let below = parts[1].split_once('\n').expect("a head").1;
+    assert!(format!("{}{below}", parts[0]) == text);
+    // Points that fill ranges, in Parquet, with the front of each.
+    let fronts = ["--vary", "length.l5=0.3:0.6", "--vary", "thickness=0.01:0.04", "--points", "5", "--front", "3"];
+    let filled = object(&[&study[..], &fronts, &["--table", &parquet]].concat());
+    assert!(filled["found"] == 5 && filled["best"].as_array().is_some_and(|all| all.len() > 3));
+    for (more, status, words) in [
+        (&["--vary", "length.l5=0.3:0.6"][..], 2, "--points"),
+        (&["--vary", "length.l5=0.6:0.3:4"], 2, "LO:HI"),
+        (&["--vary", "length.nowhere=1,2"], 2, "length.nowhere"),
+        (&["--vary", "payload.mass=400,500"], 1, "none of 2 points has a design"),
+        (&["--vary", "material=cheese"], 2, "want a density"),
+        (&["--vary", "payload.mass=0,0.1", "--vary", "payload.mass=0.2"], 2, "varies twice"),
+    ] {
+        fails(&[&study[..], more].concat(), status, &[words]);
+    }
+}
+
 #[test]
 fn fronts_of_several_machines_are_those_of_each_alone() {
     let bounds = ["--counterweights", "--max-mass", "9", "--task", "case-3", "--front", "4"];

@@ -161,6 +161,7 @@ fn what_commands_print_is_what_their_schema_says() {
         report two-drive -o two.html\nexport two-drive\nreplay a.rrd\ncompare case-1 case-3 -o both.parquet\n\
         headless wheel case-1 -o two.rrd --json ; replay two.rrd ; diff two.rrd:wheel two.rrd:case-1\n\
         dynamics nine-link --states states.json\ndesign nine-link-bare two-drive --counterweights --front 3\n\
+        design nine-link-bare --counterweights --vary payload.mass=0,400\n\
         export wheel --rate 500 --what simulated -o wheel.csv\nlayers scara\ncheck nothing.toml\n\
         export case-1 --what simulated --rate 250 -o a.csv --set plant.link.5.com=-0.03 ; trim a.csv nine-link\n\
         diff case-1 case-3";

@@ -153,10 +153,70 @@ fn tolerance_counts_what_keeps_within_limits() {
     fails(&["tolerance", "case-3", "--spread", "link.x.com=normal:1"], 2, &["link.x.com"]);
     fails(&["tolerance", "case-3", "--shard", "0/3"], 2, &["i from 1"]);
     fails(&["tolerance", "case-3", "--samples", "2", "--shard", "1/3"], 2, &["fewer shards"]);
-    fails(&["tolerance", "case-3", "--samples", "1000000000"], 2, &["shards"]);
+    fails(&["tolerance", "case-3", "--samples", "1000000000"], 2, &["shards", "--summary"]);
     fails(&["tolerance", "case-3", "-o", "x.txt"], 2, &[".parquet"]);
     fails(&["tolerance", "case-3", "--set", "task.b=9"], 1, &["case-3"]);
     fails(&["tolerance", "--merge", "a.csv"], 2, &["--output"]);
+}
+
+/// Summaries say what every machine says, add up in any order, and are made exact by drawing the machines again.
+#[test]
+fn summaries_say_what_every_machine_says() {
+    let folder = folder("summaries");
+    let json = |args: &[&str]| {
+        let done = stillbase_in(&folder, &[args, &["--json"]].concat());
+        assert!(done.status.success(), "{}", text(&done.stderr));
+        serde_json::from_slice::<Value>(&done.stdout).expect("JSON")
+    };
+    let study = ["tolerance", "case-3", "--samples", "5000"];
+    let limits = ["--limit-moment", "0.01", "--limit-force", "0.02"];
+    let full = json(&[&study[..], &limits].concat());
+    let part = |i: &str, file: &str| json(&[&study[..], &limits, &["--summary", "--shard", i, "-o", file]].concat());
+    let (first, _) = (part("1/2", "a.parquet"), part("2/2", "b.parquet"));
+    assert_eq!(first["shard"], json!([0, 2500]));
+    let whole = json(&[&study[..], &limits, &["--summary", "-o", "whole.parquet"]].concat());
+    let merged = json(&["tolerance", "--merge", "b.parquet", "a.parquet", "-o", "merged.parquet"]);
+    let read = |file: &str| fs::read(folder.join(file)).expect("there");
+    assert!(read("merged.parquet") == read("whole.parquet"));
+    let exact = json(&[&study[..], &["--exact", "merged.parquet"]].concat());
+    for name in ["peak_base_moment", "peak_base_force", "rms_base_moment", "rms_base_force"] {
+        for of in [&whole, &merged] {
+            near(&of[name]["mean"], &full[name]["mean"], 1e-13, name);
+            near(&of[name]["deviation"], &full[name]["deviation"], 1e-11, name);
+            // Where the quantiles happen to be extremes of their bins they are exact.
+            assert!(of[name].get("quantile_error").is_none_or(|error| *error == 0.0009765625));
+            for (got, want) in
+                numbers(&of[name]["quantiles"]["values"]).iter().zip(numbers(&full[name]["quantiles"]["values"]))
+            {
+                assert!((got / want - 1.0).abs() < 0.001, "{name}: {got} {want}");
+            }
+        }
+        assert_eq!(exact[name]["quantiles"], full[name]["quantiles"]);
+        assert!(exact[name].get("quantile_error").is_none() && full[name].get("quantile_error").is_none());
+    }
+    assert!(whole["yield"] == full["yield"] && merged["yield"] == full["yield"] && exact["yield"] == full["yield"]);
+    assert_eq!(whole["peak_base_moment"]["quantile_error"], merged["peak_base_moment"]["quantile_error"]);
+    // Some parts are merged as they are, and what is missing is said.
+    let some = json(&["tolerance", "--merge", "b.parquet", "-o", "some.parquet"]);
+    assert_eq!((&some["missing"], merged.get("missing")), (&json!([[0, 2500]]), None));
+    for (args, status, words) in [
+        (&["--merge", "a.parquet", "a.parquet", "-o", "x.parquet"][..], 2, "machines 0 to 2499 are counted twice"),
+        (
+            &["--merge", "a.parquet", "-o", "x.parquet", "--limit-moment", "0.011"],
+            2,
+            "want --limit-moment with every part",
+        ),
+        (&["case-3", "--samples", "4000", "--exact", "a.parquet"], 2, "of another study"),
+        (&["case-3", "--samples", "50", "--summary", "-o", "x.csv"], 2, ".parquet"),
+        (&["case-3", "--exact", "nowhere.parquet"], 2, "nowhere.parquet"),
+    ] {
+        let said = said_in(&folder, &[&["tolerance"], args].concat(), status);
+        assert!(said.contains(words), "{said}");
+    }
+    // Every machine and a summary are different things.
+    json(&[&study[..], &["--shard", "1/2", "-o", "rows.parquet"]].concat());
+    let said = said_in(&folder, &["tolerance", "--merge", "rows.parquet", "b.parquet", "-o", "x.parquet"], 2);
+    assert!(said.contains("want one kind"), "{said}");
 }
 
 #[test]

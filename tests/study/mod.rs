@@ -2,6 +2,7 @@
 
 mod comparison;
 mod counterweights;
+mod design_space;
 mod difference;
 mod doubt;
 mod equations;
@@ -15,6 +16,7 @@ mod plan_summary;
 mod samples;
 mod series;
 mod spectrum;
+mod summary;
 mod tolerance;
 mod trim;
 mod workshop;

@@ -46,6 +46,7 @@ pages! {
     CommandLine: "command_line",
     Recording: "recording",
     Python: "python",
+    ManyMachines: "many_machines",
     Paper: "paper",
     Speed: "speed",
 }

@@ -4,6 +4,7 @@ mod brief;
 mod fronts;
 mod kept;
 mod measures;
+mod varied;
 mod weighed;
 
 use clap::Args;
@@ -24,6 +25,8 @@ use stillbase_planning::Motion;
 use stillbase_session::scenario::{DesignBrief, MachineFile};
 use stillbase_settings::number::fixed;
 use stillbase_settings::word::Choice;
+pub use varied::Answer as VariedAnswer;
+use varied::VaryArguments;
 use weighed::WeightArguments;
 
 /// Place the links' centres of mass so that the base feels no force and the mass matrix is invariant, Eq. (10)
@@ -41,6 +44,9 @@ use weighed::WeightArguments;
 ///
 /// With --counterweights --front and several machines, the answer compares their Pareto fronts under the same bounds.
 /// For a machine that no counterweights within the bounds balance, it gives the reason.
+///
+/// With --counterweights --vary it finds them for many machines, writes a row for each to --table, and tells those that no
+/// other is better than in both mass and inertia. Parts of a study (--shard) are tables that stand one below the other.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -55,6 +61,7 @@ Examples:
   stillbase design nine-link-bare two-drive my.toml --counterweights --front 9
   stillbase design nine-link-bare --counterweights --clearance 0.01 --max-radius 0.12
   stillbase design nine-link-bare --counterweights --payload 0,0.2
+  stillbase design nine-link-bare --counterweights --vary length.l5=0.3:0.6:7 --vary material=steel,tungsten --table designs.csv
   stillbase design nine-link-bare --counterweights --length l5=0.3,0.6 --length l9=0.2,0.5 --min-reach 1.26
   stillbase design nine-link-bare --counterweights --bars 0.03,0.006 --thickness 0.02 -o cut.toml
   stillbase design counter-rotating --counterweights --rotor-ratio 1=-40,0 --objective momentum")]
@@ -74,6 +81,8 @@ pub struct DesignArguments {
     rebalance: RebalanceArguments,
     #[command(flatten)]
     weighing: Box<WeightArguments>,
+    #[command(flatten)]
+    varying: Box<VaryArguments>,
     /// A built-in scenario or a TOML file: its motion, planned for its own machine, determines the torque. Each β is
     /// the ratio of force, moment or torque (root mean squares along this motion) to its value before
     #[arg(long, value_name = "SCENARIO")]
@@ -101,6 +110,9 @@ impl DesignArguments {
         let MachineFile { machine, design } = self.machine.load_file()?;
         let task = self.task.as_ref().map(|name| task_run(name, &[&machine])).transpose()?;
         let motion = task.as_ref().map(|run| &*run.plan().motion);
+        if self.varying.is_asked() {
+            return self.vary(&machine, &design, motion);
+        }
         if self.weighing.counterweights {
             return self.weigh(&machine, &design, motion);
         }

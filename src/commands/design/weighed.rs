@@ -320,9 +320,19 @@ impl WeightArguments {
         brief: &DesignBrief,
         motion: Option<&Motion>,
     ) -> Result<(Machine, CounterweightReport), Failure> {
+        report_removed(machine, "");
+        self.find(machine, brief, motion)
+    }
+
+    /// Finds the counterweights as [`run`](Self::run) does, without notes.
+    pub fn find(
+        &self,
+        machine: &Machine,
+        brief: &DesignBrief,
+        motion: Option<&Motion>,
+    ) -> Result<(Machine, CounterweightReport), Failure> {
         let spec = self.spec(machine, brief, motion)?;
         let (machine, bars) = self.bars(machine, brief)?;
-        report_removed(&machine, "");
         let lengths = self.lengths(brief, &spec);
         let within = match self.seconds.filter(|_| lengths.is_some()) {
             Some(seconds) if !(seconds.is_finite() && seconds > 0.0) => {

@@ -85,7 +85,7 @@ pub struct ToleranceArguments {
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     instants: u32,
     /// Only the i-th of n equal parts of the samples, i from 1
-    #[arg(long, value_name = "i/n", value_parser = shard)]
+    #[arg(long, value_name = "i/n", value_parser = parse_shard)]
     shard: Option<(u64, u64)>,
     /// Simulate each machine under control instead of perfect tracking
     #[arg(long)]
@@ -141,7 +141,8 @@ fn spread(text: &str) -> Result<(String, Spread), String> {
     Ok((key.trim().into(), spread.parse()?))
 }
 
-fn shard(text: &str) -> Result<(u64, u64), String> {
+/// Parses i/n.
+pub fn parse_shard(text: &str) -> Result<(u64, u64), String> {
     let pair = text.split_once('/').and_then(|(i, n)| Some((i.trim().parse().ok()?, n.trim().parse().ok()?)));
     let ok = pair.filter(|(i, n)| (1..=*n).contains(i) && *n <= MAX_SAMPLES);
     ok.ok_or_else(|| "want i/n with i from 1 to n, such as 2/8".into())
