@@ -61,6 +61,7 @@ errors! {
     session::scenario::UnfinishedDrawing,
     study::base_spectrum::NoBaseSpectrum,
     study::counterweights::NoCounterweights,
+    study::design_space::NoDesignSpace,
     study::equations::NoInstant,
     study::import::MotionImportError,
     study::layers::NoLayers,

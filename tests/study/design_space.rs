@@ -28,7 +28,8 @@ fn a_grid_has_every_combination_once() {
     }
 }
 
-/// Points fill a box more evenly than random ones: any box in it holds its share of them, nearly.
+/// Points fill a box more evenly than random ones: any box in it holds its share of them, to within the standard deviation
+/// that random ones have in a quarter of the box.
 #[test]
 fn points_fill_a_box() {
     let axes = vec![between("x", [-1.0, 1.0]), between("y", [2.0, 4.0]), listed("m", 3)];
@@ -44,7 +45,7 @@ fn points_fill_a_box() {
         let inside = |(x, y, _): &&(f64, f64, String)| (x_from..x_to).contains(x) && (y_from..y_to).contains(y);
         let share = (x_to - x_from) * (y_to - y_from) / 4.0;
         let got = points.iter().filter(inside).count() as f64 / count as f64;
-        assert!((got - share).abs() < 0.004, "{got} {share}");
+        assert!((got - share).abs() < 0.0068, "{got} {share}");
     }
     for m in ["m0", "m1", "m2"] {
         let got = points.iter().filter(|(.., own)| own == m).count();

@@ -12,7 +12,7 @@ use stillbase_session::scenario::DesignBrief;
 use stillbase_settings::number::{counted, fixed_or_finer};
 use stillbase_settings::text::shell_word;
 use stillbase_study::counterweights::CounterweightReport;
-use stillbase_study::design_space::{Axis, AxisValues, DesignSpace, MAX_POINTS, non_dominated, typed};
+use stillbase_study::design_space::{Axis, AxisValues, DesignSpace, MAX_POINTS, NoDesignSpace, non_dominated, typed};
 use stillbase_study::tolerance::shard;
 
 use super::super::dimensions::density;
@@ -143,8 +143,12 @@ impl DesignArguments {
     /// Finds the counterweights at every point, and prints the best.
     pub fn vary(&self, machine: &Machine, design: &DesignBrief, motion: Option<&Motion>) -> Result<(), Failure> {
         let of = &self.varying;
-        let space = DesignSpace::new(of.vary.clone(), of.points)
-            .map_err(|why| Failure::wrong_input(format!("--vary: {why}")))?;
+        let space = DesignSpace::new(of.vary.clone(), of.points).map_err(|why| match why {
+            NoDesignSpace::Endless(key) => Failure::wrong_input(format!(
+                "--vary {key}: want LO:HI:N with N values, or --points N for all settings"
+            )),
+            why => Failure::wrong_input(format!("--vary: {why}")),
+        })?;
         let (i, n) = of.shard.unwrap_or((1, 1));
         let points = shard(space.count(), i, n);
         if points.is_empty() {
