@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
-use stillbase_recording::{
-    Options, Pictures, RecordError, Recording, RecordingProgress, VIEWER_URL, Viewer, record, stream,
-};
+use stillbase_recording::{Options, Pictures, RecordError, Recording, RecordingProgress, record};
+#[cfg(feature = "stream")]
+use stillbase_recording::{VIEWER_URL, Viewer, stream};
 use stillbase_session::scenario::Scenario;
 use stillbase_session::verdict::Statements;
 use stillbase_settings::text::plain;
@@ -23,23 +23,42 @@ use super::size::size;
 use super::strict::{Strict, run_faults};
 use stillbase_settings::number::fixed;
 
+#[cfg(feature = "stream")]
+macro_rules! viewer_example {
+    () => {
+        "\n  stillbase headless case-3 --spawn                           opens the viewer"
+    };
+}
+
+#[cfg(not(feature = "stream"))]
+macro_rules! viewer_example {
+    () => {
+        ""
+    };
+}
+
 /// Simulate scenarios without a window and record them for the Rerun viewer
 #[derive(Args)]
-#[command(after_help = "\
+#[command(after_help = concat!(
+    "\
 Examples:
   stillbase headless -o cases.rrd                             the paper's three cases
   stillbase headless case-1 my.toml -o both.rrd --fps 30      with pictures
-  stillbase headless case-3 -o loaded.rrd --set payload.mass=0.1
-  stillbase headless case-3 --spawn                           opens the viewer")]
+  stillbase headless case-3 -o loaded.rrd --set payload.mass=0.1",
+    viewer_example!()
+))]
 pub struct HeadlessArguments {
     /// Built-in scenarios (case-1, spacecraft …; an unknown name lists them all) or TOML files; default: the three
     /// cases
     #[arg(value_name = "SCENARIO")]
     scenarios: Vec<String>,
     /// The recording to write; `-` is standard output
-    #[arg(short, long, value_name = "FILE.rrd", required_unless_present_any = ["connect", "spawn"])]
+    #[arg(short, long, value_name = "FILE.rrd")]
+    #[cfg_attr(feature = "stream", arg(required_unless_present_any = ["connect", "spawn"]))]
+    #[cfg_attr(not(feature = "stream"), arg(required = true))]
     output: Option<PathBuf>,
     /// Stream to a viewer that runs, instead of writing a file; default: the one on this computer
+    #[cfg(feature = "stream")]
     #[arg(
         long,
         value_name = "URL",
@@ -49,6 +68,7 @@ pub struct HeadlessArguments {
     )]
     connect: Option<String>,
     /// Start the viewer, the program `rerun` on the path, and stream to it
+    #[cfg(feature = "stream")]
     #[arg(long, conflicts_with = "output")]
     spawn: bool,
     /// Record N offscreen pictures per simulated second, if a graphics adapter exists
@@ -162,6 +182,7 @@ impl HeadlessArguments {
         let mut answer = Answer { recordings: recordings.into_iter().map(Row::from).collect() };
         match &to {
             Target::File(file) => say_written(file),
+            #[cfg(feature = "stream")]
             Target::Viewer(viewer) => {
                 print_message(format!("sent to the viewer at {}", viewer.url()));
                 answer.recordings.iter_mut().for_each(|row| row.viewer = Some(viewer.url()));
@@ -178,16 +199,27 @@ impl HeadlessArguments {
 
     /// Returns where the recording goes.
     fn target(&self) -> Result<Target, Failure> {
-        let viewer = match (&self.output, &self.connect) {
-            (Some(file), _) => {
+        match &self.output {
+            Some(file) => {
                 self.form.check(&self.format, Some(file), self.force, &["rrd"])?;
-                return Ok(Target::File(file.clone()));
+                Ok(Target::File(file.clone()))
             }
-            (None, _) if self.form.is_given() => return Err(no_use("--format", "-o - as well")),
-            (None, Some(url)) => Viewer::at(url),
-            (None, None) => Viewer::started(),
-        };
+            None if self.form.is_given() => Err(no_use("--format", "-o - as well")),
+            None => self.viewer(),
+        }
+    }
+
+    /// Returns the viewer to stream to.
+    #[cfg(feature = "stream")]
+    fn viewer(&self) -> Result<Target, Failure> {
+        let viewer = self.connect.as_deref().map_or_else(Viewer::started, Viewer::at);
         viewer.map(Target::Viewer).map_err(Failure::wrong_input)
+    }
+
+    /// Refuses to go on without a file.
+    #[cfg(not(feature = "stream"))]
+    fn viewer(&self) -> Result<Target, Failure> {
+        Err(Failure::wrong_input("no file: want -o FILE.rrd"))
     }
 
     fn scenarios(&self) -> Result<Vec<Scenario>, Failure> {
@@ -211,6 +243,7 @@ pub enum Target {
     /// To a file.
     File(PathBuf),
     /// To a viewer.
+    #[cfg(feature = "stream")]
     Viewer(Viewer),
 }
 
@@ -233,6 +266,7 @@ pub fn record_with_bar(scenarios: &[Scenario], to: &Target, options: &Options) -
     };
     let recordings = match to {
         Target::File(file) => record(scenarios, file, options, &mut report),
+        #[cfg(feature = "stream")]
         Target::Viewer(viewer) => stream(scenarios, viewer, options, &mut report),
     };
     bar.finish_and_clear();
