@@ -66,8 +66,9 @@ pub fn setting(value: &Bound<'_, PyAny>) -> PyResult<String> {
     Ok(value.str()?.to_string())
 }
 
-/// Returns options as words of the command line: `min_reach=1.2` is `--min-reach 1.2`, `keep=True` is `--keep`. A list is one
-/// word with commas; a list of lists, or a dictionary, is the option repeated. `None` and `False` leave an option out.
+/// Returns options as words of the command line: `min_reach=1.2` is `--min-reach 1.2`, `keep=True` is `--keep`. A list
+/// is one word with commas; a list of lists, or a dictionary, is the option repeated. `None` and `False` leave an
+/// option out.
 pub fn options(given: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<OsString>> {
     let mut words: Vec<OsString> = Vec::new();
     for (key, value) in given.into_iter().flat_map(|given| given.iter()) {
@@ -103,7 +104,8 @@ fn is_list(value: &Bound<'_, PyAny>) -> PyResult<bool> {
     Ok(value.hasattr("__iter__")? && !is_number && !value.is_instance_of::<PyString>())
 }
 
-/// Carries out a command line. `input` takes the place of standard input. Notes become warnings, and failures exceptions.
+/// Carries out a command line. `input` takes the place of standard input. Notes become warnings, and failures
+/// exceptions.
 ///
 /// # Errors
 /// If the command fails.
@@ -150,8 +152,8 @@ pub fn answered<'py>(py: Python<'py>, mut words: Vec<OsString>, input: Option<St
     }
 }
 
-/// Carries out a command of the command line, and returns its answer as dictionaries and lists. A machine is named, or is a
-/// `Machine`. Options are keywords: `min_reach=1.2` is `--min-reach 1.2`, `keep=True` is `--keep`,
+/// Carries out a command of the command line, and returns its answer as dictionaries and lists. A machine is named, or
+/// is a `Machine`. Options are keywords: `min_reach=1.2` is `--min-reach 1.2`, `keep=True` is `--keep`,
 /// `set={"payload.mass": 0.1}` is `--set payload.mass=0.1`.
 ///
 /// ```python
@@ -172,9 +174,9 @@ pub fn ask<'py>(
     line.asked(py, given)
 }
 
-/// Plans a motion through points (x, y), m, as `stillbase plan` with its options: `shape="line"`, `b=2.4`, `law="fastest"`.
-/// The first word is a machine, or a scenario, whose own points are the default. The plan is written as a scenario to
-/// `output`, a new file.
+/// Plans a motion through points (x, y), m, as `stillbase plan` with its options: `shape="line"`, `b=2.4`,
+/// `law="fastest"`. The first word is a machine, or a scenario, whose own points are the default. The plan is written
+/// as a scenario to `output`, a new file.
 ///
 /// ```python
 /// >>> import stillbase as sb
@@ -203,8 +205,8 @@ pub fn plan<'py>(
     line.asked(py, given)
 }
 
-/// Records a scenario, or several, for the Rerun viewer, as `stillbase headless` with its options. `output` is the file,
-/// which ends in .rrd.
+/// Records a scenario, or several, for the Rerun viewer, as `stillbase headless` with its options. `output` is the
+/// file, which ends in .rrd.
 ///
 /// ```python
 /// >>> import stillbase as sb
@@ -266,7 +268,8 @@ impl Line {
     }
 }
 
-/// Carries out a command line as the program does, and returns its exit status. The first word is the name of the program.
+/// Carries out a command line as the program does, and returns its exit status. The first word is the name of the
+/// program.
 ///
 /// ```python
 /// >>> from stillbase._stillbase import main

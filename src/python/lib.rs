@@ -1,8 +1,8 @@
 //! Stillbase in Python: machines, their dynamics, and everything that the command line answers.
 //!
-//! Answers of the command line are found by the command line: it is carried out within the interpreter, and its JSON becomes
-//! Python's dictionaries, so that names, numbers and errors are the same. Only what has to be fast goes another way: the
-//! signals of a run become arrays without a copy; `dynamics` and `step_batch` work on whole arrays.
+//! Answers of the command line are found by the command line: it is carried out within the interpreter, and its JSON
+//! becomes Python's dictionaries, so that names, numbers and errors are the same. Only what has to be fast goes another
+//! way: the signals of a run become arrays without a copy; `dynamics` and `step_batch` work on whole arrays.
 //!
 //! This crate serves the workspace alone, and may change in any version.
 

@@ -166,7 +166,8 @@ impl Machine {
         self.exported(py, "xml", given)
     }
 
-    /// Returns the machine as a model for ROS and Pinocchio, URDF. Options are those of `stillbase export-model`: `base`.
+    /// Returns the machine as a model for ROS and Pinocchio, URDF. Options are those of `stillbase export-model`:
+    /// `base`.
     ///
     /// ```python
     /// >>> import stillbase as sb
@@ -346,9 +347,9 @@ impl Machine {
         self.asked(py, "reach", points.iter().map(|[x, y]| format!("{x:?},{y:?}").into()).collect())
     }
 
-    /// Motor torques and base reactions of states of motion: absolute drive angles, rad, rates, rad/s, and accelerations,
-    /// rad/s², each of shape (..., drives). They broadcast as arrays of NumPy do. `out` is an earlier result of the same
-    /// shape, which is overwritten. The numbers are those of `stillbase dynamics`, to the last bit.
+    /// Motor torques and base reactions of states of motion: absolute drive angles, rad, rates, rad/s, and
+    /// accelerations, rad/s², each of shape (..., drives). They broadcast as arrays of NumPy do. `out` is an earlier
+    /// result of the same shape, which is overwritten. The numbers are those of `stillbase dynamics`, to the last bit.
     ///
     /// ```python
     /// >>> import numpy as np, stillbase as sb
@@ -380,12 +381,13 @@ impl Machine {
     /// Simulates states of motion on a base that is held, each for a number of steps of dt, s. Motor torques, N m, are
     /// constant meanwhile. Returns absolute drive angles, rad, and rates, rad/s, after the last step.
     ///
-    /// `q`, `qd` and `torque` have the shape (..., drives), and broadcast as arrays of NumPy do. `out` is a pair of arrays
-    /// for the results, which may be `(q, qd)` itself.
+    /// `q`, `qd` and `torque` have the shape (..., drives), and broadcast as arrays of NumPy do. `out` is a pair of
+    /// arrays for the results, which may be `(q, qd)` itself.
     ///
-    /// A step is one of the classical fourth-order Runge–Kutta method, as `stillbase simulate` makes it: to the last bit,
-    /// where that needs no substeps. Nothing chooses the step here: the error of a state is of order dt⁴. Rates become
-    /// momenta at the beginning of a call, and rates again at its end. So two calls may differ from one in the last digits.
+    /// A step is one of the classical fourth-order Runge–Kutta method, as `stillbase simulate` makes it: to the last
+    /// bit, where that needs no substeps. Nothing chooses the step here: the error of a state is of order dt⁴. Rates
+    /// become momenta at the beginning of a call, and rates again at its end. So two calls may differ from one in the
+    /// last digits.
     ///
     /// ```python
     /// >>> import numpy as np, stillbase as sb

@@ -149,7 +149,8 @@ impl Run {
 
 /// Simulates a scenario, built in or a file.
 ///
-/// Options are those of `stillbase simulate`: `set={"plant.payload.mass": 0.1}`, `signals=["torque", "moment/total"]`, `every=10`.
+/// Options are those of `stillbase simulate`: `set={"plant.payload.mass": 0.1}`, `signals=["torque", "moment/total"]`,
+/// `every=10`.
 ///
 /// ```python
 /// >>> import stillbase as sb

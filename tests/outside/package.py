@@ -128,7 +128,8 @@ for name in ("nine-link", "spot", "four-drive", "two-drive", "nine-link-geared",
     again = machine.dynamics(qdd, qd, q, out=rows)
     assert again is rows and np.array_equal(rows.torque, machine.dynamics(qdd, qd, q).torque)
     # Shapes broadcast as those of NumPy.
-    for shapes in (((4, 1), (5,), ()), ((1,), (3,), (2, 1)), ((1, 1), (), (1,)), ((0,), (1,), ()), ((2, 3, 4), (3, 1), (4,))):
+    broadcast = ((4, 1), (5,), ()), ((1,), (3,), (2, 1)), ((1, 1), (), (1,)), ((0,), (1,), ()), ((2, 3, 4), (3, 1), (4,))
+    for shapes in broadcast:
         states = [random.normal(size=(*shape, n)) for shape in shapes]
         all_states = np.broadcast_arrays(*states)
         got, want = machine.dynamics(*states), machine.dynamics(*(x.reshape(-1, n) for x in all_states))
@@ -237,7 +238,8 @@ def printed(*words):
 
 
 spot = sb.Machine.builtin("spot")
-assert json.loads(printed("check", "spot", "--json")) == spot.check() == sb.ask("check", "spot") == sb.ask("check", spot)
+checked = json.loads(printed("check", "spot", "--json"))
+assert checked == spot.check() == sb.ask("check", "spot") == sb.ask("check", spot)
 assert printed("--version").split()[1] == sb.__version__
 refused = subprocess.run([*line, "reach", "nine-link", "5,5", "--json"], capture_output=True, text=True)
 try:

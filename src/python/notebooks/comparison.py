@@ -1,8 +1,8 @@
 # %% [markdown]
 # # The same numbers by MuJoCo and Pinocchio
 #
-# The arm of nine links, written as MJCF and URDF, gives the same torques, the same moment on its base, and the same mass
-# matrix there. The times are those of one core; the loops of the others run in Python.
+# The arm of nine links, written as MJCF and URDF, gives the same torques, the same moment on its base, and the same
+# mass matrix there. The times are those of one core; the loops of the others run in Python.
 
 # %%
 import time
@@ -29,7 +29,8 @@ loads = timed("stillbase", len(q), lambda: machine.dynamics(q, qd, qdd))
 
 # %% [markdown]
 # ## MuJoCo
-# A hinge turns by the angle of its own link, less that of the link it hangs on. The motion keeps the loops closed itself.
+# A hinge turns by the angle of its own link, less that of the link it hangs on. The motion keeps the loops closed
+# itself.
 
 # %%
 model = mujoco.MjModel.from_xml_string(machine.to_mjcf(quiet=True))
@@ -95,7 +96,8 @@ assert off < 1e-6 * np.abs(own).max()
 
 # %%
 steps = 1000
-after, rates = timed(f"stillbase, {steps} steps each", steps * len(q), lambda: machine.step_batch(q, qd, np.zeros(3), 1e-3, steps=steps))
+advance = lambda: machine.step_batch(q, qd, np.zeros(3), 1e-3, steps=steps)
+after, rates = timed(f"stillbase, {steps} steps each", steps * len(q), advance)
 
 
 def momentum(q, qd):

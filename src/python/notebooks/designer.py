@@ -1,8 +1,8 @@
 # %% [markdown]
 # # Counterweights for an arm, and its links as a drawing
 #
-# The arm of nine links comes without counterweights. Which ones balance it? Lighter ones lie farther out, and make the arm
-# harder to turn: a Pareto front shows the choice. Run this as a notebook with Jupytext, or as a script.
+# The arm of nine links comes without counterweights. Which ones balance it? Lighter ones lie farther out, and make the
+# arm harder to turn: a Pareto front shows the choice. Run this as a notebook with Jupytext, or as a script.
 
 # %%
 import matplotlib.pyplot as plt
@@ -13,8 +13,8 @@ machine
 
 # %% [markdown]
 # ## The front
-# Each point is a set of counterweights of which none is both lighter and easier to turn. The computed optimum is certified:
-# a bound from duality shows how far any other could be better.
+# Each point is a set of counterweights of which none is both lighter and easier to turn. The computed optimum is
+# certified: a bound from duality shows how far any other could be better.
 
 # %%
 front = machine.front(7)

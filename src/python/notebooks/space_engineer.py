@@ -1,8 +1,8 @@
 # %% [markdown]
 # # How heavy must the spacecraft be?
 #
-# The arm of SPOT, a simulator of spacecraft on air bearings, is not balanced. Led in joint space, it turns its base; led at
-# zero momentum, it does not. The heavier the base, the less it matters.
+# The arm of SPOT, a simulator of spacecraft on air bearings, is not balanced. Led in joint space, it turns its base;
+# led at zero momentum, it does not. The heavier the base, the less it matters.
 
 # %%
 import matplotlib.pyplot as plt
@@ -46,6 +46,7 @@ assert (silent < 1e-6).all() and (swung.diff().dropna() < 0).all()
 
 # %%
 run = sb.simulate("spot-swing")
-signals = pd.DataFrame({f"{path} {run.units[path]}": run[path] for path in ("attitude/base", "moment/total")}, index=run.time)
+columns = {f"{path} {run.units[path]}": run[path] for path in ("attitude/base", "moment/total")}
+signals = pd.DataFrame(columns, index=run.time)
 print(signals.abs().max().to_string())
 run

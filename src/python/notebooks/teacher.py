@@ -1,8 +1,8 @@
 # %% [markdown]
 # # Figures 3 to 5 of the paper
 #
-# Papadopoulos & Abu-Abed, *On the Design of Zero Reaction Manipulators*. The arm of nine links is balanced: it exerts no force
-# on its base. It exerts no moment either while its motion stays on a plane q₁ + λ₂ q₂ + λ₃ q₃ = b.
+# Papadopoulos & Abu-Abed, *On the Design of Zero Reaction Manipulators*. The arm of nine links is balanced: it exerts
+# no force on its base. It exerts no moment either while its motion stays on a plane q₁ + λ₂ q₂ + λ₃ q₃ = b.
 
 # %%
 import matplotlib.pyplot as plt

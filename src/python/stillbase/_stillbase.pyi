@@ -155,9 +155,9 @@ class Machine:
         """
     def dynamics(self, /, q: numpy.typing.ArrayLike, qd: numpy.typing.ArrayLike, qdd: numpy.typing.ArrayLike, *, out: Dynamics | None = None, threads: SupportsIndex = 1) -> Dynamics:
         """
-        Motor torques and base reactions of states of motion: absolute drive angles, rad, rates, rad/s, and accelerations,
-        rad/s², each of shape (..., drives). They broadcast as arrays of NumPy do. `out` is an earlier result of the same
-        shape, which is overwritten. The numbers are those of `stillbase dynamics`, to the last bit.
+        Motor torques and base reactions of states of motion: absolute drive angles, rad, rates, rad/s, and
+        accelerations, rad/s², each of shape (..., drives). They broadcast as arrays of NumPy do. `out` is an earlier
+        result of the same shape, which is overwritten. The numbers are those of `stillbase dynamics`, to the last bit.
 
         ```python
         >>> import numpy as np, stillbase as sb
@@ -273,12 +273,13 @@ class Machine:
         Simulates states of motion on a base that is held, each for a number of steps of dt, s. Motor torques, N m, are
         constant meanwhile. Returns absolute drive angles, rad, and rates, rad/s, after the last step.
 
-        `q`, `qd` and `torque` have the shape (..., drives), and broadcast as arrays of NumPy do. `out` is a pair of arrays
-        for the results, which may be `(q, qd)` itself.
+        `q`, `qd` and `torque` have the shape (..., drives), and broadcast as arrays of NumPy do. `out` is a pair of
+        arrays for the results, which may be `(q, qd)` itself.
 
-        A step is one of the classical fourth-order Runge–Kutta method, as `stillbase simulate` makes it: to the last bit,
-        where that needs no substeps. Nothing chooses the step here: the error of a state is of order dt⁴. Rates become
-        momenta at the beginning of a call, and rates again at its end. So two calls may differ from one in the last digits.
+        A step is one of the classical fourth-order Runge–Kutta method, as `stillbase simulate` makes it: to the last
+        bit, where that needs no substeps. Nothing chooses the step here: the error of a state is of order dt⁴. Rates
+        become momenta at the beginning of a call, and rates again at its end. So two calls may differ from one in the
+        last digits.
 
         ```python
         >>> import numpy as np, stillbase as sb
@@ -325,7 +326,8 @@ class Machine:
         """
     def to_urdf(self, /, **given: typing.Any) -> str:
         """
-        Returns the machine as a model for ROS and Pinocchio, URDF. Options are those of `stillbase export-model`: `base`.
+        Returns the machine as a model for ROS and Pinocchio, URDF. Options are those of `stillbase export-model`:
+        `base`.
 
         ```python
         >>> import stillbase as sb
@@ -443,8 +445,8 @@ class Run:
 
 def ask(*words: typing.Any, **given: typing.Any) -> typing.Any:
     """
-    Carries out a command of the command line, and returns its answer as dictionaries and lists. A machine is named, or is a
-    `Machine`. Options are keywords: `min_reach=1.2` is `--min-reach 1.2`, `keep=True` is `--keep`,
+    Carries out a command of the command line, and returns its answer as dictionaries and lists. A machine is named, or
+    is a `Machine`. Options are keywords: `min_reach=1.2` is `--min-reach 1.2`, `keep=True` is `--keep`,
     `set={"payload.mass": 0.1}` is `--set payload.mass=0.1`.
 
     ```python
@@ -457,7 +459,8 @@ def ask(*words: typing.Any, **given: typing.Any) -> typing.Any:
 
 def main(words: typing.Sequence[str]) -> int:
     """
-    Carries out a command line as the program does, and returns its exit status. The first word is the name of the program.
+    Carries out a command line as the program does, and returns its exit status. The first word is the name of the
+    program.
 
     ```python
     >>> from stillbase._stillbase import main
@@ -469,9 +472,9 @@ def main(words: typing.Sequence[str]) -> int:
 
 def plan(machine: str | os.PathLike[str] | Machine, points: typing.Iterable[typing.Sequence[float]] | None = None, **given: typing.Any) -> dict[str, typing.Any]:
     """
-    Plans a motion through points (x, y), m, as `stillbase plan` with its options: `shape="line"`, `b=2.4`, `law="fastest"`.
-    The first word is a machine, or a scenario, whose own points are the default. The plan is written as a scenario to
-    `output`, a new file.
+    Plans a motion through points (x, y), m, as `stillbase plan` with its options: `shape="line"`, `b=2.4`,
+    `law="fastest"`. The first word is a machine, or a scenario, whose own points are the default. The plan is written
+    as a scenario to `output`, a new file.
 
     ```python
     >>> import stillbase as sb
@@ -486,8 +489,8 @@ def plan(machine: str | os.PathLike[str] | Machine, points: typing.Iterable[typi
 
 def record(scenario: str | os.PathLike[str] | typing.Sequence[str | os.PathLike[str]], output: str | os.PathLike[str], **given: typing.Any) -> dict[str, typing.Any]:
     """
-    Records a scenario, or several, for the Rerun viewer, as `stillbase headless` with its options. `output` is the file,
-    which ends in .rrd.
+    Records a scenario, or several, for the Rerun viewer, as `stillbase headless` with its options. `output` is the
+    file, which ends in .rrd.
 
     ```python
     >>> import stillbase as sb
@@ -502,7 +505,8 @@ def simulate(scenario: str | os.PathLike[str], **given: typing.Any) -> Run:
     """
     Simulates a scenario, built in or a file.
 
-    Options are those of `stillbase simulate`: `set={"plant.payload.mass": 0.1}`, `signals=["torque", "moment/total"]`, `every=10`.
+    Options are those of `stillbase simulate`: `set={"plant.payload.mass": 0.1}`, `signals=["torque", "moment/total"]`,
+    `every=10`.
 
     ```python
     >>> import stillbase as sb

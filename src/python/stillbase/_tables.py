@@ -13,8 +13,8 @@ from ._stillbase import Machine, Run, ask
 def trim(measured: Any, machine: str | os.PathLike[str] | Machine, **given: Any) -> dict[str, Any]:
     """Identifies the unbalance of a built machine from measured base forces, as `stillbase trim` with its options.
 
-    `measured` is a table or a list of tables: the name of a file, a DataFrame of pandas, a mapping of names to arrays of
-    one axis, an array of NumPy with named fields, or a `Run`. Columns are named as those of a file are: t, q1, q2, ...,
+    `measured` is a table or a list of tables: the name of a file, a DataFrame of pandas, a mapping of names to arrays
+    of one axis, an array of NumPy with named fields, or a `Run`. Columns are named as those of a file are: t, q1, q2, ...,
     fx, fy, nz, with units as in "nz (mN m)".
 
     >>> import numpy as np, stillbase as sb

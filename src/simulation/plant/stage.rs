@@ -98,8 +98,9 @@ impl<const N: usize> StateRates<N> {
         }
     }
 
-    /// Makes a classical fourth-order Runge–Kutta step of `h` seconds from the rates at its start. `stage` evaluates a state;
-    /// its second argument says whether that is at the end of the step, or half-way. Also returns the three stages.
+    /// Makes a classical fourth-order Runge–Kutta step of `h` seconds from the rates at its start. `stage` evaluates a
+    /// state; its second argument says whether that is at the end of the step, or half-way. Also returns the three
+    /// stages.
     #[inline(always)]
     pub fn runge_kutta<const MOVES: bool>(
         from: &State,
