@@ -24,30 +24,20 @@ use super::size::size;
 use super::strict::{Strict, run_faults};
 use stillbase_settings::number::fixed;
 
-#[cfg(feature = "stream")]
-macro_rules! viewer_example {
-    () => {
-        "\n  stillbase headless case-3 --spawn                           opens the viewer"
-    };
-}
-
-#[cfg(not(feature = "stream"))]
-macro_rules! viewer_example {
-    () => {
-        ""
-    };
-}
-
-/// Simulate scenarios without a window and record them for the Rerun viewer
-#[derive(Args)]
-#[command(after_help = concat!(
+/// Examples for the help, the second part where there is a viewer to stream to.
+const EXAMPLES: [&str; 2] = [
     "\
 Examples:
   stillbase headless -o cases.rrd                             the paper's three cases
   stillbase headless case-1 my.toml -o both.rrd --fps 30      with pictures
   stillbase headless case-3 -o loaded.rrd --set payload.mass=0.1",
-    viewer_example!()
-))]
+    "
+  stillbase headless case-3 --spawn                           opens the viewer",
+];
+
+/// Simulate scenarios without a window and record them for the Rerun viewer
+#[derive(Args)]
+#[command(after_help = EXAMPLES[..1 + usize::from(cfg!(feature = "stream"))].concat())]
 pub struct HeadlessArguments {
     /// Built-in scenarios (case-1, spacecraft …; an unknown name lists them all) or TOML files; default: the three
     /// cases

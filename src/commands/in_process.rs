@@ -18,7 +18,7 @@ pub struct InProcessAnswer {
     pub status: u8,
     /// What it printed with `--json`, if anything.
     pub json: Option<String>,
-    /// The file that it wrote to standard output (`-o -`), if any.
+    /// The file that it wrote to standard output (`-o -`) as a whole, if any; rows of tables still go there.
     pub file: Option<Vec<u8>>,
     /// The signals of a simulation, which are then not in `json`.
     pub signals: Option<SignalTable>,
