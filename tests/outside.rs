@@ -82,7 +82,9 @@ fn main() -> ExitCode {
         ("mujoco", mujoco::TESTS),
         ("mujoco", planar::TESTS),
         ("pinocchio", pinocchio::TESTS),
-        ("stillbase", package::TESTS),
+        ("stillbase, pandas", package::TESTS),
+        #[cfg(feature = "cli")]
+        ("stillbase, pandas, matplotlib, mujoco, pinocchio", package::NOTEBOOKS),
         #[cfg(feature = "cli")]
         ("stillbase", page::PACKAGE),
         ("scipy", drags::TESTS),

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
-use stillbase_recording::{
-    Options, Pictures, RecordError, Recording, RecordingProgress, VIEWER_URL, Viewer, record, stream,
-};
+use stillbase_recording::{Options, Pictures, RecordError, Recording, RecordingProgress, record};
+#[cfg(feature = "stream")]
+use stillbase_recording::{VIEWER_URL, Viewer, stream};
 use stillbase_session::scenario::Scenario;
 use stillbase_session::verdict::Statements;
 use stillbase_settings::text::plain;
@@ -15,6 +15,7 @@ use stillbase_settings::text::plain;
 use super::exit::print_message;
 use super::failure::Failure;
 use super::file_form::FileForm;
+use super::in_process::is_in_process;
 use super::input::{Settings, no_use, scenario};
 use super::output::{Format, TextTable, say_written};
 use super::progress::bar;
@@ -23,23 +24,32 @@ use super::size::size;
 use super::strict::{Strict, run_faults};
 use stillbase_settings::number::fixed;
 
-/// Simulate scenarios without a window and record them for the Rerun viewer
-#[derive(Args)]
-#[command(after_help = "\
+/// Examples for the help, the second part where there is a viewer to stream to.
+const EXAMPLES: [&str; 2] = [
+    "\
 Examples:
   stillbase headless -o cases.rrd                             the paper's three cases
   stillbase headless case-1 my.toml -o both.rrd --fps 30      with pictures
-  stillbase headless case-3 -o loaded.rrd --set payload.mass=0.1
-  stillbase headless case-3 --spawn                           opens the viewer")]
+  stillbase headless case-3 -o loaded.rrd --set payload.mass=0.1",
+    "
+  stillbase headless case-3 --spawn                           opens the viewer",
+];
+
+/// Simulate scenarios without a window and record them for the Rerun viewer
+#[derive(Args)]
+#[command(after_help = EXAMPLES[..1 + usize::from(cfg!(feature = "stream"))].concat())]
 pub struct HeadlessArguments {
     /// Built-in scenarios (case-1, spacecraft …; an unknown name lists them all) or TOML files; default: the three
     /// cases
     #[arg(value_name = "SCENARIO")]
     scenarios: Vec<String>,
     /// The recording to write; `-` is standard output
-    #[arg(short, long, value_name = "FILE.rrd", required_unless_present_any = ["connect", "spawn"])]
+    #[arg(short, long, value_name = "FILE.rrd")]
+    #[cfg_attr(feature = "stream", arg(required_unless_present_any = ["connect", "spawn"]))]
+    #[cfg_attr(not(feature = "stream"), arg(required = true))]
     output: Option<PathBuf>,
     /// Stream to a viewer that runs, instead of writing a file; default: the one on this computer
+    #[cfg(feature = "stream")]
     #[arg(
         long,
         value_name = "URL",
@@ -49,6 +59,7 @@ pub struct HeadlessArguments {
     )]
     connect: Option<String>,
     /// Start the viewer, the program `rerun` on the path, and stream to it
+    #[cfg(feature = "stream")]
     #[arg(long, conflicts_with = "output")]
     spawn: bool,
     /// Record N offscreen pictures per simulated second, if a graphics adapter exists
@@ -159,15 +170,16 @@ impl HeadlessArguments {
         let pictures = self.fps.map(|fps| Pictures { fps, width, height, pin_forces: self.pin_forces });
         let options = Options { pictures, every_step: self.every_step, force: self.force };
         let recordings = record_with_bar(&scenarios, &to, &options)?;
-        let mut answer = Answer { recordings: recordings.into_iter().map(Row::from).collect() };
+        let viewer = to.viewer_url();
+        let row = |recording| Row { viewer: viewer.clone(), ..Row::from(recording) };
+        let answer = Answer { recordings: recordings.into_iter().map(row).collect() };
         match &to {
             Target::File(file) => say_written(file),
-            Target::Viewer(viewer) => {
-                print_message(format!("sent to the viewer at {}", viewer.url()));
-                answer.recordings.iter_mut().for_each(|row| row.viewer = Some(viewer.url()));
-            }
+            #[cfg(feature = "stream")]
+            Target::Viewer(viewer) => print_message(format!("sent to the viewer at {}", viewer.url())),
         }
-        for row in &answer.recordings {
+        // A program that asks gets this in the answer.
+        for row in answer.recordings.iter().filter(|_| !is_in_process()) {
             print_message(format!("{}: {}", row.scenario, row.statements.line()));
             row.remarks.iter().for_each(|remark| print_message(format!("{}: {remark}", row.scenario)));
         }
@@ -178,16 +190,27 @@ impl HeadlessArguments {
 
     /// Returns where the recording goes.
     fn target(&self) -> Result<Target, Failure> {
-        let viewer = match (&self.output, &self.connect) {
-            (Some(file), _) => {
+        match &self.output {
+            Some(file) => {
                 self.form.check(&self.format, Some(file), self.force, &["rrd"])?;
-                return Ok(Target::File(file.clone()));
+                Ok(Target::File(file.clone()))
             }
-            (None, _) if self.form.is_given() => return Err(no_use("--format", "-o - as well")),
-            (None, Some(url)) => Viewer::at(url),
-            (None, None) => Viewer::started(),
-        };
+            None if self.form.is_given() => Err(no_use("--format", "-o - as well")),
+            None => self.viewer(),
+        }
+    }
+
+    /// Returns the viewer to stream to.
+    #[cfg(feature = "stream")]
+    fn viewer(&self) -> Result<Target, Failure> {
+        let viewer = self.connect.as_deref().map_or_else(Viewer::started, Viewer::at);
         viewer.map(Target::Viewer).map_err(Failure::wrong_input)
+    }
+
+    /// Refuses to go on without a file.
+    #[cfg(not(feature = "stream"))]
+    fn viewer(&self) -> Result<Target, Failure> {
+        Err(Failure::wrong_input("no file: want -o FILE.rrd"))
     }
 
     fn scenarios(&self) -> Result<Vec<Scenario>, Failure> {
@@ -211,7 +234,19 @@ pub enum Target {
     /// To a file.
     File(PathBuf),
     /// To a viewer.
+    #[cfg(feature = "stream")]
     Viewer(Viewer),
+}
+
+impl Target {
+    /// Returns the address of the viewer, if it is one.
+    fn viewer_url(&self) -> Option<String> {
+        match self {
+            Self::File(_) => None,
+            #[cfg(feature = "stream")]
+            Self::Viewer(viewer) => Some(viewer.url()),
+        }
+    }
 }
 
 /// Returns options of a recording without pictures that replaces no file.
@@ -233,6 +268,7 @@ pub fn record_with_bar(scenarios: &[Scenario], to: &Target, options: &Options) -
     };
     let recordings = match to {
         Target::File(file) => record(scenarios, file, options, &mut report),
+        #[cfg(feature = "stream")]
         Target::Viewer(viewer) => stream(scenarios, viewer, options, &mut report),
     };
     bar.finish_and_clear();

@@ -18,6 +18,8 @@ pub struct InProcessAnswer {
     pub status: u8,
     /// What it printed with `--json`, if anything.
     pub json: Option<String>,
+    /// The file that it wrote to standard output (`-o -`) as a whole, if any; rows of tables still go there.
+    pub file: Option<Vec<u8>>,
     /// The signals of a simulation, which are then not in `json`.
     pub signals: Option<SignalTable>,
     /// Its notes, a line each.
@@ -72,7 +74,7 @@ fn asks_for_json(matches: &ArgMatches) -> bool {
 }
 
 /// Carries out a command line without the name of the program, such as `check spot --json`. Only answers with `--json` are
-/// returned; files are written as ever.
+/// returned; files are written as ever, but one for standard output is returned.
 pub fn answer(line: impl IntoIterator<Item = OsString>) -> InProcessAnswer {
     let _forgets = Forgets;
     SAID.set(Some(InProcessAnswer::default()));

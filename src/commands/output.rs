@@ -15,7 +15,7 @@ use stillbase_settings::text::plain;
 use super::exit::{is_quiet, print_message};
 use super::failure::Failure;
 use super::file_form::FileForm;
-use super::in_process::take;
+use super::in_process::{is_in_process, take};
 
 /// Whether a file takes standard output.
 static IS_TAKEN: AtomicBool = AtomicBool::new(false);
@@ -182,6 +182,9 @@ pub fn take_standard_output() {
 /// # Errors
 /// If it cannot be written.
 pub fn write_file(file: &Path, content: &[u8], force: bool) -> Result<(), Failure> {
+    if is_standard(file) && take(|said| said.file = Some(content.to_vec())).is_some() {
+        return Ok(());
+    }
     write_new(file, content, force)?;
     say_written(file);
     Ok(())
@@ -193,9 +196,9 @@ pub fn file_words(file: &Path) -> String {
     if is_standard(file) { "standard output".into() } else { file.display().to_string() }
 }
 
-/// Says that a file is written, unless it is standard output.
+/// Says that a file is written, unless it is standard output, or another program asks, which names the file itself.
 pub fn say_written(file: &Path) {
-    if !is_standard(file) {
+    if !is_standard(file) && !is_in_process() {
         print_message(format!("wrote {}", file.display()));
     }
 }

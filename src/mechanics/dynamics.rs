@@ -353,11 +353,24 @@ fn inverse_with_wrench_of<const N: usize>(
     around: &ExternalLoads,
 ) -> (PerDrive, BaseWrench) {
     let (e, qd, qdd) = (leading_entries::<N, _>(e), leading_entries(qd.padded()), leading_entries(qdd.padded()));
+    let (torque, wrench) = torques_with_wrench(inertia, e, qd, qdd, around);
+    (torque.into(), wrench)
+}
+
+/// Returns torques and base wrench of [`inverse_with_wrench`] for a number of drives N known at compile time.
+#[inline(always)]
+pub fn torques_with_wrench<const N: usize>(
+    inertia: &Inertia,
+    e: &[Vector; N],
+    qd: &[f64; N],
+    qdd: &[f64; N],
+    around: &ExternalLoads,
+) -> ([f64; N], BaseWrench) {
     let (h, v) = assemble(inertia, e, qd);
     let (inertial, holding) = (matrix_times(&h, qdd), hold(inertia, e, around));
     let rate = angular_rate(inertia, &inertial, &v, qdd);
     let wrench = wrench_with(inertia, e, qd, qdd, around, rate);
-    (PerDrive::from(std::array::from_fn::<_, N, _>(|k| inertial[k] + v[k] + holding[k])), wrench)
+    (std::array::from_fn(|k| inertial[k] + v[k] + holding[k]), wrench)
 }
 
 /// Returns Σ_j m_j |r̈_cj|, N: the sum of the magnitudes of the links' inertial forces. In such a sum, forces cannot

@@ -1,15 +1,17 @@
 //! Stillbase in Python: machines, their dynamics, and everything that the command line answers.
 //!
-//! Answers of the command line are found by the command line: it is carried out within the interpreter, and its JSON becomes
-//! Python's dictionaries, so that names, numbers and errors are the same. Only what has to be fast goes another way: the
-//! signals of a run become arrays without a copy, and `dynamics` evaluates whole arrays.
+//! Answers of the command line are found by the command line: it is carried out within the interpreter, and its JSON
+//! becomes Python's dictionaries, so that names, numbers and errors are the same. Only what has to be fast goes another
+//! way: the signals of a run become arrays without a copy; `dynamics` and `step_batch` work on whole arrays.
 //!
 //! This crate serves the workspace alone, and may change in any version.
 
+mod arrays;
 mod asked;
 mod dynamics;
 mod machine;
 mod run;
+mod steps;
 
 use pyo3::prelude::*;
 
@@ -17,7 +19,7 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _stillbase {
     #[pymodule_export]
-    use super::asked::{NoAnswer, StillbaseError, WrongInput, ask, main};
+    use super::asked::{NoAnswer, StillbaseError, WrongInput, ask, main, plan, record};
     #[pymodule_export]
     use super::dynamics::Dynamics;
     #[pymodule_export]
@@ -25,10 +27,8 @@ mod _stillbase {
     #[pymodule_export]
     use super::run::{Run, simulate};
 
-    use super::*;
-
-    #[pymodule_init]
-    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        module.add("__version__", env!("CARGO_PKG_VERSION"))
-    }
+    /// Version of the package.
+    #[pymodule_export]
+    #[expect(non_upper_case_globals, reason = "a name of Python")]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
 }

@@ -61,9 +61,11 @@ mod store;
 mod style;
 mod ticks;
 mod topic;
+#[cfg(feature = "stream")]
 mod viewer;
 
 pub use options::{Options, Pictures};
+#[cfg(feature = "stream")]
 pub use viewer::{VIEWER_URL, Viewer, ViewerError};
 
 use std::path::{Path, PathBuf};
@@ -143,6 +145,7 @@ pub enum RecordError {
     #[error(transparent)]
     Write(#[from] WriteError),
     /// The viewer cannot be reached.
+    #[cfg(feature = "stream")]
     #[error(transparent)]
     Viewer(#[from] ViewerError),
     /// The caller stopped the recording.
@@ -179,6 +182,7 @@ pub fn record(
 ///
 /// # Errors
 /// Any [`RecordError`]. What the viewer has by then, it keeps.
+#[cfg(feature = "stream")]
 pub fn stream(
     scenarios: &[Scenario],
     viewer: &Viewer,
@@ -270,10 +274,12 @@ fn write(
 ) -> Result<Vec<Recording>, RecordError> {
     let name = match &to {
         Sink::File(_) => file.map(PathBuf::from).unwrap_or_default(),
+        #[cfg(feature = "stream")]
         Sink::Viewer(viewer) => viewer.url().into(),
     };
     let because = |error| match error {
         StoreError::Write(source) => WriteError::Failed { file: name.clone(), source }.into(),
+        #[cfg(feature = "stream")]
         StoreError::Viewer(why) => RecordError::Viewer(why),
         StoreError::Data(why) => RecordError::Data { file: name.clone(), why },
     };

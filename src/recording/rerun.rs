@@ -5,7 +5,9 @@
 
 pub use re_build_info::CrateVersion;
 pub use re_chunk::{Chunk, ChunkError, ChunkId, RowId, TimeColumn};
+#[cfg(feature = "stream")]
 pub use re_grpc_client::Client;
+#[cfg(feature = "stream")]
 pub use re_grpc_client::write::{ClientConnectionState as StreamState, Options as StreamOptions};
 pub use re_log_encoding::{EncodeError, Encoder, EncodingOptions};
 pub use re_log_types::{
@@ -19,5 +21,6 @@ pub use re_sdk_types::{
     AnyValues, AsComponents, SerializationError, SerializedComponentBatch, SerializedComponentColumn,
 };
 pub use re_sdk_types::{blueprint, components, datatypes};
+#[cfg(feature = "stream")]
 pub use re_uri::{Error as UriError, ProxyUri};
 pub use uuid::Uuid;

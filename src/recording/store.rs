@@ -12,6 +12,7 @@ use crate::rerun::{EncodeError, Encoder, EncodingOptions};
 use crate::rerun::{TimeInt, TimePoint, Timeline};
 use thiserror::Error;
 
+#[cfg(feature = "stream")]
 use super::viewer::{Viewer, ViewerError, ViewerStream};
 use stillbase_files::NewFile;
 pub use stillbase_files::recorded::{APPLICATION, TIME_TIMELINE};
@@ -29,6 +30,7 @@ pub enum StoreError {
     #[error(transparent)]
     Write(#[from] std::io::Error),
     /// The viewer cannot be reached.
+    #[cfg(feature = "stream")]
     #[error(transparent)]
     Viewer(#[from] ViewerError),
     /// Rerun refuses the data.
@@ -42,6 +44,7 @@ pub enum Sink {
     /// To a file.
     File(NewFile),
     /// To a viewer.
+    #[cfg(feature = "stream")]
     Viewer(Viewer),
 }
 
@@ -146,6 +149,7 @@ pub struct Store {
 /// A sink that has been opened.
 enum Open {
     File(Box<Encoder<NewFile>>),
+    #[cfg(feature = "stream")]
     Viewer(ViewerStream),
 }
 
@@ -160,6 +164,7 @@ impl Store {
                 let encoder = Encoder::new_eager(CrateVersion::LOCAL, EncodingOptions::PROTOBUF_COMPRESSED, file)?;
                 Open::File(Box::new(encoder))
             }
+            #[cfg(feature = "stream")]
             Sink::Viewer(viewer) => Open::Viewer(viewer.connect()?),
         };
         let id = format!("{digest:032x}");
@@ -183,6 +188,7 @@ impl Store {
     fn send(&mut self, message: LogMsg) -> Result<(), StoreError> {
         match &mut self.to {
             Open::File(encoder) => encoder.append(&message).map(drop).map_err(StoreError::from),
+            #[cfg(feature = "stream")]
             Open::Viewer(stream) => stream.send(message).map_err(StoreError::from),
         }
     }
@@ -279,6 +285,7 @@ impl Store {
                 file.flush()?;
                 Ok(Some(file))
             }
+            #[cfg(feature = "stream")]
             Open::Viewer(stream) => Ok(stream.finish()?).map(|()| None),
         }
     }

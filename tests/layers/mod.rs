@@ -69,7 +69,7 @@ const EDGES: &[(&str, &[&str])] = &[
             "commands/interrupt.rs",
             "commands/tolerance/parallel.rs",
             "files/video.rs",
-            "python/dynamics.rs",
+            "python/arrays.rs",
         ],
     ),
     ("std::net", &[]),

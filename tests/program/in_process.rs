@@ -6,6 +6,7 @@ use stillbase::files::text::with_standard_input;
 use stillbase_commands::{InProcessAnswer, answer};
 
 use super::{prints, stillbase, text};
+use crate::folder::Folder;
 
 fn asked(line: &[&str]) -> InProcessAnswer {
     answer(line.iter().map(OsString::from))
@@ -51,6 +52,24 @@ fn an_answer_stands_beside_the_reason() {
     let (said, out) = (asked(&line), stillbase(&line));
     assert_eq!((said.status, said.json.as_deref()), (1, Some(text(&out.stdout))), "{said:?}");
     assert!(!said.errors.is_empty());
+}
+
+/// A file for standard output is the one that the program prints; one with a name is written without a note.
+#[test]
+fn a_file_for_standard_output_is_returned() {
+    for line in [
+        &["export-model", "nine-link", "-o", "-", "--format", "svg"][..],
+        &["export-model", "spot", "-o", "-"],
+        &["plan", "nine-link", "0.5,0.5", "0.55,0.9", "-o", "-"],
+    ] {
+        let said = asked(line);
+        assert_eq!(said.file.as_deref(), Some(prints(line).as_bytes()), "{line:?}");
+        assert!(said.status == 0 && said.json.is_none(), "{line:?}: {said:?}");
+    }
+    let folder = Folder::new("in-process");
+    let file = folder.path("arm.xml");
+    let said = asked(&["export-model", "nine-link", "-o", file.to_str().expect("UTF-8")]);
+    assert!(file.is_file() && said.file.is_none() && said.notes.iter().all(|note| !note.contains("wrote")), "{said:?}");
 }
 
 /// Signals are the numbers of the program's CSV, bit by bit.

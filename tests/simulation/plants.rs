@@ -7,7 +7,9 @@ use stillbase::session::{Edit, TimedEdit, replay};
 use stillbase::settings::change;
 use stillbase::simulation::control::Control;
 use stillbase::simulation::frame::Frame;
-use stillbase::simulation::plant::{BaseKind, Contacts, DriveValues, Friction, FrictionTorques};
+use stillbase::simulation::plant::{
+    Base, BaseKind, Contacts, DriveValues, EqualSteps, Friction, FrictionTorques, MovingBody,
+};
 
 use crate::support::{body_of, close, three};
 
@@ -39,6 +41,25 @@ fn last(scenario: &Scenario) -> Frame {
     let last = frames[frames.len() - 1];
     assert!(last.first_violation().is_none(), "{:?} {:?}", last.audit, last.first_violation());
     last
+}
+
+/// Steps under constant torques are those of a run whose control gives none, to the last bit, where these need no substeps.
+#[test]
+fn steps_without_control_are_those_of_a_run() {
+    let mut scenario = case("case-1", "[control]\nlaw = \"pd\"\nkp = 0\nkd = 0");
+    let falls = [("gravity", "0,-1"), ("link.1.com", "0.1"), ("link.2.com", "0.2"), ("link.3.com", "0.3")];
+    scenario.machine = scenario.machine.set_all(falls).expect("a machine");
+    let frames = frames(&scenario);
+    let start = &frames[0];
+    let body = MovingBody::of(&scenario.machine, &Friction::default(), &Base::default(), &start.q).expect("a body");
+    for count in [0, 1, 64, frames.len() - 1] {
+        let (mut q, mut qd) = (start.q.to_vec(), start.qd.to_vec());
+        let steps = EqualSteps { length: scenario.step, count };
+        body.advance_under(&[0.0; 3], steps, &mut q, &mut qd);
+        assert_eq!((&q[..], &qd[..]), (&frames[count].q[..], &frames[count].qd[..]), "after {count} steps");
+    }
+    let moved = (0..3).map(|k| (frames[frames.len() - 1].q[k] - start.q[k]).abs()).fold(f64::INFINITY, f64::min);
+    assert!(moved > 0.01, "{moved}");
 }
 
 /// Friction between drive and base is internal to that pair: control that tracks it away leaves nothing. Here it is

@@ -19,8 +19,11 @@ from ._stillbase import (
     WrongInput,
     __version__,
     ask,
+    plan,
+    record,
     simulate,
 )
+from ._tables import trim
 
 __all__ = [
     "Dynamics",
@@ -31,5 +34,8 @@ __all__ = [
     "WrongInput",
     "__version__",
     "ask",
+    "plan",
+    "record",
     "simulate",
+    "trim",
 ]

@@ -98,10 +98,26 @@ impl<const N: usize> StateRates<N> {
         }
     }
 
-    /// Makes a classical fourth-order Runge–Kutta step of `h` seconds from the rates at the start, twice half-way, and
-    /// at the end.
+    /// Makes a classical fourth-order Runge–Kutta step of `h` seconds from the rates at its start. `stage` evaluates a
+    /// state; its second argument says whether that is at the end of the step, or half-way. Also returns the three
+    /// stages.
     #[inline(always)]
-    pub fn stepped<const MOVES: bool>(from: &State, k: [&Self; 4], h: f64) -> State {
+    pub fn runge_kutta<const MOVES: bool>(
+        from: &State,
+        k1: &Self,
+        h: f64,
+        mut stage: impl FnMut(&ReducedState<N>, bool) -> RungeKuttaStage<N>,
+    ) -> (State, [RungeKuttaStage<N>; 3]) {
+        let k2 = stage(&ReducedState::along::<MOVES>(from, k1, 0.5 * h), false);
+        let k3 = stage(&ReducedState::along::<MOVES>(from, &k2.rates, 0.5 * h), false);
+        let k4 = stage(&ReducedState::along::<MOVES>(from, &k3.rates, h), true);
+        let state = Self::stepped::<MOVES>(from, [k1, &k2.rates, &k3.rates, &k4.rates], h);
+        (state, [k2, k3, k4])
+    }
+
+    /// Returns the state after `h` seconds from the rates at the start, twice half-way, and at the end.
+    #[inline(always)]
+    fn stepped<const MOVES: bool>(from: &State, k: [&Self; 4], h: f64) -> State {
         let w = [h / 6.0, h / 3.0, h / 3.0, h / 6.0];
         let mut state = *from;
         let (q, momenta) = (state.q.array_mut::<N>(), state.momenta.array_mut::<N>());

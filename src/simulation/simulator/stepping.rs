@@ -306,28 +306,22 @@ fn stepped_of<const N: usize, const MOVES: bool>(
     let (state, slip, stuck_torque) = (&from.state, &from.slip, &mut end.stuck_torque);
     *stuck_torque = from.stuck_torque;
     let body = simulation.body();
+    let (half_way, aim) = (simulation.aim(middle, segment), simulation.aim(to, segment));
     let k1 = StateRates::of(&from.slope);
-    let aim = simulation.aim(middle, segment);
-    let k2 = simulation.stage::<N, MOVES>(&ReducedState::along::<MOVES>(state, &k1, 0.5 * h), &aim, slip, stuck_torque);
-    let k3 = simulation.stage::<N, MOVES>(
-        &ReducedState::along::<MOVES>(state, &k2.rates, 0.5 * h),
-        &aim,
-        slip,
-        stuck_torque,
-    );
-    let aim = simulation.aim(to, segment);
-    let k4 = simulation.stage::<N, MOVES>(&ReducedState::along::<MOVES>(state, &k3.rates, h), &aim, slip, stuck_torque);
-    let mut state = StateRates::stepped::<MOVES>(state, [&k1, &k2.rates, &k3.rates, &k4.rates], h);
+    let (mut state, kept) = StateRates::runge_kutta::<MOVES>(state, &k1, h, |at, is_end| {
+        let aim = if is_end { &aim } else { &half_way };
+        simulation.stage::<N, MOVES>(at, aim, slip, stuck_torque)
+    });
     if body.contacts().any_can_stick() {
         state = body.with_stuck_stopped(state, slip);
     }
     let last = simulation.stage::<N, MOVES>(&ReducedState::of(&state), &aim, slip, stuck_torque);
     let drives = body.arm().drives();
     if let Some(stages) = stages {
-        *stages = [&k2, &k3, &k4].map(|k| k.slope(drives));
+        *stages = std::array::from_fn(|i| kept[i].slope(drives));
     }
     (end.at, end.state, end.slope, end.aim, end.slip) = (to, state, last.slope(drives), aim, *slip);
-    between(body, &k4, &last)
+    between(body, &kept[2], &last)
 }
 
 /// Returns the difference between two stages at one instant.

@@ -1,0 +1,63 @@
+//! Steps of many simulations at once.
+
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::planar::{DriveAngles, PerDrive};
+use stillbase_simulation::plant::{Base, EqualSteps, Friction, MovingBody};
+
+use crate::arrays::{Rows, empty, in_threads, rows_of_a_part};
+
+/// Angles and rates.
+pub type Angles<'py> = (Bound<'py, PyArrayDyn<f64>>, Bound<'py, PyArrayDyn<f64>>);
+
+/// Advances states of motion under constant torques on a number of threads; the interpreter is free meanwhile.
+///
+/// # Errors
+/// If shapes do not fit, or the step is not finite.
+pub fn step<'py>(
+    py: Python<'py>,
+    machine: &Machine,
+    [q, qd, torque]: [&Bound<'py, PyAny>; 3],
+    steps: EqualSteps,
+    out: Option<Angles<'py>>,
+    threads: usize,
+) -> PyResult<Angles<'py>> {
+    let drives = machine.drives();
+    if !steps.length.is_finite() {
+        return Err(PyValueError::new_err(format!("dt is {}: want a finite time in s", steps.length)));
+    }
+    // Only the torques stay borrowed: the results may be the arrays that are given.
+    let Rows { shape, arrays: [_, _, (torque, has_all)] } =
+        Rows::of([("q", q), ("qd", qd), ("torque", torque)], drives)?;
+    let result = match out {
+        Some(out) => out,
+        None => (empty(py, &shape, &[drives])?, empty(py, &shape, &[drives])?),
+    };
+    for (name, (out, given)) in ["q", "qd"].into_iter().zip([(&result.0, q), (&result.1, qd)]) {
+        if *out.shape() != *[&shape[..], &[drives]].concat() {
+            let why =
+                format!("out has {name} of the shape {:?}: want {drives} for each state of {shape:?}", out.shape());
+            return Err(PyValueError::new_err(why));
+        }
+        py.import("numpy")?.call_method1("copyto", (out, given))?;
+    }
+    let still = DriveAngles(PerDrive::zeros(drives));
+    let body = MovingBody::of(machine, &Friction::default(), &Base::default(), &still);
+    let body = body.map_err(|why| PyValueError::new_err(why.to_string()))?;
+    {
+        let torque = torque.array.as_slice()?;
+        let part = rows_of_a_part(shape.iter().product(), threads);
+        let (mut q, mut qd) = (result.0.try_readwrite()?, result.1.try_readwrite()?);
+        let (q, qd) = (q.as_slice_mut()?, qd.as_slice_mut()?);
+        py.detach(|| {
+            let parts = q.chunks_mut(part * drives).zip(qd.chunks_mut(part * drives));
+            in_threads(parts, |i, (q, qd)| {
+                let own = if has_all { &torque[i * part * drives..][..q.len()] } else { torque };
+                body.advance_under(own, steps, q, qd);
+            });
+        });
+    }
+    Ok(result)
+}
