@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::ffi::OsString;
 
-use clap::{ArgMatches, FromArgMatches};
+use clap::{ArgAction, ArgMatches, FromArgMatches};
 
 use super::exit::{Line, status, usage_status};
 use super::input::words;
@@ -71,6 +71,15 @@ pub fn carry_out(line: impl IntoIterator<Item = OsString>) -> u8 {
 fn asks_for_json(matches: &ArgMatches) -> bool {
     let asks = |(_, own): (&str, &ArgMatches)| matches!(own.try_get_one::<bool>("json"), Ok(Some(true)));
     matches.subcommand().is_some_and(asks)
+}
+
+/// Returns whether an option of a command is repeated for several values, as `--merge A --merge B`; others take them in one
+/// word, with commas.
+pub fn takes_one_value_each(command: &str, option: &str) -> bool {
+    let program = Arguments::program();
+    let of = program.find_subcommand(command).unwrap_or(&program);
+    let found = of.get_arguments().find(|own| own.get_long() == Some(option));
+    found.is_some_and(|own| matches!(own.get_action(), ArgAction::Append) && own.get_value_delimiter().is_none())
 }
 
 /// Carries out a command line without the name of the program, such as `check spot --json`. Only answers with `--json` are

@@ -69,7 +69,7 @@ mod trim;
 mod turn_map;
 mod workspace;
 
-pub use in_process::{InProcessAnswer, answer, carry_out};
+pub use in_process::{InProcessAnswer, answer, carry_out, takes_one_value_each};
 pub use interrupt::watch;
 pub use open::OpenArguments;
 pub use program::{Arguments, name_commit};

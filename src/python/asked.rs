@@ -6,7 +6,7 @@ use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyTypeError, PyUserWarning};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyString, PyTuple};
-use stillbase_commands::{InProcessAnswer, answer};
+use stillbase_commands::{InProcessAnswer, answer, takes_one_value_each};
 use stillbase_files::text::with_standard_input;
 
 use crate::machine::Machine;
@@ -67,9 +67,9 @@ pub fn setting(value: &Bound<'_, PyAny>) -> PyResult<String> {
 }
 
 /// Returns options as words of the command line: `min_reach=1.2` is `--min-reach 1.2`, `keep=True` is `--keep`. A list
-/// is one word with commas; a list of lists, or a dictionary, is the option repeated. `None` and `False` leave an
-/// option out.
-pub fn options(given: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<OsString>> {
+/// is one word with commas, or the option repeated where a command wants that; a list of lists, or a dictionary, is the
+/// option repeated. `None` and `False` leave an option out.
+pub fn options(command: &str, given: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<OsString>> {
     let mut words: Vec<OsString> = Vec::new();
     for (key, value) in given.into_iter().flat_map(|given| given.iter()) {
         let name = key.str()?.to_string();
@@ -86,7 +86,8 @@ pub fn options(given: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<OsString>> {
             let parts = value.try_iter()?.collect::<PyResult<Vec<_>>>()?;
             let are_lists = parts.iter().map(is_list).collect::<PyResult<Vec<_>>>()?;
             let parts = parts.iter().map(setting).collect::<PyResult<Vec<_>>>()?;
-            if !parts.is_empty() && !are_lists.contains(&false) {
+            let is_repeated = !are_lists.contains(&false) || takes_one_value_each(command, &name[2..]);
+            if !parts.is_empty() && is_repeated {
                 parts.into_iter().for_each(add);
             } else {
                 add(parts.join(","));
@@ -263,7 +264,8 @@ impl Line {
     }
 
     fn asked<'py>(mut self, py: Python<'py>, given: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
-        self.words.extend(options(given)?);
+        let command = self.words.first().map(|word| word.to_string_lossy().into_owned()).unwrap_or_default();
+        self.words.extend(options(&command, given)?);
         answered(py, self.words, self.input)
     }
 }

@@ -50,7 +50,7 @@ impl Machine {
     /// Returns the file of an ending that `export-model` makes of this machine.
     fn exported(&self, py: Python<'_>, ending: &str, given: Option<&Bound<'_, PyDict>>) -> PyResult<String> {
         let words = ["--output", "-", "--format", ending].map(OsString::from);
-        let line = Self::line("export-model", words.into_iter().chain(options(given)?));
+        let line = Self::line("export-model", words.into_iter().chain(options("export-model", given)?));
         let file = carried_out(py, line, Some(self.input()))?.file.unwrap_or_default();
         String::from_utf8(file).map_err(wrong)
     }
@@ -262,7 +262,7 @@ impl Machine {
     /// ```
     #[pyo3(signature = (**given: "typing.Any") -> "dict[str, typing.Any]")]
     fn design<'py>(&self, py: Python<'py>, given: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
-        self.asked(py, "design", options(given)?)
+        self.asked(py, "design", options("design", given)?)
     }
 
     /// Finds the counterweights that balance the machine, as `stillbase design --counterweights` with its options.
@@ -276,7 +276,7 @@ impl Machine {
     /// ```
     #[pyo3(signature = (**given: "typing.Any") -> "dict[str, typing.Any]")]
     fn counterweights<'py>(&self, py: Python<'py>, given: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
-        let words = ["--counterweights".into()].into_iter().chain(options(given)?);
+        let words = ["--counterweights".into()].into_iter().chain(options("design", given)?);
         self.asked(py, "design", words.collect())
     }
 
@@ -297,7 +297,7 @@ impl Machine {
         given: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let words = ["--counterweights".into(), "--front".into(), count.to_string().into()];
-        self.asked(py, "design", words.into_iter().chain(options(given)?).collect())
+        self.asked(py, "design", words.into_iter().chain(options("design", given)?).collect())
     }
 
     /// The reactionless workspace of b, rad, as `stillbase workspace` with its options.
@@ -315,7 +315,7 @@ impl Machine {
         b: f64,
         given: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let words = ["--b".into(), format!("{b:?}").into()].into_iter().chain(options(given)?);
+        let words = ["--b".into(), format!("{b:?}").into()].into_iter().chain(options("workspace", given)?);
         self.asked(py, "workspace", words.collect())
     }
 

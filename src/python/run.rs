@@ -162,7 +162,7 @@ impl Run {
 #[pyo3(signature = (scenario: "str | os.PathLike[str]", **given: "typing.Any"))]
 pub fn simulate(py: Python<'_>, scenario: &Bound<'_, PyAny>, given: Option<&Bound<'_, PyDict>>) -> PyResult<Run> {
     let mut words: Vec<OsString> = vec!["simulate".into(), scenario.str()?.to_string().into(), "--json".into()];
-    words.extend(options(given)?);
+    words.extend(options("simulate", given)?);
     let said = carried_out(py, words, None)?;
     let answer = parsed(py, said.json.as_deref().unwrap_or("{}"))?;
     Run::of(py, said.signals.unwrap_or_default(), &answer)
