@@ -62,7 +62,7 @@ proptest! {
             prop_assert!(parts[other].merge(&one).is_ok());
         }
         prop_assert!(parts[0] == whole(&numbers, limits));
-        prop_assert_eq!(parts[0].machines(), &[0..numbers.len() as u64]);
+        prop_assert_eq!(parts[0].machines(), std::slice::from_ref(&(0..numbers.len() as u64)));
         prop_assert_eq!(parts[0].implausible(), None);
         // Nothing is counted twice.
         let twice = parts[0].clone().merge(&parts[0]);

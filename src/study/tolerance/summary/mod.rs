@@ -162,7 +162,7 @@ impl Summary {
         let touching = &self.machines[at..until];
         let start = touching.first().map_or(machines.start, |own| own.start.min(machines.start));
         let end = touching.last().map_or(machines.end, |own| own.end.max(machines.end));
-        self.machines.splice(at..until, [start..end]);
+        self.machines.splice(at..until, std::iter::once(start..end));
         None
     }
 
