@@ -19,7 +19,7 @@ pub type Angles<'py> = (Bound<'py, PyArrayDyn<f64>>, Bound<'py, PyArrayDyn<f64>>
 pub fn step<'py>(
     py: Python<'py>,
     machine: &Machine,
-    [q, qd, torque]: [&Bound<'py, PyAny>; 3],
+    [q, qd, force]: [&Bound<'py, PyAny>; 3],
     steps: EqualSteps,
     out: Option<Angles<'py>>,
     threads: usize,
@@ -30,7 +30,8 @@ pub fn step<'py>(
     }
     // Only the torques stay borrowed: the results may be the arrays that are given.
     let Rows { shape, arrays: [_, _, (torque, has_all)] } =
-        Rows::of([("q", q), ("qd", qd), ("torque", torque)], drives)?;
+        Rows::of([("q", q), ("qd", qd), ("torque", force)], drives)?;
+    let numpy = py.import("numpy")?;
     let result = match out {
         Some(out) => out,
         None => (empty(py, &shape, &[drives])?, empty(py, &shape, &[drives])?),
@@ -41,7 +42,23 @@ pub fn step<'py>(
                 format!("out has {name} of the shape {:?}: want {drives} for each state of {shape:?}", out.shape());
             return Err(PyValueError::new_err(why));
         }
-        py.import("numpy")?.call_method1("copyto", (out, given))?;
+        if !out.is_c_contiguous() {
+            let why = format!("out has {name} with gaps or in Fortran order: want an array without gaps in order C");
+            return Err(PyValueError::new_err(why));
+        }
+        // Written at once, one of them would spoil what is read after it.
+        let others = [("q", q), ("qd", qd), ("torque", force), ("qd of out", result.1.as_any())];
+        for (other, array) in
+            others.into_iter().filter(|(other, _)| *other != name && *other != format!("{name} of out"))
+        {
+            if numpy.call_method1("may_share_memory", (out, array))?.extract()? {
+                let why = format!("out has {name} in the memory of {other}: want memory of its own, or that of {name}");
+                return Err(PyValueError::new_err(why));
+            }
+        }
+    }
+    for (out, given) in [(&result.0, q), (&result.1, qd)] {
+        numpy.call_method1("copyto", (out, given))?;
     }
     let still = DriveAngles(PerDrive::zeros(drives));
     let body = MovingBody::of(machine, &Friction::default(), &Base::default(), &still);

@@ -210,6 +210,23 @@ for name in ("nine-link-bare", "serial-3r", "spot", "four-drive", "nine-link-gea
         after = machine.step_batch(q, qd, torque, 1e-4, steps=1000)
         work = np.einsum("ij,ij->i", torque, after[0] - q)
         assert np.abs(energy(*after) - before - work).max() < 1e-9 * np.abs(work).max(), name
+    # Results that would spoil what is read, or whose rows lie elsewhere, are refused, and nothing is changed.
+    fortran, swapped = (np.asfortranarray(q), np.asfortranarray(qd)), (qd.copy(), q.copy())
+    force = torque.copy()
+    for given, out in (
+        ((q, qd, force), fortran),
+        ((swapped[1], swapped[0], force), swapped),
+        ((q, qd, force), (force, np.empty_like(qd))),
+        ((q, qd, force), (np.empty((2 * len(q), n))[::2], np.empty_like(qd))),
+    ):
+        before = [np.array(part) for part in (*given, *out)]
+        try:
+            machine.step_batch(*given, 1e-3, out=out)
+        except ValueError as why:
+            assert "out has q" in str(why), why
+        else:
+            raise AssertionError(f"{name}: out of other memory")
+        assert all(map(np.array_equal, before[:3], given)), name
 for wrong in ({"dt": np.nan}, {"out": (np.zeros((2, 3)), np.zeros((2, 3)))}, {"q": np.zeros(2)}):
     given = {"q": np.zeros(3), "qd": np.zeros(3), "torque": np.zeros(3), "dt": 1e-3} | wrong
     try:

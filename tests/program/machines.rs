@@ -443,12 +443,14 @@ fn designs_of_a_study_are_those_found_alone() {
         (&["--vary", "length.l5=0.3:0.6"][..], 2, "--points"),
         (&["--vary", "length.l5=0.6:0.3:4"], 2, "LO:HI"),
         (&["--vary", "length.nowhere=1,2"], 2, "length.nowhere"),
-        (&["--vary", "payload.mass=400,500"], 1, "none of 2 points has a design"),
+        (&["--vary", "payload.mass=400,500", "--table", &named("none.csv")], 1, "none of 2 points has a design"),
         (&["--vary", "material=cheese"], 2, "want a density"),
         (&["--vary", "payload.mass=0,0.1", "--vary", "payload.mass=0.2"], 2, "varies twice"),
     ] {
         fails(&[&study[..], more].concat(), status, &[words]);
     }
+    // Why there is none is kept, so that this part is complete.
+    assert_eq!(std::fs::read_to_string(folder.path("none.csv")).expect("there").lines().count(), 3);
 }
 
 #[test]

@@ -196,6 +196,12 @@ fn summaries_say_what_every_machine_says() {
     }
     assert!(whole["yield"] == full["yield"] && merged["yield"] == full["yield"] && exact["yield"] == full["yield"]);
     assert_eq!(whole["peak_base_moment"]["quantile_error"], merged["peak_base_moment"]["quantile_error"]);
+    // With gaps, too, it says what is missing.
+    let (gap, _) = (part("1/3", "first.parquet"), part("3/3", "last.parquet"));
+    assert_eq!(gap["shard"], json!([0, 1666]));
+    json(&["tolerance", "--merge", "first.parquet", "last.parquet", "-o", "gap.parquet"]);
+    let said = said_in(&folder, &[&study[..], &["--exact", "gap.parquet"]].concat(), 0);
+    assert!(said.contains("machines 1666 to 3332 are in no part"), "{said}");
     // Some parts are merged as they are, and what is missing is said.
     let some = json(&["tolerance", "--merge", "b.parquet", "-o", "some.parquet"]);
     assert_eq!((&some["missing"], merged.get("missing")), (&json!([[0, 2500]]), None));
@@ -209,6 +215,7 @@ fn summaries_say_what_every_machine_says() {
         (&["case-3", "--samples", "4000", "--exact", "a.parquet"], 2, "of another study"),
         (&["case-3", "--samples", "50", "--summary", "-o", "x.csv"], 2, ".parquet"),
         (&["case-3", "--exact", "nowhere.parquet"], 2, "nowhere.parquet"),
+        (&["case-3", "--samples", "50", "--summary", "-o", "-", "--format", "parquet"], 2, "a summary is a file"),
     ] {
         let said = said_in(&folder, &[&["tolerance"], args].concat(), status);
         assert!(said.contains(words), "{said}");

@@ -212,6 +212,8 @@ impl DesignArguments {
                 best = kept(best);
             }
         }
+        // The reasons are worth keeping, too.
+        rows.map(Rows::finish).transpose()?;
         if found == 0 {
             // The first point says what is wrong, as it would alone.
             let values = space.point(points.start);
@@ -223,7 +225,6 @@ impl DesignArguments {
             );
             return alone.map_err(|why| why.with_context(none));
         }
-        rows.map(Rows::finish).transpose()?;
         let Range { start, end } = points;
         let file = of.table.as_ref().map(|file| file.display().to_string());
         let answer =

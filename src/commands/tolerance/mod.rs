@@ -9,6 +9,7 @@ use std::sync::{Mutex, PoisonError};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use stillbase_files::is_standard;
 use stillbase_files::row_file::{ROW_ENDINGS, RowForm};
 use stillbase_files::shards::{
     ShardError, ShardHeader, StudyId, Writer, is_summary, merge, merge_summaries, read_summary, write_summary,
@@ -16,8 +17,8 @@ use stillbase_files::shards::{
 use stillbase_session::scenario::{MAX_SAMPLES, Scenario, Spread, Tolerance as Section};
 use stillbase_session::{Run, with_start_edits};
 use stillbase_study::tolerance::{
-    BinValues, Ensemble, EnsemblePart, KnownRanks, Limits, Mode, PartReport, PartResults, SampleOutcome, Summary,
-    ToleranceError, Yields,
+    BinValues, Ensemble, EnsemblePart, KnownRanks, Limits, MAX_VALUES, Mode, PartReport, PartResults, SampleOutcome,
+    Summary, ToleranceError, Yields,
 };
 
 pub use self::report::{MergedParts, ToleranceAnswer};
@@ -48,8 +49,9 @@ Examples:
 A file has one row a machine: its number, its parameters, peak |n_B|, peak dynamic |f_B|, and the root mean square of
 both over time. Its head holds a checksum of it all, which --merge looks at. Machine i depends on the seed and on i only, so shards put together are the whole, exactly.
 
-A summary has one row a bin instead, at most 0.1 % wide: its machines, extremes and exact sums. It stays below 1 MB for
-any number of machines, and merging is addition.
+A summary has one row a bin instead, at most 0.1 % wide: its machines and extremes, and exact sums. It takes some 0.6 MB
+for a million machines, hardly more for a billion, and merging is addition. With --simulate it compares nothing with
+perfect tracking.
 
 JSON keys: scenario, simulated, samples, shard [from, to), seed, duration; parameters [{key, unit, nominal, spread,
 deviation, mean_deviation, cut}]; nominal {peak_base_moment, peak_base_force, rms_base_moment, rms_base_force};
@@ -105,7 +107,7 @@ pub struct ToleranceArguments {
         ]
     )]
     merge: Vec<PathBuf>,
-    /// Write every machine to this file, .csv or .parquet, or the summary; `-` is standard output
+    /// Write every machine to this file, .csv or .parquet, or the summary, .parquet; `-` is standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Replace the file if it exists
@@ -167,6 +169,13 @@ impl From<ShardError> for Failure {
     }
 }
 
+/// Prints which machines are not in a summary.
+fn say_missing(missing: &[Range<u64>]) {
+    for Range { start, end } in missing {
+        print_message(format!("note: machines {start} to {} are in no part", end - 1));
+    }
+}
+
 /// Returns of which limits how many machines are past.
 fn past_limits(yields: &Yields) -> impl Iterator<Item = String> {
     let Yields { moment, force, .. } = yields;
@@ -203,9 +212,7 @@ impl ToleranceArguments {
             (study, PartResults::of(&outcomes, &[], self.limits()), Vec::new())
         };
         let Some(results) = results else { return Err(Failure::no_answer("the parts hold no machine")) };
-        for Range { start, end } in &missing {
-            print_message(format!("note: machines {start} to {} are in no part", end - 1));
-        }
+        say_missing(&missing);
         let answer = MergedParts {
             file: whole.display().to_string(),
             samples: study.samples,
@@ -293,7 +300,11 @@ impl ToleranceArguments {
             let why = format!("--shard {i}/{n} of {samples} samples holds no machine: want fewer shards");
             return Err(Failure::wrong_input(why));
         }
-        let ending = self.form.check_wanted(&self.format, self.output.as_deref(), self.force, &ROW_ENDINGS)?;
+        let endings = if self.summary { &[RowForm::Parquet.ending()][..] } else { &ROW_ENDINGS };
+        let ending = self.form.check_wanted(&self.format, self.output.as_deref(), self.force, endings)?;
+        if self.summary && self.output.as_deref().is_some_and(is_standard) {
+            return Err(Failure::wrong_input("-o -: a summary is a file: want a name that ends in .parquet"));
+        }
         let to = self.output.as_deref().zip(ending.map(row_form));
         let run = Run::new(&scenario).map_err(|e| Failure::refused(&scenario, e))?;
         let plant = scenario.plant_machine()?;
@@ -349,9 +360,10 @@ impl ToleranceArguments {
         bar.finish_and_clear();
         let mut whole = Summary::new(limits);
         for sum in workers.map_err(|e| Failure::refused(run.scenario(), e))? {
-            // Every machine was given to one of them.
+            // They have the same limits, and say nothing of their machines: each was given to one of them.
             whole.merge(&sum).map_err(|_| Failure::no_answer("a machine was counted twice"))?;
         }
+        whole.hold(range.clone());
         Ok(whole)
     }
 
@@ -369,6 +381,11 @@ impl ToleranceArguments {
             return Err(Failure::wrong_input(format!("{}: a summary of another study: {why}", file.display())));
         }
         let bins = sum.quantile_bins();
+        if let Some(count) = bins.values().max().filter(|count| **count > MAX_VALUES) {
+            let why =
+                format!("{count} machines lie in one bin: want at most {MAX_VALUES}; quantiles are right within 0.1 %");
+            return Err(Failure::no_answer(format!("--exact {}: {why}", file.display())));
+        }
         let mut known = KnownRanks::default();
         let bar = self.progress(sum.count());
         for mut pass in BinValues::passes(&bins) {
@@ -405,6 +422,7 @@ impl ToleranceArguments {
             }
         }
         bar.finish_and_clear();
+        say_missing(&sum.missing(study.samples));
         let held = sum.machines();
         let machines = held.first().map_or(0, |own| own.start)..held.last().map_or(0, |own| own.end);
         Ok((machines, sum.results(&known)))

@@ -36,7 +36,14 @@ pub fn share_out<W: Send>(
                 if chunk >= after {
                     return Ok(());
                 }
-                see(worker, &Batch::of(ensemble, &mut sampler, mode, chunk, range, false)?);
+                match Batch::of(ensemble, &mut sampler, mode, chunk, range, false) {
+                    Ok(batch) => see(worker, &batch),
+                    Err(why) => {
+                        // The others end with the chunk that they have.
+                        next.store(after, Ordering::Relaxed);
+                        return Err(why);
+                    }
+                }
             }
         };
         let done: Vec<Result<(), Refusal>> = thread::scope(|scope| {

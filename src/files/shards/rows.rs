@@ -421,6 +421,13 @@ fn line(reader: &mut BufReader<File>) -> Option<Vec<u8>> {
     ((line.len() as u64) < MAX_LINE_BYTES).then_some(line)
 }
 
+/// Opens a Parquet file of any program.
+pub(super) fn opened_parquet(file: &Path) -> Result<SerializedFileReader<File>, ShardError> {
+    let (_, opened) = plain_file(file)?;
+    let damaged = || shard_error(file, "damaged: want a whole Parquet file");
+    guarded(|| SerializedFileReader::new(opened).map_err(parquet_failure(file)), damaged)
+}
+
 /// Opens a Parquet file, and checks that its footer and its row groups are plausible.
 fn parquet_reader(file: &Path, mut opened: File) -> Result<SerializedFileReader<File>, ShardError> {
     let mut contents = || {

@@ -15,15 +15,15 @@
 //! Rows of the same study, outcome and bin add up: `count` and all digits by SUM, `least` by MIN, `greatest` by MAX, with
 //! their machines. Digits may then exceed 2³¹; up to four million parts they are whole even as floating point numbers.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::reader::FileReader;
 
 use super::checksum::{self, CheckedFile, ChecksumPlace};
 use super::error::{ShardError, shard_error};
-use super::rows::{STUDY_KEY, StudyId, difference, parquet_failure, plain_file};
-use crate::parquet_guard::guarded;
+use super::rows::{STUDY_KEY, StudyId, difference, opened_parquet, parquet_failure, plain_file};
 use crate::parquet_rows::{ColumnKind, ParquetCell, ParquetHead, ParquetRows};
 use crate::row_file::RowForm;
 use crate::table::columns::{ColumnTable, ColumnValues};
@@ -60,12 +60,10 @@ const LIMITS: [&str; 3] = ["within_moment_limit", "within_force_limit", "within_
 /// # Errors
 /// If it cannot be read.
 pub fn is_summary(file: &Path) -> Result<bool, ShardError> {
-    let (form, opened) = plain_file(file)?;
-    if form != RowForm::Parquet {
+    if plain_file(file)?.0 != RowForm::Parquet {
         return Ok(false);
     }
-    let damaged = || shard_error(file, "damaged: want a whole Parquet file");
-    let reader = guarded(|| SerializedFileReader::new(opened).map_err(parquet_failure(file)), damaged)?;
+    let reader = opened_parquet(file)?;
     let schema = reader.metadata().file_metadata().schema_descr();
     Ok(schema.columns().iter().any(|column| column.name() == "bin"))
 }
@@ -152,9 +150,11 @@ pub fn write_summary(file: &Path, force: bool, study: &StudyId, summary: &Summar
 pub fn read_summary(file: &Path) -> Result<(StudyId, Summary), ShardError> {
     let wrong = |why: String| shard_error(file, why);
     let (_, mut opened) = plain_file(file)?;
-    // Tables that other programs added up have no checksum; those of this program have.
+    // Other programs may keep the note with the checksum, but not the bytes.
+    let is_own =
+        opened_parquet(file)?.metadata().file_metadata().created_by().is_some_and(|by| by.starts_with("stillbase"));
     let checked = checksum::verify(&mut opened, ChecksumPlace::Tail).map_err(|e| wrong(e.to_string()))?;
-    if checked == Some(false) {
+    if is_own && checked == Some(false) {
         let why = "its checksum does not fit its bytes, so it was changed or damaged: want it written again";
         return Err(wrong(why.into()));
     }
@@ -166,7 +166,8 @@ pub fn read_summary(file: &Path) -> Result<(StudyId, Summary), ShardError> {
     if let Some(other) = studies.iter().find(|other| *other != first) {
         return Err(wrong(format!("rows of {} and of {}: want one study", quote_clipped(first), quote_clipped(other))));
     }
-    let study = StudyId::of_name(first).ok_or_else(|| {
+    let possible = |study: &StudyId| (1..=MAX_SAMPLES).contains(&study.samples);
+    let study = StudyId::of_name(first).filter(possible).ok_or_else(|| {
         wrong(format!("column study: {}: want what `stillbase tolerance --summary` wrote there", quote_clipped(first)))
     })?;
     let mut found = Found::default();
@@ -322,9 +323,13 @@ impl Found {
         for (number, at, bin) in &self.bins {
             summary.add_bin(*number, *at, bin);
         }
+        let mut sums = BTreeMap::<(usize, u64), Octave>::new();
         for (number, at, octave) in &self.octaves {
-            summary.add_octave(*number, *at, octave);
+            let sum = sums.entry((*number, *at)).or_default();
+            *sum =
+                sum.checked_add(octave).ok_or_else(|| format!("{}{SUMS}: too large", SampleOutcome::NAMES[*number]))?;
         }
+        sums.iter().for_each(|((number, at), octave)| summary.add_octave(*number, *at, octave));
         summary.add_kept(self.kept);
         let machines = summary.count();
         for (number, name) in SampleOutcome::NAMES.iter().enumerate() {
@@ -343,9 +348,21 @@ impl Found {
                 "{name}{SUMS} of bin {at} do not fit the bins of {name}: want every row of every part once"
             ));
         }
-        match summary.kept().iter().all(|kept| *kept <= machines) {
+        let kept = summary.kept();
+        for (number, limit) in [moment, force].into_iter().enumerate() {
+            let Some(limit) = limit else { continue };
+            let [least, most] = summary.within(number, limit);
+            if !(least..=most).contains(&kept[number]) {
+                return Err(format!(
+                    "{} counts {}, but by its bins {least} to {most} machines are within {limit}: want every part with \
+                     this limit, once",
+                    LIMITS[number], kept[number]
+                ));
+            }
+        }
+        match both.is_none() || kept[2] <= kept[0].min(kept[1]) && kept[2] + machines >= kept[0] + kept[1] {
             true => Ok(summary),
-            false => Err("more machines within limits than there are: want every row once".into()),
+            false => Err(format!("{} counts {}: want every row of every part once", LIMITS[2], kept[2])),
         }
     }
 }

@@ -52,6 +52,6 @@ pub use simulate::simulate;
 pub use statistics::{Histogram, Quantiles, Yield};
 pub use study::{STUDY_INSTANTS, StudiedRun, Study, StudyQuery, neglected_effects};
 pub use summary::{
-    BIN_WIDTH, Bin, BinPlace, BinValues, Extreme, KnownRanks, Limits, OCTAVE_BINS, OCTAVES, Octave, Summary,
-    Unmergeable, bin_of, lower_edge,
+    BIN_WIDTH, Bin, BinPlace, BinValues, Extreme, KnownRanks, Limits, MAX_VALUES, OCTAVE_BINS, OCTAVES, Octave,
+    Summary, Unmergeable, bin_of, lower_edge,
 };

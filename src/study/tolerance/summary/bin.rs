@@ -152,6 +152,17 @@ impl Octave {
         self.squares += other.squares;
     }
 
+    /// Returns the sums with those of another one added; `None` if they are larger than any machines have.
+    pub fn checked_add(&self, other: &Self) -> Option<Self> {
+        let add = |a: u128, b: u128| a.checked_add(b).filter(|sum| *sum < 1 << 126);
+        Some(Self {
+            count: self.count.checked_add(other.count)?,
+            sum: add(self.sum, other.sum)?,
+            low: add(self.low, other.low)?,
+            squares: add(self.squares, other.squares)?,
+        })
+    }
+
     /// Returns whether as many numbers can have these sums, with those of bins of this octave: the least and the greatest
     /// possible sums of u and of u² follow from counts and extremes.
     pub fn is_plausible<'a>(&self, bins: impl Iterator<Item = &'a Bin>) -> bool {

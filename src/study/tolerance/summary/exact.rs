@@ -8,8 +8,8 @@ use super::bin::bin_of;
 /// A bin of one of the numbers of an outcome: the place of the number, then the bin.
 pub type BinPlace = (usize, u64);
 
-/// Largest number of values that are kept at once, 8 bytes each.
-const MAX_VALUES: u64 = 16_000_000;
+/// Largest number of values that are kept at once, 8 bytes each; of bins with more, quantiles are not found exactly.
+pub const MAX_VALUES: u64 = 16_000_000;
 
 /// The numbers of some bins.
 #[derive(Clone, Debug, Default)]
@@ -19,7 +19,7 @@ pub struct BinValues {
 
 impl BinValues {
     /// Returns collections without numbers, one for each pass over the machines, for bins with their counts. One pass keeps
-    /// at most 128 MB, or one bin.
+    /// at most [`MAX_VALUES`], or one bin.
     pub fn passes(bins: &BTreeMap<BinPlace, u64>) -> Vec<Self> {
         let (mut passes, mut room) = (Vec::<Self>::new(), 0);
         for (place, count) in bins {

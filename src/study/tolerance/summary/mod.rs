@@ -17,7 +17,7 @@ use super::statistics::{Histogram, Quantiles, Yield, ranks};
 use super::{PartResults, SampleOutcome};
 
 pub use bin::{BIN_WIDTH, Bin, Extreme, OCTAVE_BINS, OCTAVES, Octave, bin_of, lower_edge};
-pub use exact::{BinPlace, BinValues, KnownRanks};
+pub use exact::{BinPlace, BinValues, KnownRanks, MAX_VALUES};
 
 /// The numbers of one exponent: their sums, and their bins.
 #[derive(Clone, Debug, PartialEq)]
@@ -120,7 +120,10 @@ impl Summary {
         Self { limits, ..Self::default() }
     }
 
-    /// Adds consecutive machines, from the sample number `first` on. They must not be in the summary yet.
+    /// Counts consecutive machines, from the sample number `first` on. They must not be in the summary yet; [`hold`] says
+    /// that they are.
+    ///
+    /// [`hold`]: Self::hold
     pub fn add(&mut self, first: u64, outcomes: &[SampleOutcome]) {
         for (machine, outcome) in (first..).zip(outcomes) {
             for (pages, x) in self.numbers.iter_mut().zip(outcome.numbers()) {
@@ -129,7 +132,6 @@ impl Summary {
             let kept = self.limits.kept(outcome);
             (0..3).for_each(|i| self.kept[i] += u64::from(kept[i]));
         }
-        self.hold(first..first + outcomes.len() as u64);
     }
 
     /// Adds a bin of one of the numbers of an outcome, by its place in [`SampleOutcome::numbers`].
