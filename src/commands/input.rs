@@ -194,6 +194,11 @@ impl MachineArgument {
         (!list.is_empty()).then(|| Failure::no_answer(format!("the drawing is no machine yet; still missing: {list}")))
     }
 
+    /// Returns whether a setting is given.
+    pub fn sets(&self, key: &str) -> bool {
+        self.settings.pairs.iter().any(|(own, _)| own == key)
+    }
+
     /// Returns the argument as a shell takes it, with its settings.
     pub fn as_typed(&self) -> String {
         format!("{}{}", shell_word(&self.name), self.settings.as_typed())

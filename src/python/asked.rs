@@ -155,7 +155,7 @@ pub fn answered<'py>(py: Python<'py>, mut words: Vec<OsString>, input: Option<St
 
 /// Carries out a command of the command line, and returns its answer as dictionaries and lists. A machine is named, or
 /// is a `Machine`. Options are keywords: `min_reach=1.2` is `--min-reach 1.2`, `keep=True` is `--keep`,
-/// `set={"payload.mass": 0.1}` is `--set payload.mass=0.1`.
+/// `set={"payload.mass": 0.1}` is `--set payload.mass=0.1`; a list repeats an option that may be repeated.
 ///
 /// ```python
 /// >>> import stillbase as sb

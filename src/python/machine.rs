@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyType};
+use pyo3::types::{PyDict, PyString, PyType};
 use stillbase_files::found_machine;
 use stillbase_files::text::with_standard_input;
 use stillbase_mechanics::machine::{self, to_toml};
@@ -428,5 +428,14 @@ impl Machine {
 
     fn __eq__(&self, other: &Self) -> bool {
         *self.machine == *other.machine
+    }
+
+    fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
+        PyString::new(py, &self.to_toml()).hash()
+    }
+
+    /// Machines are copied, and sent to workers, as their text.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
+        Ok((py.get_type::<Self>().getattr("from_toml")?, (self.to_toml(),)))
     }
 }

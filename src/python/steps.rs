@@ -36,7 +36,7 @@ pub fn step<'py>(
         Some(out) => out,
         None => (empty(py, &shape, &[drives])?, empty(py, &shape, &[drives])?),
     };
-    for (name, (out, given)) in ["q", "qd"].into_iter().zip([(&result.0, q), (&result.1, qd)]) {
+    for (name, out) in ["q", "qd"].into_iter().zip([&result.0, &result.1]) {
         if *out.shape() != *[&shape[..], &[drives]].concat() {
             let why =
                 format!("out has {name} of the shape {:?}: want {drives} for each state of {shape:?}", out.shape());

@@ -1,9 +1,11 @@
 """Holds the package stillbase against its own documentation, the command line in it, and plain sums."""
 
 import ast
+import copy
 import doctest
 import inspect
 import json
+import pickle
 import os
 import re
 import subprocess
@@ -298,6 +300,8 @@ except sb.WrongInput as why:
     assert "mass of link 4" in str(why), why
 else:
     raise AssertionError("a negative mass")
+assert pickle.loads(pickle.dumps(machine)) == machine == copy.deepcopy(machine)
+assert {machine: 1}[sb.Machine.from_toml(machine.to_toml())] == 1
 assert machine.set({"link.5.com": 0}).check()["force_balanced"] is False
 assert sb.Machine.builtin("nine-link-bare").counterweights(max_mass={"1": 8})["certified"]
 

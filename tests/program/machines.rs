@@ -445,6 +445,10 @@ fn designs_of_a_study_are_those_found_alone() {
         (&["--vary", "length.nowhere=1,2"], 2, "length.nowhere"),
         (&["--vary", "payload.mass=400,500", "--table", &named("none.csv")], 1, "none of 2 points has a design"),
         (&["--vary", "material=cheese"], 2, "want a density"),
+        (&["--vary", "lenght.l5=0.3,0.4"], 2, "lenght.l5: no setting"),
+        (&["--vary", "material=steel", "--material", "lead"], 2, "by another option"),
+        (&["--vary", "payload.mass=0,0.1", "--set", "payload.mass=0.1"], 2, "by another option"),
+        (&["--vary", "payload.mass=0,0.1", "--length", "l5=0.3,0.4"], 2, "--length"),
         (&["--vary", "payload.mass=0,0.1", "--vary", "payload.mass=0.2"], 2, "varies twice"),
     ] {
         fails(&[&study[..], more].concat(), status, &[words]);

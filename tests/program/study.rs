@@ -204,6 +204,8 @@ fn summaries_say_what_every_machine_says() {
     assert!(said.contains("machines 1666 to 3332 are in no part"), "{said}");
     // Some parts are merged as they are, and what is missing is said.
     let some = json(&["tolerance", "--merge", "b.parquet", "-o", "some.parquet"]);
+    let said = said_in(&folder, &["tolerance", "--merge", "b.parquet", "-o", "strict.parquet", "--strict"], 1);
+    assert!(said.contains("2500 of 5000 machines in no part"), "{said}");
     assert_eq!((&some["missing"], merged.get("missing")), (&json!([[0, 2500]]), None));
     for (args, status, words) in [
         (&["--merge", "a.parquet", "a.parquet", "-o", "x.parquet"][..], 2, "machines 0 to 2499 are counted twice"),

@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_planning::Motion;
-use stillbase_session::scenario::DesignBrief;
+use stillbase_session::scenario::{DesignBrief, key_of};
 use stillbase_settings::number::{counted, fixed_or_finer};
 use stillbase_settings::text::shell_word;
 use stillbase_study::counterweights::CounterweightReport;
@@ -32,7 +32,7 @@ pub struct VaryArguments {
     /// is one of --set, or material or thickness; several make a grid
     #[arg(
         long, value_name = "KEY=V1,V2,…|LO:HI[:N]", requires = "counterweights", value_parser = axis,
-        conflicts_with_all = ["other_machines", "output"], allow_hyphen_values = true
+        conflicts_with_all = ["other_machines", "output", "length"], allow_hyphen_values = true
     )]
     vary: Vec<Axis>,
     /// Take N points that fill the ranges of --vary evenly, instead of a grid
@@ -149,6 +149,7 @@ impl DesignArguments {
             )),
             why => Failure::wrong_input(format!("--vary: {why}")),
         })?;
+        self.check_axes(machine, space.axes())?;
         let (i, n) = of.shard.unwrap_or((1, 1));
         let points = shard(space.count(), i, n);
         if points.is_empty() {
@@ -232,6 +233,35 @@ impl DesignArguments {
         self.format.print(&answer, text)
     }
 
+    /// Refuses, before any design is sought, what is no setting, has no effect, or is given once more.
+    fn check_axes(&self, machine: &Machine, axes: &[Axis]) -> Result<(), Failure> {
+        for Axis { key, values } in axes {
+            let wrong = |why: &str| Failure::wrong_input(format!("--vary {key}: {why}"));
+            let is_given = match key.as_str() {
+                "material" => self.weighing.material.is_some(),
+                "thickness" => self.weighing.thickness.is_some(),
+                key => self.machine.sets(key),
+            };
+            if is_given {
+                return Err(wrong("it is given by another option, too: want one of both"));
+            }
+            match (key.as_str(), values) {
+                ("material", AxisValues::Listed(all)) => {
+                    all.iter().try_for_each(|word| density(word).map(|_| ())).map_err(|why| wrong(&why))?;
+                }
+                ("material" | "thickness", _) => {}
+                (key, _) if key_of(key).is_none() || !machine.uses(key, false) => {
+                    return Err(wrong(
+                        "no setting of this machine: want a key of --set, as length.NAME or payload.mass, or material or \
+                         thickness",
+                    ));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
     /// Finds the counterweights of a machine with settings changed.
     fn design_at(
         &self,
@@ -295,7 +325,8 @@ fn text(answer: &Answer) -> String {
     let [from, to] = answer.shard;
     let mut table = TextTable::new(["point", "added kg", "Σ D_k kg m²", "gap", "settings"]).with_words(4);
     for design in &answer.best {
-        let gap = design.gap.map_or_else(|| "–".into(), |gap| format!("{gap:.1e}"));
+        let mark = if design.certified == Some(false) { ", not certified" } else { "" };
+        let gap = design.gap.map_or_else(|| "–".into(), |gap| format!("{gap:.1e}{mark}"));
         let [mass, inertia] = [design.added_mass, design.inertia].map(|x| fixed_or_finer(x, 6));
         table.row([design.point.to_string(), mass, inertia, gap, design.options.clone()]);
     }

@@ -50,10 +50,10 @@ pub struct WeightArguments {
     shape: Option<CounterweightForm>,
     /// Material of the counterweights: aluminium, steel, brass, lead, tungsten, or a density, kg/m³; default: steel
     #[arg(long, value_parser = density, value_name = "MATERIAL", requires = "counterweights")]
-    material: Option<f64>,
+    pub material: Option<f64>,
     /// Thickness of the counterweights, m; default: 0.03
     #[arg(long, value_parser = number, value_name = "T", requires = "counterweights")]
-    thickness: Option<f64>,
+    pub thickness: Option<f64>,
     /// Maximum mass of a counterweight, kg: M for every link, or LINK=M for one
     #[arg(long, value_name = "[LINK=]M", requires = "counterweights")]
     max_mass: Vec<String>,

@@ -223,7 +223,11 @@ impl ToleranceArguments {
         };
         say_written(whole);
         self.format.print(&answer, MergedParts::text)?;
-        self.strict.require(past_limits(&answer.yields))
+        let lacks = (!missing.is_empty()).then(|| {
+            let count: u64 = missing.iter().map(|gap| gap.end - gap.start).sum();
+            format!("{count} of {} in no part", counted(study.samples, "machine"))
+        });
+        self.strict.require(lacks.into_iter().chain(past_limits(&answer.yields)))
     }
 
     fn limits(&self) -> Limits {

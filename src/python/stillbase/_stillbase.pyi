@@ -82,6 +82,11 @@ class Machine:
     ```
     """
     def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self, /) -> int: ...
+    def __reduce__(self, /) -> tuple[Any, tuple[str]]:
+        """
+        Machines are copied, and sent to workers, as their text.
+        """
     def __repr__(self, /) -> str: ...
     def _repr_svg_(self, /) -> str:
         """
@@ -447,7 +452,7 @@ def ask(*words: typing.Any, **given: typing.Any) -> typing.Any:
     """
     Carries out a command of the command line, and returns its answer as dictionaries and lists. A machine is named, or
     is a `Machine`. Options are keywords: `min_reach=1.2` is `--min-reach 1.2`, `keep=True` is `--keep`,
-    `set={"payload.mass": 0.1}` is `--set payload.mass=0.1`.
+    `set={"payload.mass": 0.1}` is `--set payload.mass=0.1`; a list repeats an option that may be repeated.
 
     ```python
     >>> import stillbase as sb
