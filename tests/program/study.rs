@@ -196,6 +196,18 @@ fn summaries_say_what_every_machine_says() {
     }
     assert!(whole["yield"] == full["yield"] && merged["yield"] == full["yield"] && exact["yield"] == full["yield"]);
     assert_eq!(whole["peak_base_moment"]["quantile_error"], merged["peak_base_moment"]["quantile_error"]);
+    // Other limits are counted, too.
+    let other = ["--limit-moment", "0.004", "--limit-force", "0.03"];
+    let (anew, want) =
+        (json(&[&study[..], &other, &["--exact", "merged.parquet"]].concat()), [&study[..], &other].concat());
+    assert_eq!(anew["yield"], json(&want)["yield"]);
+    let [least, greatest] =
+        [0, 1].map(|i| whole["peak_base_moment"]["extreme_machines"][i].as_u64().expect("a machine"));
+    for (machine, level) in [(least, 0), (greatest, 8)] {
+        // A machine by itself is a shard of its own.
+        let alone = json(&[&study[..], &["--shard", &format!("{}/5000", machine + 1)]].concat());
+        assert_eq!(alone["peak_base_moment"]["mean"], whole["peak_base_moment"]["quantiles"]["values"][level]);
+    }
     // With gaps, too, it says what is missing.
     let (gap, _) = (part("1/3", "first.parquet"), part("3/3", "last.parquet"));
     assert_eq!(gap["shard"], json!([0, 1666]));

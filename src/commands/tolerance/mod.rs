@@ -95,9 +95,9 @@ pub struct ToleranceArguments {
     /// Keep a summary in bins instead of every machine, for any number of machines; -o writes it, as .parquet
     #[arg(long)]
     summary: bool,
-    /// Draw the machines of this summary again, and find its quantiles exactly; with the scenario and options that it was
-    /// made with
-    #[arg(long, value_name = "SUMMARY", conflicts_with_all = ["shard", "output", "summary", "limit_moment", "limit_force"])]
+    /// Draw the machines of this summary again, find its quantiles exactly, and count those within any limits; with the
+    /// scenario and options that it was made with
+    #[arg(long, value_name = "SUMMARY", conflicts_with_all = ["shard", "output", "summary"])]
     exact: Option<PathBuf>,
     /// Merge these parts, in any order, into the file of -o; summaries of some parts may be merged again
     #[arg(
@@ -245,7 +245,7 @@ impl ToleranceArguments {
             let had = counted.map_or_else(|| "none".to_owned(), |limit| limit.to_string());
             return Err(Failure::wrong_input(format!(
                 "{option} {limit}: the parts did not count it (their limit: {had}); by their bins, {least} to {most} of \
-                 {} machines are within: want {option} with every part",
+                 {} machines are within: want {option} with every part, or with --exact",
                 sum.count()
             )));
         }
@@ -318,7 +318,7 @@ impl ToleranceArguments {
         let study = StudyId::of(&scenario, &section, [samples, seed], self.instants, self.simulate);
         let limits = Limits { moment: section.moment_limit, force: section.force_limit };
         let (machines, results) = match &self.exact {
-            Some(file) => self.exact_results(&ensemble, &run, &study, file)?,
+            Some(file) => self.exact_results(&ensemble, &run, (&study, file), limits)?,
             None if self.summary => {
                 let sum = self.summarize(&ensemble, &run, limits, &range)?;
                 self.output.iter().try_for_each(|file| write_summary(file, self.force, &study, &sum))?;
@@ -376,8 +376,8 @@ impl ToleranceArguments {
         &self,
         ensemble: &Ensemble,
         run: &Run,
-        study: &StudyId,
-        file: &Path,
+        (study, file): (&StudyId, &Path),
+        limits: Limits,
     ) -> Result<(Range<u64>, Option<PartResults>), Failure> {
         let (own, sum) = read_summary(file)?;
         if own != *study {
@@ -391,8 +391,13 @@ impl ToleranceArguments {
             return Err(Failure::no_answer(format!("--exact {}: {why}", file.display())));
         }
         let mut known = KnownRanks::default();
-        let bar = self.progress(sum.count());
-        for mut pass in BinValues::passes(&bins) {
+        let counts_anew = limits != Limits::default() && limits != sum.limits();
+        let (mut passes, mut kept) = (BinValues::passes(&bins), [0; 3]);
+        if passes.is_empty() && counts_anew {
+            passes.push(BinValues::default());
+        }
+        let bar = self.progress(sum.count() * passes.len() as u64);
+        for (i, mut pass) in passes.into_iter().enumerate() {
             let empty = pass.clone();
             pass.reserve(&bins);
             let all = Mutex::new(pass);
@@ -403,9 +408,12 @@ impl ToleranceArguments {
                 ensemble,
                 self.mode(run),
                 sum.machines(),
-                || (empty.clone(), 0),
-                |(found, since), batch| {
+                || (empty.clone(), 0, [0; 3]),
+                |(found, since, kept), batch| {
                     found.add(&batch.outcomes);
+                    for outcome in batch.outcomes.iter().filter(|_| i == 0 && counts_anew) {
+                        kept.iter_mut().zip(limits.kept(outcome)).for_each(|(kept, is)| *kept += u64::from(is));
+                    }
                     *since += batch.outcomes.len();
                     // What waits on a thread stays small.
                     if *since >= WAITING_MACHINES {
@@ -415,10 +423,10 @@ impl ToleranceArguments {
                     bar.inc(batch.samples.end - batch.samples.start);
                 },
             );
-            workers
-                .map_err(|e| Failure::refused(run.scenario(), e))?
-                .iter_mut()
-                .for_each(|(found, _)| take_over(found));
+            for (mut found, _, own) in workers.map_err(|e| Failure::refused(run.scenario(), e))? {
+                take_over(&mut found);
+                kept.iter_mut().zip(own).for_each(|(kept, own)| *kept += own);
+            }
             let pass = all.into_inner().unwrap_or_else(PoisonError::into_inner);
             if sum.learn(pass, &mut known).is_err() {
                 let why = "its bins hold other machines than this program draws: want it made by the same version";
@@ -429,7 +437,8 @@ impl ToleranceArguments {
         say_missing(&sum.missing(study.samples));
         let held = sum.machines();
         let machines = held.first().map_or(0, |own| own.start)..held.last().map_or(0, |own| own.end);
-        Ok((machines, sum.results(&known)))
+        let yields = if counts_anew { limits.yields(kept, sum.count()) } else { sum.yields() };
+        Ok((machines, sum.results(&known).map(|results| PartResults { yields, ..results })))
     }
 
     /// Evaluates the machines of a range and writes them if requested. Returns their outcomes and, if these are

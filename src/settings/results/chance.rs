@@ -21,6 +21,7 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("levels", "1", "Share of the sample below each value, 0 to 1."),
     row("values", "of unit", "Value at each level."),
     row("quantile_error", "1", "Largest relative error of quantiles that come from the bins of a summary."),
+    row("extreme_machines", "1", "The machines with the least and with the greatest value; of a summary."),
     row("histogram", "", "Histogram with equal intervals between the extremes; those of a summary end at its bins."),
     row("edges", "of unit", "Edges of the intervals: one more than counts."),
     row("counts", "1", "Number of values in each interval."),

@@ -19,6 +19,9 @@ pub struct Distribution {
     /// Largest relative error of the quantiles between the extremes, where they come from bins.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quantile_error: Option<f64>,
+    /// The machines with the least and with the greatest value, by their sample numbers; of a summary.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub extreme_machines: Option<[u64; 2]>,
     /// Histogram with equal intervals between the extremes, or with inner edges at those of bins.
     pub histogram: Histogram,
 }
@@ -37,6 +40,7 @@ impl Distribution {
             deviation: (squares / (n - 1.0).max(1.0)).sqrt(),
             quantiles: Quantiles::of_sorted(&values, &Quantiles::LEVELS)?,
             quantile_error: None,
+            extreme_machines: None,
             histogram: Histogram::of_sorted(&values, BINS)?,
         })
     }

@@ -86,11 +86,24 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Returns whether a machine is within each limit, and within both.
-    fn kept(&self, outcome: &SampleOutcome) -> [bool; 3] {
+    /// Returns whether a machine is within the limit of the moment, that of the force, and both.
+    pub fn kept(&self, outcome: &SampleOutcome) -> [bool; 3] {
         let within = |limit: Option<f64>, x: f64| limit.is_some_and(|limit| x <= limit);
         let [moment, force] = [within(self.moment, outcome.peak_moment), within(self.force, outcome.peak_force)];
         [moment, force, moment && force]
+    }
+}
+
+impl Limits {
+    /// Returns the yields of as many machines, of which so many are within the limit of the moment, that of the force, and
+    /// both.
+    pub fn yields(&self, kept: [u64; 3], total: u64) -> Yields {
+        let of = |limit: Option<f64>, good: u64| LimitYield { limit, count: Yield::new(good, total) };
+        Yields {
+            moment: self.moment.map(|_| of(self.moment, kept[0])),
+            force: self.force.map(|_| of(self.force, kept[1])),
+            both: self.moment.and(self.force).map(|_| of(None, kept[2])),
+        }
     }
 }
 
@@ -275,7 +288,7 @@ impl Summary {
     fn distribution(&self, number: usize, known: &KnownRanks) -> Option<Distribution> {
         let ranked = RankedBins::of(self.bins(number));
         let (bins, count) = (&ranked.bins, ranked.count());
-        let (least, greatest) = (bins.first()?.1.least.value, bins.last()?.1.greatest.value);
+        let (least, greatest) = (bins.first()?.1.least, bins.last()?.1.greatest);
         let mean = self.octaves(number).map(|(at, octave)| octave.total(at)).sum::<f64>() / count as f64;
         let squares: f64 = self.octaves(number).map(|(at, octave)| octave.squares_about(at, mean)).sum();
         let mut is_exact = true;
@@ -297,19 +310,14 @@ impl Summary {
             deviation: (squares.max(0.0) / (count as f64 - 1.0).max(1.0)).sqrt(),
             quantiles: Quantiles { levels: levels.to_vec(), values },
             quantile_error: (!is_exact).then_some(BIN_WIDTH),
-            histogram: histogram(bins, [least, greatest]),
+            extreme_machines: Some([least.machine, greatest.machine]),
+            histogram: histogram(bins, [least.value, greatest.value]),
         })
     }
 
     /// Returns the numbers of machines within the limits.
     pub fn yields(&self) -> Yields {
-        let (Limits { moment, force }, total) = (self.limits, self.count());
-        let of = |limit: Option<f64>, good: u64| LimitYield { limit, count: Yield::new(good, total) };
-        Yields {
-            moment: moment.map(|_| of(moment, self.kept[0])),
-            force: force.map(|_| of(force, self.kept[1])),
-            both: moment.and(force).map(|_| of(None, self.kept[2])),
-        }
+        self.limits.yields(self.kept, self.count())
     }
 
     /// Returns the least and the greatest possible number of machines within a limit that were not counted.
