@@ -114,7 +114,7 @@ pub struct Answer {
     found: u64,
     /// Number of points that have none.
     refused: u64,
-    /// Reasons, each with the number of points.
+    /// The first reasons why points have no design.
     reasons: Vec<Reason>,
     /// Designs that no other is better than in both added mass and Σ D_k, by rising mass.
     best: Vec<BestDesign>,
@@ -123,12 +123,12 @@ pub struct Answer {
     file: Option<String>,
 }
 
-/// Why points have no design.
+/// Why a point has no design.
 #[derive(JsonSchema, Serialize)]
 pub struct Reason {
-    /// Reason of the first of them, in words.
+    /// Reason, in words.
     why: String,
-    /// The first of them.
+    /// Number of the point, from 0.
     point: u64,
 }
 

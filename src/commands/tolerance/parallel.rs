@@ -10,8 +10,7 @@ use stillbase_session::Refusal;
 use stillbase_study::tolerance::{Batch, CHUNK, Ensemble, Mode, Sampler};
 
 /// Number of chunks per thread in one wave; the results of a wave are passed on together. Simulations use one chunk.
-/// Between two waves, threads
-/// wait for the slowest; with many chunks, they wait for a small part of the time.
+/// Between two waves, threads wait for the slowest; with many chunks, they wait for a small part of the time.
 const CHUNKS_PER_THREAD: usize = 32;
 
 /// Gives every batch of machines of some ranges to one of several workers, in no order, and returns the workers.
